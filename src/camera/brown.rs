@@ -1,0 +1,222 @@
+//! OpenCV's rational distortion, `k1 k2 p1 p2 k3 k4 k5 k6` (OpenCV documentation, "Camera
+//! Calibration and 3D Reconstruction", detailed description):
+//!
+//! ```text
+//! x' = x (1 + k1 r2 + k2 r4 + k3 r6) / (1 + k4 r2 + k5 r4 + k6 r6) + 2 p1 x y + p2 (r2 + 2 x2)
+//! y' = y (     the same factor      )                              + p1 (r2 + 2 y2) + 2 p2 x y
+//! ```
+//!
+//! ROS's `plumb_bob` is its first five coefficients, `rational_polynomial` all eight.
+//!
+//! The inverse follows the straight line from the principal point to the wanted point, so it ends
+//! on the branch of the model that the middle of the image lies on, or finds that this branch ends
+//! (its Jacobian loses rank) before it arrives. Newton's method from a fixed start, as OpenCV does
+//! it, may land on the far side of the fold without saying so.
+
+use glam::{DMat2, DVec2};
+
+use super::distortion::NotInvertible;
+use super::polynomial::smallest_positive_root;
+
+/// The squared radius up to which the fold is looked for: tan 89.9 degrees, squared. No lens with
+/// this model sees further out.
+const FARTHEST_SQUARED_RADIUS: f64 = 573.0 * 573.0;
+
+/// OpenCV's rational distortion. Make it with [`Brown::new`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Brown {
+    coefficients: [f64; 8],
+    /// Squared radius of the fold of the radial factor, infinite where it has none.
+    fold_squared: f64,
+}
+
+impl Brown {
+    /// From `k1 k2 p1 p2 k3 k4 k5 k6`, all finite; missing ones are 0.
+    pub fn new(coefficients: [f64; 8]) -> Self {
+        let [k1, k2, _, _, k3, k4, k5, k6] = coefficients;
+        // d(r N/D)/dr has the sign of N D + 2 s (N' D - N D'), with s = r2; D must stay positive.
+        let (numerator, denominator) = ([1.0, k1, k2, k3], [1.0, k4, k5, k6]);
+        let mut growth = [0.0; 7];
+        for (i, n) in numerator.iter().enumerate() {
+            for (j, d) in denominator.iter().enumerate() {
+                growth[i + j] += n * d * (1.0 + 2.0 * (i as f64 - j as f64));
+            }
+        }
+        let fold_squared = [&growth[..], &denominator[..]]
+            .into_iter()
+            .filter_map(|p| smallest_positive_root(p, FARTHEST_SQUARED_RADIUS))
+            .fold(f64::INFINITY, f64::min);
+        Self {
+            coefficients,
+            fold_squared,
+        }
+    }
+
+    /// `k1 k2 p1 p2 k3 k4 k5 k6`.
+    pub fn coefficients(&self) -> [f64; 8] {
+        self.coefficients
+    }
+
+    /// The ideal radius (focal lengths) at which the radial factor folds back, infinite where it
+    /// grows for ever.
+    pub fn fold_radius(&self) -> f64 {
+        self.fold_squared.sqrt()
+    }
+
+    /// The distorted point of an ideal one, or `None` beyond the fold.
+    pub fn distorted_from_ideal(&self, ideal: DVec2) -> Option<DVec2> {
+        if ideal.length_squared() >= self.fold_squared {
+            return None;
+        }
+        let (distorted, jacobian) = self.map(ideal);
+        (jacobian.determinant() > 0.0).then_some(distorted)
+    }
+
+    /// The ideal point that lies at `distorted`, to `tolerance`.
+    ///
+    /// # Errors
+    /// Where the branch of the model around the principal point does not reach `distorted`.
+    pub fn ideal_from_distorted(
+        &self,
+        distorted: DVec2,
+        tolerance: f64,
+    ) -> Result<DVec2, NotInvertible> {
+        let mut ideal = DVec2::ZERO;
+        let mut reached = 0.0;
+        let mut step: f64 = 0.25;
+        while reached < 1.0 {
+            let next = (reached + step).min(1.0);
+            match self.newton(ideal, distorted * next, tolerance) {
+                Some(found) => {
+                    ideal = found;
+                    reached = next;
+                    step *= 2.0;
+                }
+                // Near the fold the steps shrink without end: closer than this is beyond it.
+                None if step < 1e-9 => {
+                    let radius = distorted.length();
+                    return Err(NotInvertible {
+                        radius,
+                        fold: radius * reached,
+                    });
+                }
+                None => step /= 4.0,
+            }
+        }
+        Ok(ideal)
+    }
+
+    /// Newton's method for a target near `distort(start)`; `None` where it does not converge at
+    /// once or would leave the branch of `start`.
+    fn newton(&self, start: DVec2, target: DVec2, tolerance: f64) -> Option<DVec2> {
+        let mut ideal = start;
+        let mut last_error = f64::INFINITY;
+        for _ in 0..8 {
+            let (distorted, jacobian) = self.map(ideal);
+            if jacobian.determinant() <= 0.0 || ideal.length_squared() >= self.fold_squared {
+                return None;
+            }
+            let error = (target - distorted).length();
+            // On past the tolerance to the floor of rounding: one more step is cheap, and the
+            // branch is then known to be the right one.
+            if error == 0.0 || (error <= tolerance && error >= last_error / 2.0) {
+                return Some(ideal);
+            }
+            if error >= last_error {
+                return None;
+            }
+            last_error = error;
+            ideal += jacobian.inverse() * (target - distorted);
+        }
+        (last_error <= tolerance).then_some(ideal)
+    }
+
+    /// The distorted point and the derivative of the map.
+    fn map(&self, p: DVec2) -> (DVec2, DMat2) {
+        let [k1, k2, p1, p2, k3, k4, k5, k6] = self.coefficients;
+        let (x, y) = (p.x, p.y);
+        let s = x * x + y * y;
+        let numerator = 1.0 + s * (k1 + s * (k2 + s * k3));
+        let denominator = 1.0 + s * (k4 + s * (k5 + s * k6));
+        let radial = numerator / denominator;
+        let numerator_ds = k1 + s * (2.0 * k2 + s * 3.0 * k3);
+        let denominator_ds = k4 + s * (2.0 * k5 + s * 3.0 * k6);
+        let radial_ds = (numerator_ds - radial * denominator_ds) / denominator;
+        let distorted = DVec2::new(
+            x * radial + 2.0 * p1 * x * y + p2 * (s + 2.0 * x * x),
+            y * radial + p1 * (s + 2.0 * y * y) + 2.0 * p2 * x * y,
+        );
+        let mixed = 2.0 * x * y * radial_ds + 2.0 * p1 * x + 2.0 * p2 * y;
+        let jacobian = DMat2::from_cols_array(&[
+            radial + 2.0 * x * x * radial_ds + 2.0 * p1 * y + 6.0 * p2 * x,
+            mixed,
+            mixed,
+            radial + 2.0 * y * y * radial_ds + 6.0 * p1 * y + 2.0 * p2 * x,
+        ]);
+        (distorted, jacobian)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// OpenCV 4.6 `projectPoints` of (0.3, -0.2, 1) with K = I; the formula by hand in exact
+    /// fractions gives the same digits.
+    #[test]
+    fn matches_the_formula_term_by_term() {
+        let model = Brown::new([0.1, -0.05, 0.01, -0.02, 0.03, 0.002, -0.004, 0.001]);
+        let d = model.distorted_from_ideal(DVec2::new(0.3, -0.2)).unwrap();
+        let radial = (1.0 + 0.013 - 0.05 * 0.0169 + 0.03 * 0.002197)
+            / (1.0 + 0.00026 - 0.004 * 0.0169 + 0.001 * 0.002197);
+        assert!((d.x - (0.3 * radial - 0.0012 - 0.02 * 0.31)).abs() < 1e-16);
+        assert!((d.y - (-0.2 * radial + 0.01 * 0.21 + 0.0024)).abs() < 1e-16);
+    }
+
+    #[test]
+    fn the_fold_of_one_coefficient_is_known_in_closed_form() {
+        // d/dr (r + k r^3) = 0 at r = 1/sqrt(-3k), where the distorted radius is 2/3 of that.
+        let k = -0.3;
+        let model = Brown::new([k, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let fold = 1.0 / (-3.0 * k).sqrt();
+        assert!((model.fold_radius() - fold).abs() < 1e-15);
+        let direction = DVec2::from_angle(0.7);
+        assert!(
+            model
+                .distorted_from_ideal(direction * (fold * 0.9999))
+                .is_some()
+        );
+        assert!(
+            model
+                .distorted_from_ideal(direction * (fold * 1.0001))
+                .is_none()
+        );
+
+        let reach = fold * 2.0 / 3.0;
+        let inside = model
+            .ideal_from_distorted(direction * (reach * 0.99999), 1e-13)
+            .unwrap();
+        assert!(inside.length() < fold);
+        let outside = model
+            .ideal_from_distorted(direction * (reach * 1.00001), 1e-13)
+            .unwrap_err();
+        assert!((outside.fold - reach).abs() < 1e-6, "{outside}");
+    }
+
+    #[test]
+    fn a_pole_of_the_denominator_is_a_fold() {
+        let model = Brown::new([0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0]);
+        assert_eq!(model.fold_radius(), 1.0);
+        assert!(
+            model
+                .ideal_from_distorted(DVec2::new(50.0, 0.0), 1e-12)
+                .is_ok()
+        );
+    }
+
+    #[test]
+    fn grows_for_ever_without_negative_terms() {
+        let model = Brown::new([0.1, 0.2, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0]);
+        assert_eq!(model.fold_radius(), f64::INFINITY);
+    }
+}

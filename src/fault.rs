@@ -1,0 +1,71 @@
+//! What is wrong with an input, as one line for people: the place, the matter, the remedy.
+
+use std::fmt;
+
+/// Bad input, said so that the engineer can mend it.
+///
+/// Whoever knows the file puts its name in front (`formats::FileError`); a fault itself knows only
+/// the place inside. It prints as `what; remedy`, always on one line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// Line in a text file, counted from 1.
+    pub line: Option<u64>,
+    /// What is wrong, naming the value and the limit.
+    pub what: String,
+    /// What to do about it.
+    pub remedy: String,
+}
+
+impl Fault {
+    /// A fault of the whole input.
+    pub fn new(what: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self {
+            line: None,
+            what: one_line(what.into()),
+            remedy: one_line(remedy.into()),
+        }
+    }
+
+    /// A fault at a line of a text, counted from 1.
+    pub fn at(line: u64, what: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self {
+            line: Some(line),
+            ..Self::new(what, remedy)
+        }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}; {}", self.what, self.remedy)
+    }
+}
+
+impl std::error::Error for Fault {}
+
+/// Folds every run of white space and control characters into one space: messages quote bytes of
+/// broken files, and an error is one line whatever they hold.
+fn one_line(text: String) -> String {
+    let mut line = String::with_capacity(text.len());
+    for word in text.split(|c: char| c.is_whitespace() || c.is_control()) {
+        if !word.is_empty() {
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prints_on_one_line() {
+        let fault = Fault::at(3, "found\n\t'\u{0}a\u{1b}[31m'", "mend it");
+        assert_eq!(fault.to_string(), "found ' a [31m'; mend it");
+        assert_eq!(fault.line, Some(3));
+    }
+}

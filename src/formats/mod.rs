@@ -1,0 +1,9 @@
+//! Files that others wrote. One file a format; its header comment is the specification it was
+//! written from. Here only: what kind a file is, and which reader takes it.
+//!
+//! A reader turns bytes into the core's types plus a list of warnings. It knows no path: it returns
+//! a [`Fault`](crate::fault::Fault), and the dispatcher puts the file's name in front.
+
+mod reconstruction;
+
+pub use reconstruction::{Observation, PosedPhoto, Reconstruction};

@@ -1,0 +1,13 @@
+//! Points, rays and frames, all f64.
+
+mod bounds;
+mod local_frame;
+mod median;
+mod ray;
+mod similarity;
+
+pub use bounds::Bounds;
+pub use local_frame::LocalFrame;
+pub use median::median;
+pub use ray::Ray;
+pub use similarity::{NotSimilarity, Similarity};

@@ -1,0 +1,44 @@
+//! Image scales for blast fragmentation photos, from a drone flight's point cloud.
+//!
+//! Fragscale does what Bamford, Esmaeili & Schoellig, "Point-Cloud-Based Aerial Fragmentation
+//! Analysis for Application in the Minerals Industry" (2017), "the paper", describes: the rays of a
+//! photo's four corners meet the triangulated cloud of the rock pile, and the distances between
+//! the corner points give the photo's scale (pixels per unit) at its edges. No scale object on the
+//! pile, no assumption that the pile is flat.
+//!
+//! # The house
+//!
+//! A module may use its own folder and the floors below it, never one above (`tests/floors.rs`
+//! holds that):
+//!
+//! ```text
+//! F6  main.rs  cli.rs            the command line
+//! F4  formats/  exports/         one file a format; what goes out
+//! F3  flight/                    Flight, validated when made; flight.toml
+//! F2  scale/                     corner rays -> corner points -> scales
+//! F1  camera/   surface/         intrinsics, distortion, pose | triangulation, ray casting
+//! F0  geometry/ units.rs jobs.rs fault.rs
+//! ```
+//!
+//! F0 to F3 take no paths, write no log, know no clock and no f32: they return data and typed
+//! errors.
+//!
+//! # Conventions (everywhere)
+//!
+//! - World: right-handed, z up, one length unit per flight.
+//! - Camera axes: x right, y down, z forward.
+//! - Pose: `world_from_camera`, a rotation and the camera centre.
+//! - Pixels: continuous, (0, 0) at the outer corner of the top-left pixel, (W, H) at the opposite
+//!   one; the centre of the first pixel is (0.5, 0.5).
+
+pub mod camera;
+pub mod cli;
+pub mod exports;
+pub mod fault;
+pub mod flight;
+pub mod formats;
+pub mod geometry;
+pub mod jobs;
+pub mod scale;
+pub mod surface;
+pub mod units;

@@ -1,0 +1,5 @@
+//! The surface: triangles that rays meet.
+
+mod cloud;
+
+pub use cloud::Cloud;
