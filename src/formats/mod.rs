@@ -4,6 +4,8 @@
 //! A reader turns bytes into the core's types plus a list of warnings. It knows no path: it returns
 //! a [`Fault`](crate::fault::Fault), and the dispatcher puts the file's name in front.
 
+mod input;
 mod reconstruction;
 
+pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use reconstruction::{Observation, PosedPhoto, Reconstruction};
