@@ -1,1 +1,164 @@
-//! tbd
+//! A flight: one review, with everything that its scales depend on. Validated when made.
+
+mod file;
+
+use std::collections::HashMap;
+
+pub use file::{CameraEntry, CameraSource, FlightFile, PhotoSource};
+
+use crate::camera::{Camera, Pose};
+use crate::fault::Fault;
+use crate::jobs::Progress;
+use crate::scale::{Ground, GroundFinder, ImageKind, PhotoScale};
+use crate::surface::Surface;
+use crate::units::LengthUnit;
+
+/// One image with its camera and pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Photo {
+    /// The name of its file, as the poses write it; unique in the flight.
+    pub name: String,
+    /// Index into [`Flight::cameras`].
+    pub camera: usize,
+    /// In the world.
+    pub pose: Pose,
+    /// Why this photo can have no scale, in words; `None` where it can.
+    pub trouble: Option<String>,
+}
+
+/// What a flight is made of.
+#[derive(Debug)]
+pub struct FlightParts {
+    /// For people.
+    pub name: String,
+    /// The unit of all world coordinates.
+    pub unit: LengthUnit,
+    /// The plane that rays fall back to.
+    pub ground: Ground,
+    /// Which image the scales are for.
+    pub image: ImageKind,
+    /// What the rays meet.
+    pub surface: Surface,
+    /// The devices.
+    pub cameras: Vec<Camera>,
+    /// In the order of the input.
+    pub photos: Vec<Photo>,
+}
+
+/// A flight whose parts fit together.
+#[derive(Debug)]
+pub struct Flight {
+    parts: FlightParts,
+}
+
+/// The scale of one photo of a flight.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// Corners and scales.
+    Scale(Box<PhotoScale>),
+    /// The photo's own [`Photo::trouble`]: nothing was computed.
+    Trouble(String),
+}
+
+impl Flight {
+    /// Puts a flight together.
+    ///
+    /// # Errors
+    /// Where the parts do not fit: no photo, a name twice, a camera that is missing or impossible,
+    /// a number that is not finite.
+    pub fn new(parts: FlightParts) -> Result<Self, Fault> {
+        if parts.photos.is_empty() {
+            return Err(Fault::new(
+                "the flight has no posed photo",
+                "give at least one photo with its pose",
+            ));
+        }
+        if let Ground::At(z) = parts.ground
+            && !z.is_finite()
+        {
+            return Err(Fault::new(
+                format!("the ground is {z}"),
+                "give a finite elevation or \"auto\"",
+            ));
+        }
+        for camera in &parts.cameras {
+            camera.validate().map_err(|error| {
+                let what = match camera.name.as_str() {
+                    "" => error.to_string(),
+                    name => format!("camera '{name}': {error}"),
+                };
+                Fault::new(what, "correct the camera")
+            })?;
+        }
+        let mut seen = HashMap::new();
+        for (index, photo) in parts.photos.iter().enumerate() {
+            let name = &photo.name;
+            if let Some(first) = seen.insert(name.as_str(), index) {
+                return Err(Fault::new(
+                    format!(
+                        "photo '{name}' is named twice, as number {} and {}",
+                        first + 1,
+                        index + 1
+                    ),
+                    "keep one pose a photo",
+                ));
+            }
+            if photo.camera >= parts.cameras.len() {
+                return Err(Fault::new(
+                    format!("photo '{name}' has no camera"),
+                    "give the camera that took it",
+                ));
+            }
+            if !photo.pose.center.is_finite() || !photo.pose.rotation.is_finite() {
+                return Err(Fault::new(
+                    format!("the pose of photo '{name}' is not finite"),
+                    "correct or remove it",
+                ));
+            }
+        }
+        Ok(Self { parts })
+    }
+
+    /// Its parts.
+    pub fn parts(&self) -> &FlightParts {
+        &self.parts
+    }
+
+    /// The camera of one of its photos.
+    pub fn camera(&self, photo: &Photo) -> &Camera {
+        // `new` has checked the index.
+        &self.parts.cameras[photo.camera]
+    }
+
+    /// The scales of all photos, in their order.
+    ///
+    /// # Errors
+    /// Where the surface cannot be met, or the work was cancelled.
+    pub fn scales(&self, progress: &Progress) -> Result<Vec<Outcome>, Fault> {
+        let FlightParts {
+            surface,
+            ground,
+            image,
+            photos,
+            ..
+        } = &self.parts;
+        let unusable = |error| Fault::new(format!("{error}"), "check the surface file");
+        let mut caster = surface.caster().map_err(unusable)?;
+        let mut finder = GroundFinder::new(*ground, surface);
+        let mut outcomes = Vec::with_capacity(photos.len());
+        progress.stage("computing scales");
+        for photo in photos {
+            progress.advance(outcomes.len() as u64, photos.len() as u64)?;
+            outcomes.push(match &photo.trouble {
+                Some(trouble) => Outcome::Trouble(trouble.clone()),
+                None => {
+                    let camera = self.camera(photo);
+                    let scale =
+                        PhotoScale::compute(camera, &photo.pose, *image, &mut finder, &mut caster);
+                    Outcome::Scale(Box::new(scale.map_err(unusable)?))
+                }
+            });
+        }
+        Ok(outcomes)
+    }
+}

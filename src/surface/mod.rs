@@ -1,5 +1,212 @@
 //! The surface: triangles that rays meet.
+//!
+//! A cloud becomes its 2.5-D Delaunay triangulation over (x, y); a file with faces is used as it is
+//! (contract, section 2). The two have different ways to meet rays: [`walk`] for a cloud, which
+//! builds no more than the rays ask for, [`mesh`] for faces, which may overhang.
 
 mod cloud;
+mod delaunay;
+mod hull;
+mod mesh;
+mod sites;
+mod walk;
+
+use glam::DVec3;
 
 pub use cloud::Cloud;
+
+use crate::geometry::{Bounds, LocalFrame, Ray};
+use mesh::Mesh;
+use sites::Sites;
+use walk::Walk;
+
+/// Points that make no surface.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SurfaceError {
+    /// Fewer than three different places.
+    #[error("the cloud has {0} points with different (x, y); a surface needs at least 3")]
+    TooFewPoints(usize),
+    /// More points than can be counted here.
+    #[error("the cloud has {0} points; thin it to under 4 294 967 296")]
+    TooManyPoints(usize),
+    /// No triangle has an area over (x, y).
+    #[error("all points of the cloud lie on one line in (x, y)")]
+    OnOneLine,
+    /// A face list without a single triangle.
+    #[error("none of the faces has three different corners")]
+    NoTriangles,
+    /// A face names a point that is not there.
+    #[error("face {face} names point {point}, but there are only {count} points (counted from 0)")]
+    NoSuchPoint {
+        /// Which triangle, from 0.
+        face: usize,
+        /// The index it names.
+        point: u32,
+        /// How many points there are.
+        count: usize,
+    },
+    /// NaN or infinity.
+    #[error("point {0} (counted from 0) has a coordinate that is not a finite number")]
+    NotFinite(usize),
+    /// Beyond the reach of exact predicates.
+    #[error("a coordinate is larger than 1e60")]
+    TooFarOut,
+}
+
+/// A surface that rays can be cast at.
+#[derive(Debug)]
+pub struct Surface {
+    frame: LocalFrame,
+    /// The largest absolute world coordinate: what the input was rounded at.
+    magnitude: f64,
+    shape: Shape,
+}
+
+#[derive(Debug)]
+enum Shape {
+    Cloud(Sites),
+    Mesh(Mesh),
+}
+
+/// Where a ray meets a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Along the ray, > 0.
+    pub t: f64,
+    /// In the world.
+    pub point: DVec3,
+}
+
+impl Surface {
+    /// The surface of a cloud: its faces where it has any, else its triangulation over (x, y), in
+    /// which of points with equal (x, y) the highest stands.
+    ///
+    /// # Errors
+    /// Where the points make no surface.
+    pub fn new(cloud: Cloud) -> Result<Self, SurfaceError> {
+        let Cloud {
+            mut points,
+            triangles,
+            ..
+        } = cloud;
+        if let Some(index) = points.iter().position(|p| !p.is_finite()) {
+            return Err(SurfaceError::NotFinite(index));
+        }
+        let bounds = Bounds::of(&points).ok_or(SurfaceError::TooFewPoints(0))?;
+        let magnitude = bounds.min.abs().max(bounds.max.abs()).max_element();
+        if magnitude > 1e60 {
+            return Err(SurfaceError::TooFarOut);
+        }
+        for (face, triangle) in triangles.iter().enumerate() {
+            if let Some(&point) = triangle.iter().find(|&&i| i as usize >= points.len()) {
+                let count = points.len();
+                return Err(SurfaceError::NoSuchPoint { face, point, count });
+            }
+        }
+        let frame = LocalFrame::near(&bounds);
+        for point in &mut points {
+            *point = frame.local_from_world(*point);
+        }
+        let shape = if triangles.is_empty() {
+            let sites = Sites::new(points)?;
+            if hull::is_line(&hull::convex_hull(sites.points())) {
+                return Err(SurfaceError::OnOneLine);
+            }
+            Shape::Cloud(sites)
+        } else {
+            Shape::Mesh(Mesh::new(points, triangles)?)
+        };
+        Ok(Self {
+            frame,
+            magnitude,
+            shape,
+        })
+    }
+
+    /// Makes ready for a few rays (dozens to thousands).
+    ///
+    /// # Errors
+    /// Where the triangulation cannot be begun.
+    pub fn caster(&self) -> Result<Caster<'_>, SurfaceError> {
+        let way = match &self.shape {
+            Shape::Cloud(sites) => Way::Walk(Walk::new(sites)?),
+            Shape::Mesh(mesh) => Way::Mesh(mesh),
+        };
+        Ok(Caster { surface: self, way })
+    }
+
+    /// The same surface as a mesh with all its triangles: for display, and for so many rays that a
+    /// hierarchy over all triangles repays its building.
+    ///
+    /// # Errors
+    /// Where the triangulation fails.
+    pub fn to_mesh(&self) -> Result<Self, SurfaceError> {
+        let (points, triangles) = match &self.shape {
+            Shape::Cloud(sites) => {
+                let triangles = delaunay::triangulate(sites.points())?;
+                (sites.points().to_vec(), triangles)
+            }
+            Shape::Mesh(mesh) => (mesh.points().to_vec(), mesh.triangles().to_vec()),
+        };
+        Ok(Self {
+            frame: self.frame,
+            magnitude: self.magnitude,
+            shape: Shape::Mesh(Mesh::new(points, triangles)?),
+        })
+    }
+
+    /// The triangles, counter-clockwise seen from above where the surface is a triangulated cloud;
+    /// indices into the order of [`Self::vertices`]. Triangulates a cloud at every call.
+    ///
+    /// # Errors
+    /// Where the triangulation fails.
+    pub fn triangles(&self) -> Result<Vec<[u32; 3]>, SurfaceError> {
+        match &self.shape {
+            Shape::Cloud(sites) => delaunay::triangulate(sites.points()),
+            Shape::Mesh(mesh) => Ok(mesh.triangles().to_vec()),
+        }
+    }
+
+    /// The vertices in the world: of a cloud one for each (x, y), of a mesh all of the file.
+    pub fn vertices(&self) -> impl ExactSizeIterator<Item = DVec3> {
+        let points = match &self.shape {
+            Shape::Cloud(sites) => sites.points(),
+            Shape::Mesh(mesh) => mesh.points(),
+        };
+        points.iter().map(|&p| self.frame.world_from_local(p))
+    }
+}
+
+/// Casts rays at a surface. One for each thread.
+#[derive(Debug)]
+pub struct Caster<'a> {
+    surface: &'a Surface,
+    way: Way<'a>,
+}
+
+#[derive(Debug)]
+enum Way<'a> {
+    Walk(Walk<'a>),
+    Mesh(&'a Mesh),
+}
+
+impl Caster<'_> {
+    /// The nearest intersection in front of the ray's origin. Edges, vertices and the rim belong to
+    /// the surface.
+    pub fn cast(&mut self, ray: &Ray) -> Option<Hit> {
+        let local = self.surface.frame.local_from_world_ray(ray);
+        // What the rounding of the input and of a few products can shift a ray by, sixteenfold.
+        let slack = 16.0 * f64::EPSILON * (self.surface.magnitude + local.origin.length());
+        let t = match &mut self.way {
+            Way::Walk(walk) => walk.cast(&local, slack),
+            Way::Mesh(mesh) => mesh.cast(&local, slack),
+        }?;
+        Some(Hit {
+            t,
+            point: ray.at(t),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,675 @@
+//! flight.toml (contract, section 3): the text of a flight, with the names of its other files.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::camera::{Brown, Camera, Distortion, Fisheye};
+use crate::fault::Fault;
+use crate::scale::{Ground, ImageKind};
+use crate::units::LengthUnit;
+
+/// The text of a flight. Paths are relative to the file and stay text here.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FlightFile {
+    /// Version of the format: 1.
+    format: u32,
+    /// For people.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    world: World,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    surface: Option<SurfaceEntry>,
+    /// The `[[camera]]` tables.
+    #[serde(default, rename = "camera", skip_serializing_if = "Vec::is_empty")]
+    pub cameras: Vec<CameraEntry>,
+    photos: PhotosEntry,
+    #[serde(default, skip_serializing_if = "ScaleEntry::is_default")]
+    scale: ScaleEntry,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct World {
+    unit: String,
+    #[serde(default)]
+    ground: GroundEntry,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct SurfaceEntry {
+    file: String,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct PhotosEntry {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    poses: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    reconstruction: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    folder: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    transform: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+struct ScaleEntry {
+    #[serde(default)]
+    image: ImageEntry,
+}
+
+impl ScaleEntry {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+enum ImageEntry {
+    #[default]
+    #[serde(rename = "undistorted")]
+    Undistorted,
+    #[serde(rename = "as-shot")]
+    AsShot,
+}
+
+/// A number or "auto".
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct GroundEntry(Ground);
+
+impl Serialize for GroundEntry {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0 {
+            Ground::Auto => serializer.serialize_str("auto"),
+            Ground::At(z) => serializer.serialize_f64(z),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for GroundEntry {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Visitor;
+        impl serde::de::Visitor<'_> for Visitor {
+            type Value = GroundEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an elevation or \"auto\"")
+            }
+
+            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<GroundEntry, E> {
+                if text == "auto" {
+                    return Ok(GroundEntry(Ground::Auto));
+                }
+                Err(E::invalid_value(serde::de::Unexpected::Str(text), &self))
+            }
+
+            fn visit_f64<E: serde::de::Error>(self, z: f64) -> Result<GroundEntry, E> {
+                Ok(GroundEntry(Ground::At(z)))
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, z: i64) -> Result<GroundEntry, E> {
+                Ok(GroundEntry(Ground::At(z as f64)))
+            }
+        }
+        deserializer.deserialize_any(Visitor)
+    }
+}
+
+/// One `[[camera]]` table, as it stands in the text.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct CameraEntry {
+    /// What poses call it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// A calibration file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// Pixels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub width: Option<u32>,
+    /// Pixels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height: Option<u32>,
+    /// Pixels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fx: Option<f64>,
+    /// Pixels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fy: Option<f64>,
+    /// Pixels, from `pixel_origin`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cx: Option<f64>,
+    /// Pixels, from `pixel_origin`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cy: Option<f64>,
+    /// Pixels; 0 if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub skew: Option<f64>,
+    /// "corner" (if left out) or "center": where cx and cy count from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pixel_origin: Option<String>,
+    /// "none" (if left out), "brown" or "fisheye".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distortion: Option<String>,
+    /// In OpenCV's order; missing ones are 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coefficients: Option<Vec<f64>>,
+}
+
+/// Where a camera comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CameraSource<'a> {
+    /// A calibration file, relative to flight.toml.
+    File(&'a str),
+    /// Only a size, for a reconstruction that has none.
+    Size(u32, u32),
+    /// The table itself.
+    Inline(Camera),
+}
+
+/// Where the posed photos come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PhotoSource<'a> {
+    /// A poses.csv, relative to flight.toml.
+    Poses(&'a str),
+    /// A reconstruction, and the row-major 4x4 from its frame to the world.
+    Reconstruction(&'a str, Option<[f64; 16]>),
+}
+
+/// Every table with the keys that it may have.
+const KNOWN_KEYS: [(&str, &[&str]); 6] = [
+    (
+        "",
+        &[
+            "format", "name", "world", "surface", "camera", "photos", "scale",
+        ],
+    ),
+    ("world", &["unit", "ground"]),
+    ("surface", &["file"]),
+    (
+        "camera",
+        &[
+            "name",
+            "file",
+            "width",
+            "height",
+            "fx",
+            "fy",
+            "cx",
+            "cy",
+            "skew",
+            "pixel_origin",
+            "distortion",
+            "coefficients",
+        ],
+    ),
+    (
+        "photos",
+        &["poses", "folder", "reconstruction", "transform"],
+    ),
+    ("scale", &["image"]),
+];
+
+impl FlightFile {
+    /// Reads the text of a flight.toml.
+    ///
+    /// # Errors
+    /// With the line, where it is no TOML, has an unknown key (the nearest known one is named), lacks
+    /// one, or contradicts itself.
+    pub fn parse(text: &str) -> Result<Self, Fault> {
+        let fault = |error: toml::de::Error| {
+            let line = error.span().map_or(1, |span| line_of(text, span.start));
+            Fault::at(
+                line,
+                error.message(),
+                "see the flight file's format in README",
+            )
+        };
+        let table = DeTable::parse(text).map_err(fault)?;
+        refuse_unknown_keys(text, "", table.get_ref())?;
+        let file: Self = toml::from_str(text).map_err(fault)?;
+        file.check(|table, key| key_line(text, table, key))?;
+        Ok(file)
+    }
+
+    /// The text of this flight.
+    ///
+    /// # Errors
+    /// Never for a flight that was parsed; the serializer's sentence otherwise.
+    pub fn to_toml(&self) -> Result<String, Fault> {
+        toml::to_string(self)
+            .map_err(|e| Fault::new(format!("the flight cannot be written ({e})"), "report this"))
+    }
+
+    /// What the types do not say.
+    fn check(&self, line: impl Fn(&str, &str) -> u64) -> Result<(), Fault> {
+        let at = |table: &str, key: &str, what: String, remedy: &str| {
+            Err(Fault::at(line(table, key), what, remedy))
+        };
+        if self.format != 1 {
+            let what = format!("format {} is not known", self.format);
+            return at(
+                "",
+                "format",
+                what,
+                "write format = 1, or use a newer fragscale",
+            );
+        }
+        if let Err(unknown) = self.world.unit.parse::<LengthUnit>() {
+            let what = format!("world.unit {unknown}");
+            return at("world", "unit", what, "name the unit of the coordinates");
+        }
+        if let Ground::At(z) = self.world.ground.0
+            && !z.is_finite()
+        {
+            return at(
+                "world",
+                "ground",
+                format!("the ground is {z}"),
+                "give a finite elevation or \"auto\"",
+            );
+        }
+        let photos = &self.photos;
+        match (&photos.poses, &photos.reconstruction) {
+            (Some(_), Some(_)) => {
+                let what = "photos has both poses and reconstruction".to_owned();
+                return at("photos", "poses", what, "keep the one that holds");
+            }
+            (None, None) => {
+                let what = "photos has neither poses nor reconstruction".to_owned();
+                return at(
+                    "photos",
+                    "folder",
+                    what,
+                    "name the poses.csv or the reconstruction",
+                );
+            }
+            (Some(_), None) if self.surface.is_none() => {
+                let what = "there is no surface".to_owned();
+                return at("", "world", what, "add [surface] file = \"...\"");
+            }
+            _ => {}
+        }
+        if let Some(transform) = &photos.transform {
+            if photos.reconstruction.is_none() {
+                let what = "photos.transform belongs to a reconstruction".to_owned();
+                return at(
+                    "photos",
+                    "transform",
+                    what,
+                    "remove it, or use reconstruction",
+                );
+            }
+            if transform.len() != 16 {
+                let what = format!("photos.transform has {} numbers", transform.len());
+                return at(
+                    "photos",
+                    "transform",
+                    what,
+                    "give the 16 of a row-major 4x4",
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// The unit of all world coordinates.
+    pub fn unit(&self) -> LengthUnit {
+        // `parse` has checked it.
+        self.world.unit.parse().unwrap_or(LengthUnit::Metre)
+    }
+
+    /// The fall-back plane.
+    pub fn ground(&self) -> Ground {
+        self.world.ground.0
+    }
+
+    /// Which image the scales are for.
+    pub fn image(&self) -> ImageKind {
+        match self.scale.image {
+            ImageEntry::Undistorted => ImageKind::Undistorted,
+            ImageEntry::AsShot => ImageKind::AsShot,
+        }
+    }
+
+    /// The surface's file, relative to flight.toml.
+    pub fn surface(&self) -> Option<&str> {
+        self.surface.as_ref().map(|surface| surface.file.as_str())
+    }
+
+    /// The folder of the image files, relative to flight.toml.
+    pub fn photo_folder(&self) -> Option<&str> {
+        self.photos.folder.as_deref()
+    }
+
+    /// Where the posed photos come from.
+    pub fn photo_source(&self) -> PhotoSource<'_> {
+        let photos = &self.photos;
+        match &photos.reconstruction {
+            Some(path) => {
+                let transform = photos.transform.as_deref();
+                PhotoSource::Reconstruction(path, transform.and_then(|t| t.try_into().ok()))
+            }
+            // `parse` has checked that one of the two is there.
+            None => PhotoSource::Poses(photos.poses.as_deref().unwrap_or_default()),
+        }
+    }
+}
+
+impl CameraEntry {
+    /// What the table says: a file, a size, or a camera.
+    ///
+    /// # Errors
+    /// Where it says more than one of these, or half of one.
+    pub fn source(&self) -> Result<CameraSource<'_>, Fault> {
+        let named = match &self.name {
+            Some(name) => format!("camera '{name}'"),
+            None => "the camera".to_owned(),
+        };
+        let fault = |what: &str, remedy: &str| Fault::new(format!("{named} {what}"), remedy);
+        let only_size = self.fx.is_none()
+            && self.fy.is_none()
+            && self.cx.is_none()
+            && self.cy.is_none()
+            && self.skew.is_none()
+            && self.pixel_origin.is_none()
+            && self.distortion.is_none()
+            && self.coefficients.is_none();
+        if let Some(file) = &self.file {
+            if !only_size || self.width.is_some() || self.height.is_some() {
+                return Err(fault("has a file and numbers", "keep one of the two"));
+            }
+            return Ok(CameraSource::File(file));
+        }
+        let needed = |value: Option<f64>, key: &str| {
+            value.ok_or_else(|| {
+                fault(
+                    &format!("has no {key}"),
+                    "add it, or name a calibration file",
+                )
+            })
+        };
+        let pixels = |value: Option<u32>, key: &str| {
+            value.ok_or_else(|| fault(&format!("has no {key}"), "add it, in pixels"))
+        };
+        let (width, height) = (pixels(self.width, "width")?, pixels(self.height, "height")?);
+        if only_size {
+            return Ok(CameraSource::Size(width, height));
+        }
+        let origin = match self.pixel_origin.as_deref() {
+            None | Some("corner") => 0.0,
+            Some("center") => 0.5,
+            Some(other) => {
+                let what = format!("has the pixel_origin '{other}'");
+                return Err(fault(&what, "write \"corner\" or \"center\""));
+            }
+        };
+        Ok(CameraSource::Inline(Camera {
+            name: self.name.clone().unwrap_or_default(),
+            width,
+            height,
+            fx: needed(self.fx, "fx")?,
+            fy: needed(self.fy, "fy")?,
+            cx: needed(self.cx, "cx")? + origin,
+            cy: needed(self.cy, "cy")? + origin,
+            skew: self.skew.unwrap_or(0.0),
+            distortion: self
+                .lens()
+                .map_err(|what| fault(&what, "see the coefficients of each model in README"))?,
+        }))
+    }
+
+    fn lens(&self) -> Result<Distortion, String> {
+        let given = self.coefficients.as_deref().unwrap_or_default();
+        if given.iter().any(|c| !c.is_finite()) {
+            return Err("has a distortion coefficient that is not finite".to_owned());
+        }
+        let too_many = |model: &str, most: usize| {
+            let count = given.len();
+            format!("has {count} coefficients for the distortion '{model}', which takes {most}")
+        };
+        match self.distortion.as_deref() {
+            None | Some("none") if given.iter().all(|&c| c == 0.0) => Ok(Distortion::None),
+            None | Some("none") => Err(too_many("none", 0)),
+            Some("brown") => padded(given)
+                .map(|c| Distortion::Brown(Brown::new(c)))
+                .ok_or_else(|| too_many("brown", 8)),
+            Some("fisheye") => padded(given)
+                .map(|c| Distortion::Fisheye(Fisheye::new(c)))
+                .ok_or_else(|| too_many("fisheye", 4)),
+            Some(other) => Err(format!(
+                "has the distortion '{other}', not one of none, brown, fisheye"
+            )),
+        }
+    }
+}
+
+/// `given`, filled up with zeros; `None` where it is too long.
+fn padded<const N: usize>(given: &[f64]) -> Option<[f64; N]> {
+    let mut all = [0.0; N];
+    all.get_mut(..given.len())?.copy_from_slice(given);
+    Some(all)
+}
+
+fn refuse_unknown_keys(text: &str, table_name: &str, table: &DeTable<'_>) -> Result<(), Fault> {
+    let Some((_, known)) = KNOWN_KEYS.iter().find(|(name, _)| *name == table_name) else {
+        return Ok(());
+    };
+    for (key, value) in table.iter() {
+        let name: &str = key.get_ref();
+        if !known.contains(&name) {
+            let place = if table_name.is_empty() {
+                String::new()
+            } else {
+                format!(" in [{table_name}]")
+            };
+            return Err(Fault::at(
+                line_of(text, key.span().start),
+                format!("unknown key '{name}'{place}"),
+                match nearest(name, known) {
+                    Some(known) => format!("did you mean '{known}'?"),
+                    None => format!("known keys are {}", known.join(", ")),
+                },
+            ));
+        }
+        if table_name.is_empty() {
+            for inner in tables_in(value) {
+                refuse_unknown_keys(text, name, inner)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A table, or the tables of an array of tables.
+fn tables_in<'a>(value: &'a Spanned<DeValue<'a>>) -> Vec<&'a DeTable<'a>> {
+    match value.get_ref() {
+        DeValue::Table(table) => vec![table],
+        DeValue::Array(array) => array.iter().flat_map(tables_in).collect(),
+        _ => Vec::new(),
+    }
+}
+
+fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
+    known
+        .iter()
+        .map(|known| (strsim::damerau_levenshtein(name, known), *known))
+        .min()
+        .filter(|(distance, known)| *distance <= 1 + known.len() / 2)
+        .map(|(_, known)| known)
+}
+
+/// The line, from 1, of a byte of the text.
+fn line_of(text: &str, byte: usize) -> u64 {
+    let before = text.as_bytes().get(..byte).unwrap_or_default();
+    1 + before.iter().filter(|&&b| b == b'\n').count() as u64
+}
+
+/// The line of a key, or of its table, or 1.
+fn key_line(text: &str, table: &str, key: &str) -> u64 {
+    let Ok(root) = DeTable::parse(text) else {
+        return 1;
+    };
+    let find = |table: &DeTable<'_>, key: &str| {
+        table
+            .iter()
+            .find(|(name, _)| name.get_ref() as &str == key)
+            .map(|(name, _)| line_of(text, name.span().start))
+    };
+    let root = root.get_ref();
+    if table.is_empty() {
+        return find(root, key).unwrap_or(1);
+    }
+    let inner = root
+        .iter()
+        .find(|(name, _)| name.get_ref() as &str == table)
+        .and_then(|(_, value)| tables_in(value).into_iter().find_map(|t| find(t, key)));
+    inner.or_else(|| find(root, table)).unwrap_or(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const WHOLE: &str = r#"format = 1
+name = "Lab trial 1"
+
+[world]
+unit = "m"
+ground = 0.25
+
+[surface]
+file = "pile.ply"
+
+[[camera]]
+name = "bebop"
+file = "ost.yaml"
+
+[[camera]]
+name = "other"
+width = 1280
+height = 720
+fx = 1000.0
+fy = 1001
+cx = 639.5
+cy = 359.5
+skew = 0.5
+pixel_origin = "center"
+distortion = "brown"
+coefficients = [0.1, -0.2]
+
+[photos]
+poses = "poses.csv"
+folder = "photos"
+
+[scale]
+image = "as-shot"
+"#;
+
+    #[test]
+    fn everything_is_read() {
+        let file = FlightFile::parse(WHOLE).unwrap();
+        assert_eq!(file.name.as_deref(), Some("Lab trial 1"));
+        assert_eq!(file.unit(), LengthUnit::Metre);
+        assert_eq!(file.ground(), Ground::At(0.25));
+        assert_eq!(file.image(), ImageKind::AsShot);
+        assert_eq!(file.surface(), Some("pile.ply"));
+        assert_eq!(file.photo_source(), PhotoSource::Poses("poses.csv"));
+        assert_eq!(file.photo_folder(), Some("photos"));
+        assert_eq!(file.cameras[0].source(), Ok(CameraSource::File("ost.yaml")));
+        let Ok(CameraSource::Inline(camera)) = file.cameras[1].source() else {
+            panic!("an inline camera");
+        };
+        // From pixel centres to the outer corner.
+        assert_eq!((camera.cx, camera.cy, camera.fy), (640.0, 360.0, 1001.0));
+        let k = [0.1, -0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!(camera.distortion.coefficients(), k);
+    }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let file = FlightFile::parse(WHOLE).unwrap();
+        assert_eq!(FlightFile::parse(&file.to_toml().unwrap()), Ok(file));
+        let text = "format = 1\n[world]\nunit = \"us-ft\"\n[photos]\nreconstruction = \"sparse/0\"\n\
+            transform = [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n";
+        let file = FlightFile::parse(text).unwrap();
+        assert_eq!(file.ground(), Ground::Auto);
+        assert_eq!(FlightFile::parse(&file.to_toml().unwrap()), Ok(file));
+    }
+
+    fn refuse(from: &str, to: &str) -> Fault {
+        assert!(WHOLE.contains(from));
+        FlightFile::parse(&WHOLE.replace(from, to)).unwrap_err()
+    }
+
+    #[test]
+    fn unknown_keys_are_named_with_their_neighbour() {
+        let fault = refuse("fx = 1000.0", "fX = 1000.0");
+        assert_eq!(fault.line, Some(19));
+        assert_eq!(
+            fault.to_string(),
+            "unknown key 'fX' in [camera]; did you mean 'fx'?"
+        );
+        let fault = refuse("[world]", "[wrold]");
+        assert_eq!(
+            fault.to_string(),
+            "unknown key 'wrold'; did you mean 'world'?"
+        );
+        let fault = refuse("folder =", "weather_report =");
+        assert!(fault.remedy.starts_with("known keys are poses"), "{fault}");
+    }
+
+    #[test]
+    fn mistakes_are_placed() {
+        assert_eq!(refuse("format = 1", "format = 2").line, Some(1));
+        assert_eq!(refuse("unit = \"m\"", "unit = \"km\"").line, Some(5));
+        assert_eq!(refuse("ground = 0.25", "ground = nan").line, Some(6));
+        assert_eq!(refuse("ground = 0.25", "ground = \"low\"").line, Some(6));
+        assert_eq!(refuse("fx = 1000.0", "fx = \"wide\"").line, Some(19));
+        assert_eq!(refuse("poses = \"poses.csv\"", "").line, Some(30));
+        assert_eq!(refuse("[photos]", "[photos").line, Some(28));
+        let fault = refuse("folder =", "reconstruction =");
+        assert!(fault.what.contains("both"), "{fault}");
+        let fault = refuse("folder = \"photos\"", "transform = [1, 2]");
+        assert_eq!(fault.line, Some(30));
+        assert!(
+            refuse("[surface]\nfile = \"pile.ply\"", "")
+                .what
+                .contains("no surface")
+        );
+    }
+
+    #[test]
+    fn half_a_camera_is_refused() {
+        let source = |change: fn(&mut CameraEntry)| {
+            let mut entry = FlightFile::parse(WHOLE).unwrap().cameras[1].clone();
+            change(&mut entry);
+            entry.source().map(|_| ()).unwrap_err().what
+        };
+        assert!(source(|c| c.file = Some("a.yaml".to_owned())).contains("a file and numbers"));
+        assert!(source(|c| c.fy = None).contains("no fy"));
+        assert!(source(|c| c.width = None).contains("no width"));
+        assert!(source(|c| c.distortion = Some("barrel".to_owned())).contains("barrel"));
+        assert!(source(|c| c.distortion = None).contains("takes 0"));
+        assert!(source(|c| c.coefficients = Some(vec![0.0; 9])).contains("takes 8"));
+        assert!(source(|c| c.pixel_origin = Some("middle".to_owned())).contains("middle"));
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_panics(text in "\\PC*") {
+            let _ = FlightFile::parse(&text);
+        }
+
+        #[test]
+        fn no_damage_panics(at in 0..WHOLE.len(), byte in 0..128_u8) {
+            let mut bytes = WHOLE.as_bytes().to_vec();
+            bytes[at] = byte;
+            let _ = FlightFile::parse(&String::from_utf8(bytes).unwrap());
+        }
+    }
+}

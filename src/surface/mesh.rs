@@ -1,0 +1,135 @@
+//! Rays on a mesh: parry's bounding volume hierarchy with a watertight triangle test of our own.
+//!
+//! parry's own test loses up to 1.8 % of the rays that are aimed exactly at edges and vertices. The
+//! test here is that of Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection" (Journal of
+//! Computer Graphics Techniques 2(1), 2013): an edge that two triangles share gives both the same
+//! number with opposite signs, so no ray passes between them.
+
+use glam::{DVec2, DVec3};
+use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
+
+use super::SurfaceError;
+use crate::geometry::{Bounds, Ray};
+
+/// Triangles with a hierarchy of boxes around them, in a local frame.
+#[derive(Debug)]
+pub(super) struct Mesh {
+    points: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    hierarchy: Bvh,
+}
+
+impl Mesh {
+    /// Builds the hierarchy. Indices are below the number of points.
+    ///
+    /// # Errors
+    /// Where no triangle has three different corners.
+    pub(super) fn new(
+        points: Vec<DVec3>,
+        mut triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, SurfaceError> {
+        // A triangle with a repeated corner has no inside; its neighbours cover its edge.
+        triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
+        let bounds = Bounds::of(&points).ok_or(SurfaceError::NoTriangles)?;
+        if triangles.is_empty() {
+            return Err(SurfaceError::NoTriangles);
+        }
+        // Room for rounding in the boxes, so that the triangle test alone decides.
+        let room = (bounds.size().max_element()
+            + bounds.max.abs().max(bounds.min.abs()).max_element())
+            * 1e-9;
+        let boxes = triangles.iter().enumerate().map(|(index, triangle)| {
+            let [a, b, c] = triangle.map(|i| points[i as usize]);
+            let corners = Aabb::new(a.min(b).min(c), a.max(b).max(c));
+            (index, corners.loosened(room))
+        });
+        let hierarchy = Bvh::from_iter(BvhBuildStrategy::Binned, boxes);
+        Ok(Self {
+            points,
+            triangles,
+            hierarchy,
+        })
+    }
+
+    /// All points, those that no triangle uses among them.
+    pub(super) fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// The triangles with three different corners.
+    pub(super) fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Where the ray (local frame) meets the mesh first, from either side, as its t > 0. A ray that
+    /// passes an edge at a distance of at most `slack` meets it.
+    pub(super) fn cast(&self, ray: &Ray, slack: f64) -> Option<f64> {
+        let sheared = Sheared::new(ray);
+        self.hierarchy
+            .cast_ray(
+                &parry3d_f64::query::Ray::new(ray.origin, ray.direction),
+                f64::MAX,
+                |index, _| {
+                    let corners = self.triangles[index as usize].map(|i| self.points[i as usize]);
+                    sheared.meet(corners, slack)
+                },
+            )
+            .map(|(_, t)| t)
+    }
+}
+
+/// A ray's frame in which the ray is the z axis: its largest axis last, the others sheared.
+struct Sheared {
+    origin: DVec3,
+    /// Axes of the world: the two small ones, then the ray's largest.
+    axes: [usize; 3],
+    shear: DVec2,
+    /// 1 / direction along the largest axis.
+    stretch: f64,
+}
+
+impl Sheared {
+    fn new(ray: &Ray) -> Self {
+        let size = ray.direction.abs();
+        let z = if size.x >= size.y && size.x >= size.z {
+            0
+        } else if size.y >= size.z {
+            1
+        } else {
+            2
+        };
+        let axes = [(z + 1) % 3, (z + 2) % 3, z];
+        let stretch = 1.0 / ray.direction[z];
+        Self {
+            origin: ray.origin,
+            axes,
+            shear: DVec2::new(ray.direction[axes[0]], ray.direction[axes[1]]) * stretch,
+            stretch,
+        }
+    }
+
+    fn meet(&self, corners: [DVec3; 3], slack: f64) -> Option<f64> {
+        let [(a, a_z), (b, b_z), (c, c_z)] = corners.map(|corner| {
+            let p = corner - self.origin;
+            let z = p[self.axes[2]];
+            (
+                DVec2::new(p[self.axes[0]], p[self.axes[1]]) - self.shear * z,
+                z,
+            )
+        });
+        // Twice the areas that the ray spans with the edges opposite to a, b and c.
+        let (u, v, w) = (c.perp_dot(b), a.perp_dot(c), b.perp_dot(a));
+        let sum = u + v + w;
+        let side = sum.signum();
+        let beside = |area: f64, edge: DVec2| area * side < -slack * edge.length();
+        if sum == 0.0 || beside(u, c - b) || beside(v, a - c) || beside(w, b - a) {
+            return None;
+        }
+        let z = (u * a_z + v * b_z + w * c_z) / sum;
+        // Within the slack of a sliver the weights can run away.
+        let (low, high) = (a_z.min(b_z).min(c_z), a_z.max(b_z).max(c_z));
+        let t = z.clamp(low, high) * self.stretch;
+        (t > 0.0).then_some(t)
+    }
+}

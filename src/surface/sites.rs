@@ -1,0 +1,311 @@
+//! The vertices of a triangulated cloud, sorted into a grid over (x, y).
+//!
+//! The grid answers two questions that a local Delaunay triangulation asks: which sites lie near a
+//! ray's trace, and does any site lie inside this circle. Building it is a counting sort, a fiftieth
+//! of the cost of triangulating everything.
+
+use glam::{DVec2, DVec3};
+
+use super::SurfaceError;
+use crate::geometry::Bounds;
+
+/// How many sites a cell holds on average: fewer cost memory, more cost time in every circle.
+const SITES_PER_CELL: f64 = 2.0;
+
+/// The sites, one for each (x, y), in the local frame of their surface.
+#[derive(Debug)]
+pub(super) struct Sites {
+    /// Grouped by cell, row by row.
+    points: Vec<DVec3>,
+    /// Around `points`.
+    bounds: Bounds,
+    grid: Grid,
+    /// Where each cell's points begin, and after the last cell the number of points.
+    starts: Vec<u32>,
+}
+
+/// A grid over the bulk of the cloud. Its border cells reach to infinity, so that a few points far
+/// out do not make the cells of all others too wide.
+#[derive(Debug, Clone, Copy)]
+struct Grid {
+    min: DVec2,
+    cell: f64,
+    columns: usize,
+    rows: usize,
+}
+
+impl Grid {
+    fn over(points: &[DVec3]) -> Self {
+        // The range of all but the outermost 1 % on each side, from a sample.
+        let stride = (points.len() / 4096).max(1);
+        let range = |coordinate: fn(&DVec3) -> f64| {
+            let mut sample: Vec<f64> = points.iter().step_by(stride).map(coordinate).collect();
+            sample.sort_unstable_by(f64::total_cmp);
+            let outer = sample.len() / 100;
+            match (sample.get(outer), sample.get(sample.len() - 1 - outer)) {
+                (Some(&low), Some(&high)) => (low, high),
+                _ => (0.0, 0.0),
+            }
+        };
+        let (x, y) = (range(|p| p.x), range(|p| p.y));
+        let (width, height) = (x.1 - x.0, y.1 - y.0);
+        let cells = points.len() as f64 / SITES_PER_CELL;
+        let longest = width.max(height).max(f64::MIN_POSITIVE);
+        // A cloud as narrow as a line still gets cells: along it.
+        let area = width.max(longest / cells) * height.max(longest / cells);
+        let cell = (area / cells).sqrt().max(longest / 30_000.0);
+        let count = |length: f64| (length / cell).ceil().clamp(1.0, 30_000.0) as usize;
+        Self {
+            min: DVec2::new(x.0, y.0),
+            cell,
+            columns: count(width),
+            rows: count(height),
+        }
+    }
+
+    fn column(&self, x: f64) -> usize {
+        // `as` saturates: what lies below the grid falls into cell 0.
+        (((x - self.min.x) / self.cell) as usize).min(self.columns - 1)
+    }
+
+    fn row(&self, y: f64) -> usize {
+        (((y - self.min.y) / self.cell) as usize).min(self.rows - 1)
+    }
+
+    /// The distance in y between `y` and a row of cells.
+    fn distance_to_row(&self, y: f64, row: usize) -> f64 {
+        let low = if row == 0 {
+            f64::NEG_INFINITY
+        } else {
+            self.min.y + self.cell * row as f64
+        };
+        let high = if row + 1 == self.rows {
+            f64::INFINITY
+        } else {
+            self.min.y + self.cell * (row + 1) as f64
+        };
+        (low - y).max(y - high).max(0.0)
+    }
+}
+
+impl Sites {
+    /// Sorts points (local frame, all finite) into cells; of points with the same (x, y) the
+    /// highest stays.
+    ///
+    /// # Errors
+    /// With fewer than three different (x, y), or more points than u32 counts.
+    pub(super) fn new(mut points: Vec<DVec3>) -> Result<Self, SurfaceError> {
+        let bounds = Bounds::of(&points).ok_or(SurfaceError::TooFewPoints(0))?;
+        if u32::try_from(points.len()).is_err() {
+            return Err(SurfaceError::TooManyPoints(points.len()));
+        }
+        for point in &mut points {
+            // spade refuses coordinates under 2^-142 that are not 0; and -0 must equal 0.
+            point.x = spade_coordinate(point.x);
+            point.y = spade_coordinate(point.y);
+        }
+        let grid = Grid::over(&points);
+        let cell_of = |p: &DVec3| grid.row(p.y) * grid.columns + grid.column(p.x);
+
+        // Counting sort.
+        let mut starts = vec![0_u32; grid.columns * grid.rows + 1];
+        for point in &points {
+            starts[cell_of(point) + 1] += 1;
+        }
+        for cell in 1..starts.len() {
+            starts[cell] += starts[cell - 1];
+        }
+        let mut next = starts.clone();
+        let mut sorted = vec![DVec3::ZERO; points.len()];
+        for point in points {
+            let place = &mut next[cell_of(&point)];
+            sorted[*place as usize] = point;
+            *place += 1;
+        }
+
+        // Equal (x, y) share a cell: sort each cell, highest first, and keep the first of equals.
+        let mut kept = 0;
+        for cell in 0..starts.len() - 1 {
+            let (from, to) = (starts[cell] as usize, starts[cell + 1] as usize);
+            starts[cell] = kept as u32;
+            sorted[from..to].sort_unstable_by(|a, b| {
+                (a.x.total_cmp(&b.x))
+                    .then(a.y.total_cmp(&b.y))
+                    .then(b.z.total_cmp(&a.z))
+            });
+            for i in from..to {
+                if i == from || sorted[i].truncate() != sorted[i - 1].truncate() {
+                    // `kept` <= i: what is overwritten has been looked at, except its (x, y),
+                    // which is the same in the place written to.
+                    sorted.swap(kept, i);
+                    if kept != i {
+                        sorted[i] = sorted[kept];
+                    }
+                    kept += 1;
+                }
+            }
+        }
+        if let Some(end) = starts.last_mut() {
+            *end = kept as u32;
+        }
+        sorted.truncate(kept);
+        if kept < 3 {
+            return Err(SurfaceError::TooFewPoints(kept));
+        }
+        Ok(Self {
+            points: sorted,
+            bounds,
+            grid,
+            starts,
+        })
+    }
+
+    /// All sites, grouped by cell.
+    pub(super) fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// The box around the sites.
+    pub(super) fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    /// How many cells there are.
+    pub(super) fn cell_count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// The sites of one cell.
+    pub(super) fn in_cell(&self, cell: usize) -> &[DVec3] {
+        &self.points[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+
+    /// The cells that a segment in (x, y) passes and their neighbours; now and then one twice.
+    pub(super) fn cells_along(&self, from: DVec2, to: DVec2) -> Vec<usize> {
+        let grid = &self.grid;
+        // Half a cell a step misses no cell by more than a neighbour. A trace far longer than the
+        // grid is sampled more coarsely: these cells are a beginning, not the whole answer.
+        let most = 4 * (grid.columns + grid.rows);
+        let steps = (((to - from).length() / grid.cell * 2.0) as usize).min(most) + 1;
+        let mut cells = Vec::new();
+        let mut last = None;
+        for step in 0..=steps {
+            let at = from.lerp(to, step as f64 / steps as f64);
+            let (column, row) = (grid.column(at.x), grid.row(at.y));
+            if last == Some((column, row)) {
+                continue;
+            }
+            last = Some((column, row));
+            for row in row.saturating_sub(1)..=(row + 1).min(grid.rows - 1) {
+                for column in column.saturating_sub(1)..=(column + 1).min(grid.columns - 1) {
+                    cells.push(row * grid.columns + column);
+                }
+            }
+        }
+        cells
+    }
+
+    /// Calls `visit` with every site in the cells that a disc touches.
+    pub(super) fn near_disc(&self, center: DVec2, radius: f64, mut visit: impl FnMut(&DVec3)) {
+        let grid = &self.grid;
+        // Room for the rounding of huge circles, whose middle is far away.
+        let radius = radius * (1.0 + 1e-9);
+        let rows = grid.row(center.y - radius)..=grid.row(center.y + radius);
+        for row in rows {
+            let dy = grid.distance_to_row(center.y, row);
+            let half = if radius.is_finite() && center.is_finite() {
+                (radius * radius - dy * dy).max(0.0).sqrt() + radius * 1e-9
+            } else {
+                f64::INFINITY
+            };
+            let columns = match half {
+                f64::INFINITY => (0, grid.columns - 1),
+                half => (grid.column(center.x - half), grid.column(center.x + half)),
+            };
+            let first = row * grid.columns;
+            let from = self.starts[first + columns.0] as usize;
+            let to = self.starts[first + columns.1 + 1] as usize;
+            for point in &self.points[from..to] {
+                visit(point);
+            }
+        }
+    }
+}
+
+fn spade_coordinate(x: f64) -> f64 {
+    if x.abs() < spade::MIN_ALLOWED_VALUE {
+        0.0
+    } else {
+        x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_highest_of_equal_places_stays() {
+        let mut points = Vec::new();
+        for i in 0..1000_u32 {
+            let place = f64::from(i % 100);
+            points.push(DVec3::new(
+                place,
+                (place * 7.0) % 13.0,
+                f64::from(i * 37 % 1000),
+            ));
+        }
+        let expected = |place: f64| {
+            points
+                .iter()
+                .filter(|p| p.x == place)
+                .fold(f64::NEG_INFINITY, |z, p| z.max(p.z))
+        };
+        let sites = Sites::new(points.clone()).unwrap();
+        assert_eq!(sites.points().len(), 100);
+        for site in sites.points() {
+            assert_eq!(site.z, expected(site.x), "at {}", site.x);
+        }
+        let all: usize = (0..sites.cell_count())
+            .map(|c| sites.in_cell(c).len())
+            .sum();
+        assert_eq!(all, 100);
+    }
+
+    #[test]
+    fn minus_zero_is_zero() {
+        let points = [(0.0, 1.0), (-0.0, 2.0), (1e-300, 3.0)].map(|(x, z)| DVec3::new(x, 0.0, z));
+        assert!(matches!(
+            Sites::new(points.to_vec()),
+            Err(SurfaceError::TooFewPoints(1))
+        ));
+    }
+
+    #[test]
+    fn a_disc_finds_what_lies_in_it() {
+        // An outlier far out, which must not spoil the grid.
+        let mut points = vec![DVec3::new(1e6, -1e6, 0.0)];
+        for i in 0..5000 {
+            let angle = f64::from(i) * 2.4;
+            points.push((DVec2::from_angle(angle) * (f64::from(i) * 0.01)).extend(0.0));
+        }
+        let sites = Sites::new(points.clone()).unwrap();
+        for (center, radius) in [
+            (DVec2::new(3.0, 4.0), 2.0),
+            (DVec2::new(-60.0, 0.0), 30.0),
+            (DVec2::new(0.0, 0.0), 0.001),
+            (DVec2::new(1e6, -1e6), 5.0),
+            (DVec2::new(0.0, 0.0), f64::INFINITY),
+            (DVec2::new(1e12, 0.0), 1e12),
+        ] {
+            let inside = |p: &DVec3| p.truncate().distance(center) <= radius;
+            let mut found = 0;
+            sites.near_disc(center, radius, |p| found += usize::from(inside(p)));
+            assert_eq!(
+                found,
+                points.iter().filter(|p| inside(p)).count(),
+                "{center} {radius}"
+            );
+        }
+    }
+}

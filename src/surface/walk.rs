@@ -1,0 +1,488 @@
+//! Rays on a triangulated cloud, without triangulating the cloud.
+//!
+//! A photo needs four rays, a flight a few dozen; each passes a few dozen triangles of the millions
+//! that a cloud has. A triangle belongs to the Delaunay triangulation of all sites if and only if
+//! its circumcircle holds none of them inside. So: triangulate the sites near the ray's trace
+//! (together with the convex hull of all, which settles where the surface ends), walk along the
+//! trace, and look into the circle of each triangle that the walk passes. A site found inside joins
+//! the triangulation, and the walk begins anew. What the walk has passed in the end are triangles
+//! of the whole triangulation, exactly (the predicates are), and the rest was never built. Where so
+//! many sites have joined that building everything is cheaper, everything is built.
+//!
+//! On the walk the ray is no longer met with triangles one by one: between the stops (crossed
+//! edges, touched vertices) the height of the ray above the surface is a continuous, piecewise
+//! linear function, and where it changes its sign the ray meets the surface. So no ray can slip
+//! through an edge or a vertex.
+
+use glam::{DVec2, DVec3};
+use robust::{Coord, incircle};
+use spade::handles::{DirectedEdgeHandle, FaceHandle, InnerTag};
+use spade::{
+    DelaunayTriangulation, Intersection, LineIntersectionIterator, Point2, PositionInTriangulation,
+    Triangulation,
+};
+
+use super::SurfaceError;
+use super::delaunay::{Site, load};
+use super::hull::convex_hull;
+use super::sites::Sites;
+use crate::geometry::Ray;
+
+/// How many of the sites found in a circle join at once: the nearest ones settle most circles.
+const SITES_AT_ONCE: usize = 64;
+
+/// With fewer sites than this, everything is built at the start: it takes a millisecond.
+const FEW_SITES: usize = 1000;
+
+type Edge<'a> = DirectedEdgeHandle<'a, Site, (), (), ()>;
+type Face<'a> = FaceHandle<'a, InnerTag, Site, (), (), ()>;
+type Triangle = [Site; 3];
+
+/// Casts rays at sites, building as much of their triangulation as the rays ask for.
+#[derive(Debug)]
+pub(super) struct Walk<'a> {
+    sites: &'a Sites,
+    /// Delaunay, of some of the sites, their whole hull among them.
+    built: DelaunayTriangulation<Site>,
+    /// Which cells' sites are all in `built`.
+    joined: Vec<bool>,
+    /// Whether all sites are in `built`: then no circle needs a look.
+    complete: bool,
+    /// Where the next insertion begins its search.
+    hint: Option<spade::handles::FixedVertexHandle>,
+}
+
+/// A point of the trace at which the surface's height is known.
+#[derive(Debug, Clone, Copy)]
+struct Stop {
+    /// Along the ray.
+    t: f64,
+    /// Height of the ray above the surface there.
+    above: f64,
+}
+
+/// The way between two neighbouring stops, inside one triangle or along an edge.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    from: Stop,
+    to: Stop,
+    /// The triangle, or the one or two at the edge.
+    triangles: [Option<Triangle>; 2],
+}
+
+impl<'a> Walk<'a> {
+    /// Makes ready for rays.
+    ///
+    /// # Errors
+    /// Where a coordinate is too large for exact predicates.
+    pub(super) fn new(sites: &'a Sites) -> Result<Self, SurfaceError> {
+        let hull = convex_hull(sites.points());
+        let complete = sites.points().len() <= FEW_SITES;
+        Ok(Self {
+            sites,
+            built: load(if complete { sites.points() } else { &hull })?,
+            joined: vec![complete; sites.cell_count()],
+            complete,
+            hint: None,
+        })
+    }
+
+    /// Where the ray (local frame) meets the surface first, as its t > 0. `slack` is a distance in
+    /// the order of the rounding of the coordinates: a ray that misses the surface's rim by less
+    /// meets it.
+    pub(super) fn cast(&mut self, ray: &Ray, slack: f64) -> Option<f64> {
+        if let Some(t) = self.cast_once(ray, slack) {
+            return Some(t);
+        }
+        // The surface is convex over (x, y): moved inward by the slack at the place where its trace
+        // passes the rim, a ray that missed by less is met.
+        let middle = self.sites.bounds().center().truncate();
+        self.rim_places(ray, middle).into_iter().find_map(|place| {
+            let inward = (middle - place).try_normalize()? * slack;
+            let nudged = Ray {
+                origin: ray.origin + inward.extend(0.0),
+                ..*ray
+            };
+            self.cast_once(&nudged, slack)
+        })
+    }
+
+    /// Where the ray's trace enters and leaves the hull, or comes nearest to its `middle` where it
+    /// passes outside.
+    fn rim_places(&self, ray: &Ray, middle: DVec2) -> Vec<DVec2> {
+        let Some((start, end)) = self.span(ray) else {
+            return Vec::new();
+        };
+        let (from, to) = (ray.at(start).truncate(), ray.at(end).truncate());
+        let trace = to - from;
+        let places = LineIntersectionIterator::new(&self.built, spade_point(from), spade_point(to))
+            .map(|event| match event {
+                Intersection::EdgeIntersection(edge) => crossing(edge, from, trace).0,
+                Intersection::VertexIntersection(vertex) => vertex.data().point().truncate(),
+                Intersection::EdgeOverlap(edge) => edge.from().data().point().truncate(),
+            });
+        let (first, last) = places.fold((None, None), |(first, _), place| {
+            (first.or(Some(place)), Some(place))
+        });
+        match (first, last) {
+            (Some(first), Some(last)) => vec![first, last],
+            _ => {
+                let share = (middle - from).dot(trace) / trace.length_squared();
+                let share = if share.is_finite() {
+                    share.clamp(0.0, 1.0)
+                } else {
+                    0.0
+                };
+                vec![from + trace * share]
+            }
+        }
+    }
+
+    fn cast_once(&mut self, ray: &Ray, slack: f64) -> Option<f64> {
+        let (start, end) = self.span(ray)?;
+        let (from, to) = (ray.at(start).truncate(), ray.at(end).truncate());
+        if !self.complete {
+            self.join_cells(from, to);
+        }
+        // Steeper than this, places along the trace say too little about places along the ray.
+        let drop = (ray.at(end).z - ray.at(start).z).abs();
+        let plumb = from.distance(to) <= 1e-7 * drop;
+        loop {
+            let (hit, passed) = if plumb {
+                self.drop_down(ray, from)
+            } else {
+                self.walk_along(ray, start, end, slack)
+            };
+            if self.complete || !self.join_sites_inside(&passed) {
+                return hit;
+            }
+        }
+    }
+
+    /// The part of the ray (t >= 0) in the box around the sites, which is widened a little.
+    fn span(&self, ray: &Ray) -> Option<(f64, f64)> {
+        let bounds = self.sites.bounds();
+        let room = bounds.size().max_element() * 1e-6;
+        let (mut start, mut end) = (0.0_f64, f64::INFINITY);
+        for axis in 0..3 {
+            let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
+            let (low, high) = (bounds.min[axis] - room, bounds.max[axis] + room);
+            if direction == 0.0 {
+                if origin < low || origin > high {
+                    return None;
+                }
+            } else {
+                let (a, b) = ((low - origin) / direction, (high - origin) / direction);
+                start = start.max(a.min(b));
+                end = end.min(a.max(b));
+            }
+        }
+        (start <= end && end.is_finite()).then_some((start, end))
+    }
+
+    /// Meets a plumb ray: the surface's height at its place, and the triangles there.
+    fn drop_down(&self, ray: &Ray, at: DVec2) -> (Option<f64>, Vec<Triangle>) {
+        let mut at = at;
+        let mut passed = Vec::new();
+        let mut hit = None;
+        // The ray may lean by 1e-7: two corrections leave 1e-21.
+        for _ in 0..3 {
+            passed = self.triangles_at(at);
+            let Some(z) = self.height_at(at) else {
+                return (None, passed);
+            };
+            let t = (z - ray.origin.z) / ray.direction.z;
+            hit = (t > 0.0).then_some(t);
+            at = ray.at(t).truncate();
+        }
+        (hit, passed)
+    }
+
+    /// Follows the ray's trace to the first change of sign; returns where that is, and the
+    /// triangles up to there.
+    fn walk_along(
+        &self,
+        ray: &Ray,
+        start: f64,
+        end: f64,
+        slack: f64,
+    ) -> (Option<f64>, Vec<Triangle>) {
+        let mut passed = Vec::new();
+        // A ray aimed exactly at a ridge that hides what lies behind touches it, or passes it by
+        // less than the slack: that is a hit as well, unless the ray goes through next to it.
+        let mut touched = None;
+        let touches = |stop: Stop| (stop.above.abs() <= slack && stop.t > 0.0).then_some(stop.t);
+        for piece in self.pieces(ray, start, end) {
+            let Piece { from, to, .. } = piece;
+            if touched.is_none() {
+                touched = touches(from);
+            }
+            let through =
+                from.above == 0.0 || to.above == 0.0 || (from.above > 0.0) != (to.above > 0.0);
+            passed.extend(piece.triangles.into_iter().flatten());
+            if !through && touched.is_some() {
+                return (touched, passed);
+            }
+            if through {
+                let t = piece.meet(ray);
+                if t > 0.0 {
+                    return (Some(t), passed);
+                }
+            }
+            touched = touches(to);
+        }
+        (touched, passed)
+    }
+
+    /// The pieces of the trace that lie on the surface built so far, in order.
+    fn pieces(&self, ray: &Ray, start: f64, end: f64) -> Vec<Piece> {
+        let (from, to) = (ray.at(start).truncate(), ray.at(end).truncate());
+        let trace = to - from;
+        let stop = |place: DVec2, z: f64| {
+            let share = (place - from).dot(trace) / trace.length_squared();
+            let t = start + (end - start) * share;
+            Stop {
+                t,
+                above: ray.at(t).z - z,
+            }
+        };
+        let mut pieces: Vec<Piece> = Vec::new();
+        let mut last: Option<(Stop, [Option<Triangle>; 2])> = None;
+        let mut along_edge: Option<[Option<Triangle>; 2]> = None;
+        let mut arrive = |stop: Stop,
+                          before: [Option<Triangle>; 2],
+                          after: [Option<Triangle>; 2],
+                          along_edge: &mut Option<[Option<Triangle>; 2]>| {
+            if let Some((from, from_after)) = last {
+                let inside = if from_after[0].is_some() {
+                    from_after
+                } else {
+                    before
+                };
+                pieces.push(Piece {
+                    from,
+                    to: stop,
+                    triangles: along_edge.take().unwrap_or(inside),
+                });
+            }
+            last = Some((stop, after));
+        };
+        if let Some(z) = self.height_at(from) {
+            let there = self.triangles_at(from);
+            // Strictly inside one triangle the walk goes on in it; from an edge or a vertex the
+            // next stop tells.
+            let after = match there[..] {
+                [one] => [Some(one), None],
+                _ => [None; 2],
+            };
+            arrive(stop(from, z), [None; 2], after, &mut along_edge);
+        }
+        for event in LineIntersectionIterator::new(&self.built, spade_point(from), spade_point(to))
+        {
+            match event {
+                Intersection::EdgeIntersection(edge) => {
+                    let (place, z) = crossing(edge, from, trace);
+                    let before = [triangle(edge.rev()), None];
+                    let after = [triangle(edge), None];
+                    arrive(stop(place, z), before, after, &mut along_edge);
+                }
+                Intersection::VertexIntersection(vertex) => {
+                    let point = vertex.data().point();
+                    arrive(
+                        stop(point.truncate(), point.z),
+                        [None; 2],
+                        [None; 2],
+                        &mut along_edge,
+                    );
+                }
+                Intersection::EdgeOverlap(edge) => {
+                    along_edge = Some([triangle(edge), triangle(edge.rev())]);
+                }
+            }
+        }
+        if let Some(z) = self.height_at(to) {
+            let before = match self.triangles_at(to)[..] {
+                [one] => [Some(one), None],
+                _ => [None; 2],
+            };
+            arrive(stop(to, z), before, [None; 2], &mut along_edge);
+        }
+        pieces
+    }
+
+    /// The surface's height at a place, or `None` outside.
+    fn height_at(&self, place: DVec2) -> Option<f64> {
+        match self.built.locate(spade_point(place)) {
+            PositionInTriangulation::OnFace(face) => {
+                let [a, b, c] = corners(self.built.face(face));
+                let normal = (b - a).cross(c - a);
+                let offset = place - a.truncate();
+                Some(a.z - normal.truncate().dot(offset) / normal.z)
+            }
+            PositionInTriangulation::OnEdge(edge) => {
+                let edge = self.built.directed_edge(edge);
+                let (a, b) = (edge.from().data().point(), edge.to().data().point());
+                let way = (b - a).truncate();
+                let share = (place - a.truncate()).dot(way) / way.length_squared();
+                Some(a.z + (b.z - a.z) * share)
+            }
+            PositionInTriangulation::OnVertex(vertex) => Some(self.built.vertex(vertex).data().z),
+            _ => None,
+        }
+    }
+
+    /// The triangle at a place; two on an edge; none at a vertex, which is always right.
+    fn triangles_at(&self, place: DVec2) -> Vec<Triangle> {
+        match self.built.locate(spade_point(place)) {
+            PositionInTriangulation::OnFace(face) => {
+                vec![self.built.face(face).vertices().map(|v| *v.data())]
+            }
+            PositionInTriangulation::OnEdge(edge) => {
+                let edge = self.built.directed_edge(edge);
+                [triangle(edge), triangle(edge.rev())]
+                    .into_iter()
+                    .flatten()
+                    .collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Adds the sites of the cells along a segment.
+    fn join_cells(&mut self, from: DVec2, to: DVec2) {
+        for cell in self.sites.cells_along(from, to) {
+            if !std::mem::replace(&mut self.joined[cell], true) {
+                for &point in self.sites.in_cell(cell) {
+                    self.join(point);
+                }
+            }
+        }
+    }
+
+    /// Adds sites that lie inside the circumcircles of these triangles; false where there are none.
+    fn join_sites_inside(&mut self, triangles: &[Triangle]) -> bool {
+        let mut inside = Vec::new();
+        for triangle in triangles {
+            inside.extend(self.sites_inside(triangle));
+        }
+        for &point in &inside {
+            self.join(point);
+        }
+        if self.built.num_vertices() * 2 > self.sites.points().len()
+            && let Ok(whole) = load(self.sites.points())
+        {
+            self.built = whole;
+            self.hint = None;
+            self.complete = true;
+            return true;
+        }
+        !inside.is_empty()
+    }
+
+    /// The sites strictly inside the circumcircle of a triangle, of many those nearest to its
+    /// middle.
+    fn sites_inside(&self, triangle: &Triangle) -> Vec<DVec3> {
+        let [a, b, c] = triangle.map(|site| site.point().truncate());
+        let (ab, ac) = (b - a, c - a);
+        let to_center = (ab.length_squared() * ac.perp() - ac.length_squared() * ab.perp())
+            / (-2.0 * ab.perp_dot(ac));
+        let (center, radius_squared) = (a + to_center, to_center.length_squared());
+        let coord = |p: DVec2| Coord { x: p.x, y: p.y };
+        let mut found = Vec::new();
+        self.sites.near_disc(center, radius_squared.sqrt(), |site| {
+            let place = site.truncate();
+            // Clearly outside; NaN, of a circle too large for f64, is left to the predicate.
+            if place.distance_squared(center) > radius_squared * (1.0 + 1e-6) {
+                return;
+            }
+            if incircle(coord(a), coord(b), coord(c), coord(place)) > 0.0 {
+                found.push(*site);
+            }
+        });
+        let middle = (a + b + c) / 3.0;
+        if found.len() > SITES_AT_ONCE {
+            found.select_nth_unstable_by(SITES_AT_ONCE, |p, q| {
+                let distance = |p: &DVec3| p.truncate().distance_squared(middle);
+                distance(p).total_cmp(&distance(q))
+            });
+            found.truncate(SITES_AT_ONCE);
+        }
+        found
+    }
+
+    /// How many sites have been triangulated so far.
+    #[cfg(test)]
+    pub(super) fn vertex_count(&self) -> usize {
+        self.built.num_vertices()
+    }
+
+    fn join(&mut self, point: DVec3) {
+        let site = Site::new(point, 0);
+        let inserted = match self.hint {
+            Some(hint) => self.built.insert_with_hint(site, hint),
+            None => self.built.insert(site),
+        };
+        // It cannot fail: the hull, which bounds every coordinate, went in before.
+        self.hint = inserted.ok();
+    }
+}
+
+impl Piece {
+    /// Where the ray meets the surface on this piece, whose ends lie on different sides of it.
+    fn meet(&self, ray: &Ray) -> f64 {
+        let (from, to) = (self.from, self.to);
+        if from.above == to.above {
+            return from.t;
+        }
+        let between = from.t + (to.t - from.t) * (from.above / (from.above - to.above));
+        // Through the triangle's plane the rounding of the stops does not matter; where the ray
+        // grazes the plane, the stops are what can be trusted.
+        let Some([a, b, c]) = self.triangles.into_iter().flatten().next() else {
+            return between;
+        };
+        let [a, b, c] = [a.point(), b.point(), c.point()];
+        let normal = (b - a).cross(c - a);
+        let through_plane = (a - ray.origin).dot(normal) / ray.direction.dot(normal);
+        let room = (to.t - from.t) * 1e-6;
+        if (from.t - room..=to.t + room).contains(&through_plane) {
+            through_plane
+        } else {
+            between
+        }
+    }
+}
+
+fn spade_point(place: DVec2) -> Point2<f64> {
+    Point2::new(
+        spade::mitigate_underflow(Point2::new(place.x, 0.0)).x,
+        spade::mitigate_underflow(Point2::new(0.0, place.y)).y,
+    )
+}
+
+/// The triangle on the left of an edge, or `None` outside of the hull.
+fn triangle(edge: Edge<'_>) -> Option<Triangle> {
+    Some(
+        edge.face()
+            .as_inner()?
+            .vertices()
+            .map(|vertex| *vertex.data()),
+    )
+}
+
+fn corners(face: Face<'_>) -> [DVec3; 3] {
+    face.vertices().map(|vertex| vertex.data().point())
+}
+
+/// Where the trace crosses an edge, and the surface's height there.
+fn crossing(edge: Edge<'_>, from: DVec2, trace: DVec2) -> (DVec2, f64) {
+    let (a, b) = (edge.from().data().point(), edge.to().data().point());
+    let side = |p: DVec3| trace.perp_dot(p.truncate() - from);
+    let (at_a, at_b) = (side(a), side(b));
+    let share = if at_a == at_b {
+        0.5
+    } else {
+        (at_a / (at_a - at_b)).clamp(0.0, 1.0)
+    };
+    let place = a.lerp(b, share);
+    (place.truncate(), place.z)
+}
