@@ -43,16 +43,25 @@ impl fmt::Display for Fault {
 
 impl std::error::Error for Fault {}
 
-/// Folds every run of white space and control characters into one space: messages quote bytes of
-/// broken files, and an error is one line whatever they hold.
+/// The longest a sentence gets, in characters: messages quote broken files, whose lines may have
+/// millions.
+const LONGEST: usize = 400;
+
+/// Folds every run of white space and control characters into one space and cuts what is too long:
+/// messages quote bytes of broken files, and an error is one line whatever they hold.
 fn one_line(text: String) -> String {
-    let mut line = String::with_capacity(text.len());
+    let mut line = String::new();
     for word in text.split(|c: char| c.is_whitespace() || c.is_control()) {
         if !word.is_empty() {
             if !line.is_empty() {
                 line.push(' ');
             }
             line.push_str(word);
+        }
+        if let Some((end, _)) = line.char_indices().nth(LONGEST) {
+            line.truncate(end);
+            line.push('…');
+            break;
         }
     }
     line
@@ -67,5 +76,7 @@ mod tests {
         let fault = Fault::at(3, "found\n\t'\u{0}a\u{1b}[31m'", "mend it");
         assert_eq!(fault.to_string(), "found ' a [31m'; mend it");
         assert_eq!(fault.line, Some(3));
+        let long = Fault::new("ü".repeat(1_000_000), "");
+        assert_eq!(long.what.chars().count(), LONGEST + 1);
     }
 }

@@ -4,8 +4,15 @@
 //! A reader turns bytes into the core's types plus a list of warnings. It knows no path: it returns
 //! a [`Fault`](crate::fault::Fault), and the dispatcher puts the file's name in front.
 
+mod cloud_file;
 mod input;
+mod las;
+mod obj;
+mod ply;
 mod reconstruction;
+mod text_lines;
+mod xyz;
 
+pub use cloud_file::CloudFile;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use reconstruction::{Observation, PosedPhoto, Reconstruction};

@@ -1,0 +1,266 @@
+//! LAS and LAZ: ASPRS "LAS Specification 1.4 - R15" and the versions before it; LAZ is LASzip's
+//! compression of the same records.
+//!
+//! - Coordinates are integers with a scale and an offset in the header, so UTM values keep all
+//!   their digits: x = X * scale + offset.
+//! - Colours are 16 bits wide; many programs write 8-bit values into them all the same, which shows
+//!   in the largest value.
+//! - The coordinate system stands in a variable length record: WKT (OGC 01-009), or GeoTIFF keys, of
+//!   which 3072 (projected) or 2048 (geographic) hold an EPSG code.
+//!
+//! Decoding is done by the las crate, in portions, so that a header that claims too much ends in an
+//! error instead of in memory. Its decompressor asserts on damaged data; that panic is caught here
+//! and becomes an error like any other.
+
+use std::io::{Read, Seek};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use glam::DVec3;
+use las::PointDataBuilder;
+
+use super::cloud_file::{CloudFile, first_not_finite};
+use crate::fault::Fault;
+use crate::jobs::Progress;
+
+/// How many points are decoded at once: ten compressed chunks, so that both cores have work.
+const PORTION: u64 = 500_000;
+
+/// Reads a LAS or LAZ file.
+///
+/// # Errors
+/// Where it is no such file, is cut off, or a coordinate is not finite.
+pub(super) fn read(
+    input: impl Read + Seek + Send + Sync + 'static,
+    progress: &Progress,
+) -> Result<CloudFile, Fault> {
+    // Nothing outlives the closure that a panic could have left half-done.
+    catch_unwind(AssertUnwindSafe(|| decode(input, progress))).unwrap_or_else(|_| {
+        Err(Fault::new(
+            "its compressed points are damaged",
+            "copy or export it again",
+        ))
+    })
+}
+
+fn decode(
+    input: impl Read + Seek + Send + Sync + 'static,
+    progress: &Progress,
+) -> Result<CloudFile, Fault> {
+    let broken = |error: las::Error| {
+        Fault::new(
+            format!("it cannot be read as LAS or LAZ ({error})"),
+            "copy or export it again",
+        )
+    };
+    let mut reader = las::Reader::new(input).map_err(broken)?;
+    let total = reader.header().number_of_points();
+    let mut file = CloudFile {
+        crs: crs(reader.header()),
+        ..CloudFile::default()
+    };
+    if file
+        .crs
+        .as_deref()
+        .is_some_and(|crs| is_geographic(crs, reader.header()))
+    {
+        file.warnings.push(
+            "its coordinates are degrees, not lengths; project it to metres before using it as a surface"
+                .to_owned(),
+        );
+    }
+    let mut portion = PointDataBuilder::new().for_header(reader.header()).build();
+    let mut wide_colors: Vec<[u16; 3]> = Vec::new();
+    loop {
+        progress.advance(file.cloud.points.len() as u64, total)?;
+        let read = reader.fill_points(PORTION, &mut portion).map_err(|error| {
+            let done = file.cloud.points.len();
+            Fault::new(
+                format!("it breaks off after about {done} of the {total} points that its header promises ({error})"),
+                "copy or export it again",
+            )
+        })?;
+        if read == 0 {
+            break;
+        }
+        let coordinates = portion.x().zip(portion.y()).zip(portion.z());
+        file.cloud
+            .points
+            .extend(coordinates.map(|((x, y), z)| DVec3::new(x, y, z)));
+        if let Some(colors) = portion.rgb() {
+            wide_colors.extend(colors.map(|(r, g, b)| [r, g, b]));
+        }
+    }
+    if let Some(index) = first_not_finite(&file.cloud.points) {
+        return Err(Fault::new(
+            format!("point {index} (counted from 0) has a coordinate that is not a finite number"),
+            "check the scale and offset in its header",
+        ));
+    }
+    let eight_bits = wide_colors.iter().flatten().all(|&channel| channel < 256);
+    let shift = if eight_bits { 0 } else { 8 };
+    file.cloud.colors = wide_colors
+        .iter()
+        .map(|color| color.map(|channel| (channel >> shift) as u8))
+        .collect();
+    Ok(file)
+}
+
+/// The coordinate system as "EPSG:n" or WKT.
+fn crs(header: &las::Header) -> Option<String> {
+    if let Some(wkt) = header.get_wkt_crs_bytes() {
+        let text = String::from_utf8_lossy(wkt);
+        let text = text.trim_matches(|c: char| c == '\0' || c.is_whitespace());
+        if !text.is_empty() {
+            return Some(text.to_owned());
+        }
+    }
+    let keys = header.get_geotiff_crs().ok()??;
+    // 32767 means "defined by other keys", 0 undefined.
+    let code = |key: Option<u16>| key.filter(|&code| code != 0 && code != 32_767);
+    let code = code(keys.get_projected_crs_geo_key_value())
+        .or_else(|| code(keys.get_geodetic_crs_geo_key_value()))?;
+    Some(format!("EPSG:{code}"))
+}
+
+fn is_geographic(crs: &str, header: &las::Header) -> bool {
+    if crs.starts_with("EPSG:") {
+        let keys = header.get_geotiff_crs().ok().flatten();
+        // GTModelTypeGeoKey 2: a geographic system.
+        return keys.is_some_and(|k| k.get_gt_model_type_geo_key_value() == Some(2));
+    }
+    crs.starts_with("GEOGCS") || crs.starts_with("GEOGCRS")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use las::{Builder, Color, Point, Transform, Vector, Writer};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// A hundred points of a format and version, at UTM coordinates.
+    fn sample(format: u8, minor: u8, compressed: bool) -> Vec<u8> {
+        let mut builder = Builder::from((1, minor));
+        builder.point_format = las::point::Format::new(format).unwrap();
+        builder.point_format.is_compressed = compressed;
+        let axis = |offset| Transform {
+            scale: 0.001,
+            offset,
+        };
+        builder.transforms = Vector {
+            x: axis(500_000.0),
+            y: axis(5_000_000.0),
+            z: axis(0.0),
+        };
+        let (has_color, has_time, has_nir) = (
+            builder.point_format.has_color,
+            builder.point_format.has_gps_time,
+            builder.point_format.has_nir,
+        );
+        let mut writer =
+            Writer::new(Cursor::new(Vec::new()), builder.into_header().unwrap()).unwrap();
+        for i in 0..100_u16 {
+            let step = f64::from(i);
+            let point = Point {
+                x: 500_000.0 + step * 0.5,
+                y: 5_000_000.125 - step,
+                z: 161.001 + step,
+                color: has_color.then(|| Color::new(256 * i, 512, 65_535)),
+                gps_time: has_time.then_some(step),
+                nir: has_nir.then_some(7),
+                ..Point::default()
+            };
+            writer.write_point(point).unwrap();
+        }
+        writer.into_inner().unwrap().into_inner()
+    }
+
+    fn read_bytes(bytes: Vec<u8>) -> Result<CloudFile, Fault> {
+        read(Cursor::new(bytes), &Progress::default())
+    }
+
+    #[test]
+    fn every_point_format_without_waveforms() {
+        for compressed in [false, true] {
+            for (format, minor) in [
+                (0, 0),
+                (0, 1),
+                (1, 1),
+                (2, 2),
+                (3, 3),
+                (6, 4),
+                (7, 4),
+                (8, 4),
+            ] {
+                // LASzip starts at version 1.2 of the las crate's writer.
+                if compressed && minor < 2 {
+                    continue;
+                }
+                let file = read_bytes(sample(format, minor, compressed)).unwrap();
+                let last = *file.cloud.points.last().unwrap();
+                let expected = DVec3::new(500_049.5, 4_999_901.125, 260.001);
+                assert_eq!(file.cloud.points.len(), 100);
+                assert!((last - expected).length() < 1e-9, "format {format}: {last}");
+                if [2, 3, 7, 8].contains(&format) {
+                    assert_eq!(file.cloud.colors[99], [99, 2, 255], "format {format}");
+                } else {
+                    assert!(file.cloud.colors.is_empty());
+                }
+                assert_eq!(file.crs, None);
+            }
+        }
+    }
+
+    #[test]
+    fn truncation_is_an_error() {
+        for compressed in [false, true] {
+            let whole = sample(3, 2, compressed);
+            for end in (0..whole.len() - 60).step_by(7) {
+                let fault = read_bytes(whole[..end].to_vec());
+                assert!(
+                    fault.is_err(),
+                    "cut at {end} of {} (compressed: {compressed})",
+                    whole.len()
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_lying_count_is_an_error() {
+        for compressed in [false, true] {
+            let mut bytes = sample(3, 2, compressed);
+            // Number of point records, at byte 107 of headers before 1.4.
+            bytes[107..111].copy_from_slice(&4_000_000_000_u32.to_le_bytes());
+            let fault = read_bytes(bytes).unwrap_err();
+            assert!(compressed || fault.what.contains("4000000000"), "{fault}");
+        }
+    }
+
+    #[test]
+    fn scales_that_are_no_numbers_are_refused() {
+        let mut bytes = sample(0, 2, false);
+        // The x scale, at byte 131.
+        bytes[131..139].copy_from_slice(&f64::NAN.to_le_bytes());
+        assert!(
+            read_bytes(bytes)
+                .unwrap_err()
+                .what
+                .contains("not a finite number")
+        );
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(400))]
+
+        #[test]
+        fn no_damage_panics(at in 0..5000_usize, byte in any::<u8>(), compressed in any::<bool>()) {
+            let mut bytes = sample(3, 2, compressed);
+            let at = at % bytes.len();
+            bytes[at] = byte;
+            let _ = read_bytes(bytes);
+        }
+    }
+}
