@@ -8,11 +8,14 @@ mod cloud_file;
 mod input;
 mod las;
 mod obj;
+mod photo_size;
 mod ply;
+mod poses_csv;
 mod reconstruction;
 mod text_lines;
 mod xyz;
 
 pub use cloud_file::CloudFile;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
+pub use poses_csv::{PoseLine, PosesFile};
 pub use reconstruction::{Observation, PosedPhoto, Reconstruction};

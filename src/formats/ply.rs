@@ -36,7 +36,8 @@ pub(super) fn read(input: impl BufRead, progress: &Progress) -> Result<CloudFile
         .map_err(|e| parse_fault(&e, e.line().unwrap_or(0) as u64))?;
     let mut input = Elements {
         encoding: header.encoding,
-        line: reader.line() as u64,
+        // The reader already counts the line after the header.
+        line: (reader.line() as u64).saturating_sub(1),
         input: reader.into_inner(),
         text: String::new(),
     };
