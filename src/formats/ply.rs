@@ -68,16 +68,8 @@ pub(super) fn read(input: impl BufRead, progress: &Progress) -> Result<CloudFile
                 }
             }
             "face" => {
-                let count = file.cloud.points.len();
                 input.read_all(element, progress, |face: Face| {
-                    let corners = face.corners?;
-                    if let Some(corner) = corners.iter().find(|&&c| c as usize >= count) {
-                        return Err(Fault::new(
-                            format!("a face names vertex {corner}, but there are {count}, counted from 0"),
-                            "export the mesh again",
-                        ));
-                    }
-                    file.cloud.add_polygon(&corners);
+                    file.cloud.add_polygon(&face.corners?);
                     Ok(())
                 })?;
             }
@@ -92,6 +84,15 @@ pub(super) fn read(input: impl BufRead, progress: &Progress) -> Result<CloudFile
     }
     if !has_vertices {
         return Err(Fault::new("it has no vertex element", "export points"));
+    }
+    // Here and not with each face: faces may stand before the vertices.
+    let count = file.cloud.points.len();
+    let mut corners = file.cloud.triangles.iter().flatten();
+    if let Some(corner) = corners.find(|&&corner| corner as usize >= count) {
+        return Err(Fault::new(
+            format!("a face names vertex {corner}, but there are {count}, counted from 0"),
+            "export the mesh again",
+        ));
     }
     Ok(file)
 }
@@ -439,7 +440,7 @@ mod tests {
         );
         assert_eq!(fault("-1e3", "nan").line, Some(22));
         assert_eq!(fault("-1e3", "deep").line, Some(22));
-        assert_eq!(fault("0 1 2 3", "0 1 2 4").line, Some(23));
+        assert!(fault("0 1 2 3", "0 1 2 4").what.contains("names vertex 4"));
         assert_eq!(fault("0 1 2 3", "0 1 2 -1").line, Some(23));
         assert!(
             fault("property double z\n", "")

@@ -75,7 +75,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
                 "give a header line and a line for each photo",
             )
         })?;
-    let columns = Columns::find(&header)?;
+    let columns = Columns::find(line_of(text, &header), &header)?;
     let mut file = PosesFile {
         warnings: columns.warnings(&header),
         lines: Vec::new(),
@@ -86,7 +86,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
         if record.iter().all(str::is_empty) {
             continue;
         }
-        let line = columns.line(&record)?;
+        let line = columns.line(line_of(text, &record), &record)?;
         if let Some(first) = seen.insert(line.photo.clone(), line.line) {
             return Err(Fault::at(
                 line.line,
@@ -105,8 +105,18 @@ pub(super) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
     Ok(file)
 }
 
-fn line_of(record: &csv::StringRecord) -> u64 {
-    record.position().map_or(1, csv::Position::line)
+/// The line, from 1, on which a record begins. The csv crate places it where its search began: in
+/// front of the comments and empty lines that it skipped.
+fn line_of(text: &str, record: &csv::StringRecord) -> u64 {
+    let Some(position) = record.position() else {
+        return 1;
+    };
+    let begin = usize::try_from(position.byte()).unwrap_or(usize::MAX);
+    let rest = text.get(begin..).unwrap_or_default();
+    let skipped = rest
+        .lines()
+        .take_while(|line| line.is_empty() || line.starts_with('#'));
+    position.line() + skipped.count() as u64
 }
 
 struct Columns {
@@ -118,8 +128,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn find(header: &csv::StringRecord) -> Result<Self, Fault> {
-        let line = line_of(header);
+    fn find(line: u64, header: &csv::StringRecord) -> Result<Self, Fault> {
         let find = |name: &str| {
             header
                 .iter()
@@ -190,8 +199,7 @@ impl Columns {
         vec![format!("columns that are not used: {}", unused.join(", "))]
     }
 
-    fn line(&self, record: &csv::StringRecord) -> Result<PoseLine, Fault> {
-        let line = line_of(record);
+    fn line(&self, line: u64, record: &csv::StringRecord) -> Result<PoseLine, Fault> {
         let field = |column: usize, name: &str| {
             record
                 .get(column)
@@ -309,6 +317,8 @@ mod tests {
         let nan = with("# x\na,0,nan,0,0,0,0,1\n");
         assert_eq!(nan.line, Some(3));
         assert!(nan.what.starts_with("column y: 'nan'"), "{nan}");
+        let crlf = "\u{feff}# c\r\n\r\nphoto,x,y,z,tilt,pan\r\n\r\n# c\r\na,1,2,3,4,x\r\n";
+        assert_eq!(fault(crlf).line, Some(6));
         assert!(with("a,0,0,inf,0,0,0,1\n").what.contains("column z"));
         assert!(with("a,0,0,0,0,0,0\n").what.contains("column qw"));
         assert!(with("a,0,0,0,0,0,0,0\n").what.contains("quaternion"));
