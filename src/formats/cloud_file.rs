@@ -12,6 +12,8 @@ pub struct CloudFile {
     pub cloud: Cloud,
     /// The coordinate system that the file states: "EPSG:n" or WKT.
     pub crs: Option<String>,
+    /// Whether the file says that x and y are degrees: no surface can be made of them.
+    pub geographic: bool,
     /// What the reader had to assume, one sentence each.
     pub warnings: Vec<String>,
 }

@@ -58,15 +58,10 @@ fn decode(
         crs: crs(reader.header()),
         ..CloudFile::default()
     };
-    if file
-        .crs
-        .as_deref()
-        .is_some_and(|crs| is_geographic(crs, reader.header()))
-    {
-        file.warnings.push(
-            "its coordinates are degrees, not lengths; project it to metres before using it as a surface"
-                .to_owned(),
-        );
+    file.geographic = is_geographic(file.crs.as_deref(), reader.header());
+    if file.geographic {
+        file.warnings
+            .push("its coordinates are degrees, not lengths".to_owned());
     }
     let mut portion = PointDataBuilder::new().for_header(reader.header()).build();
     let mut wide_colors: Vec<[u16; 3]> = Vec::new();
@@ -122,13 +117,17 @@ fn crs(header: &las::Header) -> Option<String> {
     Some(format!("EPSG:{code}"))
 }
 
-fn is_geographic(crs: &str, header: &las::Header) -> bool {
-    if crs.starts_with("EPSG:") {
-        let keys = header.get_geotiff_crs().ok().flatten();
-        // GTModelTypeGeoKey 2: a geographic system.
-        return keys.is_some_and(|k| k.get_gt_model_type_geo_key_value() == Some(2));
+fn is_geographic(crs: Option<&str>, header: &las::Header) -> bool {
+    match crs {
+        Some(crs) if !crs.starts_with("EPSG:") => {
+            ["GEOGCS", "GEOGCRS", "GEODCRS"].iter().any(|word| crs.starts_with(word))
+        }
+        _ => {
+            let keys = header.get_geotiff_crs().ok().flatten();
+            // GTModelTypeGeoKey 2: a geographic system.
+            keys.is_some_and(|k| k.get_gt_model_type_geo_key_value() == Some(2))
+        }
     }
-    crs.starts_with("GEOGCS") || crs.starts_with("GEOGCRS")
 }
 
 #[cfg(test)]

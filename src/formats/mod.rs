@@ -2,12 +2,14 @@
 //! written from. Here only: what kind a file is, and which reader takes it.
 //!
 //! A reader turns bytes into the core's types plus a list of warnings. It knows no path: it returns
-//! a [`Fault`](crate::fault::Fault), and the dispatcher puts the file's name in front.
+//! a [`Fault`], and the dispatcher puts the file's name in front.
 
 mod cloud_file;
 mod input;
 mod las;
 mod obj;
+mod open;
+mod photo_files;
 mod photo_size;
 mod ply;
 mod poses_csv;
@@ -15,7 +17,216 @@ mod reconstruction;
 mod text_lines;
 mod xyz;
 
+use std::fs;
+use std::io::{BufReader, Read};
+use std::path::{Path, PathBuf};
+
 pub use cloud_file::CloudFile;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
+pub use open::{OpenOptions, Opened, open_flight};
 pub use poses_csv::{PoseLine, PosesFile};
 pub use reconstruction::{Observation, PosedPhoto, Reconstruction};
+
+use crate::camera::Camera;
+use crate::fault::Fault;
+use crate::jobs::Progress;
+
+/// What a file or folder holds.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Kind {
+    /// A flight.toml, at this path.
+    Flight(PathBuf),
+    /// Points, perhaps with faces.
+    Cloud(CloudFormat),
+    /// The calibration of a camera.
+    Camera,
+    /// A poses.csv.
+    Poses,
+    /// A VisualSFM reconstruction.
+    Nvm,
+    /// A COLMAP model in this folder.
+    Colmap(PathBuf),
+    /// An OpenDroneMap project folder.
+    Odm,
+}
+
+/// A format of clouds and meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CloudFormat {
+    /// Stanford polygons.
+    Ply,
+    /// LAS or LAZ.
+    Las,
+    /// Wavefront.
+    Obj,
+    /// Points as text.
+    Xyz,
+}
+
+impl Kind {
+    /// What it holds, for people.
+    pub fn in_words(&self) -> &'static str {
+        match self {
+            Self::Flight(_) => "a flight",
+            Self::Cloud(_) => "a cloud or mesh",
+            Self::Camera => "a camera calibration",
+            Self::Poses => "poses",
+            Self::Nvm => "a VisualSFM reconstruction",
+            Self::Colmap(_) => "a COLMAP reconstruction",
+            Self::Odm => "an OpenDroneMap project",
+        }
+    }
+}
+
+/// Everything that can be opened, for messages.
+const SUPPORTED: &str = "flight.toml, PLY, LAS, LAZ, OBJ, XYZ/TXT/CSV, NVM, camera YAML or XML, poses.csv, a COLMAP or OpenDroneMap folder";
+
+/// Tells what a file or folder holds: by its first bytes where they are distinctive, else by its
+/// name.
+///
+/// # Errors
+/// Where it is missing or of no known kind.
+pub fn detect(path: &Path) -> Result<Kind, FileError> {
+    if path.is_dir() {
+        return detect_folder(path);
+    }
+    let mut start = Vec::new();
+    open_file(path)?
+        .take(4096)
+        .read_to_end(&mut start)
+        .map_err(|e| FileError::new(path, Fault::new(format!("it cannot be read ({e})"), "check the disk")))?;
+    if start.is_empty() {
+        return Err(FileError::new(path, Fault::new("it is empty", "export it again")));
+    }
+    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&start);
+    for (magic, kind) in [
+        (&b"LASF"[..], Kind::Cloud(CloudFormat::Las)),
+        (b"ply\n", Kind::Cloud(CloudFormat::Ply)),
+        (b"ply\r", Kind::Cloud(CloudFormat::Ply)),
+        (b"NVM_V3", Kind::Nvm),
+        (b"%YAML", Kind::Camera),
+        (b"<?xml", Kind::Camera),
+        (b"<opencv_storage", Kind::Camera),
+    ] {
+        if text.starts_with(magic) {
+            return Ok(kind);
+        }
+    }
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    if ["cameras", "images", "points3d"].iter().any(|part| name.starts_with(part))
+        && let Some(model) = path.parent().and_then(colmap::model_folder)
+    {
+        return Ok(Kind::Colmap(model));
+    }
+    let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
+    Ok(match extension {
+        "toml" => Kind::Flight(path.to_owned()),
+        "ply" => Kind::Cloud(CloudFormat::Ply),
+        "las" | "laz" => Kind::Cloud(CloudFormat::Las),
+        "obj" => Kind::Cloud(CloudFormat::Obj),
+        "nvm" => Kind::Nvm,
+        "yaml" | "yml" | "xml" => Kind::Camera,
+        "csv" | "txt" if has_photo_column(text) => Kind::Poses,
+        "csv" | "txt" | "xyz" | "asc" => Kind::Cloud(CloudFormat::Xyz),
+        _ => {
+            return Err(FileError::new(
+                path,
+                Fault::new("a file of no known kind", format!("supported are {SUPPORTED}")),
+            ));
+        }
+    })
+}
+
+fn detect_folder(path: &Path) -> Result<Kind, FileError> {
+    let flight = path.join("flight.toml");
+    if flight.is_file() {
+        return Ok(Kind::Flight(flight));
+    }
+    if odm::is_odm_folder(path) {
+        return Ok(Kind::Odm);
+    }
+    if let Some(model) = colmap::model_folder(path) {
+        return Ok(Kind::Colmap(model));
+    }
+    let what = match fs::read_dir(path) {
+        Ok(_) => "a folder with no flight.toml and no reconstruction in it".to_owned(),
+        Err(e) => format!("a folder that cannot be read ({e})"),
+    };
+    Err(FileError::new(path, Fault::new(what, format!("supported are {SUPPORTED}"))))
+}
+
+/// Whether the first line that is no comment names a column "photo".
+fn has_photo_column(start: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(start);
+    let header = text.lines().find(|line| !line.is_empty() && !line.starts_with('#'));
+    header.is_some_and(|header| {
+        let mut columns = header.split(',');
+        columns.any(|column| column.trim().trim_matches('"').eq_ignore_ascii_case("photo"))
+    })
+}
+
+/// Reads a cloud or mesh.
+///
+/// # Errors
+/// With the file and the place in it.
+pub fn read_cloud(path: &Path, progress: &Progress) -> Result<CloudFile, FileError> {
+    let format = match detect(path)? {
+        Kind::Cloud(format) => format,
+        other => {
+            return Err(FileError::new(
+                path,
+                Fault::new(
+                    format!("it holds {}, not a surface", other.in_words()),
+                    "give a PLY, LAS, LAZ, OBJ or XYZ/TXT/CSV file",
+                ),
+            ));
+        }
+    };
+    progress.stage(format!("reading {}", path.display()));
+    let file = open_file(path)?;
+    let size = file.metadata().map_or(0, |metadata| metadata.len());
+    let input = BufReader::with_capacity(1 << 18, file);
+    let cloud = match format {
+        CloudFormat::Ply => ply::read(input, progress),
+        CloudFormat::Las => las::read(input, progress),
+        CloudFormat::Obj => obj::read(input, size, progress),
+        CloudFormat::Xyz => xyz::read(input, size, progress),
+    };
+    cloud.map_err(|fault| FileError::new(path, fault))
+}
+
+/// Reads a camera's calibration.
+///
+/// # Errors
+/// With the file and the place in it.
+pub fn read_camera(path: &Path) -> Result<Camera, FileError> {
+    let text = read_text(path)?;
+    camera_file::read(&text).map_err(|fault| FileError::new(path, fault))
+}
+
+/// Reads a reconstruction of this kind.
+///
+/// # Errors
+/// With the file and the place in it, and where the kind is another one.
+pub fn read_reconstruction(path: &Path, kind: &Kind) -> Result<Reconstruction, FileError> {
+    match kind {
+        Kind::Colmap(folder) => colmap::read_folder(folder),
+        Kind::Nvm => nvm::read(&read_text(path)?).map_err(|fault| FileError::new(path, fault)),
+        Kind::Odm => Ok(odm::read_folder(path)?.reconstruction),
+        _ => Err(FileError::new(
+            path,
+            Fault::new(
+                format!("it holds {}, not a reconstruction", kind.in_words()),
+                "give a COLMAP folder, an NVM file or an OpenDroneMap folder",
+            ),
+        )),
+    }
+}
+
+/// Reads a poses.csv.
+///
+/// # Errors
+/// With the file and the place in it.
+pub fn read_poses(path: &Path) -> Result<PosesFile, FileError> {
+    poses_csv::read(&read_bytes(path)?).map_err(|fault| FileError::new(path, fault))
+}

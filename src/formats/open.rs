@@ -1,0 +1,386 @@
+//! Opening a flight: flight.toml with the files that it names, or a reconstruction given directly.
+
+use std::path::{Path, PathBuf};
+
+use super::input::{FileError, read_bytes, read_text};
+use super::photo_files::{PhotoFolder, fit_cameras_to_files};
+use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, odm, poses_csv};
+use crate::camera::Camera;
+use crate::fault::Fault;
+use crate::flight::{CameraEntry, CameraSource, Flight, FlightFile, FlightParts, Photo, PhotoSource};
+use crate::geometry::Similarity;
+use crate::jobs::Progress;
+use crate::scale::{Ground, ImageKind};
+use crate::surface::Surface;
+use crate::units::LengthUnit;
+
+/// What the user says beside the flight itself.
+#[derive(Debug, Clone, Default)]
+pub struct OpenOptions {
+    /// A cloud or mesh to use instead of the flight's own surface.
+    pub surface: Option<PathBuf>,
+}
+
+/// A flight with what was noticed on the way.
+#[derive(Debug)]
+pub struct Opened {
+    /// Ready for scales.
+    pub flight: Flight,
+    /// One sentence each, with the file in front where there is one.
+    pub warnings: Vec<String>,
+}
+
+/// Opens a flight.toml, a folder that holds one, or a reconstruction.
+///
+/// # Errors
+/// With the file and the place in it.
+pub fn open_flight(
+    path: &Path,
+    options: &OpenOptions,
+    progress: &Progress,
+) -> Result<Opened, FileError> {
+    let kind = detect(path)?;
+    let source = match &kind {
+        Kind::Flight(file) => Source::of_file(file, progress)?,
+        Kind::Colmap(_) | Kind::Nvm | Kind::Odm => Source::of_reconstruction(path, &kind, progress)?,
+        Kind::Cloud(_) | Kind::Camera | Kind::Poses => {
+            return Err(FileError::new(
+                path,
+                Fault::new(
+                    format!("it holds {}, not a flight", kind.in_words()),
+                    "name it in a flight.toml and open that",
+                ),
+            ));
+        }
+    };
+    source.into_flight(options, progress)
+}
+
+/// What a flight is made of, before its surface is read and its cameras meet their photo files.
+struct Source {
+    /// What errors of the whole are blamed on.
+    file: PathBuf,
+    name: String,
+    unit: LengthUnit,
+    ground: Ground,
+    image: ImageKind,
+    /// The surface's file; `None` for the reconstruction's own points.
+    surface: Option<PathBuf>,
+    reconstruction_cloud: CloudFile,
+    photo_folder: Option<PathBuf>,
+    cameras: Vec<Camera>,
+    photos: Vec<Photo>,
+    warnings: Vec<String>,
+}
+
+impl Source {
+    fn of_file(path: &Path, progress: &Progress) -> Result<Self, FileError> {
+        let at_file = |fault| FileError::new(path, fault);
+        let text = read_text(path)?;
+        let file = FlightFile::parse(&text).map_err(at_file)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let photo_folder = file.photo_folder().map(|name| folder.join(name));
+        let mut source = Self {
+            file: path.to_owned(),
+            name: file.name.clone().unwrap_or_else(|| name_of(path)),
+            unit: file.unit(),
+            ground: file.ground(),
+            image: file.image(),
+            surface: file.surface().map(|name| folder.join(name)),
+            reconstruction_cloud: CloudFile::default(),
+            photo_folder,
+            cameras: Vec::new(),
+            photos: Vec::new(),
+            warnings: Vec::new(),
+        };
+        match file.photo_source() {
+            PhotoSource::Poses(name) => {
+                let names = source.add_cameras(path, folder, &file.cameras)?;
+                source.add_poses(&folder.join(name), &names)?;
+            }
+            PhotoSource::Reconstruction(name, transform) => {
+                let path = folder.join(name);
+                let kind = detect(&path)?;
+                let mut reconstruction = source.read_reconstruction(&path, &kind, progress)?;
+                if let Some(matrix) = transform {
+                    let similarity = Similarity::from_row_major(&matrix).map_err(|error| {
+                        at_file(Fault::new(
+                            format!("photos.transform: {error}"),
+                            "give a row-major similarity from the package's frame to the world",
+                        ))
+                    })?;
+                    reconstruction.transform(&similarity);
+                }
+                source
+                    .take_reconstruction(&path, reconstruction, &file.cameras)
+                    .map_err(|error| if error.file == path { at_file(error.fault) } else { error })?;
+            }
+        }
+        Ok(source)
+    }
+
+    fn of_reconstruction(path: &Path, kind: &Kind, progress: &Progress) -> Result<Self, FileError> {
+        let mut source = Self {
+            file: path.to_owned(),
+            name: name_of(path),
+            unit: LengthUnit::Metre,
+            ground: Ground::Auto,
+            image: ImageKind::Undistorted,
+            surface: None,
+            reconstruction_cloud: CloudFile::default(),
+            photo_folder: None,
+            cameras: Vec::new(),
+            photos: Vec::new(),
+            warnings: Vec::new(),
+        };
+        let reconstruction = source.read_reconstruction(path, kind, progress)?;
+        if reconstruction.crs.is_none() {
+            let path = path.display();
+            source.warnings.push(format!(
+                "{path}: the reconstruction states neither a unit nor which way is up; its frame is taken as metres with z up"
+            ));
+        }
+        if source.photo_folder.is_none() && !reconstruction.sizes_known {
+            // Packages name photos relative to their own file.
+            source.photo_folder = path.parent().map(Path::to_owned);
+        }
+        source.take_reconstruction(path, reconstruction, &[])?;
+        Ok(source)
+    }
+
+    fn read_reconstruction(
+        &mut self,
+        path: &Path,
+        kind: &Kind,
+        progress: &Progress,
+    ) -> Result<Reconstruction, FileError> {
+        progress.stage(format!("reading {}", path.display()));
+        if let Kind::Odm = kind {
+            let project = odm::read_folder(path)?;
+            self.surface = self.surface.take().or(project.surface);
+            self.photo_folder = self.photo_folder.take().or(project.photos);
+            return Ok(project.reconstruction);
+        }
+        super::read_reconstruction(path, kind)
+    }
+
+    fn take_reconstruction(
+        &mut self,
+        path: &Path,
+        mut reconstruction: Reconstruction,
+        entries: &[CameraEntry],
+    ) -> Result<(), FileError> {
+        let at = |fault| FileError::new(path, fault);
+        self.warn(path, &reconstruction.warnings);
+        let sizes = sizes_of_entries(entries).map_err(at)?;
+        let given = |name: &str| {
+            sizes
+                .iter()
+                .find(|(camera, _)| camera.is_none_or(|camera| camera == name))
+                .map(|(_, size)| *size)
+        };
+        if reconstruction.sizes_known {
+            for camera in &reconstruction.cameras {
+                if given(&camera.name).is_some_and(|size| size != (camera.width, camera.height)) {
+                    let (w, h) = (camera.width, camera.height);
+                    let what = format!("camera '{}' is for {w} x {h} in the reconstruction", camera.name);
+                    return Err(at(Fault::new(what, "remove its [[camera]] table")));
+                }
+            }
+        } else {
+            let folder = PhotoFolder::new(self.photo_folder.as_deref());
+            let names: Vec<String> = reconstruction.cameras.iter().map(|c| c.name.clone()).collect();
+            let photo_of: Vec<Option<String>> = (0..names.len())
+                .map(|camera| {
+                    let photos = &reconstruction.photos;
+                    photos.iter().find(|p| p.camera == camera).map(|p| p.name.clone())
+                })
+                .collect();
+            reconstruction
+                .set_sizes(|camera| {
+                    given(&names[camera])
+                        .or_else(|| folder.size_of(photo_of[camera].as_deref()?)?.ok())
+                        .ok_or_else(|| {
+                            let photo = photo_of[camera].as_deref().unwrap_or(&names[camera]);
+                            Fault::new(
+                                format!("the image size of '{photo}' is not known: this package writes none, and there is no such image file"),
+                                "give [photos] folder, or a [[camera]] table with width and height, in a flight.toml",
+                            )
+                        })
+                })
+                .map_err(at)?;
+        }
+        self.cameras = reconstruction.cameras;
+        self.photos = reconstruction
+            .photos
+            .into_iter()
+            .map(|photo| Photo {
+                name: photo.name,
+                camera: photo.camera,
+                pose: photo.pose,
+                trouble: None,
+            })
+            .collect();
+        self.reconstruction_cloud.cloud = reconstruction.cloud;
+        Ok(())
+    }
+
+    /// Reads the cameras of the tables; returns what poses may call each.
+    fn add_cameras(
+        &mut self,
+        path: &Path,
+        folder: &Path,
+        entries: &[CameraEntry],
+    ) -> Result<Vec<Option<String>>, FileError> {
+        let at = |what: String, remedy: &str| FileError::new(path, Fault::new(what, remedy));
+        if entries.is_empty() {
+            return Err(at("there is no [[camera]]".to_owned(), "add one, with a file or inline"));
+        }
+        let mut names: Vec<Option<String>> = Vec::new();
+        for entry in entries {
+            let mut camera = match entry.source().map_err(|fault| FileError::new(path, fault))? {
+                CameraSource::File(name) => super::read_camera(&folder.join(name))?,
+                CameraSource::Inline(camera) => camera,
+                CameraSource::Size(..) => {
+                    return Err(at(
+                        "a [[camera]] has only a size".to_owned(),
+                        "add fx, fy, cx and cy, or name a calibration file",
+                    ));
+                }
+            };
+            if let Some(name) = &entry.name {
+                camera.name.clone_from(name);
+            }
+            let name = entry.name.clone().or_else(|| {
+                (entries.len() > 1 && !camera.name.is_empty()).then(|| camera.name.clone())
+            });
+            if entries.len() > 1 && name.is_none() {
+                return Err(at("one of several cameras has no name".to_owned(), "name each"));
+            }
+            if names.contains(&name) {
+                let name = name.unwrap_or_default();
+                return Err(at(format!("two cameras are called '{name}'"), "give each its own name"));
+            }
+            names.push(name);
+            self.cameras.push(camera);
+        }
+        Ok(names)
+    }
+
+    fn add_poses(&mut self, path: &Path, cameras: &[Option<String>]) -> Result<(), FileError> {
+        let poses = poses_csv::read(&read_bytes(path)?).map_err(|fault| FileError::new(path, fault))?;
+        self.warn(path, &poses.warnings);
+        for line in poses.lines {
+            let camera = camera_of(&line, cameras).map_err(|fault| FileError::new(path, fault))?;
+            self.photos.push(Photo {
+                name: line.photo,
+                camera,
+                pose: line.pose,
+                trouble: None,
+            });
+        }
+        Ok(())
+    }
+
+    fn into_flight(mut self, options: &OpenOptions, progress: &Progress) -> Result<Opened, FileError> {
+        let folder = PhotoFolder::new(self.photo_folder.as_deref());
+        fit_cameras_to_files(&folder, &mut self.cameras, &mut self.photos, &mut self.warnings);
+        let (surface_file, cloud) = match options.surface.clone().or(self.surface.take()) {
+            Some(path) => {
+                let file = super::read_cloud(&path, progress)?;
+                self.warn(&path, &file.warnings);
+                (path, file)
+            }
+            None => (self.file.clone(), self.reconstruction_cloud),
+        };
+        let at_surface = |fault| FileError::new(&surface_file, fault);
+        if cloud.geographic {
+            return Err(at_surface(Fault::new(
+                "its coordinates are degrees, not lengths",
+                "project it to a metric system, such as UTM",
+            )));
+        }
+        if cloud.cloud.points.is_empty() {
+            return Err(at_surface(Fault::new(
+                "it has no 3D points to make a surface of",
+                "name a cloud or mesh as [surface] file in a flight.toml, or with --surface",
+            )));
+        }
+        progress.stage("building the surface");
+        let surface = Surface::new(cloud.cloud)
+            .map_err(|error| at_surface(Fault::new(error.to_string(), "check the surface file")))?;
+        let flight = Flight::new(FlightParts {
+            name: self.name,
+            unit: self.unit,
+            ground: self.ground,
+            image: self.image,
+            surface,
+            cameras: self.cameras,
+            photos: self.photos,
+        })
+        .map_err(|fault| FileError::new(&self.file, fault))?;
+        Ok(Opened {
+            flight,
+            warnings: self.warnings,
+        })
+    }
+
+    fn warn(&mut self, path: &Path, warnings: &[String]) {
+        let path = path.display();
+        self.warnings
+            .extend(warnings.iter().map(|warning| format!("{path}: {warning}")));
+    }
+}
+
+/// The name of a flight that says none: that of its folder, or of its file without extension.
+fn name_of(path: &Path) -> String {
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let name = if path.file_name().is_some_and(|name| name == "flight.toml") {
+        path.parent().and_then(Path::file_name)
+    } else if path.is_dir() {
+        path.file_name()
+    } else {
+        path.file_stem()
+    };
+    name.map_or_else(|| "flight".to_owned(), |name| name.to_string_lossy().into_owned())
+}
+
+/// The tables of a flight whose cameras come from a reconstruction hold sizes only.
+fn sizes_of_entries(entries: &[CameraEntry]) -> Result<Vec<(Option<&str>, (u32, u32))>, Fault> {
+    entries
+        .iter()
+        .map(|entry| match entry.source()? {
+            CameraSource::Size(width, height) => Ok((entry.name.as_deref(), (width, height))),
+            CameraSource::File(_) | CameraSource::Inline(_) => Err(Fault::new(
+                "a [[camera]] has intrinsics, but the reconstruction brings its own",
+                "keep only width and height, or remove the table",
+            )),
+        })
+        .collect()
+}
+
+/// Which camera a pose belongs to.
+fn camera_of(line: &PoseLine, names: &[Option<String>]) -> Result<usize, Fault> {
+    let known = || {
+        let names: Vec<_> = names.iter().flatten().map(String::as_str).collect();
+        names.join(", ")
+    };
+    match (&line.camera, names) {
+        (None, [_]) | (Some(_), [None]) => Ok(0),
+        (None, _) => Err(Fault::at(
+            line.line,
+            "column camera: the flight has several cameras, and this photo names none",
+            format!("name one of {}", known()),
+        )),
+        (Some(name), names) => names
+            .iter()
+            .position(|known| known.as_ref() == Some(name))
+            .ok_or_else(|| {
+                Fault::at(
+                    line.line,
+                    format!("column camera: there is no camera '{name}'"),
+                    format!("name one of {}", known()),
+                )
+            }),
+    }
+}

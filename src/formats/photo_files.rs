@@ -1,0 +1,193 @@
+//! The image files of a flight: where they are, and whether their cameras are for their size
+//! (contract, section 2, rule 7).
+
+use std::collections::HashMap;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+use super::input::open_file;
+use super::photo_size;
+use crate::camera::Camera;
+use crate::fault::Fault;
+use crate::flight::Photo;
+
+/// How many missing files a warning names.
+const NAMED: usize = 3;
+
+/// The folder of a flight's image files, if it has one.
+pub(super) struct PhotoFolder<'a> {
+    folder: Option<&'a Path>,
+}
+
+impl<'a> PhotoFolder<'a> {
+    pub(super) fn new(folder: Option<&'a Path>) -> Self {
+        Self { folder }
+    }
+
+    /// The file of a photo: its name below the folder, or the last part of its name in the folder.
+    fn find(&self, photo: &str) -> Option<PathBuf> {
+        let folder = self.folder?;
+        let last = photo.rsplit(['/', '\\']).next().unwrap_or(photo);
+        [photo, last]
+            .into_iter()
+            .map(|name| folder.join(name))
+            .find(|path| path.is_file())
+    }
+
+    /// Width and height of a photo's file; `None` where there is no file.
+    pub(super) fn size_of(&self, photo: &str) -> Option<Result<(u32, u32), Fault>> {
+        let path = self.find(photo)?;
+        let size = open_file(&path)
+            .map_err(|error| error.fault)
+            .and_then(|file| photo_size::read(BufReader::new(file)));
+        Some(size)
+    }
+}
+
+/// Rescales each camera to the size of its photo files, where those have the same shape; photos of
+/// another shape get a trouble. What is done, and what files are missing, is said in `warnings`.
+pub(super) fn fit_cameras_to_files(
+    folder: &PhotoFolder<'_>,
+    cameras: &mut [Camera],
+    photos: &mut [Photo],
+    warnings: &mut Vec<String>,
+) {
+    let Some(path) = folder.folder else {
+        return;
+    };
+    let mut missing = Vec::new();
+    let mut sizes = Vec::with_capacity(photos.len());
+    for photo in photos.iter() {
+        sizes.push(match folder.size_of(&photo.name) {
+            Some(Ok(size)) => Some(size),
+            Some(Err(fault)) => {
+                warnings.push(format!("photo '{}': {fault}; its size is not checked", photo.name));
+                None
+            }
+            None => {
+                missing.push(photo.name.as_str());
+                None
+            }
+        });
+    }
+    if !missing.is_empty() {
+        let dots = if missing.len() > NAMED { ", ..." } else { "" };
+        let names = missing.iter().take(NAMED).copied().collect::<Vec<_>>().join(", ");
+        warnings.push(format!(
+            "{}: {} of {} image files are missing ({names}{dots}); their sizes are not checked",
+            path.display(),
+            missing.len(),
+            sizes.len()
+        ));
+    }
+    for (index, camera) in cameras.iter_mut().enumerate() {
+        let of_camera = photos.iter().zip(&sizes).filter(|(photo, _)| photo.camera == index);
+        let Some(size) = most_common(of_camera.filter_map(|(_, size)| *size)) else {
+            continue;
+        };
+        let (width, height) = (camera.width, camera.height);
+        if size == (width, height) {
+            continue;
+        }
+        if let Ok(rescaled) = camera.rescaled(size.0, size.1) {
+            let name = match camera.name.as_str() {
+                "" => "the camera".to_owned(),
+                name => format!("camera '{name}'"),
+            };
+            warnings.push(format!(
+                "{name} is for {width} x {height}, its photos are {} x {}: its intrinsics are scaled to the photos' size",
+                size.0, size.1
+            ));
+            *camera = rescaled;
+        }
+    }
+    for (photo, size) in photos.iter_mut().zip(sizes) {
+        let Some(camera) = cameras.get(photo.camera) else {
+            continue;
+        };
+        if let Some((width, height)) = size
+            && (width, height) != (camera.width, camera.height)
+        {
+            let matter = match camera.rescaled(width, height) {
+                Err(error) => error.to_string(),
+                Ok(_) => format!(
+                    "the photo is {width} x {height}, other photos of its camera are {} x {}",
+                    camera.width, camera.height
+                ),
+            };
+            photo.trouble = Some(matter);
+        }
+    }
+}
+
+/// The most common size, of equals the first.
+fn most_common(sizes: impl Iterator<Item = (u32, u32)>) -> Option<(u32, u32)> {
+    let mut counts: HashMap<(u32, u32), (usize, usize)> = HashMap::new();
+    for (place, size) in sizes.enumerate() {
+        counts.entry(size).or_insert((0, place)).0 += 1;
+    }
+    counts
+        .into_iter()
+        .max_by_key(|&(_, (count, place))| (count, std::cmp::Reverse(place)))
+        .map(|(size, _)| size)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use image::RgbImage;
+
+    use super::*;
+    use crate::camera::{Distortion, Pose};
+
+    fn fit(camera: (u32, u32), files: &[(u32, u32)]) -> (Camera, Vec<Photo>, Vec<String>) {
+        let folder = tempfile::tempdir().unwrap();
+        let mut cameras = [Camera {
+            name: "c".to_owned(),
+            width: camera.0,
+            height: camera.1,
+            fx: 100.0,
+            fy: 100.0,
+            cx: 50.0,
+            cy: 25.0,
+            skew: 1.0,
+            distortion: Distortion::None,
+        }];
+        let mut photos: Vec<Photo> = (0..=files.len())
+            .map(|index| Photo {
+                name: format!("a/{index}.png"),
+                camera: 0,
+                pose: Pose::from_tilt_pan(DVec3::ZERO, [90.0, 0.0]),
+                trouble: None,
+            })
+            .collect();
+        // The last photo has no file.
+        for (index, (width, height)) in files.iter().enumerate() {
+            let path = folder.path().join(format!("{index}.png"));
+            RgbImage::new(*width, *height).save(path).unwrap();
+        }
+        let mut warnings = Vec::new();
+        let files = PhotoFolder::new(Some(folder.path()));
+        fit_cameras_to_files(&files, &mut cameras, &mut photos, &mut warnings);
+        let [camera] = cameras;
+        (camera, photos, warnings)
+    }
+
+    #[test]
+    fn the_camera_follows_the_files_for_all_its_photos() {
+        let (camera, photos, warnings) = fit((100, 50), &[(400, 200), (400, 200)]);
+        assert_eq!((camera.width, camera.height, camera.fx, camera.cy), (400, 200, 400.0, 100.0));
+        assert!(photos.iter().all(|photo| photo.trouble.is_none()));
+        assert!(warnings.iter().any(|w| w.contains("100 x 50")), "{warnings:?}");
+        assert!(warnings.iter().any(|w| w.contains("1 of 3 image files are missing")), "{warnings:?}");
+    }
+
+    #[test]
+    fn another_shape_is_trouble_for_that_photo() {
+        let (camera, photos, _) = fit((100, 50), &[(100, 50), (400, 300), (100, 50), (200, 100)]);
+        assert_eq!(camera.width, 100);
+        let troubled: Vec<bool> = photos.iter().map(|photo| photo.trouble.is_some()).collect();
+        assert_eq!(troubled, [false, true, false, true, false]);
+        assert!(photos[1].trouble.as_ref().unwrap().contains("another shape"));
+    }
+}
