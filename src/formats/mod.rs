@@ -10,6 +10,7 @@ mod colmap_models;
 mod colmap_text;
 mod fields;
 mod input;
+pub mod nvm;
 mod reconstruction;
 #[cfg(test)]
 mod test_data;
