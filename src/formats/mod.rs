@@ -16,6 +16,16 @@ mod poses_csv;
 mod reconstruction;
 mod text_lines;
 mod xyz;
+pub mod colmap;
+mod colmap_binary;
+mod colmap_models;
+mod colmap_text;
+mod fields;
+mod input;
+pub mod nvm;
+mod reconstruction;
+#[cfg(test)]
+mod test_data;
 
 use std::fs;
 use std::io::{BufReader, Read};

@@ -37,7 +37,7 @@ pub struct Reconstruction {
     /// The coordinate system that the package states: "EPSG:n", WKT or "ECEF".
     pub crs: Option<String>,
     /// Cameras. Where `sizes_known` is false they have width = height = 0, and cx, cy count from
-    /// the middle of the image.
+    /// the middle of the image, unless `principal_points_from_corner`.
     pub cameras: Vec<Camera>,
     /// Photos in the file's order, aligned ones only.
     pub photos: Vec<PosedPhoto>,
@@ -47,6 +47,9 @@ pub struct Reconstruction {
     pub observations: Vec<Observation>,
     /// Whether the package writes the image sizes.
     pub sizes_known: bool,
+    /// Whether cx, cy count from the top-left corner although the sizes are not known: a calibration
+    /// that was given to the package in pixels.
+    pub principal_points_from_corner: bool,
     /// Whether the observations count from the middle of the image (else from its top-left corner).
     pub observed_from_middle: bool,
     /// What the reader had to assume or leave out, one sentence each.
@@ -66,8 +69,10 @@ impl Reconstruction {
         for (index, camera) in self.cameras.iter_mut().enumerate() {
             let (width, height) = size_of(index)?;
             (camera.width, camera.height) = (width, height);
-            camera.cx += f64::from(width) / 2.0;
-            camera.cy += f64::from(height) / 2.0;
+            if !self.principal_points_from_corner {
+                camera.cx += f64::from(width) / 2.0;
+                camera.cy += f64::from(height) / 2.0;
+            }
         }
         self.sizes_known = true;
         Ok(())
@@ -76,7 +81,8 @@ impl Reconstruction {
     /// The median distance, in pixels, between the measured image points and the projections of
     /// their 3D points; `None` where nothing can be compared.
     pub fn median_reprojection_px(&self) -> Option<f64> {
-        if !self.sizes_known && !self.observed_from_middle {
+        let one_origin = self.observed_from_middle != self.principal_points_from_corner;
+        if !self.sizes_known && !one_origin {
             return None;
         }
         let mut errors: Vec<f64> = self
