@@ -7,5 +7,10 @@
 mod input;
 mod reconstruction;
 
+// Cameras in files of their own.
+mod opencv_camera;
+pub mod ros_camera;
+mod yaml_tree;
+
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use reconstruction::{Observation, PosedPhoto, Reconstruction};
