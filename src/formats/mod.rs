@@ -9,6 +9,8 @@ mod reconstruction;
 
 // Cameras in files of their own.
 mod opencv_camera;
+pub mod opencv_storage;
+mod opencv_xml;
 pub mod ros_camera;
 mod yaml_tree;
 
