@@ -8,6 +8,7 @@ mod input;
 mod reconstruction;
 
 // Cameras in files of their own.
+pub mod camera_file;
 mod opencv_camera;
 pub mod opencv_storage;
 mod opencv_xml;
