@@ -32,6 +32,14 @@ use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 pub use cloud_file::CloudFile;
+// Cameras in files of their own.
+pub mod camera_file;
+mod opencv_camera;
+pub mod opencv_storage;
+mod opencv_xml;
+pub mod ros_camera;
+mod yaml_tree;
+
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{OpenOptions, Opened, open_flight};
 pub use poses_csv::{PoseLine, PosesFile};
