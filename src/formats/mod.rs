@@ -5,6 +5,8 @@
 //! a [`Fault`](crate::fault::Fault), and the dispatcher puts the file's name in front.
 
 mod input;
+mod json;
+pub mod opensfm_camera;
 mod reconstruction;
 
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
