@@ -6,8 +6,12 @@
 
 mod input;
 mod json;
+pub mod opensfm;
 pub mod opensfm_camera;
+mod opensfm_tracks;
 mod reconstruction;
+#[cfg(test)]
+mod test_data;
 
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use reconstruction::{Observation, PosedPhoto, Reconstruction};
