@@ -6,6 +6,11 @@
 
 mod input;
 mod json;
+pub mod odm;
+mod odm_cameras;
+mod odm_georeference;
+mod odm_poses;
+mod odm_shots;
 pub mod opensfm;
 pub mod opensfm_camera;
 mod opensfm_tracks;
