@@ -39,6 +39,18 @@ pub mod opencv_storage;
 mod opencv_xml;
 pub mod ros_camera;
 mod yaml_tree;
+mod json;
+pub mod odm;
+mod odm_cameras;
+mod odm_georeference;
+mod odm_poses;
+mod odm_shots;
+pub mod opensfm;
+pub mod opensfm_camera;
+mod opensfm_tracks;
+mod reconstruction;
+#[cfg(test)]
+mod test_data;
 
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{OpenOptions, Opened, open_flight};
