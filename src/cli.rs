@@ -1,1 +1,343 @@
-//! tbd
+//! The command line (contract, sections 5 and 6): understands the arguments, starts the work as a
+//! job, shows its progress, writes what it returns, and turns errors into one line and an exit
+//! status.
+//!
+//! 0: done. 1: the input could not be used. 2: the command line could not be understood. 130: the
+//! user interrupted it.
+
+use std::ffi::OsString;
+use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::Value;
+
+use crate::exports;
+use crate::fault::{Fault, one_line};
+use crate::formats::{self, FileError, Kind, OpenOptions};
+use crate::jobs::{Job, Progress};
+use crate::units::LengthUnit;
+
+/// Work that is over sooner shows no progress bar.
+const QUICK: Duration = Duration::from_millis(500);
+
+/// Image scales for blast fragmentation photos, from a drone flight's point cloud.
+#[derive(Debug, Parser)]
+#[command(name = "fragscale", version, about, arg_required_else_help = false)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Compute the scale of every photo of a flight.
+    Scales(ScalesArguments),
+    /// Say what a file or folder holds.
+    Info(InfoArguments),
+}
+
+#[derive(Debug, Args)]
+struct ScalesArguments {
+    /// A flight.toml, or a reconstruction: a COLMAP folder, an NVM file, an OpenDroneMap folder.
+    flight: PathBuf,
+    /// Scales are in pixels per this unit.
+    #[arg(long, value_enum, default_value = "cm")]
+    unit: OutputUnit,
+    /// How to write them.
+    #[arg(long, value_enum, default_value = "table")]
+    format: ScalesFormat,
+    /// Write to this file instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Use this cloud or mesh instead of the flight's surface.
+    #[arg(long, value_name = "FILE")]
+    surface: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+struct InfoArguments {
+    /// Any file or folder that fragscale reads.
+    file: PathBuf,
+    /// How to write it.
+    #[arg(long, value_enum, default_value = "text")]
+    format: InfoFormat,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum OutputUnit {
+    Mm,
+    Cm,
+    M,
+    In,
+    Ft,
+}
+
+impl From<OutputUnit> for LengthUnit {
+    fn from(unit: OutputUnit) -> Self {
+        match unit {
+            OutputUnit::Mm => Self::Millimetre,
+            OutputUnit::Cm => Self::Centimetre,
+            OutputUnit::M => Self::Metre,
+            OutputUnit::In => Self::Inch,
+            OutputUnit::Ft => Self::Foot,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum ScalesFormat {
+    Table,
+    Csv,
+    Json,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum InfoFormat {
+    Text,
+    Json,
+}
+
+/// What a command has to say when it is done.
+struct Answer {
+    text: String,
+    /// To standard error, one line each.
+    warnings: Vec<String>,
+}
+
+/// Runs the command that the process was started with.
+pub fn run() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) if !error.use_stderr() => return print(&error.to_string()),
+        Err(error) => {
+            say(&format!("error: {}", usage_in_one_line(&error.to_string())));
+            return ExitCode::from(2);
+        }
+    };
+    // Whatever is being written is not finished now. Without the handler (which only fails where
+    // another one is set) an interrupt could leave a temporary file.
+    let _ = ctrlc::set_handler(|| {
+        exports::remove_unfinished();
+        std::process::exit(130);
+    });
+    // A panic is a defect that the job reports in a sentence; its details are for who asks for them.
+    if std::env::var_os("RUST_BACKTRACE").is_none() {
+        std::panic::set_hook(Box::new(|_| {}));
+    }
+    let (output, work): (
+        _,
+        Box<dyn FnOnce(&Progress) -> Result<Answer, String> + Send>,
+    ) = match arguments.command {
+        Command::Scales(arguments) => (
+            arguments.output.clone(),
+            Box::new(move |progress| scales(&arguments, progress)),
+        ),
+        Command::Info(arguments) => (None, Box::new(move |progress| info(&arguments, progress))),
+    };
+    let answer = match run_with_progress(work) {
+        Ok(answer) => answer,
+        Err(message) => return fail(&message),
+    };
+    for warning in answer.warnings {
+        say(&format!("warning: {}", one_line(&warning)));
+    }
+    match output {
+        None => print(&answer.text),
+        Some(path) => match exports::write_whole(&path, answer.text.as_bytes()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                let what = format!("it cannot be written ({error})");
+                let fault = Fault::new(what, "choose a folder that may be written to");
+                fail(&FileError::new(&path, fault).to_string())
+            }
+        },
+    }
+}
+
+fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, String> {
+    let options = OpenOptions {
+        surface: arguments.surface.clone(),
+    };
+    let path = &arguments.flight;
+    let opened =
+        formats::open_flight(path, &options, progress).map_err(|error| error.to_string())?;
+    let outcomes = opened
+        .flight
+        .scales(progress)
+        .map_err(|fault| FileError::new(path, fault).to_string())?;
+    let report = exports::ScaleReport::new(&opened.flight, &outcomes, arguments.unit.into());
+    let text = match arguments.format {
+        ScalesFormat::Table => exports::scales_table(&report),
+        ScalesFormat::Csv => exports::scales_csv(&report).map_err(|e| e.to_string())?,
+        ScalesFormat::Json => exports::scales_json(&report).map_err(|e| e.to_string())?,
+    };
+    let mut warnings = opened.warnings;
+    for line in report.lines.iter().filter(|line| !line.notes.is_empty()) {
+        let verdict = if line.has_top_and_bottom() {
+            ""
+        } else {
+            "no scale: "
+        };
+        warnings.push(format!(
+            "{}: {verdict}{}",
+            line.photo,
+            line.notes.join("; ")
+        ));
+    }
+    Ok(Answer { text, warnings })
+}
+
+fn info(arguments: &InfoArguments, progress: &Progress) -> Result<Answer, String> {
+    let value = info_value(&arguments.file, progress).map_err(|error| error.to_string())?;
+    let text = match arguments.format {
+        InfoFormat::Json => format!("{value}\n"),
+        InfoFormat::Text => info_text(&value),
+    };
+    Ok(Answer {
+        text,
+        warnings: Vec::new(),
+    })
+}
+
+fn info_value(path: &Path, progress: &Progress) -> Result<Value, FileError> {
+    let kind = formats::detect(path)?;
+    Ok(match kind {
+        Kind::Cloud(_) => exports::cloud_info(&formats::read_cloud(path, progress)?),
+        Kind::Camera => exports::camera_info(&formats::read_camera(path)?),
+        Kind::Poses => exports::poses_info(&formats::read_poses(path)?),
+        Kind::Nvm | Kind::Colmap(_) | Kind::Odm => {
+            exports::reconstruction_info(&formats::read_reconstruction(path, &kind)?)
+        }
+        Kind::Flight(_) => {
+            let opened = formats::open_flight(path, &OpenOptions::default(), progress)?;
+            exports::flight_info(&opened.flight, &opened.warnings)
+        }
+    })
+}
+
+/// The top level of an `info` value, a line each; of lists how long they are.
+fn info_text(value: &Value) -> String {
+    let mut text = String::new();
+    for (key, value) in value.as_object().into_iter().flatten() {
+        let shown = match value {
+            Value::Null => "not stated".to_owned(),
+            Value::String(text) => text.clone(),
+            Value::Array(list) if key == "warnings" => {
+                for warning in list {
+                    text += &format!("warning: {}\n", warning.as_str().unwrap_or_default());
+                }
+                continue;
+            }
+            Value::Array(list) => list.len().to_string(),
+            Value::Object(bounds) => {
+                let ends: Vec<String> = bounds
+                    .iter()
+                    .map(|(end, at)| format!("{end} {at}"))
+                    .collect();
+                ends.join(", ")
+            }
+            other => other.to_string(),
+        };
+        text += &format!("{}: {shown}\n", key.replace('_', " "));
+    }
+    text
+}
+
+/// Runs the work on a thread of its own, with a progress bar on a terminal where it takes long.
+fn run_with_progress<T: Send + 'static>(
+    work: impl FnOnce(&Progress) -> Result<T, String> + Send + 'static,
+) -> Result<T, String> {
+    let job = Job::start("work", work).map_err(|fault| fault.to_string())?;
+    if io::stderr().is_terminal() {
+        let began = Instant::now();
+        let mut bar = None;
+        while !job.is_finished() {
+            std::thread::sleep(Duration::from_millis(50));
+            if began.elapsed() > QUICK {
+                let bar = bar.get_or_insert_with(new_bar);
+                let (sentence, fraction) = job.progress().snapshot();
+                bar.set_message(sentence);
+                // `as` saturates.
+                bar.set_position((fraction * 1000.0) as u64);
+            }
+        }
+        if let Some(bar) = bar {
+            bar.finish_and_clear();
+        }
+    }
+    job.finish().map_err(|fault| fault.to_string())?
+}
+
+fn new_bar() -> ProgressBar {
+    let bar = ProgressBar::new(1000);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {elapsed}  {msg}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// Writes to standard output. A reader that has gone away (`| head`) has what it wanted.
+fn print(text: &str) -> ExitCode {
+    let mut output = io::stdout().lock();
+    match output
+        .write_all(text.as_bytes())
+        .and_then(|()| output.flush())
+    {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(error) => fail(&format!(
+            "standard output: it cannot be written ({error}); choose another place"
+        )),
+    }
+}
+
+fn fail(message: &str) -> ExitCode {
+    say(&format!("error: {message}"));
+    ExitCode::from(1)
+}
+
+/// A line on standard error. Where even that is closed, the exit status is all that is left.
+fn say(line: &str) {
+    let _ = writeln!(io::stderr(), "{line}");
+}
+
+/// clap explains over several lines; here the first, with its tip, and where to read more.
+fn usage_in_one_line(text: &str) -> String {
+    let lines: Vec<&str> = text
+        .lines()
+        .map(str::trim)
+        .take_while(|line| !line.starts_with("Usage:"))
+        .filter(|line| !line.is_empty())
+        .collect();
+    let what = lines.join(", ");
+    let what = what.strip_prefix("error: ").unwrap_or(&what).to_owned();
+    let name: OsString = std::env::args_os().next().unwrap_or_default();
+    let name = Path::new(&name).file_name().map_or_else(
+        || "fragscale".to_owned(),
+        |name| name.to_string_lossy().into_owned(),
+    );
+    format!("{what}; see '{name} --help'")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn usage_errors_are_one_line() {
+        let error = Arguments::try_parse_from(["fragscale", "scales", "a", "--unit", "km"]);
+        let line = usage_in_one_line(&error.unwrap_err().to_string());
+        assert!(!line.contains('\n'));
+        assert!(line.contains("'km'") && line.contains("--help"), "{line}");
+    }
+
+    #[test]
+    fn arguments_are_consistent() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+}

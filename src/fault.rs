@@ -21,8 +21,8 @@ impl Fault {
     pub fn new(what: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self {
             line: None,
-            what: one_line(what.into()),
-            remedy: one_line(remedy.into()),
+            what: one_line(&what.into()),
+            remedy: one_line(&remedy.into()),
         }
     }
 
@@ -49,7 +49,7 @@ const LONGEST: usize = 400;
 
 /// Folds every run of white space and control characters into one space and cuts what is too long:
 /// messages quote bytes of broken files, and an error is one line whatever they hold.
-fn one_line(text: String) -> String {
+pub fn one_line(text: &str) -> String {
     let mut line = String::new();
     for word in text.split(|c: char| c.is_whitespace() || c.is_control()) {
         if !word.is_empty() {

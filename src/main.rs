@@ -1,1 +1,5 @@
-fn main() {}
+//! The `fragscale` command: see [`fragscale::cli`].
+
+fn main() -> std::process::ExitCode {
+    fragscale::cli::run()
+}

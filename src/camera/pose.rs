@@ -128,13 +128,20 @@ impl Pose {
     }
 }
 
-fn unit_quaternion([x, y, z, w]: [f64; 4]) -> Result<DQuat, NotRotation> {
-    let quaternion = DQuat::from_xyzw(x, y, z, w);
-    let length = quaternion.length();
-    if length.is_nan() || length < 1e-6 {
+fn unit_quaternion(xyzw: [f64; 4]) -> Result<DQuat, NotRotation> {
+    // Scaled first: the squares of large numbers overflow.
+    let largest = xyzw
+        .iter()
+        .fold(0.0, |largest: f64, q| largest.max(q.abs()));
+    if largest == 0.0 {
+        return Err(NotRotation::ShortQuaternion(0.0));
+    }
+    let scaled = DQuat::from_array(xyzw.map(|q| q / largest));
+    let length = largest * scaled.length();
+    if !scaled.is_finite() || length < 1e-6 {
         return Err(NotRotation::ShortQuaternion(length));
     }
-    Ok(quaternion / length)
+    Ok(scaled.normalize())
 }
 
 #[cfg(test)]

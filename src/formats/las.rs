@@ -119,9 +119,9 @@ fn crs(header: &las::Header) -> Option<String> {
 
 fn is_geographic(crs: Option<&str>, header: &las::Header) -> bool {
     match crs {
-        Some(crs) if !crs.starts_with("EPSG:") => {
-            ["GEOGCS", "GEOGCRS", "GEODCRS"].iter().any(|word| crs.starts_with(word))
-        }
+        Some(crs) if !crs.starts_with("EPSG:") => ["GEOGCS", "GEOGCRS", "GEODCRS"]
+            .iter()
+            .any(|word| crs.starts_with(word)),
         _ => {
             let keys = header.get_geotiff_crs().ok().flatten();
             // GTModelTypeGeoKey 2: a geographic system.

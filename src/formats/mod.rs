@@ -4,54 +4,33 @@
 //! A reader turns bytes into the core's types plus a list of warnings. It knows no path: it returns
 //! a [`Fault`], and the dispatcher puts the file's name in front.
 
+mod camera_file;
 mod cloud_file;
+mod colmap;
+mod fields;
 mod input;
+mod json;
 mod las;
+mod nvm;
 mod obj;
+mod odm;
 mod open;
+mod opensfm;
 mod photo_files;
 mod photo_size;
 mod ply;
 mod poses_csv;
 mod reconstruction;
-mod text_lines;
-mod xyz;
-pub mod colmap;
-mod colmap_binary;
-mod colmap_models;
-mod colmap_text;
-mod fields;
-mod input;
-pub mod nvm;
-mod reconstruction;
 #[cfg(test)]
 mod test_data;
+mod text_lines;
+mod xyz;
 
 use std::fs;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 pub use cloud_file::CloudFile;
-// Cameras in files of their own.
-pub mod camera_file;
-mod opencv_camera;
-pub mod opencv_storage;
-mod opencv_xml;
-pub mod ros_camera;
-mod yaml_tree;
-mod json;
-pub mod odm;
-mod odm_cameras;
-mod odm_georeference;
-mod odm_poses;
-mod odm_shots;
-pub mod opensfm;
-pub mod opensfm_camera;
-mod opensfm_tracks;
-mod reconstruction;
-#[cfg(test)]
-mod test_data;
-
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{OpenOptions, Opened, open_flight};
 pub use poses_csv::{PoseLine, PosesFile};
@@ -124,9 +103,17 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
     open_file(path)?
         .take(4096)
         .read_to_end(&mut start)
-        .map_err(|e| FileError::new(path, Fault::new(format!("it cannot be read ({e})"), "check the disk")))?;
+        .map_err(|e| {
+            FileError::new(
+                path,
+                Fault::new(format!("it cannot be read ({e})"), "check the disk"),
+            )
+        })?;
     if start.is_empty() {
-        return Err(FileError::new(path, Fault::new("it is empty", "export it again")));
+        return Err(FileError::new(
+            path,
+            Fault::new("it is empty", "export it again"),
+        ));
     }
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&start);
     for (magic, kind) in [
@@ -142,8 +129,14 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
             return Ok(kind);
         }
     }
-    let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    if ["cameras", "images", "points3d"].iter().any(|part| name.starts_with(part))
+    let name = path
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase();
+    if ["cameras", "images", "points3d"]
+        .iter()
+        .any(|part| name.starts_with(part))
         && let Some(model) = path.parent().and_then(colmap::model_folder)
     {
         return Ok(Kind::Colmap(model));
@@ -161,7 +154,10 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         _ => {
             return Err(FileError::new(
                 path,
-                Fault::new("a file of no known kind", format!("supported are {SUPPORTED}")),
+                Fault::new(
+                    "a file of no known kind",
+                    format!("supported are {SUPPORTED}"),
+                ),
             ));
         }
     })
@@ -182,16 +178,26 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
         Ok(_) => "a folder with no flight.toml and no reconstruction in it".to_owned(),
         Err(e) => format!("a folder that cannot be read ({e})"),
     };
-    Err(FileError::new(path, Fault::new(what, format!("supported are {SUPPORTED}"))))
+    Err(FileError::new(
+        path,
+        Fault::new(what, format!("supported are {SUPPORTED}")),
+    ))
 }
 
 /// Whether the first line that is no comment names a column "photo".
 fn has_photo_column(start: &[u8]) -> bool {
     let text = String::from_utf8_lossy(start);
-    let header = text.lines().find(|line| !line.is_empty() && !line.starts_with('#'));
+    let header = text
+        .lines()
+        .find(|line| !line.is_empty() && !line.starts_with('#'));
     header.is_some_and(|header| {
         let mut columns = header.split(',');
-        columns.any(|column| column.trim().trim_matches('"').eq_ignore_ascii_case("photo"))
+        columns.any(|column| {
+            column
+                .trim()
+                .trim_matches('"')
+                .eq_ignore_ascii_case("photo")
+        })
     })
 }
 

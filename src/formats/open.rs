@@ -7,7 +7,9 @@ use super::photo_files::{PhotoFolder, fit_cameras_to_files};
 use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, odm, poses_csv};
 use crate::camera::Camera;
 use crate::fault::Fault;
-use crate::flight::{CameraEntry, CameraSource, Flight, FlightFile, FlightParts, Photo, PhotoSource};
+use crate::flight::{
+    CameraEntry, CameraSource, Flight, FlightFile, FlightParts, Photo, PhotoSource,
+};
 use crate::geometry::Similarity;
 use crate::jobs::Progress;
 use crate::scale::{Ground, ImageKind};
@@ -42,7 +44,9 @@ pub fn open_flight(
     let kind = detect(path)?;
     let source = match &kind {
         Kind::Flight(file) => Source::of_file(file, progress)?,
-        Kind::Colmap(_) | Kind::Nvm | Kind::Odm => Source::of_reconstruction(path, &kind, progress)?,
+        Kind::Colmap(_) | Kind::Nvm | Kind::Odm => {
+            Source::of_reconstruction(path, &kind, progress)?
+        }
         Kind::Cloud(_) | Kind::Camera | Kind::Poses => {
             return Err(FileError::new(
                 path,
@@ -113,7 +117,13 @@ impl Source {
                 }
                 source
                     .take_reconstruction(&path, reconstruction, &file.cameras)
-                    .map_err(|error| if error.file == path { at_file(error.fault) } else { error })?;
+                    .map_err(|error| {
+                        if error.file == path {
+                            at_file(error.fault)
+                        } else {
+                            error
+                        }
+                    })?;
             }
         }
         Ok(source)
@@ -183,17 +193,27 @@ impl Source {
             for camera in &reconstruction.cameras {
                 if given(&camera.name).is_some_and(|size| size != (camera.width, camera.height)) {
                     let (w, h) = (camera.width, camera.height);
-                    let what = format!("camera '{}' is for {w} x {h} in the reconstruction", camera.name);
+                    let what = format!(
+                        "camera '{}' is for {w} x {h} in the reconstruction",
+                        camera.name
+                    );
                     return Err(at(Fault::new(what, "remove its [[camera]] table")));
                 }
             }
         } else {
             let folder = PhotoFolder::new(self.photo_folder.as_deref());
-            let names: Vec<String> = reconstruction.cameras.iter().map(|c| c.name.clone()).collect();
+            let names: Vec<String> = reconstruction
+                .cameras
+                .iter()
+                .map(|c| c.name.clone())
+                .collect();
             let photo_of: Vec<Option<String>> = (0..names.len())
                 .map(|camera| {
                     let photos = &reconstruction.photos;
-                    photos.iter().find(|p| p.camera == camera).map(|p| p.name.clone())
+                    photos
+                        .iter()
+                        .find(|p| p.camera == camera)
+                        .map(|p| p.name.clone())
                 })
                 .collect();
             reconstruction
@@ -234,11 +254,17 @@ impl Source {
     ) -> Result<Vec<Option<String>>, FileError> {
         let at = |what: String, remedy: &str| FileError::new(path, Fault::new(what, remedy));
         if entries.is_empty() {
-            return Err(at("there is no [[camera]]".to_owned(), "add one, with a file or inline"));
+            return Err(at(
+                "there is no [[camera]]".to_owned(),
+                "add one, with a file or inline",
+            ));
         }
         let mut names: Vec<Option<String>> = Vec::new();
         for entry in entries {
-            let mut camera = match entry.source().map_err(|fault| FileError::new(path, fault))? {
+            let mut camera = match entry
+                .source()
+                .map_err(|fault| FileError::new(path, fault))?
+            {
                 CameraSource::File(name) => super::read_camera(&folder.join(name))?,
                 CameraSource::Inline(camera) => camera,
                 CameraSource::Size(..) => {
@@ -255,11 +281,17 @@ impl Source {
                 (entries.len() > 1 && !camera.name.is_empty()).then(|| camera.name.clone())
             });
             if entries.len() > 1 && name.is_none() {
-                return Err(at("one of several cameras has no name".to_owned(), "name each"));
+                return Err(at(
+                    "one of several cameras has no name".to_owned(),
+                    "name each",
+                ));
             }
             if names.contains(&name) {
                 let name = name.unwrap_or_default();
-                return Err(at(format!("two cameras are called '{name}'"), "give each its own name"));
+                return Err(at(
+                    format!("two cameras are called '{name}'"),
+                    "give each its own name",
+                ));
             }
             names.push(name);
             self.cameras.push(camera);
@@ -268,7 +300,8 @@ impl Source {
     }
 
     fn add_poses(&mut self, path: &Path, cameras: &[Option<String>]) -> Result<(), FileError> {
-        let poses = poses_csv::read(&read_bytes(path)?).map_err(|fault| FileError::new(path, fault))?;
+        let poses =
+            poses_csv::read(&read_bytes(path)?).map_err(|fault| FileError::new(path, fault))?;
         self.warn(path, &poses.warnings);
         for line in poses.lines {
             let camera = camera_of(&line, cameras).map_err(|fault| FileError::new(path, fault))?;
@@ -282,9 +315,18 @@ impl Source {
         Ok(())
     }
 
-    fn into_flight(mut self, options: &OpenOptions, progress: &Progress) -> Result<Opened, FileError> {
+    fn into_flight(
+        mut self,
+        options: &OpenOptions,
+        progress: &Progress,
+    ) -> Result<Opened, FileError> {
         let folder = PhotoFolder::new(self.photo_folder.as_deref());
-        fit_cameras_to_files(&folder, &mut self.cameras, &mut self.photos, &mut self.warnings);
+        fit_cameras_to_files(
+            &folder,
+            &mut self.cameras,
+            &mut self.photos,
+            &mut self.warnings,
+        );
         let (surface_file, cloud) = match options.surface.clone().or(self.surface.take()) {
             Some(path) => {
                 let file = super::read_cloud(&path, progress)?;
@@ -342,7 +384,10 @@ fn name_of(path: &Path) -> String {
     } else {
         path.file_stem()
     };
-    name.map_or_else(|| "flight".to_owned(), |name| name.to_string_lossy().into_owned())
+    name.map_or_else(
+        || "flight".to_owned(),
+        |name| name.to_string_lossy().into_owned(),
+    )
 }
 
 /// The tables of a flight whose cameras come from a reconstruction hold sizes only.

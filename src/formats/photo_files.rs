@@ -61,7 +61,10 @@ pub(super) fn fit_cameras_to_files(
         sizes.push(match folder.size_of(&photo.name) {
             Some(Ok(size)) => Some(size),
             Some(Err(fault)) => {
-                warnings.push(format!("photo '{}': {fault}; its size is not checked", photo.name));
+                warnings.push(format!(
+                    "photo '{}': {fault}; its size is not checked",
+                    photo.name
+                ));
                 None
             }
             None => {
@@ -72,7 +75,12 @@ pub(super) fn fit_cameras_to_files(
     }
     if !missing.is_empty() {
         let dots = if missing.len() > NAMED { ", ..." } else { "" };
-        let names = missing.iter().take(NAMED).copied().collect::<Vec<_>>().join(", ");
+        let names = missing
+            .iter()
+            .take(NAMED)
+            .copied()
+            .collect::<Vec<_>>()
+            .join(", ");
         warnings.push(format!(
             "{}: {} of {} image files are missing ({names}{dots}); their sizes are not checked",
             path.display(),
@@ -81,7 +89,10 @@ pub(super) fn fit_cameras_to_files(
         ));
     }
     for (index, camera) in cameras.iter_mut().enumerate() {
-        let of_camera = photos.iter().zip(&sizes).filter(|(photo, _)| photo.camera == index);
+        let of_camera = photos
+            .iter()
+            .zip(&sizes)
+            .filter(|(photo, _)| photo.camera == index);
         let Some(size) = most_common(of_camera.filter_map(|(_, size)| *size)) else {
             continue;
         };
@@ -176,10 +187,21 @@ mod tests {
     #[test]
     fn the_camera_follows_the_files_for_all_its_photos() {
         let (camera, photos, warnings) = fit((100, 50), &[(400, 200), (400, 200)]);
-        assert_eq!((camera.width, camera.height, camera.fx, camera.cy), (400, 200, 400.0, 100.0));
+        assert_eq!(
+            (camera.width, camera.height, camera.fx, camera.cy),
+            (400, 200, 400.0, 100.0)
+        );
         assert!(photos.iter().all(|photo| photo.trouble.is_none()));
-        assert!(warnings.iter().any(|w| w.contains("100 x 50")), "{warnings:?}");
-        assert!(warnings.iter().any(|w| w.contains("1 of 3 image files are missing")), "{warnings:?}");
+        assert!(
+            warnings.iter().any(|w| w.contains("100 x 50")),
+            "{warnings:?}"
+        );
+        assert!(
+            warnings
+                .iter()
+                .any(|w| w.contains("1 of 3 image files are missing")),
+            "{warnings:?}"
+        );
     }
 
     #[test]
@@ -188,6 +210,12 @@ mod tests {
         assert_eq!(camera.width, 100);
         let troubled: Vec<bool> = photos.iter().map(|photo| photo.trouble.is_some()).collect();
         assert_eq!(troubled, [false, true, false, true, false]);
-        assert!(photos[1].trouble.as_ref().unwrap().contains("another shape"));
+        assert!(
+            photos[1]
+                .trouble
+                .as_ref()
+                .unwrap()
+                .contains("another shape")
+        );
     }
 }

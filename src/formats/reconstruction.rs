@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::camera::{Camera, Pose};
+use crate::camera::{Camera, Distortion, Pose};
 use crate::fault::Fault;
 use crate::geometry::{Similarity, median};
 use crate::surface::Cloud;
@@ -52,6 +52,9 @@ pub struct Reconstruction {
     pub principal_points_from_corner: bool,
     /// Whether the observations count from the middle of the image (else from its top-left corner).
     pub observed_from_middle: bool,
+    /// The median reprojection error in the frame that the package solved in, where the reader had
+    /// to bend that frame on the way into the world.
+    pub solved_reprojection_px: Option<f64>,
     /// What the reader had to assume or leave out, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -79,29 +82,34 @@ impl Reconstruction {
     }
 
     /// The median distance, in pixels, between the measured image points and the projections of
-    /// their 3D points; `None` where nothing can be compared.
+    /// their 3D points, in the image in which the package minimises it: the photo as shot, for
+    /// VisualSFM the undistorted one. `None` where nothing can be compared.
     pub fn median_reprojection_px(&self) -> Option<f64> {
+        if self.solved_reprojection_px.is_some() {
+            return self.solved_reprojection_px;
+        }
         let one_origin = self.observed_from_middle != self.principal_points_from_corner;
         if !self.sizes_known && !one_origin {
             return None;
         }
-        let mut errors: Vec<f64> = self
-            .observations
-            .iter()
-            .filter_map(|observation| {
-                let photo = self.photos.get(observation.photo as usize)?;
-                let camera = self.cameras.get(photo.camera)?;
-                let point = *self.cloud.points.get(observation.point as usize)?;
-                let expected = camera.pixel_as_shot(photo.pose.camera_from_world(point))?;
-                let from_corner = if self.observed_from_middle && self.sizes_known {
-                    DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0
-                } else {
-                    DVec2::ZERO
-                };
-                Some((observation.pixel + from_corner - expected).length())
-            })
-            .collect();
-        median(&mut errors)
+        let errors = self.observations.iter().filter_map(|o| self.error_px(o));
+        median(&mut errors.collect::<Vec<f64>>())
+    }
+
+    fn error_px(&self, observation: &Observation) -> Option<f64> {
+        let photo = self.photos.get(observation.photo as usize)?;
+        let camera = self.cameras.get(photo.camera)?;
+        let point = *self.cloud.points.get(observation.point as usize)?;
+        let in_camera = photo.pose.camera_from_world(point);
+        let mut measured = observation.pixel;
+        if self.observed_from_middle && self.sizes_known {
+            measured += DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
+        }
+        if let Distortion::VisualSfm(_) = camera.distortion {
+            let measured = camera.pixel_undistorted(camera.direction_as_shot(measured).ok()?)?;
+            return Some((measured - camera.pixel_undistorted(in_camera)?).length());
+        }
+        Some((measured - camera.pixel_as_shot(in_camera)?).length())
     }
 
     /// Moves poses and points by a similarity.

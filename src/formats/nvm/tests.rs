@@ -1,8 +1,8 @@
 use glam::DMat3;
 use proptest::prelude::*;
 
-use super::super::test_data::shared_data;
 use super::*;
+use crate::formats::test_data::shared_data;
 use crate::geometry::median;
 
 /// Half a turn about x: a camera at z = 10 that looks down. The point (5, -2.5, 0) is seen 0.5 right

@@ -23,9 +23,9 @@
 use crate::camera::Camera;
 use crate::fault::Fault;
 
-use super::colmap::{Image, Point, pose};
-use super::colmap_models::Model;
-use super::fields::{Fields, shown};
+use super::models::Model;
+use super::{Image, Point, pose};
+use crate::formats::fields::{Fields, shown};
 
 const EXPORT: &str =
     "export the model again (colmap model_converter --output_type TXT, or BIN, which is exact)";

@@ -212,8 +212,8 @@ pub(super) fn camera(
 mod tests {
     use glam::{DVec2, DVec3};
 
-    use super::super::yaml_tree::{Node, first_document};
     use super::*;
+    use crate::formats::camera_file::yaml_tree::{Node, first_document};
 
     fn tree(text: &str) -> Node {
         first_document(text).unwrap()

@@ -9,14 +9,14 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use super::input::{FileError, open_file};
-use super::json::{Object, parse};
-use super::odm_georeference::optional;
-use super::odm_shots::Shot;
-use super::opensfm_camera::{CameraModel, usable_cameras};
-use super::reconstruction::{PosedPhoto, Reconstruction};
+use super::georeference::optional;
+use super::shots::Shot;
 use crate::camera::Camera;
 use crate::fault::Fault;
+use crate::formats::input::{FileError, open_file};
+use crate::formats::json::{Object, parse};
+use crate::formats::opensfm::camera::{CameraModel, usable_cameras};
+use crate::formats::reconstruction::{PosedPhoto, Reconstruction};
 
 /// A camera's name as `cameras.json` writes it.
 fn plain(name: &str) -> &str {
@@ -134,8 +134,9 @@ mod tests {
 
     use tempfile::TempDir;
 
-    use super::super::{odm_shots, opensfm};
     use super::*;
+    use crate::formats::odm::shots;
+    use crate::formats::opensfm;
 
     const TWO: &str = r#"{"c": {"focal": 0.5, "width": 400, "height": 200},
                           "d": {"focal": 0.75, "width": 400, "height": 200}}"#;
@@ -153,7 +154,7 @@ mod tests {
             r#"{{"features": [{{"properties": {{"filename": "a.jpg", {properties}
                "translation": [0, 0, 0], "rotation": [0, 0, 0]}}}}]}}"#
         );
-        let shots = odm_shots::read(json.as_bytes()).unwrap();
+        let shots = shots::read(json.as_bytes()).unwrap();
         let mut warnings = Vec::new();
         let (cameras, photos) = with_cameras(dir.path(), shots, sparse, &mut warnings)?;
         Ok((cameras, photos, warnings))

@@ -1,6 +1,6 @@
 //! A COLMAP model: a folder with `cameras`, `images` and `points3D`, each as `.bin` or as `.txt`
-//! (COLMAP's documentation, "Output Format"; the files themselves: `colmap_text.rs`,
-//! `colmap_binary.rs`, `colmap_models.rs`).
+//! (COLMAP's documentation, "Output Format"; the files themselves: `text.rs`,
+//! `binary.rs`, `models.rs`).
 //!
 //! - Where a folder holds both kinds, COLMAP prefers the binary one, and so does this reader.
 //! - `points3D` may be missing: then there are no points and no observations.
@@ -9,6 +9,10 @@
 //! - A project folder keeps its models in `sparse/0`, `sparse/1`, ... (the mapper) or in `sparse`
 //!   (the undistorter). The parts 0, 1, ... do not share a frame, so only the first is read.
 //! - CAMERA_ID, IMAGE_ID and POINT3D_ID are identifiers, not indices: they have gaps and no order.
+
+mod binary;
+mod models;
+mod text;
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -22,8 +26,8 @@ use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::surface::Cloud;
 
-use super::{FileError, Observation, PosedPhoto, Reconstruction};
-use super::{colmap_binary, colmap_text, read_bytes, read_text};
+use crate::formats::{FileError, Observation, PosedPhoto, Reconstruction};
+use crate::formats::{read_bytes, read_text};
 
 /// An image of COLMAP's.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,22 +116,12 @@ pub fn read_folder(dir: &Path) -> Result<Reconstruction, FileError> {
     let cameras = read_part(
         &cameras_file,
         binary,
-        colmap_binary::read_cameras,
-        colmap_text::read_cameras,
+        binary::read_cameras,
+        text::read_cameras,
     )?;
-    let images = read_part(
-        &images_file,
-        binary,
-        colmap_binary::read_images,
-        colmap_text::read_images,
-    )?;
+    let images = read_part(&images_file, binary, binary::read_images, text::read_images)?;
     let points = if points_file.is_file() {
-        let points = read_part(
-            &points_file,
-            binary,
-            colmap_binary::read_points,
-            colmap_text::read_points,
-        )?;
+        let points = read_part(&points_file, binary, binary::read_points, text::read_points)?;
         Some(points)
     } else {
         None

@@ -11,7 +11,7 @@
 //!               u64 track length, then each: u32 IMAGE_ID, u32 POINT2D_IDX
 //! ```
 //!
-//! The meanings are those of the text model (`colmap_text.rs`). Counts are believed only as far as
+//! The meanings are those of the text model (`text.rs`). Counts are believed only as far as
 //! the file has bytes for them, and nothing is allocated by a count. Bytes after the last record
 //! are an error: a count that is too low would leave out photos without a word.
 
@@ -20,8 +20,8 @@ use glam::{DVec2, DVec3};
 use crate::camera::Camera;
 use crate::fault::Fault;
 
-use super::colmap::{Image, Point, pose};
-use super::colmap_models::Model;
+use super::models::Model;
+use super::{Image, Point, pose};
 
 const DAMAGED: &str = "the file is damaged or cut off: copy it, or export the model, again";
 

@@ -7,7 +7,7 @@
 //! [RECONSTRUCTION, ...]           the one with most shots first; shots of different ones have
 //!                                 nothing in common, not even a frame
 //! RECONSTRUCTION {
-//!   cameras     {name: model}     see opensfm_camera.rs
+//!   cameras     {name: model}     see camera.rs
 //!   shots       {name: {camera, rotation [3], translation [3]}}
 //!   points      {name: {coordinates [3], color [3]}}         may be left out
 //!   pano_shots  panoramas                                    left out here, with a warning
@@ -21,6 +21,9 @@
 //! arbitrary; it names no coordinate system. Colours are 0 to 255, written as floats. Image points
 //! count in the photo as stored, whatever its EXIF orientation.
 
+pub(super) mod camera;
+mod tracks;
+
 use std::collections::HashMap;
 use std::fmt;
 
@@ -28,13 +31,12 @@ use glam::DVec3;
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
 
-use super::json::{Object, parse};
-use super::opensfm_camera::{CameraModel, usable_cameras};
-use super::opensfm_tracks;
-use super::reconstruction::{PosedPhoto, Reconstruction};
 use crate::camera::Pose;
 use crate::fault::Fault;
+use crate::formats::json::{Object, parse};
+use crate::formats::reconstruction::{PosedPhoto, Reconstruction};
 use crate::surface::Cloud;
+use camera::{CameraModel, usable_cameras};
 
 /// A `reconstruction.json` with the names of its points, which `tracks.csv` calls them by.
 #[derive(Debug, Clone, PartialEq)]
@@ -130,7 +132,7 @@ impl OpenSfm {
     /// then.
     pub fn add_observations(&mut self, tracks: &str) -> Result<(), Fault> {
         let reconstruction = &self.reconstruction;
-        let observations = opensfm_tracks::read(tracks, reconstruction, |point| {
+        let observations = tracks::read(tracks, reconstruction, |point| {
             self.point_indices.get(point).copied()
         })?;
         self.reconstruction.observations = observations;
@@ -254,8 +256,8 @@ mod tests {
     use glam::DVec2;
     use proptest::prelude::*;
 
-    use super::super::test_data::shared_data;
     use super::*;
+    use crate::formats::test_data::shared_data;
 
     const SMALL: &str = r#"[
         {"cameras": {"v2 c": {"focal": 0.5, "width": 400, "height": 200}},

@@ -8,11 +8,11 @@
 
 use std::collections::HashMap;
 
-use super::odm_georeference::{Frames, Georeference};
-use super::odm_shots::Shot;
-use super::opensfm::checked;
-use super::reconstruction::{Observation, Reconstruction};
+use super::georeference::{Frames, Georeference};
+use super::shots::Shot;
 use crate::fault::Fault;
+use crate::formats::opensfm::checked;
+use crate::formats::reconstruction::{Observation, Reconstruction};
 use crate::surface::Cloud;
 
 /// Photos, points and observations in one frame.

@@ -26,10 +26,10 @@ use std::path::Path;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::input::{FileError, read_bytes, text_from_bytes};
-use super::json::parse;
 use crate::camera::Pose;
 use crate::fault::Fault;
+use crate::formats::input::{FileError, read_bytes, text_from_bytes};
+use crate::formats::json::parse;
 
 /// How far, in metres, a camera centre may lie from where `shots.geojson` states it. The right map
 /// agrees to rounding (1e-8 m), wrong ones are metres off.

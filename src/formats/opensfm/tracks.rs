@@ -17,8 +17,8 @@ use std::collections::HashMap;
 
 use glam::DVec2;
 
-use super::reconstruction::{Observation, Reconstruction};
 use crate::fault::Fault;
+use crate::formats::reconstruction::{Observation, Reconstruction};
 
 /// The observations that photos of `reconstruction` made of points that `point_index` knows, by the
 /// track's name.
@@ -96,8 +96,8 @@ fn number(text: &str, name: &str, line: u64) -> Result<f64, Fault> {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::opensfm;
     use super::*;
+    use crate::formats::opensfm;
 
     fn portrait() -> Reconstruction {
         let json = br#"[{"cameras": {"c": {"focal": 1, "width": 200, "height": 400}},

@@ -21,9 +21,9 @@ use std::collections::HashSet;
 use glam::DVec3;
 use serde::Deserialize;
 
-use super::json::parse;
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
+use crate::formats::json::parse;
 
 /// An aligned photo whose camera is known by name at most.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,10 +4,14 @@
 //! - YAML that begins with `%YAML:`, or YAML or JSON with an `opencv-matrix` in it: the same.
 //! - Other YAML (and JSON, which is YAML): ROS.
 
+mod opencv_camera;
+mod opencv_storage;
+mod opencv_xml;
+mod ros_camera;
+mod yaml_tree;
+
 use crate::camera::Camera;
 use crate::fault::Fault;
-
-use super::{opencv_storage, ros_camera, yaml_tree};
 
 /// Reads a camera from the text of a calibration file.
 ///

@@ -32,13 +32,13 @@
 
 use serde::Deserialize;
 
-use super::json::{Object, parse};
 use crate::camera::{Brown, Camera, Distortion, Fisheye};
 use crate::fault::Fault;
+use crate::formats::json::{Object, parse};
 
 /// A model as the JSON has it.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
-pub(super) struct CameraModel {
+pub(in crate::formats) struct CameraModel {
     projection_type: Option<String>,
     width: Option<f64>,
     height: Option<f64>,
@@ -68,7 +68,7 @@ pub fn read(json: &[u8]) -> Result<Vec<Camera>, Fault> {
 
 /// Turns models into cameras. One that cannot be used is an error where a photo needs it
 /// (`is_used`, by name), else it is left out with a warning.
-pub(super) fn usable_cameras(
+pub(in crate::formats) fn usable_cameras(
     models: &Object<CameraModel>,
     is_used: impl Fn(&str) -> bool,
     warnings: &mut Vec<String>,

@@ -6,11 +6,11 @@
 //!
 //! | file | what it gives |
 //! |---|---|
-//! | `cameras.json` | the cameras (odm_cameras.rs) |
-//! | `odm_report/shots.geojson` | poses and the order of the photos (odm_shots.rs) |
+//! | `cameras.json` | the cameras (cameras.rs) |
+//! | `odm_report/shots.geojson` | poses and the order of the photos (shots.rs) |
 //! | `opensfm/reconstruction.json` | sparse points, each photo's camera; cameras and poses where the above are missing |
 //! | `opensfm/tracks.csv` | where photos show the sparse points |
-//! | `odm_georeferencing/{coords,proj}.txt`, `.../alignment_matrix.json`, `opensfm/geocoords_transformation.txt` | the frames (odm_georeference.rs) |
+//! | `odm_georeferencing/{coords,proj}.txt`, `.../alignment_matrix.json`, `opensfm/geocoords_transformation.txt` | the frames (georeference.rs) |
 //! | `odm_georeferencing/odm_georeferenced_model.laz`, `.las` or `.ply` | the surface |
 //! | `img_list.txt`, else `images.json` | which photos there were before the alignment |
 //! | `images/` | the photos |
@@ -18,20 +18,24 @@
 //! Intrinsics stand for the image size of the solution, which is often a reduced one. The cloud in
 //! `odm_filterpoints` is in the local frame, so it is no surface. Submodels are not joined.
 
+mod cameras;
+mod georeference;
+mod poses;
+mod shots;
+
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::input::{FileError, text_from_bytes};
-use super::json::parse;
-use super::odm_cameras::with_cameras;
-use super::odm_georeference::{Frames, optional};
-use super::odm_poses::{from_shots, from_sparse};
-use super::odm_shots;
-use super::opensfm::OpenSfm;
-use super::reconstruction::{PosedPhoto, Reconstruction};
 use crate::fault::Fault;
+use crate::formats::input::{FileError, text_from_bytes};
+use crate::formats::json::parse;
+use crate::formats::opensfm::OpenSfm;
+use crate::formats::reconstruction::{PosedPhoto, Reconstruction};
+use cameras::with_cameras;
+use georeference::{Frames, optional};
+use poses::{from_shots, from_sparse};
 
 /// What an OpenDroneMap folder holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +63,7 @@ pub fn read_folder(dir: &Path) -> Result<OdmProject, FileError> {
     let mut warnings = Vec::new();
     let shots_file = dir.join("odm_report/shots.geojson");
     let sparse_file = dir.join("opensfm/reconstruction.json");
-    let shots = optional(&shots_file, odm_shots::read)?;
+    let shots = optional(&shots_file, shots::read)?;
     let sparse = match optional(&sparse_file, OpenSfm::read) {
         Err(error) if shots.is_some() => {
             warnings.push(format!("no sparse points: {error}"));
@@ -97,8 +101,10 @@ pub fn read_folder(dir: &Path) -> Result<OdmProject, FileError> {
             cloud: posed.cloud,
             observations: posed.observations,
             sizes_known: true,
-            observed_from_middle: false,
+            // In OpenSfM's frame, where it was solved: the way into the world is no similarity.
+            solved_reprojection_px: sparse.and_then(Reconstruction::median_reprojection_px),
             warnings,
+            ..Reconstruction::default()
         },
         surface: surface(dir).filter(|_| posed.in_world),
         photos: Some(dir.join("images")).filter(|folder| folder.is_dir()),
@@ -167,8 +173,8 @@ mod tests {
     use glam::{DMat3, DVec3};
     use tempfile::TempDir;
 
-    use super::super::test_data::shared_data;
     use super::*;
+    use crate::formats::test_data::shared_data;
 
     const CAMERAS: (&str, &str) = (
         "cameras.json",
@@ -392,7 +398,7 @@ mod tests {
         assert_eq!(reconstruction.warnings, [""; 0]);
         assert_eq!(reconstruction.cloud.points.len(), 837);
         // UTM shortens horizontal lengths here by 0.033 % and heights not at all, so what fits to
-        // 0.102 px in OpenSfM's own frame fits a little less well in the world.
+        // 0.102 px in OpenSfM's own frame, which is reported, fits a little less well in the world.
         assert_eq!(reconstruction.observations.len(), 2141);
         let median = reconstruction.median_reprojection_px().unwrap();
         let json = fs::read(dir.join("opensfm/reconstruction.json")).unwrap();
@@ -401,7 +407,13 @@ mod tests {
         own.add_observations(&tracks).unwrap();
         let own = own.reconstruction.median_reprojection_px().unwrap();
         assert!((own - 0.102).abs() < 5e-4, "{own}");
-        assert!((median - 0.110).abs() < 5e-4, "{median}");
+        assert_eq!(median, own);
+        let bent = Reconstruction {
+            solved_reprojection_px: None,
+            ..reconstruction
+        };
+        let bent = bent.median_reprojection_px().unwrap();
+        assert!((bent - 0.110).abs() < 5e-4, "{bent}");
     }
 
     /// Both sources of poses, the second through the 4x4 matrix.

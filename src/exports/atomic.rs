@@ -1,0 +1,99 @@
+//! Files that are there whole or not at all.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// The temporary file that is being written, so that an interrupt can take it away.
+static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
+
+/// Writes a file: first beside its place, then moved there in one step. An existing file is replaced
+/// or, on any error, left as it was.
+///
+/// # Errors
+/// What the system says, for instance that the folder is missing or the disk is full.
+pub fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
+    // A device or a pipe cannot be replaced by a file.
+    if fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir()) {
+        return fs::OpenOptions::new()
+            .write(true)
+            .open(path)?
+            .write_all(contents);
+    }
+    // Through a link, so that the file behind it is replaced and not the link.
+    let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let mut file = tempfile::Builder::new()
+        .prefix(".fragscale-")
+        .suffix(".part")
+        .tempfile_in(folder)?;
+    set_unfinished(Some(file.path().to_owned()));
+    let result = file.write_all(contents).and_then(|()| {
+        keep_permissions(path, file.as_file())?;
+        file.as_file().sync_all()
+    });
+    let result = result.and_then(|()| file.persist(path).map(|_| ()).map_err(|e| e.error));
+    set_unfinished(None);
+    result
+}
+
+/// Takes away what an interrupted [`write_whole`] would leave.
+pub fn remove_unfinished() {
+    let unfinished = UNFINISHED
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .take();
+    if let Some(path) = unfinished {
+        // The program is about to end; there is nobody to tell.
+        let _ = fs::remove_file(path);
+    }
+}
+
+fn set_unfinished(path: Option<PathBuf>) {
+    *UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner) = path;
+}
+
+/// A temporary file is private; the file in its place has the permissions of the one that it
+/// replaces, or those that a new file usually has.
+#[cfg(unix)]
+fn keep_permissions(path: &Path, file: &fs::File) -> io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    let permissions = match fs::metadata(path) {
+        Ok(metadata) => metadata.permissions(),
+        Err(_) => fs::Permissions::from_mode(0o644),
+    };
+    file.set_permissions(permissions)
+}
+
+#[cfg(not(unix))]
+fn keep_permissions(_: &Path, _: &fs::File) -> io::Result<()> {
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn replaces_whole_files_and_leaves_nothing_beside() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scales.csv");
+        write_whole(&path, b"first").unwrap();
+        write_whole(&path, b"second").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"second");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn an_error_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(write_whole(&folder.path().join("no/such/folder.csv"), b"x").is_err());
+        // A folder in its place.
+        assert!(write_whole(folder.path(), b"x").is_err());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,129 @@
+//! What the program understood of a file (contract, section 6), as JSON values.
+
+use serde_json::{Value, json};
+
+use crate::camera::{Camera, Pose};
+use crate::flight::Flight;
+use crate::formats::{CloudFile, PosesFile, Reconstruction};
+use crate::geometry::Bounds;
+use crate::scale::ImageKind;
+
+/// A cloud or mesh.
+pub fn cloud_info(file: &CloudFile) -> Value {
+    let bounds = Bounds::of(&file.cloud.points)
+        .map(|b| json!({"min": b.min.to_array(), "max": b.max.to_array()}));
+    json!({
+        "kind": "cloud",
+        "points": file.cloud.points.len(),
+        "faces": file.cloud.triangles.len(),
+        "colors": !file.cloud.colors.is_empty(),
+        "bounds": bounds,
+        "crs": file.crs,
+        "warnings": file.warnings,
+    })
+}
+
+/// A reconstruction in its own frame.
+pub fn reconstruction_info(reconstruction: &Reconstruction) -> Value {
+    let has_observations = !reconstruction.observations.is_empty();
+    let cameras: Vec<Value> = reconstruction
+        .cameras
+        .iter()
+        .map(|camera| {
+            let mut value = camera_value(camera);
+            if !reconstruction.sizes_known {
+                // What a package does not write is null, not 0.
+                value["width"] = Value::Null;
+                value["height"] = Value::Null;
+                if !reconstruction.principal_points_from_corner {
+                    value["cx"] = Value::Null;
+                    value["cy"] = Value::Null;
+                }
+            }
+            value
+        })
+        .collect();
+    let photos = reconstruction.photos.iter().map(|photo| {
+        let camera = reconstruction.cameras.get(photo.camera);
+        let camera = camera.map(|camera| camera.name.as_str());
+        photo_value(&photo.name, camera, &photo.pose)
+    });
+    json!({
+        "kind": "reconstruction",
+        "package": reconstruction.package,
+        "crs": reconstruction.crs,
+        "points": reconstruction.cloud.points.len(),
+        "observations": has_observations.then_some(reconstruction.observations.len()),
+        "median_reprojection_px": reconstruction.median_reprojection_px(),
+        "warnings": reconstruction.warnings,
+        "cameras": cameras,
+        "photos": photos.collect::<Vec<_>>(),
+    })
+}
+
+/// A camera's calibration.
+pub fn camera_info(camera: &Camera) -> Value {
+    let warnings: [&str; 0] = [];
+    json!({"kind": "camera", "cameras": [camera_value(camera)], "warnings": warnings})
+}
+
+/// A poses.csv.
+pub fn poses_info(file: &PosesFile) -> Value {
+    let photos = file
+        .lines
+        .iter()
+        .map(|line| photo_value(&line.photo, line.camera.as_deref(), &line.pose));
+    json!({
+        "kind": "poses",
+        "photos": photos.collect::<Vec<_>>(),
+        "warnings": file.warnings,
+    })
+}
+
+/// A flight, opened with all its files: cameras at their photos' size, photos in the world.
+pub fn flight_info(flight: &Flight, warnings: &[String]) -> Value {
+    let parts = flight.parts();
+    let photos = parts
+        .photos
+        .iter()
+        .map(|photo| photo_value(&photo.name, Some(&flight.camera(photo).name), &photo.pose));
+    let image = match parts.image {
+        ImageKind::Undistorted => "undistorted",
+        ImageKind::AsShot => "as-shot",
+    };
+    json!({
+        "kind": "flight",
+        "flight": parts.name,
+        "world_unit": parts.unit.symbol(),
+        "image": image,
+        "surface_vertices": parts.surface.vertices().len(),
+        "cameras": parts.cameras.iter().map(camera_value).collect::<Vec<_>>(),
+        "photos": photos.collect::<Vec<_>>(),
+        "warnings": warnings,
+    })
+}
+
+fn camera_value(camera: &Camera) -> Value {
+    json!({
+        "name": camera.name,
+        "width": camera.width,
+        "height": camera.height,
+        "fx": camera.fx,
+        "fy": camera.fy,
+        "cx": camera.cx,
+        "cy": camera.cy,
+        "skew": camera.skew,
+        "distortion": camera.distortion.name(),
+        "coefficients": camera.distortion.coefficients(),
+    })
+}
+
+/// A photo with its centre and its rotation `world_from_camera`, row-major.
+fn photo_value(name: &str, camera: Option<&str>, pose: &Pose) -> Value {
+    json!({
+        "photo": name,
+        "camera": camera,
+        "center": pose.center.to_array(),
+        "rotation": pose.rotation.transpose().to_cols_array(),
+    })
+}
