@@ -4,6 +4,8 @@
 //!
 //! 0: done. 1: the input could not be used. 2: the command line could not be understood. 130: the
 //! user interrupted it.
+//!
+//! With the environment variable FRAGSCALE_BACKTRACE set, a panic prints its place as usual.
 
 use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write};
@@ -124,8 +126,8 @@ pub fn run() -> ExitCode {
         exports::remove_unfinished();
         std::process::exit(130);
     });
-    // A panic is a defect that the job reports in a sentence; its details are for who asks for them.
-    if std::env::var_os("RUST_BACKTRACE").is_none() {
+    // A panic is a defect that the job reports in a sentence; its details are for developers.
+    if std::env::var_os("FRAGSCALE_BACKTRACE").is_none() {
         std::panic::set_hook(Box::new(|_| {}));
     }
     let (output, work): (

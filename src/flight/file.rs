@@ -272,6 +272,33 @@ impl FlightFile {
             );
         }
         let photos = &self.photos;
+        let camera_files = self
+            .cameras
+            .iter()
+            .map(|camera| ("camera", "file", &camera.file));
+        let files = [
+            ("photos", "poses", &photos.poses),
+            ("photos", "reconstruction", &photos.reconstruction),
+            ("photos", "folder", &photos.folder),
+        ];
+        for (table, key, file) in files.into_iter().chain(camera_files) {
+            if file.as_deref() == Some("") {
+                return at(
+                    table,
+                    key,
+                    format!("{table}.{key} is empty"),
+                    "name a file, or remove the key",
+                );
+            }
+        }
+        if self.surface() == Some("") {
+            return at(
+                "surface",
+                "file",
+                "surface.file is empty".to_owned(),
+                "name a cloud or mesh",
+            );
+        }
         match (&photos.poses, &photos.reconstruction) {
             (Some(_), Some(_)) => {
                 let what = "photos has both poses and reconstruction".to_owned();
@@ -628,6 +655,8 @@ image = "as-shot"
         assert_eq!(refuse("format = 1", "format = 2").line, Some(1));
         assert_eq!(refuse("unit = \"m\"", "unit = \"km\"").line, Some(5));
         assert_eq!(refuse("ground = 0.25", "ground = nan").line, Some(6));
+        assert_eq!(refuse("\"pile.ply\"", "\"\"").line, Some(9));
+        assert_eq!(refuse("\"ost.yaml\"", "\"\"").line, Some(13));
         assert_eq!(refuse("ground = 0.25", "ground = \"low\"").line, Some(6));
         assert_eq!(refuse("fx = 1000.0", "fx = \"wide\"").line, Some(19));
         assert_eq!(refuse("poses = \"poses.csv\"", "").line, Some(30));

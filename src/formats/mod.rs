@@ -174,6 +174,23 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
     if let Some(model) = colmap::model_folder(path) {
         return Ok(Kind::Colmap(model));
     }
+    let of_model = |part: &str| {
+        [".bin", ".txt"]
+            .iter()
+            .any(|end| path.join(format!("{part}{end}")).is_file())
+    };
+    let parts = ["cameras", "images", "points3D"];
+    if parts.into_iter().any(of_model)
+        && let Some(missing) = parts.into_iter().find(|part| !of_model(part))
+    {
+        return Err(FileError::new(
+            path,
+            Fault::new(
+                format!("a COLMAP model without {missing}.bin or {missing}.txt"),
+                "copy the whole model",
+            ),
+        ));
+    }
     let what = match fs::read_dir(path) {
         Ok(_) => "a folder with no flight.toml and no reconstruction in it".to_owned(),
         Err(e) => format!("a folder that cannot be read ({e})"),

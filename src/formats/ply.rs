@@ -34,6 +34,13 @@ pub(super) fn read(input: impl BufRead, progress: &Progress) -> Result<CloudFile
     let header = Parser::<Skipped>::new()
         .read_header(&mut reader)
         .map_err(|e| parse_fault(&e, e.line().unwrap_or(0) as u64))?;
+    if (header.version.major, header.version.minor) != (1, 0) {
+        let (major, minor) = (header.version.major, header.version.minor);
+        return Err(Fault::new(
+            format!("it is PLY of version {major}.{minor}; only 1.0 is known"),
+            "export version 1.0",
+        ));
+    }
     let mut input = Elements {
         encoding: header.encoding,
         // The reader already counts the line after the header.
@@ -113,6 +120,10 @@ impl<R: BufRead> Elements<R> {
         progress: &Progress,
         mut take: impl FnMut(E) -> Result<(), Fault>,
     ) -> Result<(), Fault> {
+        // Elements without properties take no bytes: their number is nobody's matter.
+        if element.properties.is_empty() {
+            return Ok(());
+        }
         let parser = Parser::<E>::new();
         for index in 0..element.count {
             if index % 65_536 == 0 {

@@ -56,7 +56,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
         .trim(csv::Trim::All)
         .has_headers(false)
         .from_reader(text.as_bytes());
-    let mut records = reader.records();
+    let mut records = reader
+        .records()
+        .map(|record| record.map(without_spaced_quotes));
     let malformed = |error: csv::Error| {
         let line = error.position().map_or(1, csv::Position::line);
         Fault::at(
@@ -105,6 +107,23 @@ pub(super) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
     Ok(file)
 }
 
+/// Quotes count for the csv crate only right behind a comma, but people put spaces there.
+fn without_spaced_quotes(record: csv::StringRecord) -> csv::StringRecord {
+    if !record.iter().any(|field| field.starts_with('"')) {
+        return record;
+    }
+    let position = record.position().cloned();
+    let bare = |field: &str| {
+        let inner = field
+            .strip_prefix('"')
+            .and_then(|field| field.strip_suffix('"'));
+        inner.map_or_else(|| field.to_owned(), |inner| inner.replace("\"\"", "\""))
+    };
+    let mut record: csv::StringRecord = record.iter().map(bare).collect();
+    record.set_position(position);
+    record
+}
+
 /// The line, from 1, on which a record begins. The csv crate places it where its search began: in
 /// front of the comments and empty lines that it skipped.
 fn line_of(text: &str, record: &csv::StringRecord) -> u64 {
@@ -120,6 +139,7 @@ fn line_of(text: &str, record: &csv::StringRecord) -> u64 {
 }
 
 struct Columns {
+    count: usize,
     photo: usize,
     camera: Option<usize>,
     position: [usize; 3],
@@ -180,6 +200,7 @@ impl Columns {
             }
         };
         Ok(Self {
+            count: header.len(),
             photo,
             camera: find("camera"),
             position,
@@ -200,6 +221,22 @@ impl Columns {
     }
 
     fn line(&self, line: u64, record: &csv::StringRecord) -> Result<PoseLine, Fault> {
+        // A decimal comma, for one, shifts everything behind it.
+        if let Some(extra) = record
+            .iter()
+            .skip(self.count)
+            .find(|field| !field.is_empty())
+        {
+            return Err(Fault::at(
+                line,
+                format!(
+                    "it has {} fields for {} columns ('{extra}' is too many)",
+                    record.len(),
+                    self.count
+                ),
+                "write decimal points, and quote names with commas",
+            ));
+        }
         let field = |column: usize, name: &str| {
             record
                 .get(column)
@@ -297,7 +334,7 @@ mod tests {
     #[test]
     fn any_order_comments_quotes_crlf_and_bom() {
         let text = "\u{feff}# flown by hand\r\n z ,Pan,\"photo\",camera,TILT,y,x,battery\r\n\
-            \r\n# first\r\n3,10,\"a, b.jpg\",left,80,2,1,99\r\n6,20,c.jpg,,70,5,4,98\r\n";
+            \r\n# first\r\n3,10,\"a, b.jpg\", \"left\",80,2,1,99\r\n6,20,c.jpg,,70,5,4,98\r\n";
         let file = read(text.as_bytes()).unwrap();
         assert_eq!(file.lines[0].photo, "a, b.jpg");
         assert_eq!(file.lines[0].camera.as_deref(), Some("left"));
@@ -322,6 +359,11 @@ mod tests {
         assert!(with("a,0,0,inf,0,0,0,1\n").what.contains("column z"));
         assert!(with("a,0,0,0,0,0,0\n").what.contains("column qw"));
         assert!(with("a,0,0,0,0,0,0,0\n").what.contains("quaternion"));
+        assert!(
+            with("a,1,5,0,0,0,0,0,1\n")
+                .what
+                .contains("9 fields for 8 columns")
+        );
         assert!(with(",0,0,0,0,0,0,1\n").what.contains("column photo"));
         assert!(with("").what.contains("no photos"));
         assert!(fault("").what.contains("empty"));

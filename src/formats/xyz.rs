@@ -182,9 +182,9 @@ impl Columns {
             })
         };
         let position = [
-            find(&["x", "easting", "east", "e"])?,
-            find(&["y", "northing", "north", "n"])?,
-            find(&["z", "elevation", "height", "altitude", "h"])?,
+            find(&["x", "easting", "east"])?,
+            find(&["y", "northing", "north"])?,
+            find(&["z", "elevation", "height", "altitude"])?,
         ];
         let color = |aliases: [&[&str]; 3]| {
             let [red, green, blue] = aliases.map(find);

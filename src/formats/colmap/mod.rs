@@ -120,7 +120,7 @@ pub fn read_folder(dir: &Path) -> Result<Reconstruction, FileError> {
         text::read_cameras,
     )?;
     let images = read_part(&images_file, binary, binary::read_images, text::read_images)?;
-    let points = if points_file.is_file() {
+    let points = if points_file.exists() {
         let points = read_part(&points_file, binary, binary::read_points, text::read_points)?;
         Some(points)
     } else {

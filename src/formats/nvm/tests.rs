@@ -243,24 +243,8 @@ fn a_real_file_reprojects_as_its_readme_says() {
     assert_eq!(model.warnings, [""; 0]);
     // The photos' size, of shared/data/sceaux-images.
     model.set_sizes(|_| Ok((2832, 2128))).unwrap();
-    // In the undistorted image, where VisualSFM itself minimises: the README's 0.759 px.
-    let mut errors: Vec<f64> = model
-        .observations
-        .iter()
-        .map(|seen| {
-            let (photo, camera) = (
-                &model.photos[seen.photo as usize],
-                &model.cameras[seen.photo as usize],
-            );
-            let point = model.cloud.points[seen.point as usize];
-            let expected = camera.pixel_undistorted(photo.pose.camera_from_world(point));
-            let measured = camera.direction_as_shot(seen.pixel).unwrap();
-            (camera.pixel_undistorted(measured).unwrap() - expected.unwrap()).length()
-        })
-        .collect();
-    let undistorted = median(&mut errors).unwrap();
-    assert!((undistorted - 0.759_105_307).abs() < 1e-8, "{undistorted}");
-    // In the photo as shot; both digits from a separate script that solves the cubic itself.
-    let as_shot = model.median_reprojection_px().unwrap();
-    assert!((as_shot - 0.744_824_483).abs() < 1e-8, "{as_shot}");
+    // In the undistorted image, where VisualSFM itself minimises: the README's 0.759 px, these
+    // digits from a separate script.
+    let median = model.median_reprojection_px().unwrap();
+    assert!((median - 0.759_105_307).abs() < 1e-8, "{median}");
 }

@@ -8,9 +8,11 @@
 //! - The coordinate system stands in a variable length record: WKT (OGC 01-009), or GeoTIFF keys, of
 //!   which 3072 (projected) or 2048 (geographic) hold an EPSG code.
 //!
-//! Decoding is done by the las crate, in portions, so that a header that claims too much ends in an
-//! error instead of in memory. Its decompressor asserts on damaged data; that panic is caught here
+//! Decoding is done by the las crate, in portions, after [`claims`] has held the header against the
+//! file, so that a header that claims too much ends in an error instead of in memory. Its decompressor asserts on damaged data; that panic is caught here
 //! and becomes an error like any other.
+
+mod claims;
 
 use std::io::{Read, Seek};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -22,19 +24,26 @@ use super::cloud_file::{CloudFile, first_not_finite};
 use crate::fault::Fault;
 use crate::jobs::Progress;
 
-/// How many points are decoded at once: ten compressed chunks, so that both cores have work.
+/// How many points are decoded at once: ten compressed chunks, so that all cores have work.
 const PORTION: u64 = 500_000;
+
+/// The most bytes of records that are decoded at once.
+const PORTION_BYTES: u64 = 64 << 20;
 
 /// Reads a LAS or LAZ file.
 ///
 /// # Errors
 /// Where it is no such file, is cut off, or a coordinate is not finite.
 pub(super) fn read(
-    input: impl Read + Seek + Send + Sync + 'static,
+    mut input: impl Read + Seek + Send + Sync + 'static,
     progress: &Progress,
 ) -> Result<CloudFile, Fault> {
     // Nothing outlives the closure that a panic could have left half-done.
-    catch_unwind(AssertUnwindSafe(|| decode(input, progress))).unwrap_or_else(|_| {
+    catch_unwind(AssertUnwindSafe(|| {
+        claims::check(&mut input)?;
+        decode(input, progress)
+    }))
+    .unwrap_or_else(|_| {
         Err(Fault::new(
             "its compressed points are damaged",
             "copy or export it again",
@@ -64,10 +73,11 @@ fn decode(
             .push("its coordinates are degrees, not lengths".to_owned());
     }
     let mut portion = PointDataBuilder::new().for_header(reader.header()).build();
+    let portion_size = PORTION.min(PORTION_BYTES / portion.record_len().max(1) as u64);
     let mut wide_colors: Vec<[u16; 3]> = Vec::new();
     loop {
         progress.advance(file.cloud.points.len() as u64, total)?;
-        let read = reader.fill_points(PORTION, &mut portion).map_err(|error| {
+        let read = reader.fill_points(portion_size, &mut portion).map_err(|error| {
             let done = file.cloud.points.len();
             Fault::new(
                 format!("it breaks off after about {done} of the {total} points that its header promises ({error})"),
