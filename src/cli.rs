@@ -19,7 +19,7 @@ use serde_json::Value;
 
 use crate::exports;
 use crate::fault::{Fault, one_line};
-use crate::formats::{self, FileError, Kind, OpenOptions};
+use crate::formats::{self, FileError, OpenOptions};
 use crate::jobs::{Job, Progress};
 use crate::units::LengthUnit;
 
@@ -110,6 +110,9 @@ struct Answer {
     warnings: Vec<String>,
 }
 
+/// What a command does, on the job's thread.
+type Work = Box<dyn FnOnce(&Progress) -> Result<Answer, String> + Send>;
+
 /// Runs the command that the process was started with.
 pub fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -130,10 +133,7 @@ pub fn run() -> ExitCode {
     if std::env::var_os("FRAGSCALE_BACKTRACE").is_none() {
         std::panic::set_hook(Box::new(|_| {}));
     }
-    let (output, work): (
-        _,
-        Box<dyn FnOnce(&Progress) -> Result<Answer, String> + Send>,
-    ) = match arguments.command {
+    let (output, work): (Option<PathBuf>, Work) = match arguments.command {
         Command::Scales(arguments) => (
             arguments.output.clone(),
             Box::new(move |progress| scales(&arguments, progress)),
@@ -194,7 +194,7 @@ fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, St
 }
 
 fn info(arguments: &InfoArguments, progress: &Progress) -> Result<Answer, String> {
-    let value = info_value(&arguments.file, progress).map_err(|error| error.to_string())?;
+    let value = formats::info(&arguments.file, progress).map_err(|error| error.to_string())?;
     let text = match arguments.format {
         InfoFormat::Json => format!("{value}\n"),
         InfoFormat::Text => info_text(&value),
@@ -202,22 +202,6 @@ fn info(arguments: &InfoArguments, progress: &Progress) -> Result<Answer, String
     Ok(Answer {
         text,
         warnings: Vec::new(),
-    })
-}
-
-fn info_value(path: &Path, progress: &Progress) -> Result<Value, FileError> {
-    let kind = formats::detect(path)?;
-    Ok(match kind {
-        Kind::Cloud(_) => exports::cloud_info(&formats::read_cloud(path, progress)?),
-        Kind::Camera => exports::camera_info(&formats::read_camera(path)?),
-        Kind::Poses => exports::poses_info(&formats::read_poses(path)?),
-        Kind::Nvm | Kind::Colmap(_) | Kind::Odm => {
-            exports::reconstruction_info(&formats::read_reconstruction(path, &kind)?)
-        }
-        Kind::Flight(_) => {
-            let opened = formats::open_flight(path, &OpenOptions::default(), progress)?;
-            exports::flight_info(&opened.flight, &opened.warnings)
-        }
     })
 }
 

@@ -313,15 +313,15 @@ mod tests {
         fn point_to_pixel_to_ray(lens in lens(), x in -1.5..1.5_f64, y in -1.5..1.5_f64) {
             let camera = camera(lens);
             let point = DVec3::new(x, y, 1.0) * 7.0;
-            if let Some(pixel) = camera.pixel_as_shot(point) {
-                if let Ok(direction) = camera.direction_as_shot(pixel) {
-                    let again = camera.pixel_as_shot(direction).unwrap();
-                    prop_assert!((again - pixel).length() <= 1.01e-9);
-                    let gap = direction.normalize().angle_between(point.normalize());
-                    let step = camera.pixel_as_shot(direction + point * 1e-9);
-                    let steep = step.is_none_or(|s| (s - again).length() < 1e-10);
-                    prop_assert!(gap < 1e-6 || steep, "{gap} rad between {point} and {direction}");
-                }
+            if let Some(pixel) = camera.pixel_as_shot(point)
+                && let Ok(direction) = camera.direction_as_shot(pixel)
+            {
+                let again = camera.pixel_as_shot(direction).unwrap();
+                prop_assert!((again - pixel).length() <= 1.01e-9);
+                let gap = direction.normalize().angle_between(point.normalize());
+                let step = camera.pixel_as_shot(direction + point * 1e-9);
+                let steep = step.is_none_or(|s| (s - again).length() < 1e-10);
+                prop_assert!(gap < 1e-6 || steep, "{gap} rad between {point} and {direction}");
             }
         }
 

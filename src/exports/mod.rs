@@ -1,15 +1,13 @@
-//! What goes out: the scales of a flight as a table, CSV and JSON, what a file holds, and files that
-//! are there whole or not at all.
+//! What goes out: the scales of a flight as a table, CSV and JSON, and files that are there whole or
+//! not at all.
 
 mod atomic;
-mod info_json;
 mod scale_report;
 mod scales_csv;
 mod scales_json;
 mod scales_table;
 
 pub use atomic::{remove_unfinished, write_whole};
-pub use info_json::{camera_info, cloud_info, flight_info, poses_info, reconstruction_info};
 pub use scale_report::{ReportLine, ScaleReport};
 pub use scales_csv::scales_csv;
 pub use scales_json::scales_json;

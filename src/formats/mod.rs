@@ -8,6 +8,7 @@ mod camera_file;
 mod cloud_file;
 mod colmap;
 mod fields;
+mod info;
 mod input;
 mod json;
 mod las;
@@ -31,6 +32,7 @@ use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 pub use cloud_file::CloudFile;
+pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{OpenOptions, Opened, open_flight};
 pub use poses_csv::{PoseLine, PosesFile};
@@ -280,6 +282,6 @@ pub fn read_reconstruction(path: &Path, kind: &Kind) -> Result<Reconstruction, F
 ///
 /// # Errors
 /// With the file and the place in it.
-pub fn read_poses(path: &Path) -> Result<PosesFile, FileError> {
+fn read_poses(path: &Path) -> Result<PosesFile, FileError> {
     poses_csv::read(&read_bytes(path)?).map_err(|fault| FileError::new(path, fault))
 }

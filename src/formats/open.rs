@@ -390,8 +390,11 @@ fn name_of(path: &Path) -> String {
     )
 }
 
+/// The size that a table gives: for the camera that it names, or for all.
+type GivenSize<'a> = (Option<&'a str>, (u32, u32));
+
 /// The tables of a flight whose cameras come from a reconstruction hold sizes only.
-fn sizes_of_entries(entries: &[CameraEntry]) -> Result<Vec<(Option<&str>, (u32, u32))>, Fault> {
+fn sizes_of_entries(entries: &[CameraEntry]) -> Result<Vec<GivenSize<'_>>, Fault> {
     entries
         .iter()
         .map(|entry| match entry.source()? {

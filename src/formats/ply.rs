@@ -89,6 +89,7 @@ pub(super) fn read(input: impl BufRead, progress: &Progress) -> Result<CloudFile
             _ => input.read_all(element, progress, |_: Skipped| Ok(()))?,
         }
     }
+    input.expect_end()?;
     if !has_vertices {
         return Err(Fault::new("it has no vertex element", "export points"));
     }
@@ -160,6 +161,23 @@ impl<R: BufRead> Elements<R> {
                 },
                 _ => fault,
             })?;
+        }
+        Ok(())
+    }
+
+    /// What follows the elements shows that the header does not belong to them.
+    fn expect_end(&mut self) -> Result<(), Fault> {
+        let rest = self.input.fill_buf().map_err(|e| {
+            Fault::new(
+                format!("it cannot be read to its end ({e})"),
+                "check the disk",
+            )
+        })?;
+        if rest.iter().any(|byte| !byte.is_ascii_whitespace()) {
+            return Err(Fault::new(
+                "it goes on behind the elements that its header promises",
+                "export the file again",
+            ));
         }
         Ok(())
     }
@@ -428,6 +446,18 @@ mod tests {
                 assert!(read_bytes(&whole[..end]).is_err(), "cut at {end}");
             }
         }
+    }
+
+    #[test]
+    fn a_header_that_promises_too_little_is_an_error() {
+        let fewer = ASCII.replace("element face 1", "element face 0");
+        assert!(
+            read_bytes(fewer.as_bytes())
+                .unwrap_err()
+                .what
+                .contains("goes on")
+        );
+        assert!(read_bytes(format!("{ASCII}\r\n\n").as_bytes()).is_ok());
     }
 
     #[test]

@@ -19,7 +19,7 @@ use crate::fault::Fault;
 ///
 /// # Errors
 /// Where the file is of no known kind, or what it says is no camera that fragscale can model.
-pub fn read(text: &str) -> Result<Camera, Fault> {
+pub(super) fn read(text: &str) -> Result<Camera, Fault> {
     if text.trim_start().starts_with('<') {
         return opencv_storage::read_xml(text);
     }
@@ -33,12 +33,11 @@ pub fn read(text: &str) -> Result<Camera, Fault> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::{Path, PathBuf};
-
     use proptest::prelude::*;
 
     use super::*;
     use crate::camera::{Brown, Distortion};
+    use crate::formats::test_data::shared_data;
     use crate::formats::{read_text, text_from_bytes};
 
     const ROS: &str = "image_width: 64\nimage_height: 48\ncamera_name: nose\ncamera_matrix:\n  \
@@ -177,21 +176,8 @@ mod tests {
         }
     }
 
-    /// A file of the shared data, `None` where there is none.
-    #[expect(
-        clippy::print_stdout,
-        reason = "a test that checks nothing must say so"
-    )]
     fn shared(file: &str) -> Option<String> {
-        let folder = std::env::var_os("FRAGSCALE_TEST_DATA").map_or_else(
-            || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"),
-            PathBuf::from,
-        );
-        let text = read_text(&folder.join(file)).ok();
-        if text.is_none() {
-            println!("left out: no shared data");
-        }
-        text
+        Some(read_text(&shared_data(file)?).unwrap())
     }
 
     /// The numbers are those that the files show; the half pixel is contract section 1.

@@ -34,7 +34,7 @@ use crate::fault::Fault;
 use super::opencv_camera::{self, Matrix};
 use super::opencv_xml;
 use super::ros_camera::WHICH_FILES;
-use super::yaml_tree::{self, Entry, Node, quoted};
+use super::yaml_tree::{Entry, Node, quoted};
 
 const K_KEYS: &[&str] = &["cameramatrix", "k", "m1", "mtx"];
 const D_KEYS: &[&str] = &["distortioncoefficients", "distcoeffs", "d", "d1", "dist"];
@@ -49,15 +49,16 @@ const SIZE_REMEDY: &str = "write the camera inline in flight.toml, with width an
 ///
 /// # Errors
 /// Where the text is none, or what it says is no camera that fragscale can model.
-pub fn read_yaml(text: &str) -> Result<Camera, Fault> {
-    from_tree(&yaml_tree::first_document(text)?)
+#[cfg(test)]
+pub(super) fn read_yaml(text: &str) -> Result<Camera, Fault> {
+    from_tree(&super::yaml_tree::first_document(text)?)
 }
 
 /// Reads the camera of an XML FileStorage.
 ///
 /// # Errors
 /// Where the text is none, or what it says is no camera that fragscale can model.
-pub fn read_xml(text: &str) -> Result<Camera, Fault> {
+pub(super) fn read_xml(text: &str) -> Result<Camera, Fault> {
     from_tree(&opencv_xml::tree(text)?)
 }
 

@@ -26,7 +26,7 @@ use crate::camera::Camera;
 use crate::fault::Fault;
 
 use super::opencv_camera::{self, Matrix};
-use super::yaml_tree::{self, Entry, Node, quoted};
+use super::yaml_tree::{Entry, Node, quoted};
 
 /// What to do about a file that is of no known kind.
 pub(super) const WHICH_FILES: &str = "give a ROS camera_calibration YAML, an echo of camera_info \
@@ -36,8 +36,9 @@ pub(super) const WHICH_FILES: &str = "give a ROS camera_calibration YAML, an ech
 ///
 /// # Errors
 /// Where the text is none, or what it says is no camera that fragscale can model.
-pub fn read(text: &str) -> Result<Camera, Fault> {
-    from_tree(&yaml_tree::first_document(text)?)
+#[cfg(test)]
+pub(super) fn read(text: &str) -> Result<Camera, Fault> {
+    from_tree(&super::yaml_tree::first_document(text)?)
 }
 
 /// Like [`read`], of a tree.

@@ -82,16 +82,11 @@ fn kind_of_model(folder: &Path) -> Option<&'static str> {
 
 /// The folder of the model that `dir` stands for: itself, its `sparse/0` or its `sparse`, whichever
 /// first holds cameras and images; `None` where none does.
-pub fn model_folder(dir: &Path) -> Option<PathBuf> {
+pub(super) fn model_folder(dir: &Path) -> Option<PathBuf> {
     let sparse = dir.join("sparse");
     [dir.to_owned(), sparse.join("0"), sparse]
         .into_iter()
         .find(|folder| kind_of_model(folder).is_some())
-}
-
-/// Whether `dir` is a COLMAP model or a project folder with one.
-pub fn is_colmap_folder(dir: &Path) -> bool {
-    model_folder(dir).is_some()
 }
 
 /// Reads the COLMAP model in `dir`, or in the `sparse/0` or `sparse` of a project folder.
@@ -102,7 +97,7 @@ pub fn is_colmap_folder(dir: &Path) -> bool {
 /// # Errors
 /// Where there is no model, a file cannot be read or is damaged, two things share an identifier, or
 /// a camera has a lens that fragscale does not know.
-pub fn read_folder(dir: &Path) -> Result<Reconstruction, FileError> {
+pub(super) fn read_folder(dir: &Path) -> Result<Reconstruction, FileError> {
     let found = model_folder(dir).and_then(|folder| Some((kind_of_model(&folder)?, folder)));
     let Some((kind, folder)) = found else {
         let what = "it holds no COLMAP model";

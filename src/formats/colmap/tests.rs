@@ -83,7 +83,7 @@ fn points_may_be_missing() {
 fn project_folders_are_recognised() {
     for at in ["", "sparse/0/", "sparse/"] {
         let dir = folder_of(&model(at));
-        assert!(is_colmap_folder(dir.path()));
+        assert!(model_folder(dir.path()).is_some());
         assert_eq!(model_folder(dir.path()).unwrap(), dir.path().join(at));
         assert_eq!(read_folder(dir.path()).unwrap().photos.len(), 2);
     }
@@ -91,9 +91,9 @@ fn project_folders_are_recognised() {
     let warnings = read_folder(folder_of(&two).path()).unwrap().warnings;
     assert!(warnings[1].contains("sparse/1"), "{warnings:?}");
     let none = folder(&[("cameras.txt", CAMERAS), ("images.bin", "")]);
-    assert!(!is_colmap_folder(none.path()));
+    assert!(model_folder(none.path()).is_none());
     assert!(read_folder(none.path()).is_err());
-    assert!(!is_colmap_folder(Path::new("no/such")));
+    assert!(model_folder(Path::new("no/such")).is_none());
 }
 
 #[test]

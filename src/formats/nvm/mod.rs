@@ -50,7 +50,7 @@ const SAVE: &str = "save the workspace from VisualSFM again (SfM > Save NV Match
 ///
 /// # Errors
 /// Text that is not what the format says, or that holds no photo with a pose.
-pub fn read(text: &str) -> Result<Reconstruction, Fault> {
+pub(super) fn read(text: &str) -> Result<Reconstruction, Fault> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = Lines {
         inner: Box::new((1..).zip(text.lines())),

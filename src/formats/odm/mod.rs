@@ -39,7 +39,7 @@ use poses::{from_shots, from_sparse};
 
 /// What an OpenDroneMap folder holds.
 #[derive(Debug, Clone, PartialEq)]
-pub struct OdmProject {
+pub(super) struct OdmProject {
     /// Cameras, poses and sparse points, in the georeferenced frame where there is one.
     pub reconstruction: Reconstruction,
     /// The dense cloud, in the same frame.
@@ -49,7 +49,7 @@ pub struct OdmProject {
 }
 
 /// Whether a folder looks like an OpenDroneMap project that has poses.
-pub fn is_odm_folder(dir: &Path) -> bool {
+pub(super) fn is_odm_folder(dir: &Path) -> bool {
     dir.join("odm_report/shots.geojson").is_file()
         || (dir.join("opensfm/reconstruction.json").is_file()
             && (dir.join("odm_georeferencing").is_dir() || dir.join("cameras.json").is_file()))
@@ -59,7 +59,7 @@ pub fn is_odm_folder(dir: &Path) -> bool {
 ///
 /// # Errors
 /// Names the file that cannot be used. What only adds sparse points is a warning where it is broken.
-pub fn read_folder(dir: &Path) -> Result<OdmProject, FileError> {
+pub(super) fn read_folder(dir: &Path) -> Result<OdmProject, FileError> {
     let mut warnings = Vec::new();
     let shots_file = dir.join("odm_report/shots.geojson");
     let sparse_file = dir.join("opensfm/reconstruction.json");

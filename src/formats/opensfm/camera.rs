@@ -34,7 +34,7 @@ use serde::Deserialize;
 
 use crate::camera::{Brown, Camera, Distortion, Fisheye};
 use crate::fault::Fault;
-use crate::formats::json::{Object, parse};
+use crate::formats::json::Object;
 
 /// A model as the JSON has it.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -60,8 +60,9 @@ pub(in crate::formats) struct CameraModel {
 ///
 /// # Errors
 /// Where it is no JSON of that shape, or a camera cannot be used, naming it.
-pub fn read(json: &[u8]) -> Result<Vec<Camera>, Fault> {
-    let models: Object<CameraModel> = parse(json)?;
+#[cfg(test)]
+pub(crate) fn read(json: &[u8]) -> Result<Vec<Camera>, Fault> {
+    let models: Object<CameraModel> = crate::formats::json::parse(json)?;
     let cameras = models.0.into_iter();
     cameras.map(|(id, model)| model.camera(&id)).collect()
 }
@@ -314,7 +315,7 @@ mod tests {
     fn an_unused_model_only_warns() {
         let json = br#"{"bad": {"projection_type": "dual"},
                         "good": {"focal": 1, "width": 2, "height": 2}}"#;
-        let models: Object<CameraModel> = parse(json).unwrap();
+        let models: Object<CameraModel> = crate::formats::json::parse(json).unwrap();
         let mut warnings = Vec::new();
         let cameras = usable_cameras(&models, |id| id == "good", &mut warnings).unwrap();
         assert_eq!((cameras.len(), warnings.len()), (1, 1));

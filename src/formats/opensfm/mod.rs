@@ -40,7 +40,7 @@ use camera::{CameraModel, usable_cameras};
 
 /// A `reconstruction.json` with the names of its points, which `tracks.csv` calls them by.
 #[derive(Debug, Clone, PartialEq)]
-pub struct OpenSfm {
+pub(super) struct OpenSfm {
     /// In OpenSfM's own frame; the photos in the file's order.
     pub reconstruction: Reconstruction,
     /// Index into the cloud's points, by name.
@@ -51,7 +51,8 @@ pub struct OpenSfm {
 ///
 /// # Errors
 /// As [`OpenSfm::read`].
-pub fn read(json: &[u8]) -> Result<Reconstruction, Fault> {
+#[cfg(test)]
+pub(super) fn read(json: &[u8]) -> Result<Reconstruction, Fault> {
     Ok(OpenSfm::read(json)?.reconstruction)
 }
 
@@ -62,7 +63,7 @@ impl OpenSfm {
     /// # Errors
     /// Where it is no JSON of that shape (with the line), a number is not usable, a shot names a
     /// camera that is not there, or nothing was aligned.
-    pub fn read(json: &[u8]) -> Result<Self, Fault> {
+    pub(super) fn read(json: &[u8]) -> Result<Self, Fault> {
         let list: List = parse(json)?;
         let Some(raw) = list.first else {
             return Err(nothing_aligned("it holds no reconstruction"));
@@ -130,7 +131,7 @@ impl OpenSfm {
     /// # Errors
     /// Where the file is of an unknown version or a line is broken, with the line; nothing is added
     /// then.
-    pub fn add_observations(&mut self, tracks: &str) -> Result<(), Fault> {
+    pub(super) fn add_observations(&mut self, tracks: &str) -> Result<(), Fault> {
         let reconstruction = &self.reconstruction;
         let observations = tracks::read(tracks, reconstruction, |point| {
             self.point_indices.get(point).copied()

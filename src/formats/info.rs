@@ -1,15 +1,41 @@
-//! What the program understood of a file (contract, section 6), as JSON values.
+//! What the program understood of a file (contract, section 6), as JSON.
+
+use std::path::Path;
 
 use serde_json::{Value, json};
 
+use super::{
+    CloudFile, FileError, Kind, OpenOptions, PosesFile, Reconstruction, detect, open_flight,
+    read_camera, read_cloud, read_poses, read_reconstruction,
+};
 use crate::camera::{Camera, Pose};
 use crate::flight::Flight;
-use crate::formats::{CloudFile, PosesFile, Reconstruction};
 use crate::geometry::Bounds;
+use crate::jobs::Progress;
 use crate::scale::ImageKind;
 
+/// Reads any supported file or folder and says what it holds.
+///
+/// # Errors
+/// With the file and the place in it.
+pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
+    let kind = detect(path)?;
+    Ok(match kind {
+        Kind::Cloud(_) => cloud_info(&read_cloud(path, progress)?),
+        Kind::Camera => camera_info(&read_camera(path)?),
+        Kind::Poses => poses_info(&read_poses(path)?),
+        Kind::Nvm | Kind::Colmap(_) | Kind::Odm => {
+            reconstruction_info(&read_reconstruction(path, &kind)?)
+        }
+        Kind::Flight(_) => {
+            let opened = open_flight(path, &OpenOptions::default(), progress)?;
+            flight_info(&opened.flight, &opened.warnings)
+        }
+    })
+}
+
 /// A cloud or mesh.
-pub fn cloud_info(file: &CloudFile) -> Value {
+fn cloud_info(file: &CloudFile) -> Value {
     let bounds = Bounds::of(&file.cloud.points)
         .map(|b| json!({"min": b.min.to_array(), "max": b.max.to_array()}));
     json!({
@@ -24,7 +50,7 @@ pub fn cloud_info(file: &CloudFile) -> Value {
 }
 
 /// A reconstruction in its own frame.
-pub fn reconstruction_info(reconstruction: &Reconstruction) -> Value {
+fn reconstruction_info(reconstruction: &Reconstruction) -> Value {
     let has_observations = !reconstruction.observations.is_empty();
     let cameras: Vec<Value> = reconstruction
         .cameras
@@ -62,13 +88,13 @@ pub fn reconstruction_info(reconstruction: &Reconstruction) -> Value {
 }
 
 /// A camera's calibration.
-pub fn camera_info(camera: &Camera) -> Value {
+fn camera_info(camera: &Camera) -> Value {
     let warnings: [&str; 0] = [];
     json!({"kind": "camera", "cameras": [camera_value(camera)], "warnings": warnings})
 }
 
 /// A poses.csv.
-pub fn poses_info(file: &PosesFile) -> Value {
+fn poses_info(file: &PosesFile) -> Value {
     let photos = file
         .lines
         .iter()
@@ -81,7 +107,7 @@ pub fn poses_info(file: &PosesFile) -> Value {
 }
 
 /// A flight, opened with all its files: cameras at their photos' size, photos in the world.
-pub fn flight_info(flight: &Flight, warnings: &[String]) -> Value {
+fn flight_info(flight: &Flight, warnings: &[String]) -> Value {
     let parts = flight.parts();
     let photos = parts
         .photos

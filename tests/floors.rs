@@ -1,0 +1,120 @@
+//! Holds the floors of the house: a module uses its own folder and the floors below it, never one
+//! above (see `src/lib.rs`).
+//!
+//! It reads the paths that begin with `crate::`. Two ways around it are not allowed in this code:
+//! `use crate::{...}`, and `super::super`, which could leave a folder.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Modules and their floors. `fault` is the cellar: a sentence that every floor can say.
+const FLOORS: [(&str, i32); 12] = [
+    ("fault", -1),
+    ("geometry", 0),
+    ("jobs", 0),
+    ("units", 0),
+    ("camera", 1),
+    ("surface", 1),
+    ("scale", 2),
+    ("flight", 3),
+    ("exports", 4),
+    ("formats", 4),
+    ("cli", 6),
+    ("main", 6),
+];
+
+fn floor(module: &str) -> i32 {
+    let known = FLOORS.iter().find(|(name, _)| *name == module);
+    known
+        .unwrap_or_else(|| panic!("module '{module}' has no floor; give it one"))
+        .1
+}
+
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The modules named behind `crate::` in code (not in comments).
+fn used(text: &str) -> Vec<String> {
+    let code = text
+        .lines()
+        .map(|line| line.split("//").next().unwrap_or_default());
+    let mut names = Vec::new();
+    for line in code {
+        for (at, _) in line.match_indices("crate::") {
+            let rest = &line[at + "crate::".len()..];
+            names.push(
+                rest.chars()
+                    .take_while(|c| c.is_alphanumeric() || *c == '_')
+                    .collect(),
+            );
+        }
+    }
+    names
+}
+
+#[test]
+fn nobody_reaches_up() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&src, &mut files);
+    assert!(files.len() > 20, "the sources were not found");
+    for path in files {
+        let inside = path.strip_prefix(&src).expect("below src");
+        let first = inside
+            .components()
+            .next()
+            .expect("a name")
+            .as_os_str()
+            .to_string_lossy();
+        let module = first.strip_suffix(".rs").unwrap_or(&first).to_owned();
+        if module == "lib" {
+            continue;
+        }
+        let text = fs::read_to_string(&path).expect("a source");
+        assert!(
+            !text.contains("super::super"),
+            "{}: super::super",
+            path.display()
+        );
+        for name in used(&text) {
+            assert!(
+                !name.is_empty(),
+                "{}: write `use crate::module` out",
+                path.display()
+            );
+            let (own, its) = (floor(&module), floor(&name));
+            assert!(
+                its < own || name == module,
+                "{}: {module} on floor {own} uses {name} on floor {its}",
+                path.display()
+            );
+        }
+    }
+}
+
+/// Floors 0 to 3 take no paths, keep no f32, know no clock.
+#[test]
+fn the_core_stays_pure() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    for (module, floor) in FLOORS {
+        let folder = src.join(module);
+        if floor <= 3 && folder.is_dir() {
+            sources(&folder, &mut files);
+        }
+    }
+    for path in files {
+        let text = fs::read_to_string(&path).expect("a source");
+        for word in ["std::path", "std::fs", "std::time", "f32", "println!"] {
+            assert!(!text.contains(word), "{} uses {word}", path.display());
+        }
+    }
+}
