@@ -1,1 +1,250 @@
-fn main() {}
+//! What the work costs, in criterion's medians: reading, triangulating, building the hierarchy,
+//! casting rays, and the whole of `scales` for nine photos.
+//!
+//! `cargo bench --no-default-features`. Everything is made up here: a rough pile of 0.25 points a
+//! square decimetre, in UTM coordinates, written to a temporary folder. For the peers in one run
+//! (laspy, SciPy, trimesh with Embree) see `benches/python_pipeline.py`.
+
+use std::f64::consts::TAU;
+use std::fs;
+use std::hint::black_box;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use fragscale::formats::{OpenOptions, open_flight, read_cloud};
+use fragscale::geometry::Ray;
+use fragscale::jobs::Progress;
+use fragscale::surface::{Cloud, Surface};
+use glam::DVec3;
+
+/// Where the pile lies.
+const ORIGIN: DVec3 = DVec3::new(500_000.0, 5_000_000.0, 300.0);
+
+/// Numbers in 0..1: Knuth's MMIX.
+fn random(mut seed: u64) -> impl FnMut() -> f64 {
+    move || {
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// A rough pile of `count` points at 25 points a square metre, rounded to millimetres.
+fn pile(count: usize) -> Vec<DVec3> {
+    let side = (count as f64 / 25.0).sqrt();
+    let mut random = random(1);
+    let round = |x: f64| (x * 1000.0).round() / 1000.0;
+    (0..count)
+        .map(|_| {
+            let (x, y) = (random() * side, random() * side);
+            let heap = 6.0 * (1.0 - ((x / side - 0.5).hypot(y / side - 0.5) * 2.0).min(1.0));
+            let z = heap + 0.4 * (x * 1.7).sin() * (y * 1.3).cos() + 0.2 * random();
+            DVec3::new(round(x), round(y), round(z)) + ORIGIN
+        })
+        .collect()
+}
+
+fn cloud(count: usize) -> Cloud {
+    Cloud {
+        points: pile(count),
+        ..Cloud::default()
+    }
+}
+
+/// Binary PLY with doubles.
+fn write_ply(path: &Path, points: &[DVec3]) {
+    let mut bytes = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\n\
+         property double y\nproperty double z\nend_header\n",
+        points.len()
+    )
+    .into_bytes();
+    for point in points {
+        for coordinate in point.to_array() {
+            bytes.extend(coordinate.to_le_bytes());
+        }
+    }
+    fs::write(path, bytes).expect("written");
+}
+
+fn write_laz(path: &Path, points: &[DVec3]) {
+    let mut builder = las::Builder::from((1, 4));
+    builder.point_format = las::point::Format::new(6).expect("a format");
+    builder.point_format.is_compressed = true;
+    let axis = |offset| las::Transform {
+        scale: 0.001,
+        offset,
+    };
+    builder.transforms = las::Vector {
+        x: axis(ORIGIN.x),
+        y: axis(ORIGIN.y),
+        z: axis(ORIGIN.z),
+    };
+    let header = builder.into_header().expect("a header");
+    let mut writer = las::Writer::from_path(path, header).expect("a writer");
+    for point in points {
+        let point = las::Point {
+            x: point.x,
+            y: point.y,
+            z: point.z,
+            gps_time: Some(0.0),
+            ..las::Point::default()
+        };
+        writer.write_point(point).expect("written");
+    }
+    writer.close().expect("closed");
+}
+
+/// A flight of nine photos from 40 m above the pile, which reaches beyond every footprint.
+fn write_flight(folder: &Path, surface: &str, side: f64) -> PathBuf {
+    let flight = folder.join("flight.toml");
+    let text = format!(
+        "format = 1\n[world]\nunit = \"m\"\n[surface]\nfile = \"{surface}\"\n[[camera]]\n\
+         width = 4000\nheight = 2250\nfx = 2222.2\nfy = 2222.2\ncx = 2000\ncy = 1125\n\
+         [photos]\nposes = \"poses.csv\"\n"
+    );
+    fs::write(&flight, text).expect("written");
+    let mut poses = fs::File::create(folder.join("poses.csv")).expect("a file");
+    writeln!(poses, "photo,x,y,z,tilt,pan").expect("written");
+    for i in 0..9_i32 {
+        let at = |step: i32| side * (0.3 + 0.2 * f64::from(step));
+        let (x, y) = (ORIGIN.x + at(i % 3), ORIGIN.y + at(i / 3));
+        writeln!(
+            poses,
+            "IMG_{i}.jpg,{x},{y},{},83,{}",
+            ORIGIN.z + 40.0,
+            i * 40
+        )
+        .expect("written");
+    }
+    flight
+}
+
+fn reading(c: &mut Criterion) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let points = pile(1_000_000);
+    let mut group = c.benchmark_group("read 1 M points");
+    group
+        .sample_size(10)
+        .throughput(Throughput::Elements(1_000_000));
+    for (name, write) in [
+        ("pile.ply", write_ply as fn(&Path, &[DVec3])),
+        ("pile.laz", write_laz),
+    ] {
+        let path = folder.path().join(name);
+        write(&path, &points);
+        group.bench_function(name, |b| b.iter(|| read_cloud(&path, &Progress::default())));
+    }
+    // The floor of reading: the same bytes, once.
+    let path = folder.path().join("pile.laz");
+    group.bench_function("pile.laz, bytes only", |b| b.iter(|| fs::read(&path)));
+    group.finish();
+}
+
+fn surfaces(c: &mut Criterion) {
+    let mut group = c.benchmark_group("surface");
+    group.sample_size(10);
+    for count in [100_000, 1_000_000, 5_000_000] {
+        let cloud = cloud(count);
+        group.throughput(Throughput::Elements(count as u64));
+        group.bench_with_input(
+            BenchmarkId::new("sort into the grid", count),
+            &cloud,
+            |b, cloud| {
+                b.iter(|| Surface::new(cloud.clone()));
+            },
+        );
+        let surface = Surface::new(cloud).expect("a surface");
+        group.bench_with_input(
+            BenchmarkId::new("triangulate all", count),
+            &surface,
+            |b, surface| {
+                b.iter(|| surface.triangles());
+            },
+        );
+        group.bench_with_input(
+            BenchmarkId::new("36 rays", count),
+            &surface,
+            |b, surface| {
+                b.iter(|| cast(surface, 36));
+            },
+        );
+        if count <= 1_000_000 {
+            group.bench_with_input(
+                BenchmarkId::new("triangulate and build the hierarchy", count),
+                &surface,
+                |b, surface| b.iter(|| surface.to_mesh()),
+            );
+            let mesh = surface.to_mesh().expect("a mesh");
+            group.bench_with_input(
+                BenchmarkId::new("10 000 rays, hierarchy", count),
+                &mesh,
+                |b, mesh| {
+                    b.iter(|| cast(mesh, 10_000));
+                },
+            );
+            group.bench_with_input(
+                BenchmarkId::new("10 000 rays, walk", count),
+                &surface,
+                |b, surface| {
+                    b.iter(|| cast(surface, 10_000));
+                },
+            );
+        }
+    }
+    group.finish();
+}
+
+/// Casts rays of a camera 40 m above the middle; returns how many met the surface.
+fn cast(surface: &Surface, count: u32) -> usize {
+    let mut caster = surface.caster().expect("a caster");
+    let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for vertex in surface.vertices().step_by(997) {
+        (min, max) = (min.min(vertex), max.max(vertex));
+    }
+    let origin = (min + max) / 2.0 + DVec3::Z * 40.0;
+    let rays = (0..count).map(|i| {
+        let share = f64::from(i) / f64::from(count);
+        let (sin, cos) = (share * TAU * 89.0).sin_cos();
+        let lean = 0.8 * share.sqrt();
+        Ray {
+            origin,
+            direction: DVec3::new(cos * lean, sin * lean, -1.0).normalize(),
+        }
+    });
+    rays.filter(|ray| black_box(caster.cast(ray)).is_some())
+        .count()
+}
+
+fn scales(c: &mut Criterion) {
+    let mut group = c.benchmark_group("scales of 9 photos");
+    group.sample_size(10);
+    for count in [1_000_000, 5_000_000] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let points = pile(count);
+        write_laz(&folder.path().join("pile.laz"), &points);
+        let flight = write_flight(folder.path(), "pile.laz", (count as f64 / 25.0).sqrt());
+        group.bench_function(BenchmarkId::new("LAZ to scales", count), |b| {
+            b.iter(|| {
+                let progress = Progress::default();
+                let opened =
+                    open_flight(&flight, &OpenOptions::default(), &progress).expect("open");
+                opened.flight.scales(&progress).expect("scales")
+            });
+        });
+        // With FRAGSCALE_BENCH_KEEP the flight stays, for the peer to read the same file.
+        if let Some(keep) = std::env::var_os("FRAGSCALE_BENCH_KEEP") {
+            let keep = Path::new(&keep).join(count.to_string());
+            fs::create_dir_all(&keep).expect("a folder");
+            for name in ["pile.laz", "flight.toml", "poses.csv"] {
+                fs::copy(folder.path().join(name), keep.join(name)).expect("a copy");
+            }
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, reading, surfaces, scales);
+criterion_main!(benches);

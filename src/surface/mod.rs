@@ -108,11 +108,7 @@ impl Surface {
             *point = frame.local_from_world(*point);
         }
         let shape = if triangles.is_empty() {
-            let sites = Sites::new(points)?;
-            if hull::is_line(&hull::convex_hull(sites.points())) {
-                return Err(SurfaceError::OnOneLine);
-            }
-            Shape::Cloud(sites)
+            Shape::Cloud(Sites::new(points)?)
         } else {
             Shape::Mesh(Mesh::new(points, triangles)?)
         };
@@ -123,7 +119,7 @@ impl Surface {
         })
     }
 
-    /// Makes ready for a few rays (dozens to thousands).
+    /// Makes ready for rays: dozens to thousands on a cloud, any number on a mesh.
     ///
     /// # Errors
     /// Where the triangulation cannot be begun.
@@ -148,10 +144,12 @@ impl Surface {
             }
             Shape::Mesh(mesh) => (mesh.points().to_vec(), mesh.triangles().to_vec()),
         };
+        let mesh = Mesh::new(points, triangles)?;
+        mesh.hierarchy();
         Ok(Self {
             frame: self.frame,
             magnitude: self.magnitude,
-            shape: Shape::Mesh(Mesh::new(points, triangles)?),
+            shape: Shape::Mesh(mesh),
         })
     }
 

@@ -7,6 +7,7 @@
 use glam::{DVec2, DVec3};
 
 use super::SurfaceError;
+use super::hull::{convex_hull, is_line};
 use crate::geometry::Bounds;
 
 /// How many sites a cell holds on average: fewer cost memory, more cost time in every circle.
@@ -19,6 +20,8 @@ pub(super) struct Sites {
     points: Vec<DVec3>,
     /// Around `points`.
     bounds: Bounds,
+    /// The corners of their convex hull over (x, y), counter-clockwise.
+    hull: Vec<DVec3>,
     grid: Grid,
     /// Where each cell's points begin, and after the last cell the number of points.
     starts: Vec<u32>,
@@ -93,7 +96,7 @@ impl Sites {
     /// highest stays.
     ///
     /// # Errors
-    /// With fewer than three different (x, y), or more points than u32 counts.
+    /// With fewer than three different (x, y), all on one line, or more points than u32 counts.
     pub(super) fn new(mut points: Vec<DVec3>) -> Result<Self, SurfaceError> {
         let bounds = Bounds::of(&points).ok_or(SurfaceError::TooFewPoints(0))?;
         if u32::try_from(points.len()).is_err() {
@@ -152,9 +155,14 @@ impl Sites {
         if kept < 3 {
             return Err(SurfaceError::TooFewPoints(kept));
         }
+        let hull = convex_hull(&sorted);
+        if is_line(&hull) {
+            return Err(SurfaceError::OnOneLine);
+        }
         Ok(Self {
             points: sorted,
             bounds,
+            hull,
             grid,
             starts,
         })
@@ -168,6 +176,11 @@ impl Sites {
     /// The box around the sites.
     pub(super) fn bounds(&self) -> &Bounds {
         &self.bounds
+    }
+
+    /// The corners of the convex hull over (x, y), counter-clockwise.
+    pub(super) fn hull(&self) -> &[DVec3] {
+        &self.hull
     }
 
     /// How many cells there are.

@@ -157,6 +157,35 @@ fn few_rays_build_little() {
     assert!(built < 20_000, "{built} of 200 000 sites were triangulated");
 }
 
+/// The first rays on a mesh look at every triangle, later ones use the hierarchy: same answers.
+#[test]
+fn a_mesh_answers_the_same_before_and_after_its_hierarchy() {
+    let whole = surface(bumpy(2_000, 21));
+    let triangles = whole.triangles().unwrap();
+    let mesh = Cloud {
+        points: whole.vertices().collect(),
+        triangles,
+        ..Cloud::default()
+    };
+    let mesh = Surface::new(mesh).unwrap();
+    let mut caster = mesh.caster().unwrap();
+    let mut random = random(22);
+    let rays: Vec<Ray> = (0..100)
+        .map(|_| Ray {
+            origin: DVec3::new(random() * 120.0 - 10.0, random() * 120.0 - 10.0, 30.0),
+            direction: DVec3::new(random() - 0.5, random() - 0.5, -1.0).normalize(),
+        })
+        .collect();
+    let first: Vec<_> = rays.iter().map(|ray| caster.cast(ray)).collect();
+    let Shape::Mesh(shape) = &mesh.shape else {
+        panic!("a file with faces is a mesh");
+    };
+    shape.hierarchy();
+    let second: Vec<_> = rays.iter().map(|ray| caster.cast(ray)).collect();
+    assert_eq!(first, second);
+    assert!(first.iter().flatten().count() > 50);
+}
+
 #[test]
 fn no_ray_slips_through_an_edge_or_a_vertex() {
     let bumps = |x: f64, y: f64| (x * 1.3).sin() + (y * 0.7).cos();

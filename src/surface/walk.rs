@@ -24,7 +24,6 @@ use spade::{
 
 use super::SurfaceError;
 use super::delaunay::{Site, load};
-use super::hull::convex_hull;
 use super::sites::Sites;
 use crate::geometry::Ray;
 
@@ -76,11 +75,14 @@ impl<'a> Walk<'a> {
     /// # Errors
     /// Where a coordinate is too large for exact predicates.
     pub(super) fn new(sites: &'a Sites) -> Result<Self, SurfaceError> {
-        let hull = convex_hull(sites.points());
         let complete = sites.points().len() <= FEW_SITES;
         Ok(Self {
             sites,
-            built: load(if complete { sites.points() } else { &hull })?,
+            built: load(if complete {
+                sites.points()
+            } else {
+                sites.hull()
+            })?,
             joined: vec![complete; sites.cell_count()],
             complete,
             hint: None,
