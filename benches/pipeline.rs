@@ -5,6 +5,14 @@
 //! square decimetre, in UTM coordinates, written to a temporary folder. For the peers in one run
 //! (laspy, SciPy, trimesh with Embree) see `benches/python_pipeline.py`.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    missing_docs,
+    reason = "in a test or a benchmark a panic is the report"
+)]
+
 use std::f64::consts::TAU;
 use std::fs;
 use std::hint::black_box;

@@ -11,6 +11,14 @@
 //!
 //! `FRAGSCALE_REGENERATE=1 cargo test --test bundled_flight` writes the files anew.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    missing_docs,
+    reason = "in a test or a benchmark a panic is the report"
+)]
+
 mod common;
 
 use std::fmt::Write;

@@ -1,6 +1,14 @@
 //! The command as the contract has it (sections 5 and 6): formats, exit status, one-line errors,
 //! files that are there whole or not at all.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    missing_docs,
+    reason = "in a test or a benchmark a panic is the report"
+)]
+
 mod common;
 
 use std::fs;

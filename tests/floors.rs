@@ -4,6 +4,14 @@
 //! It reads the paths that begin with `crate::`. Two ways around it are not allowed in this code:
 //! `use crate::{...}`, and `super::super`, which could leave a folder.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    missing_docs,
+    reason = "in a test or a benchmark a panic is the report"
+)]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -18,7 +18,7 @@ use crate::units::LengthUnit;
 pub struct Photo {
     /// The name of its file, as the poses write it; unique in the flight.
     pub name: String,
-    /// Index into [`Flight::cameras`].
+    /// Index into [`FlightParts::cameras`].
     pub camera: usize,
     /// In the world.
     pub pose: Pose,

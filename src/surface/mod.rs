@@ -1,8 +1,8 @@
 //! The surface: triangles that rays meet.
 //!
 //! A cloud becomes its 2.5-D Delaunay triangulation over (x, y); a file with faces is used as it is
-//! (contract, section 2). The two have different ways to meet rays: [`walk`] for a cloud, which
-//! builds no more than the rays ask for, [`mesh`] for faces, which may overhang.
+//! (contract, section 2). The two have different ways to meet rays: `walk` for a cloud, which
+//! builds no more than the rays ask for, `mesh` for faces, which may overhang.
 
 mod cloud;
 mod delaunay;

@@ -41,7 +41,7 @@ pub(super) fn read(text: &str) -> Result<Camera, Fault> {
     from_tree(&super::yaml_tree::first_document(text)?)
 }
 
-/// Like [`read`], of a tree.
+/// A camera from the tree of its file.
 pub(super) fn from_tree(tree: &Node) -> Result<Camera, Fault> {
     tree.entries("the file", WHICH_FILES)?;
     let (width, height, k, d, default_model) = if tree.get("camera_matrix").is_some() {
