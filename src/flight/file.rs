@@ -3,10 +3,10 @@
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 
-use crate::camera::{Brown, Camera, Distortion, Fisheye};
+use super::camera_entry::CameraEntry;
+use super::known_keys::{key_line, line_of, refuse_unknown_keys};
 use crate::fault::Fault;
 use crate::scale::{Ground, ImageKind};
 use crate::units::LengthUnit;
@@ -117,58 +117,6 @@ impl<'de> Deserialize<'de> for GroundEntry {
     }
 }
 
-/// One `[[camera]]` table, as it stands in the text.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct CameraEntry {
-    /// What poses call it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub name: Option<String>,
-    /// A calibration file.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub file: Option<String>,
-    /// Pixels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub width: Option<u32>,
-    /// Pixels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub height: Option<u32>,
-    /// Pixels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fx: Option<f64>,
-    /// Pixels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fy: Option<f64>,
-    /// Pixels, from `pixel_origin`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub cx: Option<f64>,
-    /// Pixels, from `pixel_origin`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub cy: Option<f64>,
-    /// Pixels; 0 if left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub skew: Option<f64>,
-    /// "corner" (if left out) or "center": where cx and cy count from.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pixel_origin: Option<String>,
-    /// "none" (if left out), "brown" or "fisheye".
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub distortion: Option<String>,
-    /// In OpenCV's order; missing ones are 0.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub coefficients: Option<Vec<f64>>,
-}
-
-/// Where a camera comes from.
-#[derive(Debug, Clone, PartialEq)]
-pub enum CameraSource<'a> {
-    /// A calibration file, relative to flight.toml.
-    File(&'a str),
-    /// Only a size, for a reconstruction that has none.
-    Size(u32, u32),
-    /// The table itself.
-    Inline(Camera),
-}
-
 /// Where the posed photos come from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PhotoSource<'a> {
@@ -177,40 +125,6 @@ pub enum PhotoSource<'a> {
     /// A reconstruction, and the row-major 4x4 from its frame to the world.
     Reconstruction(&'a str, Option<[f64; 16]>),
 }
-
-/// Every table with the keys that it may have.
-const KNOWN_KEYS: [(&str, &[&str]); 6] = [
-    (
-        "",
-        &[
-            "format", "name", "world", "surface", "camera", "photos", "scale",
-        ],
-    ),
-    ("world", &["unit", "ground"]),
-    ("surface", &["file"]),
-    (
-        "camera",
-        &[
-            "name",
-            "file",
-            "width",
-            "height",
-            "fx",
-            "fy",
-            "cx",
-            "cy",
-            "skew",
-            "pixel_origin",
-            "distortion",
-            "coefficients",
-        ],
-    ),
-    (
-        "photos",
-        &["poses", "folder", "reconstruction", "transform"],
-    ),
-    ("scale", &["image"]),
-];
 
 impl FlightFile {
     /// Reads the text of a flight.toml.
@@ -385,182 +299,12 @@ impl FlightFile {
     }
 }
 
-impl CameraEntry {
-    /// What the table says: a file, a size, or a camera.
-    ///
-    /// # Errors
-    /// Where it says more than one of these, or half of one.
-    pub fn source(&self) -> Result<CameraSource<'_>, Fault> {
-        let named = match &self.name {
-            Some(name) => format!("camera '{name}'"),
-            None => "the camera".to_owned(),
-        };
-        let fault = |what: &str, remedy: &str| Fault::new(format!("{named} {what}"), remedy);
-        let only_size = self.fx.is_none()
-            && self.fy.is_none()
-            && self.cx.is_none()
-            && self.cy.is_none()
-            && self.skew.is_none()
-            && self.pixel_origin.is_none()
-            && self.distortion.is_none()
-            && self.coefficients.is_none();
-        if let Some(file) = &self.file {
-            if !only_size || self.width.is_some() || self.height.is_some() {
-                return Err(fault("has a file and numbers", "keep one of the two"));
-            }
-            return Ok(CameraSource::File(file));
-        }
-        let needed = |value: Option<f64>, key: &str| {
-            value.ok_or_else(|| {
-                fault(
-                    &format!("has no {key}"),
-                    "add it, or name a calibration file",
-                )
-            })
-        };
-        let pixels = |value: Option<u32>, key: &str| {
-            value.ok_or_else(|| fault(&format!("has no {key}"), "add it, in pixels"))
-        };
-        let (width, height) = (pixels(self.width, "width")?, pixels(self.height, "height")?);
-        if only_size {
-            return Ok(CameraSource::Size(width, height));
-        }
-        let origin = match self.pixel_origin.as_deref() {
-            None | Some("corner") => 0.0,
-            Some("center") => 0.5,
-            Some(other) => {
-                let what = format!("has the pixel_origin '{other}'");
-                return Err(fault(&what, "write \"corner\" or \"center\""));
-            }
-        };
-        Ok(CameraSource::Inline(Camera {
-            name: self.name.clone().unwrap_or_default(),
-            width,
-            height,
-            fx: needed(self.fx, "fx")?,
-            fy: needed(self.fy, "fy")?,
-            cx: needed(self.cx, "cx")? + origin,
-            cy: needed(self.cy, "cy")? + origin,
-            skew: self.skew.unwrap_or(0.0),
-            distortion: self
-                .lens()
-                .map_err(|what| fault(&what, "see the coefficients of each model in README"))?,
-        }))
-    }
-
-    fn lens(&self) -> Result<Distortion, String> {
-        let given = self.coefficients.as_deref().unwrap_or_default();
-        if given.iter().any(|c| !c.is_finite()) {
-            return Err("has a distortion coefficient that is not finite".to_owned());
-        }
-        let too_many = |model: &str, most: usize| {
-            let count = given.len();
-            format!("has {count} coefficients for the distortion '{model}', which takes {most}")
-        };
-        match self.distortion.as_deref() {
-            None | Some("none") if given.iter().all(|&c| c == 0.0) => Ok(Distortion::None),
-            None | Some("none") => Err(too_many("none", 0)),
-            Some("brown") => padded(given)
-                .map(|c| Distortion::Brown(Brown::new(c)))
-                .ok_or_else(|| too_many("brown", 8)),
-            Some("fisheye") => padded(given)
-                .map(|c| Distortion::Fisheye(Fisheye::new(c)))
-                .ok_or_else(|| too_many("fisheye", 4)),
-            Some(other) => Err(format!(
-                "has the distortion '{other}', not one of none, brown, fisheye"
-            )),
-        }
-    }
-}
-
-/// `given`, filled up with zeros; `None` where it is too long.
-fn padded<const N: usize>(given: &[f64]) -> Option<[f64; N]> {
-    let mut all = [0.0; N];
-    all.get_mut(..given.len())?.copy_from_slice(given);
-    Some(all)
-}
-
-fn refuse_unknown_keys(text: &str, table_name: &str, table: &DeTable<'_>) -> Result<(), Fault> {
-    let Some((_, known)) = KNOWN_KEYS.iter().find(|(name, _)| *name == table_name) else {
-        return Ok(());
-    };
-    for (key, value) in table.iter() {
-        let name: &str = key.get_ref();
-        if !known.contains(&name) {
-            let place = if table_name.is_empty() {
-                String::new()
-            } else {
-                format!(" in [{table_name}]")
-            };
-            return Err(Fault::at(
-                line_of(text, key.span().start),
-                format!("unknown key '{name}'{place}"),
-                match nearest(name, known) {
-                    Some(known) => format!("did you mean '{known}'?"),
-                    None => format!("known keys are {}", known.join(", ")),
-                },
-            ));
-        }
-        if table_name.is_empty() {
-            for inner in tables_in(value) {
-                refuse_unknown_keys(text, name, inner)?;
-            }
-        }
-    }
-    Ok(())
-}
-
-/// A table, or the tables of an array of tables.
-fn tables_in<'a>(value: &'a Spanned<DeValue<'a>>) -> Vec<&'a DeTable<'a>> {
-    match value.get_ref() {
-        DeValue::Table(table) => vec![table],
-        DeValue::Array(array) => array.iter().flat_map(tables_in).collect(),
-        _ => Vec::new(),
-    }
-}
-
-fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
-    known
-        .iter()
-        .map(|known| (strsim::damerau_levenshtein(name, known), *known))
-        .min()
-        .filter(|(distance, known)| *distance <= 1 + known.len() / 2)
-        .map(|(_, known)| known)
-}
-
-/// The line, from 1, of a byte of the text.
-fn line_of(text: &str, byte: usize) -> u64 {
-    let before = text.as_bytes().get(..byte).unwrap_or_default();
-    1 + before.iter().filter(|&&b| b == b'\n').count() as u64
-}
-
-/// The line of a key, or of its table, or 1.
-fn key_line(text: &str, table: &str, key: &str) -> u64 {
-    let Ok(root) = DeTable::parse(text) else {
-        return 1;
-    };
-    let find = |table: &DeTable<'_>, key: &str| {
-        table
-            .iter()
-            .find(|(name, _)| name.get_ref() as &str == key)
-            .map(|(name, _)| line_of(text, name.span().start))
-    };
-    let root = root.get_ref();
-    if table.is_empty() {
-        return find(root, key).unwrap_or(1);
-    }
-    let inner = root
-        .iter()
-        .find(|(name, _)| name.get_ref() as &str == table)
-        .and_then(|(_, value)| tables_in(value).into_iter().find_map(|t| find(t, key)));
-    inner.or_else(|| find(root, table)).unwrap_or(1)
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::flight::camera_entry::CameraSource;
 
     const WHOLE: &str = r#"format = 1
 name = "Lab trial 1"
@@ -670,22 +414,6 @@ image = "as-shot"
                 .what
                 .contains("no surface")
         );
-    }
-
-    #[test]
-    fn half_a_camera_is_refused() {
-        let source = |change: fn(&mut CameraEntry)| {
-            let mut entry = FlightFile::parse(WHOLE).unwrap().cameras[1].clone();
-            change(&mut entry);
-            entry.source().map(|_| ()).unwrap_err().what
-        };
-        assert!(source(|c| c.file = Some("a.yaml".to_owned())).contains("a file and numbers"));
-        assert!(source(|c| c.fy = None).contains("no fy"));
-        assert!(source(|c| c.width = None).contains("no width"));
-        assert!(source(|c| c.distortion = Some("barrel".to_owned())).contains("barrel"));
-        assert!(source(|c| c.distortion = None).contains("takes 0"));
-        assert!(source(|c| c.coefficients = Some(vec![0.0; 9])).contains("takes 8"));
-        assert!(source(|c| c.pixel_origin = Some("middle".to_owned())).contains("middle"));
     }
 
     proptest! {

@@ -1,10 +1,13 @@
 //! A flight: one review, with everything that its scales depend on. Validated when made.
 
+mod camera_entry;
 mod file;
+mod known_keys;
 
 use std::collections::HashMap;
 
-pub use file::{CameraEntry, CameraSource, FlightFile, PhotoSource};
+pub use camera_entry::{CameraEntry, CameraSource};
+pub use file::{FlightFile, PhotoSource};
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
