@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// The temporary file that is being written, so that an interrupt can take it away.
+/// The temporary file or folder that is being written, so that an interrupt can take it away.
 static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
 
 /// Writes a file: first beside its place, then moved there in one step. An existing file is replaced
@@ -69,6 +69,18 @@ fn keep_permissions(path: &Path, file: &fs::File) -> io::Result<()> {
     file.set_permissions(permissions)
 }
 
+/// A temporary folder is private, too.
+#[cfg(unix)]
+fn open_to_others(folder: &Path) -> io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    fs::set_permissions(folder, fs::Permissions::from_mode(0o755))
+}
+
+#[cfg(not(unix))]
+fn open_to_others(_: &Path) -> io::Result<()> {
+    Ok(())
+}
+
 #[cfg(not(unix))]
 fn keep_permissions(_: &Path, _: &fs::File) -> io::Result<()> {
     Ok(())
@@ -86,6 +98,27 @@ mod tests {
         write_whole(&path, b"second").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"second");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_folder_is_there_whole_or_not_at_all() {
+        let parent = tempfile::tempdir().unwrap();
+        let folder = parent.path().join("flight");
+        let fill = |part: &Path| fs::write(part.join("a"), b"x");
+        make_folder_whole(&folder, fill).unwrap();
+        assert_eq!(fs::read(folder.join("a")).unwrap(), b"x");
+        // It is not written over.
+        assert!(make_folder_whole(&folder, fill).is_err());
+        let other = parent.path().join("other");
+        fs::create_dir(&other).unwrap();
+        let half = |part: &Path| {
+            fs::write(part.join("a"), b"x")?;
+            Err(io::Error::other("no more"))
+        };
+        assert!(make_folder_whole(&other, half).is_err());
+        assert_eq!(fs::read_dir(&other).unwrap().count(), 0);
+        assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 2);
+        make_folder_whole(&other, fill).unwrap();
     }
 
     #[test]

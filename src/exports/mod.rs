@@ -7,7 +7,7 @@ mod scales_csv;
 mod scales_json;
 mod scales_table;
 
-pub use atomic::{remove_unfinished, write_whole};
+pub use atomic::{make_folder_whole, remove_unfinished, write_whole};
 pub use scale_report::{ReportLine, ScaleReport};
 pub use scales_csv::scales_csv;
 pub use scales_json::scales_json;

@@ -1,0 +1,138 @@
+//! A cloud as structure from motion would give it.
+//!
+//! Points lie only where at least three photos of the survey see the surface; their noise is largest
+//! along the viewing ray (a matching error of a fraction of a pixel, divided by the base-to-height
+//! ratio); a few fly. The survey is denser than the photos that are measured: rows with 75 % overlap
+//! and a ring around the pile, as a pilot flies it for a reconstruction.
+
+use glam::{DVec2, DVec3};
+
+use super::flight_plan::FlightPlan;
+use super::random::Random;
+use super::scene::{Meeting, Scene, SceneCaster};
+use crate::camera::{Camera, Pose};
+use crate::fault::Fault;
+use crate::geometry::Ray;
+use crate::jobs::Progress;
+use crate::surface::Cloud;
+
+/// What the cloud shall be like.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CloudPlan {
+    /// How many points.
+    pub points: usize,
+    /// Standard deviation of a match, in pixels; 0 gives points on the surface.
+    pub noise_px: f64,
+    /// Which share of the points flies.
+    pub flying: f64,
+}
+
+/// By how much a matching error grows along the ray: the height over the base of a pair of photos.
+const HEIGHT_OVER_BASE: f64 = 2.5;
+
+/// How many photos must see a point.
+const SEEN_BY: usize = 3;
+
+/// The poses of the survey that the cloud comes from.
+pub fn survey(plan: &FlightPlan, random: &mut Random) -> Vec<Pose> {
+    let [columns, rows] = plan.count;
+    let dense = FlightPlan {
+        count: [columns * 4 + 1, rows * 4 + 1],
+        spacing: plan.spacing / 4.0,
+        ..plan.clone()
+    };
+    let mut shots = dense.fly(random);
+    shots.extend(dense.ring(24, random));
+    shots.iter().map(super::flight_plan::Shot::pose).collect()
+}
+
+/// Draws the cloud, in the lab's frame.
+///
+/// # Errors
+/// Where so little is seen by three photos that the points cannot be found, or on cancel.
+pub fn cloud(
+    scene: &Scene,
+    camera: &Camera,
+    survey: &[Pose],
+    plan: &CloudPlan,
+    color_of: impl Fn(&Meeting) -> [u8; 3],
+    random: &mut Random,
+    progress: &Progress,
+) -> Result<Cloud, Fault> {
+    progress.stage("reconstructing the cloud");
+    let mut caster = scene.caster()?;
+    let mut cloud = Cloud::default();
+    let mut tries = 0_usize;
+    while cloud.points.len() < plan.points {
+        if tries % 1024 == 0 {
+            progress.advance(cloud.points.len() as u64, plan.points as u64)?;
+        }
+        tries += 1;
+        if tries > plan.points * 50 {
+            return Err(Fault::new(
+                "the survey sees too little of the pile three times",
+                "fly lower, or ask for fewer points",
+            ));
+        }
+        let first = (random.uniform() * survey.len() as f64) as usize;
+        let Some(pose) = survey.get(first) else {
+            continue;
+        };
+        let (w, h) = (f64::from(camera.width), f64::from(camera.height));
+        let pixel = DVec2::new(random.range(0.0, w), random.range(0.0, h));
+        let direction = (pose.rotation * camera.direction_undistorted(pixel)).normalize();
+        let ray = Ray {
+            origin: pose.center,
+            direction,
+        };
+        let Some(met) = caster.cast(&ray) else {
+            continue;
+        };
+        if !seen_often(&mut caster, camera, survey, first, met.point) {
+            continue;
+        }
+        let blur = met.t / camera.fx * plan.noise_px;
+        let sideways = DVec3::new(random.normal(), random.normal(), random.normal()) * blur;
+        let along = direction * (random.normal() * blur * HEIGHT_OVER_BASE);
+        let point = if random.uniform() < plan.flying {
+            ray.at(met.t * random.range(0.6, 0.97))
+        } else {
+            met.point + sideways + along
+        };
+        cloud.points.push(point);
+        cloud.colors.push(color_of(&met));
+    }
+    Ok(cloud)
+}
+
+/// Whether enough photos beside the first see a point.
+fn seen_often(
+    caster: &mut SceneCaster<'_>,
+    camera: &Camera,
+    survey: &[Pose],
+    first: usize,
+    point: DVec3,
+) -> bool {
+    let mut seen = 1;
+    for (index, pose) in survey.iter().enumerate() {
+        let in_image = camera
+            .pixel_undistorted(pose.camera_from_world(point))
+            .is_some_and(|pixel| camera.contains(pixel));
+        if index == first || !in_image {
+            continue;
+        }
+        let way = point - pose.center;
+        let ray = Ray {
+            origin: pose.center,
+            direction: way.normalize(),
+        };
+        let clear = caster
+            .cast(&ray)
+            .is_some_and(|met| met.t > way.length() * (1.0 - 1e-6));
+        seen += usize::from(clear);
+        if seen >= SEEN_BY {
+            return true;
+        }
+    }
+    false
+}
