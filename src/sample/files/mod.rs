@@ -2,8 +2,11 @@
 //! which specification. Values go in, bytes or text come out: no paths, no clock, no randomness, so
 //! the same values are the same bytes on every day and every machine.
 
+pub mod calibration;
+pub mod flight;
 pub mod laz;
 pub mod ply;
+pub mod poses;
 
 /// Reading back what was written, for the tests of the writers.
 #[cfg(test)]
