@@ -3,10 +3,13 @@
 //! the same values are the same bytes on every day and every machine.
 
 pub mod calibration;
+mod exif;
 pub mod flight;
 pub mod laz;
+pub mod photo;
 pub mod ply;
 pub mod poses;
+mod xmp;
 
 /// Reading back what was written, for the tests of the writers.
 #[cfg(test)]
