@@ -5,10 +5,12 @@
 pub mod calibration;
 mod exif;
 pub mod flight;
+pub mod label;
 pub mod laz;
 pub mod photo;
 pub mod ply;
 pub mod poses;
+pub mod reference;
 mod xmp;
 
 /// Reading back what was written, for the tests of the writers.
