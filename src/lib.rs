@@ -13,6 +13,7 @@
 //!
 //! ```text
 //! F6  main.rs  cli.rs            the command line
+//! F5  sample/                    the simulated lab
 //! F4  formats/  exports/         one file a format; what goes out
 //! F3  flight/                    Flight, validated when made; flight.toml
 //! F2  scale/                     corner rays -> corner points -> scales
@@ -39,6 +40,7 @@ pub mod flight;
 pub mod formats;
 pub mod geometry;
 pub mod jobs;
+pub mod sample;
 pub mod scale;
 pub mod surface;
 pub mod units;
