@@ -39,6 +39,7 @@ pub mod flight;
 pub mod formats;
 pub mod geometry;
 pub mod jobs;
+pub mod sample;
 pub mod scale;
 pub mod surface;
 pub mod units;

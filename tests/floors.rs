@@ -16,7 +16,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Modules and their floors. `fault` is the cellar: a sentence that every floor can say.
-const FLOORS: [(&str, i32); 12] = [
+const FLOORS: [(&str, i32); 13] = [
     ("fault", -1),
     ("geometry", 0),
     ("jobs", 0),
@@ -27,6 +27,7 @@ const FLOORS: [(&str, i32); 12] = [
     ("flight", 3),
     ("exports", 4),
     ("formats", 4),
+    ("sample", 5),
     ("cli", 6),
     ("main", 6),
 ];
