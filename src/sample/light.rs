@@ -6,7 +6,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::sample::material::Appearance;
 use crate::sample::noise::{hash, unit};
@@ -60,8 +60,8 @@ impl Light {
                 radius: 0.009,
                 rays: 1,
             },
-            sky: [0.135, 0.175, 0.235],
-            ground: [0.10, 0.085, 0.07],
+            sky: [0.155, 0.185, 0.228],
+            ground: [0.13, 0.115, 0.095],
         }
     }
 
@@ -127,16 +127,18 @@ impl Lamp {
     fn seen(&self, normal: DVec3, seed: u64, shadowed: impl Fn(DVec3) -> bool) -> f64 {
         let rays = self.rays.max(1);
         let (u, v) = self.direction.any_orthonormal_pair();
-        let turn = unit(seed, 1);
+        // Evenly over the disc: turned on by the golden angle each time, from the pixel's own draw.
+        const GOLDEN: DVec2 = DVec2::new(-0.737_368_878_078_319_9, 0.675_490_294_261_523_7);
+        let mut turn = DVec2::from_angle(TAU * unit(seed, 1));
+        let start = unit(seed, 2);
         let mut open = 0;
         for i in 0..rays {
-            // Evenly over the disc: the golden angle, turned by the pixel's draw.
-            let (sin, cos) = (TAU * (turn + 0.618_033_988_75 * f64::from(i))).sin_cos();
-            let away = ((f64::from(i) + unit(seed, 2)) / f64::from(rays)).sqrt() * self.radius;
-            let towards = (self.direction + away * (cos * u + sin * v)).normalize();
+            let away = turn * (((f64::from(i) + start) / f64::from(rays)).sqrt() * self.radius);
+            let towards = (self.direction + away.x * u + away.y * v).normalize();
             if normal.dot(towards) > 0.0 && !shadowed(towards) {
                 open += 1;
             }
+            turn = turn.rotate(GOLDEN);
         }
         f64::from(open) / f64::from(rays)
     }
@@ -239,7 +241,7 @@ mod tests {
         let lit = light.shade(&white(DVec3::Z), DVec3::Z, DVec3::Z, |_| false, 1.0);
         let dark = light.shade(&white(DVec3::Z), DVec3::Z, DVec3::Z, |_| true, 1.0);
         // A level white surface under the open sky: albedo times the sky's radiance.
-        assert_eq!(dark, [0.135, 0.175, 0.235].map(|sky| 0.8 * sky));
+        assert_eq!(dark, [0.155, 0.185, 0.228].map(|sky| 0.8 * sky));
         assert!(lit.iter().zip(dark).all(|(l, d)| *l > 1.5 * d));
         // Shadows are blue, the sun is warm.
         assert!(dark[2] > dark[0] && lit[0] > lit[2]);

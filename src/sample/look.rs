@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 
 use crate::sample::light::Light;
 use crate::sample::material::{Edge, Material, Spot};
-use crate::sample::noise::{direction, fbm, hash, unit};
+use crate::sample::noise::{direction, hash, unit};
 use crate::sample::sensor::Sensor;
 
 struct Stone {
@@ -349,31 +349,32 @@ fn the_cost_of_a_hit() {
         ("painted", Material::painted_sphere()),
     ] {
         let light = Light::lab();
-        let start = std::time::Instant::now();
-        let count = 200_000;
-        let mut sum = 0.0;
-        for i in 0..count {
-            let normal = direction(i % 7, 0);
-            let spot = Spot {
-                fragment: i % 50,
-                point: direction(i, 1) * 0.05,
-                normal,
-                up: DVec3::Z,
-                size: 0.1,
-                pixel: 0.0002,
-                edge: Some(Edge {
-                    distance: 0.002,
-                    normal: DVec3::Z,
-                }),
-            };
-            let seen = material.surface(&spot);
-            sum += light.shade(&seen, normal, DVec3::Z, |_| false, 0.8)[0];
+        let (mut cost, mut surface_cost, mut sum) = (f64::MAX, f64::MAX, 0.0);
+        // The least of many short runs: what the machine does besides does not count.
+        for run in 0..200_u64 {
+            let spots: Vec<Spot> = (0..1000)
+                .map(|i| Spot {
+                    fragment: i % 50,
+                    point: direction(i + 1000 * run, 1) * 0.05,
+                    normal: direction(i % 7, 0),
+                    up: DVec3::Z,
+                    size: 0.1,
+                    pixel: 0.0002,
+                    edge: Some(Edge {
+                        distance: 0.002,
+                        normal: DVec3::Z,
+                    }),
+                })
+                .collect();
+            let start = std::time::Instant::now();
+            let seen: Vec<_> = spots.iter().map(|spot| material.surface(spot)).collect();
+            surface_cost = surface_cost.min(start.elapsed().as_secs_f64() * 1e3);
+            for (spot, seen) in spots.iter().zip(seen) {
+                let [red, ..] = light.shade(&seen, spot.normal, DVec3::Z, |_| false, 0.8);
+                sum += red;
+            }
+            cost = cost.min(start.elapsed().as_secs_f64() * 1e3);
         }
-        let cost = start.elapsed().as_secs_f64() / count as f64;
-        println!(
-            "{name}: {:.2} us a hit ({sum:.0}, {:?})",
-            cost * 1e6,
-            fbm(DVec3::ONE, 0, 1.0, 0.5).0
-        );
+        println!("{name}: {surface_cost:.2} us a surface, {cost:.2} us with its shade ({sum:.0})");
     }
 }

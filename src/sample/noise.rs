@@ -44,6 +44,26 @@ fn three(h: u64) -> DVec3 {
     DVec3::new(part(0), part(21), part(42))
 }
 
+/// Three even draws from -1..1 for `seed`: a cheap [`direction`] of uneven length.
+#[must_use]
+pub fn jitter(seed: u64) -> DVec3 {
+    three(hash(seed))
+}
+
+/// `floor` without the call that it is on processors before SSE 4.1.
+fn floor(point: DVec3) -> DVec3 {
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        reason = "beyond 2^53 there is no fraction to take off"
+    )]
+    let one = |value: f64| {
+        let whole = value as i64 as f64;
+        if whole > value { whole - 1.0 } else { whole }
+    };
+    DVec3::new(one(point.x), one(point.y), one(point.z))
+}
+
 /// The lattice point of `at` as hash terms of it and of its successor, axis by axis.
 fn lattice(at: DVec3) -> [[u64; 2]; 3] {
     const PRIMES: [u64; 3] = [
@@ -74,7 +94,7 @@ const fn corner(term: u64) -> u64 {
 /// practice within -0.9..0.9; twice continuously differentiable; 0 on the lattice.
 #[must_use]
 pub fn gradient_noise(point: DVec3, seed: u64) -> (f64, DVec3) {
-    let at = point.floor();
+    let at = floor(point);
     let f = point - at;
     let [[x0, x1], [y0, y1], [z0, z1]] = lattice(at);
     let u = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
@@ -189,7 +209,7 @@ pub struct Cell {
 /// but only as far as the second nearest found so far reaches.
 #[must_use]
 pub fn cells(point: DVec3, seed: u64) -> Cell {
-    let at = point.floor();
+    let at = floor(point);
     let f = point - at;
     let [[x, x1], [y, y1], [z, z1]] = lattice(at);
     // The cubes from near to far along each axis, with the squared distance to each.

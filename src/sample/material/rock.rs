@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Appearance, Spot, between, bumped, mix, octaves, visible};
-use crate::sample::noise::{cells, direction, fbm, gradient_noise, hash, smoothstep, unit};
+use crate::sample::noise::{cells, direction, fbm, gradient_noise, hash, jitter, smoothstep, unit};
 
 /// A kind of rock.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +41,7 @@ pub(super) const GRAVEL: Rock = Rock {
         [0.235, 0.225, 0.215],
         [0.450, 0.440, 0.420],
     ],
-    spread: 0.30,
+    spread: 0.40,
     rough: 0.34,
     grain: [0.0008, 0.0030],
     speckle: 0.55,
@@ -106,9 +106,13 @@ impl Rock {
         let bedded = own + bed * (bed.dot(own) * between(0.2, 2.2, seed, 2));
 
         // The relief, from a third of the stone down to the pixel. Its slope matters, not its height.
-        let fine = octaves(size / 2.6, spot.pixel).clamp(1.0, 7.0);
+        let fine = octaves(size / 2.6, spot.pixel).clamp(1.0, 6.5);
         let (height, slope) = fbm(own * 2.6, seed, fine, 0.52);
-        let rough = self.rough * between(0.7, 1.35, seed, 3);
+        let (patch, _) = fbm(bedded * 2.1, seed ^ 0x22, 3.0, 0.55);
+        let (joint, _) = gradient_noise(spot.normal * 1.7 + 0.37, seed ^ 0x33);
+        // Faces broke apart in their own ways: smooth along a joint, rough across the grain.
+        let uneven = (1.0 + 0.9 * joint + 0.7 * patch).clamp(0.35, 1.7);
+        let rough = self.rough * between(0.7, 1.35, seed, 3) * uneven;
 
         // Chips: small faces that broke a little askew, and smaller ones on them. Their borders
         // follow the relief.
@@ -120,7 +124,7 @@ impl Rock {
                 let chip = cells(own * often + slope * 0.09, seed ^ layer);
                 let inside = smoothstep(0.0, 0.10, chip.second - chip.nearest);
                 let tilt = steep * between(0.25, 1.0, seed, 5) * unit(chip.id, 2);
-                askew += direction(chip.id, 1) * (tilt * inside * shown);
+                askew += jitter(chip.id) * (tilt * inside * shown);
                 border *= 1.0 - 0.5 * shown * (1.0 - inside);
             }
         }
@@ -138,8 +142,6 @@ impl Rock {
         let (mut colour, sheen) = self.mineral(spot, seed, bedded, height);
 
         // Old joints, face by face, carry iron; it creeps in from their edges.
-        let (patch, _) = fbm(bedded * 2.1, seed ^ 0x22, 3.0, 0.55);
-        let (joint, _) = gradient_noise(spot.normal * 1.7 + 0.37, seed ^ 0x33);
         let rust = self.stain
             * smoothstep(
                 -0.05,
@@ -148,7 +150,8 @@ impl Rock {
             );
         let iron = mix(IRON, [0.36, 0.25, 0.14], unit(seed, 8));
         colour = mix(colour, iron, rust * 0.85);
-        colour = colour.map(|part| part * (1.0 + 0.42 * patch) * (1.0 + 0.30 * height));
+        let shade = (1.0 + 0.42 * patch) * (1.0 + 0.30 * height) * (1.0 + 0.22 * joint);
+        colour = colour.map(|part| part * shade);
 
         // Worn edges show bruised, lighter mineral.
         let bruise = edge * smoothstep(-0.35, 0.3, patch + height);
