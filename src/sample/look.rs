@@ -306,7 +306,7 @@ fn look_at_it() {
             Scene::new(
                 0.045,
                 Material::gravel(),
-                Material::concrete_floor(),
+                Material::fines(),
                 Light::lab(),
                 1,
             ),

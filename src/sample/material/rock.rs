@@ -42,7 +42,7 @@ pub(super) const GRAVEL: Rock = Rock {
         [0.450, 0.440, 0.420],
     ],
     spread: 0.40,
-    rough: 0.34,
+    rough: 0.42,
     grain: [0.0008, 0.0030],
     speckle: 0.55,
     veined: 0.16,
@@ -111,7 +111,7 @@ impl Rock {
         let (patch, _) = fbm(bedded * 2.1, seed ^ 0x22, 3.0, 0.55);
         let (joint, _) = gradient_noise(spot.normal * 1.7 + 0.37, seed ^ 0x33);
         // Faces broke apart in their own ways: smooth along a joint, rough across the grain.
-        let uneven = (1.0 + 0.9 * joint + 0.7 * patch).clamp(0.35, 1.7);
+        let uneven = (1.0 + 0.9 * joint + 0.7 * patch).clamp(0.4, 1.4);
         let rough = self.rough * between(0.7, 1.35, seed, 3) * uneven;
 
         // Chips: small faces that broke a little askew, and smaller ones on them. Their borders
@@ -150,7 +150,7 @@ impl Rock {
             );
         let iron = mix(IRON, [0.36, 0.25, 0.14], unit(seed, 8));
         colour = mix(colour, iron, rust * 0.85);
-        let shade = (1.0 + 0.42 * patch) * (1.0 + 0.30 * height) * (1.0 + 0.22 * joint);
+        let shade = (1.0 + 0.32 * patch) * (1.0 + 0.30 * height) * (1.0 + 0.22 * joint);
         colour = colour.map(|part| part * shade);
 
         // Worn edges show bruised, lighter mineral.
@@ -187,7 +187,7 @@ impl Rock {
         };
         let brightness = (self.spread * (2.0 * unit(seed, 21) - 1.0)).exp();
         let mut colour = tint.map(|part| part * brightness);
-        let mut sheen = between(0.0, 0.35, seed, 22);
+        let mut sheen = between(0.0, 0.6, seed, 22);
 
         // Grains: light feldspar, grey quartz, dark mica. Finer than a pixel, they melt together.
         let draw = unit(seed, 23);
@@ -219,7 +219,7 @@ impl Rock {
             octaves(spot.size / 11.0, spot.pixel).min(4.0),
             0.75,
         );
-        let mottled = 1.0 + 0.55 * speckle * mottle;
+        let mottled = 1.0 + 0.95 * speckle * mottle;
         colour = colour.map(|part| part * mottled);
 
         // A vein is where a slow noise passes zero: calcite, or a dark seam.
