@@ -21,6 +21,7 @@ use crate::exports;
 use crate::fault::{Fault, one_line};
 use crate::formats::{self, FileError, OpenOptions};
 use crate::jobs::{Job, Progress};
+use crate::sample::{self, Lens, Preset, SampleOptions};
 use crate::units::LengthUnit;
 
 /// Work that is over sooner shows no progress bar.
@@ -40,6 +41,8 @@ enum Command {
     Scales(ScalesArguments),
     /// Say what a file or folder holds.
     Info(InfoArguments),
+    /// Make a simulated flight whose every answer is known.
+    Sample(SampleArguments),
 }
 
 #[derive(Debug, Args)]
@@ -67,6 +70,71 @@ struct InfoArguments {
     /// How to write it.
     #[arg(long, value_enum, default_value = "text")]
     format: InfoFormat,
+}
+
+#[derive(Debug, Args)]
+struct SampleArguments {
+    /// The folder to make; new or empty.
+    folder: PathBuf,
+    /// Which place: the paper's lab, a muckpile in UTM coordinates, a stockpile, a bench face.
+    #[arg(long, value_enum, default_value = "lab")]
+    preset: SamplePreset,
+    /// Everything random follows from this number.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// The camera's lens.
+    #[arg(long, value_enum, default_value = "brown")]
+    lens: SampleLens,
+    /// The surface: a cloud as structure from motion gives it, or the true mesh.
+    #[arg(long, value_enum, default_value = "cloud")]
+    surface: SampleSurface,
+    /// Matching noise of the cloud, in pixels (standard deviation).
+    #[arg(long, value_name = "PIXELS", value_parser = noise)]
+    noise: Option<f64>,
+    /// How many points the cloud has.
+    #[arg(long, value_name = "COUNT")]
+    points: Option<usize>,
+    /// Add this many overlapping photos on a ring around the pile.
+    #[arg(long, value_name = "COUNT", default_value_t = 0)]
+    ring: u32,
+    /// Leave out the photos and their label images.
+    #[arg(long)]
+    no_photos: bool,
+    /// Leave out the label images, which say which fragment each pixel shows.
+    #[arg(long)]
+    no_labels: bool,
+    /// Put the middle of the pile at the world's origin, without a coordinate system.
+    #[arg(long)]
+    at_origin: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum SamplePreset {
+    Lab,
+    Muckpile,
+    Stockpile,
+    Bench,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum SampleLens {
+    None,
+    Brown,
+    Fisheye,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+enum SampleSurface {
+    Cloud,
+    Mesh,
+}
+
+fn noise(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|e| format!("{e}"))?;
+    if (0.0..=100.0).contains(&number) {
+        return Ok(number);
+    }
+    Err("give 0 to 100 pixels".to_owned())
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -139,6 +207,9 @@ pub fn run() -> ExitCode {
             Box::new(move |progress| scales(&arguments, progress)),
         ),
         Command::Info(arguments) => (None, Box::new(move |progress| info(&arguments, progress))),
+        Command::Sample(arguments) => {
+            (None, Box::new(move |progress| sample(&arguments, progress)))
+        }
     };
     let answer = match run_with_progress(work) {
         Ok(answer) => answer,
@@ -201,6 +272,37 @@ fn info(arguments: &InfoArguments, progress: &Progress) -> Result<Answer, String
     };
     Ok(Answer {
         text,
+        warnings: Vec::new(),
+    })
+}
+
+fn sample(arguments: &SampleArguments, progress: &Progress) -> Result<Answer, String> {
+    let options = SampleOptions {
+        preset: match arguments.preset {
+            SamplePreset::Lab => Preset::Lab,
+            SamplePreset::Muckpile => Preset::Muckpile,
+            SamplePreset::Stockpile => Preset::Stockpile,
+            SamplePreset::Bench => Preset::Bench,
+        },
+        seed: arguments.seed,
+        lens: match arguments.lens {
+            SampleLens::None => Lens::None,
+            SampleLens::Brown => Lens::Brown,
+            SampleLens::Fisheye => Lens::Fisheye,
+        },
+        true_mesh: arguments.surface == SampleSurface::Mesh,
+        noise_px: arguments.noise,
+        points: arguments.points,
+        ring: arguments.ring,
+        photos: !arguments.no_photos,
+        labels: !arguments.no_labels,
+        at_origin: arguments.at_origin,
+    };
+    let folder = &arguments.folder;
+    sample::make(folder, &options, progress)
+        .map_err(|fault| FileError::new(folder, fault).to_string())?;
+    Ok(Answer {
+        text: format!("{}: a simulated flight\n", folder.display()),
         warnings: Vec::new(),
     })
 }

@@ -13,11 +13,13 @@
 //!
 //! ```text
 //! F6  main.rs  cli.rs            the command line
+//! F5  sample/                    the paper's lab, simulated
 //! F5  sample/                    the simulated lab
 //! F4  formats/  exports/         one file a format; what goes out
 //! F3  flight/                    Flight, validated when made; flight.toml
 //! F2  scale/                     corner rays -> corner points -> scales
 //! F1  camera/   surface/         intrinsics, distortion, pose | triangulation, ray casting
+//!     fragmentation/             size distributions
 //! F0  geometry/ units.rs jobs.rs fault.rs
 //! ```
 //!
@@ -38,6 +40,7 @@ pub mod exports;
 pub mod fault;
 pub mod flight;
 pub mod formats;
+pub mod fragmentation;
 pub mod geometry;
 pub mod jobs;
 pub mod sample;

@@ -19,7 +19,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 fn sample() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/windrow")
 }
 
 /// A copy of the sample to spoil.

@@ -41,7 +41,41 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
     result
 }
 
-/// Takes away what an interrupted [`write_whole`] would leave.
+/// Makes a folder with everything in it: `fill` writes into a folder beside its place, which is
+/// moved there in one step when it is complete, and taken away on any error.
+///
+/// # Errors
+/// What `fill` says, or the system; and where the folder is there already and not empty.
+pub fn make_folder_whole<E: From<io::Error>>(
+    path: &Path,
+    fill: impl FnOnce(&Path) -> Result<(), E>,
+) -> Result<(), E> {
+    if fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some()) {
+        return Err(io::Error::from(io::ErrorKind::DirectoryNotEmpty).into());
+    }
+    let parent = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let part = tempfile::Builder::new()
+        .prefix(".fragscale-")
+        .suffix(".part")
+        .tempdir_in(parent)?;
+    set_unfinished(Some(part.path().to_owned()));
+    let result = fill(part.path()).and_then(|()| {
+        // An empty folder in its place is replaced.
+        match fs::remove_dir(path) {
+            Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(e.into()),
+            _ => {}
+        }
+        open_to_others(part.path()).map_err(E::from)?;
+        fs::rename(part.path(), path).map_err(E::from)
+    });
+    set_unfinished(None);
+    result
+}
+
+/// Takes away what an interrupted write would leave.
 pub fn remove_unfinished() {
     let unfinished = UNFINISHED
         .lock()
@@ -49,7 +83,7 @@ pub fn remove_unfinished() {
         .take();
     if let Some(path) = unfinished {
         // The program is about to end; there is nobody to tell.
-        let _ = fs::remove_file(path);
+        let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
     }
 }
 

@@ -1,6 +1,12 @@
 //! A crude scene to look at: hundreds of convex stones on fines. For eyes, not for the program:
 //! it writes a picture only where `FRAGSCALE_LOOK` says so.
 
+#![allow(
+    clippy::print_stdout,
+    clippy::cast_possible_wrap,
+    reason = "it speaks only to whoever asked for a picture"
+)]
+
 use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec3};
@@ -173,7 +179,7 @@ impl Scene {
         best
     }
 
-    /// Height of the floor: fines are not flat.
+    /// What comes along one ray.
     fn radiance(&self, from: DVec3, along: DVec3, pixel_angle: f64) -> [f64; 3] {
         let ground = if along.z < 0.0 {
             -from.z / along.z
@@ -229,9 +235,9 @@ impl Scene {
         let (mut open, rays) = (0, 10);
         for i in 0..rays {
             let d = (normal + 0.999 * direction(seed, 900 + i)).normalize();
-            if d.z > 0.0 && self.hit(at, d, 3.0 * self.unit).is_none() {
-                open += 1;
-            } else if d.z <= 0.0 && self.hit(at, d, 1e9).is_none() && at.z > self.unit {
+            // Upwards a near stone hides the sky; downwards only the pile's flanks see past it.
+            let reach = if d.z > 0.0 { 3.0 * self.unit } else { 1e9 };
+            if (d.z > 0.0 || at.z > self.unit) && self.hit(at, d, reach).is_none() {
                 open += 1;
             }
         }

@@ -1,3 +1,405 @@
-//! The simulated lab: a flight with everything known, to hold what the program computes against.
+//! The paper's lab, simulated: a flight whose every answer is known.
+//!
+//! Random convex bodies of known sieve size and volume are heaped on a floor ([`pile`]), photographed
+//! by ray tracing from a flight plan ([`photo`]), and reconstructed as structure from motion would
+//! ([`sfm_cloud`]). The scales that the noise-free geometry gives are written beside it ([`truth`]).
+//! Everything follows from one seed.
+//!
+//! This room stands on floor 5, one above `formats` and `exports`: it writes whole folders through
+//! `exports`, and its tests read them back through `formats`.
 
-pub mod files;
+mod files;
+mod flight_plan;
+mod fragment;
+mod light;
+mod material;
+mod noise;
+mod photo;
+mod pile;
+mod preset;
+mod random;
+mod scene;
+mod sensor;
+mod sfm_cloud;
+mod sieve;
+mod terrain;
+mod truth;
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use glam::{DVec2, DVec3};
+
+pub use flight_plan::{FlightPlan, Shot};
+pub use pile::{Fragment, Pile, PilePlan};
+pub use preset::{Lens, Preset, Recipe};
+pub use scene::{Meeting, Scene, SceneCaster, Sphere, Thing};
+pub use sfm_cloud::CloudPlan;
+
+use crate::exports;
+use crate::fault::Fault;
+use crate::geometry::Ray;
+use crate::jobs::Progress;
+use crate::surface::Cloud;
+use crate::units::LengthUnit;
+use files::flight::FlightText;
+use files::photo::{DjiGimbal, PhotoMetadata};
+use files::poses::{Orientation, PoseRow};
+use files::reference::SieveSeries;
+use light::Light;
+use material::Material;
+use photo::Look;
+use random::Random;
+
+/// What the user asks of a sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SampleOptions {
+    /// Which place.
+    pub preset: Preset,
+    /// Everything random follows from it.
+    pub seed: u64,
+    /// The camera's lens.
+    pub lens: Lens,
+    /// Whether the surface is the true mesh instead of a reconstructed cloud.
+    pub true_mesh: bool,
+    /// Matching noise of the cloud in pixels, instead of the preset's.
+    pub noise_px: Option<f64>,
+    /// How many points the cloud has, instead of the preset's.
+    pub points: Option<usize>,
+    /// How many photos on a ring around the pile, for reconstruction tests.
+    pub ring: u32,
+    /// Whether to take the photos.
+    pub photos: bool,
+    /// Whether to write which fragment each pixel shows.
+    pub labels: bool,
+    /// Whether the middle of the pile is the world's origin, instead of the preset's place.
+    pub at_origin: bool,
+}
+
+/// Makes a simulated flight in `folder`, which must be new or empty.
+///
+/// # Errors
+/// Where the folder cannot be written, or on cancel; then nothing is left.
+pub fn make(folder: &Path, options: &SampleOptions, progress: &Progress) -> Result<(), Fault> {
+    let recipe = recipe(options)?;
+    let written = exports::make_folder_whole(folder, |part| {
+        fill(part, &recipe, options, progress).map_err(Stop::Fault)
+    });
+    written.map_err(|stop| match stop {
+        Stop::Fault(fault) => fault,
+        Stop::Io(error) if error.kind() == io::ErrorKind::DirectoryNotEmpty => {
+            Fault::new("the folder is not empty", "name a new folder")
+        }
+        Stop::Io(error) => cannot_write(&error),
+    })
+}
+
+/// Why a folder was not made.
+enum Stop {
+    Fault(Fault),
+    Io(io::Error),
+}
+
+impl From<io::Error> for Stop {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+fn cannot_write(error: &io::Error) -> Fault {
+    let what = format!("the sample cannot be written ({error})");
+    Fault::new(what, "choose a folder that may be written to")
+}
+
+/// The preset's recipe with what the user asks for.
+fn recipe(options: &SampleOptions) -> Result<Recipe, Fault> {
+    let mut recipe = options.preset.recipe(options.lens)?;
+    if options.at_origin {
+        recipe.origin = DVec3::ZERO;
+        recipe.epsg = None;
+    }
+    if let Some(noise) = options.noise_px {
+        recipe.cloud.noise_px = noise;
+    }
+    if let Some(points) = options.points {
+        recipe.cloud.points = points;
+    }
+    Ok(recipe)
+}
+
+fn fill(
+    folder: &Path,
+    recipe: &Recipe,
+    options: &SampleOptions,
+    progress: &Progress,
+) -> Result<(), Fault> {
+    let random = Random::new(options.seed);
+    let mut shots = recipe.flight.fly(&mut random.fork(20));
+    shots.extend(recipe.flight.ring(options.ring, &mut random.fork(21)));
+    let scene = build_scene(recipe, &shots, &random, progress)?;
+    let look = look(options.preset, recipe);
+
+    let (surface, name) = if options.true_mesh {
+        (scene.mesh(), "pile.ply")
+    } else {
+        let name = if recipe.epsg.is_some() {
+            "pile.laz"
+        } else {
+            "pile.ply"
+        };
+        (reconstruct(&scene, recipe, &look, &random, progress)?, name)
+    };
+    write_surface(&folder.join(name), surface, recipe, progress)?;
+    write_texts(folder, name, recipe, &shots)?;
+    let truth = truth::truth(&scene, &recipe.camera, &shots, recipe.origin)?;
+    write(&folder.join("truth.json"), format!("{truth}\n").as_bytes())?;
+    write(
+        &folder.join("reference.csv"),
+        reference(&scene, recipe)?.as_bytes(),
+    )?;
+    if options.photos {
+        take_photos(folder, &scene, recipe, &shots, &look, options, progress)?;
+    }
+    Ok(())
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+    fs::write(path, bytes).map_err(|error| cannot_write(&error))
+}
+
+fn build_scene(
+    recipe: &Recipe,
+    shots: &[Shot],
+    random: &Random,
+    progress: &Progress,
+) -> Result<Scene, Fault> {
+    let pile = Pile::strew(&recipe.pile, &mut random.fork(10), progress)?;
+    progress.stage("building the scene");
+    let mut scene = Scene::new(pile, &recipe.pile, recipe.reach)?;
+    let spheres = shots
+        .iter()
+        .map(|shot| rest_sphere(&scene, recipe, shot))
+        .collect::<Result<Vec<_>, Fault>>()?;
+    scene.add_spheres(spheres.into_iter().flatten());
+    Ok(scene)
+}
+
+/// A scale sphere near the middle of a photo, at rest on what lies there.
+fn rest_sphere(scene: &Scene, recipe: &Recipe, shot: &Shot) -> Result<Option<Sphere>, Fault> {
+    let mut caster = scene.caster()?;
+    let pose = shot.pose();
+    let aim = Ray {
+        origin: pose.center,
+        direction: pose.rotation.z_axis,
+    };
+    let Some(middle) = caster.cast(&aim) else {
+        return Ok(None);
+    };
+    // A little beside the middle, which the engineer wants to see.
+    let place = middle.point.truncate() + DVec2::new(0.9, 0.5) * recipe.sphere;
+    let radius = recipe.sphere / 2.0;
+    let mut height = f64::NEG_INFINITY;
+    for step in 0..61 {
+        let (share, angle) = (f64::from(step) / 60.0, f64::from(step) * 2.4);
+        let offset = DVec2::from_angle(angle) * (radius * share.sqrt() * 0.999);
+        let down = Ray {
+            origin: (place + offset).extend(recipe.flight.height * 10.0),
+            direction: DVec3::NEG_Z,
+        };
+        if let Some(met) = caster.cast(&down) {
+            let sag = (radius * radius - offset.length_squared()).max(0.0).sqrt();
+            height = height.max(met.point.z + sag);
+        }
+    }
+    let center = place.extend(height);
+    Ok(center.is_finite().then_some(Sphere { center, radius }))
+}
+
+fn look(preset: Preset, recipe: &Recipe) -> Look {
+    let (rock, floor, light) = match preset {
+        Preset::Lab => (Material::gravel(), Material::concrete_floor(), Light::lab()),
+        Preset::Stockpile => (
+            Material::stockpile(),
+            Material::quarry_floor(),
+            Light::sun(4.0, 0.75),
+        ),
+        Preset::Muckpile | Preset::Bench => (
+            Material::blasted_rock(),
+            Material::quarry_floor(),
+            Light::sun(2.2, 0.8),
+        ),
+    };
+    Look {
+        rock,
+        fines: Material::fines(),
+        floor,
+        sphere: Material::painted_sphere(),
+        light,
+        average: if preset == Preset::Lab { 0.22 } else { 0.13 },
+        grain: recipe.pile.sizes.size_at(0.5),
+    }
+}
+
+fn reconstruct(
+    scene: &Scene,
+    recipe: &Recipe,
+    look: &Look,
+    random: &Random,
+    progress: &Progress,
+) -> Result<Cloud, Fault> {
+    let survey = sfm_cloud::survey(&recipe.flight, &mut random.fork(30));
+    let color_of = |caster: &mut SceneCaster<'_>, met: &Meeting| {
+        let radiance = look.radiance(caster, &recipe.camera, DVec3::NEG_Z, met);
+        radiance.map(|part| sensor::srgb(sensor::tone(part * 0.18 / look.average)))
+    };
+    let (plan, numbers) = (&recipe.cloud, random.fork(31));
+    sfm_cloud::cloud(
+        scene,
+        &recipe.camera,
+        &survey,
+        plan,
+        color_of,
+        &numbers,
+        progress,
+    )
+}
+
+fn write_surface(
+    path: &Path,
+    mut cloud: Cloud,
+    recipe: &Recipe,
+    progress: &Progress,
+) -> Result<(), Fault> {
+    progress.stage("writing the surface");
+    for point in &mut cloud.points {
+        *point += recipe.origin;
+    }
+    let bytes = match recipe.epsg.filter(|_| cloud.triangles.is_empty()) {
+        Some(epsg) => files::laz::laz(&cloud, epsg),
+        None => files::ply::ply(&cloud, "simulated by fragscale"),
+    };
+    write(path, &bytes.map_err(|e| Fault::new(e, "report this"))?)
+}
+
+fn write_texts(folder: &Path, surface: &str, recipe: &Recipe, shots: &[Shot]) -> Result<(), Fault> {
+    let report = |error: String| Fault::new(error, "report this");
+    let rows: Vec<PoseRow> = shots
+        .iter()
+        .map(|shot| PoseRow {
+            photo: shot.name.clone(),
+            camera: None,
+            center: shot.actual.0 + recipe.origin,
+            orientation: Orientation::TiltPan(shot.actual.1),
+        })
+        .collect();
+    write(
+        &folder.join("poses.csv"),
+        files::poses::poses_csv(&rows).map_err(report)?.as_bytes(),
+    )?;
+    write(
+        &folder.join("ost.yaml"),
+        files::calibration::ost_yaml(&recipe.camera)
+            .map_err(report)?
+            .as_bytes(),
+    )?;
+    let flight = FlightText {
+        name: recipe.name,
+        unit: LengthUnit::Metre,
+        surface,
+        camera: "ost.yaml",
+        poses: "poses.csv",
+        photos: Some("photos"),
+    };
+    write(
+        &folder.join("flight.toml"),
+        files::flight::flight_toml(&flight)
+            .map_err(report)?
+            .as_bytes(),
+    )
+}
+
+/// The true cumulative passing by mass on ISO 565's R20/3 sieves, fines included: below the smallest
+/// fragment it is the material's distribution, of which the fines are the part that is not bodies.
+fn reference(scene: &Scene, recipe: &Recipe) -> Result<String, Fault> {
+    let pile = scene.pile();
+    let fines = recipe.pile.sizes.passing(recipe.pile.smallest);
+    let total: f64 = pile.fragments.iter().map(|f| pile.volume(f)).sum();
+    let passing = |size: f64| {
+        if size <= recipe.pile.smallest {
+            return recipe.pile.sizes.passing(size);
+        }
+        let passed = pile.fragments.iter().filter(|f| f.size <= size);
+        fines + (1.0 - fines) * passed.map(|f| pile.volume(f)).sum::<f64>() / total
+    };
+    let largest = recipe.pile.sizes.size_at(1.0) * 1000.0;
+    let openings = SieveSeries::Iso565.openings_mm(largest / 100.0, largest * 1.2);
+    let rows: Vec<(f64, f64)> = openings
+        .into_iter()
+        .map(|mm| (mm, 100.0 * passing(mm / 1000.0)))
+        .collect();
+    files::reference::reference_csv(&rows).map_err(|e| Fault::new(e, "report this"))
+}
+
+fn take_photos(
+    folder: &Path,
+    scene: &Scene,
+    recipe: &Recipe,
+    shots: &[Shot],
+    look: &Look,
+    options: &SampleOptions,
+    progress: &Progress,
+) -> Result<(), Fault> {
+    let report = |error: String| Fault::new(error, "report this");
+    let photos = folder.join("photos");
+    fs::create_dir(&photos).map_err(|error| cannot_write(&error))?;
+    let labels = folder.join("labels");
+    if options.labels {
+        fs::create_dir(&labels).map_err(|error| cannot_write(&error))?;
+    }
+    progress.stage("taking photos");
+    let camera = &recipe.camera;
+    for (index, shot) in shots.iter().enumerate() {
+        progress.advance(index as u64, shots.len() as u64)?;
+        let noise = options.seed ^ ((index as u64 + 1) << 32);
+        let photo = photo::take(scene, camera, &shot.pose(), look, noise, progress)?;
+        let jpeg = files::photo::jpeg(&photo.image, 82, &metadata(recipe, shot)).map_err(report)?;
+        write(&photos.join(&shot.name), &jpeg)?;
+        if options.labels {
+            let label = files::label::label_png(camera.width, camera.height, &photo.labels);
+            let name = shot.name.replace(".jpg", ".png");
+            write(&labels.join(name), &label.map_err(report)?)?;
+        }
+    }
+    Ok(())
+}
+
+/// What the camera writes about a photo.
+fn metadata(recipe: &Recipe, shot: &Shot) -> PhotoMetadata {
+    let camera = &recipe.camera;
+    // A one-inch-third sensor is 4.8 mm wide.
+    let millimetres = camera.fx / f64::from(camera.width) * 4.8;
+    let [tilt, pan] = shot.actual.1;
+    let outdoors = recipe.epsg.is_some();
+    PhotoMetadata {
+        make: Some("fragscale".to_owned()),
+        model: Some("simulated".to_owned()),
+        date_time_original: Some("2017:01:01 12:00:00".to_owned()),
+        exposure_time_s: Some(0.002),
+        f_number: Some(2.8),
+        iso: Some(100),
+        focal_length_mm: Some(millimetres),
+        // 36 mm wide film; `as` saturates.
+        focal_length_35mm: Some((camera.fx / f64::from(camera.width) * 36.0).round() as u16),
+        gps: None,
+        dji: outdoors.then_some(DjiGimbal {
+            roll: 0.0,
+            yaw: pan,
+            pitch: -tilt,
+            relative_altitude: shot.actual.0.z,
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -63,7 +63,7 @@ pub fn take(
             if progress.is_cancelled() {
                 return Err(Fault::new("cancelled", "start it again when you want it"));
             }
-            let caster = RefCell::new(scene.caster()?);
+            let mut caster = scene.caster()?;
             let row = (0..width).map(|x| {
                 let pixel = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
                 let direction = camera.direction_as_shot(pixel).ok();
@@ -73,12 +73,12 @@ pub fn take(
                         origin: pose.center,
                         direction,
                     };
-                    let met = caster.borrow_mut().cast(&ray)?;
+                    let met = caster.cast(&ray)?;
                     Some((direction, met))
                 });
                 let (radiance, label) = match met {
                     Some((direction, met)) => (
-                        look.radiance(&caster, camera, direction, &met),
+                        look.radiance(&mut caster, camera, direction, &met),
                         match met.thing {
                             // A pile has at most 65 534 fragments.
                             Thing::Fragment(index) => (index + 1) as u16,
@@ -105,12 +105,12 @@ impl Look {
     /// The linear radiance that a met point sends back along the ray.
     pub fn radiance(
         &self,
-        caster: &RefCell<SceneCaster<'_>>,
+        caster: &mut SceneCaster<'_>,
         camera: &Camera,
         direction: DVec3,
         met: &Meeting,
     ) -> [f64; 3] {
-        let scene = caster.borrow().scene();
+        let scene = caster.scene();
         let pixel = met.t / camera.fx;
         let (material, spot, turn) = match met.thing {
             Thing::Ground => {
@@ -159,12 +159,14 @@ impl Look {
         };
         let appearance = material.surface(&spot).turned(turn);
         let start = met.point + met.normal * (self.grain * 1e-5);
+        // `shade` asks through a shared closure.
+        let caster = RefCell::new(caster);
         let shadowed = |towards: DVec3| {
             let ray = Ray {
                 origin: start,
                 direction: towards,
             };
-            caster.borrow_mut().cast(&ray).is_some()
+            caster.borrow_mut().is_blocked(&ray)
         };
         let openness = scene.openness(met.point, met.normal);
         self.light

@@ -7,6 +7,7 @@
 //! choice of the lowest place stands for them.
 
 use glam::{DQuat, DVec2, DVec3};
+use rayon::prelude::*;
 
 use super::fragment::Body;
 use super::random::Random;
@@ -16,7 +17,7 @@ use crate::fragmentation::Swebrec;
 use crate::jobs::Progress;
 
 /// How many different bodies there are; fragments are turned and scaled copies.
-const BODIES: usize = 400;
+const BODIES: usize = 300;
 
 /// How many places a fragment tries.
 const PLACES: usize = 5;
@@ -68,12 +69,11 @@ impl Pile {
     /// Where the plan asks for more than [`MOST_FRAGMENTS`], or the work was cancelled.
     pub fn strew(plan: &PilePlan, random: &mut Random, progress: &Progress) -> Result<Self, Fault> {
         progress.stage("breaking rock");
-        let mut bodies = Vec::with_capacity(BODIES);
-        let mut shapes = random.fork(1);
-        for index in 0..BODIES {
-            progress.advance(index as u64, BODIES as u64)?;
-            bodies.push(Body::random(&mut shapes));
-        }
+        let shapes = random.fork(1);
+        let bodies: Vec<Body> = (0..BODIES as u64)
+            .into_par_iter()
+            .map(|index| Body::random(&mut shapes.fork(index)))
+            .collect();
         let mut fragments = draw_sizes(plan, &bodies, &mut random.fork(2))?;
         let mut floor = Heights::over(plan);
         let mut drops = random.fork(3);
@@ -101,7 +101,7 @@ impl Pile {
 /// The distribution is by mass. Drawn by mass, one fragment of size x stands for 1/x3 as many as one
 /// of size 1; so sizes are drawn by mass and kept with the probability (smallest/x)3, which is the
 /// distribution by number.
-fn draw_sizes(
+pub(super) fn draw_sizes(
     plan: &PilePlan,
     bodies: &[Body],
     random: &mut Random,
@@ -150,8 +150,8 @@ struct Shadow {
 
 impl Heights {
     fn over(plan: &PilePlan) -> Self {
-        // A sixth of the smallest fragment, and room for the largest beyond the rim.
-        let cell = plan.smallest / 4.0;
+        // A third of the smallest fragment, and room for the largest beyond the rim.
+        let cell = plan.smallest / 3.0;
         let reach = plan.half_extent + DVec2::splat(2.0 * plan.sizes.size_at(1.0));
         let count = |length: f64| (length / cell).ceil().max(1.0) as usize;
         let (columns, rows) = (count(2.0 * reach.x), count(2.0 * reach.y));
@@ -203,9 +203,14 @@ impl Heights {
         let planes: Vec<(DVec3, f64)> = body
             .planes()
             .iter()
-            .map(|&(normal, offset)| (fragment.rotation * normal, offset * fragment.size))
+            .map(|plane| {
+                (
+                    fragment.rotation * plane.normal,
+                    plane.offset * fragment.size,
+                )
+            })
             .collect();
-        let reach = body.radius() * fragment.size;
+        let reach = body.bounding_radius() * fragment.size;
         let index = |x: f64, most: usize| ((x / self.cell).max(0.0) as usize).min(most - 1);
         let low = at - self.min - DVec2::splat(reach);
         let high = at - self.min + DVec2::splat(reach);
@@ -245,14 +250,12 @@ fn resting_rotation(body: &Body, random: &mut Random) -> DQuat {
     let lowest = body
         .planes()
         .iter()
-        .map(|&(normal, offset)| (normal, offset * random.range(1.0, 1.35)))
+        .map(|plane| (plane.normal, plane.offset * random.range(1.0, 1.35)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map_or(DVec3::NEG_Z, |(normal, _)| normal);
     let down = DQuat::from_rotation_arc(lowest, DVec3::NEG_Z);
     let turn = DQuat::from_rotation_z(random.range(0.0, std::f64::consts::TAU));
     // Nothing in a heap lies quite level.
-    let tilt = DQuat::from_scaled_axis(
-        DVec3::new(random.normal(), random.normal(), 0.0) * 0.12,
-    );
+    let tilt = DQuat::from_scaled_axis(DVec3::new(random.normal(), random.normal(), 0.0) * 0.12);
     (tilt * turn * down).normalize()
 }

@@ -3,7 +3,7 @@
 
 use glam::{DQuat, DVec2, DVec3};
 use parry3d_f64::bounding_volume::Aabb;
-use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 
 use super::pile::{Fragment, Pile, PilePlan};
 use super::terrain::Terrain;
@@ -147,8 +147,13 @@ impl Scene {
         let other_sides = self.pile.bodies[fragment.body]
             .planes()
             .iter()
-            .filter(|(normal, _)| normal.dot(own) < 0.999)
-            .map(|&(normal, offset)| (offset * fragment.size - normal.dot(point), normal));
+            .filter(|plane| plane.normal.dot(own) < 0.999)
+            .map(|plane| {
+                (
+                    plane.offset * fragment.size - plane.normal.dot(point),
+                    plane.normal,
+                )
+            });
         let edge = other_sides.min_by(|a, b| a.0.total_cmp(&b.0));
         let edge = edge.map(|(distance, normal)| (distance.max(0.0), normal));
         (point, edge, fragment.size)
@@ -206,7 +211,8 @@ impl Scene {
         let direction = back * ray.direction / fragment.size;
         let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
         let mut normal = None;
-        for &(plane, offset) in self.pile.bodies[fragment.body].planes() {
+        for side in self.pile.bodies[fragment.body].planes() {
+            let (plane, offset) = (side.normal, side.offset);
             let towards = plane.dot(direction);
             let distance = offset - plane.dot(origin);
             if towards < 0.0 {
@@ -231,8 +237,44 @@ impl<'a> SceneCaster<'a> {
         self.scene
     }
 
+    /// Whether anything stands in the way of a ray. Cheaper than the nearest thing: the first one
+    /// found will do.
+    pub fn is_blocked(&mut self, ray: &Ray) -> bool {
+        let scene = self.scene;
+        let parry_ray = parry3d_f64::query::Ray::new(ray.origin, ray.direction);
+        let on_the_way = |node: &BvhNode| node.cast_ray(&parry_ray, f64::MAX) < f64::MAX;
+        let mut near = scene.hierarchy.leaves(on_the_way);
+        if near.any(|index| {
+            let fragment = scene.pile.fragments.get(index as usize);
+            fragment.is_some_and(|fragment| scene.meet_fragment(ray, fragment).is_some())
+        }) {
+            return true;
+        }
+        if scene
+            .spheres
+            .iter()
+            .any(|sphere| meet_sphere(ray, sphere).is_some())
+        {
+            return true;
+        }
+        // A ray that rises more steeply than the heap leaves it for good.
+        let level = ray.direction.truncate().length();
+        ray.direction.z < scene.terrain.steepest() * level && self.ground.cast(ray).is_some()
+    }
+
     /// The nearest thing that a ray (unit direction) meets.
     pub fn cast(&mut self, ray: &Ray) -> Option<Meeting> {
+        let spheres = &self.scene.spheres;
+        self.cast_among(ray, spheres)
+    }
+
+    /// The nearest ground or fragment that a ray meets: scale spheres are put on the pile, they are
+    /// not of it.
+    pub fn cast_at_surface(&mut self, ray: &Ray) -> Option<Meeting> {
+        self.cast_among(ray, &[])
+    }
+
+    fn cast_among(&mut self, ray: &Ray, spheres: &[Sphere]) -> Option<Meeting> {
         let scene = self.scene;
         let mut nearest: Option<Meeting> = None;
         let mut keep = |t: f64, normal: DVec3, thing: Thing| {
@@ -256,14 +298,18 @@ impl<'a> SceneCaster<'a> {
         {
             keep(t, normal, Thing::Fragment(index as usize));
         }
-        for (index, sphere) in scene.spheres.iter().enumerate() {
+        for (index, sphere) in spheres.iter().enumerate() {
             if let Some(t) = meet_sphere(ray, sphere) {
                 let normal = (ray.at(t) - sphere.center) / sphere.radius;
                 keep(t, normal, Thing::Sphere(index));
             }
         }
         if let Some(hit) = self.ground.cast(ray) {
-            keep(hit.t, scene.ground_normal(hit.point.truncate()), Thing::Ground);
+            keep(
+                hit.t,
+                scene.ground_normal(hit.point.truncate()),
+                Thing::Ground,
+            );
         }
         nearest
     }
@@ -279,7 +325,10 @@ impl Surroundings {
         let min = -reach;
         let mut z: Vec<f64> = (0..rows * columns)
             .map(|index| {
-                let at = DVec2::new((index % columns) as f64 + 0.5, (index / columns) as f64 + 0.5);
+                let at = DVec2::new(
+                    (index % columns) as f64 + 0.5,
+                    (index / columns) as f64 + 0.5,
+                );
                 plan.terrain.height(min + at * cell)
             })
             .collect();
@@ -291,7 +340,8 @@ impl Surroundings {
                 (fragment.center.truncate() - min + DVec2::splat(half)) / cell,
             );
             for row in low.y.max(0.0) as usize..=(high.y.max(0.0) as usize).min(rows - 1) {
-                for column in low.x.max(0.0) as usize..=(high.x.max(0.0) as usize).min(columns - 1) {
+                for column in low.x.max(0.0) as usize..=(high.x.max(0.0) as usize).min(columns - 1)
+                {
                     let top = &mut z[row * columns + column];
                     *top = top.max(fragment.center.z + half * 0.6);
                 }
@@ -334,7 +384,10 @@ impl Surroundings {
             DVec2::new((self.columns - 1) as f64, (self.rows - 1) as f64),
         );
         let (column, row) = (place.x as usize, place.y as usize);
-        let (right, down) = ((column + 1).min(self.columns - 1), (row + 1).min(self.rows - 1));
+        let (right, down) = (
+            (column + 1).min(self.columns - 1),
+            (row + 1).min(self.rows - 1),
+        );
         let z = |row: usize, column: usize| self.z[row * self.columns + column];
         let share = place.fract();
         let top = z(row, column) * (1.0 - share.x) + z(row, right) * share.x;

@@ -6,6 +6,7 @@
 //! and a ring around the pile, as a pilot flies it for a reconstruction.
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 use super::flight_plan::FlightPlan;
 use super::random::Random;
@@ -46,6 +47,10 @@ pub fn survey(plan: &FlightPlan, random: &mut Random) -> Vec<Pose> {
     shots.iter().map(super::flight_plan::Shot::pose).collect()
 }
 
+/// In how many portions the cloud is drawn, each with random numbers of its own: the cloud is the
+/// same on any number of cores.
+const PORTIONS: usize = 64;
+
 /// Draws the cloud, in the lab's frame.
 ///
 /// # Errors
@@ -55,19 +60,56 @@ pub fn cloud(
     camera: &Camera,
     survey: &[Pose],
     plan: &CloudPlan,
-    color_of: impl Fn(&Meeting) -> [u8; 3],
-    random: &mut Random,
+    color_of: impl Fn(&mut SceneCaster<'_>, &Meeting) -> [u8; 3] + Sync,
+    random: &Random,
     progress: &Progress,
 ) -> Result<Cloud, Fault> {
     progress.stage("reconstructing the cloud");
+    let portions: Vec<Cloud> = (0..PORTIONS)
+        .into_par_iter()
+        .map(|portion| {
+            let count = plan.points * (portion + 1) / PORTIONS - plan.points * portion / PORTIONS;
+            let plan = CloudPlan {
+                points: count,
+                ..*plan
+            };
+            let mut random = random.fork(portion as u64);
+            draw(
+                scene,
+                camera,
+                survey,
+                &plan,
+                &color_of,
+                &mut random,
+                progress,
+            )
+        })
+        .collect::<Result<_, Fault>>()?;
+    let mut cloud = Cloud::default();
+    for portion in portions {
+        cloud.points.extend(portion.points);
+        cloud.colors.extend(portion.colors);
+    }
+    Ok(cloud)
+}
+
+fn draw(
+    scene: &Scene,
+    camera: &Camera,
+    survey: &[Pose],
+    plan: &CloudPlan,
+    color_of: &impl Fn(&mut SceneCaster<'_>, &Meeting) -> [u8; 3],
+    random: &mut Random,
+    progress: &Progress,
+) -> Result<Cloud, Fault> {
     let mut caster = scene.caster()?;
     let mut cloud = Cloud::default();
     let mut tries = 0_usize;
     while cloud.points.len() < plan.points {
-        if tries % 1024 == 0 {
-            progress.advance(cloud.points.len() as u64, plan.points as u64)?;
-        }
         tries += 1;
+        if progress.is_cancelled() {
+            return Err(Fault::new("cancelled", "start it again when you want it"));
+        }
         if tries > plan.points * 50 {
             return Err(Fault::new(
                 "the survey sees too little of the pile three times",
@@ -99,8 +141,9 @@ pub fn cloud(
         } else {
             met.point + sideways + along
         };
+        let color = color_of(&mut caster, &met);
         cloud.points.push(point);
-        cloud.colors.push(color_of(&met));
+        cloud.colors.push(color);
     }
     Ok(cloud)
 }

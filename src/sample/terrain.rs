@@ -36,6 +36,14 @@ pub enum Terrain {
 }
 
 impl Terrain {
+    /// The steepest slope anywhere, as a tangent.
+    pub fn steepest(&self) -> f64 {
+        match *self {
+            Self::Windrow { slope, .. } | Self::Cone { slope, .. } => slope,
+            Self::Bench { face, slope, .. } => face.max(slope),
+        }
+    }
+
     /// The height above the floor at a place.
     pub fn height(&self, at: DVec2) -> f64 {
         match *self {

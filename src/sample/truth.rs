@@ -18,7 +18,12 @@ pub const DENSITY: f64 = 2700.0;
 ///
 /// # Errors
 /// Where the scene cannot be met.
-pub fn truth(scene: &Scene, camera: &Camera, shots: &[Shot], origin: DVec3) -> Result<Value, Fault> {
+pub fn truth(
+    scene: &Scene,
+    camera: &Camera,
+    shots: &[Shot],
+    origin: DVec3,
+) -> Result<Value, Fault> {
     let mut caster = scene.caster()?;
     let photos: Vec<Value> = shots
         .iter()
@@ -41,9 +46,9 @@ pub fn truth(scene: &Scene, camera: &Camera, shots: &[Shot], origin: DVec3) -> R
         .iter()
         .map(|fragment| {
             let volume = pile.volume(fragment);
-            // Seven digits: a micrometre of a metre.
-            let digits = |x: f64| format!("{x:.6e}").parse::<f64>().unwrap_or(x);
-            json!([digits(fragment.size), digits(volume), digits(volume * DENSITY)])
+            // Five digits: a ten-thousandth of a fragment.
+            let digits = |x: f64| format!("{x:.4e}").parse::<f64>().unwrap_or(x);
+            json!([digits(fragment.size), digits(volume)])
         })
         .collect();
     let spheres: Vec<Value> = scene
@@ -58,7 +63,7 @@ pub fn truth(scene: &Scene, camera: &Camera, shots: &[Shot], origin: DVec3) -> R
         "photos": photos,
         "spheres": spheres,
         "density_kg_per_m3": DENSITY,
-        "fragment_columns": ["sieve_size_m", "volume_m3", "mass_kg"],
+        "fragment_columns": ["sieve_size_m", "volume_m3"],
         "fragments": fragments,
     }))
 }
@@ -85,7 +90,9 @@ fn image(
             origin: pose.center,
             direction,
         };
-        caster.cast(&ray).map(|met| (direction * met.t, met))
+        caster
+            .cast_at_surface(&ray)
+            .map(|met| (direction * met.t, met))
     });
     let scale = |pixels: f64, a: usize, b: usize| {
         let (a, b) = (corners[a].as_ref()?, corners[b].as_ref()?);
@@ -96,7 +103,8 @@ fn image(
             let on = match met.thing {
                 Thing::Ground => json!("ground"),
                 Thing::Fragment(index) => json!(index + 1),
-                Thing::Sphere(_) => json!("sphere"),
+                // Not met at the surface.
+                Thing::Sphere(_) => Value::Null,
             };
             json!({"point": (met.point + origin).to_array(), "on": on})
         })

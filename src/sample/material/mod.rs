@@ -206,7 +206,7 @@ mod tests {
             up: direction(i, 4),
             size: 0.02 + unit(i, 5),
             pixel: 0.02 * unit(i, 6),
-            edge: (i % 3 > 0).then(|| Edge {
+            edge: (!i.is_multiple_of(3)).then(|| Edge {
                 distance: 0.05 * unit(i, 7),
                 normal: direction(i, 8),
             }),

@@ -1,5 +1,4 @@
-//! The bundled flight: a windrow of broken rock whose surface is a formula, so that every scale is
-//! known in closed form.
+//! A windrow of broken rock whose surface is a formula, so that every scale is known in closed form.
 //!
 //! ```text
 //! z(x, y) = profile(x) + 0.02 y
@@ -9,7 +8,7 @@
 //! crushed rock), a crest, a steeper flank of 4/5, floor. The points lie on a lattice on whose lines
 //! the profile bends, so any triangulation of it is the formula itself.
 //!
-//! `FRAGSCALE_REGENERATE=1 cargo test --test bundled_flight` writes the files anew.
+//! `FRAGSCALE_REGENERATE=1 cargo test --test windrow` writes the files anew.
 
 #![allow(
     clippy::expect_used,
@@ -62,7 +61,7 @@ const CX: f64 = 637.25;
 const CY: f64 = 361.75;
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/windrow")
 }
 
 fn profile(x: f64) -> f64 {
@@ -92,7 +91,7 @@ fn files() -> Vec<(&'static str, String)> {
         }
     }
     let pile = format!(
-        "ply\nformat ascii 1.0\ncomment the bundled flight of fragscale: z = profile(x) + {SLOPE} y\n\
+        "ply\nformat ascii 1.0\ncomment a windrow: z = profile(x) + {SLOPE} y\n\
          element vertex {count}\nproperty double x\nproperty double y\nproperty double z\n\
          property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n{points}"
     );
@@ -108,11 +107,10 @@ fn files() -> Vec<(&'static str, String)> {
          distortion_model: plumb_bob\n\
          distortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [-0.021, 0.011, 0.0004, -0.0003, 0]\n"
     );
-    let flight =
-        "format = 1\nname = \"Sample windrow\"\n\n[world]\nunit = \"m\"\nground = \"auto\"\n\n\
+    let flight = "format = 1\nname = \"Windrow\"\n\n[world]\nunit = \"m\"\nground = \"auto\"\n\n\
         [surface]\nfile = \"pile.ply\"\n\n[[camera]]\nfile = \"ost.yaml\"\n\n\
         [photos]\nposes = \"poses.csv\"\n"
-            .to_owned();
+        .to_owned();
     vec![
         ("pile.ply", pile),
         ("poses.csv", poses),
@@ -129,7 +127,7 @@ fn the_files_are_what_this_test_makes() {
             std::fs::create_dir_all(folder()).expect("the folder");
             std::fs::write(&path, &text).expect("the file");
         }
-        let stored = std::fs::read_to_string(&path).expect("the bundled file");
+        let stored = std::fs::read_to_string(&path).expect("the stored file");
         assert!(stored == text, "{name} differs; regenerate it");
     }
 }
@@ -148,10 +146,7 @@ fn corner_point(origin: DVec3, direction: DVec3) -> DVec3 {
             nearest = nearest.min(t);
         }
     }
-    assert!(
-        nearest.is_finite(),
-        "every corner of the sample is on the surface"
-    );
+    assert!(nearest.is_finite(), "every corner is on the surface");
     origin + direction * nearest
 }
 
@@ -159,7 +154,7 @@ fn corner_point(origin: DVec3, direction: DVec3) -> DVec3 {
 #[test]
 fn the_scales_are_known_in_closed_form() {
     let report = scales_json(&folder().join("flight.toml"), &["--unit", "m"]);
-    assert_eq!(report["flight"], "Sample windrow");
+    assert_eq!(report["flight"], "Windrow");
     let photos = report["photos"].as_array().expect("photos");
     assert_eq!(photos.len(), POSES.len());
     for (photo, (name, center, [tilt, pan])) in photos.iter().zip(POSES) {

@@ -1,0 +1,5 @@
+//! Size distributions of broken rock.
+
+mod swebrec;
+
+pub use swebrec::{Swebrec, SwebrecError};
