@@ -23,16 +23,14 @@ fn options() -> SampleOptions {
     }
 }
 
-/// A preset with a small pile, for tests: three by two photos' worth.
+/// A preset with a small pile, for tests: two photos.
 fn small(options: &SampleOptions) -> Recipe {
     let mut recipe = recipe(options).unwrap();
     let k = recipe.sphere / 0.06;
-    recipe.pile.half_extent = DVec2::new(0.42, 0.26) * k;
-    recipe.pile.smallest = 0.006 * k;
-    recipe.reach = DVec2::new(1.2, 0.9) * k;
-    recipe.flight.count = [2, 2];
-    // So near that no scale sphere covers a corner.
-    recipe.flight.spacing = DVec2::new(0.16, 0.08) * k;
+    recipe.pile.half_extent = DVec2::new(0.42, 0.46) * k;
+    recipe.pile.smallest = 0.007 * k;
+    recipe.reach = DVec2::new(1.2, 1.2) * k;
+    recipe.flight.count = [1, 2];
     recipe
 }
 
