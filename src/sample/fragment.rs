@@ -442,18 +442,6 @@ mod tests {
         assert!((mean(short) - 1.4 / 3.0).abs() < limit);
     }
 
-    /// Not a claim, a clock: `cargo test --release -- --ignored --nocapture time_of_a_body`.
-    #[test]
-    #[ignore = "a measurement"]
-    fn time_of_a_body() {
-        let mut random = Random::new(1);
-        let start = std::time::Instant::now();
-        for _ in 0..1000 {
-            std::hint::black_box(Body::random(&mut random));
-        }
-        println!("{:?} a body", start.elapsed() / 1000);
-    }
-
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 

@@ -8,7 +8,7 @@
 //! This room stands on floor 5, one above `formats` and `exports`: it writes whole folders through
 //! `exports`, and its tests read them back through `formats`.
 
-mod files;
+pub mod files;
 mod flight_plan;
 mod fragment;
 mod light;

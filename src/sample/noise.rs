@@ -10,7 +10,7 @@ use glam::{DMat3, DVec3};
 
 /// Hashes 64 bits to 64 bits (the finaliser of SplitMix64); a bijection.
 #[must_use]
-pub const fn hash(value: u64) -> u64 {
+pub(super) const fn hash(value: u64) -> u64 {
     let mut h = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
     h = (h ^ (h >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     h = (h ^ (h >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -20,13 +20,13 @@ pub const fn hash(value: u64) -> u64 {
 /// A number in 0..1 (1 excluded) for `seed`; `channel` counts independent draws.
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "53 bits fit an f64")]
-pub fn unit(seed: u64, channel: u64) -> f64 {
+pub(super) fn unit(seed: u64, channel: u64) -> f64 {
     (hash(seed ^ hash(channel)) >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
 }
 
 /// A direction, evenly spread over the sphere, for `seed`; length 1.
 #[must_use]
-pub fn direction(seed: u64, channel: u64) -> DVec3 {
+pub(super) fn direction(seed: u64, channel: u64) -> DVec3 {
     let height = 2.0 * unit(seed, channel) - 1.0;
     let (sin, cos) = (unit(seed, channel ^ 0x5bd1) * std::f64::consts::TAU).sin_cos();
     let radius = (1.0 - height * height).max(0.0).sqrt();
@@ -46,7 +46,7 @@ fn three(h: u64) -> DVec3 {
 
 /// Three even draws from -1..1 for `seed`: a cheap [`direction`] of uneven length.
 #[must_use]
-pub fn jitter(seed: u64) -> DVec3 {
+pub(super) fn jitter(seed: u64) -> DVec3 {
     three(hash(seed))
 }
 
@@ -93,7 +93,7 @@ const fn corner(term: u64) -> u64 {
 /// Gradient noise and its derivative at `point` (lattice spacing 1). Mean 0, within -1.5..1.5, in
 /// practice within -0.9..0.9; twice continuously differentiable; 0 on the lattice.
 #[must_use]
-pub fn gradient_noise(point: DVec3, seed: u64) -> (f64, DVec3) {
+pub(super) fn gradient_noise(point: DVec3, seed: u64) -> (f64, DVec3) {
     let at = floor(point);
     let f = point - at;
     let [[x0, x1], [y0, y1], [z0, z1]] = lattice(at);
@@ -159,7 +159,7 @@ fn octaves_of(octaves: f64) -> impl Iterator<Item = (u64, f64)> {
 /// as fine and `gain` times as strong. A fraction of an octave fades the finest in, so that a
 /// texture loses detail with distance without a seam.
 #[must_use]
-pub fn fbm(point: DVec3, seed: u64, octaves: f64, gain: f64) -> (f64, DVec3) {
+pub(super) fn fbm(point: DVec3, seed: u64, octaves: f64, gain: f64) -> (f64, DVec3) {
     let (mut value, mut slope) = (0.0, DVec3::ZERO);
     let (mut octave_from_point, mut strength) = (DMat3::IDENTITY, 1.0);
     for (index, part) in octaves_of(octaves) {
@@ -178,7 +178,7 @@ pub fn fbm(point: DVec3, seed: u64, octaves: f64, gain: f64) -> (f64, DVec3) {
 /// A fractal sum of ridges, `1 - |noise|` squared (Musgrave's ridged multifractal, without its
 /// feedback), scaled to 0..1: near 1 along sheets, as cracks and veins run.
 #[must_use]
-pub fn ridged(point: DVec3, seed: u64, octaves: f64) -> f64 {
+pub(super) fn ridged(point: DVec3, seed: u64, octaves: f64) -> f64 {
     let (mut value, mut total, mut strength) = (0.0, 0.0, 1.0);
     let mut at = point;
     for (index, part) in octaves_of(octaves) {
@@ -194,7 +194,7 @@ pub fn ridged(point: DVec3, seed: u64, octaves: f64) -> f64 {
 
 /// What [`cells`] knows about a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cell {
+pub(super) struct Cell {
     /// Distance to the nearest feature point.
     pub nearest: f64,
     /// Distance to the second nearest; `second - nearest` is 0 on the border of two cells.
@@ -208,7 +208,7 @@ pub struct Cell {
 /// Worley's cells: one feature point in every unit cube. Looks at the 27 cubes around `point`,
 /// but only as far as the second nearest found so far reaches.
 #[must_use]
-pub fn cells(point: DVec3, seed: u64) -> Cell {
+pub(super) fn cells(point: DVec3, seed: u64) -> Cell {
     let at = floor(point);
     let f = point - at;
     let [[x, x1], [y, y1], [z, z1]] = lattice(at);
@@ -258,7 +258,7 @@ pub fn cells(point: DVec3, seed: u64) -> Cell {
 
 /// 0 below `low`, 1 above `high`, a cubic between (Hermite's).
 #[must_use]
-pub fn smoothstep(low: f64, high: f64, value: f64) -> f64 {
+pub(super) fn smoothstep(low: f64, high: f64, value: f64) -> f64 {
     let t = ((value - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }

@@ -17,7 +17,7 @@ use crate::jobs::Progress;
 
 /// What a scene looks like.
 #[derive(Debug, Clone)]
-pub struct Look {
+pub(super) struct Look {
     /// The fragments.
     pub rock: Material,
     /// The heap's fines between them.
@@ -36,7 +36,7 @@ pub struct Look {
 
 /// A photo with its truth.
 #[derive(Debug)]
-pub struct Photo {
+pub(super) struct Photo {
     /// As shot.
     pub image: RgbImage,
     /// Which fragment each pixel shows: its number from 1, or 0 for ground and spheres.
@@ -47,7 +47,7 @@ pub struct Photo {
 ///
 /// # Errors
 /// Where the scene cannot be met, or on cancel.
-pub fn take(
+pub(super) fn take(
     scene: &Scene,
     camera: &Camera,
     pose: &Pose,
@@ -103,7 +103,7 @@ pub fn take(
 
 impl Look {
     /// The linear radiance that a met point sends back along the ray.
-    pub fn radiance(
+    pub(super) fn radiance(
         &self,
         caster: &mut SceneCaster<'_>,
         camera: &Camera,

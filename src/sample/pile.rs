@@ -23,7 +23,7 @@ const BODIES: usize = 300;
 const PLACES: usize = 5;
 
 /// The most fragments: a label image has 16 bits, and 0 is the ground.
-pub const MOST_FRAGMENTS: usize = 65_534;
+pub(super) const MOST_FRAGMENTS: usize = 65_534;
 
 /// What a pile is made of. Lengths in metres.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,7 @@ use crate::sample::noise::{hash, unit};
 
 /// A camera's sensor and its development.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sensor {
+pub(super) struct Sensor {
     /// Signal per radiance; a signal of 1 is white. See [`Sensor::metered`].
     pub exposure: f64,
     /// How much of the light is lost in the corners, 0 to 1 (0.2: a fifth).
@@ -24,7 +24,7 @@ impl Sensor {
     /// A drone's camera exposed so that radiance `average` becomes middle grey (signal 0.18, as
     /// light meters are made); an `average` that is not positive is taken for 1.
     #[must_use]
-    pub fn metered(average: f64, seed: u64) -> Self {
+    pub(super) fn metered(average: f64, seed: u64) -> Self {
         let average = if average > 0.0 { average } else { 1.0 };
         Self {
             exposure: 0.18 / average,
@@ -38,7 +38,7 @@ impl Sensor {
     /// The linear signal of one pixel, noise included: 1 is white, a little below 0 is noise.
     /// `x` and `y` count pixels from the top left, `size` is (width, height).
     #[must_use]
-    pub fn expose(&self, radiance: [f64; 3], x: u32, y: u32, size: (u32, u32)) -> [f64; 3] {
+    pub(super) fn expose(&self, radiance: [f64; 3], x: u32, y: u32, size: (u32, u32)) -> [f64; 3] {
         let (width, height) = (f64::from(size.0.max(1)), f64::from(size.1.max(1)));
         let (dx, dy) = (
             (f64::from(x) + 0.5) * 2.0 - width,
@@ -63,7 +63,7 @@ impl Sensor {
     /// The 8-bit sRGB pixel for a radiance: [`expose`](Self::expose), [`tone`], [`srgb`]. Rounds
     /// with a dither of its own noise, which leaves no bands.
     #[must_use]
-    pub fn develop(&self, radiance: [f64; 3], x: u32, y: u32, size: (u32, u32)) -> [u8; 3] {
+    pub(super) fn develop(&self, radiance: [f64; 3], x: u32, y: u32, size: (u32, u32)) -> [u8; 3] {
         self.expose(radiance, x, y, size)
             .map(|signal| srgb(tone(signal)))
     }
@@ -72,7 +72,7 @@ impl Sensor {
 /// The camera's curve: straight to 0.5, above that a shoulder that reaches 1 at infinity (at
 /// a signal of 2 it has come to 0.95), so that sunlit dust is not cut off.
 #[must_use]
-pub fn tone(signal: f64) -> f64 {
+pub(super) fn tone(signal: f64) -> f64 {
     let knee = 0.5;
     if signal <= knee {
         signal.max(0.0)
@@ -84,7 +84,7 @@ pub fn tone(signal: f64) -> f64 {
 
 /// The sRGB byte of a linear value, 0 to 1; beyond that it is cut.
 #[must_use]
-pub fn srgb(linear: f64) -> u8 {
+pub(super) fn srgb(linear: f64) -> u8 {
     let linear = linear.clamp(0.0, 1.0);
     let encoded = if linear <= 0.003_130_8 {
         12.92 * linear

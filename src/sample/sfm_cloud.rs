@@ -35,7 +35,7 @@ const HEIGHT_OVER_BASE: f64 = 2.5;
 const SEEN_BY: usize = 3;
 
 /// The poses of the survey that the cloud comes from.
-pub fn survey(plan: &FlightPlan, random: &mut Random) -> Vec<Pose> {
+pub(super) fn survey(plan: &FlightPlan, random: &mut Random) -> Vec<Pose> {
     let [columns, rows] = plan.count;
     let dense = FlightPlan {
         count: [columns * 4 + 1, rows * 4 + 1],
@@ -55,7 +55,7 @@ const PORTIONS: usize = 64;
 ///
 /// # Errors
 /// Where so little is seen by three photos that the points cannot be found, or on cancel.
-pub fn cloud(
+pub(super) fn cloud(
     scene: &Scene,
     camera: &Camera,
     survey: &[Pose],

@@ -45,7 +45,7 @@ const EFFORT: Effort = Effort {
 
 /// The sieve size of the convex hull of `points`, in their unit; see the head of this file. 0 for
 /// no points and for points on one line.
-pub fn sieve_size(points: &[DVec3]) -> f64 {
+pub(super) fn sieve_size(points: &[DVec3]) -> f64 {
     search(points, &EFFORT)
 }
 

@@ -12,13 +12,13 @@ use crate::fault::Fault;
 use crate::geometry::Ray;
 
 /// Density of the rock, kg/m3: granite.
-pub const DENSITY: f64 = 2700.0;
+pub(super) const DENSITY: f64 = 2700.0;
 
 /// The truth of a flight, as the JSON of truth.json. `origin` is added to every point.
 ///
 /// # Errors
 /// Where the scene cannot be met.
-pub fn truth(
+pub(super) fn truth(
     scene: &Scene,
     camera: &Camera,
     shots: &[Shot],

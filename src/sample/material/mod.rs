@@ -12,7 +12,7 @@ use rock::Rock;
 /// The point that a ray met, in the frame of the body it lies on, so that a texture sticks to its
 /// stone. Lengths in metres, directions of length 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spot {
+pub(super) struct Spot {
     /// Which body: every one has its own tint, grain, veins and stains.
     pub fragment: u64,
     /// The point itself.
@@ -31,7 +31,7 @@ pub struct Spot {
 
 /// The nearest edge: broken rock is rounded and lighter there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Edge {
+pub(super) struct Edge {
     /// How far it is, in metres; the distance to the other face's plane serves as well.
     pub distance: f64,
     /// The outward normal of the face on its other side.
@@ -40,7 +40,7 @@ pub struct Edge {
 
 /// What light meets at a spot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Appearance {
+pub(super) struct Appearance {
     /// The diffuse albedo, linear RGB, each within 0.02..=0.9.
     pub albedo: [f64; 3],
     /// The normal with the fine relief, length 1, in the frame of the [`Spot`].
@@ -54,7 +54,7 @@ pub struct Appearance {
 impl Appearance {
     /// The same in the world's frame, for [`Light::shade`](crate::sample::light::Light::shade).
     #[must_use]
-    pub fn turned(self, world_from_body: DQuat) -> Self {
+    pub(super) fn turned(self, world_from_body: DQuat) -> Self {
         Self {
             normal: world_from_body * self.normal,
             ..self
@@ -64,7 +64,7 @@ impl Appearance {
 
 /// What a body is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Material(Kind);
+pub(super) struct Material(Kind);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
@@ -76,49 +76,49 @@ enum Kind {
 impl Material {
     /// The lab's stones: crushed granite and limestone, washed.
     #[must_use]
-    pub const fn gravel() -> Self {
+    pub(super) const fn gravel() -> Self {
         Self(Kind::Rock(rock::GRAVEL))
     }
 
     /// A pile after the blast: grey to brownish, iron on old joints, dust on top.
     #[must_use]
-    pub const fn blasted_rock() -> Self {
+    pub(super) const fn blasted_rock() -> Self {
         Self(Kind::Rock(rock::BLASTED))
     }
 
     /// A stockpile: one quarry's rock, moved and rained on, less dust, rounder edges.
     #[must_use]
-    pub const fn stockpile() -> Self {
+    pub(super) const fn stockpile() -> Self {
         Self(Kind::Rock(rock::STOCKPILE))
     }
 
     /// The fines between the stones: sand and dust with small pebbles in it.
     #[must_use]
-    pub const fn fines() -> Self {
+    pub(super) const fn fines() -> Self {
         Self(Kind::Ground(ground::FINES))
     }
 
     /// The lab's floor.
     #[must_use]
-    pub const fn concrete_floor() -> Self {
+    pub(super) const fn concrete_floor() -> Self {
         Self(Kind::Ground(ground::CONCRETE))
     }
 
     /// A quarry's floor: driven over, pale, gritty.
     #[must_use]
-    pub const fn quarry_floor() -> Self {
+    pub(super) const fn quarry_floor() -> Self {
         Self(Kind::Ground(ground::QUARRY))
     }
 
     /// The matte red ball that people put on a pile for scale.
     #[must_use]
-    pub const fn painted_sphere() -> Self {
+    pub(super) const fn painted_sphere() -> Self {
         Self(Kind::Paint([0.52, 0.045, 0.035]))
     }
 
     /// What the material looks like at `spot`. A function of its arguments and nothing else.
     #[must_use]
-    pub fn surface(&self, spot: &Spot) -> Appearance {
+    pub(super) fn surface(&self, spot: &Spot) -> Appearance {
         let seen = match &self.0 {
             Kind::Rock(rock) => rock.surface(spot),
             Kind::Ground(ground) => ground.surface(spot),
