@@ -1,8 +1,8 @@
 //! The paper's lab, simulated: a flight whose every answer is known.
 //!
-//! Random convex bodies of known sieve size and volume are heaped on a floor ([`pile`]), photographed
-//! by ray tracing from a flight plan ([`photo`]), and reconstructed as structure from motion would
-//! ([`sfm_cloud`]). The scales that the noise-free geometry gives are written beside it ([`truth`]).
+//! Random convex bodies of known sieve size and volume are heaped on a floor (`pile`), photographed
+//! by ray tracing from a flight plan (`photo`), and reconstructed as structure from motion would
+//! (`sfm_cloud`). The scales that the noise-free geometry gives are written beside it (`truth`).
 //! Everything follows from one seed.
 //!
 //! This room stands on floor 5, one above `formats` and `exports`: it writes whole folders through
