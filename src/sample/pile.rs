@@ -66,7 +66,7 @@ impl Pile {
     /// Strews a pile.
     ///
     /// # Errors
-    /// Where the plan asks for more than [`MOST_FRAGMENTS`], or the work was cancelled.
+    /// Where the plan asks for more than 65 534 fragments, or the work was cancelled.
     pub fn strew(plan: &PilePlan, random: &mut Random, progress: &Progress) -> Result<Self, Fault> {
         progress.stage("breaking rock");
         let shapes = random.fork(1);
