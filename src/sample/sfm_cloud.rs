@@ -1,6 +1,7 @@
 //! A cloud as structure from motion would give it.
 //!
-//! Points lie only where at least three photos of the survey see the surface; their noise is largest
+//! Points lie only where at least three photos of the survey see the surface, more where it has
+//! texture (a matcher finds nothing on a blank wall); their noise is largest
 //! along the viewing ray (a matching error of a fraction of a pixel, divided by the base-to-height
 //! ratio); a few fly. The survey is denser than the photos that are measured: rows with 75 % overlap
 //! and a ring around the pile, as a pilot flies it for a reconstruction.
@@ -30,6 +31,9 @@ pub struct CloudPlan {
 
 /// By how much a matching error grows along the ray: the height over the base of a pair of photos.
 const HEIGHT_OVER_BASE: f64 = 2.5;
+
+/// How far beside a place its texture is looked for, in pixels.
+const BESIDE_PX: f64 = 4.0;
 
 /// How many photos must see a point.
 const SEEN_BY: usize = 3;
@@ -133,6 +137,10 @@ fn draw(
         if !seen_often(&mut caster, camera, survey, first, met.point) {
             continue;
         }
+        let color = color_of(&mut caster, &met);
+        if random.uniform() > texture(&mut caster, camera, &ray, pose, color, &color_of) {
+            continue;
+        }
         let blur = met.t / camera.fx * plan.noise_px;
         let sideways = DVec3::new(random.normal(), random.normal(), random.normal()) * blur;
         let along = direction * (random.normal() * blur * HEIGHT_OVER_BASE);
@@ -141,11 +149,32 @@ fn draw(
         } else {
             met.point + sideways + along
         };
-        let color = color_of(&mut caster, &met);
         cloud.points.push(point);
         cloud.colors.push(color);
     }
     Ok(cloud)
+}
+
+/// How likely a place is matched, 0 to 1: by the contrast with what lies a few pixels beside it.
+fn texture(
+    caster: &mut SceneCaster<'_>,
+    camera: &Camera,
+    ray: &Ray,
+    pose: &Pose,
+    color: [u8; 3],
+    color_of: &impl Fn(&mut SceneCaster<'_>, &Meeting) -> [u8; 3],
+) -> f64 {
+    let beside = ray.direction + pose.rotation.x_axis * (BESIDE_PX / camera.fx);
+    let beside = Ray {
+        origin: ray.origin,
+        direction: beside.normalize(),
+    };
+    let Some(met) = caster.cast(&beside) else {
+        return 0.0;
+    };
+    let brightness = |color: [u8; 3]| color.iter().map(|&part| f64::from(part)).sum::<f64>() / 3.0;
+    let contrast = (brightness(color) - brightness(color_of(caster, &met))).abs();
+    (0.2 + contrast / 20.0).min(1.0)
 }
 
 /// Whether enough photos beside the first see a point.
