@@ -9,6 +9,7 @@
 use glam::{DVec2, DVec3};
 
 use super::distortion::NotInvertible;
+use super::growing::solve_growing;
 use super::polynomial::smallest_positive_root;
 
 /// OpenCV's equidistant distortion. Make it with [`Fisheye::new`].
@@ -72,27 +73,14 @@ impl Fisheye {
         if radius > reach {
             return Err(not_invertible);
         }
-        // The model grows on the whole of [low, high]: Newton, kept inside by bisection.
-        let (mut low, mut high) = (0.0, self.fold_angle);
-        let mut theta = radius.min(self.fold_angle);
-        for _ in 0..200 {
-            let (at, slope) = self.distorted_angle(theta);
-            if at > radius {
-                high = theta;
-            } else {
-                low = theta;
-            }
-            let newton = theta - (at - radius) / slope;
-            let next = if newton > low && newton < high {
-                newton
-            } else {
-                low + (high - low) / 2.0
-            };
-            if next == theta {
-                break;
-            }
-            theta = next;
-        }
+        let start = radius.min(self.fold_angle);
+        let theta = solve_growing(
+            |theta| self.distorted_angle(theta),
+            radius,
+            0.0,
+            self.fold_angle,
+            start,
+        );
         if (self.distorted_angle(theta).0 - radius).abs() > tolerance {
             return Err(not_invertible);
         }

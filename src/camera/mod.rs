@@ -3,6 +3,7 @@
 mod brown;
 mod distortion;
 mod fisheye;
+mod growing;
 mod polynomial;
 mod pose;
 mod visualsfm;

@@ -11,6 +11,7 @@
 use glam::DVec2;
 
 use super::distortion::NotInvertible;
+use super::growing::solve_growing;
 
 /// VisualSFM's radial term.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,34 +45,19 @@ impl VisualSfm {
     /// The measured point of an ideal one, or `None` where there is none.
     pub fn distorted_from_ideal(&self, ideal: DVec2) -> Option<DVec2> {
         let wanted = ideal.length();
-        let value = |r: f64| r * (1.0 + self.k * r * r);
+        let formula = |r: f64| {
+            let s = self.k * r * r;
+            (r * (1.0 + s), 1.0 + 3.0 * s)
+        };
         // The formula grows on [0, high] and reaches `wanted` there, if anywhere.
-        let (mut low, mut high) = (0.0, self.fold_radius().min(wanted.max(1.0) * 2.0));
-        if self.k < 0.0 && value(high) < wanted {
+        let mut high = self.fold_radius().min(wanted.max(1.0) * 2.0);
+        if self.k < 0.0 && formula(high).0 < wanted {
             high = self.fold_radius();
-            if value(high) <= wanted {
+            if formula(high).0 <= wanted {
                 return None;
             }
         }
-        let mut radius = wanted.min(high);
-        for _ in 0..200 {
-            let error = value(radius) - wanted;
-            if error > 0.0 {
-                high = radius;
-            } else {
-                low = radius;
-            }
-            let newton = radius - error / (1.0 + 3.0 * self.k * radius * radius);
-            let next = if newton > low && newton < high {
-                newton
-            } else {
-                low + (high - low) / 2.0
-            };
-            if next == radius {
-                break;
-            }
-            radius = next;
-        }
+        let radius = solve_growing(formula, wanted, 0.0, high, wanted.min(high));
         Some(ideal.try_normalize().unwrap_or(DVec2::ZERO) * radius)
     }
 }

@@ -228,7 +228,15 @@ mod tests {
         fn share_to_size_and_back(x50 in 1e-3..1e3f64, ratio in 1.5..100.0f64, b in 1.0..4.0f64,
                                   p in 0.001..0.999f64) {
             let curve = Swebrec::new(x50, x50 * ratio, b).expect("a curve");
-            prop_assert!(near(curve.passing(curve.size_at(p)), p, 1e-11));
+            let x = curve.size_at(p);
+            // x = xmax exp(-exponent): for b near 1 the fine tail is longer than f64's range, whose
+            // smallest normal number is exp(-708).
+            let exponent = ratio.ln() * (1.0 / p - 1.0).powf(1.0 / b);
+            if exponent > 650.0 {
+                prop_assert!((0.0..1e-270).contains(&x), "{x}");
+            } else {
+                prop_assert!(near(curve.passing(x), p, 1e-11));
+            }
         }
 
         #[test]

@@ -182,6 +182,44 @@ fn the_pile_follows_its_distribution() {
     }
 }
 
+/// reference.csv is the sieve analysis of the very fragments that truth.json lists, on top of the
+/// fines: two files, summed up here once more.
+#[test]
+fn the_reference_is_the_sieve_analysis_of_the_truth() {
+    let options = options();
+    let recipe = small(&options);
+    let folder = made(&options, &recipe);
+    let text = fs::read_to_string(folder.path().join("truth.json")).unwrap();
+    let truth: Value = serde_json::from_str(&text).unwrap();
+    let fragments: Vec<(f64, f64)> = truth["fragments"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|f| (f[0].as_f64().unwrap(), f[1].as_f64().unwrap()))
+        .collect();
+    let total: f64 = fragments.iter().map(|(_, volume)| volume).sum();
+    let fines = recipe.pile.sizes.passing(recipe.pile.smallest);
+    let reference = fs::read_to_string(folder.path().join("reference.csv")).unwrap();
+    let mut sieves_above_the_fines = 0;
+    for line in reference.lines().skip(1) {
+        let (size, percent) = line.split_once(',').unwrap();
+        let (size, percent): (f64, f64) = (size.parse().unwrap(), percent.parse().unwrap());
+        let size = size / 1000.0;
+        if size > recipe.pile.smallest {
+            let passed = fragments.iter().filter(|(s, _)| *s <= size);
+            let share = passed.map(|(_, volume)| volume).sum::<f64>() / total;
+            let expected = 100.0 * (fines + (1.0 - fines) * share);
+            // truth.json has five digits: a fragment at the very opening may change sides.
+            assert!(
+                (percent - expected).abs() < 0.1,
+                "{size}: {percent}, not {expected}"
+            );
+            sieves_above_the_fines += 1;
+        }
+    }
+    assert!(sieves_above_the_fines >= 3);
+}
+
 /// Fragments hardly share space: of points drawn inside fragments few lie inside another one.
 #[test]
 fn fragments_lie_on_each_other_and_not_in_each_other() {

@@ -150,6 +150,21 @@ impl Sheared {
         // Twice the areas that the ray spans with the edges opposite to a, b and c.
         let (u, v, w) = (c.perp_dot(b), a.perp_dot(c), b.perp_dot(a));
         let sum = u + v + w;
+        let longest = (c - b).length().max((a - c).length()).max((b - a).length());
+        if sum.abs() <= slack * longest {
+            // Seen edge-on: the nearest of its edges that the ray passes.
+            let edges = [(a, a_z, b, b_z), (b, b_z, c, c_z), (c, c_z, a, a_z)];
+            return edges
+                .into_iter()
+                .filter_map(|(from, from_z, to, to_z)| {
+                    let way = to - from;
+                    let share = (-from.dot(way) / way.length_squared()).clamp(0.0, 1.0);
+                    let near = (from + way * share).length() <= slack;
+                    near.then_some((from_z + (to_z - from_z) * share) * self.stretch)
+                })
+                .filter(|&t| t > 0.0)
+                .min_by(f64::total_cmp);
+        }
         let side = sum.signum();
         let beside = |area: f64, edge: DVec2| area * side < -slack * edge.length();
         if sum == 0.0 || beside(u, c - b) || beside(v, a - c) || beside(w, b - a) {

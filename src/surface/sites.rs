@@ -138,12 +138,8 @@ impl Sites {
             });
             for i in from..to {
                 if i == from || sorted[i].truncate() != sorted[i - 1].truncate() {
-                    // `kept` <= i: what is overwritten has been looked at, except its (x, y),
-                    // which is the same in the place written to.
-                    sorted.swap(kept, i);
-                    if kept != i {
-                        sorted[i] = sorted[kept];
-                    }
+                    // `kept` <= i: what is overwritten has been looked at.
+                    sorted[kept] = sorted[i];
                     kept += 1;
                 }
             }

@@ -317,6 +317,25 @@ fn utm_coordinates_give_the_same_distances() {
     }
 }
 
+/// Found by the property test below: the ray lies in the plane of the only triangle and enters it on
+/// its rim at (9, 3, 2).
+#[test]
+fn a_ray_in_a_triangles_plane_meets_it_where_it_enters() {
+    let corners = [(8.0, 3.0, 3.0), (9.0, 1.0, 1.0), (11.0, 3.0, 0.0)];
+    let surface = surface(corners.map(|(x, y, z)| DVec3::new(x, y, z)).to_vec());
+    let mesh = surface.to_mesh().unwrap();
+    let origin = DVec3::new(-3.0, 15.0, 20.0);
+    let entry = DVec3::new(9.0, 3.0, 2.0);
+    let ray = Ray {
+        origin,
+        direction: (entry - origin).normalize(),
+    };
+    for mut caster in [surface.caster().unwrap(), mesh.caster().unwrap()] {
+        let hit = caster.cast(&ray).unwrap();
+        assert!((hit.point - entry).length() < 1e-9, "{}", hit.point);
+    }
+}
+
 #[test]
 fn degenerate_clouds_are_named() {
     let point = |x: f64, y: f64| DVec3::new(x, y, 1.0);

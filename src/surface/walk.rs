@@ -222,7 +222,9 @@ impl<'a> Walk<'a> {
             let through =
                 from.above == 0.0 || to.above == 0.0 || (from.above > 0.0) != (to.above > 0.0);
             passed.extend(piece.triangles.into_iter().flatten());
-            if !through && touched.is_some() {
+            // A ray that lies in a triangle's plane meets it where it enters.
+            let within = touched.is_some() && touches(to).is_some();
+            if (within || !through) && touched.is_some() {
                 return (touched, passed);
             }
             if through {
