@@ -12,19 +12,24 @@
 //! holds that):
 //!
 //! ```text
-//! F6  main.rs  cli.rs            the command line
-//! F5  sample/                    the paper's lab, simulated
-//! F5  sample/                    the simulated lab
+//! F7  main.rs  cli.rs            the command line
+//! F6  app/                       the window: state, commands, panels, dialogs
+//! F5  render/                    wgpu: scene -> picture; knows no egui, reads no file
+//!     sample/                    the paper's lab, simulated
 //! F4  formats/  exports/         one file a format; what goes out
-//! F3  flight/                    Flight, validated when made; flight.toml
-//! F2  scale/                     corner rays -> corner points -> scales
+//! F3  flight/                    Flight, validated when made; verdicts; flight.toml
+//!     picture/                   pixels of photos: undistorting, reducing, drawing on them
+//! F2  scale/                     corner rays -> corner points -> scales; footprints
 //! F1  camera/   surface/         intrinsics, distortion, pose | triangulation, ray casting
 //!     fragmentation/             size distributions
 //! F0  geometry/ units.rs jobs.rs fault.rs
 //! ```
 //!
 //! F0 to F3 take no paths, write no log, know no clock and no f32: they return data and typed
-//! errors.
+//! errors. `picture/` alone counts in f32, because colours and strokes are no measurements.
+//!
+//! The features: `render` brings wgpu, `app` the window on top of it; without both the command line
+//! needs no GPU library.
 //!
 //! # Conventions (everywhere)
 //!
@@ -34,6 +39,8 @@
 //! - Pixels: continuous, (0, 0) at the outer corner of the top-left pixel, (W, H) at the opposite
 //!   one; the centre of the first pixel is (0.5, 0.5).
 
+#[cfg(feature = "app")]
+pub mod app;
 pub mod camera;
 pub mod cli;
 pub mod exports;
@@ -43,6 +50,9 @@ pub mod formats;
 pub mod fragmentation;
 pub mod geometry;
 pub mod jobs;
+pub mod picture;
+#[cfg(feature = "render")]
+pub mod render;
 pub mod sample;
 pub mod scale;
 pub mod surface;

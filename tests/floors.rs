@@ -16,7 +16,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Modules and their floors. `fault` is the cellar: a sentence that every floor can say.
-const FLOORS: [(&str, i32); 14] = [
+const FLOORS: [(&str, i32); 17] = [
     ("fault", -1),
     ("geometry", 0),
     ("jobs", 0),
@@ -27,9 +27,12 @@ const FLOORS: [(&str, i32); 14] = [
     ("flight", 3),
     ("exports", 4),
     ("formats", 4),
+    ("picture", 3),
+    ("render", 5),
     ("sample", 5),
-    ("cli", 6),
-    ("main", 6),
+    ("app", 6),
+    ("cli", 7),
+    ("main", 7),
     ("fragmentation", 1),
 ];
 
@@ -124,6 +127,10 @@ fn the_core_stays_pure() {
     for path in files {
         let text = fs::read_to_string(&path).expect("a source");
         for word in ["std::path", "std::fs", "std::time", "f32", "println!"] {
+            // Colours and strokes are no measurements.
+            if word == "f32" && path.starts_with(src.join("picture")) {
+                continue;
+            }
             assert!(!text.contains(word), "{} uses {word}", path.display());
         }
     }

@@ -3,17 +3,20 @@
 mod camera_entry;
 mod file;
 mod known_keys;
+mod verdict;
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 pub use camera_entry::{CameraEntry, CameraSource};
 pub use file::{FlightFile, PhotoSource};
+pub use verdict::{Doubt, Limits, PhotoFileState, Verdict, judge};
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
 use crate::jobs::Progress;
-use crate::scale::{Ground, GroundFinder, ImageKind, PhotoScale};
-use crate::surface::Surface;
+use crate::scale::{Ground, GroundFinder, ImageKind, PhotoScale, ViewFacts};
+use crate::surface::{Surface, SurfaceOptions};
 use crate::units::LengthUnit;
 
 /// One image with its camera and pose.
@@ -29,8 +32,21 @@ pub struct Photo {
     pub trouble: Option<String>,
 }
 
+/// What the engineer can set of a flight while she looks at it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlightSettings {
+    /// The unit of all world coordinates.
+    pub unit: LengthUnit,
+    /// The plane that rays fall back to.
+    pub ground: Ground,
+    /// Which image the scales are for.
+    pub image: ImageKind,
+    /// What is left out of the surface.
+    pub surface: SurfaceOptions,
+}
+
 /// What a flight is made of.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct FlightParts {
     /// For people.
     pub name: String,
@@ -40,8 +56,8 @@ pub struct FlightParts {
     pub ground: Ground,
     /// Which image the scales are for.
     pub image: ImageKind,
-    /// What the rays meet.
-    pub surface: Surface,
+    /// What the rays meet; shared, because settings change more often than surfaces.
+    pub surface: Arc<Surface>,
     /// The devices.
     pub cameras: Vec<Camera>,
     /// In the order of the input.
@@ -163,5 +179,46 @@ impl Flight {
             });
         }
         Ok(outcomes)
+    }
+
+    /// How each photo looks at the surface, in their order; `None` where `outcomes`, those of
+    /// [`Self::scales`], have no scale to look at.
+    ///
+    /// # Errors
+    /// Where the surface cannot be met, or the work was cancelled.
+    pub fn views(
+        &self,
+        outcomes: &[Outcome],
+        progress: &Progress,
+    ) -> Result<Vec<Option<ViewFacts>>, Fault> {
+        let FlightParts {
+            surface,
+            ground,
+            image,
+            photos,
+            ..
+        } = &self.parts;
+        let unusable = |error| Fault::new(format!("{error}"), "check the surface file");
+        let mut caster = surface.caster().map_err(unusable)?;
+        let mut finder = GroundFinder::new(*ground, surface);
+        let mut views = Vec::with_capacity(photos.len());
+        progress.stage("draping footprints");
+        for (photo, outcome) in photos.iter().zip(outcomes) {
+            progress.advance(views.len() as u64, photos.len() as u64)?;
+            let Outcome::Scale(scale) = outcome else {
+                views.push(None);
+                continue;
+            };
+            let view = ViewFacts::compute(
+                self.camera(photo),
+                &photo.pose,
+                *image,
+                scale,
+                &mut finder,
+                &mut caster,
+            );
+            views.push(Some(view.map_err(unusable)?));
+        }
+        Ok(views)
     }
 }

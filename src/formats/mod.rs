@@ -34,7 +34,7 @@ use std::path::{Path, PathBuf};
 pub use cloud_file::CloudFile;
 pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
-pub use open::{OpenOptions, Opened, open_flight};
+pub use open::{OpenOptions, Opened, PhotoFile, open_flight};
 pub use poses_csv::{PoseLine, PosesFile};
 pub use reconstruction::{Observation, PosedPhoto, Reconstruction};
 

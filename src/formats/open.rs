@@ -1,6 +1,7 @@
 //! Opening a flight: flight.toml with the files that it names, or a reconstruction given directly.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::input::{FileError, read_bytes, read_text};
 use super::photo_files::{PhotoFolder, fit_cameras_to_files};
@@ -8,12 +9,13 @@ use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, odm, poses_csv};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{
-    CameraEntry, CameraSource, Flight, FlightFile, FlightParts, Photo, PhotoSource,
+    CameraEntry, CameraSource, Flight, FlightFile, FlightParts, FlightSettings, Photo,
+    PhotoFileState, PhotoSource,
 };
 use crate::geometry::Similarity;
 use crate::jobs::Progress;
 use crate::scale::{Ground, ImageKind};
-use crate::surface::Surface;
+use crate::surface::{Surface, SurfaceOptions};
 use crate::units::LengthUnit;
 
 /// What the user says beside the flight itself.
@@ -21,6 +23,17 @@ use crate::units::LengthUnit;
 pub struct OpenOptions {
     /// A cloud or mesh to use instead of the flight's own surface.
     pub surface: Option<PathBuf>,
+    /// What to set instead of what the flight says.
+    pub settings: Option<FlightSettings>,
+}
+
+/// The image file of a photo.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct PhotoFile {
+    /// Where it is, if it is there.
+    pub path: Option<PathBuf>,
+    /// What is known about it.
+    pub state: PhotoFileState,
 }
 
 /// A flight with what was noticed on the way.
@@ -30,6 +43,16 @@ pub struct Opened {
     pub flight: Flight,
     /// One sentence each, with the file in front where there is one.
     pub warnings: Vec<String>,
+    /// The image file of each photo, in the order of the flight's photos.
+    pub photo_files: Vec<PhotoFile>,
+    /// The coordinate system of the world where the files state one: "EPSG:n" or WKT.
+    pub crs: Option<String>,
+    /// What was set, by the flight's file or by [`OpenOptions`].
+    pub settings: FlightSettings,
+    /// The flight.toml with its path, where the flight came from one.
+    pub file: Option<(PathBuf, FlightFile)>,
+    /// Every file that was read except the photos, in the order of reading.
+    pub inputs: Vec<PathBuf>,
 }
 
 /// Opens a flight.toml, a folder that holds one, or a reconstruction.
@@ -65,9 +88,12 @@ struct Source {
     /// What errors of the whole are blamed on.
     file: PathBuf,
     name: String,
-    unit: LengthUnit,
-    ground: Ground,
-    image: ImageKind,
+    settings: FlightSettings,
+    /// The flight.toml, where there is one.
+    flight_file: Option<FlightFile>,
+    /// Of the reconstruction, then of the surface's file.
+    crs: Option<String>,
+    inputs: Vec<PathBuf>,
     /// The surface's file; `None` for the reconstruction's own points.
     surface: Option<PathBuf>,
     reconstruction_cloud: CloudFile,
@@ -87,9 +113,15 @@ impl Source {
         let mut source = Self {
             file: path.to_owned(),
             name: file.name.clone().unwrap_or_else(|| name_of(path)),
-            unit: file.unit(),
-            ground: file.ground(),
-            image: file.image(),
+            settings: FlightSettings {
+                unit: file.unit(),
+                ground: file.ground(),
+                image: file.image(),
+                surface: SurfaceOptions::default(),
+            },
+            flight_file: None,
+            crs: None,
+            inputs: vec![path.to_owned()],
             surface: file.surface().map(|name| folder.join(name)),
             reconstruction_cloud: CloudFile::default(),
             photo_folder,
@@ -126,6 +158,7 @@ impl Source {
                     })?;
             }
         }
+        source.flight_file = Some(file);
         Ok(source)
     }
 
@@ -133,9 +166,15 @@ impl Source {
         let mut source = Self {
             file: path.to_owned(),
             name: name_of(path),
-            unit: LengthUnit::Metre,
-            ground: Ground::Auto,
-            image: ImageKind::Undistorted,
+            settings: FlightSettings {
+                unit: LengthUnit::Metre,
+                ground: Ground::Auto,
+                image: ImageKind::Undistorted,
+                surface: SurfaceOptions::default(),
+            },
+            flight_file: None,
+            crs: None,
+            inputs: Vec::new(),
             surface: None,
             reconstruction_cloud: CloudFile::default(),
             photo_folder: None,
@@ -165,6 +204,7 @@ impl Source {
         progress: &Progress,
     ) -> Result<Reconstruction, FileError> {
         progress.stage(format!("reading {}", path.display()));
+        self.inputs.push(path.to_owned());
         if let Kind::Odm = kind {
             let project = odm::read_folder(path)?;
             self.surface = self.surface.take().or(project.surface);
@@ -182,6 +222,7 @@ impl Source {
     ) -> Result<(), FileError> {
         let at = |fault| FileError::new(path, fault);
         self.warn(path, &reconstruction.warnings);
+        self.crs = reconstruction.crs.take();
         let sizes = sizes_of_entries(entries).map_err(at)?;
         let given = |name: &str| {
             sizes
@@ -265,7 +306,12 @@ impl Source {
                 .source()
                 .map_err(|fault| FileError::new(path, fault))?
             {
-                CameraSource::File(name) => super::read_camera(&folder.join(name))?,
+                CameraSource::File(name) => {
+                    let file = folder.join(name);
+                    let camera = super::read_camera(&file)?;
+                    self.inputs.push(file);
+                    camera
+                }
                 CameraSource::Inline(camera) => camera,
                 CameraSource::Size(..) => {
                     return Err(at(
@@ -303,6 +349,7 @@ impl Source {
         let poses =
             poses_csv::read(&read_bytes(path)?).map_err(|fault| FileError::new(path, fault))?;
         self.warn(path, &poses.warnings);
+        self.inputs.push(path.to_owned());
         for line in poses.lines {
             let camera = camera_of(&line, cameras).map_err(|fault| FileError::new(path, fault))?;
             self.photos.push(Photo {
@@ -321,8 +368,10 @@ impl Source {
         progress: &Progress,
     ) -> Result<Opened, FileError> {
         let folder = PhotoFolder::new(self.photo_folder.as_deref());
+        let photo_files = folder.files_of(&self.photos);
         fit_cameras_to_files(
             &folder,
+            &photo_files,
             &mut self.cameras,
             &mut self.photos,
             &mut self.warnings,
@@ -331,6 +380,8 @@ impl Source {
             Some(path) => {
                 let file = super::read_cloud(&path, progress)?;
                 self.warn(&path, &file.warnings);
+                self.inputs.push(path.clone());
+                self.crs = self.crs.take().or_else(|| file.crs.clone());
                 (path, file)
             }
             None => (self.file.clone(), self.reconstruction_cloud),
@@ -348,15 +399,16 @@ impl Source {
                 "name a cloud or mesh as [surface] file in a flight.toml, or with --surface",
             )));
         }
+        let settings = options.settings.unwrap_or(self.settings);
         progress.stage("building the surface");
         let surface = Surface::new(cloud.cloud)
             .map_err(|error| at_surface(Fault::new(error.to_string(), "check the surface file")))?;
         let flight = Flight::new(FlightParts {
             name: self.name,
-            unit: self.unit,
-            ground: self.ground,
-            image: self.image,
-            surface,
+            unit: settings.unit,
+            ground: settings.ground,
+            image: settings.image,
+            surface: Arc::new(surface),
             cameras: self.cameras,
             photos: self.photos,
         })
@@ -364,6 +416,11 @@ impl Source {
         Ok(Opened {
             flight,
             warnings: self.warnings,
+            photo_files,
+            crs: self.crs,
+            settings,
+            file: self.flight_file.map(|file| (self.file, file)),
+            inputs: self.inputs,
         })
     }
 

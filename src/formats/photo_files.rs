@@ -6,10 +6,11 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use super::input::open_file;
+use super::open::PhotoFile;
 use super::photo_size;
 use crate::camera::Camera;
 use crate::fault::Fault;
-use crate::flight::Photo;
+use crate::flight::{Photo, PhotoFileState};
 
 /// How many missing files a warning names.
 const NAMED: usize = 3;
@@ -34,6 +35,23 @@ impl<'a> PhotoFolder<'a> {
             .find(|path| path.is_file())
     }
 
+    /// The file of each photo and what is known about it, in their order.
+    pub(super) fn files_of(&self, photos: &[Photo]) -> Vec<PhotoFile> {
+        let file_of = |photo: &Photo| {
+            if self.folder.is_none() {
+                return PhotoFile::default();
+            }
+            let path = self.find(&photo.name);
+            let state = match self.size_of(&photo.name) {
+                None => PhotoFileState::Missing,
+                Some(Ok((width, height))) => PhotoFileState::Found { width, height },
+                Some(Err(fault)) => PhotoFileState::Unreadable(fault.to_string()),
+            };
+            PhotoFile { path, state }
+        };
+        photos.iter().map(file_of).collect()
+    }
+
     /// Width and height of a photo's file; `None` where there is no file.
     pub(super) fn size_of(&self, photo: &str) -> Option<Result<(u32, u32), Fault>> {
         let path = self.find(photo)?;
@@ -48,6 +66,7 @@ impl<'a> PhotoFolder<'a> {
 /// another shape get a trouble. What is done, and what files are missing, is said in `warnings`.
 pub(super) fn fit_cameras_to_files(
     folder: &PhotoFolder<'_>,
+    files: &[PhotoFile],
     cameras: &mut [Camera],
     photos: &mut [Photo],
     warnings: &mut Vec<String>,
@@ -57,17 +76,17 @@ pub(super) fn fit_cameras_to_files(
     };
     let mut missing = Vec::new();
     let mut sizes = Vec::with_capacity(photos.len());
-    for photo in photos.iter() {
-        sizes.push(match folder.size_of(&photo.name) {
-            Some(Ok(size)) => Some(size),
-            Some(Err(fault)) => {
+    for (photo, file) in photos.iter().zip(files) {
+        sizes.push(match &file.state {
+            PhotoFileState::Found { width, height } => Some((*width, *height)),
+            PhotoFileState::Unreadable(fault) => {
                 warnings.push(format!(
                     "photo '{}': {fault}; its size is not checked",
                     photo.name
                 ));
                 None
             }
-            None => {
+            PhotoFileState::Missing | PhotoFileState::NotNamed => {
                 missing.push(photo.name.as_str());
                 None
             }
@@ -179,7 +198,8 @@ mod tests {
         }
         let mut warnings = Vec::new();
         let files = PhotoFolder::new(Some(folder.path()));
-        fit_cameras_to_files(&files, &mut cameras, &mut photos, &mut warnings);
+        let of_photos = files.files_of(&photos);
+        fit_cameras_to_files(&files, &of_photos, &mut cameras, &mut photos, &mut warnings);
         let [camera] = cameras;
         (camera, photos, warnings)
     }

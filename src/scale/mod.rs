@@ -6,13 +6,17 @@
 //! The paper's equation 5 writes T (p, 1), which adds the camera centre to a direction; only the
 //! rotation may act on a direction, and so it does here.
 
+mod footprint;
 mod ground;
+mod view;
 
 use std::fmt;
 
 use glam::{DVec2, DVec3};
 
+pub use footprint::{Footprint, FootprintDetail, FootprintPoint};
 pub use ground::{Ground, GroundFinder};
+pub use view::ViewFacts;
 
 use crate::camera::{Camera, NotInvertible, Pose};
 use crate::geometry::Ray;
@@ -114,15 +118,25 @@ pub struct Corner {
     pub outcome: CornerOutcome,
 }
 
+impl CornerOutcome {
+    /// The place in the world, where there is one.
+    pub fn point(&self) -> Option<DVec3> {
+        match *self {
+            Self::OnSurface { point, .. } | Self::OnGround { point, .. } => Some(point),
+            Self::Nowhere | Self::NoRay(_) => None,
+        }
+    }
+
+    /// Whether the ray met the surface.
+    pub fn is_on_surface(&self) -> bool {
+        matches!(self, Self::OnSurface { .. })
+    }
+}
+
 impl Corner {
     /// The corner point in the world, where there is one.
     pub fn point(&self) -> Option<DVec3> {
-        match self.outcome {
-            CornerOutcome::OnSurface { point, .. } | CornerOutcome::OnGround { point, .. } => {
-                Some(point)
-            }
-            CornerOutcome::Nowhere | CornerOutcome::NoRay(_) => None,
-        }
+        self.outcome.point()
     }
 
     /// The corner point seen from the camera centre, which loses no digit to large coordinates.
@@ -189,11 +203,7 @@ impl PhotoScale {
         let mut used_ground = None;
         let mut corners = CornerName::ALL.map(|name| {
             let pixel = name.pixel(camera);
-            let ray = match image {
-                ImageKind::Undistorted => Ok(camera.direction_undistorted(pixel)),
-                ImageKind::AsShot => camera.direction_as_shot(pixel),
-            };
-            let direction = ray.map(|in_camera| (pose.rotation * in_camera).normalize());
+            let direction = world_direction(camera, pose, image, pixel);
             Corner {
                 name,
                 pixel,
@@ -233,8 +243,7 @@ impl PhotoScale {
 
     /// How many corners lie on the surface.
     pub fn corners_on_surface(&self) -> usize {
-        let on_surface =
-            |corner: &&Corner| matches!(corner.outcome, CornerOutcome::OnSurface { .. });
+        let on_surface = |corner: &&Corner| corner.outcome.is_on_surface();
         self.corners.iter().filter(on_surface).count()
     }
 
@@ -269,6 +278,20 @@ impl PhotoScale {
         }
         notes
     }
+}
+
+/// The unit direction in the world of a pixel's ray.
+fn world_direction(
+    camera: &Camera,
+    pose: &Pose,
+    image: ImageKind,
+    pixel: DVec2,
+) -> Result<DVec3, NotInvertible> {
+    let in_camera = match image {
+        ImageKind::Undistorted => camera.direction_undistorted(pixel),
+        ImageKind::AsShot => camera.direction_as_shot(pixel)?,
+    };
+    Ok((pose.rotation * in_camera).normalize())
 }
 
 fn meet_ground(ray: &Ray, z: f64) -> CornerOutcome {

@@ -16,7 +16,7 @@ use glam::{DVec2, DVec3};
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 
-use super::SurfaceError;
+use super::{Met, SurfaceError, longest_edge};
 use crate::geometry::Ray;
 
 /// How many rays look at every triangle before the hierarchy is built: about what building it costs
@@ -84,9 +84,19 @@ impl Mesh {
         &self.triangles
     }
 
-    /// Where the ray (local frame) meets the mesh first, from either side, as its t > 0. A ray that
-    /// passes an edge at a distance of at most `slack` meets it.
-    pub(super) fn cast(&self, ray: &Ray, slack: f64) -> Option<f64> {
+    /// Where the ray (local frame) meets the mesh first, from either side. A ray that passes an edge
+    /// at a distance of at most `slack` meets it.
+    pub(super) fn cast(&self, ray: &Ray, slack: f64) -> Option<Met> {
+        let (index, t) = self.first(ray, slack)?;
+        let corners = self.triangles[index].map(|i| self.points[i as usize]);
+        Some(Met {
+            t,
+            longest_edge: longest_edge(corners),
+        })
+    }
+
+    /// The triangle that the ray meets first, and where.
+    fn first(&self, ray: &Ray, slack: f64) -> Option<(usize, f64)> {
         let sheared = Sheared::new(ray);
         let meet =
             |triangle: &[u32; 3]| sheared.meet(triangle.map(|i| self.points[i as usize]), slack);
@@ -96,15 +106,16 @@ impl Mesh {
             return self
                 .triangles
                 .iter()
-                .filter_map(meet)
-                .min_by(f64::total_cmp);
+                .enumerate()
+                .filter_map(|(index, triangle)| Some((index, meet(triangle)?)))
+                .min_by(|a, b| a.1.total_cmp(&b.1));
         }
         let ray = parry3d_f64::query::Ray::new(ray.origin, ray.direction);
         self.hierarchy()
             .cast_ray(&ray, f64::MAX, |index, _| {
                 meet(&self.triangles[index as usize])
             })
-            .map(|(_, t)| t)
+            .map(|(index, t)| (index as usize, t))
     }
 }
 

@@ -53,6 +53,16 @@ pub enum SurfaceError {
     TooFarOut,
 }
 
+/// What is left out of a surface. By default nothing is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SurfaceOptions {
+    /// Triangles with a longer edge (world units) are no part of the surface: rays pass through, as
+    /// they should through a hole in the cloud.
+    pub max_edge: Option<f64>,
+    /// One point stays in each square cell of this size (world units) over (x, y).
+    pub thinning: Option<f64>,
+}
+
 /// A surface that rays can be cast at.
 #[derive(Debug)]
 pub struct Surface {
@@ -75,6 +85,23 @@ pub struct Hit {
     pub t: f64,
     /// In the world.
     pub point: DVec3,
+    /// The longest edge of the triangle that was met, world units: far longer than the distance of
+    /// the points means that the cloud has a hole there. 0 where a vertex itself was met.
+    pub longest_edge: f64,
+}
+
+/// What a caster of either kind returns, in the local frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Met {
+    /// Along the ray, > 0.
+    t: f64,
+    /// See [`Hit::longest_edge`].
+    longest_edge: f64,
+}
+
+/// The longest edge of a triangle.
+fn longest_edge([a, b, c]: [DVec3; 3]) -> f64 {
+    a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
 
 impl Surface {
@@ -195,13 +222,14 @@ impl Caster<'_> {
         let local = self.surface.frame.local_from_world_ray(ray);
         // What the rounding of the input and of a few products can shift a ray by, sixteenfold.
         let slack = 16.0 * f64::EPSILON * (self.surface.magnitude + local.origin.length());
-        let t = match &mut self.way {
+        let met = match &mut self.way {
             Way::Walk(walk) => walk.cast(&local, slack),
             Way::Mesh(mesh) => mesh.cast(&local, slack),
         }?;
         Some(Hit {
-            t,
-            point: ray.at(t),
+            t: met.t,
+            point: ray.at(met.t),
+            longest_edge: met.longest_edge,
         })
     }
 }

@@ -22,9 +22,9 @@ use spade::{
     Triangulation,
 };
 
-use super::SurfaceError;
 use super::delaunay::{Site, load};
 use super::sites::Sites;
+use super::{Met, SurfaceError, longest_edge};
 use crate::geometry::Ray;
 
 /// How many of the sites found in a circle join at once: the nearest ones settle most circles.
@@ -89,12 +89,11 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// Where the ray (local frame) meets the surface first, as its t > 0. `slack` is a distance in
-    /// the order of the rounding of the coordinates: a ray that misses the surface's rim by less
-    /// meets it.
-    pub(super) fn cast(&mut self, ray: &Ray, slack: f64) -> Option<f64> {
-        if let Some(t) = self.cast_once(ray, slack) {
-            return Some(t);
+    /// Where the ray (local frame) meets the surface first. `slack` is a distance in the order of
+    /// the rounding of the coordinates: a ray that misses the surface's rim by less meets it.
+    pub(super) fn cast(&mut self, ray: &Ray, slack: f64) -> Option<Met> {
+        if let Some(met) = self.cast_once(ray, slack) {
+            return Some(met);
         }
         // The surface is convex over (x, y): moved inward by the slack at the place where its trace
         // passes the rim, a ray that missed by less is met.
@@ -140,7 +139,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn cast_once(&mut self, ray: &Ray, slack: f64) -> Option<f64> {
+    fn cast_once(&mut self, ray: &Ray, slack: f64) -> Option<Met> {
         let (start, end) = self.span(ray)?;
         let (from, to) = (ray.at(start).truncate(), ray.at(end).truncate());
         if !self.complete {
@@ -156,7 +155,17 @@ impl<'a> Walk<'a> {
                 self.walk_along(ray, start, end, slack)
             };
             if self.complete || !self.join_sites_inside(&passed) {
-                return hit;
+                let t = hit?;
+                let there = self.triangles_at(ray.at(t).truncate());
+                let longest_edges = there
+                    .iter()
+                    .map(|sites| longest_edge(sites.map(|s| s.point())));
+                return Some(Met {
+                    t,
+                    // On an edge the smaller of its two triangles; at a vertex, which is a point of
+                    // the cloud itself, there is none.
+                    longest_edge: longest_edges.min_by(f64::total_cmp).unwrap_or(0.0),
+                });
             }
         }
     }

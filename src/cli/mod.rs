@@ -234,6 +234,7 @@ pub fn run() -> ExitCode {
 fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, String> {
     let options = OpenOptions {
         surface: arguments.surface.clone(),
+        settings: None,
     };
     let path = &arguments.flight;
     let opened =

@@ -1,0 +1,1 @@
+//! Pixels of photos: undistorting, reducing, drawing on them.

@@ -1,0 +1,1 @@
+//! wgpu: scene -> picture. Knows no egui, reads no file.
