@@ -4,6 +4,7 @@
 //! (contract, section 2). The two have different ways to meet rays: `walk` for a cloud, which
 //! builds no more than the rays ask for, `mesh` for faces, which may overhang.
 
+mod blocks;
 mod cloud;
 mod delaunay;
 mod hull;
@@ -12,10 +13,12 @@ mod sites;
 mod thinning;
 mod walk;
 
-use std::sync::Arc;
+use std::ops::Range;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
+pub use blocks::VertexBlock;
 pub use cloud::Cloud;
 
 use crate::geometry::{Bounds, LocalFrame, Ray};
@@ -110,6 +113,8 @@ struct Whole {
     /// The largest absolute world coordinate: what the input was rounded at.
     magnitude: f64,
     shape: Shape,
+    /// Of the vertices, once somebody asked.
+    blocks: OnceLock<Vec<VertexBlock>>,
 }
 
 #[derive(Debug)]
@@ -202,6 +207,7 @@ impl Surface {
             frame,
             magnitude,
             shape,
+            blocks: OnceLock::new(),
         };
         Ok(Self {
             whole: Arc::new(whole),
@@ -258,6 +264,7 @@ impl Surface {
             frame: self.whole.frame,
             magnitude: self.whole.magnitude,
             shape: Shape::Mesh(mesh),
+            blocks: OnceLock::new(),
         };
         Ok(Self {
             whole: Arc::new(whole),
@@ -287,6 +294,19 @@ impl Surface {
     pub fn vertices(&self) -> impl ExactSizeIterator<Item = DVec3> {
         let frame = &self.whole.frame;
         self.points().iter().map(|&p| frame.world_from_local(p))
+    }
+
+    /// Some of [`Self::vertices`], by their indices; none where there are no such indices.
+    pub fn vertices_in(&self, range: Range<usize>) -> impl Iterator<Item = DVec3> {
+        let frame = &self.whole.frame;
+        let points = self.points().get(range).unwrap_or_default();
+        points.iter().map(|&p| frame.world_from_local(p))
+    }
+
+    /// All vertices in blocks of neighbours. The first call makes them.
+    pub fn vertex_blocks(&self) -> &[VertexBlock] {
+        let blocks = &self.whole.blocks;
+        blocks.get_or_init(|| blocks::blocks(self.vertices()))
     }
 
     /// The colour of each vertex (red, green, blue), in the order of [`Self::vertices`]; empty where
