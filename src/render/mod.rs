@@ -1,1 +1,38 @@
-//! wgpu: scene -> picture. Knows no egui, reads no file.
+//! Pictures of a flight with wgpu: the same [`Renderer`] draws in the window and into files.
+//!
+//! Knows no egui and reads no file. World data come in f64 and leave it in `scene`, the one place
+//! where f64 becomes f32, after the flight's local origin is subtracted. Each primitive has a file
+//! here and a shader of the same name in `shaders/`.
+//!
+//! A frame is drawn in passes, all with reverse-z depth (1 at the near plane, 0 at infinity):
+//!
+//! ```text
+//! surface   mesh and points, with their colours           -> colour, depth
+//! edl       relief from depth, over the background        -> colour
+//! fill      footprints, draped where the depth says       -> colour
+//! blend     the photo in front of a look through its camera
+//! overlay   photos on their image planes, lines, markers
+//! resolve   four samples become one pixel
+//! ```
+
+mod colormap;
+mod gpu;
+mod labels;
+mod orbit;
+mod photo_image;
+mod renderer;
+mod scene;
+mod show;
+mod targets;
+mod tiles;
+mod view;
+
+pub use colormap::viridis;
+pub use gpu::{Gpu, device_descriptor};
+pub use labels::{Anchor, Label, Legend, ScaleBar};
+pub use orbit::Orbit;
+pub use photo_image::PhotoImage;
+pub use renderer::{Drawn, Renderer};
+pub use scene::{CloudGeometry, MeshGeometry, Normals, PhotoGeometry};
+pub use show::{Background, ColorBy, PhotoLook, Scope, Show};
+pub use view::{Projection, View};

@@ -1,0 +1,422 @@
+//! World data made ready for the graphics card: THE place where f64 becomes f32, after the flight's
+//! local origin is subtracted. Made on a worker thread, uploaded once.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DMat3, DMat4, DVec2, DVec3, Mat4, Vec3};
+
+use super::tiles::{shuffle, tiles};
+use crate::camera::{Camera, Pose};
+use crate::geometry::{Bounds, LocalFrame};
+use crate::scale::{CornerOutcome, FootprintPoint, PhotoScale, ViewFacts};
+
+/// Points or triangles in a tile: small enough to leave out what is not in sight, large enough that
+/// ten million make few draw calls.
+const TILE: usize = 1 << 16;
+/// Of points without a colour: light rock.
+const GREY: [u8; 3] = [184, 180, 172];
+
+/// A local point for the graphics card.
+pub(super) fn narrow(local: DVec3) -> Vec3 {
+    local.as_vec3()
+}
+
+/// A matrix for the graphics card; made of local coordinates.
+pub(super) fn narrow_matrix(matrix: DMat4) -> Mat4 {
+    matrix.as_mat4()
+}
+
+/// A number for the graphics card: pixels, angles, and lengths that are no coordinates.
+pub(super) fn narrow_number(number: f64) -> f32 {
+    number as f32
+}
+
+/// A point of the cloud or a vertex of the mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Vertex {
+    /// In the local frame.
+    pub(super) position: [f32; 3],
+    pub(super) color: [u8; 4],
+    /// Times 127; zero where unknown.
+    pub(super) normal: [i8; 4],
+}
+
+/// Unit normals of points: what light and slope need. Empty where unknown.
+#[derive(Debug, Clone, Default)]
+pub struct Normals(Vec<[i8; 4]>);
+
+impl Normals {
+    /// The normals of a surface's vertices: the mean of the triangles around each, by area.
+    pub fn of(
+        frame: &LocalFrame,
+        vertices: impl Iterator<Item = DVec3>,
+        triangles: &[[u32; 3]],
+    ) -> Self {
+        let places: Vec<Vec3> = vertices
+            .map(|vertex| narrow(frame.local_from_world(vertex)))
+            .collect();
+        let mut sums = vec![Vec3::ZERO; places.len()];
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|i| places.get(i as usize).copied());
+            if let (Some(a), Some(b), Some(c)) = (a, b, c) {
+                let normal = (b - a).cross(c - a);
+                for &corner in triangle {
+                    sums[corner as usize] += normal;
+                }
+            }
+        }
+        let packed = sums.into_iter().map(|sum| {
+            // `as` saturates.
+            let n = sum.normalize_or_zero() * 127.0;
+            [n.x.round() as i8, n.y.round() as i8, n.z.round() as i8, 0]
+        });
+        Self(packed.collect())
+    }
+
+    fn get(&self, index: u32) -> [i8; 4] {
+        self.0.get(index as usize).copied().unwrap_or_default()
+    }
+}
+
+/// A box in the local frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Extent {
+    pub(super) min: Vec3,
+    pub(super) max: Vec3,
+}
+
+impl Extent {
+    fn of(points: impl Iterator<Item = Vec3>) -> Option<Self> {
+        points.fold(None, |extent, p| {
+            let Self { min, max } = extent.unwrap_or(Self { min: p, max: p });
+            Some(Self {
+                min: min.min(p),
+                max: max.max(p),
+            })
+        })
+    }
+
+    /// Around both.
+    pub(super) fn with(self, other: Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
+    }
+}
+
+/// Points near each other, in shuffled order.
+#[derive(Debug)]
+pub(super) struct CloudTile {
+    pub(super) points: Vec<Vertex>,
+    pub(super) extent: Extent,
+}
+
+/// A cloud made ready.
+#[derive(Debug)]
+pub struct CloudGeometry {
+    pub(super) tiles: Vec<CloudTile>,
+    /// About how far neighbouring points are apart, world units.
+    pub(super) spacing: f64,
+    /// Elevations in the world, without the extreme hundredths.
+    pub(super) elevation: [f64; 2],
+}
+
+impl CloudGeometry {
+    /// From world points. `colors` and `normals` are in their order, or empty. Within each tile the
+    /// points are shuffled, so that a prefix is a fair sample.
+    pub fn new(
+        frame: &LocalFrame,
+        points: impl Iterator<Item = DVec3>,
+        colors: &[[u8; 3]],
+        normals: &Normals,
+    ) -> Self {
+        let places: Vec<Vec3> = points
+            .map(|point| narrow(frame.local_from_world(point)))
+            .collect();
+        let mut order: Vec<u32> = indices(places.len());
+        let place = |i: u32| places[i as usize];
+        let runs = tiles(&mut order, TILE, &place);
+        let mut spacings = Vec::new();
+        let tiles = runs
+            .into_iter()
+            .filter_map(|run| {
+                let members = &mut order[run];
+                shuffle(members);
+                let extent = Extent::of(members.iter().map(|&i| place(i)))?;
+                let size = (extent.max - extent.min).as_dvec3();
+                spacings.push((size.x * size.y / members.len() as f64).sqrt());
+                let points = members.iter();
+                let points = points.map(|&i| vertex(place(i), i, colors, normals));
+                Some(CloudTile {
+                    points: points.collect(),
+                    extent,
+                })
+            })
+            .collect();
+        Self {
+            tiles,
+            spacing: crate::geometry::median(&mut spacings).unwrap_or_default(),
+            elevation: elevation(frame, &places),
+        }
+    }
+}
+
+/// Triangles near each other, with their own vertices.
+#[derive(Debug)]
+pub(super) struct MeshTile {
+    pub(super) vertices: Vec<Vertex>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) extent: Extent,
+}
+
+/// A mesh made ready.
+#[derive(Debug)]
+pub struct MeshGeometry {
+    pub(super) tiles: Vec<MeshTile>,
+    /// Elevations in the world, without the extreme hundredths.
+    pub(super) elevation: [f64; 2],
+}
+
+impl MeshGeometry {
+    /// From world vertices. `colors` and `normals` are in their order, or empty. Triangles that
+    /// name a vertex that is not there are left out.
+    pub fn new(
+        frame: &LocalFrame,
+        vertices: impl Iterator<Item = DVec3>,
+        colors: &[[u8; 3]],
+        normals: &Normals,
+        triangles: &[[u32; 3]],
+    ) -> Self {
+        let places: Vec<Vec3> = vertices
+            .map(|vertex| narrow(frame.local_from_world(vertex)))
+            .collect();
+        let mut order: Vec<u32> = indices(triangles.len());
+        order.retain(|&t| {
+            let corners = triangles[t as usize];
+            corners.iter().all(|&i| (i as usize) < places.len())
+        });
+        let runs = tiles(&mut order, TILE, &|t| {
+            places[triangles[t as usize][0] as usize]
+        });
+        // The number of each vertex in the tile at hand; the tile that it was given in.
+        let mut numbers = vec![(u32::MAX, 0_u32); places.len()];
+        let mut made = Vec::with_capacity(runs.len());
+        for (run, tile) in runs.into_iter().zip(0_u32..) {
+            let mut own = Vec::new();
+            let mut renumbered = Vec::with_capacity(run.len());
+            for &t in &order[run] {
+                renumbered.push(triangles[t as usize].map(|i| {
+                    let (given_in, number) = &mut numbers[i as usize];
+                    if *given_in != tile {
+                        (*given_in, *number) = (tile, own.len() as u32);
+                        own.push(vertex(places[i as usize], i, colors, normals));
+                    }
+                    *number
+                }));
+            }
+            if let Some(extent) = Extent::of(own.iter().map(|v| Vec3::from(v.position))) {
+                made.push(MeshTile {
+                    vertices: own,
+                    triangles: renumbered,
+                    extent,
+                });
+            }
+        }
+        Self {
+            tiles: made,
+            elevation: elevation(frame, &places),
+        }
+    }
+}
+
+/// Numbers from 0; clouds have under 2^32 points (`surface::SurfaceError::TooManyPoints`).
+fn indices(count: usize) -> Vec<u32> {
+    (0..u32::try_from(count).unwrap_or(u32::MAX)).collect()
+}
+
+fn vertex(place: Vec3, index: u32, colors: &[[u8; 3]], normals: &Normals) -> Vertex {
+    let [r, g, b] = colors.get(index as usize).copied().unwrap_or(GREY);
+    Vertex {
+        position: place.to_array(),
+        color: [r, g, b, 255],
+        normal: normals.get(index),
+    }
+}
+
+/// The hundredth and the ninety-ninth hundredth of the elevations, in the world: single outliers
+/// would take all the colours.
+fn elevation(frame: &LocalFrame, places: &[Vec3]) -> [f64; 2] {
+    // Every so many-th is enough for a colour map.
+    let step = (places.len() / 100_000).max(1);
+    let mut z: Vec<f32> = places.iter().step_by(step).map(|p| p.z).collect();
+    if z.is_empty() {
+        return [0.0, 1.0];
+    }
+    z.sort_unstable_by(f32::total_cmp);
+    let last = z.len() - 1;
+    let at = |share: usize| f64::from(z[last * share / 100]) + frame.origin().z;
+    [at(1), at(99)]
+}
+
+/// A corner ray's end, or a stretch of the outline: where, and whether it fell back to the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Met {
+    /// In the local frame.
+    pub(super) point: DVec3,
+    pub(super) on_ground: bool,
+}
+
+/// A photo made ready: camera, corner rays and footprint. In f64, because its lines are put
+/// together anew for every change of looks.
+#[derive(Debug, Clone)]
+pub struct PhotoGeometry {
+    /// The camera centre in the local frame.
+    pub(super) center: DVec3,
+    /// Camera axes in the world, as columns.
+    pub(super) rotation: DMat3,
+    pub(super) camera: Camera,
+    /// Where the corner rays end, in the contract's order.
+    pub(super) corners: [Option<Met>; 4],
+    /// Around the footprint; closed.
+    pub(super) outline: Vec<Option<Met>>,
+    /// Two triangles for each cell of the footprint that lies on the ground, where no surface is
+    /// that the fill could lie on; in the local frame.
+    pub(super) ground_cells: Vec<[DVec3; 3]>,
+    /// The image corners as shares of the undistorted image, where all four have rays.
+    pub(super) image_corners: Option<[DVec2; 4]>,
+    /// The nearest and farthest depth along the axis that the footprint has, world units.
+    pub(super) depths: Option<[f64; 2]>,
+}
+
+impl PhotoGeometry {
+    /// From the camera and pose of a photo, its corner points where it has a scale, and its
+    /// footprint where it is known.
+    pub fn new(
+        frame: &LocalFrame,
+        camera: &Camera,
+        pose: &Pose,
+        scale: Option<&PhotoScale>,
+        view: Option<&ViewFacts>,
+    ) -> Self {
+        let met = |outcome: &CornerOutcome| {
+            outcome.point().map(|point| Met {
+                point: frame.local_from_world(point),
+                on_ground: !outcome.is_on_surface(),
+            })
+        };
+        let corners = scale.map_or([None; 4], |scale| {
+            std::array::from_fn(|i| met(&scale.corners[i].outcome))
+        });
+        let footprint = view.map(|view| &view.footprint);
+        let sampled = |points: &[FootprintPoint]| -> Vec<Option<Met>> {
+            points.iter().map(|sample| met(&sample.outcome)).collect()
+        };
+        let grid = footprint.map(|footprint| sampled(&footprint.grid));
+        let columns = footprint.map_or(0, |footprint| footprint.columns as usize);
+        let center = frame.local_from_world(pose.center);
+        let axis = pose.rotation.z_axis;
+        let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+        let mut image_corners = Some([DVec2::ZERO; 4]);
+        for i in 0..4 {
+            let share = scale
+                .and_then(|scale| scale.corners[i].direction)
+                .and_then(|direction| {
+                    camera.pixel_undistorted(pose.rotation.transpose() * direction)
+                })
+                .map(|pixel| pixel / size);
+            image_corners = image_corners.zip(share).map(|(mut corners, share)| {
+                corners[i] = share;
+                corners
+            });
+        }
+        let depths = grid
+            .iter()
+            .flatten()
+            .chain([&corners[..]].concat().iter())
+            .flatten()
+            .map(|met| (met.point - center).dot(axis))
+            .fold(None, |range: Option<[f64; 2]>, depth| {
+                let [near, far] = range.unwrap_or([depth, depth]);
+                Some([near.min(depth), far.max(depth)])
+            });
+        Self {
+            center,
+            rotation: pose.rotation,
+            camera: camera.clone(),
+            corners,
+            outline: footprint.map_or_else(Vec::new, |footprint| sampled(&footprint.outline)),
+            ground_cells: grid.map_or_else(Vec::new, |grid| ground_cells(&grid, columns)),
+            image_corners,
+            depths,
+        }
+    }
+
+    /// Local coordinates to shares of the undistorted image: (u w, v w, w, 1) with w the depth along
+    /// the axis in world units; (u, v) is (0, 0) at the top left corner and (1, 1) at the opposite
+    /// one.
+    pub(super) fn image_from_local(&self) -> DMat4 {
+        let camera = &self.camera;
+        let (w, h) = (f64::from(camera.width), f64::from(camera.height));
+        let shares = DMat3::from_cols(
+            DVec3::new(camera.fx / w, 0.0, 0.0),
+            DVec3::new(camera.skew / w, camera.fy / h, 0.0),
+            DVec3::new(camera.cx / w, camera.cy / h, 1.0),
+        );
+        let linear = shares * self.rotation.transpose();
+        DMat4::from_cols(
+            linear.x_axis.extend(0.0),
+            linear.y_axis.extend(0.0),
+            linear.z_axis.extend(0.0),
+            (-(linear * self.center)).extend(1.0),
+        )
+    }
+
+    /// The point of the image, given as a share of the undistorted one, at a depth along the axis;
+    /// in the local frame.
+    pub(super) fn point_at(&self, share: DVec2, depth: f64) -> DVec3 {
+        let size = DVec2::new(f64::from(self.camera.width), f64::from(self.camera.height));
+        let direction = self.camera.direction_undistorted(share * size);
+        self.center + self.rotation * direction * depth
+    }
+
+    /// The corners of the image plane at a depth along the axis, in the contract's order.
+    pub(super) fn image_plane(&self, depth: f64) -> [DVec3; 4] {
+        [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y].map(|share| self.point_at(share, depth))
+    }
+
+    /// Pixels per world unit of the photo at a depth along its axis.
+    pub(super) fn scale_at(&self, depth: f64) -> f64 {
+        (self.camera.fx * self.camera.fy).sqrt() / depth
+    }
+
+    /// Its extent in the world.
+    pub fn bounds(&self, frame: &LocalFrame) -> Bounds {
+        let corners = self.corners.iter().flatten().map(|met| met.point);
+        let (mut min, mut max) = (self.center, self.center);
+        for point in corners {
+            (min, max) = (min.min(point), max.max(point));
+        }
+        Bounds {
+            min: frame.world_from_local(min),
+            max: frame.world_from_local(max),
+        }
+    }
+}
+
+fn ground_cells(grid: &[Option<Met>], columns: usize) -> Vec<[DVec3; 3]> {
+    let mut triangles = Vec::new();
+    let width = columns + 1;
+    for (above, below) in grid.chunks(width).zip(grid.chunks(width).skip(1)) {
+        for (above, below) in above.windows(2).zip(below.windows(2)) {
+            let cell = [above[0], above[1], below[1], below[0]];
+            if let [Some(a), Some(b), Some(c), Some(d)] = cell
+                && [a, b, c, d].iter().all(|met| met.on_ground)
+            {
+                triangles.push([a.point, b.point, c.point]);
+                triangles.push([a.point, c.point, d.point]);
+            }
+        }
+    }
+    triangles
+}
