@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::layers::Layers;
 use crate::flight::Limits;
-use crate::render::Show;
 use crate::units::LengthUnit;
 
 /// How many recent flights are kept.
@@ -23,7 +23,7 @@ pub struct Preferences {
     /// When to doubt a photo.
     pub limits: Limits,
     /// What the viewport shows.
-    pub show: Show,
+    pub layers: Layers,
     /// Light, dark, or as the system has it.
     pub theme: Theme,
     /// Whether the log is open.
@@ -49,7 +49,7 @@ impl Default for Preferences {
             // Split-Desktop's dialogs are in centimetres as often as not, as the command is.
             unit: LengthUnit::Centimetre.symbol().to_owned(),
             limits: Limits::default(),
-            show: Show::default(),
+            layers: Layers::default(),
             theme: Theme::System,
             log_open: false,
         }

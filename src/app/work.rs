@@ -12,6 +12,7 @@ use image::{RgbImage, RgbaImage};
 use crate::fault::Fault;
 use crate::flight::{Flight, Outcome};
 use crate::formats::Opened;
+use crate::geometry::Bounds;
 use crate::jobs::{Job, Progress};
 use crate::render::{CloudGeometry, MeshGeometry};
 use crate::scale::ViewFacts;
@@ -81,6 +82,8 @@ pub struct Loaded {
     pub opened: Opened,
     /// Of each photo.
     pub outcomes: Vec<Outcome>,
+    /// Around the surface.
+    pub surface_bounds: Bounds,
 }
 
 /// What the viewport draws.

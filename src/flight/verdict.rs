@@ -6,12 +6,15 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use super::Outcome;
 use crate::scale::{CornerName, CornerOutcome, ViewFacts};
 use crate::units::LengthUnit;
 
 /// When to doubt.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Limits {
     /// The larger of top/bottom and bottom/top above which a linear change between the two is too
     /// coarse.

@@ -1,9 +1,11 @@
 //! What is shown, and how.
 
+use serde::{Deserialize, Serialize};
+
 use crate::units::LengthUnit;
 
 /// Which photos something is drawn for. Hidden photos ([`PhotoLook::visible`]) have nothing drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Scope {
     /// None.
     #[default]
@@ -15,7 +17,7 @@ pub enum Scope {
 }
 
 /// What the colours of cloud and mesh mean.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum ColorBy {
     /// Their own, as read; grey where the file has none.
     #[default]

@@ -1,0 +1,396 @@
+//! The one function that changes the state: it applies a command.
+
+use std::path::PathBuf;
+
+use super::command::{Asking, Choice, Command, Look};
+use super::open_flight::{Measure, OpenFlight};
+use super::picker::Purpose;
+use super::state::{HeldBack, PictureRequest, Severity, State, sample_flight};
+use super::table::Column;
+use super::work::Task;
+use crate::flight::{FlightSettings, Verdict};
+use crate::units::LengthUnit;
+
+impl State {
+    /// Does what a command says.
+    pub fn apply(&mut self, command: Command) {
+        match command {
+            Command::Open(_) | Command::OpenSample | Command::Close | Command::Quit => {
+                self.leave(command);
+            }
+            Command::Discard => match self.held_back.take() {
+                Some(HeldBack::Quit) => self.quit(),
+                Some(HeldBack::Command(command)) => self.go(*command),
+                None => {}
+            },
+            Command::Keep => self.held_back = None,
+            Command::Save => self.save(),
+            Command::SaveAs(path) => self.save_as(path),
+            Command::Export(folder) => self.export(folder),
+            Command::Picture {
+                path,
+                size,
+                transparent,
+                corner_rays,
+            } => {
+                self.asking = None;
+                self.picture = self.open.is_some().then_some(PictureRequest {
+                    path,
+                    size,
+                    transparent,
+                    corner_rays,
+                });
+            }
+            Command::Ask(asking) => self.ask(asking),
+            Command::Browse(what, folder) => self.browse(what, folder),
+            Command::Cancel(task) => {
+                self.work.cancel(task);
+                self.say(
+                    Severity::Note,
+                    &format!("{}: cancelled", task.in_words()),
+                );
+            }
+            Command::Unit(unit) => self.set_unit(unit),
+            Command::Limits(limits) => {
+                self.preferences.limits = limits;
+                if let Some(open) = &mut self.open {
+                    open.judge(&limits);
+                }
+            }
+            Command::Layers(layers) => self.preferences.layers = layers,
+            Command::Theme(theme) => {
+                self.preferences.theme = theme;
+                self.apply_theme();
+            }
+            Command::Zoom(factor) => self.context.set_zoom_factor(factor.clamp(0.5, 3.0)),
+            Command::Tab(tab) => self.tab = tab,
+            Command::ToggleLog => self.preferences.log_open ^= true,
+            Command::DismissNotice => self.notice = None,
+            Command::CopyScales => {
+                if let Some(text) = self.scales_to_copy() {
+                    self.context.copy_text(text);
+                }
+            }
+            Command::Copy(text) => self.context.copy_text(text),
+            Command::Set(_) | Command::Undo | Command::Redo => self.edit_settings(&command),
+            Command::Select(_) | Command::SelectBy(_) => {
+                if let Some(open) = &mut self.open {
+                    let before = open.selected;
+                    match command {
+                        Command::Select(photo) => open.select(photo),
+                        Command::SelectBy(rows) => open.select_by(rows),
+                        _ => {}
+                    }
+                    if open.selected != before {
+                        self.load_preview();
+                    }
+                }
+            }
+            Command::Click(_)
+            | Command::Hover(_)
+            | Command::DoubleClick(_)
+            | Command::HoverPhoto(_)
+            | Command::Choose(..)
+            | Command::ChooseAll(_)
+            | Command::Sort(_)
+            | Command::Filter(_)
+            | Command::FilterVerdict(_)
+            | Command::Look(_)
+            | Command::ToggleMeasure => {
+                if let Some(open) = &mut self.open {
+                    open.apply(command);
+                }
+            }
+        }
+        if let Some(open) = &mut self.open {
+            open.looking.orbit.orthographic = self.preferences.layers.orthographic;
+        }
+    }
+
+    /// Leaves the flight on the screen, unless something would be lost: then asks first.
+    fn leave(&mut self, command: Command) {
+        let changed = self.open.as_ref().is_some_and(|open| open.is_changed());
+        if changed {
+            self.held_back = Some(match command {
+                Command::Quit => HeldBack::Quit,
+                other => HeldBack::Command(Box::new(other)),
+            });
+        } else {
+            self.go(command);
+        }
+    }
+
+    fn go(&mut self, command: Command) {
+        self.asking = None;
+        match command {
+            Command::Open(path) => self.start_opening(path, None),
+            Command::OpenSample => match sample_flight() {
+                Some(path) => self.start_opening(path, None),
+                None => self.say(
+                    Severity::Error,
+                    "the bundled flight is not beside the program; make one with 'fragscale sample DIR'",
+                ),
+            },
+            Command::Close => {
+                self.work.cancel_all();
+                self.open = None;
+                self.notice = None;
+            }
+            Command::Quit => self.quit(),
+            _ => {}
+        }
+    }
+
+    fn quit(&mut self) {
+        self.work.cancel_all();
+        self.may_quit = true;
+        self.context
+            .send_viewport_cmd(egui::ViewportCommand::Close);
+    }
+
+    fn ask(&mut self, asking: Option<Asking>) {
+        let needs_flight = matches!(
+            asking,
+            Some(Asking::Export | Asking::SaveAs | Asking::Picture)
+        );
+        if needs_flight && self.open.is_none() {
+            return;
+        }
+        self.answered = None;
+        self.asking = asking;
+    }
+
+    fn set_unit(&mut self, unit: LengthUnit) {
+        self.preferences.set_unit(unit);
+    }
+
+    /// Undo, redo, and what they go over.
+    fn edit_settings(&mut self, command: &Command) {
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        let before = open.settings();
+        match command {
+            Command::Set(settings) => {
+                let mut edit = open.history.now().clone();
+                edit.settings = *settings;
+                open.history.set(edit);
+            }
+            Command::Undo => {
+                open.history.undo();
+            }
+            Command::Redo => {
+                open.history.redo();
+            }
+            _ => {}
+        }
+        open.arrange();
+        let now = open.settings();
+        if now != before {
+            self.settings_changed(&before, &now);
+        }
+    }
+
+    /// Computes anew what depends on the settings.
+    fn settings_changed(&mut self, before: &FlightSettings, now: &FlightSettings) {
+        if before.surface.thinning == now.surface.thinning {
+            self.start_scales();
+        } else if let Some(open) = &self.open {
+            // Thinned points are gone from memory: the file has them.
+            let path = open.path.clone();
+            self.start_opening(path, Some(*now));
+        }
+    }
+
+    /// What "copy scales" copies: the selected photo's top and bottom scale in the chosen unit.
+    pub fn scales_to_copy(&self) -> Option<String> {
+        let open = self.open.as_ref()?;
+        let scale = open.scale(open.selected?)?;
+        let unit = self.preferences.unit();
+        let factor = unit.in_units_of(open.flight.parts().unit);
+        let shown = |scale: Option<f64>| {
+            scale.map_or_else(
+                || "no scale".to_owned(),
+                |scale| super::numbers::significant(scale * factor, 6),
+            )
+        };
+        Some(format!(
+            "{}\t{}",
+            shown(scale.scale.top),
+            shown(scale.scale.bottom)
+        ))
+    }
+
+    /// Writes flight.toml where it was read, or asks where to.
+    fn save(&mut self) {
+        match self.open.as_ref().and_then(|open| open.file.as_ref()) {
+            Some((path, _)) => {
+                let path = path.clone();
+                self.save_as(path);
+            }
+            None => self.ask(Some(Asking::SaveAs)),
+        }
+    }
+
+    fn save_as(&mut self, path: PathBuf) {
+        self.asking = None;
+        if !self.work.is_running(Task::Save) {
+            self.start_saving(path);
+        }
+    }
+
+    fn export(&mut self, folder: PathBuf) {
+        self.asking = None;
+        self.start_export(folder);
+    }
+}
+
+impl OpenFlight {
+    /// What concerns the flight on the screen alone.
+    fn apply(&mut self, command: Command) {
+        match command {
+            Command::Click(ray) => {
+                let purpose = if self.measure == Measure::Off {
+                    Purpose::Select
+                } else {
+                    Purpose::Measure
+                };
+                self.pick(purpose, ray);
+            }
+            Command::Hover(Some(ray)) => self.pick(Purpose::Hover, ray),
+            Command::Hover(None) => self.hover = None,
+            Command::DoubleClick(ray) => self.pick(Purpose::Center, ray),
+            Command::HoverPhoto(photo) => self.hovered_photo = photo,
+            Command::Choose(photo, chosen) => {
+                let mut edit = self.history.now().clone();
+                if let Some(place) = edit.chosen.get_mut(photo) {
+                    *place = chosen;
+                }
+                self.history.set(edit);
+                self.arrange();
+            }
+            Command::ChooseAll(choice) => {
+                let mut edit = self.history.now().clone();
+                for (place, judged) in edit.chosen.iter_mut().zip(&self.judged) {
+                    *place = match choice {
+                        Choice::WithScale => judged.verdict != Verdict::NoScale,
+                        Choice::Trusted => judged.verdict == Verdict::Trust,
+                        Choice::None => false,
+                    };
+                }
+                self.history.set(edit);
+                self.arrange();
+            }
+            Command::Sort(column) => {
+                // The third click on a column is the flight's order again.
+                if self.order.by != column {
+                    (self.order.by, self.order.descending) = (column, false);
+                } else if !self.order.descending {
+                    self.order.descending = true;
+                } else {
+                    (self.order.by, self.order.descending) = (Column::Flight, false);
+                }
+                self.arrange();
+            }
+            Command::Filter(text) => {
+                self.order.text = text;
+                self.arrange();
+            }
+            Command::FilterVerdict(verdict) => {
+                self.order.verdict = verdict;
+                self.arrange();
+            }
+            Command::Look(look) => self.look(look),
+            Command::ToggleMeasure => {
+                self.measure = if self.measure == Measure::Off {
+                    Measure::First
+                } else {
+                    Measure::Off
+                };
+            }
+            _ => {}
+        }
+    }
+
+    fn pick(&mut self, purpose: Purpose, ray: crate::geometry::Ray) {
+        if let Some(picker) = &mut self.picker {
+            picker.ask(purpose, ray);
+        }
+    }
+
+    fn select(&mut self, photo: Option<usize>) {
+        self.selected = photo.filter(|&photo| photo < self.outcomes.len());
+        // Looking through a camera goes on through the next one.
+        if self.looking.through.is_some() {
+            self.looking.through = self.selected;
+        }
+    }
+
+    /// Moves down the table's rows; with nothing selected, to the first row.
+    fn select_by(&mut self, rows: i32) {
+        let place = self
+            .selected
+            .and_then(|photo| self.shown.iter().position(|&shown| shown == photo));
+        let Some(last) = self.shown.len().checked_sub(1) else {
+            return;
+        };
+        let next = match place {
+            Some(place) => place
+                .saturating_add_signed(isize::try_from(rows).unwrap_or(0))
+                .min(last),
+            None => 0,
+        };
+        self.select(Some(self.shown[next]));
+    }
+
+    fn look(&mut self, look: Look) {
+        let looking = &mut self.looking;
+        let orbit = &mut looking.orbit;
+        match look {
+            Look::Blend(blend) => looking.blend = blend.clamp(0.0, 1.0),
+            Look::Through => {
+                looking.through = match looking.through {
+                    Some(_) => None,
+                    None => self.selected,
+                };
+            }
+            _ => {
+                // Whatever turns the view leaves the camera.
+                looking.through = None;
+                match look {
+                    Look::Orbit(delta) => orbit.orbit(delta),
+                    Look::Pan(delta, size) => orbit.pan(delta, size),
+                    Look::Zoom {
+                        cursor,
+                        size,
+                        factor,
+                    } => orbit.zoom_to(cursor, size, factor, self.hover),
+                    Look::Top => orbit.top(),
+                    Look::Front => orbit.front(),
+                    Look::Side => orbit.side(),
+                    Look::Fit => orbit.fit(&self.bounds),
+                    Look::FitSelected => self.fit_selected(),
+                    Look::Center(point) => orbit.center_on(point),
+                    Look::Blend(_) | Look::Through => {}
+                }
+            }
+        }
+    }
+
+    fn fit_selected(&mut self) {
+        let Some(photo) = self.selected else {
+            return;
+        };
+        let Some(posed) = self.flight.parts().photos.get(photo) else {
+            return;
+        };
+        let mut points = vec![posed.pose.center];
+        if let Some(scale) = self.scale(photo) {
+            points.extend(scale.corners.iter().filter_map(crate::scale::Corner::point));
+        }
+        if let Some(bounds) = crate::geometry::Bounds::of(&points) {
+            self.looking.orbit.fit(&bounds);
+            self.looking.orbit.extent = self.bounds.size().length() * 0.5;
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! What the engineer can do, as data: panels, the menu, shortcuts and tests all send these, and one
+//! function applies them.
+
+use std::path::PathBuf;
+
+use glam::{DVec2, DVec3};
+
+use super::layers::Layers;
+use super::preferences::Theme;
+use super::table::Column;
+use super::work::{DialogFor, Task};
+use crate::flight::{FlightSettings, Limits, Verdict};
+use crate::geometry::Ray;
+use crate::units::LengthUnit;
+
+/// Which tab of the right panel is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Tab {
+    /// The selected photo.
+    #[default]
+    Photo,
+    /// The flight's settings.
+    Flight,
+    /// When to doubt.
+    Limits,
+}
+
+/// A small window that asks for a place; beside the desktop's own dialog, which not every desktop
+/// has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Asking {
+    /// Which flight to open.
+    Open,
+    /// Where the export goes.
+    Export,
+    /// Where flight.toml goes.
+    SaveAs,
+    /// Where a picture goes, and how large it is.
+    Picture,
+    /// Which keys do what.
+    Keys,
+    /// What this program is.
+    About,
+}
+
+/// Which photos a choice is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Choice {
+    /// All photos that have a scale.
+    WithScale,
+    /// Those with the verdict "trust".
+    Trusted,
+    /// None.
+    None,
+}
+
+/// A turn of the free view, or leaving it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Look {
+    /// The mouse moved by these pixels: turn.
+    Orbit(DVec2),
+    /// The mouse moved by these pixels in a viewport of this size: move.
+    Pan(DVec2, DVec2),
+    /// Come closer (factor < 1) to what is under the cursor, in a viewport of this size.
+    Zoom {
+        /// Where the mouse is.
+        cursor: DVec2,
+        /// Of the viewport.
+        size: DVec2,
+        /// Under 1 comes closer.
+        factor: f64,
+    },
+    /// Straight down.
+    Top,
+    /// To the north.
+    Front,
+    /// To the west.
+    Side,
+    /// Everything in sight.
+    Fit,
+    /// The selected photo's footprint and camera in sight.
+    FitSelected,
+    /// This point in the middle.
+    Center(DVec3),
+    /// Through the camera of the selected photo, or back.
+    Through,
+    /// How much of the photo lies over the view.
+    Blend(f64),
+}
+
+/// One thing to do.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Command {
+    /// Opens a flight.
+    Open(PathBuf),
+    /// Opens the bundled flight.
+    OpenSample,
+    /// Goes back to the start page.
+    Close,
+    /// Writes flight.toml.
+    Save,
+    /// Writes flight.toml at this place.
+    SaveAs(PathBuf),
+    /// Exports the chosen photos into this folder.
+    Export(PathBuf),
+    /// Writes a picture of the viewport.
+    Picture {
+        /// Where to.
+        path: PathBuf,
+        /// In pixels.
+        size: [u32; 2],
+        /// Without a background, or on white.
+        transparent: bool,
+        /// With the layers of the paper's figure instead of those on the screen.
+        corner_rays: bool,
+    },
+    /// Opens a small window that asks for a place, or closes it.
+    Ask(Option<Asking>),
+    /// Opens the desktop's own dialog; for opening, `true` asks for a folder.
+    Browse(DialogFor, bool),
+    /// Cancels a task.
+    Cancel(Task),
+    /// Leaves the program.
+    Quit,
+    /// Goes on with what was held back because something would be lost.
+    Discard,
+    /// Does not go on.
+    Keep,
+
+    /// Selects a photo.
+    Select(Option<usize>),
+    /// Selects the photo so many rows further down the table.
+    SelectBy(i32),
+    /// Selects the photo that a click in the viewport means.
+    Click(Ray),
+    /// Looks what is under the mouse; `None` where the mouse left.
+    Hover(Option<Ray>),
+    /// Moves the view's centre to what is under the mouse.
+    DoubleClick(Ray),
+    /// The mouse is over a photo of the table.
+    HoverPhoto(Option<usize>),
+    /// Chooses a photo for export, or not.
+    Choose(usize, bool),
+    /// Chooses many.
+    ChooseAll(Choice),
+    /// Sorts the table; the same column again turns it around.
+    Sort(Column),
+    /// Shows only photos that hold this text.
+    Filter(String),
+    /// Shows only photos with this verdict.
+    FilterVerdict(Option<Verdict>),
+
+    /// Changes the flight's settings.
+    Set(FlightSettings),
+    /// Undoes the last change.
+    Undo,
+    /// Takes the last undo back.
+    Redo,
+
+    /// Changes the unit of the scales on the screen and in exports.
+    Unit(LengthUnit),
+    /// Changes when to doubt.
+    Limits(Limits),
+    /// Changes what the viewport shows.
+    Layers(Layers),
+    /// Light or dark.
+    Theme(Theme),
+    /// Enlarges everything; 1 is as the system has it.
+    Zoom(f32),
+    /// Shows a tab of the right panel.
+    Tab(Tab),
+    /// Shows or hides the log.
+    ToggleLog,
+    /// Puts the message over the viewport away.
+    DismissNotice,
+
+    /// Turns or leaves the view.
+    Look(Look),
+    /// Begins or ends measuring.
+    ToggleMeasure,
+    /// Copies what Split-Desktop's dialog asks for: the selected photo's top and bottom scale.
+    CopyScales,
+    /// Copies a text.
+    Copy(String),
+}

@@ -1,0 +1,304 @@
+//! The flight that is open: what was read, what was computed, what the engineer has done with it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use glam::DVec3;
+use image::RgbImage;
+
+use super::history::History;
+use super::picker::Picker;
+use super::table::{Row, TableOrder};
+use super::work::{Geometry, Loaded};
+use crate::flight::{
+    Doubt, Flight, FlightFile, FlightSettings, Limits, Outcome, PhotoFileState, Verdict, judge,
+};
+use crate::formats::PhotoFile;
+use crate::geometry::{Bounds, LocalFrame};
+use crate::render::{Orbit, PhotoImage};
+use crate::scale::{PhotoScale, ViewFacts};
+
+/// What undo goes back over.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Edit {
+    /// The flight's settings.
+    pub settings: FlightSettings,
+    /// Which photos are chosen for export.
+    pub chosen: Vec<bool>,
+}
+
+/// A photo's verdict with its reasons.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// What to do with its scale.
+    pub verdict: Verdict,
+    /// The gravest first.
+    pub doubts: Vec<Doubt>,
+}
+
+/// The selected photo in the inspector.
+#[derive(Debug)]
+pub struct Preview {
+    /// Which photo.
+    pub photo: usize,
+    /// Its pixels, undistorted as its scale assumes, or why it cannot be shown.
+    pub picture: Result<Arc<RgbImage>, String>,
+    /// Counted, so that textures know a new one.
+    pub number: u64,
+}
+
+/// The distance tool.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Measure {
+    /// Clicks select photos.
+    #[default]
+    Off,
+    /// Waits for the first point.
+    First,
+    /// Has one.
+    Second(DVec3),
+    /// Has both; the next click begins anew.
+    Both(DVec3, DVec3),
+}
+
+/// How the viewport looks at the flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Looking {
+    /// The free view.
+    pub orbit: Orbit,
+    /// The photo whose camera is looked through.
+    pub through: Option<usize>,
+    /// How much of that photo lies over the view, 0 to 1.
+    pub blend: f64,
+}
+
+/// A flight on the screen.
+#[derive(Debug)]
+pub struct OpenFlight {
+    /// Counted, so that results for an earlier flight are told from those for this one.
+    pub number: u64,
+    /// What the user named.
+    pub path: PathBuf,
+    /// With the settings of now, once they are computed.
+    pub flight: Arc<Flight>,
+    /// Of each photo.
+    pub photo_files: Arc<Vec<PhotoFile>>,
+    /// The world's coordinate system where the files state one.
+    pub crs: Option<String>,
+    /// The files read.
+    pub inputs: Vec<PathBuf>,
+    /// What was noticed while reading.
+    pub warnings: Vec<String>,
+    /// The flight.toml, where there is one.
+    pub file: Option<(PathBuf, FlightFile)>,
+    /// The settings in that file.
+    pub saved: FlightSettings,
+    /// The settings and choices of now, with those before.
+    pub history: History<Edit>,
+    /// Of each photo.
+    pub outcomes: Arc<Vec<Outcome>>,
+    /// Of each photo, once known.
+    pub views: Option<Arc<Vec<Option<ViewFacts>>>>,
+    /// Of each photo.
+    pub judged: Vec<Judged>,
+    /// Whether the photos to export have been proposed: once, after the first verdicts.
+    pub proposed: bool,
+    /// The selected photo.
+    pub selected: Option<usize>,
+    /// How the table is sorted and filtered.
+    pub order: TableOrder,
+    /// The rows that follow from it.
+    pub shown: Vec<usize>,
+    /// Small textures for the table.
+    pub thumbnails: Vec<Option<egui::TextureHandle>>,
+    /// Small pictures for the viewport, with how many have come.
+    pub images: Vec<Option<Arc<PhotoImage>>>,
+    /// The selected photo.
+    pub preview: Option<Preview>,
+    /// What the viewport draws, and how many times it has changed.
+    pub geometry: Option<Arc<Geometry>>,
+    /// Where coordinates are small.
+    pub frame: LocalFrame,
+    /// Around surface and cameras.
+    pub bounds: Bounds,
+    /// Around the surface alone.
+    pub surface_bounds: Bounds,
+    /// How the viewport looks.
+    pub looking: Looking,
+    /// Where the mouse points on the surface.
+    pub hover: Option<DVec3>,
+    /// The photo that the mouse is over in the table.
+    pub hovered_photo: Option<usize>,
+    /// The distance tool.
+    pub measure: Measure,
+    /// Rays of the mouse.
+    pub picker: Option<Picker>,
+}
+
+impl OpenFlight {
+    /// Shows a flight that was just read.
+    pub fn new(number: u64, loaded: Loaded, limits: &Limits) -> Self {
+        let Loaded {
+            path,
+            opened,
+            outcomes,
+            surface_bounds,
+        } = loaded;
+        let count = outcomes.len();
+        let saved = opened
+            .file
+            .as_ref()
+            .map_or(opened.settings, |(_, file)| file.settings());
+        let mut bounds = surface_bounds;
+        for photo in &opened.flight.parts().photos {
+            bounds.min = bounds.min.min(photo.pose.center);
+            bounds.max = bounds.max.max(photo.pose.center);
+        }
+        let mut open = Self {
+            number,
+            path,
+            flight: Arc::new(opened.flight),
+            photo_files: Arc::new(opened.photo_files),
+            crs: opened.crs,
+            inputs: opened.inputs,
+            warnings: opened.warnings,
+            file: opened.file,
+            saved,
+            history: History::new(Edit {
+                settings: opened.settings,
+                chosen: vec![false; count],
+            }),
+            outcomes: Arc::new(outcomes),
+            views: None,
+            judged: Vec::new(),
+            proposed: false,
+            selected: (count > 0).then_some(0),
+            order: TableOrder::default(),
+            shown: Vec::new(),
+            thumbnails: vec![None; count],
+            images: vec![None; count],
+            preview: None,
+            geometry: None,
+            frame: LocalFrame::near(&surface_bounds),
+            bounds,
+            surface_bounds,
+            looking: Looking {
+                orbit: Orbit::new(&bounds),
+                through: None,
+                blend: 0.5,
+            },
+            hover: None,
+            hovered_photo: None,
+            measure: Measure::Off,
+            picker: None,
+        };
+        open.judge(limits);
+        open
+    }
+
+    /// The settings of now.
+    pub fn settings(&self) -> FlightSettings {
+        self.history.now().settings
+    }
+
+    /// Whether something would be lost if it were closed.
+    pub fn is_changed(&self) -> bool {
+        self.settings() != self.saved
+    }
+
+    /// The photo's name.
+    pub fn name(&self, photo: usize) -> &str {
+        let photos = &self.flight.parts().photos;
+        photos.get(photo).map_or("", |photo| photo.name.as_str())
+    }
+
+    /// The photo's scale, where it has one.
+    pub fn scale(&self, photo: usize) -> Option<&PhotoScale> {
+        match self.outcomes.get(photo)? {
+            Outcome::Scale(scale) => Some(scale),
+            Outcome::Trouble(_) => None,
+        }
+    }
+
+    /// How the photo looks at the surface, once known.
+    pub fn view(&self, photo: usize) -> Option<&ViewFacts> {
+        self.views.as_ref()?.get(photo)?.as_ref()
+    }
+
+    /// What the table knows of a photo; `None` where there is no such photo.
+    pub fn row(&self, photo: usize) -> Option<Row<'_>> {
+        Some(Row {
+            photo: self.flight.parts().photos.get(photo)?,
+            outcome: self.outcomes.get(photo)?,
+            view: self.view(photo),
+            judged: self.judged.get(photo)?,
+            chosen: self.history.now().chosen.get(photo).copied()?,
+        })
+    }
+
+    /// Judges all photos anew, and sorts and filters the table.
+    pub fn judge(&mut self, limits: &Limits) {
+        let parts = self.flight.parts();
+        self.judged = parts
+            .photos
+            .iter()
+            .zip(self.outcomes.iter())
+            .enumerate()
+            .map(|(index, (photo, outcome))| {
+                let camera = self.flight.camera(photo);
+                let unknown = PhotoFileState::NotNamed;
+                let file = self.photo_files.get(index);
+                let (verdict, doubts) = judge(
+                    outcome,
+                    self.view(index),
+                    file.map_or(&unknown, |file| &file.state),
+                    (camera.width, camera.height),
+                    parts.unit,
+                    limits,
+                );
+                Judged { verdict, doubts }
+            })
+            .collect();
+        if self.views.is_some() && !self.proposed {
+            // What can be trusted is proposed for export; the rest waits for the engineer.
+            self.proposed = true;
+            let mut edit = self.history.now().clone();
+            let verdicts = self.judged.iter().map(|judged| judged.verdict);
+            edit.chosen = verdicts.map(|verdict| verdict == Verdict::Trust).collect();
+            self.history.replace(edit);
+        }
+        self.arrange();
+    }
+
+    /// Sorts and filters the table.
+    pub fn arrange(&mut self) {
+        let rows: Vec<Row<'_>> = (0..self.outcomes.len())
+            .filter_map(|photo| self.row(photo))
+            .collect();
+        self.shown = self.order.shown(&rows);
+    }
+
+    /// How many photos have this verdict.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        let judged = self.judged.iter();
+        judged.filter(|judged| judged.verdict == verdict).count()
+    }
+
+    /// The elevation of the ground: as set, or where a ray needed it, or the surface's middle.
+    pub fn ground(&self) -> f64 {
+        match self.settings().ground {
+            crate::scale::Ground::At(z) => z,
+            crate::scale::Ground::Auto => {
+                let mut used: Vec<f64> = self
+                    .outcomes
+                    .iter()
+                    .filter_map(|outcome| match outcome {
+                        Outcome::Scale(scale) => scale.ground,
+                        Outcome::Trouble(_) => None,
+                    })
+                    .collect();
+                crate::geometry::median(&mut used).unwrap_or(self.surface_bounds.min.z)
+            }
+        }
+    }
+}

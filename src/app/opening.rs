@@ -1,0 +1,299 @@
+//! Starting the window's long work: opening, computing, thumbnails, saving, exporting, dialogs.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use image::RgbImage;
+use image::buffer::ConvertBuffer;
+
+use super::open_flight::OpenFlight;
+use super::state::{Severity, State};
+use super::work::{DialogFor, Done, Geometry, Loaded, Task, Thumbnail};
+use crate::camera::Camera;
+use crate::exports;
+use crate::fault::Fault;
+use crate::flight::{Flight, FlightSettings};
+use crate::formats::{self, FileError, OpenOptions};
+use crate::geometry::{Bounds, LocalFrame};
+use crate::jobs::Progress;
+use crate::picture;
+use crate::render::{CloudGeometry, MeshGeometry, Normals};
+use crate::scale::ImageKind;
+
+/// The longer side of a thumbnail, pixels: for the table and the image planes in the viewport.
+const THUMBNAIL: u32 = 256;
+
+/// The longer side of the inspector's photo, pixels: zooming in shows more than a screen does.
+const PREVIEW: u32 = 4096;
+
+impl State {
+    fn start(&mut self, task: Task, work: impl FnOnce(&Progress) -> Done + Send + 'static) {
+        if let Err(fault) = self.work.start(task, work) {
+            self.say(Severity::Error, &fault.to_string());
+        }
+    }
+
+    /// Reads a flight and computes its scales. With `settings`, the same flight again with other
+    /// surface options.
+    pub fn start_opening(&mut self, path: PathBuf, settings: Option<FlightSettings>) {
+        self.notice = None;
+        for task in [Task::Scales, Task::Views, Task::Geometry] {
+            self.work.cancel(task);
+        }
+        self.start(Task::Open, move |progress| {
+            Done::Opened(Box::new(open(path, settings, progress)))
+        });
+    }
+
+    /// Computes scales and footprints with the settings of now.
+    pub fn start_scales(&mut self) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let (flight, settings) = (open.flight.clone(), open.settings());
+        self.work.cancel(Task::Views);
+        self.start(Task::Scales, move |progress| {
+            let compute = || {
+                let flight = flight.with_settings(&settings)?;
+                let outcomes = flight.scales(progress)?;
+                Ok((Arc::new(flight), outcomes))
+            };
+            Done::Scales(compute())
+        });
+    }
+
+    /// Drapes the footprints of the flight as it is computed.
+    pub fn start_views(&mut self) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let (flight, outcomes) = (open.flight.clone(), open.outcomes.clone());
+        self.start(Task::Views, move |progress| {
+            Done::Views(flight.views(&outcomes, progress))
+        });
+    }
+
+    /// Makes ready what the viewport draws of the surface.
+    pub fn start_geometry(&mut self) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let (flight, frame) = (open.flight.clone(), open.frame);
+        self.start(Task::Geometry, move |progress| {
+            Done::Geometry(geometry(&flight, &frame, progress))
+        });
+    }
+
+    /// Reads all photos, small.
+    pub fn start_thumbnails(&mut self) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let (number, files) = (open.number, open.photo_files.clone());
+        let flight = open.flight.clone();
+        let send = self.work.thumbnail_sender();
+        let context = self.context.clone();
+        self.start(Task::Thumbnails, move |progress| {
+            progress.stage("reading photos");
+            let photos = &flight.parts().photos;
+            for (index, (photo, file)) in photos.iter().zip(files.iter()).enumerate() {
+                if progress.advance(index as u64, photos.len() as u64).is_err() {
+                    break;
+                }
+                let Some(path) = &file.path else {
+                    continue;
+                };
+                let camera = flight.camera(photo);
+                // What is wrong with a photo is said where it is looked at, and in its verdict.
+                let Ok(small) = photo_for_scale(path, camera, flight.parts().image, THUMBNAIL)
+                else {
+                    continue;
+                };
+                let thumbnail = Thumbnail {
+                    flight: number,
+                    photo: index,
+                    picture: small.convert(),
+                };
+                // Waits until the window has taken some; a cancelled job gives up.
+                if !offer(&send, thumbnail, progress) {
+                    break;
+                }
+                context.request_repaint();
+            }
+            Done::Thumbnails
+        });
+    }
+
+    /// Reads the selected photo for the inspector.
+    pub fn load_preview(&mut self) {
+        self.work.cancel(Task::Preview);
+        let Some(open) = &self.open else {
+            return;
+        };
+        let Some(photo) = open.selected else {
+            return;
+        };
+        let file = open.photo_files.get(photo).cloned().unwrap_or_default();
+        let flight = open.flight.clone();
+        self.start(Task::Preview, move |_| {
+            let posed = &flight.parts().photos[photo];
+            let picture = match &file.path {
+                None => Err(format!("the file of photo '{}' is not there", posed.name)),
+                Some(path) => {
+                    let camera = flight.camera(posed);
+                    photo_for_scale(path, camera, flight.parts().image, PREVIEW)
+                }
+            };
+            Done::Preview { photo, picture }
+        });
+    }
+
+    /// Writes flight.toml.
+    pub fn start_saving(&mut self, path: PathBuf) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let settings = open.settings();
+        let source = open.file.as_ref().map(|(path, _)| path.clone());
+        let opened = open.path.clone();
+        let name = open.flight.parts().name.clone();
+        self.start(Task::Save, move |_| {
+            let saved = save(&path, source.as_deref(), &opened, &name, &settings);
+            Done::Saved(saved.map(|()| path).map_err(|error| error.to_string()))
+        });
+    }
+
+    /// Opens the desktop's own dialog on a thread of its own: its blocking form would freeze the
+    /// window.
+    pub fn browse(&mut self, what: DialogFor, folder: bool) {
+        self.start(Task::Dialog, move |progress| {
+            progress.stage("waiting for the desktop's dialog");
+            let dialog = rfd::AsyncFileDialog::new();
+            let chosen = pollster::block_on(async {
+                match what {
+                    DialogFor::Open if folder => {
+                        dialog.set_title("Open a flight's folder").pick_folder().await
+                    }
+                    DialogFor::Open => dialog.set_title("Open a flight").pick_file().await,
+                    DialogFor::Export => {
+                        let dialog = dialog.set_title("Export for Split-Desktop into");
+                        dialog.pick_folder().await
+                    }
+                    DialogFor::SaveAs => {
+                        let dialog = dialog.set_title("Save flight").set_file_name("flight.toml");
+                        dialog.save_file().await
+                    }
+                    DialogFor::Picture => {
+                        let dialog = dialog.set_title("Save picture").set_file_name("figure.png");
+                        dialog.save_file().await
+                    }
+                }
+            });
+            Done::Dialog(what, chosen.map(|file| file.path().to_owned()))
+        });
+    }
+}
+
+fn open(
+    path: PathBuf,
+    settings: Option<FlightSettings>,
+    progress: &Progress,
+) -> Result<Loaded, String> {
+    let options = OpenOptions {
+        surface: None,
+        settings,
+    };
+    let opened =
+        formats::open_flight(&path, &options, progress).map_err(|error| error.to_string())?;
+    let at_path = |fault: Fault| FileError::new(&path, fault).to_string();
+    let outcomes = opened.flight.scales(progress).map_err(at_path)?;
+    let surface_bounds = bounds_of(&opened.flight);
+    Ok(Loaded {
+        path,
+        opened,
+        outcomes,
+        surface_bounds,
+    })
+}
+
+fn bounds_of(flight: &Flight) -> Bounds {
+    let mut vertices = flight.parts().surface.vertices();
+    // A surface has vertices.
+    let first = vertices.next().unwrap_or_default();
+    let mut bounds = Bounds {
+        min: first,
+        max: first,
+    };
+    for vertex in vertices {
+        bounds.min = bounds.min.min(vertex);
+        bounds.max = bounds.max.max(vertex);
+    }
+    bounds
+}
+
+fn geometry(
+    flight: &Flight,
+    frame: &LocalFrame,
+    progress: &Progress,
+) -> Result<Box<Geometry>, Fault> {
+    let surface = &flight.parts().surface;
+    progress.stage("triangulating the surface for the picture");
+    let triangles = surface
+        .triangles()
+        .map_err(|error| Fault::new(error.to_string(), "check the surface file"))?;
+    progress.advance(1, 4)?;
+    let normals = Normals::of(frame, surface.vertices(), &triangles);
+    progress.advance(2, 4)?;
+    let colors = surface.colors();
+    let mesh = MeshGeometry::new(frame, surface.vertices(), colors, &normals, &triangles);
+    progress.advance(3, 4)?;
+    let cloud = CloudGeometry::new(frame, surface.vertices(), colors, &normals);
+    Ok(Box::new(Geometry { cloud, mesh }))
+}
+
+/// A photo as its scale assumes it: undistorted or as shot, reduced.
+fn photo_for_scale(
+    path: &Path,
+    camera: &Camera,
+    image: ImageKind,
+    max_side: u32,
+) -> Result<RgbImage, String> {
+    let at = |fault: Fault| FileError::new(path, fault).to_string();
+    let bytes = formats::read_bytes(path).map_err(|error| error.to_string())?;
+    let photo = picture::decode(&bytes).map_err(at)?;
+    let fits = photo.dimensions() == (camera.width, camera.height);
+    // A photo of another size is shown as it is: its verdict says that it does not fit.
+    Ok(match image {
+        ImageKind::Undistorted if fits => picture::undistorted(&photo, camera, max_side),
+        _ => picture::reduced(&photo, max_side),
+    })
+}
+
+/// Sends a thumbnail as soon as there is room; false where nobody wants it any more.
+fn offer(
+    send: &std::sync::mpsc::SyncSender<Thumbnail>,
+    mut thumbnail: Thumbnail,
+    progress: &Progress,
+) -> bool {
+    use std::sync::mpsc::TrySendError;
+    loop {
+        match send.try_send(thumbnail) {
+            Ok(()) => return true,
+            Err(TrySendError::Disconnected(_)) => return false,
+            Err(TrySendError::Full(back)) => {
+                if progress.is_cancelled() {
+                    return false;
+                }
+                thumbnail = back;
+                std::thread::sleep(std::time::Duration::from_millis(5));
+            }
+        }
+    }
+}
+
+impl OpenFlight {
+    /// The files that the export reads besides the photos.
+    pub fn chosen_count(&self) -> usize {
+        self.history.now().chosen.iter().filter(|&&c| c).count()
+    }
+}
