@@ -15,7 +15,9 @@ use std::fs;
 
 use common::{scale, scales_json, shared_data};
 use fragscale::camera::Pose;
-use fragscale::formats::{detect, read_reconstruction};
+use fragscale::exports::write_whole;
+use fragscale::formats::{OpenOptions, Opened, detect, open_flight, read_reconstruction};
+use fragscale::jobs::Progress;
 use glam::{DMat3, DQuat, DVec3};
 use serde_json::Value;
 
@@ -60,6 +62,32 @@ fn brighton_opens_as_its_folder_stands() {
         }
     }
     assert!(within_3 >= 8, "only {within_3} of 14 within 3 %");
+}
+
+/// Saved as a flight.toml outside its folder, which may not be written to, it is the same flight.
+#[test]
+fn brighton_saved_as_a_flight_opens_again() {
+    let Some(folder) = shared_data("odm-brighton-0") else {
+        return;
+    };
+    let (options, progress) = (OpenOptions::default(), Progress::default());
+    let opened = open_flight(&folder, &options, &progress).expect("a flight");
+    let there = tempfile::tempdir().expect("a folder");
+    let target = there.path().join("brighton.toml");
+    let text = opened.origin.text_at(&target, &opened.settings);
+    write_whole(&target, text.expect("a text").as_bytes()).expect("written");
+    let saved = open_flight(&target, &options, &progress).expect("a flight");
+    assert_eq!(saved.settings, opened.settings);
+    assert_eq!(saved.flight.parts().photos, opened.flight.parts().photos);
+    assert_eq!(
+        saved.flight.scales(&progress),
+        opened.flight.scales(&progress)
+    );
+    let files = |opened: &Opened| {
+        let files = opened.photo_files.iter();
+        files.filter(|file| file.path.is_some()).count()
+    };
+    assert_eq!(files(&saved), files(&opened));
 }
 
 /// The similarity that takes one reconstruction's photos to those of another of the same scene: the

@@ -5,10 +5,12 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use toml::de::DeTable;
 
+use super::FlightSettings;
 use super::camera_entry::CameraEntry;
 use super::known_keys::{key_line, line_of, refuse_unknown_keys};
 use crate::fault::Fault;
 use crate::scale::{Ground, ImageKind};
+use crate::surface::{SurfaceError, SurfaceOptions};
 use crate::units::LengthUnit;
 
 /// The text of a flight. Paths are relative to the file and stay text here.
@@ -37,9 +39,14 @@ struct World {
     ground: GroundEntry,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 struct SurfaceEntry {
-    file: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    max_edge: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    thinning: Option<f64>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -148,6 +155,46 @@ impl FlightFile {
         Ok(file)
     }
 
+    /// A flight whose photos come from a reconstruction. The names are paths relative to the file that
+    /// it will be: of the reconstruction, of the folder of its image files, of the surface's file where
+    /// that is not the reconstruction's own points.
+    pub fn for_reconstruction(
+        name: &str,
+        reconstruction: &str,
+        folder: Option<&str>,
+        surface: Option<&str>,
+        settings: &FlightSettings,
+    ) -> Self {
+        let SurfaceOptions { max_edge, thinning } = settings.surface;
+        let surface = SurfaceEntry {
+            file: surface.map(str::to_owned),
+            max_edge,
+            thinning,
+        };
+        Self {
+            format: 1,
+            name: Some(name.to_owned()),
+            world: World {
+                unit: settings.unit.symbol().to_owned(),
+                ground: GroundEntry(settings.ground),
+            },
+            surface: (surface != SurfaceEntry::default()).then_some(surface),
+            cameras: Vec::new(),
+            photos: PhotosEntry {
+                poses: None,
+                reconstruction: Some(reconstruction.to_owned()),
+                folder: folder.map(str::to_owned),
+                transform: None,
+            },
+            scale: ScaleEntry {
+                image: match settings.image {
+                    ImageKind::Undistorted => ImageEntry::Undistorted,
+                    ImageKind::AsShot => ImageEntry::AsShot,
+                },
+            },
+        }
+    }
+
     /// The text of this flight.
     ///
     /// # Errors
@@ -213,6 +260,14 @@ impl FlightFile {
                 "name a cloud or mesh",
             );
         }
+        if let Err(SurfaceError::Option { name, value }) = self.surface_options().validate() {
+            return at(
+                "surface",
+                name,
+                format!("surface.{name} is {value}"),
+                "give a positive length in the world's unit, or remove the key",
+            );
+        }
         match (&photos.poses, &photos.reconstruction) {
             (Some(_), Some(_)) => {
                 let what = "photos has both poses and reconstruction".to_owned();
@@ -227,7 +282,7 @@ impl FlightFile {
                     "name the poses.csv or the reconstruction",
                 );
             }
-            (Some(_), None) if self.surface.is_none() => {
+            (Some(_), None) if self.surface().is_none() => {
                 let what = "there is no surface".to_owned();
                 return at("", "world", what, "add [surface] file = \"...\"");
             }
@@ -277,7 +332,26 @@ impl FlightFile {
 
     /// The surface's file, relative to flight.toml.
     pub fn surface(&self) -> Option<&str> {
-        self.surface.as_ref().map(|surface| surface.file.as_str())
+        self.surface.as_ref()?.file.as_deref()
+    }
+
+    /// What is left out of the surface.
+    pub fn surface_options(&self) -> SurfaceOptions {
+        let entry = self.surface.as_ref();
+        SurfaceOptions {
+            max_edge: entry.and_then(|surface| surface.max_edge),
+            thinning: entry.and_then(|surface| surface.thinning),
+        }
+    }
+
+    /// All that can be set while the flight is looked at.
+    pub fn settings(&self) -> FlightSettings {
+        FlightSettings {
+            unit: self.unit(),
+            ground: self.ground(),
+            image: self.image(),
+            surface: self.surface_options(),
+        }
     }
 
     /// The folder of the image files, relative to flight.toml.
@@ -359,6 +433,33 @@ image = "as-shot"
         assert_eq!((camera.cx, camera.cy, camera.fy), (640.0, 360.0, 1001.0));
         let k = [0.1, -0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         assert_eq!(camera.distortion.coefficients(), k);
+    }
+
+    #[test]
+    fn surface_options_are_read() {
+        let options = |text: &str| FlightFile::parse(text).map(|file| file.surface_options());
+        let text = WHOLE.replace(
+            "\"pile.ply\"",
+            "\"pile.ply\"\nmax_edge = 2\nthinning = 0.05",
+        );
+        let both = SurfaceOptions {
+            max_edge: Some(2.0),
+            thinning: Some(0.05),
+        };
+        assert_eq!(options(&text), Ok(both));
+        assert_eq!(options(WHOLE), Ok(SurfaceOptions::default()));
+        let fault = options(&text.replace("max_edge = 2", "max_edge = -2")).unwrap_err();
+        assert_eq!(fault.line, Some(10));
+        let fault = options(&text.replace("0.05", "nan")).unwrap_err();
+        assert_eq!(fault.line, Some(11));
+        assert!(fault.what.contains("surface.thinning is NaN"), "{fault}");
+        // The options may stand alone where a reconstruction brings the points.
+        let text = "format = 1\nworld.unit = \"m\"\nsurface.max_edge = 3\n[photos]\nreconstruction = \"a.nvm\"";
+        let file = FlightFile::parse(text).unwrap();
+        assert_eq!(
+            (file.surface(), file.settings().surface.max_edge),
+            (None, Some(3.0))
+        );
     }
 
     #[test]

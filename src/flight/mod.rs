@@ -2,7 +2,10 @@
 
 mod camera_entry;
 mod file;
+mod file_text;
 mod known_keys;
+#[cfg(test)]
+mod tests;
 mod verdict;
 
 use std::collections::HashMap;
@@ -136,6 +139,28 @@ impl Flight {
             }
         }
         Ok(Self { parts })
+    }
+
+    /// The same flight with other settings; shares the surface with this one.
+    ///
+    /// `thinning` is not looked at: which points are left is decided when the surface's file is read,
+    /// so a flight that is thinned otherwise must be opened anew.
+    ///
+    /// # Errors
+    /// Where a setting is no finite elevation or no positive length.
+    pub fn with_settings(&self, settings: &FlightSettings) -> Result<Self, Fault> {
+        let max_edge = settings.surface.max_edge;
+        let surface = self.parts.surface.with_max_edge(max_edge);
+        let surface = surface.map_err(|error| {
+            Fault::new(error.to_string(), "give a positive length or leave it out")
+        })?;
+        Self::new(FlightParts {
+            unit: settings.unit,
+            ground: settings.ground,
+            image: settings.image,
+            surface: Arc::new(surface),
+            ..self.parts.clone()
+        })
     }
 
     /// Its parts.

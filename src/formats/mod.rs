@@ -17,6 +17,7 @@ mod obj;
 mod odm;
 mod open;
 mod opensfm;
+mod origin;
 mod photo_files;
 mod photo_size;
 mod ply;
@@ -35,6 +36,7 @@ pub use cloud_file::CloudFile;
 pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{OpenOptions, Opened, PhotoFile, open_flight};
+pub use origin::FlightOrigin;
 pub use poses_csv::{PoseLine, PosesFile};
 pub use reconstruction::{Observation, PosedPhoto, Reconstruction};
 

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::input::{FileError, read_bytes, read_text};
+use super::origin::FlightOrigin;
 use super::photo_files::{PhotoFolder, fit_cameras_to_files};
 use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, odm, poses_csv};
 use crate::camera::Camera;
@@ -51,6 +52,8 @@ pub struct Opened {
     pub settings: FlightSettings,
     /// The flight.toml with its path, where the flight came from one.
     pub file: Option<(PathBuf, FlightFile)>,
+    /// Where the flight came from, and how to save it.
+    pub origin: FlightOrigin,
     /// Every file that was read except the photos, in the order of reading.
     pub inputs: Vec<PathBuf>,
 }
@@ -113,12 +116,7 @@ impl Source {
         let mut source = Self {
             file: path.to_owned(),
             name: file.name.clone().unwrap_or_else(|| name_of(path)),
-            settings: FlightSettings {
-                unit: file.unit(),
-                ground: file.ground(),
-                image: file.image(),
-                surface: SurfaceOptions::default(),
-            },
+            settings: file.settings(),
             flight_file: None,
             crs: None,
             inputs: vec![path.to_owned()],
@@ -376,7 +374,15 @@ impl Source {
             &mut self.photos,
             &mut self.warnings,
         );
-        let (surface_file, cloud) = match options.surface.clone().or(self.surface.take()) {
+        let surface = options.surface.clone().or(self.surface.take());
+        let origin = FlightOrigin {
+            path: self.file.clone(),
+            is_flight_file: self.flight_file.is_some(),
+            name: self.name.clone(),
+            photo_folder: self.photo_folder.clone(),
+            surface: surface.clone(),
+        };
+        let (surface_file, cloud) = match surface {
             Some(path) => {
                 let file = super::read_cloud(&path, progress)?;
                 self.warn(&path, &file.warnings);
@@ -400,9 +406,20 @@ impl Source {
             )));
         }
         let settings = options.settings.unwrap_or(self.settings);
+        if settings.surface.thinning.is_some() && !cloud.cloud.triangles.is_empty() {
+            let file = surface_file.display();
+            self.warnings.push(format!(
+                "{file}: it has faces, so it is used as it is and not thinned"
+            ));
+        }
         progress.stage("building the surface");
-        let surface = Surface::new(cloud.cloud)
-            .map_err(|error| at_surface(Fault::new(error.to_string(), "check the surface file")))?;
+        let surface = Surface::with_options(cloud.cloud, &settings.surface).map_err(|error| {
+            let remedy = match settings.surface.thinning {
+                Some(_) => "check the surface file, or thin less",
+                None => "check the surface file",
+            };
+            at_surface(Fault::new(error.to_string(), remedy))
+        })?;
         let flight = Flight::new(FlightParts {
             name: self.name,
             unit: settings.unit,
@@ -420,6 +437,7 @@ impl Source {
             crs: self.crs,
             settings,
             file: self.flight_file.map(|file| (self.file, file)),
+            origin,
             inputs: self.inputs,
         })
     }

@@ -1,1 +1,24 @@
-//! Pixels of photos: undistorting, reducing, drawing on them.
+//! Pixels of photos: decoding, undistorting, reducing, drawing on them.
+//!
+//! It takes bytes and images and knows no files. Photos are 8-bit RGB in the pixel order in which
+//! the file stores them, because poses and calibrations are for the stored pixels: an EXIF
+//! orientation turns nothing here.
+
+mod canvas;
+mod decode;
+mod encode;
+mod overlay;
+mod reduce;
+mod resample;
+mod scale_bar;
+mod text;
+mod undistort;
+
+pub use canvas::{Canvas, Color, Halo};
+pub use decode::{DecodedPhoto, PhotoFormat, decode, decode_photo};
+pub use encode::encode;
+pub use overlay::overlay;
+pub use reduce::{reduced, reduced_size};
+pub use scale_bar::{BarEdge, ScaleBar, scale_bars};
+pub use text::Anchor;
+pub use undistort::undistorted;

@@ -27,6 +27,8 @@ const RAYS_WITHOUT_HIERARCHY: u32 = 128;
 #[derive(Debug)]
 pub(super) struct Mesh {
     points: Vec<DVec3>,
+    /// Of each point, or empty.
+    colors: Vec<[u8; 3]>,
     triangles: Vec<[u32; 3]>,
     /// Boxes around the triangles, once many rays were cast.
     hierarchy: OnceLock<Bvh>,
@@ -41,6 +43,7 @@ impl Mesh {
     /// Where no triangle has three different corners.
     pub(super) fn new(
         points: Vec<DVec3>,
+        colors: Vec<[u8; 3]>,
         mut triangles: Vec<[u32; 3]>,
     ) -> Result<Self, SurfaceError> {
         // A triangle with a repeated corner has no inside; its neighbours cover its edge.
@@ -50,6 +53,7 @@ impl Mesh {
         }
         Ok(Self {
             points,
+            colors,
             triangles,
             hierarchy: OnceLock::new(),
             rays: AtomicU32::new(0),
@@ -79,15 +83,28 @@ impl Mesh {
         &self.points
     }
 
+    /// The colour of each point; empty where there are none.
+    pub(super) fn colors(&self) -> &[[u8; 3]] {
+        &self.colors
+    }
+
     /// The triangles with three different corners.
     pub(super) fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// Where the ray (local frame) meets the mesh first, from either side. A ray that passes an edge
-    /// at a distance of at most `slack` meets it.
-    pub(super) fn cast(&self, ray: &Ray, slack: f64) -> Option<Met> {
-        let (index, t) = self.first(ray, slack)?;
+    /// Where the ray (local frame) meets the mesh first, from either side, without the triangles that
+    /// have an edge longer than `max_edge`. A ray that passes an edge at a distance of at most `slack`
+    /// meets it.
+    pub(super) fn cast(&self, ray: &Ray, slack: f64, max_edge: f64) -> Option<Met> {
+        let sheared = Sheared::new(ray);
+        let meet = |triangle: &[u32; 3]| {
+            let corners = triangle.map(|i| self.points[i as usize]);
+            sheared
+                .meet(corners, slack)
+                .filter(|_| longest_edge(corners) <= max_edge)
+        };
+        let (index, t) = self.first(ray, meet)?;
         let corners = self.triangles[index].map(|i| self.points[i as usize]);
         Some(Met {
             t,
@@ -96,10 +113,7 @@ impl Mesh {
     }
 
     /// The triangle that the ray meets first, and where.
-    fn first(&self, ray: &Ray, slack: f64) -> Option<(usize, f64)> {
-        let sheared = Sheared::new(ray);
-        let meet =
-            |triangle: &[u32; 3]| sheared.meet(triangle.map(|i| self.points[i as usize]), slack);
+    fn first(&self, ray: &Ray, meet: impl Fn(&[u32; 3]) -> Option<f64>) -> Option<(usize, f64)> {
         if self.hierarchy.get().is_none()
             && self.rays.fetch_add(1, Ordering::Relaxed) < RAYS_WITHOUT_HIERARCHY
         {
@@ -120,7 +134,7 @@ impl Mesh {
 }
 
 /// A ray's frame in which the ray is the z axis: its largest axis last, the others sheared.
-struct Sheared {
+pub(super) struct Sheared {
     origin: DVec3,
     /// Axes of the world: the two small ones, then the ray's largest.
     axes: [usize; 3],
@@ -130,7 +144,7 @@ struct Sheared {
 }
 
 impl Sheared {
-    fn new(ray: &Ray) -> Self {
+    pub(super) fn new(ray: &Ray) -> Self {
         let size = ray.direction.abs();
         let z = if size.x >= size.y && size.x >= size.z {
             0
@@ -149,7 +163,9 @@ impl Sheared {
         }
     }
 
-    fn meet(&self, corners: [DVec3; 3], slack: f64) -> Option<f64> {
+    /// Where along the ray it meets the triangle with these corners, from either side, in front of
+    /// its origin; or passes it by at most `slack`.
+    pub(super) fn meet(&self, corners: [DVec3; 3], slack: f64) -> Option<f64> {
         let [(a, a_z), (b, b_z), (c, c_z)] = corners.map(|corner| {
             let p = corner - self.origin;
             let z = p[self.axes[2]];

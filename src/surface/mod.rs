@@ -4,15 +4,21 @@
 //! (contract, section 2). The two have different ways to meet rays: `walk` for a cloud, which
 //! builds no more than the rays ask for, `mesh` for faces, which may overhang.
 
+mod blocks;
 mod cloud;
 mod delaunay;
 mod hull;
 mod mesh;
 mod sites;
+mod thinning;
 mod walk;
+
+use std::ops::Range;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
+pub use blocks::VertexBlock;
 pub use cloud::Cloud;
 
 use crate::geometry::{Bounds, LocalFrame, Ray};
@@ -51,25 +57,64 @@ pub enum SurfaceError {
     /// Beyond the reach of exact predicates.
     #[error("a coordinate is larger than 1e60")]
     TooFarOut,
+    /// A length of [`SurfaceOptions`] that is none.
+    #[error("{name} is {value}; it must be a positive length")]
+    Option {
+        /// As flight.toml calls it.
+        name: &'static str,
+        /// What it is.
+        value: f64,
+    },
 }
 
 /// What is left out of a surface. By default nothing is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SurfaceOptions {
-    /// Triangles with a longer edge (world units) are no part of the surface: rays pass through, as
-    /// they should through a hole in the cloud.
+    /// Triangles with a longer edge (world units, in 3D) are no part of the surface: rays pass
+    /// through, as they should through a hole in the cloud. Edges and vertices that such a triangle
+    /// shares with a shorter one still belong to the surface.
     pub max_edge: Option<f64>,
-    /// One point stays in each square cell of this size (world units) over (x, y).
+    /// One point stays in each square cell of this size (world units) over (x, y): the one nearest to
+    /// the cell's middle, of equally near ones the highest. The cells lie at whole multiples of the
+    /// size, so that the extent of the cloud does not matter. A mesh is used as it is.
     pub thinning: Option<f64>,
 }
 
-/// A surface that rays can be cast at.
-#[derive(Debug)]
+impl SurfaceOptions {
+    /// Checks that the lengths are positive and finite.
+    ///
+    /// # Errors
+    /// With the first that is not.
+    pub fn validate(&self) -> Result<(), SurfaceError> {
+        for (name, length) in [("max_edge", self.max_edge), ("thinning", self.thinning)] {
+            if let Some(value) = length
+                && !(value > 0.0 && value.is_finite())
+            {
+                return Err(SurfaceError::Option { name, value });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A surface that rays can be cast at. Clones share everything.
+#[derive(Debug, Clone)]
 pub struct Surface {
+    /// All triangles, the long ones among them.
+    whole: Arc<Whole>,
+    /// Triangles with a longer edge do not count.
+    max_edge: f64,
+}
+
+/// What surfaces with different maximal edges share.
+#[derive(Debug)]
+struct Whole {
     frame: LocalFrame,
     /// The largest absolute world coordinate: what the input was rounded at.
     magnitude: f64,
     shape: Shape,
+    /// Of the vertices, once somebody asked.
+    blocks: OnceLock<Vec<VertexBlock>>,
 }
 
 #[derive(Debug)]
@@ -86,7 +131,8 @@ pub struct Hit {
     /// In the world.
     pub point: DVec3,
     /// The longest edge of the triangle that was met, world units: far longer than the distance of
-    /// the points means that the cloud has a hole there. 0 where a vertex itself was met.
+    /// the points means that the cloud has a hole there. On an edge or a vertex, that of one of the
+    /// triangles there.
     pub longest_edge: f64,
 }
 
@@ -111,10 +157,19 @@ impl Surface {
     /// # Errors
     /// Where the points make no surface.
     pub fn new(cloud: Cloud) -> Result<Self, SurfaceError> {
+        Self::with_options(cloud, &SurfaceOptions::default())
+    }
+
+    /// The surface of a cloud, less what the options leave out.
+    ///
+    /// # Errors
+    /// Where the points, or those that are left, make no surface, and where an option is no length.
+    pub fn with_options(cloud: Cloud, options: &SurfaceOptions) -> Result<Self, SurfaceError> {
+        options.validate()?;
         let Cloud {
             mut points,
+            mut colors,
             triangles,
-            ..
         } = cloud;
         if let Some(index) = points.iter().position(|p| !p.is_finite()) {
             return Err(SurfaceError::NotFinite(index));
@@ -130,20 +185,55 @@ impl Surface {
                 return Err(SurfaceError::NoSuchPoint { face, point, count });
             }
         }
+        if colors.len() != points.len() {
+            // Not one for each point: nobody knows which.
+            colors.clear();
+        }
+        if let Some(size) = options.thinning
+            && triangles.is_empty()
+        {
+            thinning::thin(&mut points, &mut colors, size)?;
+        }
         let frame = LocalFrame::near(&bounds);
         for point in &mut points {
             *point = frame.local_from_world(*point);
         }
         let shape = if triangles.is_empty() {
-            Shape::Cloud(Sites::new(points)?)
+            Shape::Cloud(Sites::new(points, &colors)?)
         } else {
-            Shape::Mesh(Mesh::new(points, triangles)?)
+            Shape::Mesh(Mesh::new(points, colors, triangles)?)
         };
-        Ok(Self {
+        let whole = Whole {
             frame,
             magnitude,
             shape,
+            blocks: OnceLock::new(),
+        };
+        Ok(Self {
+            whole: Arc::new(whole),
+            max_edge: options.max_edge.unwrap_or(f64::INFINITY),
         })
+    }
+
+    /// The same surface with another [`SurfaceOptions::max_edge`]; shares the points with this one.
+    ///
+    /// # Errors
+    /// Where it is no length.
+    pub fn with_max_edge(&self, max_edge: Option<f64>) -> Result<Self, SurfaceError> {
+        let options = SurfaceOptions {
+            max_edge,
+            thinning: None,
+        };
+        options.validate()?;
+        Ok(Self {
+            whole: Arc::clone(&self.whole),
+            max_edge: max_edge.unwrap_or(f64::INFINITY),
+        })
+    }
+
+    /// See [`SurfaceOptions::max_edge`].
+    pub fn max_edge(&self) -> Option<f64> {
+        self.max_edge.is_finite().then_some(self.max_edge)
     }
 
     /// Makes ready for rays: dozens to thousands on a cloud, any number on a mesh.
@@ -151,32 +241,34 @@ impl Surface {
     /// # Errors
     /// Where the triangulation cannot be begun.
     pub fn caster(&self) -> Result<Caster<'_>, SurfaceError> {
-        let way = match &self.shape {
-            Shape::Cloud(sites) => Way::Walk(Walk::new(sites)?),
+        let way = match &self.whole.shape {
+            Shape::Cloud(sites) => Way::Walk(Walk::new(sites, self.max_edge)?),
             Shape::Mesh(mesh) => Way::Mesh(mesh),
         };
         Ok(Caster { surface: self, way })
     }
 
     /// The same surface as a mesh with all its triangles: for display, and for so many rays that a
-    /// hierarchy over all triangles repays its building.
+    /// hierarchy over all triangles repays its building. Its maximal edge can still be changed.
     ///
     /// # Errors
     /// Where the triangulation fails.
     pub fn to_mesh(&self) -> Result<Self, SurfaceError> {
-        let (points, triangles) = match &self.shape {
-            Shape::Cloud(sites) => {
-                let triangles = delaunay::triangulate(sites.points())?;
-                (sites.points().to_vec(), triangles)
-            }
-            Shape::Mesh(mesh) => (mesh.points().to_vec(), mesh.triangles().to_vec()),
+        let Shape::Cloud(sites) = &self.whole.shape else {
+            return Ok(self.clone());
         };
-        let mesh = Mesh::new(points, triangles)?;
+        let triangles = delaunay::triangulate(sites.points())?;
+        let mesh = Mesh::new(sites.points().to_vec(), sites.colors().to_vec(), triangles)?;
         mesh.hierarchy();
-        Ok(Self {
-            frame: self.frame,
-            magnitude: self.magnitude,
+        let whole = Whole {
+            frame: self.whole.frame,
+            magnitude: self.whole.magnitude,
             shape: Shape::Mesh(mesh),
+            blocks: OnceLock::new(),
+        };
+        Ok(Self {
+            whole: Arc::new(whole),
+            max_edge: self.max_edge,
         })
     }
 
@@ -186,19 +278,52 @@ impl Surface {
     /// # Errors
     /// Where the triangulation fails.
     pub fn triangles(&self) -> Result<Vec<[u32; 3]>, SurfaceError> {
-        match &self.shape {
-            Shape::Cloud(sites) => delaunay::triangulate(sites.points()),
-            Shape::Mesh(mesh) => Ok(mesh.triangles().to_vec()),
+        let points = self.points();
+        let mut triangles = match &self.whole.shape {
+            Shape::Cloud(sites) => delaunay::triangulate(sites.points())?,
+            Shape::Mesh(mesh) => mesh.triangles().to_vec(),
+        };
+        if self.max_edge.is_finite() {
+            triangles.retain(|t| longest_edge(t.map(|i| points[i as usize])) <= self.max_edge);
+        }
+        Ok(triangles)
+    }
+
+    /// The vertices in the world: of a cloud one for each (x, y), of a mesh all of the file. Those
+    /// that only long triangles use are among them.
+    pub fn vertices(&self) -> impl ExactSizeIterator<Item = DVec3> {
+        let frame = &self.whole.frame;
+        self.points().iter().map(|&p| frame.world_from_local(p))
+    }
+
+    /// Some of [`Self::vertices`], by their indices; none where there are no such indices.
+    pub fn vertices_in(&self, range: Range<usize>) -> impl Iterator<Item = DVec3> {
+        let frame = &self.whole.frame;
+        let points = self.points().get(range).unwrap_or_default();
+        points.iter().map(|&p| frame.world_from_local(p))
+    }
+
+    /// All vertices in blocks of neighbours. The first call makes them.
+    pub fn vertex_blocks(&self) -> &[VertexBlock] {
+        let blocks = &self.whole.blocks;
+        blocks.get_or_init(|| blocks::blocks(self.vertices()))
+    }
+
+    /// The colour of each vertex (red, green, blue), in the order of [`Self::vertices`]; empty where
+    /// the file has none.
+    pub fn colors(&self) -> &[[u8; 3]] {
+        match &self.whole.shape {
+            Shape::Cloud(sites) => sites.colors(),
+            Shape::Mesh(mesh) => mesh.colors(),
         }
     }
 
-    /// The vertices in the world: of a cloud one for each (x, y), of a mesh all of the file.
-    pub fn vertices(&self) -> impl ExactSizeIterator<Item = DVec3> {
-        let points = match &self.shape {
+    /// In the local frame.
+    fn points(&self) -> &[DVec3] {
+        match &self.whole.shape {
             Shape::Cloud(sites) => sites.points(),
             Shape::Mesh(mesh) => mesh.points(),
-        };
-        points.iter().map(|&p| self.frame.world_from_local(p))
+        }
     }
 }
 
@@ -219,12 +344,15 @@ impl Caster<'_> {
     /// The nearest intersection in front of the ray's origin. Edges, vertices and the rim belong to
     /// the surface.
     pub fn cast(&mut self, ray: &Ray) -> Option<Hit> {
-        let local = self.surface.frame.local_from_world_ray(ray);
+        let Whole {
+            frame, magnitude, ..
+        } = &*self.surface.whole;
+        let local = frame.local_from_world_ray(ray);
         // What the rounding of the input and of a few products can shift a ray by, sixteenfold.
-        let slack = 16.0 * f64::EPSILON * (self.surface.magnitude + local.origin.length());
+        let slack = 16.0 * f64::EPSILON * (magnitude + local.origin.length());
         let met = match &mut self.way {
             Way::Walk(walk) => walk.cast(&local, slack),
-            Way::Mesh(mesh) => mesh.cast(&local, slack),
+            Way::Mesh(mesh) => mesh.cast(&local, slack, self.surface.max_edge),
         }?;
         Some(Hit {
             t: met.t,

@@ -18,6 +18,8 @@ const SITES_PER_CELL: f64 = 2.0;
 pub(super) struct Sites {
     /// Grouped by cell, row by row.
     points: Vec<DVec3>,
+    /// Of each point, or empty.
+    colors: Vec<[u8; 3]>,
     /// Around `points`.
     bounds: Bounds,
     /// The corners of their convex hull over (x, y), counter-clockwise.
@@ -93,11 +95,12 @@ impl Grid {
 
 impl Sites {
     /// Sorts points (local frame, all finite) into cells; of points with the same (x, y) the
-    /// highest stays.
+    /// highest stays, of equally high ones the first. Each takes its colour along, where there are
+    /// any.
     ///
     /// # Errors
     /// With fewer than three different (x, y), all on one line, or more points than u32 counts.
-    pub(super) fn new(mut points: Vec<DVec3>) -> Result<Self, SurfaceError> {
+    pub(super) fn new(mut points: Vec<DVec3>, colors: &[[u8; 3]]) -> Result<Self, SurfaceError> {
         let bounds = Bounds::of(&points).ok_or(SurfaceError::TooFewPoints(0))?;
         if u32::try_from(points.len()).is_err() {
             return Err(SurfaceError::TooManyPoints(points.len()));
@@ -119,10 +122,10 @@ impl Sites {
             starts[cell] += starts[cell - 1];
         }
         let mut next = starts.clone();
-        let mut sorted = vec![DVec3::ZERO; points.len()];
-        for point in points {
-            let place = &mut next[cell_of(&point)];
-            sorted[*place as usize] = point;
+        let mut order = vec![0_u32; points.len()];
+        for (index, point) in (0..).zip(&points) {
+            let place = &mut next[cell_of(point)];
+            order[*place as usize] = index;
             *place += 1;
         }
 
@@ -131,23 +134,33 @@ impl Sites {
         for cell in 0..starts.len() - 1 {
             let (from, to) = (starts[cell] as usize, starts[cell + 1] as usize);
             starts[cell] = kept as u32;
-            sorted[from..to].sort_unstable_by(|a, b| {
+            order[from..to].sort_unstable_by(|&i, &j| {
+                let (a, b) = (points[i as usize], points[j as usize]);
                 (a.x.total_cmp(&b.x))
                     .then(a.y.total_cmp(&b.y))
                     .then(b.z.total_cmp(&a.z))
+                    .then(i.cmp(&j))
             });
+            let mut last = None;
             for i in from..to {
-                if i == from || sorted[i].truncate() != sorted[i - 1].truncate() {
+                let place = points[order[i] as usize].truncate();
+                if last != Some(place) {
                     // `kept` <= i: what is overwritten has been looked at.
-                    sorted[kept] = sorted[i];
+                    order[kept] = order[i];
                     kept += 1;
                 }
+                last = Some(place);
             }
         }
         if let Some(end) = starts.last_mut() {
             *end = kept as u32;
         }
-        sorted.truncate(kept);
+        order.truncate(kept);
+        let sorted: Vec<DVec3> = order.iter().map(|&i| points[i as usize]).collect();
+        let colors = match colors {
+            [] => Vec::new(),
+            colors => order.iter().map(|&i| colors[i as usize]).collect(),
+        };
         if kept < 3 {
             return Err(SurfaceError::TooFewPoints(kept));
         }
@@ -157,6 +170,7 @@ impl Sites {
         }
         Ok(Self {
             points: sorted,
+            colors,
             bounds,
             hull,
             grid,
@@ -167,6 +181,11 @@ impl Sites {
     /// All sites, grouped by cell.
     pub(super) fn points(&self) -> &[DVec3] {
         &self.points
+    }
+
+    /// The colour of each site, in the order of [`Self::points`]; empty where there are none.
+    pub(super) fn colors(&self) -> &[[u8; 3]] {
+        &self.colors
     }
 
     /// The box around the sites.
@@ -270,7 +289,7 @@ mod tests {
                 .filter(|p| p.x == place)
                 .fold(f64::NEG_INFINITY, |z, p| z.max(p.z))
         };
-        let sites = Sites::new(points.clone()).unwrap();
+        let sites = Sites::new(points.clone(), &[]).unwrap();
         assert_eq!(sites.points().len(), 100);
         for site in sites.points() {
             assert_eq!(site.z, expected(site.x), "at {}", site.x);
@@ -285,7 +304,7 @@ mod tests {
     fn minus_zero_is_zero() {
         let points = [(0.0, 1.0), (-0.0, 2.0), (1e-300, 3.0)].map(|(x, z)| DVec3::new(x, 0.0, z));
         assert!(matches!(
-            Sites::new(points.to_vec()),
+            Sites::new(points.to_vec(), &[]),
             Err(SurfaceError::TooFewPoints(1))
         ));
     }
@@ -298,7 +317,7 @@ mod tests {
             let angle = f64::from(i) * 2.4;
             points.push((DVec2::from_angle(angle) * (f64::from(i) * 0.01)).extend(0.0));
         }
-        let sites = Sites::new(points.clone()).unwrap();
+        let sites = Sites::new(points.clone(), &[]).unwrap();
         for (center, radius) in [
             (DVec2::new(3.0, 4.0), 2.0),
             (DVec2::new(-60.0, 0.0), 30.0),

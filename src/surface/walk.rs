@@ -13,6 +13,9 @@
 //! edges, touched vertices) the height of the ray above the surface is a continuous, piecewise
 //! linear function, and where it changes its sign the ray meets the surface. So no ray can slip
 //! through an edge or a vertex.
+//!
+//! Where long triangles do not count, the walk passes them like all others and meets nothing there,
+//! unless a short one at the rim of the hole is near enough to be met.
 
 use glam::{DVec2, DVec3};
 use robust::{Coord, incircle};
@@ -23,6 +26,7 @@ use spade::{
 };
 
 use super::delaunay::{Site, load};
+use super::mesh::Sheared;
 use super::sites::Sites;
 use super::{Met, SurfaceError, longest_edge};
 use crate::geometry::Ray;
@@ -41,6 +45,8 @@ type Triangle = [Site; 3];
 #[derive(Debug)]
 pub(super) struct Walk<'a> {
     sites: &'a Sites,
+    /// Triangles with a longer edge do not count.
+    max_edge: f64,
     /// Delaunay, of some of the sites, their whole hull among them.
     built: DelaunayTriangulation<Site>,
     /// Which cells' sites are all in `built`.
@@ -74,10 +80,11 @@ impl<'a> Walk<'a> {
     ///
     /// # Errors
     /// Where a coordinate is too large for exact predicates.
-    pub(super) fn new(sites: &'a Sites) -> Result<Self, SurfaceError> {
+    pub(super) fn new(sites: &'a Sites, max_edge: f64) -> Result<Self, SurfaceError> {
         let complete = sites.points().len() <= FEW_SITES;
         Ok(Self {
             sites,
+            max_edge,
             built: load(if complete {
                 sites.points()
             } else {
@@ -149,23 +156,13 @@ impl<'a> Walk<'a> {
         let drop = (ray.at(end).z - ray.at(start).z).abs();
         let plumb = from.distance(to) <= 1e-7 * drop;
         loop {
-            let (hit, passed) = if plumb {
-                self.drop_down(ray, from)
+            let (met, passed) = if plumb {
+                self.drop_down(ray, from, slack)
             } else {
                 self.walk_along(ray, start, end, slack)
             };
             if self.complete || !self.join_sites_inside(&passed) {
-                let t = hit?;
-                let there = self.triangles_at(ray.at(t).truncate());
-                let longest_edges = there
-                    .iter()
-                    .map(|sites| longest_edge(sites.map(|s| s.point())));
-                return Some(Met {
-                    t,
-                    // On an edge the smaller of its two triangles; at a vertex, which is a point of
-                    // the cloud itself, there is none.
-                    longest_edge: longest_edges.min_by(f64::total_cmp).unwrap_or(0.0),
-                });
+                return met;
             }
         }
     }
@@ -191,8 +188,8 @@ impl<'a> Walk<'a> {
         (start <= end && end.is_finite()).then_some((start, end))
     }
 
-    /// Meets a plumb ray: the surface's height at its place, and the triangles there.
-    fn drop_down(&self, ray: &Ray, at: DVec2) -> (Option<f64>, Vec<Triangle>) {
+    /// Meets a plumb ray at the surface's height at its place; returns the triangles there, too.
+    fn drop_down(&self, ray: &Ray, at: DVec2, slack: f64) -> (Option<Met>, Vec<Triangle>) {
         let mut at = at;
         let mut passed = Vec::new();
         let mut hit = None;
@@ -206,7 +203,12 @@ impl<'a> Walk<'a> {
             hit = (t > 0.0).then_some(t);
             at = ray.at(t).truncate();
         }
-        (hit, passed)
+        let met = if self.counts(&passed) {
+            hit.map(|t| met(t, &passed))
+        } else {
+            self.meet_rim(ray, slack, &mut passed)
+        };
+        (met, passed)
     }
 
     /// Follows the ray's trace to the first change of sign; returns where that is, and the
@@ -217,34 +219,81 @@ impl<'a> Walk<'a> {
         start: f64,
         end: f64,
         slack: f64,
-    ) -> (Option<f64>, Vec<Triangle>) {
+    ) -> (Option<Met>, Vec<Triangle>) {
         let mut passed = Vec::new();
         // A ray aimed exactly at a ridge that hides what lies behind touches it, or passes it by
         // less than the slack: that is a hit as well, unless the ray goes through next to it.
         let mut touched = None;
+        // What is met at the rim of a hole may lie behind what the next pieces meet.
+        let mut rim: Option<Met> = None;
         let touches = |stop: Stop| (stop.above.abs() <= slack && stop.t > 0.0).then_some(stop.t);
         for piece in self.pieces(ray, start, end) {
             let Piece { from, to, .. } = piece;
-            if touched.is_none() {
-                touched = touches(from);
+            if rim.is_some_and(|met| met.t < from.t) {
+                break;
             }
+            let there: Vec<Triangle> = piece.triangles.into_iter().flatten().collect();
+            passed.extend(&there);
             let through =
                 from.above == 0.0 || to.above == 0.0 || (from.above > 0.0) != (to.above > 0.0);
-            passed.extend(piece.triangles.into_iter().flatten());
+            if !self.counts(&there) {
+                if touched.is_some() {
+                    break;
+                }
+                if through || touches(from).is_some() || touches(to).is_some() {
+                    let mut around = there;
+                    rim = nearer(rim, self.meet_rim(ray, slack, &mut around));
+                    passed.extend(around);
+                }
+                continue;
+            }
+            if touched.is_none() {
+                touched = touches(from).map(|t| met(t, &there));
+            }
             // A ray that lies in a triangle's plane meets it where it enters.
             let within = touched.is_some() && touches(to).is_some();
             if (within || !through) && touched.is_some() {
-                return (touched, passed);
+                break;
             }
             if through {
                 let t = piece.meet(ray);
                 if t > 0.0 {
-                    return (Some(t), passed);
+                    touched = Some(met(t, &there));
+                    break;
                 }
             }
-            touched = touches(to);
+            touched = touches(to).map(|t| met(t, &there));
         }
-        (touched, passed)
+        (nearer(rim, touched), passed)
+    }
+
+    /// Whether one of these triangles is short enough to belong to the surface.
+    fn counts(&self, triangles: &[Triangle]) -> bool {
+        self.max_edge == f64::INFINITY
+            || triangles
+                .iter()
+                .any(|triangle| size_of(triangle) <= self.max_edge)
+    }
+
+    /// Where the ray meets a triangle that counts and shares a corner with one of those in the hole
+    /// around it, which the other ones are added to.
+    fn meet_rim(&self, ray: &Ray, slack: f64, hole: &mut Vec<Triangle>) -> Option<Met> {
+        let corners: Vec<DVec2> = hole
+            .iter()
+            .flatten()
+            .map(|site| site.point().truncate())
+            .collect();
+        for corner in corners {
+            hole.extend(self.triangles_at(corner));
+        }
+        let sheared = Sheared::new(ray);
+        hole.iter()
+            .filter(|triangle| size_of(triangle) <= self.max_edge)
+            .filter_map(|triangle| {
+                let t = sheared.meet(triangle.map(|site| site.point()), slack)?;
+                Some(met(t, std::slice::from_ref(triangle)))
+            })
+            .min_by(|a, b| a.t.total_cmp(&b.t))
     }
 
     /// The pieces of the trace that lie on the surface built so far, in order.
@@ -320,6 +369,14 @@ impl<'a> Walk<'a> {
             };
             arrive(stop(to, z), before, [None; 2], &mut along_edge);
         }
+        // From an edge to the opposite vertex no stop has told.
+        for piece in &mut pieces {
+            if piece.triangles[0].is_none() && piece.triangles[1].is_none() {
+                let middle = ray.at(f64::midpoint(piece.from.t, piece.to.t));
+                let there = self.triangles_at(middle.truncate());
+                piece.triangles = [there.first().copied(), there.get(1).copied()];
+            }
+        }
         pieces
     }
 
@@ -344,7 +401,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The triangle at a place; two on an edge; none at a vertex, which is always right.
+    /// The triangle at a place; two on an edge; at a vertex all around it.
     fn triangles_at(&self, place: DVec2) -> Vec<Triangle> {
         match self.built.locate(spade_point(place)) {
             PositionInTriangulation::OnFace(face) => {
@@ -357,6 +414,12 @@ impl<'a> Walk<'a> {
                     .flatten()
                     .collect()
             }
+            PositionInTriangulation::OnVertex(vertex) => self
+                .built
+                .vertex(vertex)
+                .out_edges()
+                .filter_map(triangle)
+                .collect(),
             _ => Vec::new(),
         }
     }
@@ -463,6 +526,24 @@ impl Piece {
             between
         }
     }
+}
+
+/// Meeting a place where these triangles are.
+fn met(t: f64, there: &[Triangle]) -> Met {
+    let sizes = there.iter().map(size_of);
+    Met {
+        t,
+        longest_edge: sizes.min_by(f64::total_cmp).unwrap_or(0.0),
+    }
+}
+
+fn nearer(a: Option<Met>, b: Option<Met>) -> Option<Met> {
+    a.into_iter().chain(b).min_by(|a, b| a.t.total_cmp(&b.t))
+}
+
+/// The longest edge of a triangle.
+fn size_of(triangle: &Triangle) -> f64 {
+    longest_edge(triangle.map(|site| site.point()))
 }
 
 fn spade_point(place: DVec2) -> Point2<f64> {

@@ -1,0 +1,118 @@
+//! Undo and redo as a list of states.
+
+/// How many steps back are kept.
+const STEPS: usize = 200;
+
+/// A state with those before it and those that were undone.
+#[derive(Debug, Clone)]
+pub struct History<T> {
+    undone_to: Vec<T>,
+    now: T,
+    redo: Vec<T>,
+}
+
+impl<T: PartialEq> History<T> {
+    /// Begins with this state.
+    pub fn new(now: T) -> Self {
+        Self {
+            undone_to: Vec::new(),
+            now,
+            redo: Vec::new(),
+        }
+    }
+
+    /// The state of now.
+    pub fn now(&self) -> &T {
+        &self.now
+    }
+
+    /// Goes on to another state; what was undone is forgotten. The same state again is no step.
+    pub fn set(&mut self, next: T) {
+        if next == self.now {
+            return;
+        }
+        if self.undone_to.len() == STEPS {
+            self.undone_to.remove(0);
+        }
+        self.undone_to.push(std::mem::replace(&mut self.now, next));
+        self.redo.clear();
+    }
+
+    /// Changes the state of now without a step: for what no person did.
+    pub fn replace(&mut self, now: T) {
+        self.now = now;
+    }
+
+    /// Whether there is a state before this one.
+    pub fn can_undo(&self) -> bool {
+        !self.undone_to.is_empty()
+    }
+
+    /// Whether something was undone.
+    pub fn can_redo(&self) -> bool {
+        !self.redo.is_empty()
+    }
+
+    /// Goes one state back; false at the first.
+    pub fn undo(&mut self) -> bool {
+        let Some(before) = self.undone_to.pop() else {
+            return false;
+        };
+        self.redo.push(std::mem::replace(&mut self.now, before));
+        true
+    }
+
+    /// Takes the last undo back; false where there is none.
+    pub fn redo(&mut self) -> bool {
+        let Some(after) = self.redo.pop() else {
+            return false;
+        };
+        self.undone_to.push(std::mem::replace(&mut self.now, after));
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_go_back_and_forth() {
+        let mut history = History::new(1);
+        history.set(2);
+        history.set(2);
+        history.set(3);
+        assert!(history.undo());
+        assert_eq!(*history.now(), 2);
+        assert!(history.undo());
+        assert!(!history.undo(), "the same state again was no step");
+        assert_eq!(*history.now(), 1);
+        assert!(history.redo() && history.redo() && !history.redo());
+        assert_eq!(*history.now(), 3);
+    }
+
+    #[test]
+    fn a_new_step_forgets_what_was_undone() {
+        let mut history = History::new('a');
+        history.set('b');
+        assert!(history.undo());
+        history.set('c');
+        assert!(!history.can_redo());
+        assert!(history.undo());
+        assert_eq!(*history.now(), 'a');
+    }
+
+    #[test]
+    fn the_list_is_bounded() {
+        let mut history = History::new(0);
+        for step in 1..=1000 {
+            history.set(step);
+        }
+        let mut back = 0;
+        while history.undo() {
+            back += 1;
+        }
+        assert_eq!(back, STEPS);
+        assert_eq!(*history.now(), 800);
+    }
+}

@@ -1,0 +1,237 @@
+//! Long work of the window: jobs by their task, each replacing the one before it.
+//!
+//! The window never waits: it asks now and then whether something is done, and takes it. Work whose
+//! result nobody wants any more is cancelled and ends on its own.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+
+use image::{RgbImage, RgbaImage};
+
+use crate::fault::Fault;
+use crate::flight::{Flight, Outcome};
+use crate::formats::Opened;
+use crate::jobs::{Job, Progress};
+use crate::render::{CloudGeometry, MeshGeometry};
+use crate::scale::ViewFacts;
+
+/// What is being done. Of each task one job runs at a time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Task {
+    /// Reading a flight.
+    Open,
+    /// Computing scales anew after a setting changed.
+    Scales,
+    /// Draping footprints.
+    Views,
+    /// Triangles and points for the viewport.
+    Geometry,
+    /// Small pictures of all photos.
+    Thumbnails,
+    /// The selected photo for the inspector.
+    Preview,
+    /// Writing the export folder.
+    Export,
+    /// Writing flight.toml.
+    Save,
+    /// Writing a picture of the viewport.
+    Picture,
+    /// Waiting for the desktop's own dialog.
+    Dialog,
+}
+
+impl Task {
+    /// For the status bar.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::Open => "Opening",
+            Self::Scales => "Scales",
+            Self::Views => "Footprints",
+            Self::Geometry => "Surface",
+            Self::Thumbnails => "Thumbnails",
+            Self::Preview => "Photo",
+            Self::Export => "Export",
+            Self::Save => "Saving",
+            Self::Picture => "Picture",
+            Self::Dialog => "Dialog",
+        }
+    }
+}
+
+/// Why a native dialog was opened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DialogFor {
+    /// A flight's file or folder.
+    Open,
+    /// Where the export folder goes.
+    Export,
+    /// Where flight.toml goes.
+    SaveAs,
+    /// Where a picture goes.
+    Picture,
+}
+
+/// A flight with its scales.
+#[derive(Debug)]
+pub struct Loaded {
+    /// What the user named.
+    pub path: PathBuf,
+    /// What was read.
+    pub opened: Opened,
+    /// Of each photo.
+    pub outcomes: Vec<Outcome>,
+}
+
+/// What the viewport draws.
+#[derive(Debug)]
+pub struct Geometry {
+    /// The points.
+    pub cloud: CloudGeometry,
+    /// The triangles.
+    pub mesh: MeshGeometry,
+}
+
+/// What came out of a job.
+#[derive(Debug)]
+pub enum Done {
+    /// A flight, or why it cannot be opened.
+    Opened(Box<Result<Loaded, String>>),
+    /// Scales after a setting changed.
+    Scales(Result<(Arc<Flight>, Vec<Outcome>), Fault>),
+    /// How the photos look at the surface.
+    Views(Result<Vec<Option<ViewFacts>>, Fault>),
+    /// For the viewport.
+    Geometry(Result<Box<Geometry>, Fault>),
+    /// All thumbnails have been sent.
+    Thumbnails,
+    /// The selected photo, undistorted as its scale assumes, or why it cannot be shown.
+    Preview {
+        /// Which photo.
+        photo: usize,
+        /// Its pixels.
+        picture: Result<RgbImage, String>,
+    },
+    /// What was exported and where, in a sentence.
+    Exported(Result<String, String>),
+    /// Where flight.toml was written.
+    Saved(Result<PathBuf, String>),
+    /// Where the picture was written.
+    Picture(Result<PathBuf, String>),
+    /// What the person chose; `None` where she did not, or where the desktop has no dialog.
+    Dialog(DialogFor, Option<PathBuf>),
+}
+
+/// A reduced, undistorted photo on its way to the table and the viewport.
+#[derive(Debug)]
+pub struct Thumbnail {
+    /// Of which opened flight, counted.
+    pub flight: u64,
+    /// Which photo.
+    pub photo: usize,
+    /// Its pixels.
+    pub picture: RgbaImage,
+}
+
+/// The jobs under way.
+#[derive(Debug)]
+pub struct Work {
+    running: Vec<(Task, Job<Done>)>,
+    context: egui::Context,
+    /// Small pictures arrive one by one, not at the end.
+    thumbnails: Receiver<Thumbnail>,
+    send_thumbnail: SyncSender<Thumbnail>,
+}
+
+impl Work {
+    /// Nothing to do yet. The context is woken when something is done.
+    pub fn new(context: egui::Context) -> Self {
+        // Bounded: pictures wait in the job, not in memory, until the window has taken some.
+        let (send_thumbnail, thumbnails) = sync_channel(16);
+        Self {
+            running: Vec::new(),
+            context,
+            thumbnails,
+            send_thumbnail,
+        }
+    }
+
+    /// Starts a task; one of the same kind that still runs is cancelled and its result dropped.
+    ///
+    /// # Errors
+    /// Where the system has no thread left.
+    pub fn start(
+        &mut self,
+        task: Task,
+        work: impl FnOnce(&Progress) -> Done + Send + 'static,
+    ) -> Result<(), Fault> {
+        self.cancel(task);
+        let context = self.context.clone();
+        let job = Job::start(task.in_words(), move |progress| {
+            let done = work(progress);
+            context.request_repaint();
+            done
+        })?;
+        self.running.push((task, job));
+        Ok(())
+    }
+
+    /// Where the thumbnails' job sends them.
+    pub fn thumbnail_sender(&self) -> SyncSender<Thumbnail> {
+        self.send_thumbnail.clone()
+    }
+
+    /// The thumbnails that have arrived, at most `most`.
+    pub fn thumbnails(&self, most: usize) -> Vec<Thumbnail> {
+        self.thumbnails.try_iter().take(most).collect()
+    }
+
+    /// Cancels a task, if it runs; its result will not be seen.
+    pub fn cancel(&mut self, task: Task) {
+        self.running.retain(|(running, job)| {
+            if *running == task {
+                job.progress().cancel();
+            }
+            *running != task
+        });
+    }
+
+    /// Cancels everything.
+    pub fn cancel_all(&mut self) {
+        for (_, job) in self.running.drain(..) {
+            job.progress().cancel();
+        }
+    }
+
+    /// What runs, with its sentence and its fraction from 0 to 1.
+    pub fn running(&self) -> impl Iterator<Item = (Task, (String, f64))> {
+        self.running
+            .iter()
+            .map(|(task, job)| (*task, job.progress().snapshot()))
+    }
+
+    /// Whether this task runs.
+    pub fn is_running(&self, task: Task) -> bool {
+        self.running.iter().any(|(running, _)| *running == task)
+    }
+
+    /// Whether nothing runs.
+    pub fn is_idle(&self) -> bool {
+        self.running.is_empty()
+    }
+
+    /// Takes what is done. A job that panicked is a fault of ours, told like any other.
+    pub fn finished(&mut self) -> Vec<Result<Done, Fault>> {
+        let (finished, running): (Vec<_>, Vec<_>) = std::mem::take(&mut self.running)
+            .into_iter()
+            .partition(|(_, job)| job.is_finished());
+        self.running = running;
+        finished.into_iter().map(|(_, job)| job.finish()).collect()
+    }
+}
+
+impl Drop for Work {
+    fn drop(&mut self) {
+        self.cancel_all();
+    }
+}

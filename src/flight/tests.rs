@@ -1,0 +1,97 @@
+//! A flight and its settings.
+
+use glam::DVec3;
+
+use super::*;
+use crate::camera::Distortion;
+use crate::surface::Cloud;
+
+/// A camera that sees 1.28 by 0.72 of what is 1 away.
+fn camera() -> Camera {
+    Camera {
+        name: String::new(),
+        width: 1280,
+        height: 720,
+        fx: 1000.0,
+        fy: 1000.0,
+        cx: 640.0,
+        cy: 360.0,
+        skew: 0.0,
+        distortion: Distortion::None,
+    }
+}
+
+/// One photo straight down from 10 above a level lattice of 2 on [-20, 20]².
+fn flight() -> Flight {
+    let at = |i: i32| f64::from(i) * 2.0;
+    let points = (-10..=10)
+        .flat_map(|i| (-10..=10).map(move |j| DVec3::new(at(i), at(j), 0.0)))
+        .collect();
+    let cloud = Cloud {
+        points,
+        ..Cloud::default()
+    };
+    Flight::new(FlightParts {
+        name: "test".to_owned(),
+        unit: LengthUnit::Metre,
+        ground: Ground::Auto,
+        image: ImageKind::Undistorted,
+        surface: Arc::new(Surface::new(cloud).unwrap()),
+        cameras: vec![camera()],
+        photos: vec![Photo {
+            name: "a.jpg".to_owned(),
+            camera: 0,
+            pose: Pose::from_tilt_pan(DVec3::new(0.0, 0.0, 10.0), [90.0, 0.0]),
+            trouble: None,
+        }],
+    })
+    .unwrap()
+}
+
+fn settings() -> FlightSettings {
+    FlightSettings {
+        unit: LengthUnit::Metre,
+        ground: Ground::Auto,
+        image: ImageKind::Undistorted,
+        surface: SurfaceOptions::default(),
+    }
+}
+
+fn scale(flight: &Flight) -> PhotoScale {
+    let outcomes = flight.scales(&Progress::default()).unwrap();
+    let [Outcome::Scale(scale)] = &outcomes[..] else {
+        panic!("one scale");
+    };
+    (**scale).clone()
+}
+
+/// With all triangles left out the corners fall to the ground that is set.
+#[test]
+fn settings_change_without_the_file() {
+    let flight = flight();
+    assert_eq!(scale(&flight).corners_on_surface(), 4);
+    let mut settings = settings();
+    settings.surface.max_edge = Some(1.0);
+    settings.ground = Ground::At(-10.0);
+    settings.unit = LengthUnit::Foot;
+    let changed = flight.with_settings(&settings).unwrap();
+    let scale_now = scale(&changed);
+    assert_eq!(changed.parts().unit, LengthUnit::Foot);
+    assert_eq!(scale_now.corners_on_surface(), 0);
+    assert!((scale_now.scale.top.unwrap() - 50.0).abs() < 1e-9);
+    // And back again.
+    settings.surface.max_edge = None;
+    let back = changed.with_settings(&settings).unwrap();
+    assert!((scale(&back).scale.top.unwrap() - 100.0).abs() < 1e-9);
+}
+
+#[test]
+fn impossible_settings_are_refused() {
+    let flight = flight();
+    let mut bad = settings();
+    bad.surface.max_edge = Some(-1.0);
+    assert!(flight.with_settings(&bad).is_err());
+    let mut bad = settings();
+    bad.ground = Ground::At(f64::NAN);
+    assert!(flight.with_settings(&bad).is_err());
+}

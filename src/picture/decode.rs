@@ -1,0 +1,235 @@
+//! Photos from the bytes of their files.
+
+use std::io::Cursor;
+
+use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits, RgbImage};
+
+use crate::fault::Fault;
+
+/// The most pixels that a photo may have: twice the largest aerial sensors of today.
+const MOST_PIXELS: u64 = 400_000_000;
+
+/// What a decoder may allocate, the picture included: 16-bit RGBA at [`MOST_PIXELS`] is not meant.
+const MOST_BYTES: u64 = 2 << 30;
+
+/// Pixels that a byte of a photo may stand for. The flattest JPEG and PNG reach some hundreds, so a
+/// header that claims more lies.
+const MOST_PIXELS_A_BYTE: u64 = 1000;
+
+/// Below this many pixels a lying header does no harm.
+const HARMLESS_PIXELS: u64 = 16_000_000;
+
+/// The file formats of photos.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PhotoFormat {
+    /// JPEG.
+    Jpeg,
+    /// PNG.
+    Png,
+    /// TIFF.
+    Tiff,
+}
+
+/// A photo with what its file says beside the pixels.
+#[derive(Debug, Clone)]
+pub struct DecodedPhoto {
+    /// 8-bit RGB, in the stored pixel order. Grey becomes RGB, 16 bits become 8, transparency is
+    /// dropped.
+    pub image: RgbImage,
+    /// Of the file.
+    pub format: PhotoFormat,
+    /// The EXIF block as the file holds it (it begins with a TIFF header). Of TIFF files, whose EXIF
+    /// is spread over the file, there is none.
+    pub exif: Option<Vec<u8>>,
+    /// The ICC colour profile, where it is one for RGB.
+    pub icc: Option<Vec<u8>>,
+}
+
+/// The pixels of a JPEG, PNG or TIFF.
+///
+/// # Errors
+/// As [`decode_photo`].
+pub fn decode(bytes: &[u8]) -> Result<RgbImage, Fault> {
+    decode_photo(bytes).map(|photo| photo.image)
+}
+
+/// A JPEG, PNG or TIFF with its metadata. The pixels stay as they are stored: the EXIF orientation
+/// is NOT applied, because poses and calibrations are for the stored pixels.
+///
+/// # Errors
+/// Where it is none of these, broken or cut off, or claims to be larger than photos are.
+pub fn decode_photo(bytes: &[u8]) -> Result<DecodedPhoto, Fault> {
+    let unreadable = |e: &dyn std::fmt::Display| {
+        Fault::new(
+            format!("it cannot be read as an image ({e})"),
+            "give a whole JPEG, PNG or TIFF",
+        )
+    };
+    let mut reader = ImageReader::new(Cursor::new(bytes))
+        .with_guessed_format()
+        .map_err(|e| unreadable(&e))?;
+    let format = match reader.format() {
+        Some(ImageFormat::Jpeg) => PhotoFormat::Jpeg,
+        Some(ImageFormat::Png) => PhotoFormat::Png,
+        Some(ImageFormat::Tiff) => PhotoFormat::Tiff,
+        _ => return Err(unreadable(&"no JPEG, PNG or TIFF")),
+    };
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MOST_BYTES);
+    reader.limits(limits);
+    let mut decoder = reader.into_decoder().map_err(|e| unreadable(&e))?;
+    let (width, height) = decoder.dimensions();
+    check_size(width, height, bytes.len() as u64)?;
+    if format == PhotoFormat::Jpeg && !has_end_of_image(bytes) {
+        // The decoder would fill the rest with grey and say nothing.
+        return Err(Fault::new(
+            "the JPEG is cut off: it has no end marker",
+            "copy the photo again",
+        ));
+    }
+    // Metadata that cannot be read is no reason to refuse the pixels.
+    let exif = decoder.exif_metadata().ok().flatten();
+    let is_rgb = matches!(
+        decoder.color_type(),
+        ColorType::Rgb8 | ColorType::Rgba8 | ColorType::Rgb16 | ColorType::Rgba16
+    );
+    let icc = decoder.icc_profile().ok().flatten().filter(|_| is_rgb);
+    let image = DynamicImage::from_decoder(decoder).map_err(|e| unreadable(&e))?;
+    Ok(DecodedPhoto {
+        image: image.into_rgb8(),
+        format,
+        exif,
+        icc,
+    })
+}
+
+/// Refuses sizes that no photo in a file of so many bytes has, before memory is taken for them.
+fn check_size(width: u32, height: u32, bytes: u64) -> Result<(), Fault> {
+    let pixels = u64::from(width) * u64::from(height);
+    let refuse = |why: &str, remedy: &str| {
+        Err(Fault::new(
+            format!("the image claims to be {width} x {height}, {why}"),
+            remedy,
+        ))
+    };
+    if pixels == 0 {
+        return refuse("which has no pixels", "give a photo");
+    }
+    if pixels > MOST_PIXELS {
+        return refuse(
+            "more than the 400 megapixels that are supported",
+            "reduce it",
+        );
+    }
+    if pixels > HARMLESS_PIXELS && pixels > bytes.saturating_mul(MOST_PIXELS_A_BYTE) {
+        return refuse(
+            &format!("far too much for its {bytes} bytes"),
+            "copy the photo again",
+        );
+    }
+    Ok(())
+}
+
+/// Whether a JPEG's compressed data ends with its end marker (cameras may append more behind it; the
+/// end marker of a thumbnail inside its header does not count).
+fn has_end_of_image(bytes: &[u8]) -> bool {
+    // After the start marker come segments: FF, kind, length with itself. The scan is the last.
+    let mut at = 2;
+    while let Some(&[0xff, kind, high, low]) = bytes.get(at..at + 4) {
+        if kind == 0xff {
+            // A fill byte.
+            at += 1;
+            continue;
+        }
+        at += 2 + usize::from(u16::from_be_bytes([high, low]));
+        if kind == 0xda {
+            break;
+        }
+    }
+    let data = bytes.get(at..).unwrap_or_default();
+    data.windows(2).any(|pair| pair == [0xff, 0xd9])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bytes(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+        let mut bytes = Cursor::new(Vec::new());
+        image.write_to(&mut bytes, format).unwrap();
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn the_three_formats() {
+        let image = RgbImage::from_fn(16, 9, |x, y| image::Rgb([x as u8 * 8, y as u8 * 20, 90]));
+        let image = DynamicImage::from(image);
+        for format in [ImageFormat::Png, ImageFormat::Tiff] {
+            assert_eq!(decode(&bytes(&image, format)).unwrap(), image.to_rgb8());
+        }
+        let jpeg = decode_photo(&bytes(&image, ImageFormat::Jpeg)).unwrap();
+        assert_eq!(jpeg.format, PhotoFormat::Jpeg);
+        assert_eq!(jpeg.image.dimensions(), (16, 9));
+        let grey = decode(&bytes(&image.grayscale(), ImageFormat::Png)).unwrap();
+        assert_eq!(grey.get_pixel(3, 3)[0], grey.get_pixel(3, 3)[2]);
+    }
+
+    #[test]
+    fn what_is_no_photo_is_said() {
+        for junk in [
+            &b""[..],
+            b"no image",
+            b"GIF89a\x01\x00\x01\x00",
+            b"\xff\xd8\xff",
+        ] {
+            let fault = decode(junk).unwrap_err();
+            assert!(fault.remedy.contains("JPEG"), "{fault}");
+        }
+    }
+
+    #[test]
+    fn a_cut_photo_is_refused() {
+        let image = RgbImage::from_fn(64, 64, |x, y| image::Rgb([(x * y) as u8, x as u8, y as u8]));
+        for format in [ImageFormat::Jpeg, ImageFormat::Png, ImageFormat::Tiff] {
+            let whole = bytes(&DynamicImage::from(image.clone()), format);
+            assert!(decode(&whole).is_ok());
+            assert!(decode(&whole[..whole.len() / 2]).is_err(), "{format:?}");
+        }
+    }
+
+    /// A PNG header of 19 999 x 19 999 pixels in front of nothing: refused by what it claims.
+    #[test]
+    fn a_lying_header_takes_no_memory() {
+        let mut png = bytes(&DynamicImage::new_rgb8(1, 1), ImageFormat::Png);
+        png[16..20].copy_from_slice(&19_999_u32.to_be_bytes());
+        png[20..24].copy_from_slice(&19_999_u32.to_be_bytes());
+        // The header's checksum is then wrong, too; mend it so that the size is what is judged.
+        let checksum = crc32(&png[12..29]);
+        png[29..33].copy_from_slice(&checksum.to_be_bytes());
+        let fault = decode(&png).unwrap_err();
+        assert!(
+            fault.what.contains("19999 x 19999, far too much"),
+            "{fault}"
+        );
+        assert!(check_size(65_535, 65_535, 1 << 40).is_err());
+        assert!(check_size(0, 5, 100).is_err());
+        // A phone's 48 megapixels of plain sky at 200 kB.
+        assert!(check_size(8000, 6000, 200_000).is_ok());
+    }
+
+    /// PNG specification, annex D.
+    fn crc32(bytes: &[u8]) -> u32 {
+        let mut crc = u32::MAX;
+        for byte in bytes {
+            crc ^= u32::from(*byte);
+            for _ in 0..8 {
+                crc = if crc & 1 == 1 {
+                    (crc >> 1) ^ 0xedb8_8320
+                } else {
+                    crc >> 1
+                };
+            }
+        }
+        !crc
+    }
+}

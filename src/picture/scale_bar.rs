@@ -1,0 +1,192 @@
+//! Scale bars for the top and the bottom edge of a photo: what to draw, not how.
+
+use glam::DVec2;
+
+use crate::scale::PhotoScale;
+use crate::units::LengthUnit;
+
+/// A bar is at most this share of the image's width.
+const LONGEST_SHARE: f64 = 0.35;
+
+/// How far from its edge a bar is, as a share of the image's height.
+const INSET_SHARE: f64 = 0.05;
+
+/// The image edge that a bar belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BarEdge {
+    /// The top edge.
+    Top,
+    /// The bottom edge.
+    Bottom,
+}
+
+impl BarEdge {
+    /// In capitals, for labels.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Top => "TOP",
+            Self::Bottom => "BOTTOM",
+        }
+    }
+}
+
+/// A horizontal bar of a round length.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScaleBar {
+    /// Where it belongs.
+    pub edge: BarEdge,
+    /// Pixels per unit along that edge.
+    pub scale: f64,
+    /// 1, 2 or 5 times a power of ten.
+    pub length_in_unit: f64,
+    /// The same in pixels of the image.
+    pub length_px: f64,
+    /// Its left end, pixels of the image.
+    pub from: DVec2,
+    /// Its right end, pixels of the image.
+    pub to: DVec2,
+    /// Length and scale, such as "50 cm · 25.63 px/cm".
+    pub text: String,
+}
+
+/// The bars of a photo's scale in an image of `width` x `height` pixels, the camera's size: centred
+/// at the top and the bottom edge, each at the scale of its edge. An edge without a scale has no
+/// bar. `unit` is the one of the bars, `world_unit` that of `scale`.
+pub fn scale_bars(
+    scale: &PhotoScale,
+    width: u32,
+    height: u32,
+    unit: LengthUnit,
+    world_unit: LengthUnit,
+) -> Vec<ScaleBar> {
+    let (width, height) = (f64::from(width), f64::from(height));
+    let inset = INSET_SHARE * height;
+    let edges = [
+        (BarEdge::Top, scale.scale.top, inset),
+        (BarEdge::Bottom, scale.scale.bottom, height - inset),
+    ];
+    let bar = |(edge, scale, y): (BarEdge, Option<f64>, f64)| {
+        // Pixels per world unit, times world units per unit.
+        let scale = scale? * unit.in_units_of(world_unit);
+        let (length, length_text) = round_length(LONGEST_SHARE * width / scale)?;
+        let length_px = length * scale;
+        let middle = DVec2::new(width / 2.0, y);
+        let half = DVec2::new(length_px / 2.0, 0.0);
+        Some(ScaleBar {
+            edge,
+            scale,
+            length_in_unit: length,
+            length_px,
+            from: middle - half,
+            to: middle + half,
+            text: format!("{length_text} {unit} · {} px/{unit}", four_digits(scale)),
+        })
+    };
+    edges.into_iter().filter_map(bar).collect()
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is no longer than `longest`, and its text.
+fn round_length(longest: f64) -> Option<(f64, String)> {
+    if !longest.is_finite() || longest <= 0.0 {
+        return None;
+    }
+    let exponent = longest.log10().floor();
+    // One power below as well: the logarithm may round up at a power of ten.
+    let candidates = [exponent - 1.0, exponent].map(|e| [1.0, 2.0, 5.0].map(|digit| (digit, e)));
+    let (digit, exponent) = candidates
+        .into_iter()
+        .flatten()
+        .rfind(|(digit, e)| digit * 10_f64.powf(*e) <= longest * (1.0 + 1e-12))?;
+    let decimals = (-exponent).max(0.0) as usize;
+    let text = format!("{:.decimals$}", digit * 10_f64.powf(exponent));
+    // The number that its text says, without the noise of the power.
+    Some((text.parse().ok()?, text))
+}
+
+/// Four significant digits, without an exponent.
+pub(super) fn four_digits(number: f64) -> String {
+    let exponent = number.abs().log10().floor();
+    let decimals = (3.0 - exponent).clamp(0.0, 12.0) as usize;
+    format!("{number:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::scale::{Corner, CornerName, CornerOutcome, EdgeScales};
+
+    fn scale(top: Option<f64>, bottom: Option<f64>) -> PhotoScale {
+        PhotoScale {
+            corners: CornerName::ALL.map(|name| Corner {
+                name,
+                pixel: DVec2::ZERO,
+                direction: Some(DVec3::NEG_Z),
+                outcome: CornerOutcome::Nowhere,
+            }),
+            scale: EdgeScales {
+                top,
+                bottom,
+                ..EdgeScales::default()
+            },
+            ground: None,
+        }
+    }
+
+    /// 2560 px/m are 25.6 px/cm; of 1000 px 350 may be bar, 13.67 cm, so 10 cm, 256 px.
+    #[test]
+    fn a_known_bar() {
+        let (cm, m) = (LengthUnit::Centimetre, LengthUnit::Metre);
+        let bars = scale_bars(&scale(Some(2560.0), Some(5120.0)), 1000, 800, cm, m);
+        let [top, bottom] = &bars[..] else {
+            panic!("{bars:?}");
+        };
+        assert_eq!((top.edge, top.length_in_unit), (BarEdge::Top, 10.0));
+        assert!((top.length_px - 256.0).abs() < 1e-9);
+        assert!(
+            (top.from - DVec2::new(372.0, 40.0)).length() < 1e-9,
+            "{}",
+            top.from
+        );
+        assert!((top.to - DVec2::new(628.0, 40.0)).length() < 1e-9);
+        assert_eq!(top.text, "10 cm · 25.60 px/cm");
+        assert_eq!((bottom.edge, bottom.length_in_unit), (BarEdge::Bottom, 5.0));
+        assert_eq!(bottom.from.y, 760.0);
+        // The same lengths for an engineer with feet: 2560 px/m are 780.288 px/ft exactly.
+        let bars = scale_bars(&scale(Some(2560.0), None), 1000, 800, LengthUnit::Foot, m);
+        assert_eq!(bars.len(), 1);
+        assert_eq!(bars[0].text, "0.2 ft · 780.3 px/ft");
+        assert!((bars[0].length_px - 156.0576).abs() < 1e-9);
+    }
+
+    #[test]
+    fn lengths_are_round_and_fit() {
+        let text = |longest| round_length(longest).unwrap().1;
+        assert_eq!(text(99.99), "50");
+        assert_eq!(text(100.0), "100");
+        assert_eq!(text(1000.0), "1000");
+        assert_eq!(text(0.001), "0.001");
+        assert_eq!(text(4.9), "2");
+        assert_eq!(text(0.26), "0.2");
+        for step in 0..4000 {
+            let longest = 10_f64.powf(f64::from(step) / 250.0 - 8.0);
+            let (length, _) = round_length(longest).unwrap();
+            assert!(length <= longest * 1.000_001 && length * 2.5 > longest * 0.999_999);
+        }
+        assert!(round_length(0.0).is_none() && round_length(f64::INFINITY).is_none());
+    }
+
+    #[test]
+    fn four_significant_digits() {
+        for (number, text) in [
+            (25.6, "25.60"),
+            (0.025_634, "0.02563"),
+            (1234.5, "1234"),
+            (98_765.4, "98765"),
+            (1.0, "1.000"),
+        ] {
+            assert_eq!(four_digits(number), text);
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! The undistorted photo (contract, section 2, rule 6): the same K and size without the lens.
+
+use glam::DVec2;
+use image::RgbImage;
+use rayon::prelude::*;
+
+use super::reduce::{reduced_size, reduced_to};
+use super::resample::cubic;
+use crate::camera::{Camera, Distortion};
+
+/// Pixels along the side of a cell within which the mapping is interpolated.
+const CELL: u32 = 16;
+
+/// How far, in pixels of the photo, a bilinear mapping may be off in the checked points of a cell;
+/// cells where it is further off are mapped exactly, pixel by pixel.
+const TOLERANCE_PX: f64 = 0.02;
+
+/// The undistorted image of `photo`, at its camera's size or reduced so that no side is longer than
+/// `max_side` (`u32::MAX` for the full size). Pixels that the photo does not show are black: beyond
+/// its edges, and where the lens sees nothing.
+///
+/// The photo may itself be a reduced one of its camera's shape: it is stretched over the camera's
+/// image.
+pub fn undistorted(photo: &RgbImage, camera: &Camera, max_side: u32) -> RgbImage {
+    let (width, height) = reduced_size(camera.width, camera.height, max_side);
+    let mut out = RgbImage::new(width, height);
+    if photo.is_empty() || out.is_empty() {
+        return out;
+    }
+    // What is looked at through fewer pixels is averaged first, or fine rock would turn to noise.
+    let reduced;
+    let photo = if width < photo.width() && height < photo.height() {
+        reduced = reduced_to(photo, width, height);
+        &reduced
+    } else {
+        photo
+    };
+    if camera.distortion == Distortion::None && photo.dimensions() == (width, height) {
+        return photo.clone();
+    }
+    let mapping = Mapping::new(photo, camera, width, height);
+    let bytes_a_band = (width * CELL) as usize * 3;
+    out.par_chunks_mut(bytes_a_band)
+        .enumerate()
+        .for_each(|(band, pixels)| {
+            let row = band as u32 * CELL;
+            for column in (0..width).step_by(CELL as usize) {
+                let cell = mapping.cell(column, row);
+                let columns = CELL.min(width - column);
+                for (y, line) in pixels.chunks_mut(width as usize * 3).enumerate() {
+                    let line = &mut line[column as usize * 3..][..columns as usize * 3];
+                    for (x, pixel) in line.chunks_exact_mut(3).enumerate() {
+                        // The centre of the pixel.
+                        let centre = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                        let source = match &cell {
+                            Cell::Smooth(corners) => {
+                                Some(bilinear(corners, centre / f64::from(CELL)))
+                            }
+                            Cell::Exact(origin) => mapping.source(*origin + centre),
+                        };
+                        if let Some(source) = source.filter(|source| mapping.shows(*source)) {
+                            pixel.copy_from_slice(&cubic(photo, source.x, source.y));
+                        }
+                    }
+                }
+            }
+        });
+    out
+}
+
+/// From pixels of the undistorted image to pixels of the photo.
+struct Mapping<'a> {
+    camera: &'a Camera,
+    /// Camera pixels in a pixel of the undistorted image.
+    camera_from_target: DVec2,
+    /// Photo pixels in a camera pixel.
+    photo_from_camera: DVec2,
+    /// Of the photo.
+    size: DVec2,
+}
+
+/// How a cell of [`CELL`] pixels a side is mapped.
+enum Cell {
+    /// Between the sources of its corners: top left, top right, bottom left, bottom right.
+    Smooth([DVec2; 4]),
+    /// Pixel by pixel from its top left corner.
+    Exact(DVec2),
+}
+
+impl<'a> Mapping<'a> {
+    fn new(photo: &RgbImage, camera: &'a Camera, width: u32, height: u32) -> Self {
+        let size = |width: u32, height: u32| DVec2::new(f64::from(width), f64::from(height));
+        let of_camera = size(camera.width, camera.height);
+        let of_photo = size(photo.width(), photo.height());
+        Self {
+            camera,
+            camera_from_target: of_camera / size(width, height),
+            photo_from_camera: of_photo / of_camera,
+            size: of_photo,
+        }
+    }
+
+    /// The place in the photo of a place in the undistorted image, exactly.
+    fn source(&self, target: DVec2) -> Option<DVec2> {
+        let ray = self
+            .camera
+            .direction_undistorted(target * self.camera_from_target);
+        Some(self.camera.pixel_as_shot(ray)? * self.photo_from_camera)
+    }
+
+    fn shows(&self, source: DVec2) -> bool {
+        source.cmpge(DVec2::ZERO).all() && source.cmple(self.size).all()
+    }
+
+    /// The cell whose top left corner is there: smooth where the mapping is bilinear at the middles
+    /// of its sides and of itself.
+    fn cell(&self, column: u32, row: u32) -> Cell {
+        let origin = DVec2::new(f64::from(column), f64::from(row));
+        let place = |share: DVec2| self.source(origin + share * f64::from(CELL));
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(place);
+        let [Some(a), Some(b), Some(c), Some(d)] = corners else {
+            return Cell::Exact(origin);
+        };
+        let corners = [a, b, c, d];
+        let checked = [(0.5, 0.0), (0.0, 0.5), (0.5, 0.5), (1.0, 0.5), (0.5, 1.0)];
+        let is_smooth = checked.into_iter().map(DVec2::from).all(|share| {
+            let off = |source: DVec2| (source - bilinear(&corners, share)).length();
+            place(share).is_some_and(|source| off(source) < TOLERANCE_PX)
+        });
+        if is_smooth {
+            Cell::Smooth(corners)
+        } else {
+            Cell::Exact(origin)
+        }
+    }
+}
+
+fn bilinear([a, b, c, d]: &[DVec2; 4], share: DVec2) -> DVec2 {
+    a.lerp(*b, share.x).lerp(c.lerp(*d, share.x), share.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use image::Rgb;
+
+    use super::*;
+    use crate::camera::{Brown, Fisheye};
+
+    fn camera(distortion: Distortion) -> Camera {
+        Camera {
+            name: String::new(),
+            width: 240,
+            height: 160,
+            fx: 180.0,
+            fy: 176.0,
+            cx: 122.5,
+            cy: 78.25,
+            skew: 0.5,
+            distortion,
+        }
+    }
+
+    /// Red is u, green is v (pixel centres at +0.5), blue marks the photo: a resampled pixel tells
+    /// where it came from.
+    fn coordinates(width: u32, height: u32) -> RgbImage {
+        RgbImage::from_fn(width, height, |x, y| Rgb([x as u8, y as u8, 255]))
+    }
+
+    fn lenses() -> [Camera; 2] {
+        let brown = Brown::new([-0.25, 0.08, 0.002, -0.001, 0.0, 0.0, 0.0, 0.0]);
+        let fisheye = Fisheye::new([-0.02, 0.004, 0.0, 0.0]);
+        [
+            camera(Distortion::Brown(brown)),
+            camera(Distortion::Fisheye(fisheye)),
+        ]
+    }
+
+    #[test]
+    fn without_distortion_nothing_changes() {
+        let photo = coordinates(240, 160);
+        assert_eq!(
+            undistorted(&photo, &camera(Distortion::None), u32::MAX),
+            photo
+        );
+    }
+
+    /// Each pixel holds the coordinates that the camera's own forward model gives for its ray.
+    #[test]
+    fn pixels_come_from_where_the_lens_puts_them() {
+        let photo = coordinates(240, 160);
+        for camera in lenses() {
+            let out = undistorted(&photo, &camera, u32::MAX);
+            assert_eq!(out.dimensions(), (240, 160));
+            let (mut seen, mut black) = (0, 0);
+            let mut furthest: f64 = 0.0;
+            for (x, y, pixel) in out.enumerate_pixels() {
+                let centre = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                let source = camera
+                    .pixel_as_shot(camera.direction_undistorted(centre))
+                    .filter(|source| camera.contains(*source));
+                // Near the edge the last pixels repeat, which is no ramp.
+                let inside = |s: &DVec2| (2.0..238.0).contains(&s.x) && (2.0..158.0).contains(&s.y);
+                match source {
+                    Some(source) if inside(&source) => {
+                        let told = DVec2::new(f64::from(pixel[0]), f64::from(pixel[1])) + 0.5;
+                        // Rounded to whole colours, plus the mapping's 0.05 px.
+                        assert!(
+                            (told - source).abs().max_element() <= 0.55,
+                            "{centre}: {told}, {source}"
+                        );
+                        furthest = furthest.max((source - centre).length());
+                        seen += 1;
+                    }
+                    Some(_) => {}
+                    None => {
+                        assert_eq!(pixel.0, [0, 0, 0], "{centre}");
+                        black += 1;
+                    }
+                }
+            }
+            assert!(seen > 20_000 && furthest > 5.0, "{seen}, {furthest}");
+            assert_eq!(black > 0, false, "these lenses pull the image inwards");
+        }
+    }
+
+    /// A lens that pushes outwards leaves the corners without a source.
+    #[test]
+    fn what_the_photo_does_not_show_is_black() {
+        let lens = camera(Distortion::Brown(Brown::new([
+            0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+        ])));
+        let out = undistorted(
+            &RgbImage::from_pixel(240, 160, Rgb([255; 3])),
+            &lens,
+            u32::MAX,
+        );
+        assert_eq!(out.get_pixel(0, 0).0, [0; 3]);
+        assert_eq!(out.get_pixel(239, 159).0, [0; 3]);
+        assert_eq!(out.get_pixel(120, 80).0, [255; 3]);
+    }
+
+    /// Cells that are interpolated are within 0.05 px of the exact mapping everywhere, at the size
+    /// of a real photo.
+    #[test]
+    fn interpolated_cells_are_close_to_the_exact_mapping() {
+        for small in lenses() {
+            let camera = small.rescaled(2400, 1600).unwrap();
+            let mapping = Mapping {
+                camera: &camera,
+                camera_from_target: DVec2::ONE,
+                photo_from_camera: DVec2::ONE,
+                size: DVec2::new(2400.0, 1600.0),
+            };
+            let (mut smooth, mut worst) = (0, 0.0_f64);
+            for row in (0..1600).step_by(CELL as usize) {
+                for column in (0..2400).step_by(CELL as usize) {
+                    let Cell::Smooth(corners) = mapping.cell(column, row) else {
+                        continue;
+                    };
+                    smooth += 1;
+                    for (x, y) in [
+                        (0.5, 0.5),
+                        (3.5, 12.5),
+                        (8.5, 7.5),
+                        (13.5, 4.5),
+                        (15.5, 15.5),
+                    ] {
+                        let inside = DVec2::new(x, y);
+                        let target = DVec2::new(f64::from(column), f64::from(row)) + inside;
+                        let exact = mapping.source(target).unwrap();
+                        let off = (bilinear(&corners, inside / f64::from(CELL)) - exact).length();
+                        worst = worst.max(off);
+                    }
+                }
+            }
+            assert!(worst < 0.05, "{worst} px");
+            assert!(
+                smooth > 14_000,
+                "only {smooth} of 15 000 cells are interpolated"
+            );
+        }
+    }
+
+    /// At half the size the same places are shown, from the full photo and from a reduced one.
+    #[test]
+    fn a_reduced_size_shows_the_same_places() {
+        for camera in lenses() {
+            let photo = coordinates(240, 160);
+            let full = undistorted(&photo, &camera, u32::MAX);
+            let small_photo = crate::picture::reduced(&photo, 120);
+            for photo in [&photo, &small_photo] {
+                let half = undistorted(photo, &camera, 120);
+                assert_eq!(half.dimensions(), (120, 80));
+                for (x, y, pixel) in half.enumerate_pixels() {
+                    if !(4..116).contains(&x) || !(4..76).contains(&y) {
+                        continue;
+                    }
+                    let around = [(0, 0), (1, 0), (0, 1), (1, 1)]
+                        .map(|(dx, dy)| *full.get_pixel(2 * x + dx, 2 * y + dy));
+                    for channel in 0..2 {
+                        let mean = around.iter().map(|p| f64::from(p[channel])).sum::<f64>() / 4.0;
+                        let off = (f64::from(pixel[channel]) - mean).abs();
+                        assert!(off <= 1.3, "{x}, {y}: {off}");
+                    }
+                }
+            }
+        }
+    }
+}
