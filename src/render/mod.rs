@@ -10,19 +10,33 @@
 //! surface   mesh and points, with their colours           -> colour, depth
 //! edl       relief from depth, over the background        -> colour
 //! fill      footprints, draped where the depth says       -> colour
-//! blend     the photo in front of a look through its camera
-//! overlay   photos on their image planes, lines, markers
+//! overlay   ground grid, photos on their image planes or in front of a look through a camera, lines
 //! resolve   four samples become one pixel
 //! ```
 
 mod colormap;
+mod cover;
+mod edl;
+mod fill;
+mod frame;
+mod furniture;
 mod gpu;
+mod images;
 mod labels;
+mod lines;
+mod mesh;
 mod orbit;
 mod photo_image;
+mod photo_lines;
+mod pipeline;
+mod points;
+mod readback;
 mod renderer;
+mod resolve;
 mod scene;
+mod shaders;
 mod show;
+mod surface;
 mod targets;
 mod tiles;
 mod view;

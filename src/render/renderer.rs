@@ -1,25 +1,65 @@
 //! Drawing a frame.
 
-use glam::DVec3;
+use glam::{DMat4, DVec2, DVec3, DVec4, Mat4, Vec3};
 use image::RgbaImage;
+use wgpu::{
+    CommandEncoder, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureView,
+};
 
+use super::colormap::STOPS;
+use super::cover::Cover;
+use super::edl::edl;
+use super::fill::{CellCorner, Fill, Pyramid};
+use super::frame::{Frame, FrameBinding, frame_layout};
+use super::furniture;
 use super::gpu::Gpu;
-use super::labels::{Label, Legend};
+use super::images::{Images, Place};
+use super::labels::{Label, Legend, ScaleBar};
+use super::lines::{Lines, StrokeBuffer};
+use super::mesh::Mesh;
 use super::photo_image::PhotoImage;
-use super::scene::{CloudGeometry, MeshGeometry, PhotoGeometry};
-use super::show::{PhotoLook, Show};
+use super::photo_lines::{camera_depth, fill_colors, ink, photo_lines};
+use super::points::Points;
+use super::readback::read_back;
+use super::resolve::resolve;
+use super::scene::{
+    CloudGeometry, Extent, MeshGeometry, PhotoGeometry, narrow, narrow_matrix, narrow_number,
+};
+use super::show::{Background, ColorBy, PhotoLook, Show};
+use super::surface::SurfacePhoto;
 use super::targets::Targets;
-use super::view::View;
+use super::view::{Projection, View};
 use crate::fault::Fault;
 use crate::geometry::{Bounds, LocalFrame};
+
+/// More texels than this are too many to draw again and again: then a pixel has one sample.
+const MOST_SAMPLED_TEXELS: u64 = 1 << 24;
+/// Pixels that parts of a large picture overlap by, so that relief has no seams.
+const OVERLAP: u32 = 16;
 
 /// Draws a flight. Holds what was uploaded and the textures of the last frame.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
     frame: LocalFrame,
+    points: Points,
+    mesh: Mesh,
     photos: Vec<PhotoGeometry>,
     looks: Vec<PhotoLook>,
+    surface_photo: SurfacePhoto,
+    images: Images,
+    lines: Lines,
+    fill: Fill,
+    edl: Cover,
+    resolve: Cover,
+    main_frame: FrameBinding,
+    screen_frame: FrameBinding,
+    photo_frame: FrameBinding,
+    /// The photos' lines, and what they were made for.
+    strokes: StrokeBuffer,
+    strokes_for: Option<(Show, Option<usize>)>,
+    /// Which photo the depths in `surface_photo` are of.
+    depth_of: Option<usize>,
     targets: Option<Targets>,
 }
 
@@ -34,95 +74,714 @@ pub struct Drawn {
     pub triangles: usize,
 }
 
+/// A part of a picture, in pixels of the whole.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    origin: [u32; 2],
+    size: [u32; 2],
+    of: [u32; 2],
+}
+
+impl Part {
+    fn whole(size: [u32; 2]) -> Self {
+        Self {
+            origin: [0, 0],
+            size,
+            of: size,
+        }
+    }
+
+    /// Clip space of the whole to that of the part.
+    fn crop(&self) -> DMat4 {
+        let of = pair(self.of) / pair(self.size);
+        let shift = pair(self.origin) * 2.0 / pair(self.size);
+        DMat4::from_cols(
+            DVec4::new(of.x, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, of.y, 0.0, 0.0),
+            DVec4::Z,
+            DVec4::new(of.x - shift.x - 1.0, 1.0 - of.y + shift.y, 0.0, 1.0),
+        )
+    }
+}
+
+fn pair([x, y]: [u32; 2]) -> DVec2 {
+    DVec2::new(f64::from(x), f64::from(y))
+}
+
 impl Renderer {
     /// Prepares the pipelines; nothing is there to be drawn yet.
     pub fn new(gpu: &Gpu) -> Self {
+        let device = &gpu.device;
+        let frame = frame_layout(device);
+        let surface_photo = SurfacePhoto::new(device);
         Self {
-            gpu: gpu.clone(),
             frame: LocalFrame::near(&Bounds {
                 min: DVec3::ZERO,
                 max: DVec3::ZERO,
             }),
+            points: Points::new(device, &[&frame, &surface_photo.layout]),
+            mesh: Mesh::new(device, &frame, &surface_photo.layout),
             photos: Vec::new(),
             looks: Vec::new(),
+            surface_photo,
+            images: Images::new(device, &frame),
+            lines: Lines::new(device, &frame),
+            fill: Fill::new(device, &frame),
+            edl: edl(device, &frame),
+            resolve: resolve(device, &frame),
+            main_frame: FrameBinding::new(device, &frame),
+            screen_frame: FrameBinding::new(device, &frame),
+            photo_frame: FrameBinding::new(device, &frame),
+            strokes: StrokeBuffer::default(),
+            strokes_for: None,
+            depth_of: None,
             targets: None,
+            gpu: gpu.clone(),
         }
     }
 
     /// Begins another flight: takes everything away. All geometry must be made in this frame.
     pub fn start(&mut self, frame: &LocalFrame) {
         self.frame = *frame;
-        self.photos.clear();
-        self.looks.clear();
+        self.set_cloud(None);
+        self.set_mesh(None);
+        self.set_photos(Vec::new());
+        self.images.clear();
+        self.set_projected_photo(None);
     }
 
     /// Uploads the cloud, or takes it away.
-    pub fn set_cloud(&mut self, _cloud: Option<&CloudGeometry>) {}
+    pub fn set_cloud(&mut self, cloud: Option<&CloudGeometry>) {
+        self.points.set(&self.gpu.device, cloud);
+    }
 
     /// Uploads the mesh, or takes it away.
-    pub fn set_mesh(&mut self, _mesh: Option<&MeshGeometry>) {}
+    pub fn set_mesh(&mut self, mesh: Option<&MeshGeometry>) {
+        self.mesh.set(&self.gpu.device, mesh);
+        self.depth_of = None;
+    }
 
     /// The photos of the flight, in its order. Their looks become the default, their images stay.
     pub fn set_photos(&mut self, photos: Vec<PhotoGeometry>) {
         self.looks = vec![PhotoLook::default(); photos.len()];
         self.photos = photos;
+        self.strokes_for = None;
+        self.depth_of = None;
     }
 
-    /// How the photos look, in their order.
+    /// How the photos look, in their order; those that `looks` is too short for keep theirs.
     pub fn set_looks(&mut self, looks: &[PhotoLook]) {
-        self.looks = looks.to_vec();
+        for (own, look) in self.looks.iter_mut().zip(looks) {
+            *own = *look;
+        }
+        self.strokes_for = None;
     }
 
     /// Uploads the reduced, undistorted photo with this index.
-    pub fn set_photo_image(&mut self, _index: usize, _image: &PhotoImage) {}
+    pub fn set_photo_image(&mut self, index: usize, image: &PhotoImage) {
+        self.images
+            .set(&self.gpu.device, &self.gpu.queue, index, image);
+    }
 
     /// The undistorted photo with this index, larger: to be laid on the surface
-    /// ([`Show::project_photo`]) or over the look through its camera ([`Show::photo_blend`]).
-    pub fn set_projected_photo(&mut self, _photo: Option<(usize, &RgbaImage)>) {}
+    /// ([`Show::project_photo`]) or over the look through its camera ([`Show::photo_blend`]). Both
+    /// are drawn only while it is the selected one.
+    pub fn set_projected_photo(&mut self, photo: Option<(usize, &RgbaImage)>) {
+        self.surface_photo
+            .set_picture(&self.gpu.device, &self.gpu.queue, photo);
+    }
 
-    /// Draws a frame of `size` pixels; see it through [`Self::color_view`].
-    pub fn draw(&mut self, _view: &View, _show: &Show, size: [u32; 2]) -> Drawn {
-        let size = size.map(|edge| edge.max(1));
-        let new_texture = self.targets.as_ref().is_none_or(|t| t.size != size);
-        if new_texture {
-            let samples = if self.gpu.software { 1 } else { 2 };
-            self.targets = Some(Targets::new(&self.gpu.device, size, samples));
-        }
+    /// Draws a frame of `size` pixels; see it through [`Self::color_view`]. Errors of the device are
+    /// kept in [`Gpu::take_error`].
+    pub fn draw(&mut self, view: &View, show: &Show, size: [u32; 2]) -> Drawn {
+        let most = self.gpu.device.limits().max_texture_dimension_2d;
+        let size = size.map(|edge| edge.clamp(1, most));
+        let texels = 4 * u64::from(size[0]) * u64::from(size[1]);
+        let samples =
+            if self.gpu.software || texels > MOST_SAMPLED_TEXELS || size[0].max(size[1]) * 2 > most
+            {
+                1
+            } else {
+                2
+            };
+        let kept = self.targets.take().filter(|t| t.size == size);
+        let new_texture = kept.is_none();
+        let targets = kept.unwrap_or_else(|| Targets::new(&self.gpu.device, size, samples));
+        let (points, triangles) = self.draw_part(&targets, view, show, Part::whole(size));
+        self.targets = Some(targets);
         Drawn {
             new_texture,
-            points: 0,
-            triangles: 0,
+            points,
+            triangles,
         }
     }
 
-    /// The last frame: Rgba8Unorm with gamma-space values, to be shown as a texture. `None` before
-    /// the first frame.
-    pub fn color_view(&self) -> Option<&wgpu::TextureView> {
+    /// The last frame: Rgba8Unorm with premultiplied gamma-space values, to be shown as a texture.
+    /// `None` before the first frame.
+    pub fn color_view(&self) -> Option<&TextureView> {
         self.targets.as_ref().map(|targets| &targets.picture_view)
     }
 
-    /// Draws into an image, without labels. Pictures larger than a texture are put together from
-    /// parts.
+    /// Draws into an image with four samples a pixel, without labels; alpha is not premultiplied.
+    /// Pictures larger than a texture are put together from parts.
     ///
     /// # Errors
     /// Where the graphics device refuses.
     pub fn picture(
         &mut self,
-        _view: &View,
-        _show: &Show,
+        view: &View,
+        show: &Show,
         size: [u32; 2],
     ) -> Result<RgbaImage, Fault> {
+        let most = self.gpu.device.limits().max_texture_dimension_2d / 2;
+        self.picture_in_parts(view, show, size, most.min(4096))
+    }
+
+    /// [`Self::picture`] from parts with edges of at most `most` pixels.
+    fn picture_in_parts(
+        &mut self,
+        view: &View,
+        show: &Show,
+        size: [u32; 2],
+        most: u32,
+    ) -> Result<RgbaImage, Fault> {
         self.gpu.check()?;
-        Ok(RgbaImage::new(size[0], size[1]))
+        let mut picture = RgbaImage::new(size[0], size[1]);
+        let step = most.saturating_sub(2 * OVERLAP).max(1);
+        let fits = size[0].max(size[1]) <= most;
+        let starts = |edge: u32| (0..edge).step_by(if fits { edge.max(1) } else { step } as usize);
+        for y in starts(size[1]) {
+            for x in starts(size[0]) {
+                let origin = if fits {
+                    [0, 0]
+                } else {
+                    [x.saturating_sub(OVERLAP), y.saturating_sub(OVERLAP)]
+                };
+                let part = Part {
+                    origin,
+                    size: [0, 1].map(|i| most.min(size[i] - origin[i])),
+                    of: size,
+                };
+                let targets = Targets::new(&self.gpu.device, part.size, 2);
+                self.draw_part(&targets, view, show, part);
+                let pixels = read_back(&self.gpu, &targets.picture)?;
+                self.gpu.check()?;
+                image::imageops::replace(
+                    &mut picture,
+                    &pixels_from(&pixels, x - origin[0], y - origin[1]),
+                    i64::from(x),
+                    i64::from(y),
+                );
+            }
+        }
+        Ok(picture)
     }
 
     /// The words on a frame: the scale bar's length, the letters of the axes.
-    pub fn labels(&self, _view: &View, _show: &Show, _size: [u32; 2]) -> Vec<Label> {
-        Vec::new()
+    pub fn labels(&self, view: &View, show: &Show, size: [u32; 2]) -> Vec<Label> {
+        furniture::labels(view, show, pair(size))
+    }
+
+    /// The scale bar of a frame.
+    pub fn scale_bar(&self, view: &View, size: [u32; 2]) -> Option<ScaleBar> {
+        furniture::scale_bar(view, pair(size))
     }
 
     /// What the colours mean, where they mean a number.
-    pub fn legend(&self, _show: &Show) -> Option<Legend> {
-        None
+    pub fn legend(&self, show: &Show) -> Option<Legend> {
+        let unit = show.unit.symbol();
+        let title = match show.color_by {
+            ColorBy::Rgb => return None,
+            ColorBy::Elevation => format!("elevation ({unit})"),
+            ColorBy::Slope => "slope (°)".to_owned(),
+            ColorBy::Scale => format!("scale (px/{unit})"),
+        };
+        let range = self.range(show)?;
+        Some(Legend { title, range })
     }
+
+    /// The values at the colour map's ends.
+    fn range(&self, show: &Show) -> Option<[f64; 2]> {
+        let range = match show.color_by {
+            ColorBy::Rgb => return None,
+            ColorBy::Elevation if self.mesh.is_empty() => self.points.elevation,
+            ColorBy::Elevation => self.mesh.elevation,
+            ColorBy::Slope => [0.0, 90.0],
+            ColorBy::Scale => {
+                let photo = self.photos.get(show.selected?)?;
+                let [near, far] = photo.depths?;
+                [photo.scale_at(far), photo.scale_at(near)]
+            }
+        };
+        // A level surface has one value, which then is in the middle.
+        let [low, high] = range;
+        let least = (low.abs() + high.abs()) * 1e-6 + 1e-12;
+        Some(if high - low < least {
+            [low - least, high + least]
+        } else {
+            range
+        })
+    }
+
+    /// Around everything: its middle and radius in the local frame.
+    fn sphere(&self) -> (DVec3, f64) {
+        let photos = self.photos.iter().flat_map(|photo| {
+            let corners = photo.corners.iter().flatten().map(|met| met.point);
+            corners.chain([photo.center])
+        });
+        let photos = Extent::of(photos.map(narrow));
+        let extent = [self.points.extent(), self.mesh.extent(), photos]
+            .into_iter()
+            .flatten()
+            .reduce(Extent::with);
+        match extent {
+            Some(Extent { min, max }) => {
+                let radius = f64::from((max - min).length()) * 0.5;
+                (((min + max) * 0.5).as_dvec3(), radius.max(1e-6))
+            }
+            None => (DVec3::ZERO, 1.0),
+        }
+    }
+
+    /// The photo whose camera is the eye.
+    fn looked_through(&self, view: &View, radius: f64) -> Option<usize> {
+        if !matches!(view.projection, Projection::Photo { .. }) {
+            return None;
+        }
+        let eye = self.frame.local_from_world(view.eye);
+        let distance = |photo: &PhotoGeometry| photo.center.distance(eye);
+        let nearest = (0..self.photos.len())
+            .min_by(|&a, &b| distance(&self.photos[a]).total_cmp(&distance(&self.photos[b])))?;
+        (distance(&self.photos[nearest]) < radius * 1e-9).then_some(nearest)
+    }
+
+    /// Draws a part of a picture and says how many points and triangles it took.
+    fn draw_part(
+        &mut self,
+        targets: &Targets,
+        view: &View,
+        show: &Show,
+        part: Part,
+    ) -> (usize, usize) {
+        let (middle, radius) = self.sphere();
+        let whole = pair(part.of);
+        let samples = f64::from(targets.samples);
+        let eye = self.frame.local_from_world(view.eye);
+        let axis = view.world_from_view.z_axis;
+        let (near, far) = if view.is_parallel() {
+            let distance = (middle - eye).dot(axis);
+            (distance - 2.0 * radius, distance + 2.0 * radius)
+        } else {
+            (radius * 1e-6, f64::INFINITY)
+        };
+        let view_from_world = view.world_from_view.transpose();
+        let view_from_local = DMat4::from_cols(
+            view_from_world.x_axis.extend(0.0),
+            view_from_world.y_axis.extend(0.0),
+            view_from_world.z_axis.extend(0.0),
+            (-(view_from_world * eye)).extend(1.0),
+        );
+        let clip_from_local = part.crop() * view.clip_from_view(whole, near, far) * view_from_local;
+        let sight = narrow_matrix(clip_from_local);
+        let in_sight = |extent: &Extent| is_in_sight(&sight, extent);
+
+        let share = self.points.share(show.max_points, &in_sight);
+        let texel = 1.0 / (view.pixels_per_unit(whole, 1.0) * samples);
+        // Strokes are lifted off the surface by a few texels.
+        let lift = if view.is_parallel() {
+            [1.0, 3.0 * texel / (far - near)]
+        } else {
+            [1.0 + 3.0 * texel, 0.0]
+        };
+        let looked_through = self.looked_through(view, radius);
+        let selected = show.selected.and_then(|index| self.photos.get(index));
+        let project =
+            show.project_photo && selected.is_some() && self.surface_photo.index == show.selected;
+        let color_by = match show.color_by {
+            ColorBy::Rgb => 0,
+            ColorBy::Elevation => 1,
+            ColorBy::Slope => 2,
+            ColorBy::Scale => 3,
+        };
+        let photo_near = radius * 1e-6;
+        let background = match show.background {
+            Background::Color(color) => opaque(color),
+            Background::Transparent => [0.0; 4],
+        };
+        let image_from_local = selected.map_or(DMat4::ZERO, PhotoGeometry::image_from_local);
+        let main = Frame {
+            clip_from_local: sight.to_cols_array_2d(),
+            local_from_clip: narrow_matrix(clip_from_local.inverse()).to_cols_array_2d(),
+            image_from_local: narrow_matrix(image_from_local).to_cols_array_2d(),
+            background,
+            ink: opaque(ink(show)),
+            size: targets.sampled_size().map(|edge| edge as f32),
+            depths: if view.is_parallel() {
+                [narrow_number(far), narrow_number(far - near)]
+            } else {
+                [narrow_number(near), 0.0]
+            },
+            texel: narrow_number(texel),
+            parallel: if view.is_parallel() { 1.0 } else { 0.0 },
+            point: narrow_number(show.pixels_per_point * samples),
+            nearest: if view.is_parallel() {
+                0.5
+            } else {
+                narrow_number(near.max(view.focus * 1e-4))
+            },
+            lift: lift.map(narrow_number),
+            range: self.range(show).unwrap_or([0.0, 1.0]).map(narrow_number),
+            // Discs of 0.7 of the distance reach the middle between diagonal neighbours. A sample of
+            // the points has larger gaps.
+            radius: narrow_number(
+                0.7 * self.points.spacing * show.point_size / share.max(0.04).sqrt(),
+            ),
+            photo_near: narrow_number(photo_near),
+            photo_scale: selected.map_or(0.0, |photo| narrow_number(photo.scale_at(1.0))),
+            elevation: narrow_number(self.frame.origin().z),
+            color_by,
+            project: u32::from(project),
+            relief: if show.eye_dome { 0.9 } else { 0.0 },
+            spare: 0.0,
+            viridis: STOPS.map(opaque),
+        };
+        let queue = &self.gpu.queue;
+        self.main_frame.write(queue, &main);
+        let pixels = part.crop()
+            * DMat4::from_cols(
+                DVec4::new(2.0 / whole.x, 0.0, 0.0, 0.0),
+                DVec4::new(0.0, -2.0 / whole.y, 0.0, 0.0),
+                DVec4::Z,
+                DVec4::new(-1.0, 1.0, 0.0, 1.0),
+            );
+        let screen = Frame {
+            clip_from_local: narrow_matrix(pixels).to_cols_array_2d(),
+            nearest: 0.5,
+            lift: [1.0, 0.0],
+            ..main
+        };
+        self.screen_frame.write(queue, &screen);
+
+        let device = self.gpu.device.clone();
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
+            label: Some("frame"),
+        });
+        if project || (show.color_by == ColorBy::Scale && selected.is_some()) {
+            self.draw_photo_depth(&mut encoder, show.selected, &main, photo_near);
+        }
+        let drawn = self.draw_surface(&mut encoder, targets, show, share, &in_sight);
+        self.draw_relief(&mut encoder, targets);
+        self.draw_fills(&mut encoder, targets, show);
+        self.draw_overlay(
+            &mut encoder,
+            targets,
+            &Overlay {
+                view,
+                show,
+                whole,
+                middle,
+                radius,
+                looked_through,
+            },
+            &in_sight,
+        );
+        if targets.samples > 1 {
+            let group = self.resolve.group(&device, &[&targets.sampled]);
+            let mut pass = pass(
+                &mut encoder,
+                "resolve",
+                &targets.picture_view,
+                Some(wgpu::Color::TRANSPARENT),
+                None,
+            );
+            pass.set_bind_group(0, &self.main_frame.group, &[]);
+            self.resolve.draw(&mut pass, &group);
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        drawn
+    }
+
+    /// How deep the selected photo sees, where that is not known yet.
+    fn draw_photo_depth(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        selected: Option<usize>,
+        main: &Frame,
+        near: f64,
+    ) {
+        if self.depth_of == selected {
+            return;
+        }
+        let Some(photo) = selected.and_then(|index| self.photos.get(index)) else {
+            return;
+        };
+        self.depth_of = selected;
+        let camera = &photo.camera;
+        self.surface_photo
+            .renew_depth(&self.gpu.device, [camera.width, camera.height]);
+        // Shares of the image times depth, to clip space.
+        let clip_from_image = DMat4::from_cols(
+            DVec4::new(2.0, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, -2.0, 0.0, 0.0),
+            DVec4::new(-1.0, 1.0, 0.0, 1.0),
+            DVec4::new(0.0, 0.0, near, 0.0),
+        );
+        let clip_from_local = clip_from_image * photo.image_from_local();
+        let frame = Frame {
+            clip_from_local: narrow_matrix(clip_from_local).to_cols_array_2d(),
+            ..*main
+        };
+        self.photo_frame.write(&self.gpu.queue, &frame);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("how deep the photo sees"),
+            depth_stencil_attachment: Some(depth(&self.surface_photo.depth, true)),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.photo_frame.group, &[]);
+        self.mesh.draw_depth(&mut pass);
+    }
+
+    fn draw_surface(
+        &self,
+        encoder: &mut CommandEncoder,
+        targets: &Targets,
+        show: &Show,
+        share: f64,
+        in_sight: &impl Fn(&Extent) -> bool,
+    ) -> (usize, usize) {
+        let mut pass = pass(
+            encoder,
+            "surface",
+            &targets.surface,
+            Some(wgpu::Color::TRANSPARENT),
+            Some(depth(&targets.depth, true)),
+        );
+        pass.set_bind_group(0, &self.main_frame.group, &[]);
+        pass.set_bind_group(1, &self.surface_photo.group, &[]);
+        let mut drawn = (0, 0);
+        if show.mesh {
+            drawn.1 = self.mesh.draw(&mut pass, in_sight);
+        }
+        if show.cloud {
+            drawn.0 = self.points.draw(&mut pass, share, in_sight);
+        }
+        drawn
+    }
+
+    fn draw_relief(&self, encoder: &mut CommandEncoder, targets: &Targets) {
+        let group = self
+            .edl
+            .group(&self.gpu.device, &[&targets.surface, &targets.depth]);
+        let mut pass = pass(
+            encoder,
+            "edl",
+            &targets.sampled,
+            Some(wgpu::Color::TRANSPARENT),
+            None,
+        );
+        pass.set_bind_group(0, &self.main_frame.group, &[]);
+        self.edl.draw(&mut pass, &group);
+    }
+
+    /// The photos that have their fill drawn.
+    fn filled<'a>(
+        &'a self,
+        show: &'a Show,
+    ) -> impl Iterator<Item = (&'a PhotoGeometry, [[u8; 4]; 2])> {
+        let photos = self.photos.iter().zip(&self.looks).enumerate();
+        photos
+            .filter(|(index, (_, look))| look.visible && show.fills.holds(*index, show))
+            .map(|(index, (photo, look))| (photo, fill_colors(*look, show.selected == Some(index))))
+    }
+
+    fn draw_fills(&self, encoder: &mut CommandEncoder, targets: &Targets, show: &Show) {
+        let pyramids: Vec<Pyramid> = self
+            .filled(show)
+            .filter_map(|(photo, [color, _])| Pyramid::new(photo, color))
+            .collect();
+        if pyramids.is_empty() {
+            return;
+        }
+        let group = self.fill.group(&self.gpu.device, &targets.depth);
+        let mut pass = pass(encoder, "fill", &targets.sampled, None, None);
+        pass.set_bind_group(0, &self.main_frame.group, &[]);
+        self.fill
+            .draw(&self.gpu.device, &mut pass, &group, &pyramids);
+    }
+
+    fn draw_overlay(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        targets: &Targets,
+        overlay: &Overlay<'_>,
+        in_sight: &impl Fn(&Extent) -> bool,
+    ) {
+        let Overlay {
+            view,
+            show,
+            looked_through,
+            ..
+        } = *overlay;
+        let device = &self.gpu.device;
+        let cameras = camera_depth(&self.photos, overlay.radius) * show.frustum_size;
+        let wanted = (show.clone(), looked_through);
+        if self.strokes_for.as_ref() != Some(&wanted) {
+            let strokes = photo_lines(&self.photos, &self.looks, show, cameras, looked_through);
+            self.strokes = StrokeBuffer::new(device, &strokes);
+            self.strokes_for = Some(wanted);
+        }
+        let grid = show.ground.map_or_else(Vec::new, |ground| {
+            furniture::ground_grid(
+                ground - self.frame.origin().z,
+                overlay.middle,
+                overlay.radius,
+                self.frame.origin(),
+                show,
+            )
+        });
+        let grid = StrokeBuffer::new(device, &grid);
+        let on_screen = furniture::on_screen(view, show, overlay.whole);
+        let on_screen = StrokeBuffer::new(device, &on_screen);
+        let planes: Vec<(u32, [DVec3; 4])> = self
+            .photos
+            .iter()
+            .zip(&self.looks)
+            .enumerate()
+            .filter(|(index, (_, look))| {
+                look.visible && show.images.holds(*index, show) && looked_through != Some(*index)
+            })
+            .filter_map(|(index, (photo, _))| {
+                Some((self.images.number(index)?, photo.image_plane(cameras)))
+            })
+            .collect();
+        let cells: Vec<CellCorner> = self
+            .filled(show)
+            .flat_map(|(photo, [_, color])| {
+                let corners = photo.ground_cells.iter().flatten();
+                corners.map(move |corner| CellCorner {
+                    local: narrow(*corner).to_array(),
+                    color,
+                })
+            })
+            .collect();
+
+        let mut pass = pass(
+            encoder,
+            "overlay",
+            &targets.sampled,
+            None,
+            Some(depth(&targets.depth, false)),
+        );
+        pass.set_bind_group(0, &self.main_frame.group, &[]);
+        if show.wireframe {
+            self.mesh.draw_edges(&mut pass, in_sight);
+        }
+        self.lines.draw_front(&mut pass, &grid);
+        self.fill.draw_cells(device, &mut pass, &cells);
+        if show.photo_blend > 0.0
+            && looked_through.is_some()
+            && looked_through == self.surface_photo.index
+            && let Some(photo) = looked_through.and_then(|index| self.photos.get(index))
+        {
+            // At any depth: it fills the photo's part of the viewport.
+            let plane = photo.image_plane(view.focus);
+            let group = self.images.group(device, &self.surface_photo.picture);
+            let place = Place::new(plane, 0, show.photo_blend.min(1.0));
+            self.images.draw_over(device, &mut pass, &group, place);
+        }
+        self.images.draw(device, &mut pass, &planes);
+        self.lines.draw(&mut pass, &self.strokes);
+        pass.set_bind_group(0, &self.screen_frame.group, &[]);
+        self.lines.draw_over(&mut pass, &on_screen);
+    }
+}
+
+/// What [`Renderer::draw_overlay`] goes by.
+struct Overlay<'a> {
+    view: &'a View,
+    show: &'a Show,
+    /// The whole picture's size.
+    whole: DVec2,
+    /// Of everything.
+    middle: DVec3,
+    /// Of everything.
+    radius: f64,
+    looked_through: Option<usize>,
+}
+
+/// Cuts away what is left of and above a place.
+fn pixels_from(pixels: &RgbaImage, x: u32, y: u32) -> RgbaImage {
+    let (width, height) = (pixels.width() - x, pixels.height() - y);
+    image::imageops::crop_imm(pixels, x, y, width, height).to_image()
+}
+
+fn opaque([r, g, b]: [u8; 3]) -> [f32; 4] {
+    [
+        f32::from(r) / 255.0,
+        f32::from(g) / 255.0,
+        f32::from(b) / 255.0,
+        1.0,
+    ]
+}
+
+/// Whether any of a box may be in the picture: not where all of its corners are beyond one side.
+fn is_in_sight(clip_from_local: &Mat4, extent: &Extent) -> bool {
+    let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(|i| {
+        let pick = |bit: i32, low: f32, high: f32| if i & bit == 0 { low } else { high };
+        let (min, max) = (extent.min, extent.max);
+        let corner = Vec3::new(
+            pick(1, min.x, max.x),
+            pick(2, min.y, max.y),
+            pick(4, min.z, max.z),
+        );
+        *clip_from_local * corner.extend(1.0)
+    });
+    // A point of a cloud is wider than its place: a tenth of the picture more on each side.
+    let beyond = [
+        corners.iter().all(|c| c.x < -1.1 * c.w),
+        corners.iter().all(|c| c.x > 1.1 * c.w),
+        corners.iter().all(|c| c.y < -1.1 * c.w),
+        corners.iter().all(|c| c.y > 1.1 * c.w),
+        corners.iter().all(|c| c.w <= 0.0),
+    ];
+    !beyond.contains(&true)
+}
+
+fn depth(view: &TextureView, clear: bool) -> RenderPassDepthStencilAttachment<'_> {
+    RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations {
+            // Reverse-z: infinitely far.
+            load: if clear {
+                wgpu::LoadOp::Clear(0.0)
+            } else {
+                wgpu::LoadOp::Load
+            },
+            store: wgpu::StoreOp::Store,
+        }),
+        stencil_ops: None,
+    }
+}
+
+fn pass<'a>(
+    encoder: &'a mut CommandEncoder,
+    label: &str,
+    color: &TextureView,
+    clear: Option<wgpu::Color>,
+    depth: Option<RenderPassDepthStencilAttachment<'_>>,
+) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(RenderPassColorAttachment {
+            view: color,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        depth_stencil_attachment: depth,
+        ..Default::default()
+    })
 }

@@ -86,7 +86,7 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    fn of(points: impl Iterator<Item = Vec3>) -> Option<Self> {
+    pub(super) fn of(points: impl Iterator<Item = Vec3>) -> Option<Self> {
         points.fold(None, |extent, p| {
             let Self { min, max } = extent.unwrap_or(Self { min: p, max: p });
             Some(Self {
@@ -167,6 +167,8 @@ impl CloudGeometry {
 pub(super) struct MeshTile {
     pub(super) vertices: Vec<Vertex>,
     pub(super) triangles: Vec<[u32; 3]>,
+    /// Of the triangles, each once.
+    pub(super) edges: Vec<[u32; 2]>,
     pub(super) extent: Extent,
 }
 
@@ -218,6 +220,7 @@ impl MeshGeometry {
             if let Some(extent) = Extent::of(own.iter().map(|v| Vec3::from(v.position))) {
                 made.push(MeshTile {
                     vertices: own,
+                    edges: edges(&renumbered),
                     triangles: renumbered,
                     extent,
                 });
@@ -228,6 +231,18 @@ impl MeshGeometry {
             elevation: elevation(frame, &places),
         }
     }
+}
+
+/// The edges of triangles, each once.
+fn edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
+    let mut edges: Vec<[u32; 2]> = triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
 }
 
 /// Numbers from 0; clouds have under 2^32 points (`surface::SurfaceError::TooManyPoints`).

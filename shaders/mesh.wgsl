@@ -1,0 +1,38 @@
+// The surface's triangles, and their edges.
+
+struct Corner {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) local: vec3<f32>,
+    @location(1) color: vec3<f32>,
+    @location(2) normal: vec3<f32>,
+}
+
+@vertex
+fn vertex(
+    @location(0) local: vec3<f32>,
+    @location(1) color: vec4<f32>,
+    @location(2) normal: vec4<f32>,
+) -> Corner {
+    var corner: Corner;
+    corner.clip = frame.clip_from_local * vec4(local, 1.0);
+    corner.local = local;
+    corner.color = color.rgb;
+    corner.normal = normal.xyz;
+    return corner;
+}
+
+@fragment
+fn fragment(corner: Corner) -> @location(0) vec4<f32> {
+    return surface_color(corner.local, corner.color, corner.normal);
+}
+
+// An edge lies on its triangles.
+@vertex
+fn edge_vertex(@location(0) local: vec3<f32>) -> @builtin(position) vec4<f32> {
+    return lifted(frame.clip_from_local * vec4(local, 1.0));
+}
+
+@fragment
+fn edge_fragment() -> @location(0) vec4<f32> {
+    return frame.ink * 0.35;
+}

@@ -1,0 +1,11 @@
+//! Relief, and the background behind the surface (`shaders/edl.wgsl`).
+
+use wgpu::{BindGroupLayout, Device};
+
+use super::cover::Cover;
+use super::shaders;
+
+/// Reads the surface's colours and depths.
+pub(super) fn edl(device: &Device, frame: &BindGroupLayout) -> Cover {
+    Cover::new(device, frame, shaders::EDL, 2)
+}

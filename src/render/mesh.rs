@@ -1,0 +1,148 @@
+//! The surface's triangles and their edges (`shaders/mesh.wgsl`).
+
+use wgpu::{
+    BindGroupLayout, Buffer, BufferUsages, CompareFunction, Device, IndexFormat, PrimitiveTopology,
+    RenderPass, RenderPipeline, VertexStepMode, vertex_attr_array,
+};
+
+use super::pipeline::{Recipe, buffer, count, module, pipeline};
+use super::scene::{Extent, MeshGeometry, Vertex};
+use super::shaders;
+
+#[derive(Debug)]
+pub(super) struct Mesh {
+    faces: RenderPipeline,
+    edges: RenderPipeline,
+    depth_alone: RenderPipeline,
+    tiles: Vec<Tile>,
+    pub(super) elevation: [f64; 2],
+}
+
+#[derive(Debug)]
+struct Tile {
+    vertices: Buffer,
+    triangles: Buffer,
+    corners: u32,
+    edges: Buffer,
+    ends: u32,
+    extent: Extent,
+}
+
+impl Mesh {
+    /// `photo` is the layout of the group that the surface's colours need besides the frame.
+    pub(super) fn new(device: &Device, frame: &BindGroupLayout, photo: &BindGroupLayout) -> Self {
+        let module = module(device, shaders::MESH);
+        let buffers = [wgpu::VertexBufferLayout {
+            array_stride: size_of::<Vertex>() as u64,
+            step_mode: VertexStepMode::Vertex,
+            attributes: &vertex_attr_array![0 => Float32x3, 1 => Unorm8x4, 2 => Snorm8x4],
+        }];
+        let recipe = Recipe {
+            module: &module,
+            vertex: "vertex",
+            fragment: Some("fragment"),
+            groups: &[frame, photo],
+            buffers: &buffers,
+            topology: PrimitiveTopology::TriangleList,
+            cull: None,
+            depth: Some((CompareFunction::GreaterEqual, true)),
+            translucent: false,
+            constants: &[],
+        };
+        Self {
+            faces: pipeline(device, &recipe),
+            edges: pipeline(
+                device,
+                &Recipe {
+                    vertex: "edge_vertex",
+                    fragment: Some("edge_fragment"),
+                    groups: &[frame],
+                    topology: PrimitiveTopology::LineList,
+                    depth: Some((CompareFunction::GreaterEqual, false)),
+                    translucent: true,
+                    ..recipe
+                },
+            ),
+            depth_alone: pipeline(
+                device,
+                &Recipe {
+                    fragment: None,
+                    groups: &[frame],
+                    ..recipe
+                },
+            ),
+            tiles: Vec::new(),
+            elevation: [0.0; 2],
+        }
+    }
+
+    pub(super) fn set(&mut self, device: &Device, mesh: Option<&MeshGeometry>) {
+        self.tiles.clear();
+        let Some(mesh) = mesh else { return };
+        self.elevation = mesh.elevation;
+        self.tiles.extend(mesh.tiles.iter().map(|tile| Tile {
+            vertices: buffer(device, "vertices", BufferUsages::VERTEX, &tile.vertices),
+            triangles: buffer(device, "triangles", BufferUsages::INDEX, &tile.triangles),
+            corners: 3 * count(&tile.triangles),
+            edges: buffer(device, "edges", BufferUsages::INDEX, &tile.edges),
+            ends: 2 * count(&tile.edges),
+            extent: tile.extent,
+        }));
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.tiles.is_empty()
+    }
+
+    pub(super) fn extent(&self) -> Option<Extent> {
+        self.tiles
+            .iter()
+            .map(|tile| tile.extent)
+            .reduce(Extent::with)
+    }
+
+    /// Draws the triangles in sight, and says how many they were.
+    pub(super) fn draw(
+        &self,
+        pass: &mut RenderPass<'_>,
+        in_sight: &impl Fn(&Extent) -> bool,
+    ) -> usize {
+        pass.set_pipeline(&self.faces);
+        self.draw_triangles(pass, in_sight)
+    }
+
+    /// Draws their depths alone.
+    pub(super) fn draw_depth(&self, pass: &mut RenderPass<'_>) {
+        pass.set_pipeline(&self.depth_alone);
+        self.draw_triangles(pass, &|_| true);
+    }
+
+    /// Draws the edges of the triangles in sight.
+    pub(super) fn draw_edges(
+        &self,
+        pass: &mut RenderPass<'_>,
+        in_sight: &impl Fn(&Extent) -> bool,
+    ) {
+        pass.set_pipeline(&self.edges);
+        for tile in self.tiles.iter().filter(|tile| in_sight(&tile.extent)) {
+            pass.set_vertex_buffer(0, tile.vertices.slice(..));
+            pass.set_index_buffer(tile.edges.slice(..), IndexFormat::Uint32);
+            pass.draw_indexed(0..tile.ends, 0, 0..1);
+        }
+    }
+
+    fn draw_triangles(
+        &self,
+        pass: &mut RenderPass<'_>,
+        in_sight: &impl Fn(&Extent) -> bool,
+    ) -> usize {
+        let mut drawn = 0;
+        for tile in self.tiles.iter().filter(|tile| in_sight(&tile.extent)) {
+            pass.set_vertex_buffer(0, tile.vertices.slice(..));
+            pass.set_index_buffer(tile.triangles.slice(..), IndexFormat::Uint32);
+            pass.draw_indexed(0..tile.corners, 0, 0..1);
+            drawn += tile.corners as usize / 3;
+        }
+        drawn
+    }
+}
