@@ -72,6 +72,7 @@ impl State {
                 }
             }
             Command::Copy(text) => self.context.copy_text(text),
+            Command::Report(text) => self.say(Severity::Error, &text),
             Command::Set(_) | Command::Undo | Command::Redo => self.edit_settings(&command),
             Command::Select(_) | Command::SelectBy(_) => {
                 if let Some(open) = &mut self.open {
@@ -192,13 +193,13 @@ impl State {
     }
 
     /// Computes anew what depends on the settings.
-    fn settings_changed(&mut self, before: &FlightSettings, now: &FlightSettings) {
+    pub fn settings_changed(&mut self, before: &FlightSettings, now: &FlightSettings) {
         if before.surface.thinning == now.surface.thinning {
             self.start_scales();
         } else if let Some(open) = &self.open {
             // Thinned points are gone from memory: the file has them.
-            let path = open.path.clone();
-            self.start_opening(path, Some(*now));
+            let (path, number) = (open.path.clone(), open.number);
+            self.start_opening(path, Some((number, *now)));
         }
     }
 
@@ -223,9 +224,12 @@ impl State {
 
     /// Writes flight.toml where it was read, or asks where to.
     fn save(&mut self) {
-        match self.open.as_ref().and_then(|open| open.file.as_ref()) {
-            Some((path, _)) => {
-                let path = path.clone();
+        let Some(open) = &self.open else {
+            return;
+        };
+        match open.origin.flight_file() {
+            Some(path) => {
+                let path = path.to_owned();
                 self.save_as(path);
             }
             None => self.ask(Some(Asking::SaveAs)),

@@ -182,4 +182,6 @@ pub enum Command {
     CopyScales,
     /// Copies a text.
     Copy(String),
+    /// Tells what went wrong outside of the state: in the graphics device.
+    Report(String),
 }

@@ -1,1 +1,271 @@
-//! The window.
+//! The window: an engineer opens a flight, looks at the pile and the photos, learns which scales not
+//! to trust and why, and takes the others along.
+//!
+//! ```text
+//! panels/, viewport   read the State, send Commands
+//! actions             menu entry, shortcut and tooltip in one
+//! apply               the one function that applies a Command
+//! opening -> work     long work as jobs; poll takes their results
+//! picker              rays of the mouse on a thread of their own
+//! ```
+//!
+//! So a test is a list of commands, undo is a list of states, and no frame does work that grows with
+//! the flight.
+
+mod actions;
+mod apply;
+mod command;
+mod history;
+mod layers;
+mod numbers;
+mod open_flight;
+mod opening;
+mod panels;
+mod picker;
+mod poll;
+mod preferences;
+mod state;
+mod table;
+mod viewport;
+mod work;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+pub use command::{Asking, Choice, Command, Look, Tab};
+pub use layers::Layers;
+pub use open_flight::OpenFlight;
+pub use preferences::{Preferences, Theme};
+pub use state::{Severity, State, sample_flight};
+pub use table::Column;
+pub use work::DialogFor;
+
+use panels::Inspector;
+use state::HeldBack;
+use viewport::Viewport;
+
+/// Under which name eframe keeps the preferences.
+const PREFERENCES: &str = "preferences";
+
+/// The window's contents.
+pub struct App {
+    state: State,
+    viewport: Viewport,
+    inspector: Inspector,
+    /// The title that the window has.
+    title: String,
+}
+
+impl App {
+    /// The start page, or the flight at `path`, which is opened at once.
+    pub fn new(context: &eframe::CreationContext<'_>, path: Option<PathBuf>) -> Self {
+        let preferences = context
+            .storage
+            .and_then(|storage| eframe::get_value(storage, PREFERENCES))
+            .unwrap_or_default();
+        let mut state = State::new(context.egui_ctx.clone(), preferences);
+        if let Some(path) = path {
+            state.apply(Command::Open(path));
+        }
+        Self {
+            state,
+            viewport: Viewport::new(context.wgpu_render_state.as_ref()),
+            inspector: Inspector::default(),
+            title: String::new(),
+        }
+    }
+
+    /// What is shown.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Does something, as a panel would.
+    pub fn apply(&mut self, command: Command) {
+        self.state.apply(command);
+    }
+
+    /// Takes what jobs have brought, without drawing.
+    pub fn poll(&mut self) {
+        self.state.poll();
+    }
+
+    fn hold_back_closing(&mut self, context: &egui::Context) {
+        let closes = context.input(|input| input.viewport().close_requested());
+        let changed = self.state.open.as_ref().is_some_and(|open| open.is_changed());
+        if closes && changed && !self.state.may_quit {
+            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.state.held_back = Some(HeldBack::Quit);
+        }
+    }
+}
+
+impl eframe::App for App {
+    fn logic(&mut self, context: &egui::Context, _frame: &mut eframe::Frame) {
+        self.hold_back_closing(context);
+        for command in actions::pressed(&self.state, context) {
+            self.state.apply(command);
+        }
+        let dropped = context.input(|input| input.raw.dropped_files.clone());
+        if let Some(path) = dropped.into_iter().find_map(|file| file.path) {
+            self.state.apply(Command::Open(path));
+        }
+        self.state.poll();
+        self.viewport.take_picture(&mut self.state);
+        let title = self.state.title();
+        if title != self.title {
+            context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        let mut commands = Vec::new();
+        let (state, out) = (&self.state, &mut commands);
+        egui::Panel::top("menu").show(ui, |ui| panels::menu_bar(state, ui, out));
+        if state.open.is_some() {
+            egui::Panel::top("tools").show(ui, |ui| panels::tool_bar(state, ui, out));
+        }
+        egui::Panel::bottom("status").show(ui, |ui| panels::status_bar(state, ui, out));
+        if state.preferences.log_open {
+            egui::Panel::bottom("log")
+                .resizable(true)
+                .default_size(120.0)
+                .show(ui, |ui| panels::log_panel(state, ui, out));
+        }
+        if state.open.is_some() {
+            egui::Panel::left("photos")
+                .resizable(true)
+                .default_size(430.0)
+                .min_size(180.0)
+                .show(ui, |ui| panels::photos_table(state, ui, out));
+            let inspector = &mut self.inspector;
+            egui::Panel::right("inspector")
+                .resizable(true)
+                .default_size(360.0)
+                .min_size(220.0)
+                .show(ui, |ui| panels::right_panel(state, inspector, ui, out));
+            let viewport = &mut self.viewport;
+            egui::CentralPanel::no_frame().show(ui, |ui| {
+                let place = ui.available_rect_before_wrap();
+                viewport.show(state, ui, out);
+                overlays(state, ui, place, out);
+            });
+        } else {
+            egui::CentralPanel::default_margins().show(ui, |ui| {
+                panels::notice(state, ui, out);
+                panels::start_page(state, ui, out);
+            });
+        }
+        panels::ask(state, ui.ctx(), out);
+        drop_hint(ui.ctx());
+        for command in commands {
+            self.state.apply(command);
+            ui.ctx().request_repaint();
+        }
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        eframe::set_value(storage, PREFERENCES, &self.state.preferences);
+    }
+}
+
+/// What lies over the viewport: layers, views, the slider of a look through a camera, the last error.
+fn overlays(state: &State, ui: &mut egui::Ui, place: egui::Rect, commands: &mut Vec<Command>) {
+    let mut inner = ui.new_child(
+        egui::UiBuilder::new()
+            .max_rect(place.shrink(8.0))
+            .layout(egui::Layout::top_down(egui::Align::Min)),
+    );
+    let ui = &mut inner;
+    panels::notice(state, ui, commands);
+    egui::Frame::popup(ui.style()).show(ui, |ui| {
+        ui.set_max_width(230.0);
+        egui::CollapsingHeader::new("Layers")
+            .default_open(false)
+            .show(ui, |ui| panels::layers_panel(state, ui, commands));
+    });
+    egui::Frame::popup(ui.style()).show(ui, |ui| {
+        ui.horizontal(|ui| panels::view_buttons(state, ui, commands));
+    });
+}
+
+/// Says what happens when the file over the window is let go.
+fn drop_hint(context: &egui::Context) {
+    let hovering = context.input(|input| !input.raw.hovered_files.is_empty());
+    if hovering {
+        let painter = context.layer_painter(egui::LayerId::new(
+            egui::Order::Foreground,
+            egui::Id::new("drop"),
+        ));
+        let place = context.content_rect();
+        painter.rect_filled(place, 0.0, egui::Color32::from_black_alpha(150));
+        painter.text(
+            place.center(),
+            egui::Align2::CENTER_CENTER,
+            "Let go to open this flight",
+            egui::FontId::proportional(26.0),
+            egui::Color32::WHITE,
+        );
+    }
+}
+
+/// Opens the window and runs until it is closed.
+///
+/// # Errors
+/// Where no window can be opened.
+pub fn run(path: Option<PathBuf>) -> Result<(), String> {
+    let mut setup = eframe::egui_wgpu::WgpuSetupCreateNew::without_display_handle();
+    setup.device_descriptor = Arc::new(crate::render::device_descriptor);
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("fragscale")
+            .with_app_id("fragscale")
+            .with_icon(icon())
+            .with_inner_size([1280.0, 720.0])
+            .with_min_inner_size([640.0, 400.0])
+            .with_drag_and_drop(true),
+        wgpu_options: eframe::egui_wgpu::WgpuConfiguration {
+            wgpu_setup: setup.into(),
+            ..Default::default()
+        },
+        ..Default::default()
+    };
+    eframe::run_native(
+        "fragscale",
+        options,
+        Box::new(|context| Ok(Box::new(App::new(context, path)))),
+    )
+    .map_err(|error| {
+        format!(
+            "the window cannot be opened ({error}); on a machine without a screen use 'fragscale scales', 'fragscale export' or 'fragscale render'"
+        )
+    })
+}
+
+/// The program's sign: a footprint under a camera.
+fn icon() -> egui::IconData {
+    const SIDE: u32 = 64;
+    let mut rgba = Vec::with_capacity((SIDE * SIDE * 4) as usize);
+    for y in 0..SIDE {
+        for x in 0..SIDE {
+            let (u, v) = (f64::from(x) / 63.0, f64::from(y) / 63.0);
+            // A pyramid from the top's middle to a trapezium at the foot.
+            let spread = 0.05 + 0.42 * ((v - 0.12) / 0.8).clamp(0.0, 1.0);
+            let inside = (u - 0.5).abs() <= spread && (0.12..=0.92).contains(&v);
+            let pixel: [u8; 4] = if inside && v > 0.72 {
+                [232, 146, 42, 255]
+            } else if inside {
+                [70, 120, 170, 255]
+            } else {
+                [0, 0, 0, 0]
+            };
+            rgba.extend(pixel);
+        }
+    }
+    egui::IconData {
+        rgba,
+        width: SIDE,
+        height: SIDE,
+    }
+}

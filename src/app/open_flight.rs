@@ -4,16 +4,15 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec3;
-use image::RgbImage;
 
 use super::history::History;
 use super::picker::Picker;
 use super::table::{Row, TableOrder};
-use super::work::{Geometry, Loaded};
+use super::work::{Geometry, Loaded, PreviewPicture};
 use crate::flight::{
-    Doubt, Flight, FlightFile, FlightSettings, Limits, Outcome, PhotoFileState, Verdict, judge,
+    Doubt, Flight, FlightSettings, Limits, Outcome, PhotoFileState, Verdict, judge,
 };
-use crate::formats::PhotoFile;
+use crate::formats::{FlightOrigin, PhotoFile};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::render::{Orbit, PhotoImage};
 use crate::scale::{PhotoScale, ViewFacts};
@@ -42,7 +41,7 @@ pub struct Preview {
     /// Which photo.
     pub photo: usize,
     /// Its pixels, undistorted as its scale assumes, or why it cannot be shown.
-    pub picture: Result<Arc<RgbImage>, String>,
+    pub picture: Result<PreviewPicture, String>,
     /// Counted, so that textures know a new one.
     pub number: u64,
 }
@@ -89,8 +88,8 @@ pub struct OpenFlight {
     pub inputs: Vec<PathBuf>,
     /// What was noticed while reading.
     pub warnings: Vec<String>,
-    /// The flight.toml, where there is one.
-    pub file: Option<(PathBuf, FlightFile)>,
+    /// Where it came from, and where it is saved.
+    pub origin: FlightOrigin,
     /// The settings in that file.
     pub saved: FlightSettings,
     /// The settings and choices of now, with those before.
@@ -143,6 +142,7 @@ impl OpenFlight {
             opened,
             outcomes,
             surface_bounds,
+            again_for: _,
         } = loaded;
         let count = outcomes.len();
         let saved = opened
@@ -162,7 +162,7 @@ impl OpenFlight {
             crs: opened.crs,
             inputs: opened.inputs,
             warnings: opened.warnings,
-            file: opened.file,
+            origin: opened.origin,
             saved,
             history: History::new(Edit {
                 settings: opened.settings,

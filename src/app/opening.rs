@@ -8,7 +8,7 @@ use image::buffer::ConvertBuffer;
 
 use super::open_flight::OpenFlight;
 use super::state::{Severity, State};
-use super::work::{DialogFor, Done, Geometry, Loaded, Task, Thumbnail};
+use super::work::{DialogFor, Done, Geometry, Loaded, PreviewPicture, Task, Thumbnail};
 use crate::camera::Camera;
 use crate::exports;
 use crate::fault::Fault;
@@ -17,11 +17,17 @@ use crate::formats::{self, FileError, OpenOptions};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
 use crate::picture;
-use crate::render::{CloudGeometry, MeshGeometry, Normals};
+use crate::render::{CloudGeometry, MeshGeometry, Normals, PhotoImage};
 use crate::scale::ImageKind;
 
 /// The longer side of a thumbnail, pixels: for the table and the image planes in the viewport.
 const THUMBNAIL: u32 = 256;
+
+/// The longer side of a thumbnail in the table, pixels: sharp at 200 %.
+const ROW_THUMBNAIL: u32 = 128;
+
+/// The longer side of the photo that is laid over the surface, pixels.
+const PROJECTED: u32 = 2048;
 
 /// The longer side of the inspector's photo, pixels: zooming in shows more than a screen does.
 const PREVIEW: u32 = 4096;
@@ -33,15 +39,15 @@ impl State {
         }
     }
 
-    /// Reads a flight and computes its scales. With `settings`, the same flight again with other
-    /// surface options.
-    pub fn start_opening(&mut self, path: PathBuf, settings: Option<FlightSettings>) {
+    /// Reads a flight and computes its scales. `again` is the number of the open flight and the
+    /// settings to read it with once more.
+    pub fn start_opening(&mut self, path: PathBuf, again: Option<(u64, FlightSettings)>) {
         self.notice = None;
         for task in [Task::Scales, Task::Views, Task::Geometry] {
             self.work.cancel(task);
         }
         self.start(Task::Open, move |progress| {
-            Done::Opened(Box::new(open(path, settings, progress)))
+            Done::Opened(Box::new(open(path, again, progress)))
         });
     }
 
@@ -112,7 +118,8 @@ impl State {
                 let thumbnail = Thumbnail {
                     flight: number,
                     photo: index,
-                    picture: small.convert(),
+                    small: color_image(&picture::reduced(&small, ROW_THUMBNAIL)),
+                    image: PhotoImage::new(&small.convert()),
                 };
                 // Waits until the window has taken some; a cancelled job gives up.
                 if !offer(&send, thumbnail, progress) {
@@ -141,7 +148,11 @@ impl State {
                 None => Err(format!("the file of photo '{}' is not there", posed.name)),
                 Some(path) => {
                     let camera = flight.camera(posed);
-                    photo_for_scale(path, camera, flight.parts().image, PREVIEW)
+                    let large = photo_for_scale(path, camera, flight.parts().image, PREVIEW);
+                    large.map(|large| PreviewPicture {
+                        projected: picture::reduced(&large, PROJECTED).convert(),
+                        large: Arc::new(color_image(&large)),
+                    })
                 }
             };
             Done::Preview { photo, picture }
@@ -153,13 +164,19 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let settings = open.settings();
-        let source = open.file.as_ref().map(|(path, _)| path.clone());
-        let opened = open.path.clone();
-        let name = open.flight.parts().name.clone();
+        let (settings, origin) = (open.settings(), open.origin.clone());
         self.start(Task::Save, move |_| {
-            let saved = save(&path, source.as_deref(), &opened, &name, &settings);
-            Done::Saved(saved.map(|()| path).map_err(|error| error.to_string()))
+            let saved = origin.text_at(&path, &settings).and_then(|text| {
+                exports::write_whole(&path, text.as_bytes()).map_err(|error| {
+                    let what = format!("it cannot be written ({error})");
+                    let remedy = "choose a folder that may be written to";
+                    FileError::new(&path, Fault::new(what, remedy))
+                })
+            });
+            Done::Saved(match saved {
+                Ok(()) => Ok((origin.saved_at(&path), settings)),
+                Err(error) => Err(error.to_string()),
+            })
         });
     }
 
@@ -196,12 +213,12 @@ impl State {
 
 fn open(
     path: PathBuf,
-    settings: Option<FlightSettings>,
+    again: Option<(u64, FlightSettings)>,
     progress: &Progress,
 ) -> Result<Loaded, String> {
     let options = OpenOptions {
         surface: None,
-        settings,
+        settings: again.map(|(_, settings)| settings),
     };
     let opened =
         formats::open_flight(&path, &options, progress).map_err(|error| error.to_string())?;
@@ -213,6 +230,7 @@ fn open(
         opened,
         outcomes,
         surface_bounds,
+        again_for: again.map(|(number, _)| number),
     })
 }
 
@@ -267,6 +285,11 @@ fn photo_for_scale(
         ImageKind::Undistorted if fits => picture::undistorted(&photo, camera, max_side),
         _ => picture::reduced(&photo, max_side),
     })
+}
+
+fn color_image(picture: &RgbImage) -> egui::ColorImage {
+    let size = [picture.width() as usize, picture.height() as usize];
+    egui::ColorImage::from_rgb(size, picture.as_raw())
 }
 
 /// Sends a thumbnail as soon as there is room; false where nobody wants it any more.

@@ -7,14 +7,15 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
-use image::{RgbImage, RgbaImage};
+use egui::ColorImage;
+use image::RgbaImage;
 
 use crate::fault::Fault;
-use crate::flight::{Flight, Outcome};
-use crate::formats::Opened;
+use crate::flight::{Flight, FlightSettings, Outcome};
+use crate::formats::{FlightOrigin, Opened};
 use crate::geometry::Bounds;
 use crate::jobs::{Job, Progress};
-use crate::render::{CloudGeometry, MeshGeometry};
+use crate::render::{CloudGeometry, MeshGeometry, PhotoImage};
 use crate::scale::ViewFacts;
 
 /// What is being done. Of each task one job runs at a time.
@@ -84,6 +85,8 @@ pub struct Loaded {
     pub outcomes: Vec<Outcome>,
     /// Around the surface.
     pub surface_bounds: Bounds,
+    /// The number of the open flight that was read again with other surface options.
+    pub again_for: Option<u64>,
 }
 
 /// What the viewport draws.
@@ -113,12 +116,12 @@ pub enum Done {
         /// Which photo.
         photo: usize,
         /// Its pixels.
-        picture: Result<RgbImage, String>,
+        picture: Result<PreviewPicture, String>,
     },
     /// What was exported and where, in a sentence.
     Exported(Result<String, String>),
-    /// Where flight.toml was written.
-    Saved(Result<PathBuf, String>),
+    /// The flight.toml that was written, with the settings in it.
+    Saved(Result<(FlightOrigin, FlightSettings), String>),
     /// Where the picture was written.
     Picture(Result<PathBuf, String>),
     /// What the person chose; `None` where she did not, or where the desktop has no dialog.
@@ -132,8 +135,19 @@ pub struct Thumbnail {
     pub flight: u64,
     /// Which photo.
     pub photo: usize,
-    /// Its pixels.
-    pub picture: RgbaImage,
+    /// For the table.
+    pub small: ColorImage,
+    /// For the viewport.
+    pub image: PhotoImage,
+}
+
+/// The selected photo, undistorted as its scale assumes.
+#[derive(Debug)]
+pub struct PreviewPicture {
+    /// For the inspector.
+    pub large: Arc<ColorImage>,
+    /// For the viewport: over the look through the camera, and on the surface.
+    pub projected: RgbaImage,
 }
 
 /// The jobs under way.

@@ -1,0 +1,281 @@
+//! Small windows beside the work: where to open, save or export, keys, about. None of them blocks;
+//! only the question before unsaved changes are lost does.
+
+use std::path::PathBuf;
+
+use crate::app::actions;
+use crate::app::command::{Asking, Command};
+use crate::app::state::State;
+use crate::app::work::DialogFor;
+
+/// Draws the small window that is open, and the question before losing changes.
+pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) {
+    if let Some(asking) = state.asking {
+        let title = match asking {
+            Asking::Open => "Open a flight",
+            Asking::Export => "Export for Split-Desktop",
+            Asking::SaveAs => "Save flight",
+            Asking::Picture => "Save picture",
+            Asking::Keys => "Keys and mouse",
+            Asking::About => "About fragscale",
+        };
+        let mut stays = true;
+        egui::Window::new(title)
+            .open(&mut stays)
+            .collapsible(false)
+            .resizable(false)
+            .pivot(egui::Align2::CENTER_CENTER)
+            .default_pos(context.content_rect().center())
+            .show(context, |ui| {
+                ui.set_max_width(460.0);
+                match asking {
+                    Asking::Open => open(state, ui, commands),
+                    Asking::Export => export(state, ui, commands),
+                    Asking::SaveAs => save_as(state, ui, commands),
+                    Asking::Picture => picture(state, ui, commands),
+                    Asking::Keys => keys(ui),
+                    Asking::About => about(ui),
+                }
+            });
+        let escape = context.input(|input| input.key_pressed(egui::Key::Escape));
+        if !stays || escape {
+            commands.push(Command::Ask(None));
+        }
+    }
+    if state.held_back.is_some() {
+        confirm(state, context, commands);
+    }
+}
+
+fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) {
+    let modal = egui::Modal::new(egui::Id::new("unsaved")).show(context, |ui| {
+        ui.set_width(340.0);
+        ui.heading("Unsaved changes");
+        if let Some(open) = &state.open {
+            ui.label(format!(
+                "The settings of {} have changed since they were saved.",
+                open.flight.parts().name
+            ));
+        }
+        ui.add_space(8.0);
+        ui.horizontal(|ui| {
+            if ui.button("Save them").clicked() {
+                commands.extend([Command::Keep, Command::Save]);
+            }
+            if ui.button("Discard changes").clicked() {
+                commands.push(Command::Discard);
+            }
+            if ui.button("Stay here").clicked() {
+                commands.push(Command::Keep);
+            }
+        });
+    });
+    if modal.should_close() {
+        commands.push(Command::Keep);
+    }
+}
+
+/// A path that is typed, or chosen in the desktop's dialog. Returns the text of now, and whether
+/// Enter was pressed in it.
+fn path_field(
+    state: &State,
+    ui: &mut egui::Ui,
+    start: &str,
+    browse: &[(&str, DialogFor, bool)],
+    commands: &mut Vec<Command>,
+) -> (String, bool) {
+    let id = ui.id().with("path");
+    let mut path: String = ui
+        .data(|data| data.get_temp(id))
+        .unwrap_or_else(|| start.to_owned());
+    if let Some(answered) = &state.answered {
+        let answered = answered.display().to_string();
+        let taken = ui.id().with("taken");
+        let before: Option<String> = ui.data(|data| data.get_temp(taken));
+        if before.as_ref() != Some(&answered) {
+            path.clone_from(&answered);
+            ui.data_mut(|data| data.insert_temp(taken, answered));
+        }
+    }
+    let field = ui.add(egui::TextEdit::singleline(&mut path).desired_width(440.0));
+    field.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Path");
+        info.current_text_value = Some(path.clone());
+        info
+    });
+    let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+    if ui.memory(|memory| memory.focused().is_none()) && field.gained_focus() {
+        field.request_focus();
+    }
+    ui.horizontal(|ui| {
+        for (name, what, folder) in browse {
+            let hover = "Choose in the desktop's own dialog";
+            if ui.button(*name).on_hover_text(hover).clicked() {
+                commands.push(Command::Browse(*what, *folder));
+            }
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(id, path.clone()));
+    (path, entered)
+}
+
+/// A path as typed, where it is one: without the quotes that file managers put around.
+fn typed(path: &str) -> Option<PathBuf> {
+    let path = path.trim().trim_matches(['"', '\'']);
+    let path = path.strip_prefix("file://").unwrap_or(path);
+    (!path.is_empty()).then(|| PathBuf::from(path))
+}
+
+fn open(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.label("A flight.toml, a COLMAP or OpenDroneMap folder, or a VisualSFM .nvm file:");
+    let browse = [
+        ("Browse for a file…", DialogFor::Open, false),
+        ("Browse for a folder…", DialogFor::Open, true),
+    ];
+    let (path, entered) = path_field(state, ui, "", &browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Open flight"));
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::Open(path));
+    }
+}
+
+fn export(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    let unit = state.preferences.unit();
+    let chosen = open.chosen_count();
+    ui.label(format!(
+        "{chosen} of {} photos are chosen; scales in pixels per {unit}. The folder gets scales.csv, \
+         scales.html to print and type from, the undistorted photos, overlays, and footprints as \
+         GeoJSON.",
+        open.outcomes.len()
+    ));
+    let start = open
+        .path
+        .parent()
+        .unwrap_or(std::path::Path::new(""))
+        .join("split-desktop");
+    let browse = [("Browse…", DialogFor::Export, true)];
+    let start = std::path::absolute(&start).unwrap_or(start);
+    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
+    ui.separator();
+    let path = typed(&path).filter(|_| chosen > 0);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Export now"));
+    let button = button.on_hover_text("An interrupted export goes on where it stopped");
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::Export(path));
+    }
+    if chosen == 0 {
+        ui.weak("Choose photos first: the boxes in the table.");
+    }
+}
+
+fn save_as(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    ui.label("The flight's settings and where its files are; the files themselves stay as they are.");
+    let start = open.origin.suggested_file();
+    let start = std::path::absolute(&start).unwrap_or(start);
+    let browse = [("Browse…", DialogFor::SaveAs, false)];
+    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Save flight"));
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::SaveAs(path));
+    }
+}
+
+fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    let id = ui.id().with("picture options");
+    let mut options: (u32, u32, bool, bool) = ui
+        .data(|data| data.get_temp(id))
+        .unwrap_or((1920, 1080, false, false));
+    ui.horizontal(|ui| {
+        ui.label("Size");
+        for (side, name) in [(&mut options.0, "Width"), (&mut options.1, "Height")] {
+            let field = egui::DragValue::new(side).range(16..=16384).suffix(" px");
+            let field = ui.add(field);
+            let label = format!("Picture {}", name.to_lowercase());
+            field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, &label));
+            field.on_hover_text(format!("{name} of the picture in pixels"));
+        }
+    });
+    ui.horizontal(|ui| {
+        ui.radio_value(&mut options.2, false, "White background");
+        ui.radio_value(&mut options.2, true, "Transparent");
+    });
+    ui.horizontal(|ui| {
+        ui.radio_value(&mut options.3, false, "What the viewport shows");
+        ui.radio_value(&mut options.3, true, "The corner-ray figure");
+    });
+    ui.data_mut(|data| data.insert_temp(id, options));
+    let folder = open.origin.suggested_file();
+    let folder = folder.parent().unwrap_or(std::path::Path::new(""));
+    let start = folder.join("figure.png");
+    let start = std::path::absolute(&start).unwrap_or(start);
+    let browse = [("Browse…", DialogFor::Picture, false)];
+    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Write picture"));
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::Picture {
+            path,
+            size: [options.0, options.1],
+            transparent: options.2,
+            corner_rays: options.3,
+        });
+    }
+}
+
+fn keys(ui: &mut egui::Ui) {
+    egui::Grid::new("keys").striped(true).num_columns(2).show(ui, |ui| {
+        for (what, how) in [
+            ("Turn the view", "drag with the left button"),
+            ("Move the view", "drag with the right or middle button, or Shift and left"),
+            ("Come closer to the cursor", "wheel, or pinch"),
+            ("Turn around a place", "double click on it"),
+            ("Select a photo", "click its camera or its footprint"),
+        ] {
+            ui.label(what);
+            ui.label(how);
+            ui.end_row();
+        }
+        for action in actions::all() {
+            if let Some(shortcut) = action.shortcut {
+                ui.label(action.label.trim_end_matches('…'));
+                ui.label(ui.ctx().format_shortcut(&shortcut));
+                ui.end_row();
+            }
+        }
+    });
+}
+
+fn about(ui: &mut egui::Ui) {
+    ui.label(format!("fragscale {}", env!("CARGO_PKG_VERSION")));
+    ui.label(
+        "Image scales for blast fragmentation photos: the rays of the four image corners meet the \
+         triangulated point cloud of the pile, and the distances between the corner points give \
+         the scale.",
+    );
+    ui.add_space(6.0);
+    ui.label("After Bamford, Esmaeili & Schoellig (2017), Point-Cloud-Based Aerial Fragmentation Analysis for Application in the Minerals Industry.");
+    ui.add_space(6.0);
+    ui.weak("MIT OR Apache-2.0");
+}

@@ -1,0 +1,56 @@
+//! A field for a number: what is typed counts when the field is left, so that undo has one step for
+//! it and nothing is computed for half a number.
+
+/// Draws the field; returns the new number once it is settled. `label` names it for screen readers.
+pub fn number_field(
+    ui: &mut egui::Ui,
+    label: &str,
+    hover: &str,
+    value: f64,
+    suffix: &str,
+) -> Option<f64> {
+    let mut text = crate::app::numbers::significant(value, 10);
+    if text.contains('.') && !text.contains('e') {
+        text = text.trim_end_matches('0').trim_end_matches('.').to_owned();
+    }
+    let typed = text_field(ui, label, hover, &text, 90.0);
+    if !suffix.is_empty() {
+        ui.label(suffix);
+    }
+    // A decimal comma is what half of the world types.
+    let number: f64 = typed?.trim().replace(',', ".").parse().ok()?;
+    (number.is_finite() && number != value).then_some(number)
+}
+
+/// Draws a field for a text; returns what was typed once the field is left.
+pub fn text_field(
+    ui: &mut egui::Ui,
+    label: &str,
+    hover: &str,
+    text: &str,
+    width: f32,
+) -> Option<String> {
+    let id = ui.id().with(label);
+    let mut typed: String = ui
+        .data(|data| data.get_temp(id))
+        .unwrap_or_else(|| text.to_owned());
+    let field = ui.add(
+        egui::TextEdit::singleline(&mut typed)
+            .id(id)
+            .desired_width(width),
+    );
+    field.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, label);
+        info.current_text_value = Some(typed.clone());
+        info
+    });
+    let left = field.lost_focus();
+    let editing = field.has_focus();
+    field.on_hover_text(hover);
+    if editing {
+        ui.data_mut(|data| data.insert_temp(id, typed));
+        return None;
+    }
+    ui.data_mut(|data| data.remove::<String>(id));
+    (left && typed != text).then_some(typed)
+}

@@ -1,0 +1,68 @@
+//! When a photo's scale is doubted: the limits of the verdict, on one page.
+
+use super::field::number_field;
+use crate::app::command::Command;
+use crate::app::state::State;
+use crate::flight::Limits;
+
+/// Draws the page.
+pub fn limits_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let now = state.preferences.limits;
+    let mut next = now;
+    ui.label("A photo is to check when one of these holds. Change a limit, and all photos are judged anew.");
+    ui.add_space(6.0);
+    for (value, name, suffix, percent, why) in [
+        (
+            &mut next.top_bottom_ratio,
+            "Top and bottom scale differ more than",
+            "times",
+            false,
+            "Split-Desktop goes from one to the other in a straight line: far apart, the middle is off",
+        ),
+        (
+            &mut next.triangle_share,
+            "A corner's triangle has an edge over",
+            "% of the footprint",
+            true,
+            "A long triangle bridges a hole in the cloud: the corner lies where nothing was measured",
+        ),
+        (
+            &mut next.flattest_angle,
+            "A corner's ray meets the pile at under",
+            "degrees",
+            false,
+            "In a flat view a small error of the pose moves the corner point far",
+        ),
+        (
+            &mut next.plane_share,
+            "The surface leaves the corners' plane by over",
+            "% of the footprint (rms)",
+            true,
+            "Four corners on a plane say nothing about a heap between them",
+        ),
+    ] {
+        ui.strong(name);
+        ui.horizontal(|ui| {
+            let shown = if percent { *value * 100.0 } else { *value };
+            if let Some(typed) = number_field(ui, name, why, shown, suffix)
+                && typed >= 0.0
+            {
+                *value = if percent { typed / 100.0 } else { typed };
+            }
+        });
+        ui.weak(why);
+        ui.add_space(6.0);
+    }
+    ui.label("Always to check: a corner off the surface; a photo file that is missing, cannot be read, or has another size than its camera.");
+    ui.add_space(6.0);
+    let usual = ui.add_enabled(now != Limits::default(), egui::Button::new("Usual limits"));
+    if usual
+        .on_hover_text("Go back to the limits that fragscale comes with")
+        .clicked()
+    {
+        next = Limits::default();
+    }
+    if next != now {
+        commands.push(Command::Limits(next));
+    }
+}

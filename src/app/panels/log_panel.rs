@@ -1,0 +1,67 @@
+//! The log, which keeps every warning, and the last error over the viewport.
+
+use crate::app::command::Command;
+use crate::app::state::{LogLine, Severity, State};
+
+/// Draws the log.
+pub fn log_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.strong("Log");
+        let copy = ui.button("Copy log");
+        if copy.on_hover_text("Copy every line of the log").clicked() {
+            let lines: Vec<&str> = state.log.iter().map(|line| line.text.as_str()).collect();
+            commands.push(Command::Copy(lines.join("\n")));
+        }
+        if ui.button("Hide log").on_hover_text("Close the log").clicked() {
+            commands.push(Command::ToggleLog);
+        }
+    });
+    let height = ui.text_style_height(&egui::TextStyle::Body);
+    egui::ScrollArea::both()
+        .auto_shrink(false)
+        .stick_to_bottom(true)
+        .show_rows(ui, height, state.log.len(), |ui, rows| {
+            for line in &state.log[rows] {
+                let text = egui::RichText::new(format!("{} {}", sign(line), line.text));
+                let text = match line.severity {
+                    Severity::Note => text,
+                    Severity::Warning => text.color(ui.visuals().warn_fg_color),
+                    Severity::Error => text.color(ui.visuals().error_fg_color),
+                };
+                ui.add(egui::Label::new(text).extend());
+            }
+        });
+}
+
+fn sign(line: &LogLine) -> &'static str {
+    match line.severity {
+        Severity::Note => "ℹ",
+        Severity::Warning => "⚠",
+        Severity::Error => "✖",
+    }
+}
+
+/// The last error, until it is put away.
+pub fn notice(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(line) = &state.notice else {
+        return;
+    };
+    egui::Frame::new()
+        .fill(ui.visuals().extreme_bg_color)
+        .stroke(egui::Stroke::new(1.0, ui.visuals().error_fg_color))
+        .inner_margin(8)
+        .corner_radius(4)
+        .show(ui, |ui| {
+            ui.horizontal(|ui| {
+                let put_away = ui.button("✖");
+                put_away.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::Role::Button, true, "Put the message away")
+                });
+                if put_away.on_hover_text("Put the message away").clicked() {
+                    commands.push(Command::DismissNotice);
+                }
+                let text = egui::RichText::new(&line.text).color(ui.visuals().error_fg_color);
+                ui.add(egui::Label::new(text).wrap());
+            });
+        });
+}

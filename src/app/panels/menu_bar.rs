@@ -1,0 +1,103 @@
+//! The menu: every action, by its name.
+
+use std::path::Path;
+
+use crate::app::actions::{Action, MENUS, OPEN_SAMPLE};
+use crate::app::command::Command;
+use crate::app::preferences::Theme;
+use crate::app::state::State;
+
+/// Draws the menu bar.
+pub fn menu_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    egui::MenuBar::new().ui(ui, |ui| {
+        for (name, entries) in MENUS {
+            ui.menu_button(name, |ui| {
+                for entry in entries {
+                    match entry {
+                        None => {
+                            ui.separator();
+                        }
+                        Some(action) => entry_of(state, *action, ui, commands),
+                    }
+                    if entry.is_some_and(|action| action.label == OPEN_SAMPLE.label) {
+                        recent(state, ui, commands);
+                    }
+                }
+                if name == "View" {
+                    ui.separator();
+                    appearance(state, ui, commands);
+                }
+            });
+        }
+    });
+}
+
+fn entry_of(state: &State, action: Action, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let command = (action.command)(state);
+    let mut button = egui::Button::new(action.label);
+    if let Some(shortcut) = action.shortcut {
+        button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+    }
+    let entry = ui.add_enabled(command.is_some(), button);
+    if entry.on_hover_text(action.hover).clicked() {
+        commands.extend(command);
+        ui.close();
+    }
+}
+
+fn recent(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let recent = &state.preferences.recent;
+    ui.add_enabled_ui(!recent.is_empty(), |ui| {
+        ui.menu_button("Recent flights", |ui| {
+            for path in recent {
+                let button = ui.button(short(path));
+                if button.on_hover_text(path.display().to_string()).clicked() {
+                    commands.push(Command::Open(path.clone()));
+                    ui.close();
+                }
+            }
+        });
+    });
+}
+
+/// The last two parts of a path: enough to tell flights apart.
+pub fn short(path: &Path) -> String {
+    let parts: Vec<_> = path.components().rev().take(2).collect();
+    let parts: Vec<_> = parts
+        .into_iter()
+        .rev()
+        .map(|part| part.as_os_str().to_string_lossy())
+        .collect();
+    parts.join("/")
+}
+
+fn appearance(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.menu_button("Theme", |ui| {
+        for (theme, name) in [
+            (Theme::System, "As the system"),
+            (Theme::Light, "Light"),
+            (Theme::Dark, "Dark"),
+        ] {
+            if ui
+                .radio(state.preferences.theme == theme, name)
+                .on_hover_text("Colours of the window")
+                .clicked()
+            {
+                commands.push(Command::Theme(theme));
+            }
+        }
+    });
+    ui.menu_button("Size", |ui| {
+        for percent in [100_u8, 125, 150, 175, 200] {
+            let factor = f32::from(percent) / 100.0;
+            let now = (ui.ctx().zoom_factor() - factor).abs() < 0.01;
+            if ui
+                .radio(now, format!("{percent} %"))
+                .on_hover_text("Size of everything in the window")
+                .clicked()
+            {
+                commands.push(Command::Zoom(factor));
+            }
+        }
+    });
+}

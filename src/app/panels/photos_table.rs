@@ -1,0 +1,236 @@
+//! The photos with their scales: one row each, only the rows in sight are drawn.
+
+use egui_extras::{Column as Width, TableBuilder};
+
+use super::{verdict_color, verdict_sign};
+use crate::app::command::Command;
+use crate::app::numbers::or_dash;
+use crate::app::open_flight::OpenFlight;
+use crate::app::state::State;
+use crate::app::table::Column;
+use crate::flight::Verdict;
+
+/// The height of a row, which a thumbnail fits into.
+const ROW: f32 = 40.0;
+
+/// Draws the table.
+pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    filter(open, ui, commands);
+    let unit = state.preferences.unit();
+    let factor = unit.in_units_of(open.flight.parts().unit);
+    let world = open.flight.parts().unit;
+    let columns = [
+        (Column::Export, "⬇".to_owned(), "Chosen for export"),
+        (Column::Name, "Photo".to_owned(), "Name of the photo's file"),
+        (Column::Top, "Top".to_owned(), "Scale at the top edge"),
+        (Column::Bottom, "Bottom".to_owned(), "Scale at the bottom edge"),
+        (Column::Verdict, "Verdict".to_owned(), "Whether to trust the scale"),
+        (
+            Column::Corners,
+            "On".to_owned(),
+            "How many of the four corners are on the surface",
+        ),
+        (
+            Column::Height,
+            format!("Height {world}"),
+            "Height of the camera above the surface below it",
+        ),
+        (
+            Column::Tilt,
+            "Tilt °".to_owned(),
+            "Of the optical axis below the horizon; 90 looks straight down",
+        ),
+    ];
+    let selected_row = open
+        .selected
+        .and_then(|photo| open.shown.iter().position(|&shown| shown == photo));
+    let id = ui.id().with("selected row");
+    let before: Option<Option<usize>> = ui.data(|data| data.get_temp(id));
+    let mut table = TableBuilder::new(ui)
+        .id_salt("photos")
+        .striped(true)
+        .sense(egui::Sense::click())
+        .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
+        .column(Width::exact(24.0))
+        .column(Width::initial(142.0).at_least(60.0).resizable(true).clip(true))
+        .column(Width::initial(52.0).at_least(30.0).resizable(true).clip(true))
+        .column(Width::initial(52.0).at_least(30.0).resizable(true).clip(true))
+        .column(Width::initial(76.0).at_least(30.0).resizable(true).clip(true))
+        .column(Width::initial(28.0).at_least(20.0).resizable(true).clip(true))
+        .column(Width::initial(62.0).at_least(30.0).resizable(true).clip(true))
+        .column(Width::remainder().at_least(40.0).clip(true));
+    // The selected row comes into sight when the selection moves, not while she scrolls.
+    if before != Some(selected_row)
+        && let Some(row) = selected_row
+    {
+        table = table.scroll_to_row(row, None);
+    }
+    let mut hovered = None;
+    table
+        .header(22.0, |mut header| {
+            for (column, name, hover) in &columns {
+                header.col(|ui| {
+                    sort_button(open, *column, name, hover, ui, commands);
+                });
+            }
+        })
+        .body(|body| {
+            body.rows(ROW, open.shown.len(), |mut row| {
+                let photo = open.shown[row.index()];
+                let Some(known) = open.row(photo) else {
+                    return;
+                };
+                row.set_selected(open.selected == Some(photo));
+                row.col(|ui| {
+                    let mut chosen = known.chosen;
+                    let label = format!("Export {}", known.photo.name);
+                    let check = ui.checkbox(&mut chosen, "");
+                    check.widget_info(|| {
+                        egui::WidgetInfo::selected(egui::Role::CheckBox, true, chosen, &label)
+                    });
+                    if check.on_hover_text("Export this photo").changed() {
+                        commands.push(Command::Choose(photo, chosen));
+                    }
+                });
+                row.col(|ui| {
+                    thumbnail(open, photo, ui);
+                    text(ui, known.photo.name.clone());
+                });
+                let scale = |scale: Option<f64>| or_dash(scale.map(|scale| scale * factor), 4);
+                row.col(|ui| text(ui, scale(known.top())));
+                row.col(|ui| text(ui, scale(known.bottom())));
+                row.col(|ui| verdict(known.judged.verdict, &known.judged.doubts, ui));
+                row.col(|ui| {
+                    text(
+                        ui,
+                        known
+                            .corners()
+                            .map_or_else(|| "–".to_owned(), |count| format!("{count}/4")),
+                    );
+                });
+                row.col(|ui| text(ui, or_dash(known.view.and_then(|view| view.height), 4)));
+                row.col(|ui| {
+                    let tilt = known.view.map(|view| format!("{:.1}", view.tilt));
+                    text(ui, tilt.unwrap_or_else(|| "–".to_owned()));
+                });
+                let response = row.response();
+                response.widget_info(|| {
+                    let label = format!("Photo {}", known.photo.name);
+                    let selected = open.selected == Some(photo);
+                    egui::WidgetInfo::selected(egui::Role::Row, true, selected, label)
+                });
+                if response.clicked() {
+                    commands.push(Command::Select(Some(photo)));
+                }
+                if response.double_clicked() {
+                    commands.push(Command::Look(crate::app::command::Look::FitSelected));
+                }
+                if response.hovered() {
+                    hovered = Some(photo);
+                }
+            });
+        });
+    ui.data_mut(|data| data.insert_temp(id, selected_row));
+    if hovered != open.hovered_photo {
+        commands.push(Command::HoverPhoto(hovered));
+    }
+    if open.shown.is_empty() {
+        ui.weak("No photo passes the filter.");
+    }
+}
+
+fn filter(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let mut text = open.order.text.clone();
+        let field = egui::TextEdit::singleline(&mut text)
+            .hint_text("Filter by name or reason")
+            .desired_width(170.0);
+        let field = ui.add(field);
+        field.widget_info(|| {
+            let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Filter photos");
+            info.current_text_value = Some(open.order.text.clone());
+            info
+        });
+        if field.changed() {
+            commands.push(Command::Filter(text));
+        }
+        let wanted = open.order.verdict.map_or("any verdict", Verdict::as_str);
+        egui::ComboBox::from_id_salt("verdict filter")
+            .selected_text(wanted)
+            .width(90.0)
+            .show_ui(ui, |ui| {
+                let mut choice = |verdict: Option<Verdict>, name: &str| {
+                    if ui
+                        .selectable_label(open.order.verdict == verdict, name)
+                        .clicked()
+                    {
+                        commands.push(Command::FilterVerdict(verdict));
+                    }
+                };
+                choice(None, "any verdict");
+                for verdict in Verdict::ALL {
+                    choice(Some(verdict), verdict.as_str());
+                }
+            })
+            .response
+            .on_hover_text("Show only photos with this verdict");
+        ui.weak(format!("{} of {}", open.shown.len(), open.outcomes.len()));
+    });
+}
+
+fn sort_button(
+    open: &OpenFlight,
+    column: Column,
+    name: &str,
+    hover: &str,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let arrow = match (open.order.by == column, open.order.descending) {
+        (true, false) => " ⏶",
+        (true, true) => " ⏷",
+        (false, _) => "",
+    };
+    let text = egui::RichText::new(format!("{name}{arrow}")).strong();
+    let button = ui.add(egui::Button::new(text).frame(false).truncate());
+    let button = button.on_hover_text(format!("{hover}. Click to sort."));
+    button.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Sort by {}", hover.to_lowercase()))
+    });
+    if button.clicked() {
+        commands.push(Command::Sort(column));
+    }
+}
+
+fn thumbnail(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
+    let size = egui::vec2(ROW * 1.3, ROW - 4.0);
+    match open.thumbnails.get(photo).and_then(Option::as_ref) {
+        Some(texture) => {
+            let image = egui::Image::new(texture).fit_to_exact_size(size);
+            ui.add(image.maintain_aspect_ratio(true).sense(egui::Sense::empty()));
+        }
+        None => {
+            let (place, _) = ui.allocate_exact_size(size, egui::Sense::empty());
+            let colour = ui.visuals().faint_bg_color;
+            ui.painter().rect_filled(place, 2.0, colour);
+        }
+    }
+}
+
+/// A cell that leaves clicks to its row.
+fn text(ui: &mut egui::Ui, text: String) {
+    ui.add(egui::Label::new(text).selectable(false).truncate());
+}
+
+fn verdict(verdict: Verdict, doubts: &[crate::flight::Doubt], ui: &mut egui::Ui) {
+    let words = format!("{} {verdict}", verdict_sign(verdict));
+    let words = egui::RichText::new(words).color(verdict_color(verdict, ui.visuals()));
+    let label = ui.add(egui::Label::new(words).selectable(false).truncate());
+    if !doubts.is_empty() {
+        let reasons: Vec<String> = doubts.iter().map(ToString::to_string).collect();
+        label.on_hover_text(reasons.join("\n"));
+    }
+}

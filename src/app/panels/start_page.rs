@@ -1,0 +1,49 @@
+//! The first page: the sample flight, recent flights, and what can be opened.
+
+use super::menu_bar::short;
+use crate::app::actions;
+use crate::app::command::{Asking, Command};
+use crate::app::state::State;
+
+/// Draws the start page.
+pub fn start_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    egui::ScrollArea::vertical().show(ui, |ui| {
+        ui.vertical_centered(|ui| {
+            ui.add_space((ui.available_height() * 0.08).min(60.0));
+            ui.heading(egui::RichText::new("fragscale").size(34.0));
+            ui.label("Image scales for blast fragmentation photos, from the flight itself");
+            ui.add_space(18.0);
+            let big = |text: &str| {
+                egui::Button::new(egui::RichText::new(text).size(16.0))
+                    .min_size(egui::vec2(260.0, 36.0))
+            };
+            let sample = ui.add(big(actions::OPEN_SAMPLE.label));
+            if sample.on_hover_text(actions::OPEN_SAMPLE.hover).clicked() {
+                commands.push(Command::OpenSample);
+            }
+            ui.add_space(4.0);
+            let open = ui.add(big("Open…"));
+            open.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Open a flight"));
+            if open.on_hover_text(actions::OPEN.hover).clicked() {
+                commands.push(Command::Ask(Some(Asking::Open)));
+            }
+            ui.add_space(14.0);
+            ui.weak("or drop a file or folder anywhere in this window:");
+            ui.weak("flight.toml · COLMAP folder · OpenDroneMap folder · VisualSFM .nvm");
+            if state.is_opening() {
+                ui.add_space(14.0);
+                ui.spinner();
+            }
+            ui.add_space(18.0);
+            if !state.preferences.recent.is_empty() {
+                ui.strong("Recent flights");
+                for path in &state.preferences.recent {
+                    let link = ui.link(short(path));
+                    if link.on_hover_text(path.display().to_string()).clicked() {
+                        commands.push(Command::Open(path.clone()));
+                    }
+                }
+            }
+        });
+    });
+}

@@ -1,0 +1,85 @@
+//! The foot of the window: what is being done, where the mouse points, the last line of the log.
+
+use crate::app::actions;
+use crate::app::command::Command;
+use crate::app::open_flight::Measure;
+use crate::app::state::{Severity, State};
+
+/// Draws the status bar.
+pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        for (task, (sentence, fraction)) in state.work.running() {
+            let bar = egui::ProgressBar::new(fraction as f32)
+                .desired_width(90.0)
+                .desired_height(14.0);
+            ui.label(task.in_words());
+            ui.add(bar).on_hover_text(sentence);
+            let cancel = ui.small_button("✖");
+            let label = format!("Cancel {}", task.in_words().to_lowercase());
+            cancel.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
+            if cancel.on_hover_text(&label).clicked() {
+                commands.push(Command::Cancel(task));
+            }
+            ui.separator();
+        }
+        if let Some(open) = &state.open {
+            let unit = open.flight.parts().unit;
+            if let Some(point) = open.hover {
+                let text = format!("x {:.3}  y {:.3}  z {:.3} {unit}", point.x, point.y, point.z);
+                let label = ui.label(text.clone());
+                let label = label.on_hover_text("Where the mouse points on the surface");
+                label.context_menu(|ui| {
+                    if ui.button("Copy coordinates").clicked() {
+                        commands.push(Command::Copy(format!("{}\t{}\t{}", point.x, point.y, point.z)));
+                        ui.close();
+                    }
+                });
+                ui.separator();
+            }
+            match open.measure {
+                Measure::Off => {}
+                Measure::First => {
+                    ui.label("Distance: click the first point");
+                    ui.separator();
+                }
+                Measure::Second(_) => {
+                    ui.label("Distance: click the second point");
+                    ui.separator();
+                }
+                Measure::Both(a, b) => {
+                    let way = b - a;
+                    ui.label(format!(
+                        "Distance {:.3} {unit} (level {:.3}, up {:.3})",
+                        way.length(),
+                        way.truncate().length(),
+                        way.z
+                    ));
+                    ui.separator();
+                }
+            }
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let warnings = state
+                .log
+                .iter()
+                .filter(|line| line.severity != Severity::Note)
+                .count();
+            let text = match warnings {
+                0 => "Log".to_owned(),
+                1 => "Log: 1 warning".to_owned(),
+                many => format!("Log: {many} warnings"),
+            };
+            let button = ui.selectable_label(state.preferences.log_open, text);
+            button.widget_info(|| {
+                let open = state.preferences.log_open;
+                egui::WidgetInfo::selected(egui::Role::Button, true, open, "Show log")
+            });
+            if button.on_hover_text(actions::LOG.hover).clicked() {
+                commands.push(Command::ToggleLog);
+            }
+            if let Some(line) = state.log.last() {
+                ui.add(egui::Label::new(&line.text).truncate());
+            }
+        });
+    });
+}

@@ -1,0 +1,87 @@
+//! What is done every day, one click each.
+
+use crate::app::actions;
+use crate::app::command::Command;
+use crate::app::panels::{verdict_color, verdict_sign};
+use crate::app::state::State;
+use crate::flight::Verdict;
+use crate::units::LengthUnit;
+
+/// The units that scales are wanted in.
+const UNITS: [LengthUnit; 5] = [
+    LengthUnit::Millimetre,
+    LengthUnit::Centimetre,
+    LengthUnit::Metre,
+    LengthUnit::Inch,
+    LengthUnit::Foot,
+];
+
+/// Draws the tool bar.
+pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        for (action, text) in [
+            (actions::OPEN, "Open"),
+            (actions::SAVE, "Save flight"),
+            (actions::UNDO, "⟲"),
+            (actions::REDO, "⟳"),
+        ] {
+            let command = (action.command)(state);
+            let button = ui.add_enabled(command.is_some(), egui::Button::new(text));
+            let button = button.on_hover_text(action.hover);
+            button.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, command.is_some(), label(text, action))
+            });
+            if button.clicked() {
+                commands.extend(command);
+            }
+        }
+        ui.separator();
+        ui.label("Scales in px per");
+        for unit in UNITS {
+            let chosen = state.preferences.unit() == unit;
+            let button = ui.selectable_label(chosen, unit.symbol());
+            let button = button.on_hover_text(format!("Show and export pixels per {unit}"));
+            button.widget_info(|| {
+                let label = format!("Pixels per {unit}");
+                egui::WidgetInfo::selected(egui::Role::RadioButton, true, chosen, label)
+            });
+            if button.clicked() {
+                commands.push(Command::Unit(unit));
+            }
+        }
+        ui.separator();
+        let Some(open) = &state.open else {
+            return;
+        };
+        for verdict in Verdict::ALL {
+            let count = open.count(verdict);
+            let shown = open.order.verdict == Some(verdict);
+            let text = format!("{} {count} {verdict}", verdict_sign(verdict));
+            let text = egui::RichText::new(text).color(verdict_color(verdict, ui.visuals()));
+            let button = ui.selectable_label(shown, text);
+            let button = button.on_hover_text(format!("Show only the photos to {verdict}"));
+            button.widget_info(|| {
+                let label = format!("Only photos: {verdict}");
+                egui::WidgetInfo::selected(egui::Role::Button, true, shown, label)
+            });
+            if button.clicked() {
+                commands.push(Command::FilterVerdict((!shown).then_some(verdict)));
+            }
+        }
+        ui.separator();
+        let chosen = open.chosen_count();
+        let export = egui::Button::new(egui::RichText::new(format!("Export {chosen}")).strong());
+        let export = ui.add_enabled(chosen > 0, export);
+        export.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, chosen > 0, "Export chosen photos")
+        });
+        if export.on_hover_text(actions::EXPORT.hover).clicked() {
+            commands.extend((actions::EXPORT.command)(state));
+        }
+    });
+}
+
+/// Signs have names for those who do not see them.
+fn label<'a>(text: &'a str, action: actions::Action) -> &'a str {
+    if text.is_ascii() { text } else { action.label }
+}

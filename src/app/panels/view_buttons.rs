@@ -1,0 +1,44 @@
+//! The buttons over the viewport: views, the look through a camera, the distance tool.
+
+use crate::app::actions::{self, Action};
+use crate::app::command::{Command, Look};
+use crate::app::open_flight::Measure;
+use crate::app::state::State;
+
+/// Draws the buttons.
+pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    let mut button = |action: Action, text: &str, on: bool, ui: &mut egui::Ui| {
+        let command = (action.command)(state);
+        let button = ui.add_enabled(command.is_some(), egui::Button::selectable(on, text));
+        button.widget_info(|| {
+            egui::WidgetInfo::selected(egui::Role::Button, command.is_some(), on, action.label)
+        });
+        let keys = action.shortcut.map(|keys| ui.ctx().format_shortcut(&keys));
+        let hover = match keys {
+            Some(keys) => format!("{} ({keys})", action.hover),
+            None => action.hover.to_owned(),
+        };
+        if button.on_hover_text(hover).clicked() {
+            commands.extend(command);
+        }
+    };
+    let through = open.looking.through.is_some();
+    button(actions::FIT, "Fit", false, ui);
+    button(actions::TOP, "Top", false, ui);
+    button(actions::FRONT, "Front", false, ui);
+    button(actions::SIDE, "Side", false, ui);
+    button(actions::THROUGH, "Through camera", through, ui);
+    button(actions::MEASURE, "Measure", open.measure != Measure::Off, ui);
+    if through {
+        let mut blend = open.looking.blend;
+        ui.spacing_mut().slider_width = 90.0;
+        let slider = ui.add(egui::Slider::new(&mut blend, 0.0..=1.0).show_value(false));
+        slider.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Photo over the view"));
+        if slider.on_hover_text("How much of the photo lies over the view").changed() {
+            commands.push(Command::Look(Look::Blend(blend)));
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! Taking what jobs and rays have brought, a little in each frame.
+
+use std::sync::Arc;
+
+use super::open_flight::{Measure, OpenFlight, Preview};
+use super::picker::{Picked, Picker, Purpose};
+use super::state::{Severity, State};
+use super::work::{DialogFor, Done, Loaded, Task, Thumbnail};
+use crate::flight::Verdict;
+
+/// Thumbnails taken in one frame: uploading each takes a fraction of a millisecond.
+const THUMBNAILS_A_FRAME: usize = 8;
+
+impl State {
+    /// Takes what is there, and asks for another frame while something is under way.
+    pub fn poll(&mut self) {
+        for done in self.work.finished() {
+            match done {
+                Ok(done) => self.take(done),
+                Err(fault) => self.say(Severity::Error, &fault.to_string()),
+            }
+        }
+        for thumbnail in self.work.thumbnails(THUMBNAILS_A_FRAME) {
+            self.take_thumbnail(thumbnail);
+        }
+        if let Some(open) = &mut self.open {
+            let answers = open.picker.as_mut().map(Picker::answers);
+            let before = open.selected;
+            for picked in answers.into_iter().flatten() {
+                open.take_picked(picked);
+            }
+            if open.selected != before {
+                self.load_preview();
+            }
+        }
+        if !self.work.is_idle() {
+            // Often enough for a progress bar; idle windows draw nothing.
+            self.context
+                .request_repaint_after(std::time::Duration::from_millis(100));
+        }
+    }
+
+    fn take(&mut self, done: Done) {
+        match done {
+            Done::Opened(result) => match *result {
+                Ok(loaded) => self.take_flight(loaded),
+                Err(message) => self.say(Severity::Error, &message),
+            },
+            Done::Scales(Ok((flight, outcomes))) => {
+                let limits = self.preferences.limits;
+                let Some(open) = &mut self.open else {
+                    return;
+                };
+                let before = open.flight.parts();
+                let (image, surface) = (before.image, before.surface.clone());
+                let after = flight.parts();
+                let other_image = image != after.image;
+                let other_surface = !Arc::ptr_eq(&surface, &after.surface);
+                open.flight = flight;
+                open.outcomes = Arc::new(outcomes);
+                open.views = None;
+                open.judge(&limits);
+                if other_surface {
+                    self.start_geometry();
+                    self.start_picker();
+                }
+                if other_image {
+                    self.load_preview();
+                    self.start_thumbnails();
+                }
+                self.start_views();
+            }
+            Done::Views(Ok(views)) => {
+                let limits = self.preferences.limits;
+                if let Some(open) = &mut self.open {
+                    open.views = Some(Arc::new(views));
+                    open.judge(&limits);
+                }
+            }
+            Done::Geometry(Ok(geometry)) => {
+                if let Some(open) = &mut self.open {
+                    open.geometry = Some(Arc::from(geometry));
+                }
+            }
+            Done::Scales(Err(fault)) | Done::Views(Err(fault)) | Done::Geometry(Err(fault)) => {
+                self.say(Severity::Error, &fault.to_string());
+            }
+            Done::Thumbnails => {}
+            Done::Preview { photo, picture } => {
+                if let Some(open) = &mut self.open
+                    && open.selected == Some(photo)
+                {
+                    let number = open.preview.as_ref().map_or(0, |preview| preview.number) + 1;
+                    open.preview = Some(Preview {
+                        photo,
+                        picture,
+                        number,
+                    });
+                }
+            }
+            Done::Exported(Ok(sentence)) => self.say(Severity::Note, &sentence),
+            Done::Picture(Ok(path)) => {
+                self.say(Severity::Note, &format!("{}: written", path.display()));
+            }
+            Done::Exported(Err(message))
+            | Done::Saved(Err(message))
+            | Done::Picture(Err(message)) => self.say(Severity::Error, &message),
+            Done::Saved(Ok((origin, settings))) => {
+                if let Some(path) = origin.flight_file() {
+                    let path = path.to_owned();
+                    self.preferences.remember(&path);
+                    self.say(Severity::Note, &format!("{}: saved", path.display()));
+                    if let Some(open) = &mut self.open {
+                        open.path = path;
+                    }
+                }
+                if let Some(open) = &mut self.open {
+                    open.origin = origin;
+                    open.saved = settings;
+                }
+            }
+            Done::Dialog(what, Some(path)) => match what {
+                DialogFor::Open => self.apply(super::command::Command::Open(path)),
+                DialogFor::Export | DialogFor::SaveAs | DialogFor::Picture => {
+                    self.answered = Some(path);
+                }
+            },
+            Done::Dialog(..) => self.say(
+                Severity::Note,
+                "no file was chosen; where the desktop has no file dialog, type the path",
+            ),
+        }
+    }
+
+    fn take_flight(&mut self, loaded: Loaded) {
+        let again = match (loaded.again_for, self.open.take()) {
+            // The same flight with other surface options: what the engineer did stays.
+            (Some(number), Some(before)) if number == before.number => Some(before),
+            // She has gone on to another flight meanwhile.
+            (Some(_), other) => {
+                self.open = other;
+                return;
+            }
+            (None, _) => None,
+        };
+        if again.is_none() {
+            self.work.cancel_all();
+            self.preferences.remember(&loaded.path);
+            let warnings = loaded.opened.warnings.clone();
+            for warning in warnings {
+                self.say(Severity::Warning, &warning);
+            }
+        }
+        self.opened += 1;
+        let read_with = loaded.opened.settings;
+        let limits = self.preferences.limits;
+        let mut open = Box::new(OpenFlight::new(self.opened, loaded, &limits));
+        if let Some(before) = again {
+            open.keep_from(*before);
+            open.judge(&limits);
+        }
+        self.open = Some(open);
+        self.start_picker();
+        self.start_views();
+        self.start_geometry();
+        self.load_preview();
+        self.start_thumbnails();
+        let Some(open) = &self.open else {
+            return;
+        };
+        let now = open.settings();
+        if now != read_with {
+            // Changed again while the file was read.
+            self.settings_changed(&read_with, &now);
+            return;
+        }
+        let sentence = format!(
+            "{}: {} photos, {} without a scale",
+            open.flight.parts().name,
+            open.outcomes.len(),
+            open.count(Verdict::NoScale)
+        );
+        self.say(Severity::Note, &sentence);
+    }
+
+    fn start_picker(&mut self) {
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        open.hover = None;
+        let surface = open.flight.parts().surface.clone();
+        match Picker::new(surface, self.context.clone()) {
+            Ok(picker) => open.picker = Some(picker),
+            Err(fault) => self.say(Severity::Error, &fault.to_string()),
+        }
+    }
+
+    fn take_thumbnail(&mut self, thumbnail: Thumbnail) {
+        let Thumbnail {
+            flight,
+            photo,
+            small,
+            image,
+        } = thumbnail;
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        if open.number != flight || photo >= open.thumbnails.len() {
+            return;
+        }
+        open.thumbnails[photo] = Some(self.context.load_texture(
+            format!("thumbnail {photo}"),
+            small,
+            egui::TextureOptions::LINEAR,
+        ));
+        open.images[photo] = Some(Arc::new(image));
+    }
+
+    /// Whether nothing is under way.
+    pub fn is_idle(&self) -> bool {
+        let waiting = |open: &OpenFlight| open.picker.as_ref().is_some_and(Picker::is_waiting);
+        self.work.is_idle() && !self.open.as_deref().is_some_and(waiting)
+    }
+
+    /// Whether a flight is being read.
+    pub fn is_opening(&self) -> bool {
+        self.work.is_running(Task::Open)
+    }
+}
+
+impl OpenFlight {
+    /// Takes over what the engineer did from the flight before it was read again.
+    fn keep_from(&mut self, before: Self) {
+        self.saved = before.saved;
+        self.history = before.history;
+        self.proposed = before.proposed;
+        self.selected = before.selected;
+        self.order = before.order;
+        self.looking = before.looking;
+    }
+
+    fn take_picked(&mut self, picked: Picked) {
+        let point = picked.hit.map(|hit| hit.point);
+        match picked.purpose {
+            Purpose::Hover => {
+                if let Some(point) = point {
+                    self.hover = Some(point);
+                }
+            }
+            Purpose::Center => {
+                if let Some(point) = point {
+                    self.looking.through = None;
+                    self.looking.orbit.center_on(point);
+                }
+            }
+            Purpose::Measure => {
+                if let Some(point) = point {
+                    self.measure = match self.measure {
+                        Measure::Off => Measure::Off,
+                        Measure::First | Measure::Both(..) => Measure::Second(point),
+                        Measure::Second(first) => Measure::Both(first, point),
+                    };
+                }
+            }
+            Purpose::Select => {
+                if let Some(photo) = self.photo_at(&picked) {
+                    self.selected = Some(photo);
+                }
+            }
+        }
+    }
+
+    /// The photo that a click means: the camera next to the ray, else the photo that sees the place
+    /// nearest to its middle.
+    fn photo_at(&self, picked: &Picked) -> Option<usize> {
+        let photos = &self.flight.parts().photos;
+        // A camera is hit within this share of its distance: about ten pixels on the screen.
+        let reach = 0.012;
+        let camera = photos
+            .iter()
+            .enumerate()
+            .filter_map(|(index, photo)| {
+                let way = photo.pose.center - picked.ray.origin;
+                let along = way.dot(picked.ray.direction);
+                let beside = (way - picked.ray.direction * along).length();
+                let before_surface = picked.hit.is_none_or(|hit| along < hit.t);
+                (along > 0.0 && before_surface && beside < reach * along)
+                    .then_some((index, beside / along))
+            })
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((index, _)) = camera {
+            return Some(index);
+        }
+        let point = picked.hit?.point;
+        photos
+            .iter()
+            .enumerate()
+            .filter_map(|(index, photo)| {
+                let camera = self.flight.camera(photo);
+                let pixel = camera.pixel_undistorted(photo.pose.camera_from_world(point))?;
+                let half = glam::DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
+                camera
+                    .contains(pixel)
+                    .then(|| (index, ((pixel - half) / half).abs().max_element()))
+            })
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(index, _)| index)
+    }
+}
