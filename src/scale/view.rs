@@ -33,6 +33,9 @@ pub struct ViewFacts {
 }
 
 impl ViewFacts {
+    /// About how many rays one photo's facts take.
+    pub const RAYS: usize = 350;
+
     /// Looks at a photo whose scale is known.
     ///
     /// # Errors
