@@ -19,7 +19,7 @@ use std::hint::black_box;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use fragscale::formats::{OpenOptions, open_flight, read_cloud};
 use fragscale::geometry::Ray;
 use fragscale::jobs::Progress;
@@ -164,14 +164,16 @@ fn surfaces(c: &mut Criterion) {
                 b.iter(|| Surface::new(cloud.clone()));
             },
         );
-        let surface = Surface::new(cloud).expect("a surface");
-        group.bench_with_input(
-            BenchmarkId::new("triangulate all", count),
-            &surface,
-            |b, surface| {
-                b.iter(|| surface.triangles());
-            },
-        );
+        // A surface remembers its triangles: each turn has a new one.
+        let fresh = || Surface::new(cloud.clone()).expect("a surface");
+        group.bench_function(BenchmarkId::new("triangulate all", count), |b| {
+            b.iter_batched(
+                fresh,
+                |surface| surface.triangles(),
+                BatchSize::PerIteration,
+            );
+        });
+        let surface = fresh();
         group.bench_with_input(
             BenchmarkId::new("36 rays", count),
             &surface,
@@ -180,10 +182,15 @@ fn surfaces(c: &mut Criterion) {
             },
         );
         if count <= 1_000_000 {
-            group.bench_with_input(
+            group.bench_function(
                 BenchmarkId::new("triangulate and build the hierarchy", count),
-                &surface,
-                |b, surface| b.iter(|| surface.to_mesh()),
+                |b| {
+                    let build = |surface: Surface| {
+                        let ready = surface.caster_for(usize::MAX).is_ok();
+                        (ready, surface)
+                    };
+                    b.iter_batched(fresh, build, BatchSize::PerIteration);
+                },
             );
             let mesh = surface.to_mesh().expect("a mesh");
             group.bench_with_input(

@@ -224,7 +224,9 @@ impl Flight {
             ..
         } = &self.parts;
         let unusable = |error| Fault::new(format!("{error}"), "check the surface file");
-        let mut caster = surface.caster().map_err(unusable)?;
+        let mut caster = surface
+            .caster_for(photos.len() * ViewFacts::RAYS)
+            .map_err(unusable)?;
         let mut finder = GroundFinder::new(*ground, surface);
         let mut views = Vec::with_capacity(photos.len());
         progress.stage("draping footprints");

@@ -1,7 +1,7 @@
 //! Whether to trust a photo's scale: reasons for doubt, each with the limit that it passed.
 //!
-//! The limits are the engineer's; the defaults are ours and say where a uniform interpolation
-//! between the top and the bottom scale begins to mislead. Judging is pure and quick, so that a
+//! The limits are the engineer's; the defaults are ours and say where a linear change between the top
+//! and the bottom scale, which is all that Split-Desktop knows, begins to mislead. Judging is pure and quick, so that a
 //! changed limit shows at once.
 
 use std::fmt;
@@ -9,16 +9,19 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::Outcome;
-use crate::scale::{CornerName, CornerOutcome, ViewFacts};
+use crate::scale::{CornerName, CornerOutcome, EdgeScales, ViewFacts};
 use crate::units::LengthUnit;
 
-/// When to doubt.
+/// When to doubt. A value at its limit is still good.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Limits {
     /// The larger of top/bottom and bottom/top above which a linear change between the two is too
     /// coarse.
     pub top_bottom_ratio: f64,
+    /// The larger of left/right and right/left above which a scale that changes only from top to
+    /// bottom misleads at the sides.
+    pub left_right_ratio: f64,
     /// The longest edge of a corner's triangle, as a share of the footprint's mean edge, above which
     /// the corner lies over a hole of the cloud.
     pub triangle_share: f64,
@@ -33,10 +36,20 @@ pub struct Limits {
 impl Default for Limits {
     fn default() -> Self {
         Self {
+            // Over a plane the change from top to bottom is linear, whatever the ratio; but a photo
+            // in which the far fragments are half the size of the near ones misses the small ones.
             top_bottom_ratio: 2.0,
-            triangle_share: 0.1,
-            flattest_angle: 20.0,
-            plane_share: 0.1,
+            // Halfway down, the sides are then about 11 % off the middle.
+            left_right_ratio: 1.25,
+            // On slopes of rubble (37 degrees) the height in the middle of a triangle can be off by
+            // a quarter of its edge or so: 5 % of the scale.
+            triangle_share: 0.2,
+            // At 30 degrees fragments look half as high as they are wide, and a height that is off
+            // moves the corner point by nearly twice as much.
+            flattest_angle: 30.0,
+            // At usual fields of view the mean edge is about as long as the distance, so that the
+            // scale within the photo is about 8 % off that between its edges.
+            plane_share: 0.08,
         }
     }
 }
@@ -74,6 +87,13 @@ pub enum Doubt {
         /// The larger over the smaller.
         ratio: f64,
         /// [`Limits::top_bottom_ratio`].
+        limit: f64,
+    },
+    /// Left and right differ too much.
+    Sideways {
+        /// The larger over the smaller.
+        ratio: f64,
+        /// [`Limits::left_right_ratio`].
         limit: f64,
     },
     /// A corner lies over a hole of the cloud.
@@ -124,53 +144,79 @@ fn names(corners: &[CornerName]) -> String {
     names.join(", ")
 }
 
+/// A value and the limit that it passed, with as many digits as tell them apart, at least `digits`.
+fn apart(value: f64, limit: f64, digits: usize) -> (String, String) {
+    let at = |digits: usize| (format!("{value:.digits$}"), format!("{limit:.digits$}"));
+    (digits..digits + 6)
+        .map(at)
+        .find(|(value, limit)| value != limit)
+        .unwrap_or_else(|| at(17))
+}
+
 impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoScale(reason) => write!(f, "no scale: {reason}"),
-            Self::OffSurface(corners) => {
-                write!(
-                    f,
-                    "off the surface, taken on the ground: {}",
-                    names(corners)
-                )
-            }
-            Self::NoPoint(corners) => write!(
+            Self::OffSurface(corners) => write!(
                 f,
-                "no point on the surface or the ground: {}",
+                "off the surface, taken on the ground plane: {}",
                 names(corners)
             ),
-            Self::Ratio { ratio, limit } => write!(
+            Self::NoPoint(corners) => write!(
                 f,
-                "top and bottom scale differ {ratio:.2} times, more than {limit:.2}"
+                "no point on the surface or the ground plane: {}",
+                names(corners)
             ),
+            Self::Ratio { ratio, limit } => {
+                let (ratio, limit) = apart(*ratio, *limit, 2);
+                write!(
+                    f,
+                    "the top and the bottom scale differ by a factor of {ratio}, more than {limit}"
+                )
+            }
+            Self::Sideways { ratio, limit } => {
+                let (ratio, limit) = apart(*ratio, *limit, 2);
+                write!(
+                    f,
+                    "the left and the right scale differ by a factor of {ratio}, more than {limit}: a scale from top to bottom does not hold at the sides"
+                )
+            }
             Self::LongTriangle {
                 corners,
                 edge,
                 limit,
                 unit,
-            } => write!(
-                f,
-                "over a hole in the cloud ({}): a triangle edge of {edge:.3} {unit}, more than {limit:.3} {unit}",
-                names(corners)
-            ),
-            Self::FlatView { angle, limit } => write!(
-                f,
-                "a flat view: a corner's ray meets the pile at {angle:.1}°, less than {limit:.1}°"
-            ),
+            } => {
+                let (edge, limit) = apart(*edge, *limit, 3);
+                write!(
+                    f,
+                    "over a hole in the cloud: {} (a triangle edge of {edge} {unit}, more than {limit} {unit})",
+                    names(corners)
+                )
+            }
+            Self::FlatView { angle, limit } => {
+                let (angle, limit) = apart(*angle, *limit, 1);
+                write!(
+                    f,
+                    "a flat view: a corner's ray comes in at {angle}° to the plane of the corners, less than {limit}°"
+                )
+            }
             Self::NotPlane {
                 distance,
                 limit,
                 unit,
-            } => write!(
-                f,
-                "not flat between the corners: the surface is {distance:.3} {unit} (rms) off their plane, more than {limit:.3} {unit}"
-            ),
+            } => {
+                let (distance, limit) = apart(*distance, *limit, 3);
+                write!(
+                    f,
+                    "not flat between the corners: the surface is {distance} {unit} (root mean square) off their plane, more than {limit} {unit}"
+                )
+            }
             Self::FileMissing => f.write_str("the photo file is missing"),
             Self::FileUnreadable(reason) => write!(f, "the photo file cannot be read: {reason}"),
             Self::FileSize { file, camera } => write!(
                 f,
-                "the photo file is {} × {}, its camera {} × {}",
+                "the photo file has {} x {} pixels, its camera {} x {}",
                 file.0, file.1, camera.0, camera.1
             ),
         }
@@ -241,15 +287,26 @@ pub fn judge(
             if !off.is_empty() {
                 doubts.push(Doubt::OffSurface(off));
             }
-            match (scale.scale.top, scale.scale.bottom) {
-                (Some(top), Some(bottom)) => {
-                    let ratio = (top / bottom).max(bottom / top);
-                    if ratio > limits.top_bottom_ratio {
-                        let limit = limits.top_bottom_ratio;
-                        doubts.push(Doubt::Ratio { ratio, limit });
-                    }
+            let EdgeScales {
+                top,
+                right,
+                bottom,
+                left,
+            } = scale.scale;
+            if top.is_none() || bottom.is_none() {
+                verdict = Verdict::NoScale;
+                if doubts.is_empty() {
+                    let reason = "two corner points coincide".to_owned();
+                    doubts.push(Doubt::NoScale(reason));
                 }
-                _ => verdict = Verdict::NoScale,
+            }
+            let limit = limits.top_bottom_ratio;
+            if let Some(ratio) = ratio(top, bottom).filter(|&ratio| ratio > limit) {
+                doubts.push(Doubt::Ratio { ratio, limit });
+            }
+            let limit = limits.left_right_ratio;
+            if let Some(ratio) = ratio(left, right).filter(|&ratio| ratio > limit) {
+                doubts.push(Doubt::Sideways { ratio, limit });
             }
         }
     }
@@ -271,6 +328,12 @@ pub fn judge(
         verdict = Verdict::Check;
     }
     (verdict, doubts)
+}
+
+/// The larger of two scales over the smaller.
+fn ratio(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    let (a, b) = (a?, b?);
+    Some((a / b).max(b / a))
 }
 
 fn doubts_of_view(view: &ViewFacts, unit: LengthUnit, limits: &Limits) -> Vec<Doubt> {
@@ -306,4 +369,240 @@ fn doubts_of_view(view: &ViewFacts, unit: LengthUnit, limits: &Limits) -> Vec<Do
         doubts.push(Doubt::FlatView { angle, limit });
     }
     doubts
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec2, DVec3};
+
+    use super::*;
+    use crate::scale::{Corner, Footprint, PhotoScale};
+
+    const SIZE: (u32, u32) = (1280, 720);
+
+    const FOUND: PhotoFileState = PhotoFileState::Found {
+        width: SIZE.0,
+        height: SIZE.1,
+    };
+
+    fn on_surface() -> CornerOutcome {
+        CornerOutcome::OnSurface {
+            distance: 1.0,
+            point: DVec3::ZERO,
+        }
+    }
+
+    fn scale(outcomes: [CornerOutcome; 4], edges: [f64; 4]) -> Outcome {
+        let corners = std::array::from_fn(|i| Corner {
+            name: CornerName::ALL[i],
+            pixel: DVec2::ZERO,
+            direction: Some(DVec3::NEG_Z),
+            outcome: outcomes[i],
+        });
+        let [top, right, bottom, left] = edges.map(|edge| edge.is_finite().then_some(edge));
+        Outcome::Scale(Box::new(PhotoScale {
+            corners,
+            scale: EdgeScales {
+                top,
+                right,
+                bottom,
+                left,
+            },
+            ground: None,
+        }))
+    }
+
+    fn good() -> Outcome {
+        scale([on_surface(); 4], [100.0; 4])
+    }
+
+    /// Of a footprint with the mean edge 10.
+    fn view() -> ViewFacts {
+        ViewFacts {
+            tilt: 90.0,
+            height: Some(10.0),
+            height_is_above_ground: false,
+            flattest_corner: Some(50.0),
+            triangle_edges: [Some(0.1); 4],
+            plane_distance: Some(0.1),
+            footprint_size: Some(10.0),
+            footprint: Footprint {
+                outline: Vec::new(),
+                grid: Vec::new(),
+                columns: 1,
+                rows: 1,
+            },
+        }
+    }
+
+    fn limits() -> Limits {
+        Limits {
+            top_bottom_ratio: 1.5,
+            left_right_ratio: 1.25,
+            triangle_share: 0.25,
+            flattest_angle: 30.0,
+            plane_share: 0.125,
+        }
+    }
+
+    fn judged(outcome: &Outcome, view: &ViewFacts, file: &PhotoFileState) -> (Verdict, Vec<Doubt>) {
+        let unit = LengthUnit::Metre;
+        judge(outcome, Some(view), file, SIZE, unit, &limits())
+    }
+
+    #[test]
+    fn a_good_photo_is_trusted() {
+        assert_eq!(judged(&good(), &view(), &FOUND), (Verdict::Trust, vec![]));
+        let not_named = PhotoFileState::NotNamed;
+        assert_eq!(judged(&good(), &view(), &not_named).0, Verdict::Trust);
+    }
+
+    /// At its limit a value is good, the next number beyond it is not.
+    #[test]
+    fn each_limit_is_exact() {
+        let of_scale =
+            |edges: [f64; 4]| judged(&scale([on_surface(); 4], edges), &view(), &FOUND).1;
+        let of_view = |change: &dyn Fn(&mut ViewFacts)| {
+            let mut view = view();
+            change(&mut view);
+            judged(&good(), &view, &FOUND).1
+        };
+        let unit = LengthUnit::Metre;
+        // 100 or 150 at the top, and 100 or 150 at the bottom.
+        let beyond = 150_f64.next_up() / 100.0;
+        let doubt = Doubt::Ratio {
+            ratio: beyond,
+            limit: 1.5,
+        };
+        assert_eq!(of_scale([150.0, 1.0, 100.0, 1.0]), []);
+        assert_eq!(of_scale([100.0, 1.0, 150.0, 1.0]), []);
+        assert_eq!(
+            of_scale([150_f64.next_up(), 1.0, 100.0, 1.0]),
+            [doubt.clone()]
+        );
+        assert_eq!(of_scale([100.0, 1.0, 150_f64.next_up(), 1.0]), [doubt]);
+        assert_eq!(of_scale([1.0, 125.0, 1.0, 100.0]), []);
+        let doubt = of_scale([1.0, 100.0, 1.0, 125_f64.next_up()]);
+        assert!(matches!(doubt[..], [Doubt::Sideways { limit: 1.25, .. }]));
+        assert_eq!(of_view(&|view| view.triangle_edges[1] = Some(2.5)), []);
+        assert_eq!(
+            of_view(&|view| view.triangle_edges = [None, Some(2.5_f64.next_up()), None, Some(7.0)]),
+            [Doubt::LongTriangle {
+                corners: vec![CornerName::TopRight, CornerName::BottomLeft],
+                edge: 7.0,
+                limit: 2.5,
+                unit,
+            }]
+        );
+        assert_eq!(of_view(&|view| view.flattest_corner = Some(30.0)), []);
+        let angle = 30_f64.next_down();
+        assert_eq!(
+            of_view(&|view| view.flattest_corner = Some(angle)),
+            [Doubt::FlatView { angle, limit: 30.0 }]
+        );
+        assert_eq!(of_view(&|view| view.plane_distance = Some(1.25)), []);
+        let distance = 1.25_f64.next_up();
+        assert_eq!(
+            of_view(&|view| view.plane_distance = Some(distance)),
+            [Doubt::NotPlane {
+                distance,
+                limit: 1.25,
+                unit,
+            }]
+        );
+        // What is not known is no reason.
+        let nothing = of_view(&|view| {
+            view.triangle_edges = [None; 4];
+            (view.flattest_corner, view.plane_distance) = (None, None);
+            view.footprint_size = None;
+        });
+        assert_eq!(nothing, []);
+    }
+
+    #[test]
+    fn the_gravest_doubt_comes_first() {
+        let on_ground = CornerOutcome::OnGround {
+            distance: 1.0,
+            point: DVec3::ZERO,
+        };
+        let [s, g, n] = [on_surface(), on_ground, CornerOutcome::Nowhere];
+        let mut flat = view();
+        flat.flattest_corner = Some(3.0);
+        let photo = scale([g, n, s, s], [f64::NAN, f64::NAN, 100.0, 100.0]);
+        let (verdict, doubts) = judged(&photo, &flat, &PhotoFileState::Missing);
+        assert_eq!(verdict, Verdict::NoScale);
+        assert_eq!(
+            doubts,
+            [
+                Doubt::NoPoint(vec![CornerName::TopRight]),
+                Doubt::OffSurface(vec![CornerName::TopLeft]),
+                Doubt::FlatView {
+                    angle: 3.0,
+                    limit: 30.0
+                },
+                Doubt::FileMissing,
+            ]
+        );
+        let (verdict, doubts) = judged(&scale([s, s, g, s], [100.0; 4]), &view(), &FOUND);
+        assert_eq!(verdict, Verdict::Check);
+        assert_eq!(
+            doubts[0].to_string(),
+            "off the surface, taken on the ground plane: bottom right"
+        );
+        // A verdict never stands without a reason.
+        let (verdict, doubts) =
+            judged(&scale([s; 4], [f64::NAN, 1.0, 100.0, 1.0]), &view(), &FOUND);
+        assert_eq!((verdict, doubts.len()), (Verdict::NoScale, 1));
+        let trouble = Outcome::Trouble("another shape".to_owned());
+        let judged = judge(&trouble, None, &FOUND, SIZE, LengthUnit::Metre, &limits());
+        let reason = Doubt::NoScale("another shape".to_owned());
+        assert_eq!(judged, (Verdict::NoScale, vec![reason]));
+    }
+
+    #[test]
+    fn verdicts_sort_best_first() {
+        let mut verdicts = [Verdict::NoScale, Verdict::Trust, Verdict::Check];
+        verdicts.sort();
+        assert_eq!(verdicts, Verdict::ALL);
+    }
+
+    #[test]
+    fn the_file_is_held_against_the_camera() {
+        let doubts = |file: PhotoFileState| judged(&good(), &view(), &file).1;
+        let file = (720, 1280);
+        let turned = PhotoFileState::Found {
+            width: file.0,
+            height: file.1,
+        };
+        assert_eq!(doubts(turned), [Doubt::FileSize { file, camera: SIZE }]);
+        let unreadable = PhotoFileState::Unreadable("no image".to_owned());
+        assert_eq!(
+            doubts(unreadable)[0].to_string(),
+            "the photo file cannot be read: no image"
+        );
+    }
+
+    /// Nobody reads "2.00, more than 2.00".
+    #[test]
+    fn a_value_and_its_limit_are_told_apart() {
+        let doubt = Doubt::Ratio {
+            ratio: 2.0004,
+            limit: 2.0,
+        };
+        assert_eq!(
+            doubt.to_string(),
+            "the top and the bottom scale differ by a factor of 2.0004, more than 2.0000"
+        );
+        let doubt = Doubt::FlatView {
+            angle: 12.34,
+            limit: 30.0,
+        };
+        assert!(
+            doubt
+                .to_string()
+                .contains("at 12.3° to the plane of the corners, less than 30.0°")
+        );
+        let (value, limit) = apart(2_f64.next_up(), 2.0, 2);
+        assert_ne!(value, limit);
+    }
 }

@@ -82,9 +82,7 @@ impl Scene {
     pub fn new(pile: Pile, plan: &PilePlan, reach: DVec2) -> Result<Self, Fault> {
         let broken = |e| Fault::new(format!("the ground is no surface: {e}"), "report this");
         let ground_cloud = ground_mesh(plan, reach);
-        let ground = Surface::new(ground_cloud.clone())
-            .and_then(|ground| ground.to_mesh())
-            .map_err(broken)?;
+        let ground = Surface::new(ground_cloud.clone()).map_err(broken)?;
         let boxes = pile.fragments.iter().enumerate().map(|(index, fragment)| {
             let (low, high) = corners(&pile, fragment)
                 .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {

@@ -78,8 +78,6 @@ impl Footprint {
         caster: &mut Caster<'_>,
     ) -> Result<Self, SurfaceError> {
         let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
-        // The ground under a photo is one plane: found once, when the first ray needs it.
-        let mut plane = None;
         let mut meet = |pixel: DVec2| -> Result<FootprintPoint, SurfaceError> {
             let outcome = match super::world_direction(camera, pose, image, pixel) {
                 Err(not_invertible) => CornerOutcome::NoRay(not_invertible),
@@ -93,13 +91,7 @@ impl Footprint {
                             distance: hit.t,
                             point: hit.point,
                         },
-                        None => {
-                            let z = match plane {
-                                Some(z) => z,
-                                None => *plane.insert(ground.under(camera, pose)?),
-                            };
-                            super::meet_ground(&ray, z)
-                        }
+                        None => super::meet_ground(&ray, ground.under(camera, pose)?),
                     }
                 }
             };
@@ -138,10 +130,13 @@ impl Footprint {
         })
     }
 
-    /// How far the surface within the footprint is from the plane that fits the corner points best
-    /// (least squares along z): the root mean square over the grid's points on the surface, in
-    /// world units, measured across the plane. `None` with fewer than three corner points or without
-    /// a grid point on the surface.
+    /// How far the surface within the footprint is from the plane of the corner points: the root mean
+    /// square over the grid's points on the surface, in world units, measured across the plane.
+    ///
+    /// The grid is even in the image, so that each part counts as much as it is seen. The plane goes
+    /// through the mean of the corner points, along both diagonals (of three points: through them).
+    /// `None` with fewer than three corner points, where they lie on one line, or without a grid point
+    /// on the surface.
     pub fn distance_from_corner_plane(&self, scale: &PhotoScale) -> Option<f64> {
         let corners: Vec<DVec3> = scale
             .corners

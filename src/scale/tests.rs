@@ -232,3 +232,144 @@ fn a_corner_beyond_the_fold_has_no_ray() {
     assert_eq!(photo.ground, None);
     assert_eq!(photo.notes("m").len(), 4);
 }
+
+fn look(surface: &Surface, camera: &Camera, pose: &Pose) -> (PhotoScale, ViewFacts) {
+    let mut caster = surface.caster().unwrap();
+    let mut finder = GroundFinder::new(Ground::Auto, surface);
+    let image = ImageKind::Undistorted;
+    let scale = PhotoScale::compute(camera, pose, image, &mut finder, &mut caster).unwrap();
+    let view = ViewFacts::compute(camera, pose, image, &scale, &mut finder, &mut caster).unwrap();
+    (scale, view)
+}
+
+/// From 10 over a level plane: the image is 12.8 by 7.2, the corner rays run (6.4, 3.6) outward on
+/// 10 down.
+#[test]
+fn a_view_straight_down() {
+    let (_, view) = look(&plane(20.0, |_, _| 2.0), &camera(), &nadir(12.0));
+    assert!((view.tilt - 90.0).abs() < 1e-6);
+    assert!((view.height.unwrap() - 10.0).abs() < 1e-12);
+    assert!(!view.height_is_above_ground);
+    let angle = 10_f64.atan2(6.4_f64.hypot(3.6)).to_degrees();
+    assert!((view.flattest_corner.unwrap() - angle).abs() < 1e-9);
+    assert!((view.footprint_size.unwrap() - 10.0).abs() < 1e-12);
+    assert!(view.plane_distance.unwrap() < 1e-12);
+    for edge in view.triangle_edges {
+        assert!((edge.unwrap() - 2_f64.sqrt()).abs() < 1e-12);
+    }
+}
+
+/// Over a level plane the whole footprint is the image under the homography of the plane. With the
+/// tilt t and the pan p the camera's axes are right = (cos p, -sin p, 0), forward = (cos t sin p,
+/// cos t cos p, -sin t) and down = (-sin t sin p, -sin t cos p, -cos t), and a pixel's ray of the
+/// depth d = h / (sin t + y cos t) ends at d (forward + x right + y down).
+#[test]
+fn an_oblique_footprint_is_the_planes_homography() {
+    let (tilt, pan, height) = (55_f64, 25_f64, 10.0);
+    let surface = plane(60.0, |_, _| 0.0);
+    let center = DVec3::new(1.0, -2.0, height);
+    let pose = Pose::from_tilt_pan(center, [tilt, pan]);
+    let (scale, view) = look(&surface, &camera(), &pose);
+    let ((st, ct), (sp, cp)) = (tilt.to_radians().sin_cos(), pan.to_radians().sin_cos());
+    let right = DVec3::new(cp, -sp, 0.0);
+    let forward = DVec3::new(ct * sp, ct * cp, -st);
+    let down = DVec3::new(-st * sp, -st * cp, -ct);
+    let footprint = &view.footprint;
+    let detail = FootprintDetail::default();
+    assert_eq!(footprint.outline.len(), 4 * detail.per_edge as usize);
+    let cells = (detail.columns + 1) * (detail.rows + 1);
+    assert_eq!(footprint.grid.len(), cells as usize);
+    for sample in footprint.outline.iter().chain(&footprint.grid) {
+        let (x, y) = (
+            (sample.pixel.x - 640.0) / 1000.0,
+            (sample.pixel.y - 360.0) / 1000.0,
+        );
+        let depth = height / (st + y * ct);
+        let expected = center + (forward + right * x + down * y) * depth;
+        assert!((sample.point().unwrap() - expected).length() < 1e-11);
+        assert!(sample.outcome.is_on_surface());
+    }
+    // The outline runs through the corners in their order.
+    for (corner, sample) in scale
+        .corners
+        .iter()
+        .zip(footprint.outline.iter().step_by(32))
+    {
+        assert_eq!(corner.pixel, sample.pixel);
+        assert!((corner.point().unwrap() - sample.point().unwrap()).length() < 1e-12);
+    }
+    assert!((view.tilt - tilt).abs() < 1e-9);
+    assert!((view.height.unwrap() - height).abs() < 1e-12);
+    assert!(view.plane_distance.unwrap() < 1e-12);
+    // The top corners look flattest.
+    let sine = (st - 0.36 * ct) / (1.0 + 0.64_f64.powi(2) + 0.36_f64.powi(2)).sqrt();
+    assert!((view.flattest_corner.unwrap() - sine.asin().to_degrees()).abs() < 1e-9);
+}
+
+/// A roof z = 2 - |x| between level floors, seen from 10 above the floor. The ray of the column at
+/// X = (u - cx) / f comes down on x = X (10 - z): on the roof at |x| = 8 |X| / (1 - |X|), which is
+/// less than 2 for |X| < 0.2. The 17 columns of the grid lie at multiples of 0.08.
+#[test]
+fn a_roof_between_the_corners() {
+    let surface = plane(20.0, |x, _| (2.0 - x.abs()).max(0.0));
+    let (_, view) = look(&surface, &camera(), &nadir(10.0));
+    let z = |column: f64| 2.0 - 8.0 * column / (1.0 - column);
+    let squares = z(0.0).powi(2) + 2.0 * z(0.08).powi(2) + 2.0 * z(0.16).powi(2);
+    let expected = (squares / 17.0).sqrt();
+    assert!((view.plane_distance.unwrap() - expected).abs() < 1e-12);
+    // The ridge is 2 above the floor.
+    assert!((view.height.unwrap() - 8.0).abs() < 1e-12);
+}
+
+/// A saddle through four corners that are not on one plane: z = x y / 23.04 is +1 and -1 at the
+/// corners (±6.4, ±3.6) seen from far above, so their plane is z = 0.
+#[test]
+fn the_plane_of_four_corners_lies_between_them() {
+    let corners = [(-6.4, 3.6), (6.4, 3.6), (6.4, -3.6), (-6.4, -3.6)];
+    let corners = corners.map(|(x, y): (f64, f64)| DVec3::new(x, y, x * y / 23.04));
+    let (middle, normal) = footprint::plane_through(&corners).unwrap();
+    assert!(middle.length() < 1e-15);
+    assert!((normal.z.abs() - 1.0).abs() < 1e-15);
+    for corner in corners {
+        assert!(((corner - middle).dot(normal).abs() - 1.0).abs() < 1e-12);
+    }
+    assert_eq!(footprint::plane_through(&corners[..2]), None);
+    assert_eq!(footprint::plane_through(&[DVec3::X; 4]), None);
+}
+
+/// A hole of 6 by 6 around the top left corner point (-6.4, 3.6), in a lattice of 1.
+#[test]
+fn a_hole_under_a_corner_shows_in_its_triangle() {
+    let whole = plane(20.0, |_, _| 0.0);
+    let points = whole
+        .vertices()
+        .filter(|p| (p.x + 6.4).abs() > 3.0 || (p.y - 3.6).abs() > 3.0)
+        .collect();
+    let surface = Surface::new(Cloud {
+        points,
+        ..Cloud::default()
+    })
+    .unwrap();
+    let (_, view) = look(&surface, &camera(), &nadir(10.0));
+    let edges = view.triangle_edges.map(Option::unwrap);
+    // The rim points are 7 apart: x = -10 and -3, y = 0 and 7; no triangle reaches beyond a diagonal.
+    assert!((7.0..=98_f64.sqrt()).contains(&edges[0]), "{edges:?}");
+    for edge in &edges[1..] {
+        assert!((edge - 2_f64.sqrt()).abs() < 1e-12);
+    }
+    // Taken for a hole, the corner falls to the ground, and the view says nothing of a triangle.
+    let holed = surface.with_max_edge(Some(2.0)).unwrap();
+    let (scale, view) = look(&holed, &camera(), &nadir(10.0));
+    assert_eq!(scale.corners_on_surface(), 3);
+    assert_eq!(view.triangle_edges[0], None);
+}
+
+/// Beside the surface the height is that above the ground.
+#[test]
+fn without_a_surface_below_the_height_is_above_the_ground() {
+    let surface = plane(5.0, |_, _| 2.0);
+    let pose = Pose::from_tilt_pan(DVec3::new(0.0, -20.0, 12.0), [30.0, 0.0]);
+    let (_, view) = look(&surface, &camera(), &pose);
+    assert!(view.height_is_above_ground);
+    assert!((view.height.unwrap() - 10.0).abs() < 1e-12);
+}

@@ -17,20 +17,25 @@ pub struct ViewFacts {
     pub height: Option<f64>,
     /// Whether `height` is above the ground, because no surface is plumb below the camera.
     pub height_is_above_ground: bool,
-    /// The smallest angle between a corner's ray and the plane through the corner points; small is
-    /// a flat view.
+    /// The smallest angle between a corner's ray and the plane of the corner points (that of
+    /// [`Footprint::distance_from_corner_plane`]); small is a flat view. The plane and not the
+    /// triangle that was met: that one is as steep as the one fragment that it belongs to.
     pub flattest_corner: Option<f64>,
     /// Of each corner in the contract's order: the longest edge of the triangle that its ray met.
     pub triangle_edges: [Option<f64>; 4],
     /// See [`Footprint::distance_from_corner_plane`].
     pub plane_distance: Option<f64>,
-    /// The mean distance between neighbouring corner points, which plane distances are compared to.
+    /// The mean distance between neighbouring corner points, which lengths are compared to; `None`
+    /// where a corner point is missing.
     pub footprint_size: Option<f64>,
     /// The outline on the surface, and a grid inside it.
     pub footprint: Footprint,
 }
 
 impl ViewFacts {
+    /// About how many rays one photo's facts take.
+    pub const RAYS: usize = 350;
+
     /// Looks at a photo whose scale is known.
     ///
     /// # Errors

@@ -78,6 +78,13 @@ impl Mesh {
         })
     }
 
+    /// Builds the hierarchy now where it will repay.
+    pub(super) fn expect_rays(&self, rays: usize) {
+        if rays > RAYS_WITHOUT_HIERARCHY as usize {
+            self.hierarchy();
+        }
+    }
+
     /// All points, those that no triangle uses among them.
     pub(super) fn points(&self) -> &[DVec3] {
         &self.points

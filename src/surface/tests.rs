@@ -158,6 +158,32 @@ fn few_rays_build_little() {
     assert!(built < 20_000, "{built} of 200 000 sites were triangulated");
 }
 
+/// A caster for many rays meets the same as one for a few, and changes of the maximal edge share
+/// what it built.
+#[test]
+fn a_caster_for_many_rays_agrees() {
+    let surface = surface(bumpy(20_000, 51));
+    let is_walk = |caster: &Caster<'_>| matches!(caster.way, Way::Walk(_));
+    assert!(is_walk(&surface.caster_for(500).unwrap()));
+    let holed = surface.with_max_edge(Some(1.2)).unwrap();
+    for surface in [&surface, &holed] {
+        let (mut few, mut many) = (surface.caster().unwrap(), surface.caster_for(1000).unwrap());
+        assert!(is_walk(&few) && !is_walk(&many));
+        let mut random = random(52);
+        for _ in 0..200 {
+            let ray = Ray {
+                origin: DVec3::new(random() * 110.0 - 5.0, random() * 110.0 - 5.0, 30.0),
+                direction: DVec3::new(random() - 0.5, random() - 0.5, -1.0).normalize(),
+            };
+            let (a, b) = (few.cast(&ray), many.cast(&ray));
+            assert_eq!(a.is_some(), b.is_some(), "{ray:?}");
+            assert!(a.is_none_or(|a| (a.t - b.unwrap().t).abs() < 1e-9));
+        }
+    }
+    let meshes = [&surface, &holed].map(|s| Arc::as_ptr(s.whole.mesh.get().unwrap()));
+    assert_eq!(meshes[0], meshes[1]);
+}
+
 /// The first rays on a mesh look at every triangle, later ones use the hierarchy: same answers.
 #[test]
 fn a_mesh_answers_the_same_before_and_after_its_hierarchy() {

@@ -20,6 +20,13 @@ pub fn limits_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>
             "Split-Desktop goes from one to the other in a straight line: far apart, the middle is off",
         ),
         (
+            &mut next.left_right_ratio,
+            "Left and right scale differ more than",
+            "times",
+            false,
+            "A scale that changes only from top to bottom is off at the sides",
+        ),
+        (
             &mut next.triangle_share,
             "A corner's triangle has an edge over",
             "% of the footprint",
