@@ -11,6 +11,8 @@ use crate::geometry::Bounds;
 const RADIANS_PER_PIXEL: f64 = 0.005;
 /// Angle between top and bottom edge in perspective.
 const FOV_Y: f64 = 45.0 * TAU / 360.0;
+/// Share of the viewport that what is fitted fills.
+const FILLED: f64 = 0.92;
 
 /// An eye that turns around a target, with the world's z up in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,13 +91,39 @@ impl Orbit {
         self.target = point;
     }
 
-    /// Puts all of `bounds` into the viewport, in the same direction.
+    /// Puts all of `bounds` into a square viewport, in the same direction; it is then in any wider
+    /// one.
     pub fn fit(&mut self, bounds: &Bounds) {
+        self.fit_into(bounds, DVec2::ONE);
+    }
+
+    /// Puts all of `bounds` into a viewport of this shape, in the same direction.
+    pub fn fit_into(&mut self, bounds: &Bounds, size: DVec2) {
         // A single point has no size to fit.
         let radius = (bounds.size().length() * 0.5).max(1e-3);
         self.target = bounds.center();
         self.extent = radius;
-        self.distance = radius / (FOV_Y * 0.5).sin();
+        let axes = self.axes().transpose();
+        let slope = (FOV_Y * 0.5).tan() * FILLED;
+        let slopes = DVec2::new(slope * size.x / size.y, slope);
+        self.distance = (0..8)
+            .map(|i| {
+                let pick = |bit: i32, low: f64, high: f64| if i & bit == 0 { low } else { high };
+                let corner = DVec3::new(
+                    pick(1, bounds.min.x, bounds.max.x),
+                    pick(2, bounds.min.y, bounds.max.y),
+                    pick(4, bounds.min.z, bounds.max.z),
+                );
+                // In view axes around the target: seen within the slopes from this far or farther.
+                let p = axes * (corner - self.target);
+                let across = (p.truncate().abs() / slopes).max_element();
+                if self.orthographic {
+                    across
+                } else {
+                    across - p.z
+                }
+            })
+            .fold(radius * 1e-3, f64::max);
     }
 
     /// Looks straight down, world +y up in the picture.

@@ -29,6 +29,7 @@ use super::show::{Background, ColorBy, PhotoLook, Show};
 use super::surface::SurfacePhoto;
 use super::targets::Targets;
 use super::view::{Projection, View};
+use super::words::write_words;
 use crate::fault::Fault;
 use crate::geometry::{Bounds, LocalFrame};
 
@@ -274,6 +275,22 @@ impl Renderer {
                 );
             }
         }
+        Ok(picture)
+    }
+
+    /// [`Self::picture`] with its labels and the legend of its colours.
+    ///
+    /// # Errors
+    /// Where the graphics device refuses.
+    pub fn picture_with_words(
+        &mut self,
+        view: &View,
+        show: &Show,
+        size: [u32; 2],
+    ) -> Result<RgbaImage, Fault> {
+        let mut picture = self.picture(view, show, size)?;
+        let labels = self.labels(view, show, size);
+        write_words(&mut picture, &labels, self.legend(show).as_ref(), show);
         Ok(picture)
     }
 
