@@ -4,14 +4,14 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use image::{DynamicImage, RgbaImage};
 
 use super::Answer;
 use crate::camera::Camera;
 use crate::exports;
 use crate::fault::Fault;
-use crate::flight::Outcome;
+use crate::flight::{FlightParts, Outcome};
 use crate::formats::{self, FileError, OpenOptions, Opened, PhotoFile};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
@@ -20,7 +20,7 @@ use crate::render::{
     Background, CloudGeometry, ColorBy, Gpu, MeshGeometry, Normals, Orbit, PhotoGeometry,
     PhotoImage, Renderer, Scope, Show, View,
 };
-use crate::scale::{Ground, PhotoScale, ViewFacts};
+use crate::scale::{Corner, CornerOutcome, Ground, PhotoScale, ViewFacts};
 
 /// The largest picture, in pixels.
 const MOST_PIXELS: u64 = 200_000_000;
@@ -265,14 +265,6 @@ fn draw(
             )
         })
         .collect();
-    let everything = photos
-        .iter()
-        .map(|photo| photo.bounds(&frame))
-        .fold(bounds, |all, its| Bounds {
-            min: all.min.min(its.min),
-            max: all.max.max(its.max),
-        });
-
     progress.stage("drawing");
     let show = show(arguments, opened, &outcomes, selected, &bounds);
     let mut renderer = Renderer::new(&gpu);
@@ -302,7 +294,10 @@ fn draw(
             let focus = depth_of(scale, views[index].as_ref()).unwrap_or(1.0);
             View::of_photo(flight.camera(photo), &photo.pose, focus)
         }
-        None => orbit(&arguments.view, &everything, size).view(),
+        None => {
+            let points = points_to_fit(parts, &outcomes);
+            orbit(&arguments.view, &points, &bounds, size).view()
+        }
     };
     renderer.picture_with_words(&view, &show, arguments.size.0)
 }
@@ -325,7 +320,6 @@ fn scale_of(outcome: &Outcome) -> Option<&PhotoScale> {
 
 /// How far a photo's footprint is away.
 fn depth_of(scale: Option<&PhotoScale>, view: Option<&ViewFacts>) -> Option<f64> {
-    use crate::scale::CornerOutcome;
     let distance = |outcome: &CornerOutcome| match *outcome {
         CornerOutcome::OnSurface { distance, .. } | CornerOutcome::OnGround { distance, .. } => {
             Some(distance)
@@ -400,7 +394,22 @@ fn show(
     }
 }
 
-fn orbit(view: &Viewpoint, bounds: &Bounds, size: DVec2) -> Orbit {
+/// What the picture shall hold: the surface (some thousands of its vertices stand for all), the
+/// camera centres and the corner points.
+fn points_to_fit(parts: &FlightParts, outcomes: &[Outcome]) -> Vec<DVec3> {
+    let vertices = parts.surface.vertices();
+    let step = (vertices.len() / 20_000).max(1);
+    let corners = outcomes.iter().filter_map(scale_of);
+    let corners = corners.flat_map(|scale| scale.corners.iter().filter_map(Corner::point));
+    let centers = parts.photos.iter().map(|photo| photo.pose.center);
+    vertices
+        .step_by(step)
+        .chain(corners)
+        .chain(centers)
+        .collect()
+}
+
+fn orbit(view: &Viewpoint, points: &[DVec3], bounds: &Bounds, size: DVec2) -> Orbit {
     let mut orbit = Orbit::new(bounds);
     match view {
         Viewpoint::Top => {
@@ -412,7 +421,7 @@ fn orbit(view: &Viewpoint, bounds: &Bounds, size: DVec2) -> Orbit {
         Viewpoint::Side => orbit.side(),
         Viewpoint::Orbit | Viewpoint::Photo(_) => (orbit.yaw, orbit.pitch) = (0.45, 0.6),
     }
-    orbit.fit_into(bounds, size);
+    orbit.fit_into(points, size);
     orbit
 }
 

@@ -59,24 +59,24 @@ impl Writer<'_> {
     /// A bar of the colour map at the right edge, with round values beside it and its title above.
     fn legend(&mut self, legend: &Legend, size: DVec2) {
         let [width, height] = BAR.map(|length| length * self.point);
-        let height = height.min(size.y * 0.5);
+        let height = height.min(size.y * 0.5).round();
         let margin = 18.0 * self.point;
-        let top_left = DVec2::new(size.x - margin - width, margin + LETTERS * 1.8 * self.point);
+        let top = margin + LETTERS * 1.8 * self.point;
+        let top_left = DVec2::new(size.x - margin - width, top).round();
         let bottom_right = top_left + DVec2::new(width, height);
         self.canvas
             .rect(place(top_left), place(bottom_right), self.ink);
         self.canvas.set_halo(None);
-        let steps = 64;
-        for step in 0..steps {
-            let at = |step: i32| top_left.y + height * f64::from(step) / f64::from(steps);
-            let share = 1.0 - (f64::from(step) + 0.5) / f64::from(steps);
-            // Half a pixel further, under the next one: no seam shows.
-            let below = (at(step + 1) + 0.5).min(bottom_right.y);
+        // Whole rows of pixels have no seams.
+        let mut y = top_left.y;
+        while y < bottom_right.y {
+            let share = (bottom_right.y - y - 0.5) / height;
             self.canvas.rect(
-                place(top_left.with_y(at(step))),
-                place(DVec2::new(bottom_right.x, below)),
+                place(top_left.with_y(y)),
+                place(DVec2::new(bottom_right.x, y + 1.0)),
                 with_alpha(viridis(share)),
             );
+            y += 1.0;
         }
         self.canvas.set_halo(Some(self.halo));
         let title = DVec2::new(bottom_right.x, margin);
