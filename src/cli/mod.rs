@@ -7,6 +7,9 @@
 //!
 //! With the environment variable FRAGSCALE_BACKTRACE set, a panic prints its place as usual.
 
+#[cfg(feature = "render")]
+mod render;
+
 use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -43,6 +46,9 @@ enum Command {
     Info(InfoArguments),
     /// Make a simulated flight whose every answer is known.
     Sample(SampleArguments),
+    /// Draw a picture of a flight: the surface, cameras, corner rays and footprints.
+    #[cfg(feature = "render")]
+    Render(render::RenderArguments),
 }
 
 #[derive(Debug, Args)]
@@ -210,6 +216,11 @@ pub fn run() -> ExitCode {
         Command::Sample(arguments) => {
             (None, Box::new(move |progress| sample(&arguments, progress)))
         }
+        #[cfg(feature = "render")]
+        Command::Render(arguments) => (
+            None,
+            Box::new(move |progress| render::render(&arguments, progress)),
+        ),
     };
     let answer = match run_with_progress(work) {
         Ok(answer) => answer,

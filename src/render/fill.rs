@@ -26,7 +26,7 @@ impl Pyramid {
     /// Of a photo whose corners all have rays and whose footprint is known.
     pub(super) fn new(photo: &PhotoGeometry, color: [u8; 4]) -> Option<Self> {
         let corners = photo.image_corners?;
-        let [_, deepest] = photo.depths?;
+        let deepest = photo.depth_of_share(1.0)?;
         // A little more than the footprint's samples saw: between them stones may be deeper.
         let reach = deepest * 1.05;
         let matrix = narrow_matrix(photo.image_from_local());

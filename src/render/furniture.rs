@@ -2,11 +2,12 @@
 
 use glam::{DVec2, DVec3};
 
-use super::labels::{Anchor, Label, ScaleBar};
+use super::labels::{Label, ScaleBar};
 use super::lines::{Pen, Stroke};
 use super::photo_lines::ink;
 use super::show::Show;
 use super::view::View;
+use crate::picture::Anchor;
 
 /// Points of the user interface between furniture and the picture's edge.
 const MARGIN: f64 = 18.0;
@@ -110,7 +111,7 @@ pub(super) fn labels(view: &View, show: &Show, size: DVec2) -> Vec<Label> {
             labels.push(Label {
                 at: to + direction * 9.0 * show.pixels_per_point,
                 text: AXES[i].0.to_owned(),
-                anchor: Anchor::Center,
+                anchor: Anchor::Middle,
                 color: AXES[i].2,
             });
         }
@@ -121,7 +122,7 @@ pub(super) fn labels(view: &View, show: &Show, size: DVec2) -> Vec<Label> {
         labels.push(Label {
             at: (from + to) * 0.5 - DVec2::Y * 5.0 * show.pixels_per_point,
             text: length_text(bar.length, show.unit.symbol()),
-            anchor: Anchor::Above,
+            anchor: Anchor::BottomMiddle,
             color: ink(show),
         });
     }

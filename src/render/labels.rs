@@ -2,16 +2,7 @@
 
 use glam::DVec2;
 
-/// Which point of a text is put at its place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Anchor {
-    /// The middle.
-    Center,
-    /// The middle of its lower edge: the text is above.
-    Above,
-    /// The middle of its left edge: the text is to the right.
-    Right,
-}
+use crate::picture::Anchor;
 
 /// A short text on the picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +11,7 @@ pub struct Label {
     pub at: DVec2,
     /// What it says.
     pub text: String,
-    /// Which point of it is at `at`.
+    /// Which place of it is at `at`.
     pub anchor: Anchor,
     /// Red, green, blue.
     pub color: [u8; 3],

@@ -40,10 +40,11 @@ mod surface;
 mod targets;
 mod tiles;
 mod view;
+mod words;
 
 pub use colormap::viridis;
 pub use gpu::{Gpu, device_descriptor};
-pub use labels::{Anchor, Label, Legend, ScaleBar};
+pub use labels::{Label, Legend, ScaleBar};
 pub use orbit::Orbit;
 pub use photo_image::PhotoImage;
 pub use renderer::{Drawn, Renderer};

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::lines::{Pen, Stroke};
 use super::scene::PhotoGeometry;
-use super::show::{PhotoLook, Show};
+use super::show::{Background, PhotoLook, Show};
 
 /// Of the selected photo.
 const SELECTED: [u8; 3] = [255, 149, 0];
@@ -46,14 +46,17 @@ pub(super) fn photo_lines(
             (look.color, 1.0)
         };
         let pen = Pen::new(color, 1.3 * weight);
-        let in_sight = looked_through != Some(index);
+        // The outline of the photo that one looks through is the picture's own edge.
+        if looked_through == Some(index) {
+            continue;
+        }
         if show.outlines.holds(index, show) {
             outline(photo, pen, &mut strokes);
         }
         if show.corner_rays.holds(index, show) {
-            corner_rays(photo, pen, show, in_sight, &mut strokes);
+            corner_rays(photo, pen, show, &mut strokes);
         }
-        if in_sight && show.frusta.holds(index, show) {
+        if show.frusta.holds(index, show) {
             frustum(photo, pen, cameras, &mut strokes);
         }
     }
@@ -78,13 +81,7 @@ fn frustum(photo: &PhotoGeometry, pen: Pen, depth: f64, strokes: &mut Vec<Stroke
 }
 
 /// Rays from the centre to the corner points, which get a dot; a ring on the ground.
-fn corner_rays(
-    photo: &PhotoGeometry,
-    pen: Pen,
-    show: &Show,
-    in_sight: bool,
-    strokes: &mut Vec<Stroke>,
-) {
+fn corner_rays(photo: &PhotoGeometry, pen: Pen, show: &Show, strokes: &mut Vec<Stroke>) {
     for met in photo.corners.iter().flatten() {
         let length = met.point.distance(photo.center);
         let pen = if met.on_ground {
@@ -92,18 +89,12 @@ fn corner_rays(
         } else {
             pen
         };
-        if in_sight {
-            let thin = Pen {
-                width: pen.width * 0.85,
-                ..pen
-            };
-            strokes.push(thin.pale(0.8).line(photo.center, met.point));
-        }
+        strokes.push(pen.pale(0.9).line(photo.center, met.point));
         let [r, g, b, _] = pen.color;
         let size = 4.0 + 2.0 * pen.width;
         strokes.push(Pen::new([r, g, b], size).dot(met.point));
         if met.on_ground {
-            let inner = toward(ink(show), [128; 3], -1.0);
+            let inner = ink(show).map(|channel| 255 - channel);
             strokes.push(Pen::new(inner, size * 0.5).dot(met.point));
         }
     }
@@ -139,7 +130,7 @@ fn outline(photo: &PhotoGeometry, pen: Pen, strokes: &mut Vec<Stroke>) {
 pub(super) fn camera_depth(photos: &[PhotoGeometry], extent: f64) -> f64 {
     let mut depths: Vec<f64> = photos
         .iter()
-        .filter_map(|photo| photo.depths.map(|[near, _]| near))
+        .filter_map(|photo| photo.depth_of_share(0.0))
         .collect();
     let surface = crate::geometry::median(&mut depths).unwrap_or(extent * 0.5);
     // Hundreds of photos have millions of pairs: some are enough to know their distance.
@@ -161,12 +152,11 @@ pub(super) fn camera_depth(photos: &[PhotoGeometry], extent: f64) -> f64 {
         .collect();
     let shape = crate::geometry::median(&mut shapes).unwrap_or(1.0);
     let gap = crate::geometry::median(&mut gaps).unwrap_or(f64::INFINITY);
-    (surface * 0.25).min(0.7 * gap / shape)
+    (surface * 0.3).min(0.7 * gap / shape)
 }
 
 /// A colour that stands out from the background.
 pub(super) fn ink(show: &Show) -> [u8; 3] {
-    use super::show::Background;
     match show.background {
         Background::Color([r, g, b])
             if 2 * u32::from(r) + 5 * u32::from(g) + u32::from(b) < 1024 =>
@@ -177,7 +167,7 @@ pub(super) fn ink(show: &Show) -> [u8; 3] {
     }
 }
 
-/// `share` of the way from one colour to another; beyond them too.
+/// `share` of the way from one colour to another.
 fn toward(from: [u8; 3], to: [u8; 3], share: f64) -> [u8; 3] {
     std::array::from_fn(|i| {
         let (a, b) = (f64::from(from[i]), f64::from(to[i]));
@@ -190,5 +180,6 @@ fn toward(from: [u8; 3], to: [u8; 3], share: f64) -> [u8; 3] {
 pub(super) fn fill_colors(look: PhotoLook, selected: bool) -> [[u8; 4]; 2] {
     let [r, g, b] = if selected { SELECTED } else { look.color };
     let [gr, gg, gb] = GROUND;
-    [[r, g, b, 70], [gr, gg, gb, 44]]
+    let opacity = if selected { 64 } else { 40 };
+    [[r, g, b, opacity], [gr, gg, gb, opacity / 2]]
 }

@@ -29,6 +29,7 @@ use super::show::{Background, ColorBy, PhotoLook, Show};
 use super::surface::SurfacePhoto;
 use super::targets::Targets;
 use super::view::{Projection, View};
+use super::words::write_words;
 use crate::fault::Fault;
 use crate::geometry::{Bounds, LocalFrame};
 
@@ -277,6 +278,22 @@ impl Renderer {
         Ok(picture)
     }
 
+    /// [`Self::picture`] with its labels and the legend of its colours.
+    ///
+    /// # Errors
+    /// Where the graphics device refuses.
+    pub fn picture_with_words(
+        &mut self,
+        view: &View,
+        show: &Show,
+        size: [u32; 2],
+    ) -> Result<RgbaImage, Fault> {
+        let mut picture = self.picture(view, show, size)?;
+        let labels = self.labels(view, show, size);
+        write_words(&mut picture, &labels, self.legend(show).as_ref(), show);
+        Ok(picture)
+    }
+
     /// The words on a frame: the scale bar's length, the letters of the axes.
     pub fn labels(&self, view: &View, show: &Show, size: [u32; 2]) -> Vec<Label> {
         furniture::labels(view, show, pair(size))
@@ -309,8 +326,9 @@ impl Renderer {
             ColorBy::Slope => [0.0, 90.0],
             ColorBy::Scale => {
                 let photo = self.photos.get(show.selected?)?;
-                let [near, far] = photo.depths?;
-                [photo.scale_at(far), photo.scale_at(near)]
+                // Single spikes of the cloud would take all the colours.
+                let [near, far] = [0.02, 0.98].map(|share| photo.depth_of_share(share));
+                [photo.scale_at(far?), photo.scale_at(near?)]
             }
         };
         // A level surface has one value, which then is in the middle.
@@ -431,17 +449,17 @@ impl Renderer {
             },
             lift: lift.map(narrow_number),
             range: self.range(show).unwrap_or([0.0, 1.0]).map(narrow_number),
-            // Discs of 0.7 of the distance reach the middle between diagonal neighbours. A sample of
-            // the points has larger gaps.
+            // On a square grid discs of 0.71 of the distance meet in the middle between diagonal
+            // neighbours; clouds are less even. A sample of the points has larger gaps.
             radius: narrow_number(
-                0.7 * self.points.spacing * show.point_size / share.max(0.04).sqrt(),
+                0.85 * self.points.spacing * show.point_size / share.max(0.04).sqrt(),
             ),
             photo_near: narrow_number(photo_near),
             photo_scale: selected.map_or(0.0, |photo| narrow_number(photo.scale_at(1.0))),
             elevation: narrow_number(self.frame.origin().z),
             color_by,
             project: u32::from(project),
-            relief: if show.eye_dome { 0.9 } else { 0.0 },
+            relief: if show.eye_dome { 0.8 } else { 0.0 },
             spare: 0.0,
             viridis: STOPS.map(opaque),
         };
@@ -594,6 +612,7 @@ impl Renderer {
             .map(|(index, (photo, look))| (photo, fill_colors(*look, show.selected == Some(index))))
     }
 
+    /// Tints what is inside footprints, on the surface.
     fn draw_fills(&self, encoder: &mut CommandEncoder, targets: &Targets, show: &Show) {
         let pyramids: Vec<Pyramid> = self
             .filled(show)

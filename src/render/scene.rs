@@ -300,8 +300,8 @@ pub struct PhotoGeometry {
     pub(super) ground_cells: Vec<[DVec3; 3]>,
     /// The image corners as shares of the undistorted image, where all four have rays.
     pub(super) image_corners: Option<[DVec2; 4]>,
-    /// The nearest and farthest depth along the axis that the footprint has, world units.
-    pub(super) depths: Option<[f64; 2]>,
+    /// Depths along the axis of the footprint's points, sorted, world units.
+    pub(super) depths: Vec<f64>,
 }
 
 impl PhotoGeometry {
@@ -345,16 +345,9 @@ impl PhotoGeometry {
                 corners
             });
         }
-        let depths = grid
-            .iter()
-            .flatten()
-            .chain([&corners[..]].concat().iter())
-            .flatten()
-            .map(|met| (met.point - center).dot(axis))
-            .fold(None, |range: Option<[f64; 2]>, depth| {
-                let [near, far] = range.unwrap_or([depth, depth]);
-                Some([near.min(depth), far.max(depth)])
-            });
+        let seen = grid.iter().flatten().chain(&corners).flatten();
+        let mut depths: Vec<f64> = seen.map(|met| (met.point - center).dot(axis)).collect();
+        depths.sort_unstable_by(f64::total_cmp);
         Self {
             center,
             rotation: pose.rotation,
@@ -398,6 +391,15 @@ impl PhotoGeometry {
     /// The corners of the image plane at a depth along the axis, in the contract's order.
     pub(super) fn image_plane(&self, depth: f64) -> [DVec3; 4] {
         [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y].map(|share| self.point_at(share, depth))
+    }
+
+    /// The depth along the axis that this share of the footprint, 0 to 1, is nearer than.
+    pub(super) fn depth_of_share(&self, share: f64) -> Option<f64> {
+        let last = self.depths.len().checked_sub(1)?;
+        // `as` saturates.
+        self.depths
+            .get((last as f64 * share).round() as usize)
+            .copied()
     }
 
     /// Pixels per world unit of the photo at a depth along its axis.

@@ -138,7 +138,7 @@ impl Default for PhotoLook {
     fn default() -> Self {
         Self {
             visible: true,
-            color: [86, 156, 214],
+            color: [44, 132, 232],
         }
     }
 }

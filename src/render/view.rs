@@ -195,3 +195,95 @@ fn letterbox(image: DVec2, size: DVec2) -> (f64, DVec2) {
     let scale = (size / image).min_element();
     (scale, (size - image * scale) * 0.5)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Distortion;
+
+    const SIZE: DVec2 = DVec2::new(1000.0, 700.0);
+
+    fn views() -> [View; 3] {
+        let eye = DVec3::new(500_000.0, 5_000_000.0, 300.0);
+        let pose = Pose::from_yaw_pitch_roll(eye, [30.0, -60.0, 4.0]);
+        let camera = Camera {
+            name: String::new(),
+            width: 4000,
+            height: 2250,
+            fx: 3000.0,
+            fy: 2990.0,
+            cx: 2010.0,
+            cy: 1100.0,
+            skew: 2.5,
+            distortion: Distortion::None,
+        };
+        let photo = View::of_photo(&camera, &pose, 100.0);
+        [
+            photo,
+            View {
+                projection: Projection::Perspective { fov_y: 0.9 },
+                ..photo
+            },
+            View {
+                projection: Projection::Orthographic { height: 40.0 },
+                ..photo
+            },
+        ]
+    }
+
+    #[test]
+    fn pixel_to_ray_to_pixel() {
+        for view in views() {
+            for pixel in [DVec2::ZERO, SIZE * 0.5, DVec2::new(12.5, 600.25), SIZE] {
+                for t in [1.0, 80.0, 5000.0] {
+                    let ray = view.ray(pixel, SIZE);
+                    assert!((ray.direction.length() - 1.0).abs() < 1e-14);
+                    let seen = view.project(ray.at(t), SIZE).unwrap();
+                    // Coordinates of 5 000 000 are known to 1e-9, which 1 m away is 1e-6 px.
+                    assert!(seen.distance(pixel) < 3e-6, "{pixel} {seen} at {t}");
+                }
+            }
+        }
+    }
+
+    /// The shader's way, in f64: clip space gives the same pixels, 1 at the near plane, 0 at the far
+    /// end, and greater depth for what is nearer.
+    #[test]
+    fn clip_space_agrees_with_pixels() {
+        for view in views() {
+            let (near, far) = (0.5, 900.0);
+            let matrix = view.clip_from_view(SIZE, near, far);
+            let clip = |p: DVec3| {
+                let clip = matrix * p.extend(1.0);
+                clip.truncate() / clip.w
+            };
+            for p in [DVec3::new(3.0, -2.0, 20.0), DVec3::new(-30.0, 11.0, 400.0)] {
+                let ndc = clip(p);
+                let pixel = (ndc.truncate() * DVec2::new(0.5, -0.5) + 0.5) * SIZE;
+                let world = view.eye + view.world_from_view * p;
+                assert!(pixel.distance(view.project(world, SIZE).unwrap()) < 1e-6);
+            }
+            assert!((clip(DVec3::Z * near).z - 1.0).abs() < 1e-12);
+            assert!(clip(DVec3::Z * far).z < 1e-3);
+            assert!(clip(DVec3::Z * 10.0).z > clip(DVec3::Z * 10.001).z);
+        }
+    }
+
+    /// The photo's own corners are the corners of the letterbox.
+    #[test]
+    fn a_photo_fits_into_the_viewport() {
+        let [photo, ..] = views();
+        let [top_left, bottom_right] = photo.photo_rectangle(SIZE).unwrap();
+        // 4000 x 2250 in 1000 x 700: a quarter of the size, 68.75 px above and below.
+        assert_eq!(top_left, DVec2::new(0.0, 68.75));
+        assert_eq!(bottom_right, DVec2::new(1000.0, 631.25));
+        // The principal point is on the axis.
+        let axis = photo.project(photo.eye + photo.world_from_view.z_axis * 50.0, SIZE);
+        let there = DVec2::new(2010.0, 1100.0) / 4.0 + top_left;
+        assert!(axis.unwrap().distance(there) < 1e-6);
+        assert_eq!(
+            photo.project(photo.eye - photo.world_from_view.z_axis, SIZE),
+            None
+        );
+    }
+}

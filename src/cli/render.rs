@@ -1,0 +1,472 @@
+//! `fragscale render`: a picture of a flight into a file, without a window.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+use glam::{DVec2, DVec3};
+use image::{DynamicImage, RgbaImage};
+
+use super::Answer;
+use crate::camera::Camera;
+use crate::exports;
+use crate::fault::Fault;
+use crate::flight::{FlightParts, Outcome};
+use crate::formats::{self, FileError, OpenOptions, Opened, PhotoFile};
+use crate::geometry::{Bounds, LocalFrame};
+use crate::jobs::Progress;
+use crate::picture;
+use crate::render::{
+    Background, CloudGeometry, ColorBy, Gpu, MeshGeometry, Normals, Orbit, PhotoGeometry,
+    PhotoImage, Renderer, Scope, Show, View,
+};
+use crate::scale::{Corner, CornerOutcome, Ground, PhotoScale, ViewFacts};
+
+/// The largest picture, in pixels.
+const MOST_PIXELS: u64 = 200_000_000;
+/// Longer edge of the photo that is laid on the surface or over the view.
+const PHOTO_EDGE: u32 = 2048;
+
+#[derive(Debug, Args)]
+pub(super) struct RenderArguments {
+    /// A flight.toml, or a reconstruction: a COLMAP folder, an NVM file, an OpenDroneMap folder.
+    flight: PathBuf,
+    /// The picture to write, a PNG.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Width and height in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720")]
+    size: Size,
+    /// Where to look from: orbit, top, front, side, or photo:NAME to look through its camera.
+    #[arg(long, value_name = "VIEW", default_value = "orbit")]
+    view: Viewpoint,
+    /// What is shown, separated by commas. frusta, images, rays, outlines and fills may end in
+    /// :selected to show them for that photo only.
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "mesh,frusta,rays,outlines,fills,axes,bar"
+    )]
+    show: Vec<Item>,
+    /// What the surface's colours mean.
+    #[arg(long, value_enum, default_value = "rgb")]
+    color_by: Colors,
+    /// What is behind everything.
+    #[arg(long, value_enum, default_value = "white")]
+    background: Backdrop,
+    /// The selected photo.
+    #[arg(long, value_name = "PHOTO")]
+    select: Option<String>,
+    /// How much of the photo lies over the view through its camera, 0 to 1.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share)]
+    blend: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Size([u32; 2]);
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let sides = text.split_once(['x', 'X', '×']);
+        let number = |text: &str| text.trim().parse::<u32>().ok().filter(|side| *side > 0);
+        let size = sides.and_then(|(w, h)| Some([number(w)?, number(h)?]));
+        match size {
+            Some([w, h]) if u64::from(w) * u64::from(h) <= MOST_PIXELS => Ok(Self([w, h])),
+            Some(_) => Err(format!(
+                "give at most {} million pixels",
+                MOST_PIXELS / 1_000_000
+            )),
+            None => Err("give width and height like 1280x720".to_owned()),
+        }
+    }
+}
+
+#[derive(Debug, Clone)]
+enum Viewpoint {
+    Orbit,
+    Top,
+    Front,
+    Side,
+    Photo(String),
+}
+
+impl FromStr for Viewpoint {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "orbit" => Ok(Self::Orbit),
+            "top" => Ok(Self::Top),
+            "front" => Ok(Self::Front),
+            "side" => Ok(Self::Side),
+            _ => match text.strip_prefix("photo:") {
+                Some(name) if !name.is_empty() => Ok(Self::Photo(name.to_owned())),
+                _ => Err("give orbit, top, front, side or photo:NAME".to_owned()),
+            },
+        }
+    }
+}
+
+/// Something to show, perhaps only of the selected photo.
+#[derive(Debug, Clone)]
+struct Item {
+    name: &'static str,
+    scope: Scope,
+}
+
+/// What [`Item`]s there are, and whether they belong to photos.
+const ITEMS: [(&str, bool); 13] = [
+    ("mesh", false),
+    ("cloud", false),
+    ("wireframe", false),
+    ("frusta", true),
+    ("images", true),
+    ("rays", true),
+    ("outlines", true),
+    ("fills", true),
+    ("line", false),
+    ("ground", false),
+    ("photo", false),
+    ("axes", false),
+    ("bar", false),
+];
+
+impl FromStr for Item {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (wanted, scope) = match text.strip_suffix(":selected") {
+            Some(name) => (name, Scope::Selected),
+            None => (text, Scope::All),
+        };
+        ITEMS
+            .into_iter()
+            .find(|(name, of_photos)| *name == wanted && (*of_photos || scope == Scope::All))
+            .map(|(name, _)| Self { name, scope })
+            .ok_or_else(|| {
+                let names: Vec<&str> = ITEMS.into_iter().map(|(name, _)| name).collect();
+                format!("give some of {}", names.join(", "))
+            })
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Colors {
+    /// Their own.
+    Rgb,
+    /// Height.
+    Elevation,
+    /// Angle to the horizontal.
+    Slope,
+    /// Pixels of the selected photo per unit.
+    Scale,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Backdrop {
+    Dark,
+    Light,
+    White,
+    Transparent,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|e| format!("{e}"))?;
+    if (0.0..=1.0).contains(&number) {
+        return Ok(number);
+    }
+    Err("give 0 to 1".to_owned())
+}
+
+pub(super) fn render(arguments: &RenderArguments, progress: &Progress) -> Result<Answer, String> {
+    let path = &arguments.flight;
+    let opened = formats::open_flight(path, &OpenOptions::default(), progress)
+        .map_err(|error| error.to_string())?;
+    let at_flight = |fault| FileError::new(path, fault).to_string();
+    let picture = draw(arguments, &opened, progress).map_err(at_flight)?;
+    progress.stage("writing the picture");
+    let mut bytes = Vec::new();
+    let at_output = |what: String| {
+        let fault = Fault::new(what, "choose a folder that may be written to");
+        FileError::new(&arguments.output, fault).to_string()
+    };
+    picture
+        .write_to(
+            &mut std::io::Cursor::new(&mut bytes),
+            image::ImageFormat::Png,
+        )
+        .map_err(|error| at_output(format!("it cannot be encoded ({error})")))?;
+    exports::write_whole(&arguments.output, &bytes)
+        .map_err(|error| at_output(format!("it cannot be written ({error})")))?;
+    Ok(Answer {
+        text: String::new(),
+        warnings: opened.warnings,
+    })
+}
+
+/// Opens the graphics device and draws.
+fn draw(
+    arguments: &RenderArguments,
+    opened: &Opened,
+    progress: &Progress,
+) -> Result<RgbaImage, Fault> {
+    let flight = &opened.flight;
+    let parts = flight.parts();
+    let named = |name: &str| {
+        let found = parts.photos.iter().position(|photo| photo.name == name);
+        found.ok_or_else(|| {
+            Fault::new(
+                format!("there is no photo '{name}'"),
+                format!("name one of the flight, like '{}'", parts.photos[0].name),
+            )
+        })
+    };
+    let looked_through = match &arguments.view {
+        Viewpoint::Photo(name) => Some(named(name)?),
+        _ => None,
+    };
+    let selected = match &arguments.select {
+        Some(name) => Some(named(name)?),
+        None => looked_through,
+    };
+    if selected.is_none()
+        && let Some(reason) = needs_selected(arguments)
+    {
+        return Err(Fault::new(
+            format!("{reason} is of one photo, and none is selected"),
+            "name it with --select PHOTO",
+        ));
+    }
+    let gpu = Gpu::headless()?;
+    let outcomes = flight.scales(progress)?;
+    let views = flight.views(&outcomes, progress)?;
+
+    let surface = &parts.surface;
+    let cloud_bounds = Bounds::of(&surface.vertices().collect::<Vec<_>>());
+    let bounds = cloud_bounds
+        .ok_or_else(|| Fault::new("the surface has no vertex", "check the surface file"))?;
+    let frame = LocalFrame::near(&bounds);
+    let photos: Vec<PhotoGeometry> = parts
+        .photos
+        .iter()
+        .zip(&outcomes)
+        .zip(&views)
+        .map(|((photo, outcome), view)| {
+            let camera = flight.camera(photo);
+            PhotoGeometry::new(
+                &frame,
+                camera,
+                &photo.pose,
+                scale_of(outcome),
+                view.as_ref(),
+            )
+        })
+        .collect();
+    progress.stage("drawing");
+    let show = show(arguments, opened, &outcomes, selected, &bounds);
+    let mut renderer = Renderer::new(&gpu);
+    renderer.start(&frame);
+    let triangles = surface
+        .triangles()
+        .map_err(|error| Fault::new(error.to_string(), "check the surface file"))?;
+    let normals = Normals::of(&frame, surface.vertices(), &triangles);
+    let colors = surface.colors();
+    if show.cloud {
+        let cloud = CloudGeometry::new(&frame, surface.vertices(), colors, &normals);
+        renderer.set_cloud(Some(&cloud));
+    }
+    if show.mesh || show.wireframe {
+        let vertices = surface.vertices();
+        let mesh = MeshGeometry::new(&frame, vertices, colors, &normals, &triangles);
+        renderer.set_mesh(Some(&mesh));
+    }
+    renderer.set_photos(photos);
+    set_images(&mut renderer, opened, &show, progress)?;
+
+    let size = DVec2::from(arguments.size.0.map(f64::from));
+    let view = match looked_through {
+        Some(index) => {
+            let photo = &parts.photos[index];
+            let scale = scale_of(&outcomes[index]);
+            let focus = depth_of(scale, views[index].as_ref()).unwrap_or(1.0);
+            View::of_photo(flight.camera(photo), &photo.pose, focus)
+        }
+        None => {
+            let points = points_to_fit(parts, &outcomes);
+            orbit(&arguments.view, &points, &bounds, size).view()
+        }
+    };
+    renderer.picture_with_words(&view, &show, arguments.size.0)
+}
+
+/// What of the arguments is of the selected photo alone.
+fn needs_selected(arguments: &RenderArguments) -> Option<&'static str> {
+    if matches!(arguments.color_by, Colors::Scale) {
+        return Some("the scale");
+    }
+    let of_one = |item: &&Item| item.name == "photo" || item.scope == Scope::Selected;
+    arguments.show.iter().find(of_one).map(|item| item.name)
+}
+
+fn scale_of(outcome: &Outcome) -> Option<&PhotoScale> {
+    match outcome {
+        Outcome::Scale(scale) => Some(scale),
+        Outcome::Trouble(_) => None,
+    }
+}
+
+/// How far a photo's footprint is away.
+fn depth_of(scale: Option<&PhotoScale>, view: Option<&ViewFacts>) -> Option<f64> {
+    let distance = |outcome: &CornerOutcome| match *outcome {
+        CornerOutcome::OnSurface { distance, .. } | CornerOutcome::OnGround { distance, .. } => {
+            Some(distance)
+        }
+        CornerOutcome::Nowhere | CornerOutcome::NoRay(_) => None,
+    };
+    let grid = view.iter().flat_map(|view| &view.footprint.grid);
+    let corners = scale.iter().flat_map(|scale| &scale.corners);
+    let mut distances: Vec<f64> = grid
+        .filter_map(|sample| distance(&sample.outcome))
+        .chain(corners.filter_map(|corner| distance(&corner.outcome)))
+        .collect();
+    crate::geometry::median(&mut distances)
+}
+
+fn show(
+    arguments: &RenderArguments,
+    opened: &Opened,
+    outcomes: &[Outcome],
+    selected: Option<usize>,
+    bounds: &Bounds,
+) -> Show {
+    let scope = |name: &str| {
+        let item = arguments.show.iter().find(|item| item.name == name);
+        item.map_or(Scope::None, |item| item.scope)
+    };
+    let shown = |name: &str| scope(name) != Scope::None;
+    let parts = opened.flight.parts();
+    let [width, height] = arguments.size.0.map(f64::from);
+    Show {
+        cloud: shown("cloud"),
+        mesh: shown("mesh"),
+        wireframe: shown("wireframe"),
+        color_by: match arguments.color_by {
+            Colors::Rgb => ColorBy::Rgb,
+            Colors::Elevation => ColorBy::Elevation,
+            Colors::Slope => ColorBy::Slope,
+            Colors::Scale => ColorBy::Scale,
+        },
+        frusta: scope("frusta"),
+        images: scope("images"),
+        corner_rays: scope("rays"),
+        outlines: scope("outlines"),
+        fills: scope("fills"),
+        flight_line: shown("line"),
+        ground: shown("ground").then(|| {
+            // Under which photo, if the elevation is found anew for each? Under the first that
+            // needed it, or else under everything.
+            let found = outcomes
+                .iter()
+                .find_map(|outcome| scale_of(outcome)?.ground);
+            match parts.ground {
+                Ground::At(z) => z,
+                Ground::Auto => found.unwrap_or(bounds.min.z),
+            }
+        }),
+        axes: shown("axes"),
+        scale_bar: shown("bar"),
+        unit: parts.unit,
+        project_photo: shown("photo"),
+        photo_blend: arguments.blend,
+        selected,
+        background: match arguments.background {
+            Backdrop::Dark => Background::Color([24, 26, 30]),
+            Backdrop::Light => Background::Color([236, 238, 240]),
+            Backdrop::White => Background::Color([255, 255, 255]),
+            Backdrop::Transparent => Background::Transparent,
+        },
+        // Lines and letters keep their share of the picture.
+        pixels_per_point: (width / 1280.0).min(height / 720.0).clamp(0.5, 16.0),
+        ..Show::default()
+    }
+}
+
+/// What the picture shall hold: the surface (some thousands of its vertices stand for all), the
+/// camera centres and the corner points.
+fn points_to_fit(parts: &FlightParts, outcomes: &[Outcome]) -> Vec<DVec3> {
+    let vertices = parts.surface.vertices();
+    let step = (vertices.len() / 20_000).max(1);
+    let corners = outcomes.iter().filter_map(scale_of);
+    let corners = corners.flat_map(|scale| scale.corners.iter().filter_map(Corner::point));
+    let centers = parts.photos.iter().map(|photo| photo.pose.center);
+    vertices
+        .step_by(step)
+        .chain(corners)
+        .chain(centers)
+        .collect()
+}
+
+fn orbit(view: &Viewpoint, points: &[DVec3], bounds: &Bounds, size: DVec2) -> Orbit {
+    let mut orbit = Orbit::new(bounds);
+    match view {
+        Viewpoint::Top => {
+            orbit.top();
+            // As on a map.
+            orbit.orthographic = true;
+        }
+        Viewpoint::Front => orbit.front(),
+        Viewpoint::Side => orbit.side(),
+        Viewpoint::Orbit | Viewpoint::Photo(_) => (orbit.yaw, orbit.pitch) = (0.45, 0.6),
+    }
+    orbit.fit_into(points, size);
+    orbit
+}
+
+/// Reads the photos that are seen.
+fn set_images(
+    renderer: &mut Renderer,
+    opened: &Opened,
+    show: &Show,
+    progress: &Progress,
+) -> Result<(), Fault> {
+    let photos = &opened.flight.parts().photos;
+    progress.stage("reading photos");
+    for (index, (photo, file)) in photos.iter().zip(&opened.photo_files).enumerate() {
+        progress.advance(index as u64, photos.len() as u64)?;
+        let selected = show.selected == Some(index);
+        let large = selected && (show.project_photo || show.photo_blend > 0.0);
+        let small = show.images == Scope::All || (show.images == Scope::Selected && selected);
+        if !large && !small {
+            continue;
+        }
+        let camera = opened.flight.camera(photo);
+        let Some(image) = read_photo(file, camera, if large { PHOTO_EDGE } else { 256 })? else {
+            continue;
+        };
+        if small {
+            renderer.set_photo_image(index, &PhotoImage::new(&image));
+        }
+        if large {
+            renderer.set_projected_photo(Some((index, &image)));
+        }
+    }
+    Ok(())
+}
+
+/// A photo's undistorted, reduced image, where its file is there.
+fn read_photo(file: &PhotoFile, camera: &Camera, edge: u32) -> Result<Option<RgbaImage>, Fault> {
+    let Some(path) = &file.path else {
+        return Ok(None);
+    };
+    let at_file = |what: String| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        Fault::new(format!("{name}: {what}"), "check the photo")
+    };
+    let bytes = formats::read_bytes(path).map_err(|error| error.fault)?;
+    let photo = picture::decode(&bytes).map_err(|fault| at_file(fault.what))?;
+    let image = picture::undistorted(&photo, camera, edge);
+    Ok(Some(DynamicImage::ImageRgb8(image).into_rgba8()))
+}
