@@ -10,7 +10,7 @@ use super::open_flight::OpenFlight;
 use super::state::{Severity, State};
 use super::work::{DialogFor, Done, Geometry, Loaded, PreviewPicture, Task, Thumbnail};
 use crate::camera::Camera;
-use crate::exports;
+use crate::exports::{self, ExportRequest};
 use crate::fault::Fault;
 use crate::flight::{Flight, FlightSettings};
 use crate::formats::{self, FileError, OpenOptions};
@@ -175,6 +175,63 @@ impl State {
             });
             Done::Saved(match saved {
                 Ok(()) => Ok((origin.saved_at(&path), settings)),
+                Err(error) => Err(error.to_string()),
+            })
+        });
+    }
+
+    /// Exports the chosen photos.
+    pub fn start_export(&mut self, folder: PathBuf) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let Some(views) = open.views.clone() else {
+            self.say(
+                Severity::Error,
+                "the footprints are still being computed; export when they are there",
+            );
+            return;
+        };
+        let (flight, outcomes) = (open.flight.clone(), open.outcomes.clone());
+        let judged: Vec<_> = open
+            .judged
+            .iter()
+            .map(|judged| (judged.verdict, judged.doubts.clone()))
+            .collect();
+        let files = open.photo_files.iter().map(|file| file.path.clone());
+        let files: Vec<Option<PathBuf>> = files.collect();
+        let selected = open.history.now().chosen.clone();
+        let (unit, limits) = (self.preferences.unit(), self.preferences.limits);
+        let settings = open.settings();
+        let (crs, inputs) = (open.crs.clone(), open.inputs.clone());
+        let warnings = open.warnings.clone();
+        self.start(Task::Export, move |progress| {
+            let request = ExportRequest {
+                flight: &flight,
+                outcomes: &outcomes,
+                views: &views,
+                judged: &judged,
+                photo_files: &files,
+                selected: &selected,
+                unit,
+                limits: &limits,
+                settings: &settings,
+                crs: crs.as_deref(),
+                inputs: &inputs,
+                warnings: &warnings,
+            };
+            let exported = exports::export_for_split_desktop(&folder, &request, progress);
+            Done::Exported(match exported {
+                Ok(summary) => {
+                    let sentence = format!(
+                        "{}: {} photos exported, pictures of {} made, of {} there already; open scales.html",
+                        folder.display(),
+                        summary.photos,
+                        summary.made,
+                        summary.kept
+                    );
+                    Ok((sentence, summary.warnings))
+                }
                 Err(error) => Err(error.to_string()),
             })
         });

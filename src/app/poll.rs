@@ -98,7 +98,12 @@ impl State {
                     });
                 }
             }
-            Done::Exported(Ok(sentence)) => self.say(Severity::Note, &sentence),
+            Done::Exported(Ok((sentence, warnings))) => {
+                for warning in warnings {
+                    self.say(Severity::Warning, &warning);
+                }
+                self.say(Severity::Note, &sentence);
+            }
             Done::Picture(Ok(path)) => {
                 self.say(Severity::Note, &format!("{}: written", path.display()));
             }

@@ -118,8 +118,8 @@ pub enum Done {
         /// Its pixels.
         picture: Result<PreviewPicture, String>,
     },
-    /// What was exported and where, in a sentence.
-    Exported(Result<String, String>),
+    /// What was exported and where, in a sentence, with what to know about it.
+    Exported(Result<(String, Vec<String>), String>),
     /// The flight.toml that was written, with the settings in it.
     Saved(Result<(FlightOrigin, FlightSettings), String>),
     /// Where the picture was written.

@@ -7,6 +7,7 @@
 //!
 //! With the environment variable FRAGSCALE_BACKTRACE set, a panic prints its place as usual.
 
+mod export;
 #[cfg(feature = "render")]
 mod render;
 
@@ -42,6 +43,8 @@ struct Arguments {
 enum Command {
     /// Compute the scale of every photo of a flight.
     Scales(ScalesArguments),
+    /// Export photos with their scales for Split-Desktop.
+    Export(export::ExportArguments),
     /// Say what a file or folder holds.
     Info(InfoArguments),
     /// Make a simulated flight whose every answer is known.
@@ -212,6 +215,10 @@ pub fn run() -> ExitCode {
             arguments.output.clone(),
             Box::new(move |progress| scales(&arguments, progress)),
         ),
+        Command::Export(arguments) => (
+            None,
+            Box::new(move |progress| export::export(&arguments, progress)),
+        ),
         Command::Info(arguments) => (None, Box::new(move |progress| info(&arguments, progress))),
         Command::Sample(arguments) => {
             (None, Box::new(move |progress| sample(&arguments, progress)))
@@ -261,19 +268,23 @@ fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, St
         ScalesFormat::Json => exports::scales_json(&report).map_err(|e| e.to_string())?,
     };
     let mut warnings = opened.warnings;
-    for line in report.lines.iter().filter(|line| !line.notes.is_empty()) {
-        let verdict = if line.has_top_and_bottom() {
-            ""
-        } else {
-            "no scale: "
-        };
-        warnings.push(format!(
-            "{}: {verdict}{}",
-            line.photo,
-            line.notes.join("; ")
-        ));
-    }
+    warnings.extend(notes_of(&report));
     Ok(Answer { text, warnings })
+}
+
+/// What fell back or failed, a line a photo.
+fn notes_of(report: &exports::ScaleReport) -> Vec<String> {
+    let noted = report.lines.iter().filter(|line| !line.notes.is_empty());
+    noted
+        .map(|line| {
+            let verdict = if line.has_top_and_bottom() {
+                ""
+            } else {
+                "no scale: "
+            };
+            format!("{}: {verdict}{}", line.photo, line.notes.join("; "))
+        })
+        .collect()
 }
 
 fn info(arguments: &InfoArguments, progress: &Progress) -> Result<Answer, String> {

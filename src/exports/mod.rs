@@ -1,14 +1,16 @@
-//! What goes out: the scales of a flight as a table, CSV and JSON, and files that are there whole or
-//! not at all.
+//! What goes out: the scales of a flight as a table, CSV and JSON, the folder for Split-Desktop, and
+//! files that are there whole or not at all.
 
 mod atomic;
 mod scale_report;
 mod scales_csv;
 mod scales_json;
 mod scales_table;
+mod split_desktop;
 
 pub use atomic::{make_folder_whole, remove_unfinished, write_whole};
 pub use scale_report::{ReportLine, ScaleReport};
 pub use scales_csv::scales_csv;
 pub use scales_json::scales_json;
 pub use scales_table::scales_table;
+pub use split_desktop::{ExportError, ExportRequest, ExportSummary, export_for_split_desktop};

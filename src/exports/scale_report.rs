@@ -106,6 +106,14 @@ impl ScaleReport {
             lines: lines.collect(),
         }
     }
+
+    /// The report of some of the photos, those that are `true` in `selected`, in the same order.
+    #[must_use]
+    pub fn of_photos(mut self, selected: &[bool]) -> Self {
+        let mut selected = selected.iter();
+        self.lines.retain(|_| selected.next() == Some(&true));
+        self
+    }
 }
 
 impl ReportLine {

@@ -19,6 +19,6 @@ pub use decode::{DecodedPhoto, PhotoFormat, decode, decode_photo};
 pub use encode::encode;
 pub use overlay::overlay;
 pub use reduce::{reduced, reduced_size};
-pub use scale_bar::{BarEdge, ScaleBar, scale_bars};
+pub use scale_bar::{BarEdge, ScaleBar, scale_bars, significant_digits};
 pub use text::Anchor;
 pub use undistort::undistorted;

@@ -30,7 +30,8 @@ pub fn overlay(
     let longest = width.max(height) as f32;
     let pen = Pen {
         size: [width as f32, height as f32],
-        letters: (longest * 0.026).max(12.0),
+        // Small pictures get comparatively large letters.
+        letters: (longest * 0.026).max(18.0),
         stroke: (longest * 0.0035).max(1.5),
     };
     let mut canvas = Canvas::new(&mut picture);

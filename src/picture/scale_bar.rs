@@ -79,7 +79,10 @@ pub fn scale_bars(
             length_px,
             from: middle - half,
             to: middle + half,
-            text: format!("{length_text} {unit} · {} px/{unit}", four_digits(scale)),
+            text: format!(
+                "{length_text} {unit} · {} px/{unit}",
+                significant_digits(scale, 4)
+            ),
         })
     };
     edges.into_iter().filter_map(bar).collect()
@@ -103,11 +106,13 @@ fn round_length(longest: f64) -> Option<(f64, String)> {
     Some((text.parse().ok()?, text))
 }
 
-/// Four significant digits, without an exponent.
-pub(super) fn four_digits(number: f64) -> String {
+/// A number with at least so many significant digits, without an exponent, for people to read and
+/// type.
+pub fn significant_digits(number: f64, digits: u8) -> String {
     let exponent = number.abs().log10().floor();
-    let decimals = (3.0 - exponent).clamp(0.0, 12.0) as usize;
-    format!("{number:.decimals$}")
+    let decimals = (f64::from(digits) - 1.0 - exponent).clamp(0.0, 12.0);
+    let decimals = if decimals.is_nan() { 0.0 } else { decimals };
+    format!("{number:.*}", decimals as usize)
 }
 
 #[cfg(test)]
@@ -178,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn four_significant_digits() {
+    fn numbers_have_their_digits() {
         for (number, text) in [
             (25.6, "25.60"),
             (0.025_634, "0.02563"),
@@ -186,7 +191,7 @@ mod tests {
             (98_765.4, "98765"),
             (1.0, "1.000"),
         ] {
-            assert_eq!(four_digits(number), text);
+            assert_eq!(significant_digits(number, 4), text);
         }
     }
 }

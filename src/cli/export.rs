@@ -1,0 +1,124 @@
+//! `fragscale export`: the folder for Split-Desktop.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::{Answer, OutputUnit};
+use crate::exports::{self, ExportRequest, ScaleReport};
+use crate::fault::Fault;
+use crate::flight::{Limits, Outcome, Verdict, judge};
+use crate::formats::{self, FileError, OpenOptions};
+use crate::jobs::Progress;
+use crate::scale::ViewFacts;
+
+#[derive(Debug, Args)]
+pub(super) struct ExportArguments {
+    /// A flight.toml, or a reconstruction: a COLMAP folder, an NVM file, an OpenDroneMap folder.
+    flight: PathBuf,
+    /// The folder to export to; new, or one of an earlier export, which is then completed.
+    #[arg(long, value_name = "DIR")]
+    to: PathBuf,
+    /// Scales are in pixels per this unit.
+    #[arg(long, value_enum, default_value = "cm")]
+    unit: OutputUnit,
+    /// Use this cloud or mesh instead of the flight's surface.
+    #[arg(long, value_name = "FILE")]
+    surface: Option<PathBuf>,
+    /// Which photos: all, or those without any doubt.
+    #[arg(long, value_enum, default_value = "all")]
+    photos: Selection,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+enum Selection {
+    All,
+    Trusted,
+}
+
+/// Opens, computes, judges, exports.
+pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result<Answer, String> {
+    let path = &arguments.flight;
+    let options = OpenOptions {
+        surface: arguments.surface.clone(),
+        settings: None,
+    };
+    let opened =
+        formats::open_flight(path, &options, progress).map_err(|error| error.to_string())?;
+    let in_flight = |fault| FileError::new(path, fault).to_string();
+    let flight = &opened.flight;
+    let outcomes = flight.scales(progress).map_err(in_flight)?;
+    let views = flight.views(&outcomes, progress).map_err(in_flight)?;
+    let limits = Limits::default();
+    let judged: Vec<_> = flight
+        .parts()
+        .photos
+        .iter()
+        .zip(&opened.photo_files)
+        .zip(outcomes.iter().zip(&views))
+        .map(
+            |((photo, file), (outcome, view)): (_, (&Outcome, &Option<ViewFacts>))| {
+                let camera = flight.camera(photo);
+                let size = (camera.width, camera.height);
+                judge(
+                    outcome,
+                    view.as_ref(),
+                    &file.state,
+                    size,
+                    flight.parts().unit,
+                    &limits,
+                )
+            },
+        )
+        .collect();
+    let selected: Vec<bool> = judged
+        .iter()
+        .map(|(verdict, _)| arguments.photos == Selection::All || *verdict == Verdict::Trust)
+        .collect();
+    if !selected.contains(&true) {
+        let fault = Fault::new(
+            format!("none of its {} photos is without doubt", judged.len()),
+            "export all photos, and read the doubts in the sheet",
+        );
+        return Err(in_flight(fault));
+    }
+    let photo_files: Vec<Option<PathBuf>> = opened
+        .photo_files
+        .iter()
+        .map(|file| file.path.clone())
+        .collect();
+    let unit = arguments.unit.into();
+    let summary = exports::export_for_split_desktop(
+        &arguments.to,
+        &ExportRequest {
+            flight,
+            outcomes: &outcomes,
+            views: &views,
+            judged: &judged,
+            photo_files: &photo_files,
+            selected: &selected,
+            unit,
+            limits: &limits,
+            settings: &opened.settings,
+            crs: opened.crs.as_deref(),
+            inputs: &opened.inputs,
+            warnings: &opened.warnings,
+        },
+        progress,
+    )
+    .map_err(|error| error.to_string())?;
+    let report = ScaleReport::new(flight, &outcomes, unit).of_photos(&selected);
+    let mut warnings = opened.warnings;
+    warnings.extend(summary.warnings);
+    warnings.extend(super::notes_of(&report));
+    Ok(Answer {
+        text: format!(
+            "{}: {} photos, pictures of {} made, of {} there already; open scales.html\n",
+            arguments.to.display(),
+            summary.photos,
+            summary.made,
+            summary.kept
+        ),
+        warnings,
+    })
+}

@@ -1,0 +1,189 @@
+//! Footprints as GeoJSON (RFC 7946) and KML.
+//!
+//! RFC 7946 knows longitude and latitude on WGS 84 only. Where the coordinate system of the flight is
+//! known and can be projected back, that is what the file holds, without heights. Else the positions
+//! are x, y, z of the flight's world, and the foreign member "coordinates" says so: "local, in m".
+
+use serde_json::{Value, json};
+
+use super::ExportRequest;
+use super::kml;
+use super::wgs84::ToWgs84;
+use crate::exports::{ReportLine, ScaleReport};
+use crate::scale::FootprintPoint;
+
+/// The footprints of a flight on their way out.
+pub(super) struct Footprints<'a> {
+    request: &'a ExportRequest<'a>,
+    to_wgs84: Option<ToWgs84>,
+    warning: Option<String>,
+}
+
+/// One photo's footprint.
+pub(super) struct PhotoFootprint<'a> {
+    pub line: &'a ReportLine,
+    pub verdict: &'static str,
+    /// One ring, closed, counterclockwise seen from above; empty where there is none. Longitude and
+    /// latitude, or x, y, z.
+    pub ring: Vec<Vec<f64>>,
+    /// Whether every point of the outline has a place.
+    pub is_complete: bool,
+    /// How many points of the outline are not on the surface.
+    pub off_surface: usize,
+}
+
+impl<'a> Footprints<'a> {
+    pub(super) fn new(request: &'a ExportRequest<'a>) -> Self {
+        let crs = request.crs;
+        let understood = crs.map(|crs| ToWgs84::new(crs, request.flight.parts().unit));
+        let (to_wgs84, warning) = match understood {
+            None => (None, None),
+            Some(Ok(system)) => (Some(system), None),
+            Some(Err(fault)) => (None, Some(fault.to_string())),
+        };
+        Self {
+            request,
+            to_wgs84,
+            warning,
+        }
+    }
+
+    /// Whether longitudes and latitudes are known.
+    pub(super) fn is_on_maps(&self) -> bool {
+        self.to_wgs84.is_some()
+    }
+
+    /// Why a stated coordinate system is not used.
+    pub(super) fn warning(&self) -> Option<&str> {
+        self.warning.as_deref()
+    }
+
+    /// `report` has a line for each of `chosen`.
+    fn of_photos<'b>(
+        &'b self,
+        report: &'b ScaleReport,
+        chosen: &'b [usize],
+    ) -> impl Iterator<Item = PhotoFootprint<'b>> {
+        report.lines.iter().zip(chosen).map(|(line, &index)| {
+            let view = self.request.views.get(index).and_then(Option::as_ref);
+            let outline = view.map_or(&[][..], |view| &view.footprint.outline);
+            let ring: Vec<Vec<f64>> = outline
+                .iter()
+                .filter_map(|point| self.position(point))
+                .collect();
+            let off = outline
+                .iter()
+                .filter(|point| !point.outcome.is_on_surface());
+            PhotoFootprint {
+                line,
+                verdict: self
+                    .request
+                    .judged
+                    .get(index)
+                    .map_or("", |(verdict, _)| verdict.as_str()),
+                is_complete: !outline.is_empty() && ring.len() == outline.len(),
+                ring: closed_ring(ring),
+                off_surface: off.count(),
+            }
+        })
+    }
+
+    fn position(&self, point: &FootprintPoint) -> Option<Vec<f64>> {
+        let point = point.point()?;
+        match &self.to_wgs84 {
+            Some(system) => system
+                .degrees(point.x, point.y)
+                .map(|degrees| degrees.to_vec()),
+            None => Some(point.to_array().to_vec()),
+        }
+    }
+
+    /// A feature a photo.
+    pub(super) fn geojson(&self, report: &ScaleReport, chosen: &[usize]) -> String {
+        let features: Vec<Value> = self
+            .of_photos(report, chosen)
+            .map(|footprint| feature(&footprint, report))
+            .collect();
+        let coordinates = match self.is_on_maps() {
+            true => "WGS 84 longitude, latitude".to_owned(),
+            false => format!("local, in {}", report.world_unit),
+        };
+        let value = json!({
+            "type": "FeatureCollection",
+            "name": report.flight,
+            "coordinates": coordinates,
+            "crs_of_flight": self.request.crs,
+            "features": features,
+        });
+        format!("{value}\n")
+    }
+
+    /// The same for map programs; `None` without longitude and latitude.
+    pub(super) fn kml(&self, report: &ScaleReport, chosen: &[usize]) -> Option<String> {
+        self.is_on_maps()
+            .then(|| kml::document(report, self.of_photos(report, chosen)))
+    }
+}
+
+fn feature(footprint: &PhotoFootprint<'_>, report: &ScaleReport) -> Value {
+    let line = footprint.line;
+    let geometry = match footprint.ring.is_empty() {
+        true => Value::Null,
+        false => json!({ "type": "Polygon", "coordinates": [footprint.ring] }),
+    };
+    json!({
+        "type": "Feature",
+        "geometry": geometry,
+        "properties": {
+            "photo": line.photo,
+            "unit": format!("px/{}", report.unit),
+            "top": line.scale.top,
+            "right": line.scale.right,
+            "bottom": line.scale.bottom,
+            "left": line.scale.left,
+            "verdict": footprint.verdict,
+            "corners_on_surface": line.corners_on_surface,
+            "outline_complete": footprint.is_complete,
+            "outline_points_off_surface": footprint.off_surface,
+            "note": line.notes.join("; "),
+        },
+    })
+}
+
+/// A linear ring of RFC 7946: the first position again at the end, counterclockwise; empty with fewer
+/// than three positions.
+fn closed_ring(mut ring: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let [first, _, _, ..] = &ring[..] else {
+        return Vec::new();
+    };
+    let first = first.clone();
+    // The shoelace formula, from the first position, which loses no digit to large coordinates.
+    let twice_area: f64 = ring
+        .windows(2)
+        .map(|pair| {
+            let [ax, ay] = [pair[0][0] - first[0], pair[0][1] - first[1]];
+            let [bx, by] = [pair[1][0] - first[0], pair[1][1] - first[1]];
+            ax * by - ay * bx
+        })
+        .sum();
+    ring.push(first);
+    if twice_area < 0.0 {
+        ring.reverse();
+    }
+    ring
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rings_are_closed_and_counterclockwise() {
+        let [a, b, c] = [vec![0.0, 0.0], vec![0.0, 1.0], vec![1.0, 0.0]];
+        let clockwise = vec![a.clone(), b.clone(), c.clone()];
+        let expected = vec![a.clone(), c.clone(), b.clone(), a.clone()];
+        assert_eq!(closed_ring(clockwise), expected);
+        assert_eq!(closed_ring(vec![a.clone(), c, b]), expected);
+        assert!(closed_ring(vec![a.clone(), a]).is_empty());
+    }
+}

@@ -1,0 +1,70 @@
+//! Footprints as KML 2.2 (OGC 07-147r2), draped on the globe's own terrain: the flight's heights are
+//! of a datum that no file states reliably.
+
+use std::fmt::Write;
+
+use super::footprints::PhotoFootprint;
+use super::sheet::escaped;
+use crate::exports::ScaleReport;
+use crate::flight::Verdict;
+
+/// A placemark a photo, coloured by its verdict.
+pub(super) fn document<'a>(
+    report: &ScaleReport,
+    footprints: impl Iterator<Item = PhotoFootprint<'a>>,
+) -> String {
+    let mut text = String::from(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<kml xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n",
+    );
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "<name>{}</name>", escaped(&report.flight));
+    for (index, verdict) in Verdict::ALL.into_iter().enumerate() {
+        // aabbggrr
+        let color = match verdict {
+            Verdict::Trust => "50af4c",
+            Verdict::Check => "20b0ff",
+            Verdict::NoScale => "3c3cf0",
+        };
+        let _ = writeln!(
+            text,
+            "<Style id=\"v{index}\"><LineStyle><color>ff{color}</color><width>2</width></LineStyle><PolyStyle><color>40{color}</color></PolyStyle></Style>"
+        );
+    }
+    for footprint in footprints.filter(|footprint| !footprint.ring.is_empty()) {
+        let line = footprint.line;
+        let style = Verdict::ALL
+            .iter()
+            .position(|verdict| verdict.as_str() == footprint.verdict)
+            .unwrap_or(1);
+        let number =
+            |scale: Option<f64>| scale.map_or_else(|| "none".to_owned(), |s| s.to_string());
+        let unit = report.unit;
+        let mut description = format!(
+            "top {} px/{unit}, bottom {} px/{unit}; {}; {} of 4 corners on the surface",
+            number(line.scale.top),
+            number(line.scale.bottom),
+            footprint.verdict,
+            line.corners_on_surface
+        );
+        for note in &line.notes {
+            description += &format!("; {note}");
+        }
+        let positions: Vec<String> = footprint
+            .ring
+            .iter()
+            .map(|position| {
+                let numbers: Vec<String> = position.iter().map(f64::to_string).collect();
+                numbers.join(",")
+            })
+            .collect();
+        let _ = writeln!(
+            text,
+            "<Placemark><name>{}</name><description>{}</description><styleUrl>#v{style}</styleUrl><Polygon><tessellate>1</tessellate><altitudeMode>clampToGround</altitudeMode><outerBoundaryIs><LinearRing><coordinates>{}</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark>",
+            escaped(&line.photo),
+            escaped(&description),
+            positions.join(" ")
+        );
+    }
+    text += "</Document>\n</kml>\n";
+    text
+}

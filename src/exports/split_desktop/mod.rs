@@ -1,0 +1,389 @@
+//! The export for Split-Desktop: a folder with the photos that scales are for, the scales in a sheet
+//! to type from, and what shows where they came from.
+//!
+//! Split-Desktop has no documented import of scales: an engineer types the top and the bottom scale
+//! of each photo into its dialog. The folder holds:
+//!
+//! ```text
+//! scales.html          to print or keep open: a row a photo, big digits
+//! scales.csv           the same numbers in full (contract, section 5)
+//! photos/NAME          what to open in Split-Desktop, undistorted or as shot, full size
+//! overlays/NAME.jpg    the same, smaller, with the scale drawn on it
+//! thumbnails/NAME.jpg  for the sheet
+//! footprints.geojson   where each photo lies
+//! footprints.kml       the same for map programs, where the coordinate system is known
+//! export.json          what was written and from what (see `folder.rs`)
+//! ```
+//!
+//! An export that was interrupted is started again and goes on: each file is there whole or not at
+//! all, and pictures that are there and still right are not made again.
+
+mod checksum;
+mod folder;
+mod footprints;
+mod kml;
+mod names;
+mod pictures;
+mod plan;
+mod sheet;
+mod wgs84;
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+pub use folder::ExportError;
+
+use self::folder::ExportFolder;
+use self::footprints::Footprints;
+use self::pictures::PictureSource;
+use self::plan::PhotoNames;
+use crate::exports::{ScaleReport, scales_csv};
+use crate::fault::Fault;
+use crate::flight::{Doubt, Flight, FlightSettings, Limits, Outcome, Verdict};
+use crate::jobs::Progress;
+use crate::scale::ViewFacts;
+use crate::units::LengthUnit;
+
+/// What the pictures that are worked on at once may take, in bytes.
+const MEMORY: u64 = 2 << 30;
+
+/// Bytes that a pixel of a photo takes on its way: decoded, undistorted, and its files.
+const BYTES_A_PIXEL: u64 = 12;
+
+/// The most photos that are worked on at once.
+const MOST_AT_ONCE: usize = 4;
+
+/// What to export. The lists are parallel to the flight's photos.
+#[derive(Debug, Clone, Copy)]
+pub struct ExportRequest<'a> {
+    /// The flight.
+    pub flight: &'a Flight,
+    /// Its scales.
+    pub outcomes: &'a [Outcome],
+    /// Its views.
+    pub views: &'a [Option<ViewFacts>],
+    /// What `flight::judge` said.
+    pub judged: &'a [(Verdict, Vec<Doubt>)],
+    /// The image files, where there are any.
+    pub photo_files: &'a [Option<PathBuf>],
+    /// Which photos are exported.
+    pub selected: &'a [bool],
+    /// Scales are in pixels per this.
+    pub unit: LengthUnit,
+    /// What `judged` was judged by.
+    pub limits: &'a Limits,
+    /// What the flight was opened with.
+    pub settings: &'a FlightSettings,
+    /// The coordinate system of the world: "EPSG:n" or WKT.
+    pub crs: Option<&'a str>,
+    /// The files that the flight was read from.
+    pub inputs: &'a [PathBuf],
+    /// What was noticed on the way.
+    pub warnings: &'a [String],
+}
+
+/// What an export did.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ExportSummary {
+    /// Photos in the sheet.
+    pub photos: usize,
+    /// Of them, whose pictures were made now.
+    pub made: usize,
+    /// Of them, whose pictures were there already and are still right.
+    pub kept: usize,
+    /// What to know, one sentence each; photos without pictures are among them.
+    pub warnings: Vec<String>,
+}
+
+/// Exports the selected photos into `dir`, which is made where it is not there. `progress` counts
+/// photos and can cancel; what is written until then stays good, and the same call goes on from it.
+///
+/// # Errors
+/// Where the folder cannot be written, holds files of others by the same names (nothing is written
+/// then), no photo is selected, or the work was cancelled.
+pub fn export_for_split_desktop(
+    dir: &Path,
+    request: &ExportRequest<'_>,
+    progress: &Progress,
+) -> Result<ExportSummary, ExportError> {
+    let at_dir = |fault| ExportError::new(dir, fault);
+    let count = request.flight.parts().photos.len();
+    let chosen: Vec<usize> = (0..count)
+        .filter(|&index| request.selected.get(index) == Some(&true))
+        .collect();
+    if chosen.is_empty() {
+        return Err(at_dir(Fault::new(
+            "no photo is selected for export",
+            "select at least one",
+        )));
+    }
+    let mut pictures = plan::pictures(request);
+    let footprints = Footprints::new(request);
+    let mut planned: Vec<String> = [plan::CSV, plan::SHEET, plan::GEOJSON]
+        .map(str::to_owned)
+        .to_vec();
+    if footprints.is_on_maps() {
+        planned.push(plan::KML.to_owned());
+    }
+    let of_photos = chosen
+        .iter()
+        .filter_map(|&index| pictures[index].as_ref().ok());
+    planned.extend(of_photos.flat_map(PhotoNames::all));
+    let folder = ExportFolder::open(dir, &planned, progress)?;
+
+    let (mut folder, done) = make_pictures(folder, request, &chosen, &pictures, progress)?;
+    let mut summary = ExportSummary {
+        photos: chosen.len(),
+        ..ExportSummary::default()
+    };
+    summary
+        .warnings
+        .extend(footprints.warning().map(str::to_owned));
+    for (&index, done) in chosen.iter().zip(done) {
+        match done {
+            Done::Made => summary.made += 1,
+            Done::Kept => summary.kept += 1,
+            Done::Not(why) => pictures[index] = Err(why),
+        }
+        if let Err(why) = &pictures[index] {
+            let name = &request.flight.parts().photos[index].name;
+            summary.warnings.push(format!("{name}: {why}"));
+        }
+    }
+
+    progress.stage("writing the sheet");
+    let report = ScaleReport::new(request.flight, request.outcomes, request.unit);
+    let report = report.of_photos(request.selected);
+    let csv = scales_csv(&report).map_err(|e| {
+        at_dir(Fault::new(
+            format!("the scales cannot be written ({e})"),
+            "report this",
+        ))
+    })?;
+    let inputs = checked_inputs(request.inputs, progress).map_err(at_dir)?;
+    let sheet = sheet::html(
+        request,
+        &report,
+        &chosen,
+        &pictures,
+        &inputs,
+        &summary.warnings,
+    );
+    let mut files = vec![
+        (plan::CSV.to_owned(), csv.into_bytes()),
+        (plan::SHEET.to_owned(), sheet.into_bytes()),
+        (
+            plan::GEOJSON.to_owned(),
+            footprints.geojson(&report, &chosen).into_bytes(),
+        ),
+    ];
+    if let Some(kml) = footprints.kml(&report, &chosen) {
+        files.push((plan::KML.to_owned(), kml.into_bytes()));
+    }
+    folder.write(&files, None)?;
+    // Pictures that could not be made are of no use from an earlier export either.
+    let of_photos = chosen
+        .iter()
+        .filter_map(|&index| pictures[index].as_ref().ok());
+    let mut kept: Vec<String> = files.into_iter().map(|(name, _)| name).collect();
+    kept.extend(of_photos.flat_map(PhotoNames::all));
+    folder.remove_others(&kept, progress)?;
+    progress.advance(1, 1).map_err(at_dir)?;
+    Ok(summary)
+}
+
+/// What became of a photo's pictures.
+enum Done {
+    Made,
+    Kept,
+    Not(String),
+}
+
+/// Makes the pictures of the chosen photos, a few at once; what became of them in their order.
+fn make_pictures(
+    folder: ExportFolder,
+    request: &ExportRequest<'_>,
+    chosen: &[usize],
+    pictures: &[Result<PhotoNames, String>],
+    progress: &Progress,
+) -> Result<(ExportFolder, Vec<Done>), ExportError> {
+    progress.stage("exporting photos");
+    let work = Mutex::new(Work {
+        folder,
+        done: chosen.iter().map(|_| None).collect(),
+        finished: 0,
+        failed: None,
+    });
+    let next = AtomicUsize::new(0);
+    let worker = || {
+        loop {
+            let place = next.fetch_add(1, Ordering::Relaxed);
+            let Some(&index) = chosen.get(place) else {
+                return;
+            };
+            let done = match &pictures[index] {
+                Ok(names) => one_photo(&work, request, index, names, progress),
+                // Said where it was planned.
+                Err(why) => Ok(Done::Not(why.clone())),
+            };
+            let mut work = lock(&work);
+            work.finished += 1;
+            let counted = progress
+                .advance(work.finished, chosen.len() as u64)
+                .map_err(|fault| ExportError::new(work.folder.path(), fault));
+            match done.and_then(|done| counted.map(|()| done)) {
+                Ok(done) => work.done[place] = Some(done),
+                Err(error) => {
+                    work.failed.get_or_insert(error);
+                }
+            }
+            if work.failed.is_some() {
+                return;
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..at_once(request, chosen) {
+            scope.spawn(worker);
+        }
+        worker();
+    });
+    let work = work.into_inner().unwrap_or_else(PoisonError::into_inner);
+    if let Some(error) = work.failed {
+        return Err(error);
+    }
+    // Without a failure every place was filled.
+    Ok((work.folder, work.done.into_iter().flatten().collect()))
+}
+
+/// Shared by the workers.
+struct Work {
+    folder: ExportFolder,
+    done: Vec<Option<Done>>,
+    finished: u64,
+    failed: Option<ExportError>,
+}
+
+fn lock<'a>(work: &'a Mutex<Work>) -> std::sync::MutexGuard<'a, Work> {
+    work.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Makes the pictures of one photo if they are not there; they are written one photo at a time.
+fn one_photo(
+    work: &Mutex<Work>,
+    request: &ExportRequest<'_>,
+    index: usize,
+    names: &PhotoNames,
+    progress: &Progress,
+) -> Result<Done, ExportError> {
+    let parts = request.flight.parts();
+    let (Some(Outcome::Scale(scale)), Some(Some(file))) =
+        (request.outcomes.get(index), request.photo_files.get(index))
+    else {
+        return Ok(Done::Not(
+            "no pictures: it has no scale or no file".to_owned(),
+        ));
+    };
+    let source = PictureSource {
+        file,
+        camera: request.flight.camera(&parts.photos[index]),
+        image: parts.image,
+        scale,
+        unit: request.unit,
+        world_unit: parts.unit,
+        names,
+    };
+    let bytes = match fs::read(source.file) {
+        Ok(bytes) => bytes,
+        Err(e) => {
+            return Ok(Done::Not(format!(
+                "no pictures: the photo file cannot be read ({e})"
+            )));
+        }
+    };
+    let fingerprint = source.fingerprint(&bytes);
+    if lock(work).folder.is_done(&names.all(), &fingerprint) {
+        return Ok(Done::Kept);
+    }
+    let files = match source.make(bytes) {
+        Ok(files) => files,
+        Err(fault) => return Ok(Done::Not(format!("no pictures: {fault}"))),
+    };
+    let mut work = lock(work);
+    if progress.is_cancelled() {
+        // `advance` says so.
+        return Ok(Done::Not(String::new()));
+    }
+    work.folder.write(&files, Some(&fingerprint))?;
+    Ok(Done::Made)
+}
+
+/// How many photos to work on at once: as many as there are cores and memory for.
+fn at_once(request: &ExportRequest<'_>, chosen: &[usize]) -> usize {
+    let parts = request.flight.parts();
+    let cameras = chosen
+        .iter()
+        .map(|&index| request.flight.camera(&parts.photos[index]));
+    let pixels = cameras.map(|camera| u64::from(camera.width) * u64::from(camera.height));
+    let of_photo = pixels.max().unwrap_or(1).max(1) * BYTES_A_PIXEL;
+    let fit = usize::try_from(MEMORY / of_photo).unwrap_or(MOST_AT_ONCE);
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    fit.min(cores).min(MOST_AT_ONCE).min(chosen.len()).max(1)
+}
+
+/// A file that the flight was read from, and its checksum or why there is none.
+struct CheckedInput {
+    path: PathBuf,
+    checksum: String,
+}
+
+/// The most files of a folder that are listed.
+const LISTED: usize = 20;
+
+/// The inputs with their checksums; of a folder the files directly in it.
+fn checked_inputs(inputs: &[PathBuf], progress: &Progress) -> Result<Vec<CheckedInput>, Fault> {
+    progress.stage("checking the inputs");
+    let mut checked = Vec::new();
+    for (done, input) in inputs.iter().enumerate() {
+        progress.advance(done as u64, inputs.len() as u64)?;
+        if !input.is_dir() {
+            checked.push(checked_file(input, progress)?);
+            continue;
+        }
+        let entries = fs::read_dir(input).into_iter().flatten().flatten();
+        let mut files: Vec<PathBuf> = entries
+            .map(|entry| entry.path())
+            .filter(|path| path.is_file())
+            .collect();
+        files.sort();
+        if files.is_empty() || files.len() > LISTED {
+            checked.push(CheckedInput {
+                path: input.clone(),
+                checksum: format!("a folder with {} files", files.len()),
+            });
+            continue;
+        }
+        for file in files {
+            checked.push(checked_file(&file, progress)?);
+        }
+    }
+    Ok(checked)
+}
+
+fn checked_file(path: &Path, progress: &Progress) -> Result<CheckedInput, Fault> {
+    let checksum = match checksum::of_file(path, progress) {
+        Ok(sum) => sum,
+        Err(e) if e.kind() == io::ErrorKind::Interrupted => {
+            progress.advance(1, 1)?;
+            String::new()
+        }
+        Err(e) => format!("it cannot be read any more ({e})"),
+    };
+    Ok(CheckedInput {
+        path: path.to_owned(),
+        checksum,
+    })
+}

@@ -1,0 +1,129 @@
+//! The pictures of one photo: the image that its scale is for, the same with the scale drawn on it,
+//! and a small one for the sheet.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use super::checksum;
+use super::plan::PhotoNames;
+use crate::camera::Camera;
+use crate::fault::Fault;
+use crate::picture::{self, DecodedPhoto, PhotoFormat};
+use crate::scale::{ImageKind, PhotoScale};
+use crate::units::LengthUnit;
+
+/// Of the undistorted photos: beyond it files grow and no eye sees a difference.
+const PHOTO_QUALITY: u8 = 96;
+
+/// Of pictures to look at.
+const OVERLAY_QUALITY: u8 = 88;
+
+/// The longest side of an overlay, pixels.
+const OVERLAY_SIDE: u32 = 1600;
+
+/// The longest side of a picture in the sheet, pixels: 200 a printed inch.
+const THUMBNAIL_SIDE: u32 = 480;
+
+/// Raised when the same inputs are to give other pictures.
+const PICTURES_VERSION: u32 = 1;
+
+/// What the pictures of a photo depend on.
+pub(super) struct PictureSource<'a> {
+    pub file: &'a Path,
+    pub camera: &'a Camera,
+    pub image: ImageKind,
+    pub scale: &'a PhotoScale,
+    pub unit: LengthUnit,
+    pub world_unit: LengthUnit,
+    pub names: &'a PhotoNames,
+}
+
+impl PictureSource<'_> {
+    /// Stands for everything that the pictures depend on, with the checksum of the photo's `bytes`.
+    pub(super) fn fingerprint(&self, bytes: &[u8]) -> String {
+        let camera = self.camera;
+        let on: Vec<bool> = self
+            .scale
+            .corners
+            .iter()
+            .map(|corner| corner.outcome.is_on_surface())
+            .collect();
+        let points: Vec<bool> = self
+            .scale
+            .corners
+            .iter()
+            .map(|corner| corner.point().is_some())
+            .collect();
+        let edges = self.scale.scale;
+        let text = json!([
+            PICTURES_VERSION,
+            checksum::of_bytes(bytes),
+            [camera.width, camera.height],
+            [camera.fx, camera.fy, camera.cx, camera.cy, camera.skew],
+            camera.distortion.name(),
+            camera.distortion.coefficients(),
+            self.image == ImageKind::AsShot,
+            [edges.top, edges.bottom],
+            on,
+            points,
+            [self.unit.symbol(), self.world_unit.symbol()],
+        ]);
+        checksum::of_bytes(text.to_string().as_bytes())
+    }
+
+    /// The files, with their names below the exported folder. The photo as shot is the file as it
+    /// is; an undistorted one has the format, the EXIF and the colour profile of its file. (An EXIF
+    /// orientation stays what it was, as the pixels do.)
+    ///
+    /// # Errors
+    /// Where the photo cannot be decoded or is of another size than its camera.
+    pub(super) fn make(&self, bytes: Vec<u8>) -> Result<Vec<(String, Vec<u8>)>, Fault> {
+        let photo = picture::decode_photo(&bytes)?;
+        let (width, height) = photo.image.dimensions();
+        let camera = self.camera;
+        if (width, height) != (camera.width, camera.height) {
+            return Err(Fault::new(
+                format!(
+                    "the photo is {width} x {height}, its camera {} x {}",
+                    camera.width, camera.height
+                ),
+                "give the photo that the camera was calibrated for",
+            ));
+        }
+        let (image, file) = match self.image {
+            ImageKind::AsShot => (photo.image, bytes),
+            ImageKind::Undistorted => {
+                drop(bytes);
+                undistorted_file(photo, camera)?
+            }
+        };
+        let small = picture::reduced(&image, OVERLAY_SIDE);
+        drop(image);
+        let drawn = |side: u32| -> Result<Vec<u8>, Fault> {
+            let image = picture::reduced(&small, side);
+            let image = picture::overlay(&image, self.scale, self.unit, self.world_unit);
+            picture::encode(&image, PhotoFormat::Jpeg, OVERLAY_QUALITY, None, None)
+        };
+        Ok(vec![
+            (self.names.photo.clone(), file),
+            (self.names.overlay.clone(), drawn(OVERLAY_SIDE)?),
+            (self.names.thumbnail.clone(), drawn(THUMBNAIL_SIDE)?),
+        ])
+    }
+}
+
+fn undistorted_file(
+    photo: DecodedPhoto,
+    camera: &Camera,
+) -> Result<(image::RgbImage, Vec<u8>), Fault> {
+    let image = picture::undistorted(&photo.image, camera, u32::MAX);
+    let bytes = picture::encode(
+        &image,
+        photo.format,
+        PHOTO_QUALITY,
+        photo.exif.as_deref(),
+        photo.icc.as_deref(),
+    )?;
+    Ok((image, bytes))
+}

@@ -1,0 +1,52 @@
+//! What an export consists of: its files, before any of them is made.
+
+use super::ExportRequest;
+use super::names::file_names;
+use crate::flight::Outcome;
+
+/// The fixed files.
+pub(super) const CSV: &str = "scales.csv";
+pub(super) const SHEET: &str = "scales.html";
+pub(super) const GEOJSON: &str = "footprints.geojson";
+pub(super) const KML: &str = "footprints.kml";
+
+/// The files of one photo below the exported folder, with slashes.
+#[derive(Debug, Clone)]
+pub(super) struct PhotoNames {
+    pub photo: String,
+    pub overlay: String,
+    pub thumbnail: String,
+}
+
+impl PhotoNames {
+    pub(super) fn all(&self) -> [String; 3] {
+        [
+            self.photo.clone(),
+            self.overlay.clone(),
+            self.thumbnail.clone(),
+        ]
+    }
+}
+
+/// For each photo of the flight the names of its pictures, or why it has none.
+pub(super) fn pictures(request: &ExportRequest<'_>) -> Vec<Result<PhotoNames, String>> {
+    let photos = &request.flight.parts().photos;
+    let names: Vec<&str> = photos.iter().map(|photo| photo.name.as_str()).collect();
+    let names = file_names(&names).into_iter();
+    names
+        .enumerate()
+        .map(
+            |(index, (stem, extension))| match request.outcomes.get(index) {
+                Some(Outcome::Trouble(trouble)) => Err(format!("no pictures: {trouble}")),
+                _ if request.photo_files.get(index).is_none_or(Option::is_none) => {
+                    Err("no pictures: the photo file is missing".to_owned())
+                }
+                _ => Ok(PhotoNames {
+                    photo: format!("photos/{stem}{extension}"),
+                    overlay: format!("overlays/{stem}.jpg"),
+                    thumbnail: format!("thumbnails/{stem}.jpg"),
+                }),
+            },
+        )
+        .collect()
+}

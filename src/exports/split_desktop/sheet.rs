@@ -1,0 +1,286 @@
+//! The sheet to type scales from: one HTML file without scripts, for a screen or A4 paper.
+
+use std::fmt::Write;
+
+use super::plan::PhotoNames;
+use super::{CheckedInput, ExportRequest};
+use crate::exports::{ReportLine, ScaleReport};
+use crate::flight::{Doubt, Verdict};
+use crate::picture::significant_digits;
+use crate::scale::{Ground, ImageKind};
+use crate::units::LengthUnit;
+
+const STYLE: &str = include_str!("sheet.css");
+
+/// The units in which every scale is given, beside the chosen one.
+const UNITS: [LengthUnit; 4] = [
+    LengthUnit::Metre,
+    LengthUnit::Centimetre,
+    LengthUnit::Inch,
+    LengthUnit::Foot,
+];
+
+/// Digits of a scale: typing fewer than five would add an error, more would only add typing.
+const DIGITS: u8 = 5;
+
+/// The sheet of the `chosen` photos; `report` has a line for each of them, `pictures` an entry for
+/// each photo of the flight.
+pub(super) fn html(
+    request: &ExportRequest<'_>,
+    report: &ScaleReport,
+    chosen: &[usize],
+    pictures: &[Result<PhotoNames, String>],
+    inputs: &[CheckedInput],
+    warnings: &[String],
+) -> String {
+    let title = escaped(&report.flight);
+    let mut rows = String::new();
+    for ((line, &index), number) in report.lines.iter().zip(chosen).zip(1_usize..) {
+        let judged = request.judged.get(index);
+        let picture = pictures.get(index).map_or(Err("no pictures"), |names| {
+            names.as_ref().map_err(String::as_str)
+        });
+        rows += &row(number, line, report, judged, picture);
+    }
+    let (image, where_from) = match report.image {
+        ImageKind::Undistorted => (
+            "the undistorted photos",
+            "Open the photos in <b>photos/</b>, not the originals: the scales hold for the undistorted ones.",
+        ),
+        ImageKind::AsShot => (
+            "the photos as shot",
+            "The photos in <b>photos/</b> are copies of the originals.",
+        ),
+    };
+    let unit = report.unit;
+    let total = request.flight.parts().photos.len();
+    let all_warnings: Vec<&String> = request.warnings.iter().chain(warnings).collect();
+    let noticed = match all_warnings.len() {
+        0 => String::new(),
+        1 => " There is <b>1 warning</b>, at the end.".to_owned(),
+        n => format!(" There are <b>{n} warnings</b>, at the end."),
+    };
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}: scales</title>\n\
+         <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n\
+         <p>Image scales for Split-Desktop in <b>pixels per {unit}</b>, of {image}. {where_from}</p>\n\
+         <p class=\"small\">{} of {total} photos, in the order of the flight's photos.{noticed}</p>\n\
+         <table class=\"photos\">\n<thead><tr><th>Photo with its scale</th><th>Name, verdict</th>\
+         <th>TOP scale</th><th>BOTTOM scale</th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n\
+         {}{}{}</body>\n</html>\n",
+        chosen.len(),
+        warning_list(&all_warnings),
+        settings(request),
+        input_list(inputs),
+    )
+}
+
+fn row(
+    number: usize,
+    line: &ReportLine,
+    report: &ScaleReport,
+    judged: Option<&(Verdict, Vec<Doubt>)>,
+    picture: Result<&PhotoNames, &str>,
+) -> String {
+    let name = escaped(&line.photo);
+    let shown = match picture {
+        Ok(names) => format!(
+            "<a href=\"{}\"><img src=\"{}\" alt=\"{name} with its scale\"></a>",
+            link(&names.overlay),
+            link(&names.thumbnail)
+        ),
+        Err(why) => format!("<div class=\"none\">{}</div>", escaped(why)),
+    };
+    let file = picture.map_or_else(|_| String::new(), |names| {
+        format!(
+            "<div class=\"small\">{} &middot; <span class=\"pixels\">{} &times; {} px</span></div>",
+            escaped(&names.photo),
+            line.width,
+            line.height
+        )
+    });
+    let mut reasons: Vec<String> = Vec::new();
+    let mut verdict = "";
+    if let Some((judgement, doubts)) = judged {
+        verdict = judgement.as_str();
+        reasons.extend(doubts.iter().map(Doubt::to_string));
+    }
+    let class = verdict.replace(' ', "-");
+    let reasons = match reasons.is_empty() {
+        true => String::new(),
+        false => {
+            let items: String = reasons
+                .iter()
+                .map(|reason| format!("<li>{}</li>", escaped(reason)))
+                .collect();
+            format!("<ul class=\"reasons\">{items}</ul>")
+        }
+    };
+    format!(
+        "<tr><td class=\"picture\">{shown}</td><td><div class=\"name\">{number}. {name}</div>{file}\
+         <div class=\"verdict {class}\">{verdict}</div>\
+         <div class=\"small\">{} of 4 corners on the surface</div>{reasons}</td>{}{}</tr>\n",
+        line.corners_on_surface,
+        scale_cell(line.scale.top, report.unit),
+        scale_cell(line.scale.bottom, report.unit),
+    )
+}
+
+/// The scale in the chosen unit, big, and in the others.
+fn scale_cell(scale: Option<f64>, unit: LengthUnit) -> String {
+    let Some(scale) = scale else {
+        return "<td class=\"scale\"><div class=\"big missing\">no scale</div></td>".to_owned();
+    };
+    let mut others = String::new();
+    for other in UNITS.into_iter().filter(|other| *other != unit) {
+        let scale = scale * other.in_units_of(unit);
+        // Writing to a String cannot fail.
+        let _ = write!(
+            others,
+            "<tr><td>{}</td><td>px/{other}</td></tr>",
+            significant_digits(scale, DIGITS)
+        );
+    }
+    format!(
+        "<td class=\"scale\"><div class=\"big\">{}</div><div>px/{unit}</div><table class=\"others\">{others}</table></td>",
+        significant_digits(scale, DIGITS)
+    )
+}
+
+fn warning_list(warnings: &[&String]) -> String {
+    if warnings.is_empty() {
+        return String::new();
+    }
+    let items: String = warnings
+        .iter()
+        .map(|warning| format!("<li>{}</li>", escaped(warning)))
+        .collect();
+    format!("<h2>Warnings</h2>\n<ul class=\"reasons\">{items}</ul>\n")
+}
+
+/// What the scales and the verdicts depend on.
+fn settings(request: &ExportRequest<'_>) -> String {
+    let settings = request.settings;
+    let limits = request.limits;
+    let unit = settings.unit;
+    let ground = match settings.ground {
+        Ground::Auto => "auto: for each photo the median elevation in its view".to_owned(),
+        Ground::At(z) => format!("{z} {unit}"),
+    };
+    let image = match settings.image {
+        ImageKind::Undistorted => "undistorted, with the same K and size",
+        ImageKind::AsShot => "as shot",
+    };
+    let length =
+        |length: Option<f64>| length.map_or_else(|| "none".to_owned(), |l| format!("{l} {unit}"));
+    let percent = |share: f64| format!("{} % of the footprint's mean edge", share * 100.0);
+    let rows = [
+        ("World unit", unit.to_string()),
+        (
+            "Coordinate system",
+            request.crs.unwrap_or("not stated").to_owned(),
+        ),
+        ("Ground", ground),
+        ("Image", image.to_owned()),
+        ("Longest triangle edge", length(settings.surface.max_edge)),
+        ("Thinning", length(settings.surface.thinning)),
+        (
+            "Doubt: top/bottom ratio above",
+            limits.top_bottom_ratio.to_string(),
+        ),
+        ("Doubt: triangle edge above", percent(limits.triangle_share)),
+        (
+            "Doubt: corner's view flatter than",
+            format!("{}°", limits.flattest_angle),
+        ),
+        (
+            "Doubt: surface off the plane by",
+            percent(limits.plane_share),
+        ),
+        (
+            "Program",
+            concat!("fragscale ", env!("CARGO_PKG_VERSION")).to_owned(),
+        ),
+    ];
+    let rows: String = rows
+        .iter()
+        .map(|(name, value)| format!("<tr><td>{name}</td><td>{}</td></tr>\n", escaped(value)))
+        .collect();
+    format!("<h2>Settings</h2>\n<table class=\"facts\">\n{rows}</table>\n")
+}
+
+fn input_list(inputs: &[CheckedInput]) -> String {
+    let rows: String = inputs
+        .iter()
+        .map(|input| {
+            format!(
+                "<tr><td>{}</td><td class=\"sum\">{}</td></tr>\n",
+                escaped(&input.path.display().to_string()),
+                escaped(&input.checksum)
+            )
+        })
+        .collect();
+    format!("<h2>Input files (SHA-256)</h2>\n<table class=\"facts\">\n{rows}</table>\n")
+}
+
+/// Text for HTML and XML, in an element or an attribute.
+pub(super) fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '"' => safe.push_str("&quot;"),
+            '\'' => safe.push_str("&#39;"),
+            // XML has no place for them.
+            c if c.is_control() => safe.push(' '),
+            c => safe.push(c),
+        }
+    }
+    safe
+}
+
+/// A relative address: everything but letters, digits and a few signs as %XX (RFC 3986).
+fn link(path: &str) -> String {
+    let mut link = String::new();
+    for byte in path.bytes() {
+        if byte.is_ascii_alphanumeric() || b"/-._~".contains(&byte) {
+            link.push(char::from(byte));
+        } else {
+            let _ = write!(link, "%{byte:02X}");
+        }
+    }
+    link
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_from_outside_becomes_markup() {
+        let nasty = "<script>alert(\"1\" & '2')</script>\u{0}";
+        assert_eq!(
+            escaped(nasty),
+            "&lt;script&gt;alert(&quot;1&quot; &amp; &#39;2&#39;)&lt;/script&gt; "
+        );
+        assert_eq!(link("photos/ä #1.jpg"), "photos/%C3%A4%20%231.jpg");
+    }
+
+    /// 25.6 px/cm are 2560 px/m, 65.024 px/in and 780.288 px/ft exactly.
+    #[test]
+    fn a_scale_in_all_units() {
+        let cell = scale_cell(Some(25.6), LengthUnit::Centimetre);
+        for text in [
+            ">25.600</div><div>px/cm",
+            "<td>2560.0</td><td>px/m",
+            "<td>65.024</td><td>px/in",
+            "<td>780.29</td><td>px/ft",
+        ] {
+            assert!(cell.contains(text), "{text} is not in {cell}");
+        }
+        assert!(scale_cell(None, LengthUnit::Inch).contains("no scale"));
+    }
+}
