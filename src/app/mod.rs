@@ -107,8 +107,8 @@ impl eframe::App for App {
             self.state.apply(command);
         }
         let dropped = context.input(|input| input.raw.dropped_files.clone());
-        if let Some(path) = dropped.into_iter().find_map(|file| file.path) {
-            self.state.apply(Command::Open(path));
+        if let Some(file) = dropped.first() {
+            self.state.apply(Command::Open(file.path().to_owned()));
         }
         self.state.poll();
         self.viewport.take_picture(&mut self.state);
@@ -196,7 +196,7 @@ fn drop_hint(context: &egui::Context) {
     if hovering {
         let painter = context.layer_painter(egui::LayerId::new(
             egui::Order::Foreground,
-            egui::Id::new("drop"),
+            egui::Id::unique("drop"),
         ));
         let place = context.content_rect();
         painter.rect_filled(place, 0.0, egui::Color32::from_black_alpha(150));

@@ -72,7 +72,6 @@ pub struct Looking {
 }
 
 /// A flight on the screen.
-#[derive(Debug)]
 pub struct OpenFlight {
     /// Counted, so that results for an earlier flight are told from those for this one.
     pub number: u64,

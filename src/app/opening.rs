@@ -323,7 +323,12 @@ fn geometry(
     let mesh = MeshGeometry::new(frame, surface.vertices(), colors, &normals, &triangles);
     progress.advance(3, 4)?;
     let cloud = CloudGeometry::new(frame, surface.vertices(), colors, &normals);
-    Ok(Box::new(Geometry { cloud, mesh }))
+    let points = surface.vertices().len();
+    Ok(Box::new(Geometry {
+        cloud,
+        mesh,
+        points,
+    }))
 }
 
 /// A photo as its scale assumes it: undistorted or as shot, reduced.

@@ -42,7 +42,6 @@ pub enum HeldBack {
 }
 
 /// The whole state of the window.
-#[derive(Debug)]
 pub struct State {
     /// For clipboard, theme and window; also what wakes the window up.
     pub context: egui::Context,

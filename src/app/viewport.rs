@@ -16,8 +16,9 @@ use super::panels::verdict_color;
 use super::state::{PictureRequest, State};
 use super::work::{Done, Geometry, Task};
 use crate::exports;
+use crate::picture::Anchor;
 use crate::render::{
-    Anchor, Background, Gpu, Label, PhotoGeometry, PhotoLook, Renderer, Show, View, viridis,
+    Background, Gpu, Label, PhotoGeometry, PhotoLook, Renderer, Show, View, viridis,
 };
 
 /// How long the view must rest before everything is drawn.
@@ -402,7 +403,7 @@ impl Graphics {
             .uploaded
             .geometry
             .as_ref()
-            .map_or(0, |geometry| geometry.cloud.len());
+            .map_or(0, |geometry| geometry.points);
         let many = points > MOVING_POINTS[software] && (show.cloud || (show.mesh && heavy));
         if !rested && (many || (show.mesh && heavy)) {
             show.max_points = Some(MOVING_POINTS[software]);
@@ -442,9 +443,15 @@ impl Graphics {
 
 fn write(scene: &Scene, label: &Label, ui: &egui::Ui) {
     let anchor = match label.anchor {
-        Anchor::Center => Align2::CENTER_CENTER,
-        Anchor::Above => Align2::CENTER_BOTTOM,
-        Anchor::Right => Align2::LEFT_CENTER,
+        Anchor::TopLeft => Align2::LEFT_TOP,
+        Anchor::TopMiddle => Align2::CENTER_TOP,
+        Anchor::TopRight => Align2::RIGHT_TOP,
+        Anchor::MiddleLeft => Align2::LEFT_CENTER,
+        Anchor::Middle => Align2::CENTER_CENTER,
+        Anchor::MiddleRight => Align2::RIGHT_CENTER,
+        Anchor::BottomLeft => Align2::LEFT_BOTTOM,
+        Anchor::BottomMiddle => Align2::CENTER_BOTTOM,
+        Anchor::BottomRight => Align2::RIGHT_BOTTOM,
     };
     let [red, green, blue] = label.color;
     ui.painter().with_clip_rect(scene.place).text(

@@ -96,6 +96,8 @@ pub struct Geometry {
     pub cloud: CloudGeometry,
     /// The triangles.
     pub mesh: MeshGeometry,
+    /// How many points there are.
+    pub points: usize,
 }
 
 /// What came out of a job.

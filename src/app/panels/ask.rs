@@ -48,7 +48,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
 }
 
 fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) {
-    let modal = egui::Modal::new(egui::Id::new("unsaved")).show(context, |ui| {
+    let modal = egui::Modal::new(egui::Id::unique("unsaved")).show(context, |ui| {
         ui.set_width(340.0);
         ui.heading("Unsaved changes");
         if let Some(open) = &state.open {
@@ -84,13 +84,13 @@ fn path_field(
     browse: &[(&str, DialogFor, bool)],
     commands: &mut Vec<Command>,
 ) -> (String, bool) {
-    let id = ui.id().with("path");
+    let id = ui.scope_id().with("path");
     let mut path: String = ui
         .data(|data| data.get_temp(id))
         .unwrap_or_else(|| start.to_owned());
     if let Some(answered) = &state.answered {
         let answered = answered.display().to_string();
-        let taken = ui.id().with("taken");
+        let taken = ui.scope_id().with("taken");
         let before: Option<String> = ui.data(|data| data.get_temp(taken));
         if before.as_ref() != Some(&answered) {
             path.clone_from(&answered);
@@ -200,7 +200,7 @@ fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let Some(open) = &state.open else {
         return;
     };
-    let id = ui.id().with("picture options");
+    let id = ui.scope_id().with("picture options");
     let mut options: (u32, u32, bool, bool) = ui
         .data(|data| data.get_temp(id))
         .unwrap_or((1920, 1080, false, false));

@@ -30,7 +30,7 @@ pub fn text_field(
     text: &str,
     width: f32,
 ) -> Option<String> {
-    let id = ui.id().with(label);
+    let id = ui.scope_id().with(label);
     let mut typed: String = ui
         .data(|data| data.get_temp(id))
         .unwrap_or_else(|| text.to_owned());

@@ -47,7 +47,7 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     let selected_row = open
         .selected
         .and_then(|photo| open.shown.iter().position(|&shown| shown == photo));
-    let id = ui.id().with("selected row");
+    let id = ui.scope_id().with("selected row");
     let before: Option<Option<usize>> = ui.data(|data| data.get_temp(id));
     let mut table = TableBuilder::new(ui)
         .id_salt("photos")
