@@ -469,18 +469,16 @@ mod tests {
         };
         let unit = LengthUnit::Metre;
         // 100 or 150 at the top, and 100 or 150 at the bottom.
-        let beyond = 150_f64.next_up() / 100.0;
-        let doubt = Doubt::Ratio {
-            ratio: beyond,
-            limit: 1.5,
-        };
+        let beyond = 150_f64.next_up();
         assert_eq!(of_scale([150.0, 1.0, 100.0, 1.0]), []);
         assert_eq!(of_scale([100.0, 1.0, 150.0, 1.0]), []);
-        assert_eq!(
-            of_scale([150_f64.next_up(), 1.0, 100.0, 1.0]),
-            [doubt.clone()]
-        );
-        assert_eq!(of_scale([100.0, 1.0, 150_f64.next_up(), 1.0]), [doubt]);
+        for edges in [[beyond, 1.0, 100.0, 1.0], [100.0, 1.0, beyond, 1.0]] {
+            let doubt = Doubt::Ratio {
+                ratio: beyond / 100.0,
+                limit: 1.5,
+            };
+            assert_eq!(of_scale(edges), [doubt]);
+        }
         assert_eq!(of_scale([1.0, 125.0, 1.0, 100.0]), []);
         let doubt = of_scale([1.0, 100.0, 1.0, 125_f64.next_up()]);
         assert!(matches!(doubt[..], [Doubt::Sideways { limit: 1.25, .. }]));
