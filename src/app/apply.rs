@@ -45,10 +45,7 @@ impl State {
             Command::Browse(what, folder) => self.browse(what, folder),
             Command::Cancel(task) => {
                 self.work.cancel(task);
-                self.say(
-                    Severity::Note,
-                    &format!("{}: cancelled", task.in_words()),
-                );
+                self.say(Severity::Note, &format!("{}: cancelled", task.in_words()));
             }
             Command::Unit(unit) => self.set_unit(unit),
             Command::Limits(limits) => {
@@ -145,8 +142,7 @@ impl State {
     fn quit(&mut self) {
         self.work.cancel_all();
         self.may_quit = true;
-        self.context
-            .send_viewport_cmd(egui::ViewportCommand::Close);
+        self.context.send_viewport_cmd(egui::ViewportCommand::Close);
     }
 
     fn ask(&mut self, asking: Option<Asking>) {

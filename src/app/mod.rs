@@ -12,33 +12,28 @@
 //! So a test is a list of commands, undo is a list of states, and no frame does work that grows with
 //! the flight.
 
-mod actions;
-mod apply;
-mod command;
-mod history;
-mod layers;
-mod numbers;
-mod open_flight;
-mod opening;
-mod panels;
-mod picker;
-mod poll;
-mod preferences;
-mod state;
-mod table;
-mod viewport;
-mod work;
+pub mod actions;
+pub mod apply;
+pub mod command;
+pub mod history;
+pub mod layers;
+pub mod numbers;
+pub mod open_flight;
+pub mod opening;
+pub mod panels;
+pub mod picker;
+pub mod poll;
+pub mod preferences;
+pub mod state;
+pub mod table;
+pub mod viewport;
+pub mod work;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
-pub use command::{Asking, Choice, Command, Look, Tab};
-pub use layers::Layers;
-pub use open_flight::OpenFlight;
-pub use preferences::{Preferences, Theme};
-pub use state::{Severity, State, sample_flight};
-pub use table::Column;
-pub use work::DialogFor;
+pub use command::Command;
+pub use state::State;
 
 use panels::Inspector;
 use state::HeldBack;
@@ -92,7 +87,11 @@ impl App {
 
     fn hold_back_closing(&mut self, context: &egui::Context) {
         let closes = context.input(|input| input.viewport().close_requested());
-        let changed = self.state.open.as_ref().is_some_and(|open| open.is_changed());
+        let changed = self
+            .state
+            .open
+            .as_ref()
+            .is_some_and(|open| open.is_changed());
         if closes && changed && !self.state.may_quit {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.state.held_back = Some(HeldBack::Quit);

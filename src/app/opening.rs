@@ -246,7 +246,10 @@ impl State {
             let chosen = pollster::block_on(async {
                 match what {
                     DialogFor::Open if folder => {
-                        dialog.set_title("Open a flight's folder").pick_folder().await
+                        dialog
+                            .set_title("Open a flight's folder")
+                            .pick_folder()
+                            .await
                     }
                     DialogFor::Open => dialog.set_title("Open a flight").pick_file().await,
                     DialogFor::Export => {

@@ -303,7 +303,8 @@ impl OpenFlight {
             .filter_map(|(index, photo)| {
                 let camera = self.flight.camera(photo);
                 let pixel = camera.pixel_undistorted(photo.pose.camera_from_world(point))?;
-                let half = glam::DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
+                let half =
+                    glam::DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
                 camera
                     .contains(pixel)
                     .then(|| (index, ((pixel - half) / half).abs().max_element()))

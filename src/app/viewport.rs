@@ -6,8 +6,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use eframe::egui_wgpu::RenderState;
+use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::DVec2;
 
 use super::command::{Command, Look};
@@ -173,8 +173,9 @@ impl Viewport {
                 picture
                     .write_to(&mut bytes, image::ImageFormat::Png)
                     .map_err(|error| error.to_string())?;
-                exports::write_whole(&path, bytes.get_ref())
-                    .map_err(|error| format!("it cannot be written ({error}); choose another place"))
+                exports::write_whole(&path, bytes.get_ref()).map_err(|error| {
+                    format!("it cannot be written ({error}); choose another place")
+                })
             };
             let written = write().map_err(|what| format!("{}: {what}", path.display()));
             Done::Picture(written.map(|()| path))
@@ -223,7 +224,11 @@ fn view(open: &OpenFlight) -> View {
                 .view(index)
                 .and_then(|view| view.height)
                 .unwrap_or(open.looking.orbit.distance);
-            View::of_photo(open.flight.camera(photo), &photo.pose, focus.abs().max(1e-6))
+            View::of_photo(
+                open.flight.camera(photo),
+                &photo.pose,
+                focus.abs().max(1e-6),
+            )
         }
     }
 }
@@ -322,8 +327,10 @@ impl Graphics {
         if !same_geometry {
             uploaded.geometry.clone_from(&open.geometry);
             let geometry = open.geometry.as_deref();
-            self.renderer.set_cloud(geometry.map(|geometry| &geometry.cloud));
-            self.renderer.set_mesh(geometry.map(|geometry| &geometry.mesh));
+            self.renderer
+                .set_cloud(geometry.map(|geometry| &geometry.cloud));
+            self.renderer
+                .set_mesh(geometry.map(|geometry| &geometry.mesh));
             self.drawn = None;
         }
         let views = open.views.as_ref().map(|views| Arc::as_ptr(views).addr());
@@ -389,7 +396,10 @@ impl Graphics {
     fn draw(&mut self, scene: &Scene, show: &Show, ui: &egui::Ui) {
         let mut show = show.clone();
         let now = Instant::now();
-        let moved = self.moved.as_ref().is_none_or(|(view, _)| *view != scene.view);
+        let moved = self
+            .moved
+            .as_ref()
+            .is_none_or(|(view, _)| *view != scene.view);
         if moved {
             self.moved = Some((scene.view, now));
         }
@@ -424,10 +434,12 @@ impl Graphics {
                 let nearest = eframe::wgpu::FilterMode::Nearest;
                 match self.texture {
                     None => {
-                        self.texture = Some(renderer.register_native_texture(device, view, nearest));
+                        self.texture =
+                            Some(renderer.register_native_texture(device, view, nearest));
                     }
                     Some(texture) if drawn.new_texture => {
-                        renderer.update_egui_texture_from_wgpu_texture(device, view, nearest, texture);
+                        renderer
+                            .update_egui_texture_from_wgpu_texture(device, view, nearest, texture);
                     }
                     Some(_) => {}
                 }
@@ -436,7 +448,8 @@ impl Graphics {
         }
         if let Some(texture) = self.texture {
             let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-            ui.painter().image(texture, scene.place, whole, Color32::WHITE);
+            ui.painter()
+                .image(texture, scene.place, whole, Color32::WHITE);
         }
     }
 }
@@ -485,7 +498,10 @@ fn legend(scene: &Scene, legend: Option<&crate::render::Legend>, ui: &egui::Ui) 
     }
     let color = ui.visuals().text_color();
     let font = FontId::proportional(12.0);
-    for (value, y) in [(legend.range[1], bar.top()), (legend.range[0], bar.bottom())] {
+    for (value, y) in [
+        (legend.range[1], bar.top()),
+        (legend.range[0], bar.bottom()),
+    ] {
         let text = super::numbers::significant(value, 4);
         let at = pos2(bar.right() + 5.0, y);
         painter.text(at, Align2::LEFT_CENTER, text, font.clone(), color);

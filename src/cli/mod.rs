@@ -33,10 +33,18 @@ const QUICK: Duration = Duration::from_millis(500);
 
 /// Image scales for blast fragmentation photos, from a drone flight's point cloud.
 #[derive(Debug, Parser)]
-#[command(name = "fragscale", version, about, arg_required_else_help = false)]
+#[command(
+    name = "fragscale",
+    version,
+    about,
+    args_conflicts_with_subcommands = true
+)]
 struct Arguments {
+    /// Open this flight in a window; without it, the window's start page.
+    #[cfg(feature = "app")]
+    flight: Option<PathBuf>,
     #[command(subcommand)]
-    command: Command,
+    command: Option<Command>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -206,11 +214,22 @@ pub fn run() -> ExitCode {
         exports::remove_unfinished();
         std::process::exit(130);
     });
+    let Some(command) = arguments.command else {
+        #[cfg(feature = "app")]
+        return window(arguments.flight);
+        #[cfg(not(feature = "app"))]
+        {
+            say(
+                "error: this fragscale was built without the window, so it needs a command; see 'fragscale --help'",
+            );
+            return ExitCode::from(2);
+        }
+    };
     // A panic is a defect that the job reports in a sentence; its details are for developers.
     if std::env::var_os("FRAGSCALE_BACKTRACE").is_none() {
         std::panic::set_hook(Box::new(|_| {}));
     }
-    let (output, work): (Option<PathBuf>, Work) = match arguments.command {
+    let (output, work): (Option<PathBuf>, Work) = match command {
         Command::Scales(arguments) => (
             arguments.output.clone(),
             Box::new(move |progress| scales(&arguments, progress)),
@@ -246,6 +265,22 @@ pub fn run() -> ExitCode {
                 fail(&FileError::new(&path, fault).to_string())
             }
         },
+    }
+}
+
+/// Opens the window, with a flight where one is named.
+#[cfg(feature = "app")]
+fn window(flight: Option<PathBuf>) -> ExitCode {
+    if let Some(path) = flight.as_deref().filter(|path| !path.exists()) {
+        say(&format!(
+            "error: {}: neither a file or folder nor a command; see 'fragscale --help'",
+            path.display()
+        ));
+        return ExitCode::from(2);
+    }
+    match crate::app::run(flight) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => fail(&message),
     }
 }
 

@@ -181,7 +181,9 @@ fn save_as(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let Some(open) = &state.open else {
         return;
     };
-    ui.label("The flight's settings and where its files are; the files themselves stay as they are.");
+    ui.label(
+        "The flight's settings and where its files are; the files themselves stay as they are.",
+    );
     let start = open.origin.suggested_file();
     let start = std::path::absolute(&start).unwrap_or(start);
     let browse = [("Browse…", DialogFor::SaveAs, false)];
@@ -245,26 +247,32 @@ fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 }
 
 fn keys(ui: &mut egui::Ui) {
-    egui::Grid::new("keys").striped(true).num_columns(2).show(ui, |ui| {
-        for (what, how) in [
-            ("Turn the view", "drag with the left button"),
-            ("Move the view", "drag with the right or middle button, or Shift and left"),
-            ("Come closer to the cursor", "wheel, or pinch"),
-            ("Turn around a place", "double click on it"),
-            ("Select a photo", "click its camera or its footprint"),
-        ] {
-            ui.label(what);
-            ui.label(how);
-            ui.end_row();
-        }
-        for action in actions::all() {
-            if let Some(shortcut) = action.shortcut {
-                ui.label(action.label.trim_end_matches('…'));
-                ui.label(ui.ctx().format_shortcut(&shortcut));
+    egui::Grid::new("keys")
+        .striped(true)
+        .num_columns(2)
+        .show(ui, |ui| {
+            for (what, how) in [
+                ("Turn the view", "drag with the left button"),
+                (
+                    "Move the view",
+                    "drag with the right or middle button, or Shift and left",
+                ),
+                ("Come closer to the cursor", "wheel, or pinch"),
+                ("Turn around a place", "double click on it"),
+                ("Select a photo", "click its camera or its footprint"),
+            ] {
+                ui.label(what);
+                ui.label(how);
                 ui.end_row();
             }
-        }
-    });
+            for action in actions::all() {
+                if let Some(shortcut) = action.shortcut {
+                    ui.label(action.label.trim_end_matches('…'));
+                    ui.label(ui.ctx().format_shortcut(&shortcut));
+                    ui.end_row();
+                }
+            }
+        });
 }
 
 fn about(ui: &mut egui::Ui) {

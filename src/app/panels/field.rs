@@ -2,7 +2,7 @@
 //! it and nothing is computed for half a number.
 
 /// Draws the field; returns the new number once it is settled. `label` names it for screen readers.
-pub fn number_field(
+pub(super) fn number_field(
     ui: &mut egui::Ui,
     label: &str,
     hover: &str,
@@ -23,7 +23,7 @@ pub fn number_field(
 }
 
 /// Draws a field for a text; returns what was typed once the field is left.
-pub fn text_field(
+pub(super) fn text_field(
     ui: &mut egui::Ui,
     label: &str,
     hover: &str,

@@ -8,7 +8,7 @@ use crate::scale::{Ground, ImageKind};
 use crate::units::LengthUnit;
 
 /// Draws the page.
-pub fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let Some(open) = &state.open else {
         return;
     };
@@ -23,7 +23,9 @@ pub fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comm
     ));
     ui.weak(format!(
         "Coordinate system: {}",
-        open.crs.as_deref().map_or("not stated", |crs| crs.get(..60).unwrap_or(crs))
+        open.crs
+            .as_deref()
+            .map_or("not stated", |crs| crs.get(..60).unwrap_or(crs))
     ));
     ui.add_space(8.0);
 

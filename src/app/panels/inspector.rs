@@ -153,7 +153,8 @@ impl Inspector {
                 draw_bar(&painter, &bar, &to_screen);
             }
             for corner in &scale.corners {
-                let at = to_screen(corner.pixel).clamp(frame.min + vec2(7.0, 7.0), frame.max - vec2(7.0, 7.0));
+                let at = to_screen(corner.pixel)
+                    .clamp(frame.min + vec2(7.0, 7.0), frame.max - vec2(7.0, 7.0));
                 draw_corner(&painter, at, &corner.outcome);
             }
         }
@@ -169,7 +170,8 @@ impl Inspector {
 
     fn turn_wheel(&mut self, response: &egui::Response, ui: &egui::Ui, size: Vec2, frame: Rect) {
         if let Some(cursor) = response.hover_pos() {
-            let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let (scroll, pinch) =
+                ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
             let factor = (scroll * 0.005).exp() * pinch;
             if factor != 1.0 {
                 let zoom = (self.zoom * factor).clamp(1.0, 40.0);
@@ -226,14 +228,21 @@ fn draw_corner(painter: &egui::Painter, at: Pos2, outcome: &CornerOutcome) {
             painter.circle(at, 5.0, Color32::from_rgb(64, 200, 110), outline);
         }
         CornerOutcome::OnGround { .. } => {
-            let points = vec![at + vec2(0.0, -6.0), at + vec2(6.0, 5.0), at + vec2(-6.0, 5.0)];
+            let points = vec![
+                at + vec2(0.0, -6.0),
+                at + vec2(6.0, 5.0),
+                at + vec2(-6.0, 5.0),
+            ];
             let fill = Color32::from_rgb(255, 176, 32);
             painter.add(egui::Shape::convex_polygon(points, fill, outline));
         }
         CornerOutcome::Nowhere | CornerOutcome::NoRay(_) => {
             let stroke = Stroke::new(2.5, Color32::from_rgb(240, 60, 60));
             for sign in [-1.0, 1.0] {
-                painter.line_segment([at + vec2(-5.0, -5.0 * sign), at + vec2(5.0, 5.0 * sign)], stroke);
+                painter.line_segment(
+                    [at + vec2(-5.0, -5.0 * sign), at + vec2(5.0, 5.0 * sign)],
+                    stroke,
+                );
             }
         }
     }
@@ -249,9 +258,8 @@ fn scales(
 ) {
     let unit = state.preferences.unit();
     let factor = unit.in_units_of(open.flight.parts().unit);
-    let shown = |scale: Option<f64>, digits: usize| {
-        or_dash(scale.map(|scale| scale * factor), digits)
-    };
+    let shown =
+        |scale: Option<f64>, digits: usize| or_dash(scale.map(|scale| scale * factor), digits);
     ui.horizontal(|ui| {
         for (name, value) in [("Top", scale.scale.top), ("Bottom", scale.scale.bottom)] {
             ui.vertical(|ui| {
@@ -282,35 +290,38 @@ fn corners(open: &OpenFlight, scale: &PhotoScale, ui: &mut egui::Ui) {
     let unit = open.flight.parts().unit;
     ui.separator();
     ui.strong(format!("Corner points, {unit}"));
-    egui::Grid::new("corners").striped(true).num_columns(5).show(ui, |ui| {
-        for heading in ["Corner", "x", "y", "z", "on"] {
-            ui.weak(heading);
-        }
-        ui.end_row();
-        for corner in &scale.corners {
-            ui.label(corner.name.as_str().replace('_', " "));
-            match corner.point() {
-                Some(point) => {
-                    for value in point.to_array() {
-                        ui.label(format!("{value:.3}"));
-                    }
-                }
-                None => {
-                    for _ in 0..3 {
-                        ui.label("–");
-                    }
-                }
+    egui::Grid::new("corners")
+        .striped(true)
+        .num_columns(5)
+        .show(ui, |ui| {
+            for heading in ["Corner", "x", "y", "z", "on"] {
+                ui.weak(heading);
             }
-            let on = match corner.outcome {
-                CornerOutcome::OnSurface { .. } => "surface",
-                CornerOutcome::OnGround { .. } => "ground",
-                CornerOutcome::Nowhere => "nothing",
-                CornerOutcome::NoRay(_) => "no ray",
-            };
-            ui.label(on);
             ui.end_row();
-        }
-    });
+            for corner in &scale.corners {
+                ui.label(corner.name.as_str().replace('_', " "));
+                match corner.point() {
+                    Some(point) => {
+                        for value in point.to_array() {
+                            ui.label(format!("{value:.3}"));
+                        }
+                    }
+                    None => {
+                        for _ in 0..3 {
+                            ui.label("–");
+                        }
+                    }
+                }
+                let on = match corner.outcome {
+                    CornerOutcome::OnSurface { .. } => "surface",
+                    CornerOutcome::OnGround { .. } => "ground",
+                    CornerOutcome::Nowhere => "nothing",
+                    CornerOutcome::NoRay(_) => "no ray",
+                };
+                ui.label(on);
+                ui.end_row();
+            }
+        });
 }
 
 fn facts(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
@@ -326,7 +337,10 @@ fn facts(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
             "Height above surface"
         };
         for (name, value) in [
-            (below, view.height.map(|height| format!("{height:.3} {unit}"))),
+            (
+                below,
+                view.height.map(|height| format!("{height:.3} {unit}")),
+            ),
             ("Tilt below horizon", Some(format!("{:.2}°", view.tilt))),
             (
                 "Flattest corner ray",
@@ -334,7 +348,8 @@ fn facts(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
             ),
             (
                 "Off the corners' plane (rms)",
-                view.plane_distance.map(|distance| format!("{distance:.3} {unit}")),
+                view.plane_distance
+                    .map(|distance| format!("{distance:.3} {unit}")),
             ),
             (
                 "Mean edge of the footprint",

@@ -51,14 +51,26 @@ pub fn layers_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     egui::Grid::new("scopes").num_columns(2).show(ui, |ui| {
         for (scope, name, hover) in [
             (&mut next.frusta, "Cameras", "Where the photos were taken"),
-            (&mut next.images, "Photos", "The photos on the cameras' image planes"),
+            (
+                &mut next.images,
+                "Photos",
+                "The photos on the cameras' image planes",
+            ),
             (
                 &mut next.corner_rays,
                 "Corner rays",
                 "From the camera through the image corners to the surface",
             ),
-            (&mut next.outlines, "Outlines", "The image outlines on the surface"),
-            (&mut next.fills, "Footprints", "The image areas on the surface"),
+            (
+                &mut next.outlines,
+                "Outlines",
+                "The image outlines on the surface",
+            ),
+            (
+                &mut next.fills,
+                "Footprints",
+                "The image areas on the surface",
+            ),
         ] {
             ui.label(name).on_hover_text(hover);
             ui.horizontal(|ui| {

@@ -6,7 +6,7 @@ use crate::app::state::State;
 use crate::flight::Limits;
 
 /// Draws the page.
-pub fn limits_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+pub(super) fn limits_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let now = state.preferences.limits;
     let mut next = now;
     ui.label("A photo is to check when one of these holds. Change a limit, and all photos are judged anew.");

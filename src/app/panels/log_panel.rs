@@ -12,7 +12,11 @@ pub fn log_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) 
             let lines: Vec<&str> = state.log.iter().map(|line| line.text.as_str()).collect();
             commands.push(Command::Copy(lines.join("\n")));
         }
-        if ui.button("Hide log").on_hover_text("Close the log").clicked() {
+        if ui
+            .button("Hide log")
+            .on_hover_text("Close the log")
+            .clicked()
+        {
             commands.push(Command::ToggleLog);
         }
     });

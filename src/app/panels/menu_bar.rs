@@ -61,7 +61,7 @@ fn recent(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 }
 
 /// The last two parts of a path: enough to tell flights apart.
-pub fn short(path: &Path) -> String {
+pub(super) fn short(path: &Path) -> String {
     let parts: Vec<_> = path.components().rev().take(2).collect();
     let parts: Vec<_> = parts
         .into_iter()

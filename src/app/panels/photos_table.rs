@@ -26,8 +26,16 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         (Column::Export, "⬇".to_owned(), "Chosen for export"),
         (Column::Name, "Photo".to_owned(), "Name of the photo's file"),
         (Column::Top, "Top".to_owned(), "Scale at the top edge"),
-        (Column::Bottom, "Bottom".to_owned(), "Scale at the bottom edge"),
-        (Column::Verdict, "Verdict".to_owned(), "Whether to trust the scale"),
+        (
+            Column::Bottom,
+            "Bottom".to_owned(),
+            "Scale at the bottom edge",
+        ),
+        (
+            Column::Verdict,
+            "Verdict".to_owned(),
+            "Whether to trust the scale",
+        ),
         (
             Column::Corners,
             "On".to_owned(),
@@ -55,12 +63,42 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         .sense(egui::Sense::click())
         .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
         .column(Width::exact(24.0))
-        .column(Width::initial(142.0).at_least(60.0).resizable(true).clip(true))
-        .column(Width::initial(52.0).at_least(30.0).resizable(true).clip(true))
-        .column(Width::initial(52.0).at_least(30.0).resizable(true).clip(true))
-        .column(Width::initial(76.0).at_least(30.0).resizable(true).clip(true))
-        .column(Width::initial(28.0).at_least(20.0).resizable(true).clip(true))
-        .column(Width::initial(62.0).at_least(30.0).resizable(true).clip(true))
+        .column(
+            Width::initial(142.0)
+                .at_least(60.0)
+                .resizable(true)
+                .clip(true),
+        )
+        .column(
+            Width::initial(52.0)
+                .at_least(30.0)
+                .resizable(true)
+                .clip(true),
+        )
+        .column(
+            Width::initial(52.0)
+                .at_least(30.0)
+                .resizable(true)
+                .clip(true),
+        )
+        .column(
+            Width::initial(76.0)
+                .at_least(30.0)
+                .resizable(true)
+                .clip(true),
+        )
+        .column(
+            Width::initial(28.0)
+                .at_least(20.0)
+                .resizable(true)
+                .clip(true),
+        )
+        .column(
+            Width::initial(62.0)
+                .at_least(30.0)
+                .resizable(true)
+                .clip(true),
+        )
         .column(Width::remainder().at_least(40.0).clip(true));
     // The selected row comes into sight when the selection moves, not while she scrolls.
     if before != Some(selected_row)
@@ -198,7 +236,11 @@ fn sort_button(
     let button = ui.add(egui::Button::new(text).frame(false).truncate());
     let button = button.on_hover_text(format!("{hover}. Click to sort."));
     button.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Sort by {}", hover.to_lowercase()))
+        egui::WidgetInfo::labeled(
+            egui::Role::Button,
+            true,
+            format!("Sort by {}", hover.to_lowercase()),
+        )
     });
     if button.clicked() {
         commands.push(Command::Sort(column));
@@ -210,7 +252,11 @@ fn thumbnail(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
     match open.thumbnails.get(photo).and_then(Option::as_ref) {
         Some(texture) => {
             let image = egui::Image::new(texture).fit_to_exact_size(size);
-            ui.add(image.maintain_aspect_ratio(true).sense(egui::Sense::empty()));
+            ui.add(
+                image
+                    .maintain_aspect_ratio(true)
+                    .sense(egui::Sense::empty()),
+            );
         }
         None => {
             let (place, _) = ui.allocate_exact_size(size, egui::Sense::empty());

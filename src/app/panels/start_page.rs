@@ -23,7 +23,9 @@ pub fn start_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
             }
             ui.add_space(4.0);
             let open = ui.add(big("Open…"));
-            open.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Open a flight"));
+            open.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, true, "Open a flight")
+            });
             if open.on_hover_text(actions::OPEN.hover).clicked() {
                 commands.push(Command::Ask(Some(Asking::Open)));
             }

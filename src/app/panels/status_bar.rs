@@ -25,12 +25,18 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
         if let Some(open) = &state.open {
             let unit = open.flight.parts().unit;
             if let Some(point) = open.hover {
-                let text = format!("x {:.3}  y {:.3}  z {:.3} {unit}", point.x, point.y, point.z);
+                let text = format!(
+                    "x {:.3}  y {:.3}  z {:.3} {unit}",
+                    point.x, point.y, point.z
+                );
                 let label = ui.label(text.clone());
                 let label = label.on_hover_text("Where the mouse points on the surface");
                 label.context_menu(|ui| {
                     if ui.button("Copy coordinates").clicked() {
-                        commands.push(Command::Copy(format!("{}\t{}\t{}", point.x, point.y, point.z)));
+                        commands.push(Command::Copy(format!(
+                            "{}\t{}\t{}",
+                            point.x, point.y, point.z
+                        )));
                         ui.close();
                     }
                 });

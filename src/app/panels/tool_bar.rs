@@ -29,7 +29,11 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             let button = ui.add_enabled(command.is_some(), egui::Button::new(text));
             let button = button.on_hover_text(action.hover);
             button.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::Role::Button, command.is_some(), label(text, action))
+                egui::WidgetInfo::labeled(
+                    egui::Role::Button,
+                    command.is_some(),
+                    label(text, action),
+                )
             });
             if button.clicked() {
                 commands.extend(command);

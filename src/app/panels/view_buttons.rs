@@ -31,13 +31,23 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     button(actions::FRONT, "Front", false, ui);
     button(actions::SIDE, "Side", false, ui);
     button(actions::THROUGH, "Through camera", through, ui);
-    button(actions::MEASURE, "Measure", open.measure != Measure::Off, ui);
+    button(
+        actions::MEASURE,
+        "Measure",
+        open.measure != Measure::Off,
+        ui,
+    );
     if through {
         let mut blend = open.looking.blend;
         ui.spacing_mut().slider_width = 90.0;
         let slider = ui.add(egui::Slider::new(&mut blend, 0.0..=1.0).show_value(false));
-        slider.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Photo over the view"));
-        if slider.on_hover_text("How much of the photo lies over the view").changed() {
+        slider.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Slider, true, "Photo over the view")
+        });
+        if slider
+            .on_hover_text("How much of the photo lies over the view")
+            .changed()
+        {
             commands.push(Command::Look(Look::Blend(blend)));
         }
     }
