@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use glam::{DVec2, DVec3};
+
 use super::command::{Asking, Choice, Command, Look};
 use super::open_flight::{Measure, OpenFlight};
 use super::picker::Purpose;
@@ -348,6 +350,12 @@ impl OpenFlight {
         let orbit = &mut looking.orbit;
         match look {
             Look::Blend(blend) => looking.blend = blend.clamp(0.0, 1.0),
+            Look::Resized(size) => {
+                // The first size is the first look at the flight.
+                if looking.size.replace(size).is_none() {
+                    self.fit();
+                }
+            }
             Look::Through => {
                 looking.through = match looking.through {
                     Some(_) => None,
@@ -368,13 +376,38 @@ impl OpenFlight {
                     Look::Top => orbit.top(),
                     Look::Front => orbit.front(),
                     Look::Side => orbit.side(),
-                    Look::Fit => orbit.fit(&self.bounds),
+                    Look::Fit => self.fit(),
                     Look::FitSelected => self.fit_selected(),
                     Look::Center(point) => orbit.center_on(point),
-                    Look::Blend(_) | Look::Through => {}
+                    Look::Blend(_) | Look::Resized(_) | Look::Through => {}
                 }
             }
         }
+    }
+
+    /// Brings surface and cameras into sight.
+    fn fit(&mut self) {
+        let (low, high) = (self.surface_bounds.min, self.surface_bounds.max);
+        let corners = (0..8_u8).map(|corner| {
+            let pick = |bit: u8, low: f64, high: f64| if corner & bit == 0 { low } else { high };
+            DVec3::new(
+                pick(1, low.x, high.x),
+                pick(2, low.y, high.y),
+                pick(4, low.z, high.z),
+            )
+        });
+        let photos = self.flight.parts().photos.iter();
+        let points: Vec<DVec3> = corners
+            .chain(photos.map(|photo| photo.pose.center))
+            .collect();
+        self.fit_points(&points);
+    }
+
+    fn fit_points(&mut self, points: &[DVec3]) {
+        let size = self.looking.size.unwrap_or(DVec2::new(4.0, 3.0));
+        self.looking.orbit.fit_into(points, size);
+        // How far one can go in and out depends on the flight, not on what is in sight.
+        self.looking.orbit.extent = self.bounds.size().length() * 0.5;
     }
 
     fn fit_selected(&mut self) {
@@ -388,9 +421,6 @@ impl OpenFlight {
         if let Some(scale) = self.scale(photo) {
             points.extend(scale.corners.iter().filter_map(crate::scale::Corner::point));
         }
-        if let Some(bounds) = crate::geometry::Bounds::of(&points) {
-            self.looking.orbit.fit(&bounds);
-            self.looking.orbit.extent = self.bounds.size().length() * 0.5;
-        }
+        self.fit_points(&points);
     }
 }

@@ -70,6 +70,8 @@ pub enum Look {
         /// Under 1 comes closer.
         factor: f64,
     },
+    /// The viewport has this size now, pixels.
+    Resized(DVec2),
     /// Straight down.
     Top,
     /// To the north.

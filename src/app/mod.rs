@@ -135,13 +135,13 @@ impl eframe::App for App {
         if state.open.is_some() {
             egui::Panel::left("photos")
                 .resizable(true)
-                .default_size(430.0)
+                .default_size(400.0)
                 .min_size(180.0)
                 .show(ui, |ui| panels::photos_table(state, ui, out));
             let inspector = &mut self.inspector;
             egui::Panel::right("inspector")
                 .resizable(true)
-                .default_size(360.0)
+                .default_size(330.0)
                 .min_size(220.0)
                 .show(ui, |ui| panels::right_panel(state, inspector, ui, out));
             let viewport = &mut self.viewport;
@@ -179,13 +179,13 @@ fn overlays(state: &State, ui: &mut egui::Ui, place: egui::Rect, commands: &mut 
     let ui = &mut inner;
     panels::notice(state, ui, commands);
     egui::Frame::popup(ui.style()).show(ui, |ui| {
-        ui.set_max_width(230.0);
+        ui.horizontal_wrapped(|ui| panels::view_buttons(state, ui, commands));
+    });
+    egui::Frame::popup(ui.style()).show(ui, |ui| {
+        ui.set_max_width(220.0);
         egui::CollapsingHeader::new("Layers")
             .default_open(false)
             .show(ui, |ui| panels::layers_panel(state, ui, commands));
-    });
-    egui::Frame::popup(ui.style()).show(ui, |ui| {
-        ui.horizontal(|ui| panels::view_buttons(state, ui, commands));
     });
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::history::History;
 use super::picker::Picker;
@@ -69,6 +69,8 @@ pub struct Looking {
     pub through: Option<usize>,
     /// How much of that photo lies over the view, 0 to 1.
     pub blend: f64,
+    /// The viewport's size in pixels, once it was drawn.
+    pub size: Option<DVec2>,
 }
 
 /// A flight on the screen.
@@ -182,9 +184,10 @@ impl OpenFlight {
             bounds,
             surface_bounds,
             looking: Looking {
-                orbit: Orbit::new(&bounds),
+                orbit: first_look(&bounds),
                 through: None,
                 blend: 0.5,
+                size: None,
             },
             hover: None,
             hovered_photo: None,
@@ -300,4 +303,11 @@ impl OpenFlight {
             }
         }
     }
+}
+
+/// From the south and well above: a pile is flat, and its footprints are what one looks for.
+fn first_look(bounds: &Bounds) -> Orbit {
+    let mut orbit = Orbit::new(bounds);
+    orbit.pitch = 0.9;
+    orbit
 }

@@ -96,6 +96,9 @@ impl Viewport {
             size,
             view: view(open),
         };
+        if open.looking.size != Some(scene.size()) {
+            commands.push(Command::Look(Look::Resized(scene.size())));
+        }
         mouse(&scene, open, ui, &response, commands);
         let show = show(state, open, ui, pixels_per_point);
         match &mut self.graphics {

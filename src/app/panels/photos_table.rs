@@ -11,7 +11,7 @@ use crate::app::table::Column;
 use crate::flight::Verdict;
 
 /// The height of a row, which a thumbnail fits into.
-const ROW: f32 = 40.0;
+const ROW: f32 = 34.0;
 
 /// Draws the table.
 pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -43,7 +43,7 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         ),
         (
             Column::Height,
-            format!("Height {world}"),
+            format!("Height, {world}"),
             "Height of the camera above the surface below it",
         ),
         (
@@ -64,25 +64,25 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
         .column(Width::exact(24.0))
         .column(
-            Width::initial(142.0)
+            Width::initial(128.0)
                 .at_least(60.0)
                 .resizable(true)
                 .clip(true),
         )
         .column(
-            Width::initial(52.0)
+            Width::initial(46.0)
                 .at_least(30.0)
                 .resizable(true)
                 .clip(true),
         )
         .column(
-            Width::initial(52.0)
+            Width::initial(46.0)
                 .at_least(30.0)
                 .resizable(true)
                 .clip(true),
         )
         .column(
-            Width::initial(76.0)
+            Width::initial(66.0)
                 .at_least(30.0)
                 .resizable(true)
                 .clip(true),
@@ -94,12 +94,12 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
                 .clip(true),
         )
         .column(
-            Width::initial(62.0)
+            Width::initial(54.0)
                 .at_least(30.0)
                 .resizable(true)
                 .clip(true),
         )
-        .column(Width::remainder().at_least(40.0).clip(true));
+        .column(Width::remainder().at_least(30.0).clip(true));
     // The selected row comes into sight when the selection moves, not while she scrolls.
     if before != Some(selected_row)
         && let Some(row) = selected_row
@@ -248,7 +248,7 @@ fn sort_button(
 }
 
 fn thumbnail(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
-    let size = egui::vec2(ROW * 1.3, ROW - 4.0);
+    let size = egui::vec2(ROW * 1.1, ROW - 6.0);
     match open.thumbnails.get(photo).and_then(Option::as_ref) {
         Some(texture) => {
             let image = egui::Image::new(texture).fit_to_exact_size(size);
