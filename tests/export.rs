@@ -30,6 +30,9 @@ fn sample() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample")
 }
 
+/// A selection.
+const FIRST_TWO: [bool; 9] = [true, true, false, false, false, false, false, false, false];
+
 /// A copy of the sample to change.
 fn copy_of_sample() -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
@@ -209,21 +212,23 @@ fn the_sample_is_exported_and_reads_back() {
             .expect("a ring");
         assert_eq!((ring.len(), &ring[0]), (129, &ring[128]));
         let corners = [0, 96, 64, 32].map(|place| ring[place].clone());
-        let of_scales: Vec<Value> = photo["corners"]
-            .as_array()
-            .expect("corners")
-            .iter()
-            .map(|corner| corner["point"].clone())
-            .collect();
-        assert_eq!(corners.to_vec(), of_scales, "{name}");
+        // Rays that are cast again meet the same triangle, up to rounding.
+        let of_scales = photo["corners"].as_array().expect("corners");
+        for (corner, of_scale) in corners.iter().zip(of_scales) {
+            for axis in 0..3 {
+                let [a, b] = [&corner[axis], &of_scale["point"][axis]];
+                let off = a.as_f64().expect("a number") - b.as_f64().expect("a number");
+                assert!(off.abs() < 1e-12, "{name}: {corner} for {of_scale}");
+            }
+        }
     }
     // The checksum that another program gives.
     let sum = "7cc6c739bf9950f1228d6a3adc1560a104d689b213b2aa2334ae2786c0fb59f0";
     assert!(sheet.contains(sum), "of pile.ply, by sha256sum");
 }
 
-/// The undistorted photo shows each place where the pinhole camera sees it: the red sphere's middle is
-/// where its centre projects without the lens.
+/// The exported photo has the camera's K and pixels: the red sphere's middle is where the simulator's
+/// true centre projects. (What the lens does is held by the tests of `picture::undistorted`.)
 #[test]
 fn the_exported_photo_is_the_pinhole_image() {
     let computed = Computed::new(&sample());
@@ -242,13 +247,13 @@ fn the_exported_photo_is_the_pinhole_image() {
             .map(|n| n.as_f64().expect("a number"))
             .collect()
     };
-    let sphere = &truth["spheres"][0];
-    let centre = glam::DVec3::from_slice(&numbers(&sphere["center"]));
+    let spheres = truth["spheres"].as_array().expect("spheres").iter();
+    let centres: Vec<glam::DVec3> = spheres
+        .map(|sphere| glam::DVec3::from_slice(&numbers(&sphere["center"])))
+        .collect();
     let flight = &computed.opened.flight;
     for photo in &flight.parts().photos {
         let camera = flight.camera(photo);
-        let seen = photo.pose.rotation.transpose() * (centre - photo.pose.center);
-        let expected = camera.pixel_undistorted(seen).expect("in front");
         let image = image::open(to.path().join("photos").join(&photo.name))
             .expect("an image")
             .to_rgb8();
@@ -261,10 +266,15 @@ fn the_exported_photo_is_the_pinhole_image() {
             }
         }
         assert!(count > 1000.0, "{}: no sphere", photo.name);
-        let off = (sum / count - expected).length();
+        let found = sum / count;
+        let seen = centres.iter().filter_map(|centre| {
+            let in_camera = photo.pose.rotation.transpose() * (*centre - photo.pose.center);
+            Some((camera.pixel_undistorted(in_camera)? - found).length())
+        });
+        let off = seen.min_by(f64::total_cmp).expect("a sphere");
         // The middle of the picture of a sphere is a little further out than the picture of its
         // middle, and fines hide its foot.
-        assert!(off < 6.0, "{}: {off} px", photo.name);
+        assert!(off < 1.5, "{}: {off} px", photo.name);
     }
 }
 
@@ -312,7 +322,7 @@ fn another_photo_or_setting_is_made_anew() {
     let to = tempfile::tempdir().expect("a folder");
     let export = || {
         Computed::new(flight.path())
-            .export(to.path(), &[true; 9], &Progress::default())
+            .export(to.path(), &FIRST_TWO, &Progress::default())
             .expect("exports")
     };
     export();
@@ -322,35 +332,48 @@ fn another_photo_or_setting_is_made_anew() {
     let toml = flight.path().join("flight.toml");
     let text = fs::read_to_string(&toml).expect("the flight");
     fs::write(&toml, text + "\n[scale]\nimage = \"as-shot\"\n").expect("written");
-    assert_eq!(export().made, 9);
+    assert_eq!(export().made, 2);
     // As shot: the very files.
-    for name in ["IMG_0001.jpg", "IMG_0009.jpg"] {
+    for name in ["IMG_0001.jpg", "IMG_0002.jpg"] {
         let read = |folder: &Path| fs::read(folder.join("photos").join(name)).expect("a photo");
         assert_eq!(read(to.path()), read(flight.path()));
     }
 }
 
-#[test]
-fn a_cancelled_export_leaves_whole_files_and_goes_on() {
-    let computed = Computed::new(&sample());
-    let to = tempfile::tempdir().expect("a folder");
+/// An export that was cancelled after its first photo and before its last; `None` where the watcher
+/// came too late on a busy machine.
+fn cancelled_midway(computed: &Computed, to: &Path) -> Option<ExportError> {
     let progress = Progress::default();
-    let error = std::thread::scope(|scope| {
+    let result = std::thread::scope(|scope| {
         let watcher = progress.clone();
         scope.spawn(move || {
-            // Until the first photo is there.
             loop {
                 let (stage, share) = watcher.snapshot();
-                if stage == "exporting photos" && share > 0.0 {
+                if stage != "checking what is there" && share > 0.0 {
                     return watcher.cancel();
                 }
                 std::thread::yield_now();
             }
         });
-        computed
-            .export(to.path(), &[true; 9], &progress)
-            .expect_err("is cancelled")
+        computed.export(to, &[true; 9], &progress)
     });
+    let photos = contents(to)
+        .keys()
+        .filter(|name| name.starts_with("photos/"))
+        .count();
+    result.err().filter(|_| (1..9).contains(&photos))
+}
+
+#[test]
+fn a_cancelled_export_leaves_whole_files_and_goes_on() {
+    let computed = Computed::new(&sample());
+    let (to, error) = (0..20)
+        .find_map(|_| {
+            let to = tempfile::tempdir().expect("a folder");
+            let error = cancelled_midway(&computed, to.path())?;
+            Some((to, error))
+        })
+        .expect("one of 20 cancels comes in time");
     assert_eq!(error.fault.what, "cancelled");
     let files = contents(to.path());
     assert!(!files.contains_key("scales.html") && files.contains_key("export.json"));
@@ -358,7 +381,6 @@ fn a_cancelled_export_leaves_whole_files_and_goes_on() {
         .keys()
         .filter(|name| name.starts_with("photos/"))
         .count();
-    assert!((1..9).contains(&photos), "{photos} photos after a cancel");
     for (name, bytes) in &files {
         assert!(!name.contains(".part"), "{name} is left");
         if name.ends_with(".jpg") {
@@ -374,6 +396,36 @@ fn a_cancelled_export_leaves_whole_files_and_goes_on() {
         .export(whole.path(), &[true; 9], &Progress::default())
         .expect("exports");
     assert_eq!(contents(to.path()), contents(whole.path()));
+}
+
+#[test]
+fn only_trusted_photos_where_asked() {
+    let sample = sample();
+    let to = tempfile::tempdir().expect("a folder");
+    let to = to.path().to_str().expect("UTF-8");
+    stdout_of(&[
+        "export",
+        sample.to_str().expect("UTF-8"),
+        "--to",
+        to,
+        "--photos",
+        "trusted",
+    ]);
+    let trusted = Computed::new(&sample)
+        .judged
+        .iter()
+        .filter(|(verdict, _)| *verdict == Verdict::Trust)
+        .count();
+    assert!(
+        (1..9).contains(&trusted),
+        "the sample has photos of both kinds"
+    );
+    assert_eq!(
+        text(&contents(Path::new(to)), "scales.csv").lines().count(),
+        1 + trusted
+    );
+    // A folder is needed.
+    assert_eq!(fragscale(&["export", "flight.toml"]).status.code(), Some(2));
 }
 
 #[test]
@@ -434,15 +486,15 @@ fn a_missing_or_broken_photo_is_in_the_sheet_with_its_sentence() {
     assert_eq!(text(&files, "scales.csv").lines().count(), 10);
 }
 
-/// The muckpile in UTM: the footprints are where the cameras are, in longitude and latitude.
+/// In a known system the footprints are in longitude and latitude, and there is KML.
 #[test]
 fn a_flight_on_the_map_has_kml() {
     let mut computed = Computed::new(&sample());
-    // The lab's numbers taken as UTM, off Africa, where the zone's middle meets the equator's origin.
+    // The lab's numbers taken as UTM: on the equator, at the far west of zone 33.
     computed.crs = Some("EPSG:32633".to_owned());
     let to = tempfile::tempdir().expect("a folder");
     computed
-        .export(to.path(), &[true; 9], &Progress::default())
+        .export(to.path(), &FIRST_TWO, &Progress::default())
         .expect("exports");
     let files = contents(to.path());
     let features: Value = serde_json::from_str(text(&files, "footprints.geojson")).expect("JSON");
@@ -468,7 +520,7 @@ fn a_flight_on_the_map_has_kml() {
     let places = kml
         .descendants()
         .filter(|node| node.has_tag_name("Placemark"));
-    assert_eq!(places.count(), 9);
+    assert_eq!(places.count(), 2);
     let ring = kml
         .descendants()
         .find(|node| node.has_tag_name("coordinates"))
@@ -483,7 +535,7 @@ fn a_flight_on_the_map_has_kml() {
 
     computed.crs = Some("a mine grid".to_owned());
     let summary = computed
-        .export(to.path(), &[true; 9], &Progress::default())
+        .export(to.path(), &FIRST_TWO, &Progress::default())
         .expect("exports");
     assert!(
         summary
@@ -514,10 +566,11 @@ fn names_do_not_leave_the_folder() {
     let to = parent.path().join("to");
     let computed = Computed::new(flight.path());
     assert_eq!(computed.opened.settings.image, ImageKind::Undistorted);
+    let selected: Vec<bool> = (0..9).map(|index| index < 3).collect();
     let summary = computed
-        .export(&to, &[true; 9], &Progress::default())
+        .export(&to, &selected, &Progress::default())
         .expect("exports");
-    assert_eq!(summary.made, 9, "{:?}", summary.warnings);
+    assert_eq!(summary.made, 3, "{:?}", summary.warnings);
     assert_eq!(fs::read_dir(parent.path()).expect("a folder").count(), 1);
     let files = contents(&to);
     for name in [

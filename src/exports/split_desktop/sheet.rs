@@ -37,7 +37,9 @@ pub(super) fn html(
     let mut rows = String::new();
     for ((line, &index), number) in report.lines.iter().zip(chosen).zip(1_usize..) {
         let judged = request.judged.get(index);
-        let picture = pictures.get(index).and_then(|names| names.as_ref().ok());
+        let picture = pictures.get(index).map_or(Err("no pictures"), |names| {
+            names.as_ref().map_err(String::as_str)
+        });
         rows += &row(number, line, report, judged, picture);
     }
     let (image, where_from) = match report.image {
@@ -79,18 +81,18 @@ fn row(
     line: &ReportLine,
     report: &ScaleReport,
     judged: Option<&(Verdict, Vec<Doubt>)>,
-    picture: Option<&PhotoNames>,
+    picture: Result<&PhotoNames, &str>,
 ) -> String {
     let name = escaped(&line.photo);
     let shown = match picture {
-        Some(names) => format!(
+        Ok(names) => format!(
             "<a href=\"{}\"><img src=\"{}\" alt=\"{name} with its scale\"></a>",
             link(&names.overlay),
             link(&names.thumbnail)
         ),
-        None => "<div class=\"none\">no picture; see the warnings</div>".to_owned(),
+        Err(why) => format!("<div class=\"none\">{}</div>", escaped(why)),
     };
-    let file = picture.map_or_else(String::new, |names| {
+    let file = picture.map_or_else(|_| String::new(), |names| {
         format!(
             "<div class=\"small\">{} &middot; <span class=\"pixels\">{} &times; {} px</span></div>",
             escaped(&names.photo),
@@ -213,13 +215,13 @@ fn input_list(inputs: &[CheckedInput]) -> String {
         .iter()
         .map(|input| {
             format!(
-                "<tr><td>{}</td><td class=\"sum\">{}</td></tr>\n",
+                "<li>{}<div class=\"sum\">{}</div></li>\n",
                 escaped(&input.path.display().to_string()),
                 escaped(&input.checksum)
             )
         })
         .collect();
-    format!("<h2>Input files (SHA-256)</h2>\n<table class=\"facts\">\n{rows}</table>\n")
+    format!("<h2>Input files (SHA-256)</h2>\n<ul class=\"inputs\">\n{rows}</ul>\n")
 }
 
 /// Text for HTML and XML, in an element or an attribute.
