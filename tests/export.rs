@@ -566,6 +566,7 @@ fn names_do_not_leave_the_folder() {
     let to = parent.path().join("to");
     let computed = Computed::new(flight.path());
     assert_eq!(computed.opened.settings.image, ImageKind::Undistorted);
+    let selected: Vec<bool> = (0..9).map(|index| index < 3).collect();
     let summary = computed
         .export(&to, &selected, &Progress::default())
         .expect("exports");

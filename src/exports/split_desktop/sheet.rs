@@ -215,13 +215,13 @@ fn input_list(inputs: &[CheckedInput]) -> String {
         .iter()
         .map(|input| {
             format!(
-                "<tr><td>{}</td><td class=\"sum\">{}</td></tr>\n",
+                "<li>{}<div class=\"sum\">{}</div></li>\n",
                 escaped(&input.path.display().to_string()),
                 escaped(&input.checksum)
             )
         })
         .collect();
-    format!("<h2>Input files (SHA-256)</h2>\n<table class=\"facts\">\n{rows}</table>\n")
+    format!("<h2>Input files (SHA-256)</h2>\n<ul class=\"inputs\">\n{rows}</ul>\n")
 }
 
 /// Text for HTML and XML, in an element or an attribute.
