@@ -7,6 +7,7 @@
 #![allow(
     clippy::expect_used,
     clippy::panic,
+    clippy::print_stdout,
     clippy::unwrap_used,
     missing_docs,
     reason = "in a test a panic is the report"
@@ -726,6 +727,18 @@ fn a_frame_costs_what_is_in_sight() {
     };
     let few = renderer.draw(&view(4000.0, 1500.0), &few, [64, 64]);
     assert!(few.points > 980 && few.points <= 1000, "{few:?}");
+    // A mesh with too many triangles is stood for by the cloud.
+    let heap = Scene::heap(DVec3::ZERO);
+    let mut renderer = heap.renderer(&gpu);
+    let drawn = |max_points| Show {
+        max_points,
+        ..mesh()
+    };
+    let view = heap.orbit().view();
+    let whole = renderer.draw(&view, &drawn(Some(5000)), [64, 64]);
+    assert_eq!((whole.points, whole.triangles), (0, 2 * 80 * 56));
+    let sample = renderer.draw(&view, &drawn(Some(4000)), [64, 64]);
+    assert!(sample.points > 3900 && sample.triangles == 0, "{sample:?}");
     assert_eq!(gpu.take_error(), None);
 }
 

@@ -134,7 +134,7 @@ mod tests {
     fn an_error_is_kept_as_a_sentence() {
         let gpu = Gpu::headless().unwrap();
         assert_eq!(gpu.take_error(), None);
-        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        let _refused = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("far too large"),
             size: u64::MAX / 2,
             usage: wgpu::BufferUsages::VERTEX,

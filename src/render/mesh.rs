@@ -5,17 +5,44 @@ use wgpu::{
     RenderPass, RenderPipeline, VertexStepMode, vertex_attr_array,
 };
 
+use super::gpu::Gpu;
 use super::pipeline::{Recipe, buffer, count, module, pipeline};
-use super::scene::{Extent, MeshGeometry, Vertex};
+use super::scene::{Extent, MeshGeometry, MeshTile, Vertex};
 use super::shaders;
+
+/// A mesh on the graphics card. Uploading can be done on a worker thread.
+#[derive(Debug, Default)]
+pub struct MeshBuffers {
+    tiles: Vec<Tile>,
+    /// See [`MeshGeometry`].
+    pub(super) elevation: [f64; 2],
+}
+
+impl MeshBuffers {
+    /// Uploads a mesh.
+    pub fn new(gpu: &Gpu, mesh: &MeshGeometry) -> Self {
+        let device = &gpu.device;
+        let upload = |tile: &MeshTile| Tile {
+            vertices: buffer(device, "vertices", BufferUsages::VERTEX, &tile.vertices),
+            triangles: buffer(device, "triangles", BufferUsages::INDEX, &tile.triangles),
+            corners: 3 * count(&tile.triangles),
+            edges: buffer(device, "edges", BufferUsages::INDEX, &tile.edges),
+            ends: 2 * count(&tile.edges),
+            extent: tile.extent,
+        };
+        Self {
+            tiles: mesh.tiles.iter().map(upload).collect(),
+            elevation: mesh.elevation,
+        }
+    }
+}
 
 #[derive(Debug)]
 pub(super) struct Mesh {
     faces: RenderPipeline,
     edges: RenderPipeline,
     depth_alone: RenderPipeline,
-    tiles: Vec<Tile>,
-    pub(super) elevation: [f64; 2],
+    pub(super) mesh: MeshBuffers,
 }
 
 #[derive(Debug)]
@@ -71,34 +98,29 @@ impl Mesh {
                     ..recipe
                 },
             ),
-            tiles: Vec::new(),
-            elevation: [0.0; 2],
+            mesh: MeshBuffers::default(),
         }
     }
 
-    pub(super) fn set(&mut self, device: &Device, mesh: Option<&MeshGeometry>) {
-        self.tiles.clear();
-        let Some(mesh) = mesh else { return };
-        self.elevation = mesh.elevation;
-        self.tiles.extend(mesh.tiles.iter().map(|tile| Tile {
-            vertices: buffer(device, "vertices", BufferUsages::VERTEX, &tile.vertices),
-            triangles: buffer(device, "triangles", BufferUsages::INDEX, &tile.triangles),
-            corners: 3 * count(&tile.triangles),
-            edges: buffer(device, "edges", BufferUsages::INDEX, &tile.edges),
-            ends: 2 * count(&tile.edges),
-            extent: tile.extent,
-        }));
-    }
-
     pub(super) fn is_empty(&self) -> bool {
-        self.tiles.is_empty()
+        self.mesh.tiles.is_empty()
     }
 
     pub(super) fn extent(&self) -> Option<Extent> {
-        self.tiles
+        self.mesh
+            .tiles
             .iter()
             .map(|tile| tile.extent)
             .reduce(Extent::with)
+    }
+
+    /// How many triangles are in sight.
+    pub(super) fn count(&self, in_sight: &impl Fn(&Extent) -> bool) -> usize {
+        let tiles = self.mesh.tiles.iter();
+        tiles
+            .filter(|tile| in_sight(&tile.extent))
+            .map(|tile| tile.corners as usize / 3)
+            .sum()
     }
 
     /// Draws the triangles in sight, and says how many they were.
@@ -124,7 +146,7 @@ impl Mesh {
         in_sight: &impl Fn(&Extent) -> bool,
     ) {
         pass.set_pipeline(&self.edges);
-        for tile in self.tiles.iter().filter(|tile| in_sight(&tile.extent)) {
+        for tile in self.mesh.tiles.iter().filter(|tile| in_sight(&tile.extent)) {
             pass.set_vertex_buffer(0, tile.vertices.slice(..));
             pass.set_index_buffer(tile.edges.slice(..), IndexFormat::Uint32);
             pass.draw_indexed(0..tile.ends, 0, 0..1);
@@ -137,7 +159,7 @@ impl Mesh {
         in_sight: &impl Fn(&Extent) -> bool,
     ) -> usize {
         let mut drawn = 0;
-        for tile in self.tiles.iter().filter(|tile| in_sight(&tile.extent)) {
+        for tile in self.mesh.tiles.iter().filter(|tile| in_sight(&tile.extent)) {
             pass.set_vertex_buffer(0, tile.vertices.slice(..));
             pass.set_index_buffer(tile.triangles.slice(..), IndexFormat::Uint32);
             pass.draw_indexed(0..tile.corners, 0, 0..1);

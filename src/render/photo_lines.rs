@@ -10,8 +10,8 @@ use super::show::{Background, PhotoLook, Show};
 const SELECTED: [u8; 3] = [255, 149, 0];
 /// Of what fell back to the ground.
 const GROUND: [u8; 3] = [226, 61, 61];
-/// Dashes in the length of a ray or around an outline.
-const DASHES: f64 = 48.0;
+/// Dashes in the length of a ray; an outline has four times as many.
+const DASHES: f64 = 24.0;
 
 /// The strokes of all photos. `cameras` is how deep the image planes lie, world units;
 /// `looked_through` is the photo whose camera is the eye, which is not in sight itself.
@@ -116,7 +116,7 @@ fn outline(photo: &PhotoGeometry, pen: Pen, strokes: &mut Vec<Stroke>) {
         width: pen.width * 1.25,
         ..pen
     };
-    let fallen = Pen::new(GROUND, whole.width).dashed(length / (2.0 * DASHES));
+    let fallen = Pen::new(GROUND, whole.width).dashed(length / (4.0 * DASHES));
     let mut along = 0.0;
     for (from, to, on_ground) in stretches {
         let pen = if on_ground { fallen } else { whole };

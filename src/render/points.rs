@@ -5,16 +5,41 @@ use wgpu::{
     RenderPipeline, VertexStepMode, vertex_attr_array,
 };
 
+use super::gpu::Gpu;
 use super::pipeline::{Recipe, buffer, count, module, pipeline};
-use super::scene::{CloudGeometry, Extent, Vertex};
+use super::scene::{CloudGeometry, CloudTile, Extent, Vertex};
 use super::shaders;
+
+/// A cloud on the graphics card. Uploading can be done on a worker thread.
+#[derive(Debug, Default)]
+pub struct CloudBuffers {
+    tiles: Vec<Tile>,
+    /// See [`CloudGeometry`].
+    pub(super) spacing: f64,
+    /// See [`CloudGeometry`].
+    pub(super) elevation: [f64; 2],
+}
+
+impl CloudBuffers {
+    /// Uploads a cloud.
+    pub fn new(gpu: &Gpu, cloud: &CloudGeometry) -> Self {
+        let upload = |tile: &CloudTile| Tile {
+            points: buffer(&gpu.device, "points", BufferUsages::VERTEX, &tile.points),
+            count: count(&tile.points),
+            extent: tile.extent,
+        };
+        Self {
+            tiles: cloud.tiles.iter().map(upload).collect(),
+            spacing: cloud.spacing,
+            elevation: cloud.elevation,
+        }
+    }
+}
 
 #[derive(Debug)]
 pub(super) struct Points {
     pipeline: RenderPipeline,
-    tiles: Vec<Tile>,
-    pub(super) spacing: f64,
-    pub(super) elevation: [f64; 2],
+    pub(super) cloud: CloudBuffers,
 }
 
 #[derive(Debug)]
@@ -48,26 +73,17 @@ impl Points {
         );
         Self {
             pipeline,
-            tiles: Vec::new(),
-            spacing: 0.0,
-            elevation: [0.0; 2],
+            cloud: CloudBuffers::default(),
         }
     }
 
-    pub(super) fn set(&mut self, device: &Device, cloud: Option<&CloudGeometry>) {
-        self.tiles.clear();
-        let Some(cloud) = cloud else { return };
-        self.spacing = cloud.spacing;
-        self.elevation = cloud.elevation;
-        self.tiles.extend(cloud.tiles.iter().map(|tile| Tile {
-            points: buffer(device, "points", BufferUsages::VERTEX, &tile.points),
-            count: count(&tile.points),
-            extent: tile.extent,
-        }));
+    pub(super) fn is_empty(&self) -> bool {
+        self.cloud.tiles.is_empty()
     }
 
     pub(super) fn extent(&self) -> Option<Extent> {
-        self.tiles
+        self.cloud
+            .tiles
             .iter()
             .map(|tile| tile.extent)
             .reduce(Extent::with)
@@ -75,7 +91,11 @@ impl Points {
 
     /// Which share of the points in sight is drawn when at most `most` are.
     pub(super) fn share(&self, most: Option<usize>, in_sight: &impl Fn(&Extent) -> bool) -> f64 {
-        let tiles = self.tiles.iter().filter(|tile| in_sight(&tile.extent));
+        let tiles = self
+            .cloud
+            .tiles
+            .iter()
+            .filter(|tile| in_sight(&tile.extent));
         let all: u64 = tiles.map(|tile| u64::from(tile.count)).sum();
         match most {
             Some(most) if (most as u64) < all => most as f64 / all as f64,
@@ -92,7 +112,12 @@ impl Points {
     ) -> usize {
         pass.set_pipeline(&self.pipeline);
         let mut drawn = 0;
-        for tile in self.tiles.iter().filter(|tile| in_sight(&tile.extent)) {
+        for tile in self
+            .cloud
+            .tiles
+            .iter()
+            .filter(|tile| in_sight(&tile.extent))
+        {
             // `as` saturates.
             let count = (f64::from(tile.count) * share).floor() as u32;
             pass.set_vertex_buffer(0, tile.points.slice(..));

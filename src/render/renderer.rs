@@ -16,10 +16,10 @@ use super::gpu::Gpu;
 use super::images::{Images, Place};
 use super::labels::{Label, Legend, ScaleBar};
 use super::lines::{Lines, StrokeBuffer};
-use super::mesh::Mesh;
+use super::mesh::{Mesh, MeshBuffers};
 use super::photo_image::PhotoImage;
 use super::photo_lines::{camera_depth, fill_colors, ink, photo_lines};
-use super::points::Points;
+use super::points::{CloudBuffers, Points};
 use super::readback::read_back;
 use super::resolve::resolve;
 use super::scene::{
@@ -153,12 +153,22 @@ impl Renderer {
 
     /// Uploads the cloud, or takes it away.
     pub fn set_cloud(&mut self, cloud: Option<&CloudGeometry>) {
-        self.points.set(&self.gpu.device, cloud);
+        self.set_cloud_buffers(cloud.map(|cloud| CloudBuffers::new(&self.gpu, cloud)));
+    }
+
+    /// Takes a cloud that is uploaded already, or takes it away.
+    pub fn set_cloud_buffers(&mut self, cloud: Option<CloudBuffers>) {
+        self.points.cloud = cloud.unwrap_or_default();
     }
 
     /// Uploads the mesh, or takes it away.
     pub fn set_mesh(&mut self, mesh: Option<&MeshGeometry>) {
-        self.mesh.set(&self.gpu.device, mesh);
+        self.set_mesh_buffers(mesh.map(|mesh| MeshBuffers::new(&self.gpu, mesh)));
+    }
+
+    /// Takes a mesh that is uploaded already, or takes it away.
+    pub fn set_mesh_buffers(&mut self, mesh: Option<MeshBuffers>) {
+        self.mesh.mesh = mesh.unwrap_or_default();
         self.depth_of = None;
     }
 
@@ -321,8 +331,8 @@ impl Renderer {
     fn range(&self, show: &Show) -> Option<[f64; 2]> {
         let range = match show.color_by {
             ColorBy::Rgb => return None,
-            ColorBy::Elevation if self.mesh.is_empty() => self.points.elevation,
-            ColorBy::Elevation => self.mesh.elevation,
+            ColorBy::Elevation if self.mesh.is_empty() => self.points.cloud.elevation,
+            ColorBy::Elevation => self.mesh.mesh.elevation,
             ColorBy::Slope => [0.0, 90.0],
             ColorBy::Scale => {
                 let photo = self.photos.get(show.selected?)?;
@@ -452,7 +462,7 @@ impl Renderer {
             // On a square grid discs of 0.71 of the distance meet in the middle between diagonal
             // neighbours; clouds are less even. A sample of the points has larger gaps.
             radius: narrow_number(
-                0.85 * self.points.spacing * show.point_size / share.max(0.04).sqrt(),
+                0.85 * self.points.cloud.spacing * show.point_size / share.max(0.04).sqrt(),
             ),
             photo_near: narrow_number(photo_near),
             photo_scale: selected.map_or(0.0, |photo| narrow_number(photo.scale_at(1.0))),
@@ -577,10 +587,13 @@ impl Renderer {
         pass.set_bind_group(0, &self.main_frame.group, &[]);
         pass.set_bind_group(1, &self.surface_photo.group, &[]);
         let mut drawn = (0, 0);
-        if show.mesh {
+        let too_many = show.max_points.is_some_and(|most| {
+            show.mesh && !self.points.is_empty() && self.mesh.count(in_sight) > 2 * most
+        });
+        if show.mesh && !too_many {
             drawn.1 = self.mesh.draw(&mut pass, in_sight);
         }
-        if show.cloud {
+        if show.cloud || too_many {
             drawn.0 = self.points.draw(&mut pass, share, in_sight);
         }
         drawn
@@ -803,4 +816,87 @@ fn pass<'a>(
         depth_stencil_attachment: depth,
         ..Default::default()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::{Normals, Orbit};
+
+    /// A heap of 20 units with a grid under it, which reach over every seam.
+    fn heap(gpu: &Gpu) -> (Renderer, Orbit) {
+        let mut vertices = Vec::new();
+        let mut triangles = Vec::new();
+        for row in 0..41_u32 {
+            for column in 0..41_u32 {
+                let (x, y) = (f64::from(column) * 0.5 - 10.0, f64::from(row) * 0.5 - 10.0);
+                vertices.push(DVec3::new(x, y, 4.0 * (-(x * x + y * y) / 30.0).exp()));
+                if row < 40 && column < 40 {
+                    let at = row * 41 + column;
+                    triangles.push([at, at + 1, at + 42]);
+                    triangles.push([at, at + 42, at + 41]);
+                }
+            }
+        }
+        let bounds = Bounds::of(&vertices).unwrap();
+        let frame = LocalFrame::near(&bounds);
+        let normals = Normals::of(&frame, vertices.iter().copied(), &triangles);
+        let points = vertices.iter().copied();
+        let mesh = MeshGeometry::new(&frame, points, &[], &normals, &triangles);
+        let mut renderer = Renderer::new(gpu);
+        renderer.start(&frame);
+        renderer.set_mesh(Some(&mesh));
+        (renderer, Orbit::new(&bounds))
+    }
+
+    /// A picture put together from parts has no seams: it is the one drawn at once.
+    #[test]
+    fn parts_make_the_whole() {
+        let gpu = Gpu::headless().unwrap();
+        let (mut renderer, mut orbit) = heap(&gpu);
+        let show = Show {
+            ground: Some(0.0),
+            wireframe: true,
+            ..Show::default()
+        };
+        for orthographic in [false, true] {
+            orbit.orthographic = orthographic;
+            let view = orbit.view();
+            let whole = renderer.picture(&view, &show, [301, 203]).unwrap();
+            let parts = renderer
+                .picture_in_parts(&view, &show, [301, 203], 100)
+                .unwrap();
+            let differ = whole
+                .pixels()
+                .zip(parts.pixels())
+                .filter(|(a, b)| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 24));
+            // A thin line's edge may be rounded to another texel.
+            assert!(differ.count() < 30);
+        }
+        assert_eq!(gpu.take_error(), None);
+    }
+
+    /// The window's frame and a file's picture come from the same call: with one sample a pixel they
+    /// show the same.
+    #[test]
+    fn a_frame_in_the_window_is_read_back_as_drawn() {
+        let gpu = Gpu::headless().unwrap();
+        let (mut renderer, orbit) = heap(&gpu);
+        let show = Show::default();
+        renderer.draw(&orbit.view(), &show, [120, 80]);
+        let frame = read_back(&gpu, &renderer.targets.as_ref().unwrap().picture).unwrap();
+        let picture = renderer.picture(&orbit.view(), &show, [120, 80]).unwrap();
+        let pairs = frame.pixels().zip(picture.pixels());
+        let unlike = pairs.filter(|(a, b)| {
+            a.0[..3]
+                .iter()
+                .zip(&b.0[..3])
+                .any(|(a, b)| a.abs_diff(*b) > 60)
+        });
+        // Only edges differ, by their smoothness.
+        assert!(unlike.count() < 400);
+        // The heap is in the middle, the background in the corner.
+        assert_eq!(frame.get_pixel(119, 0).0, [24, 26, 30, 255]);
+        assert!(frame.get_pixel(60, 45)[0] > 90);
+    }
 }

@@ -46,7 +46,8 @@ pub struct Show {
     pub cloud: bool,
     /// Size of a point: 1 closes the gaps between neighbours.
     pub point_size: f64,
-    /// How many points at most: a fair sample of those in sight is drawn. `None` draws all.
+    /// How many points at most: a fair sample of those in sight is drawn, and it stands for the mesh
+    /// too where that has more than twice as many triangles in sight. `None` draws all.
     pub max_points: Option<usize>,
     /// The surface's triangles.
     pub mesh: bool,

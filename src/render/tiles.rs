@@ -12,7 +12,7 @@ pub(super) fn tiles(
     place: &impl Fn(u32) -> Vec3,
 ) -> Vec<Range<usize>> {
     let mut runs = Vec::new();
-    let mut waiting = vec![0..items.len()];
+    let mut waiting: Vec<Range<usize>> = std::iter::once(0..items.len()).collect();
     while let Some(run) = waiting.pop() {
         if run.len() <= limit.max(1) {
             if !run.is_empty() {
