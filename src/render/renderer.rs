@@ -400,7 +400,9 @@ impl Renderer {
             let distance = (middle - eye).dot(axis);
             (distance - 2.0 * radius, distance + 2.0 * radius)
         } else {
-            (radius * 1e-6, f64::INFINITY)
+            // Vulkan's depths are exact however near this is; OpenGL's, from -1 to 1, are not.
+            let outside = eye.distance(middle) - radius;
+            ((view.focus * 0.01).max(outside * 0.5), f64::INFINITY)
         };
         let view_from_world = view.world_from_view.transpose();
         let view_from_local = DMat4::from_cols(
@@ -431,7 +433,8 @@ impl Renderer {
             ColorBy::Slope => 2,
             ColorBy::Scale => 3,
         };
-        let photo_near = radius * 1e-6;
+        let nearest_seen = selected.and_then(|photo| photo.depth_of_share(0.0));
+        let photo_near = nearest_seen.unwrap_or(radius) * 0.05;
         let background = match show.background {
             Background::Color(color) => opaque(color),
             Background::Transparent => [0.0; 4],
@@ -455,7 +458,7 @@ impl Renderer {
             nearest: if view.is_parallel() {
                 0.5
             } else {
-                narrow_number(near.max(view.focus * 1e-4))
+                narrow_number(near)
             },
             lift: lift.map(narrow_number),
             range: self.range(show).unwrap_or([0.0, 1.0]).map(narrow_number),
