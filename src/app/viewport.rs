@@ -166,7 +166,7 @@ impl Viewport {
         };
         graphics.upload(open, &egui::Visuals::light());
         graphics.uploaded.looks.clear();
-        let drawn = graphics.renderer.picture(&view(open), &show, size);
+        let drawn = graphics.renderer.picture_with_words(&view(open), &show, size);
         graphics.drawn = None;
         let written = state.work.start(Task::Picture, move |progress| {
             progress.stage("writing the picture");
