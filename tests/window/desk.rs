@@ -93,7 +93,13 @@ impl Desk {
     /// The one part of the window with this role and name.
     #[track_caller]
     pub fn node<'a>(&'a self, role: Role, name: &'a str) -> egui_kittest::Node<'a> {
-        self.harness.get_by_role_and_label(role, name)
+        let mut found: Vec<_> = self.harness.query_all_by_role_and_label(role, name).collect();
+        let names = || -> Vec<Option<String>> {
+            let all = self.harness.query_all_by_role(role);
+            all.map(|node| node.accesskit_node().label()).collect()
+        };
+        assert_eq!(found.len(), 1, "{role:?} '{name}' among {:?}", names());
+        found.remove(0)
     }
 
     /// Whether there is such a part.
@@ -166,6 +172,7 @@ impl Desk {
         self.node(Role::TextInput, name).click();
         self.harness.run();
         self.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        self.harness.key_press(Key::Backspace);
         self.harness.event(Event::Text(text.to_owned()));
         self.harness.run();
         self.press(Modifiers::NONE, Key::Enter);
