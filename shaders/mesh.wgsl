@@ -34,5 +34,5 @@ fn edge_vertex(@location(0) local: vec3<f32>) -> @builtin(position) vec4<f32> {
 
 @fragment
 fn edge_fragment() -> @location(0) vec4<f32> {
-    return frame.ink * 0.35;
+    return frame.ink * 0.28;
 }

@@ -351,8 +351,8 @@ impl OpenFlight {
         match look {
             Look::Blend(blend) => looking.blend = blend.clamp(0.0, 1.0),
             Look::Resized(size) => {
-                // The first size is the first look at the flight.
-                if looking.size.replace(size).is_none() {
+                looking.size = Some(size);
+                if !looking.turned {
                     self.fit();
                 }
             }
@@ -365,6 +365,7 @@ impl OpenFlight {
             _ => {
                 // Whatever turns the view leaves the camera.
                 looking.through = None;
+                looking.turned = true;
                 match look {
                     Look::Orbit(delta) => orbit.orbit(delta),
                     Look::Pan(delta, size) => orbit.pan(delta, size),

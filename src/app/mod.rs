@@ -58,6 +58,9 @@ impl App {
             .storage
             .and_then(|storage| eframe::get_value(storage, PREFERENCES))
             .unwrap_or_default();
+        for theme in [egui::Theme::Dark, egui::Theme::Light] {
+            context.egui_ctx.style_mut_of(theme, more_contrast);
+        }
         let mut state = State::new(context.egui_ctx.clone(), preferences);
         if let Some(path) = path {
             state.apply(Command::Open(path));
@@ -181,12 +184,28 @@ fn overlays(state: &State, ui: &mut egui::Ui, place: egui::Rect, commands: &mut 
     egui::Frame::popup(ui.style()).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| panels::view_buttons(state, ui, commands));
     });
+    let through = state
+        .open
+        .as_ref()
+        .is_some_and(|open| open.looking.through.is_some());
+    if through {
+        egui::Frame::popup(ui.style()).show(ui, |ui| panels::blend_slider(state, ui, commands));
+    }
     egui::Frame::popup(ui.style()).show(ui, |ui| {
         ui.set_max_width(220.0);
         egui::CollapsingHeader::new("Layers")
             .default_open(false)
             .show(ui, |ui| panels::layers_panel(state, ui, commands));
     });
+}
+
+/// egui's own text is grey on grey; numbers that are typed off the screen need more contrast.
+fn more_contrast(style: &mut egui::Style) {
+    let visuals = &mut style.visuals;
+    let text = if visuals.dark_mode { 215 } else { 25 };
+    visuals.widgets.noninteractive.fg_stroke.color = egui::Color32::from_gray(text);
+    visuals.widgets.inactive.fg_stroke.color = egui::Color32::from_gray(text);
+    visuals.weak_text_alpha = 0.72;
 }
 
 /// Says what happens when the file over the window is let go.

@@ -71,6 +71,9 @@ pub struct Looking {
     pub blend: f64,
     /// The viewport's size in pixels, once it was drawn.
     pub size: Option<DVec2>,
+    /// Whether the engineer has turned the view: until then it shows everything, however the window
+    /// is laid out.
+    pub turned: bool,
 }
 
 /// A flight on the screen.
@@ -188,6 +191,7 @@ impl OpenFlight {
                 through: None,
                 blend: 0.5,
                 size: None,
+                turned: false,
             },
             hover: None,
             hovered_photo: None,

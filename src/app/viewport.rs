@@ -470,11 +470,23 @@ fn write(scene: &Scene, label: &Label, ui: &egui::Ui) {
         Anchor::BottomRight => Align2::RIGHT_BOTTOM,
     };
     let [red, green, blue] = label.color;
-    ui.painter().with_clip_rect(scene.place).text(
-        scene.screen(label.at),
+    let painter = ui.painter().with_clip_rect(scene.place);
+    let (at, font) = (scene.screen(label.at), FontId::proportional(13.0));
+    // A halo, because what lies behind may be of any colour.
+    let bright = u16::from(red) + u16::from(green) + u16::from(blue) > 382;
+    let halo = if bright {
+        Color32::from_black_alpha(170)
+    } else {
+        Color32::from_white_alpha(190)
+    };
+    for (x, y) in [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)] {
+        painter.text(at + vec2(x, y), anchor, &label.text, font.clone(), halo);
+    }
+    painter.text(
+        at,
         anchor,
         &label.text,
-        FontId::proportional(13.0),
+        font,
         Color32::from_rgb(red, green, blue),
     );
 }

@@ -23,7 +23,7 @@ pub use photos_table::photos_table;
 pub use start_page::start_page;
 pub use status_bar::status_bar;
 pub use tool_bar::tool_bar;
-pub use view_buttons::view_buttons;
+pub use view_buttons::{blend_slider, view_buttons};
 
 use super::command::{Command, Tab};
 use super::state::State;

@@ -21,7 +21,6 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     filter(open, ui, commands);
     let unit = state.preferences.unit();
     let factor = unit.in_units_of(open.flight.parts().unit);
-    let world = open.flight.parts().unit;
     let columns = [
         (Column::Export, "⬇".to_owned(), "Chosen for export"),
         (Column::Name, "Photo".to_owned(), "Name of the photo's file"),
@@ -43,8 +42,8 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         ),
         (
             Column::Height,
-            format!("Height, {world}"),
-            "Height of the camera above the surface below it",
+            "Height".to_owned(),
+            "Height of the camera above the surface below it, in the world's unit",
         ),
         (
             Column::Tilt,

@@ -37,9 +37,17 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         open.measure != Measure::Off,
         ui,
     );
-    if through {
-        let mut blend = open.looking.blend;
-        ui.spacing_mut().slider_width = 90.0;
+}
+
+/// How much of the photo lies over a look through its camera.
+pub fn blend_slider(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    let mut blend = open.looking.blend;
+    ui.horizontal(|ui| {
+        ui.label("Surface");
+        ui.spacing_mut().slider_width = 120.0;
         let slider = ui.add(egui::Slider::new(&mut blend, 0.0..=1.0).show_value(false));
         slider.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Slider, true, "Photo over the view")
@@ -50,5 +58,6 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         {
             commands.push(Command::Look(Look::Blend(blend)));
         }
-    }
+        ui.label("photo");
+    });
 }
