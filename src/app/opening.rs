@@ -43,9 +43,6 @@ impl State {
     /// settings to read it with once more.
     pub fn start_opening(&mut self, path: PathBuf, again: Option<(u64, FlightSettings)>) {
         self.notice = None;
-        for task in [Task::Scales, Task::Views, Task::Geometry] {
-            self.work.cancel(task);
-        }
         self.start(Task::Open, move |progress| {
             Done::Opened(Box::new(open(path, again, progress)))
         });
@@ -62,7 +59,7 @@ impl State {
             let compute = || {
                 let flight = flight.with_settings(&settings)?;
                 let outcomes = flight.scales(progress)?;
-                Ok((Arc::new(flight), outcomes))
+                Ok((Arc::new(flight), outcomes, settings))
             };
             Done::Scales(compute())
         });
@@ -185,10 +182,11 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let Some(views) = open.views.clone() else {
+        let views = open.views.clone();
+        let Some(views) = views.filter(|_| open.settings() == open.computed) else {
             self.say(
                 Severity::Error,
-                "the footprints are still being computed; export when they are there",
+                "scales and footprints are still being computed; export when they are there",
             );
             return;
         };

@@ -63,6 +63,8 @@ pub struct State {
     pub answered: Option<PathBuf>,
     /// What waits for "discard".
     pub held_back: Option<HeldBack>,
+    /// What goes on once the changes are saved.
+    pub after_saving: Option<HeldBack>,
     /// Whether the window may close.
     pub may_quit: bool,
     /// How many flights were opened.
@@ -98,6 +100,7 @@ impl State {
             asking: None,
             answered: None,
             held_back: None,
+            after_saving: None,
             may_quit: false,
             opened: 0,
             picture: None,

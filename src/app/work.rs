@@ -59,6 +59,12 @@ impl Task {
             Self::Dialog => "Dialog",
         }
     }
+
+    /// Whether it can be cancelled: without footprints and triangles the flight on the screen would
+    /// stay half-finished.
+    pub fn can_be_cancelled(self) -> bool {
+        !matches!(self, Self::Views | Self::Geometry)
+    }
 }
 
 /// Why a native dialog was opened.
@@ -105,8 +111,8 @@ pub struct Geometry {
 pub enum Done {
     /// A flight, or why it cannot be opened.
     Opened(Box<Result<Loaded, String>>),
-    /// Scales after a setting changed.
-    Scales(Result<(Arc<Flight>, Vec<Outcome>), Fault>),
+    /// Scales after a setting changed, with the settings.
+    Scales(Result<(Arc<Flight>, Vec<Outcome>, FlightSettings), Fault>),
     /// How the photos look at the surface.
     Views(Result<Vec<Option<ViewFacts>>, Fault>),
     /// For the viewport.

@@ -60,7 +60,7 @@ fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
         ui.add_space(8.0);
         ui.horizontal(|ui| {
             if ui.button("Save them").clicked() {
-                commands.extend([Command::Keep, Command::Save]);
+                commands.push(Command::SaveFirst);
             }
             if ui.button("Discard changes").clicked() {
                 commands.push(Command::Discard);
