@@ -63,7 +63,12 @@ impl Desk {
 
     /// The flight on the screen.
     pub fn open(&self) -> &OpenFlight {
-        self.harness.state().state().open.as_ref().expect("a flight")
+        self.harness
+            .state()
+            .state()
+            .open
+            .as_ref()
+            .expect("a flight")
     }
 
     /// Waits until every job has ended and what it brought is on the screen.
@@ -93,7 +98,10 @@ impl Desk {
     /// The one part of the window with this role and name.
     #[track_caller]
     pub fn node<'a>(&'a self, role: Role, name: &'a str) -> egui_kittest::Node<'a> {
-        let mut found: Vec<_> = self.harness.query_all_by_role_and_label(role, name).collect();
+        let mut found: Vec<_> = self
+            .harness
+            .query_all_by_role_and_label(role, name)
+            .collect();
         let names = || -> Vec<Option<String>> {
             let all = self.harness.query_all_by_role(role);
             all.map(|node| node.accesskit_node().label()).collect()

@@ -102,7 +102,11 @@ fn scales_can_be_for_the_photo_as_shot() {
     let before = desk.open().outcomes.to_vec();
     desk.click(Role::RadioButton, "the photo as shot");
     let as_shot = "[photos]\n";
-    let wanted = from_command(folder.path(), as_shot, "[scale]\nimage = \"as-shot\"\n[photos]\n");
+    let wanted = from_command(
+        folder.path(),
+        as_shot,
+        "[scale]\nimage = \"as-shot\"\n[photos]\n",
+    );
     assert_same(&in_window(&desk), &wanted);
     assert_ne!(*desk.open().outcomes, before);
     undo_to(&mut desk, &before);
@@ -154,7 +158,11 @@ fn the_cloud_is_thinned_from_its_file() {
     let with = "file = \"pile.ply\"\nthinning = 0.2";
     let wanted = from_command(folder.path(), "file = \"pile.ply\"", with);
     assert_same(&in_window(&desk), &wanted);
-    assert_eq!(desk.selected(), "IMG_0003.jpg", "reading again leaves the selection");
+    assert_eq!(
+        desk.selected(),
+        "IMG_0003.jpg",
+        "reading again leaves the selection"
+    );
     desk.press(Modifiers::COMMAND, Key::Z);
     undo_to(&mut desk, &before);
     assert_eq!(points(&desk), all);
@@ -176,7 +184,10 @@ fn saved_settings_are_in_flight_toml_beside_its_comments() {
         .replace("ground = 0.0764", "ground = 0.5")
         .replace("image = \"undistorted\"", "image = \"as-shot\"");
     assert_eq!(text, wanted, "nothing else has changed");
-    assert_same(&in_window(&desk), &from_command(folder.path(), "format", "format"));
+    assert_same(
+        &in_window(&desk),
+        &from_command(folder.path(), "format", "format"),
+    );
     assert!(desk.logged("saved"));
     // Undo goes back behind the saving.
     desk.press(Modifiers::COMMAND, Key::Z);
@@ -186,7 +197,10 @@ fn saved_settings_are_in_flight_toml_beside_its_comments() {
 /// The desktop asks the window to close. Whether it asked for more time, and whether it went.
 fn close(desk: &mut Desk) -> bool {
     let input = desk.harness.input_mut();
-    let window = input.viewports.get_mut(&ViewportId::ROOT).expect("the window");
+    let window = input
+        .viewports
+        .get_mut(&ViewportId::ROOT)
+        .expect("the window");
     window.events.push(ViewportEvent::Close);
     desk.harness.step();
     let held_back = desk.asked().contains(&ViewportCommand::CancelClose);
@@ -225,7 +239,10 @@ fn saving_first_goes_on_with_closing() {
     desk.click(Role::Button, "Save them");
     let text = fs::read_to_string(folder.path().join("flight.toml")).expect("the flight");
     assert!(text.contains("ground = 0.5"));
-    assert!(desk.harness.state().state().open.is_none(), "the flight is closed");
+    assert!(
+        desk.harness.state().state().open.is_none(),
+        "the flight is closed"
+    );
     assert!(desk.shows(Role::Button, "Open the sample flight"));
 }
 
@@ -234,9 +251,14 @@ fn another_flight_waits_for_the_answer() {
     let (_folder, mut desk) = page(MISSES);
     desk.fill("Ground elevation", "0.5");
     let other = flight(WINDROW);
-    desk.harness.state_mut().apply(fragscale::app::Command::Open(other));
+    desk.harness
+        .state_mut()
+        .apply(fragscale::app::Command::Open(other));
     desk.settle();
-    assert_eq!(desk.open().flight.parts().name, "Fixture tiltpan-xyz-feet-misses");
+    assert_eq!(
+        desk.open().flight.parts().name,
+        "Fixture tiltpan-xyz-feet-misses"
+    );
     desk.click(Role::Button, "Discard changes");
     assert_eq!(desk.open().flight.parts().name, "Windrow");
 }
