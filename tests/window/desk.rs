@@ -186,6 +186,16 @@ impl Desk {
         self.press(Modifiers::NONE, Key::Enter);
     }
 
+    /// Types a path into the small window that asks for one.
+    pub fn type_path(&mut self, path: &Path) {
+        let text = path.to_str().expect("a UTF-8 path");
+        self.node(Role::TextInput, "Path").click();
+        self.harness.run();
+        self.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        self.harness.event(Event::Text(text.to_owned()));
+        self.harness.run();
+    }
+
     /// One frame with these events in it; returns what went to the clipboard.
     pub fn frame(&mut self, events: impl IntoIterator<Item = Event>) -> Option<String> {
         self.harness.input_mut().events.extend(events);
