@@ -14,7 +14,7 @@ const THUMBNAILS_A_FRAME: usize = 8;
 impl State {
     /// Takes what is there, and asks for another frame while something is under way.
     pub fn poll(&mut self) {
-        for done in self.work.finished() {
+        while let Some(done) = self.work.finished() {
             match done {
                 Ok(done) => self.take(done),
                 Err(fault) => self.say(Severity::Error, &fault.to_string()),

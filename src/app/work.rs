@@ -245,13 +245,12 @@ impl Work {
         self.running.is_empty()
     }
 
-    /// Takes what is done. A job that panicked is a fault of ours, told like any other.
-    pub fn finished(&mut self) -> Vec<Result<Done, Fault>> {
-        let (finished, running): (Vec<_>, Vec<_>) = std::mem::take(&mut self.running)
-            .into_iter()
-            .partition(|(_, job)| job.is_finished());
-        self.running = running;
-        finished.into_iter().map(|(_, job)| job.finish()).collect()
+    /// Takes the first that is done: one at a time, because taking it may cancel others that are done
+    /// as well. A job that panicked is a fault of ours, told like any other.
+    pub fn finished(&mut self) -> Option<Result<Done, Fault>> {
+        let place = self.running.iter().position(|(_, job)| job.is_finished())?;
+        let (_, job) = self.running.remove(place);
+        Some(job.finish())
     }
 }
 

@@ -14,7 +14,6 @@ use fragscale::flight::{FlightSettings, Limits, Outcome, Verdict};
 use fragscale::geometry::Ray;
 use fragscale::render::{ColorBy, Scope};
 use fragscale::scale::{Ground, ImageKind};
-use fragscale::surface::SurfaceOptions;
 use fragscale::units::LengthUnit;
 use glam::{DVec2, DVec3};
 
