@@ -54,7 +54,7 @@ impl State {
             return;
         };
         let (flight, settings) = (open.flight.clone(), open.settings());
-        self.work.cancel(Task::Views);
+        // Footprints under way go on: where these scales are cancelled, they are still wanted.
         self.start(Task::Scales, move |progress| {
             let compute = || {
                 let flight = flight.with_settings(&settings)?;

@@ -153,3 +153,21 @@ fn a_cancelled_change_is_taken_back() {
         assert!(desk.logged("cancelled"));
     }
 }
+
+/// The footprints of a flight that has just come are not lost with a change that is cancelled.
+#[test]
+fn footprints_come_after_a_cancelled_change() {
+    let mut desk = Desk::new(None);
+    let app = desk.harness.state_mut();
+    app.apply(Command::Open(flight("tests/windrow")));
+    while app.state().open.is_none() {
+        std::thread::yield_now();
+        app.poll();
+    }
+    let mut settings = app.state().open.as_ref().expect("a flight").settings();
+    settings.image = fragscale::scale::ImageKind::AsShot;
+    app.apply(Command::Set(settings));
+    app.apply(Command::Cancel(fragscale::app::work::Task::Scales));
+    desk.settle();
+    assert!(desk.open().views.is_some());
+}

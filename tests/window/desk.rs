@@ -247,12 +247,18 @@ pub fn flight(path: &str) -> PathBuf {
 /// A copy of a flight to change: its files without the photos.
 pub fn copy(path: &str) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
+    copy_files(path, folder.path());
+    folder
+}
+
+/// Copies the files of a folder of the sources.
+pub fn copy_files(path: &str, to: &Path) {
+    fs::create_dir_all(to).expect("a folder");
     for entry in fs::read_dir(flight(path)).expect("the flight") {
         let from = entry.expect("an entry").path();
         if from.is_file() {
             let name = from.file_name().expect("a name");
-            fs::copy(&from, folder.path().join(name)).expect("a copy");
+            fs::copy(&from, to.join(name)).expect("a copy");
         }
     }
-    folder
 }
