@@ -11,6 +11,7 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::DVec2;
 
 use super::command::{Command, Look};
+use super::frame_times::{FrameTimes, Phase};
 use super::open_flight::{Measure, OpenFlight};
 use super::panels::verdict_color;
 use super::state::{PictureRequest, State};
@@ -80,7 +81,13 @@ impl Viewport {
     }
 
     /// Draws the viewport and what lies on it.
-    pub fn show(&mut self, state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    pub fn show(
+        &mut self,
+        state: &State,
+        ui: &mut egui::Ui,
+        commands: &mut Vec<Command>,
+        times: &mut FrameTimes,
+    ) {
         let Some(open) = &state.open else {
             return;
         };
@@ -113,8 +120,11 @@ impl Viewport {
                 if let Some(error) = graphics.gpu.take_error() {
                     commands.push(Command::Report(format!("graphics: {error}")));
                 }
+                times.end(Phase::Panels);
                 graphics.upload(open, ui.visuals());
+                times.end(Phase::Upload);
                 graphics.draw(&scene, &show, ui);
+                times.end(Phase::Draw);
                 let labels = graphics.renderer.labels(&scene.view, &show, size);
                 for label in &labels {
                     write(&scene, label, ui);
