@@ -151,37 +151,28 @@ impl TableOrder {
     }
 }
 
-/// Compares names as people do: IMG_9 before IMG_10.
-fn by_number(a: &str, b: &str) -> Ordering {
-    let (mut a, mut b) = (a.chars().peekable(), b.chars().peekable());
+/// Compares names as people do: IMG_9 before IMG_10. Allocates nothing: thousands of names are sorted
+/// within a frame.
+fn by_number(mut a: &str, mut b: &str) -> Ordering {
+    let digits = |name: &str| name.bytes().take_while(u8::is_ascii_digit).count();
     loop {
-        match (a.peek().copied(), b.peek().copied()) {
-            (None, None) => return Ordering::Equal,
-            (None, Some(_)) => return Ordering::Less,
-            (Some(_), None) => return Ordering::Greater,
-            (Some(x), Some(y)) if x.is_ascii_digit() && y.is_ascii_digit() => {
-                let digits = |chars: &mut std::iter::Peekable<std::str::Chars<'_>>| {
-                    let mut digits = String::new();
-                    while let Some(digit) = chars.next_if(char::is_ascii_digit) {
-                        digits.push(digit);
-                    }
-                    digits
-                };
-                let (x, y) = (digits(&mut a), digits(&mut b));
+        let order = match (digits(a), digits(b)) {
+            (0, _) | (_, 0) => match (a.chars().next(), b.chars().next()) {
+                (Some(x), Some(y)) => {
+                    (a, b) = (&a[x.len_utf8()..], &b[y.len_utf8()..]);
+                    x.to_lowercase().cmp(y.to_lowercase())
+                }
+                (x, y) => return x.is_some().cmp(&y.is_some()),
+            },
+            (in_a, in_b) => {
+                let (x, y);
+                ((x, a), (y, b)) = (a.split_at(in_a), b.split_at(in_b));
                 let (x, y) = (x.trim_start_matches('0'), y.trim_start_matches('0'));
-                let order = x.len().cmp(&y.len()).then_with(|| x.cmp(y));
-                if order != Ordering::Equal {
-                    return order;
-                }
+                x.len().cmp(&y.len()).then_with(|| x.cmp(y))
             }
-            (Some(x), Some(y)) => {
-                let order = x.to_lowercase().cmp(y.to_lowercase());
-                if order != Ordering::Equal {
-                    return order;
-                }
-                a.next();
-                b.next();
-            }
+        };
+        if order != Ordering::Equal {
+            return order;
         }
     }
 }
@@ -235,6 +226,15 @@ mod tests {
             ..TableOrder::default()
         };
         assert_eq!(shown(&["b", "img_10", "IMG_9", "a"], &order), [3, 0, 2, 1]);
+        // Leading zeros do not count, more digits than a number holds do.
+        let names = [
+            "n2",
+            "n01",
+            "n",
+            "n100000000000000000000",
+            "n99999999999999999999",
+        ];
+        assert_eq!(shown(&names, &order), [2, 1, 0, 4, 3]);
     }
 
     #[test]
