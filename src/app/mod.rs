@@ -65,6 +65,8 @@ impl App {
             context.egui_ctx.style_mut_of(theme, more_contrast);
         }
         let mut state = State::new(context.egui_ctx.clone(), preferences);
+        let viewport = Viewport::new(context.wgpu_render_state.as_ref());
+        state.gpu = viewport.gpu().cloned();
         let times = std::env::var_os("FRAGSCALE_FRAME_TIMES").map(PathBuf::from);
         let times = FrameTimes::into_file(times.as_deref()).unwrap_or_else(|error| {
             state.say(Severity::Error, &format!("no frame times: {error}"));
@@ -75,7 +77,7 @@ impl App {
         }
         Self {
             state,
-            viewport: Viewport::new(context.wgpu_render_state.as_ref()),
+            viewport,
             inspector: Inspector::default(),
             title: String::new(),
             times,

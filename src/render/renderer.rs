@@ -26,7 +26,8 @@ use super::scene::{
     CloudGeometry, Extent, MeshGeometry, PhotoGeometry, narrow, narrow_matrix, narrow_number,
 };
 use super::show::{Background, ColorBy, PhotoLook, Show};
-use super::surface::SurfacePhoto;
+use super::sight::{Sight, SurfaceTarget};
+use super::surface::{LargePhoto, SurfacePhoto};
 use super::targets::Targets;
 use super::view::{Projection, View};
 use super::words::write_words;
@@ -61,6 +62,10 @@ pub struct Renderer {
     strokes_for: Option<(Show, Option<usize>)>,
     /// Which photo the depths in `surface_photo` are of.
     depth_of: Option<usize>,
+    /// Counts what was uploaded of the surface.
+    version: u64,
+    /// Counts the photos to lay on it.
+    photo_version: u64,
     targets: Option<Targets>,
 }
 
@@ -73,6 +78,8 @@ pub struct Drawn {
     pub points: usize,
     /// Triangles of the mesh drawn.
     pub triangles: usize,
+    /// Whether the surface is whole; else an earlier picture of it still stands in.
+    pub whole: bool,
 }
 
 /// A part of a picture, in pixels of the whole.
@@ -136,6 +143,8 @@ impl Renderer {
             strokes: StrokeBuffer::default(),
             strokes_for: None,
             depth_of: None,
+            version: 0,
+            photo_version: 0,
             targets: None,
             gpu: gpu.clone(),
         }
@@ -159,6 +168,7 @@ impl Renderer {
     /// Takes a cloud that is uploaded already, or takes it away.
     pub fn set_cloud_buffers(&mut self, cloud: Option<CloudBuffers>) {
         self.points.cloud = cloud.unwrap_or_default();
+        self.version += 1;
     }
 
     /// Uploads the mesh, or takes it away.
@@ -169,6 +179,7 @@ impl Renderer {
     /// Takes a mesh that is uploaded already, or takes it away.
     pub fn set_mesh_buffers(&mut self, mesh: Option<MeshBuffers>) {
         self.mesh.mesh = mesh.unwrap_or_default();
+        self.version += 1;
         self.depth_of = None;
     }
 
@@ -198,18 +209,31 @@ impl Renderer {
     /// ([`Show::project_photo`]) or over the look through its camera ([`Show::photo_blend`]). Both
     /// are drawn only while it is the selected one.
     pub fn set_projected_photo(&mut self, photo: Option<(usize, &RgbaImage)>) {
-        self.surface_photo
-            .set_picture(&self.gpu.device, &self.gpu.queue, photo);
+        let upload = |(index, image)| (index, LargePhoto::new(&self.gpu, image));
+        self.set_uploaded_photo(photo.map(upload));
+    }
+
+    /// [`Self::set_projected_photo`] with one that is uploaded already.
+    pub fn set_uploaded_photo(&mut self, photo: Option<(usize, LargePhoto)>) {
+        self.surface_photo.set_picture(&self.gpu.device, photo);
+        self.photo_version += 1;
     }
 
     /// Draws a frame of `size` pixels; see it through [`Self::color_view`]. Errors of the device are
     /// kept in [`Gpu::take_error`].
     pub fn draw(&mut self, view: &View, show: &Show, size: [u32; 2]) -> Drawn {
-        let most = self.gpu.device.limits().max_texture_dimension_2d;
-        let size = size.map(|edge| edge.clamp(1, most));
+        self.draw_portion(view, show, size, usize::MAX)
+    }
+
+    /// [`Self::draw`], which draws about `most` triangles or points of the surface in one call where
+    /// an earlier picture of it from the same view can stand in. Call again until
+    /// [`Drawn::whole`].
+    pub fn draw_portion(&mut self, view: &View, show: &Show, size: [u32; 2], most: usize) -> Drawn {
+        let edge = self.gpu.device.limits().max_texture_dimension_2d;
+        let size = size.map(|side| side.clamp(1, edge));
         let texels = 4 * u64::from(size[0]) * u64::from(size[1]);
         let samples =
-            if self.gpu.software || texels > MOST_SAMPLED_TEXELS || size[0].max(size[1]) * 2 > most
+            if self.gpu.software || texels > MOST_SAMPLED_TEXELS || size[0].max(size[1]) * 2 > edge
             {
                 1
             } else {
@@ -217,13 +241,15 @@ impl Renderer {
             };
         let kept = self.targets.take().filter(|t| t.size == size);
         let new_texture = kept.is_none();
-        let targets = kept.unwrap_or_else(|| Targets::new(&self.gpu.device, size, samples));
-        let (points, triangles) = self.draw_part(&targets, view, show, Part::whole(size));
+        let mut targets = kept.unwrap_or_else(|| Targets::new(&self.gpu.device, size, samples));
+        let whole = self.draw_part(&mut targets, view, show, Part::whole(size), most);
+        let [triangles, points] = targets.surface.drawn;
         self.targets = Some(targets);
         Drawn {
             new_texture,
             points,
             triangles,
+            whole,
         }
     }
 
@@ -273,8 +299,8 @@ impl Renderer {
                     size: [0, 1].map(|i| most.min(size[i] - origin[i])),
                     of: size,
                 };
-                let targets = Targets::new(&self.gpu.device, part.size, 2);
-                self.draw_part(&targets, view, show, part);
+                let mut targets = Targets::new(&self.gpu.device, part.size, 2);
+                self.draw_part(&mut targets, view, show, part, usize::MAX);
                 let pixels = read_back(&self.gpu, &targets.picture)?;
                 self.gpu.check()?;
                 image::imageops::replace(
@@ -383,14 +409,16 @@ impl Renderer {
         (distance(&self.photos[nearest]) < radius * 1e-9).then_some(nearest)
     }
 
-    /// Draws a part of a picture and says how many points and triangles it took.
+    /// Draws a part of a picture, of the surface about `most` triangles or points where that will do.
+    /// Returns whether the surface is whole.
     fn draw_part(
         &mut self,
-        targets: &Targets,
+        targets: &mut Targets,
         view: &View,
         show: &Show,
         part: Part,
-    ) -> (usize, usize) {
+        most: usize,
+    ) -> bool {
         let (middle, radius) = self.sphere();
         let whole = pair(part.of);
         let samples = f64::from(targets.samples);
@@ -497,7 +525,26 @@ impl Renderer {
         if project || (show.color_by == ColorBy::Scale && selected.is_some()) {
             self.draw_photo_depth(&mut encoder, show.selected, &main, photo_near);
         }
-        let drawn = self.draw_surface(&mut encoder, targets, show, share, &in_sight);
+        let too_many = show.max_points.is_some_and(|most| {
+            show.mesh && !self.points.is_empty() && self.mesh.count(&in_sight) > 2 * most
+        });
+        let shapes = [show.mesh && !too_many, show.cloud || too_many];
+        let version = (self.version, if project { self.photo_version } else { 0 });
+        let sight = Sight::new(&main, show.color_by, version, shapes, share);
+        let shown = targets.surface.sight.as_ref();
+        let mut complete = shown == Some(&sight);
+        if !complete {
+            let stands_in = shown.is_some_and(|shown| shown.same_view(&sight));
+            if targets.next.sight.as_ref() != Some(&sight) {
+                targets.next.begin(sight);
+            }
+            let most = if stands_in { most } else { usize::MAX };
+            self.draw_surface(&mut encoder, &mut targets.next, most, &in_sight);
+            complete = targets.next.is_whole();
+            if complete {
+                std::mem::swap(&mut targets.surface, &mut targets.next);
+            }
+        }
         self.draw_relief(&mut encoder, targets);
         self.draw_fills(&mut encoder, targets, show);
         self.draw_overlay(
@@ -526,7 +573,7 @@ impl Renderer {
             self.resolve.draw(&mut pass, &group);
         }
         self.gpu.queue.submit([encoder.finish()]);
-        drawn
+        complete
     }
 
     /// How deep the selected photo sees, where that is not known yet.
@@ -569,46 +616,50 @@ impl Renderer {
         self.mesh.draw_depth(&mut pass);
     }
 
+    /// Draws the surface, or goes on with it: about `most` triangles and points.
     fn draw_surface(
         &self,
         encoder: &mut CommandEncoder,
-        targets: &Targets,
-        show: &Show,
-        share: f64,
+        target: &mut SurfaceTarget,
+        most: usize,
         in_sight: &impl Fn(&Extent) -> bool,
-    ) -> (usize, usize) {
+    ) {
+        let begins = target.drawn == [0; 2];
         let mut pass = pass(
             encoder,
             "surface",
-            &targets.surface,
-            Some(wgpu::Color::TRANSPARENT),
-            Some(depth(&targets.depth, true)),
+            &target.color,
+            begins.then_some(wgpu::Color::TRANSPARENT),
+            Some(depth(&target.depth, begins)),
         );
         pass.set_bind_group(0, &self.main_frame.group, &[]);
         pass.set_bind_group(1, &self.surface_photo.group, &[]);
-        let mut drawn = (0, 0);
-        let too_many = show.max_points.is_some_and(|most| {
-            show.mesh && !self.points.is_empty() && self.mesh.count(in_sight) > 2 * most
-        });
-        if show.mesh && !too_many {
-            drawn.1 = self.mesh.draw(&mut pass, in_sight);
+        let share = target.sight.as_ref().map_or(1.0, |sight| sight.share);
+        let mut left = most;
+        if let Some(from) = target.next[0] {
+            let (drawn, next) = self.mesh.draw(&mut pass, from, left, in_sight);
+            target.next[0] = next;
+            target.drawn[0] += drawn;
+            left = left.saturating_sub(drawn);
         }
-        if show.cloud || too_many {
-            drawn.0 = self.points.draw(&mut pass, share, in_sight);
+        if let Some(from) = target.next[1] {
+            let (drawn, next) = self.points.draw(&mut pass, share, from, left, in_sight);
+            target.next[1] = next;
+            target.drawn[1] += drawn;
         }
-        drawn
     }
 
     fn draw_relief(&self, encoder: &mut CommandEncoder, targets: &Targets) {
-        let group = self
-            .edl
-            .group(&self.gpu.device, &[&targets.surface, &targets.depth]);
+        let group = self.edl.group(
+            &self.gpu.device,
+            &[&targets.surface.color, &targets.surface.depth],
+        );
         let mut pass = pass(
             encoder,
             "edl",
             &targets.sampled,
             Some(wgpu::Color::TRANSPARENT),
-            None,
+            Some(depth(&targets.depth, true)),
         );
         pass.set_bind_group(0, &self.main_frame.group, &[]);
         self.edl.draw(&mut pass, &group);
@@ -634,7 +685,7 @@ impl Renderer {
         if pyramids.is_empty() {
             return;
         }
-        let group = self.fill.group(&self.gpu.device, &targets.depth);
+        let group = self.fill.group(&self.gpu.device, &targets.surface.depth);
         let mut pass = pass(encoder, "fill", &targets.sampled, None, None);
         pass.set_bind_group(0, &self.main_frame.group, &[]);
         self.fill
@@ -823,18 +874,18 @@ mod tests {
     use super::*;
     use crate::render::{Normals, Orbit};
 
-    /// A heap of 20 units with a grid under it, which reach over every seam.
-    fn heap(gpu: &Gpu) -> (Renderer, Orbit) {
+    /// A heap of 20 units with a grid under it, which reach over every seam; `cells` along an edge.
+    fn heap(gpu: &Gpu, cells: u32) -> (Renderer, Orbit) {
         let mut vertices = Vec::new();
         let mut triangles = Vec::new();
-        for row in 0..41_u32 {
-            for column in 0..41_u32 {
-                let (x, y) = (f64::from(column) * 0.5 - 10.0, f64::from(row) * 0.5 - 10.0);
+        for row in 0..=cells {
+            for column in 0..=cells {
+                let [x, y] = [column, row].map(|i| f64::from(i) * 20.0 / f64::from(cells) - 10.0);
                 vertices.push(DVec3::new(x, y, 4.0 * (-(x * x + y * y) / 30.0).exp()));
-                if row < 40 && column < 40 {
-                    let at = row * 41 + column;
-                    triangles.push([at, at + 1, at + 42]);
-                    triangles.push([at, at + 42, at + 41]);
+                if row < cells && column < cells {
+                    let at = row * (cells + 1) + column;
+                    triangles.push([at, at + 1, at + cells + 2]);
+                    triangles.push([at, at + cells + 2, at + cells + 1]);
                 }
             }
         }
@@ -853,7 +904,7 @@ mod tests {
     #[test]
     fn parts_make_the_whole() {
         let gpu = Gpu::headless().unwrap();
-        let (mut renderer, mut orbit) = heap(&gpu);
+        let (mut renderer, mut orbit) = heap(&gpu, 40);
         let show = Show {
             ground: Some(0.0),
             wireframe: true,
@@ -881,7 +932,7 @@ mod tests {
     #[test]
     fn a_frame_in_the_window_is_read_back_as_drawn() {
         let gpu = Gpu::headless().unwrap();
-        let (mut renderer, orbit) = heap(&gpu);
+        let (mut renderer, orbit) = heap(&gpu, 40);
         let show = Show::default();
         renderer.draw(&orbit.view(), &show, [120, 80]);
         let frame = read_back(&gpu, &renderer.targets.as_ref().unwrap().picture).unwrap();
@@ -898,5 +949,42 @@ mod tests {
         // The heap is in the middle, the background in the corner.
         assert_eq!(frame.get_pixel(119, 0).0, [24, 26, 30, 255]);
         assert!(frame.get_pixel(60, 45)[0] > 90);
+    }
+
+    /// A large surface drawn in portions ends as the one drawn at once; until then the picture before
+    /// it stands in.
+    #[test]
+    fn portions_make_the_whole() {
+        let gpu = Gpu::headless().unwrap();
+        let size = [160, 120];
+        let frame = |renderer: &Renderer| {
+            read_back(&gpu, &renderer.targets.as_ref().unwrap().picture).unwrap()
+        };
+        let (mut at_once, orbit) = heap(&gpu, 400);
+        let view = orbit.view();
+        let slope = Show {
+            color_by: ColorBy::Slope,
+            ..Show::default()
+        };
+        assert!(at_once.draw(&view, &slope, size).whole);
+        let expected = frame(&at_once);
+
+        let (mut renderer, _) = heap(&gpu, 400);
+        renderer.draw(&view, &Show::default(), size);
+        let before = frame(&renderer);
+        assert!(before != expected);
+        let mut calls = 1;
+        while !renderer.draw_portion(&view, &slope, size, 1).whole {
+            assert!(frame(&renderer) == before);
+            calls += 1;
+        }
+        // 320 000 triangles in tiles of at most 65 536.
+        assert!(calls >= 5, "{calls}");
+        assert!(frame(&renderer) == expected);
+        // From elsewhere nothing can stand in.
+        let mut other = orbit;
+        other.orbit(DVec2::new(100.0, 0.0));
+        assert!(renderer.draw_portion(&other.view(), &slope, size, 1).whole);
+        assert_eq!(gpu.take_error(), None);
     }
 }
