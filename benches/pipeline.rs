@@ -26,55 +26,15 @@ use fragscale::jobs::Progress;
 use fragscale::surface::{Cloud, Surface};
 use glam::DVec3;
 
-/// Where the pile lies.
-const ORIGIN: DVec3 = DVec3::new(500_000.0, 5_000_000.0, 300.0);
+mod pile;
 
-/// Numbers in 0..1: Knuth's MMIX.
-fn random(mut seed: u64) -> impl FnMut() -> f64 {
-    move || {
-        seed = seed
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
-/// A rough pile of `count` points at 25 points a square metre, rounded to millimetres.
-fn pile(count: usize) -> Vec<DVec3> {
-    let side = (count as f64 / 25.0).sqrt();
-    let mut random = random(1);
-    let round = |x: f64| (x * 1000.0).round() / 1000.0;
-    (0..count)
-        .map(|_| {
-            let (x, y) = (random() * side, random() * side);
-            let heap = 6.0 * (1.0 - ((x / side - 0.5).hypot(y / side - 0.5) * 2.0).min(1.0));
-            let z = heap + 0.4 * (x * 1.7).sin() * (y * 1.3).cos() + 0.2 * random();
-            DVec3::new(round(x), round(y), round(z)) + ORIGIN
-        })
-        .collect()
-}
+use pile::{ORIGIN, pile, write_ply};
 
 fn cloud(count: usize) -> Cloud {
     Cloud {
         points: pile(count),
         ..Cloud::default()
     }
-}
-
-/// Binary PLY with doubles.
-fn write_ply(path: &Path, points: &[DVec3]) {
-    let mut bytes = format!(
-        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\n\
-         property double y\nproperty double z\nend_header\n",
-        points.len()
-    )
-    .into_bytes();
-    for point in points {
-        for coordinate in point.to_array() {
-            bytes.extend(coordinate.to_le_bytes());
-        }
-    }
-    fs::write(path, bytes).expect("written");
 }
 
 fn write_laz(path: &Path, points: &[DVec3]) {

@@ -1,7 +1,7 @@
 // Eye-dome lighting (Boucheny 2009), from depth alone: a texel is darker where it lies deeper than
 // the mean of two opposite neighbours, as in a gap between stones or behind an edge. Opposite pairs
 // cancel out the slope, so that plain ground stays plain however flat the view. Puts the surface on
-// its background.
+// its background, and its depths to where photos and lines are drawn.
 
 @group(1) @binding(0) var surface: texture_2d<f32>;
 @group(1) @binding(1) var depth: texture_2d<f32>;
@@ -20,10 +20,19 @@ fn nearer(at: vec2<i32>, here: f32) -> f32 {
     return here - distance_of(there);
 }
 
+struct Texel {
+    @location(0) color: vec4<f32>,
+    @builtin(frag_depth) depth: f32,
+}
+
 @fragment
-fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+fn fragment(@builtin(position) position: vec4<f32>) -> Texel {
     let at = vec2<i32>(position.xy);
     let there = textureLoad(depth, at, 0).r;
+    return Texel(lit(at, there), there);
+}
+
+fn lit(at: vec2<i32>, there: f32) -> vec4<f32> {
     if there <= 0.0 {
         return frame.background;
     }

@@ -143,7 +143,9 @@ impl State {
             },
             Command::Close => {
                 self.work.cancel_all();
-                self.open = None;
+                if let Some(open) = self.open.take() {
+                    open.let_go();
+                }
                 self.notice = None;
             }
             Command::Quit => self.quit(),

@@ -15,6 +15,7 @@
 pub mod actions;
 pub mod apply;
 pub mod command;
+pub mod frame_times;
 pub mod history;
 pub mod layers;
 pub mod open_flight;
@@ -34,8 +35,9 @@ use std::sync::Arc;
 pub use command::Command;
 pub use state::State;
 
+use frame_times::{FrameTimes, Phase};
 use panels::Inspector;
-use state::HeldBack;
+use state::{HeldBack, Severity};
 use viewport::Viewport;
 
 /// Under which name eframe keeps the preferences.
@@ -48,6 +50,7 @@ pub struct App {
     inspector: Inspector,
     /// The title that the window has.
     title: String,
+    times: FrameTimes,
 }
 
 impl App {
@@ -61,14 +64,22 @@ impl App {
             context.egui_ctx.style_mut_of(theme, more_contrast);
         }
         let mut state = State::new(context.egui_ctx.clone(), preferences);
+        let viewport = Viewport::new(context.wgpu_render_state.as_ref());
+        state.gpu = viewport.gpu().cloned();
+        let times = std::env::var_os("FRAGSCALE_FRAME_TIMES").map(PathBuf::from);
+        let times = FrameTimes::into_file(times.as_deref()).unwrap_or_else(|error| {
+            state.say(Severity::Error, &format!("no frame times: {error}"));
+            FrameTimes::default()
+        });
         if let Some(path) = path {
             state.apply(Command::Open(path));
         }
         Self {
             state,
-            viewport: Viewport::new(context.wgpu_render_state.as_ref()),
+            viewport,
             inspector: Inspector::default(),
             title: String::new(),
+            times,
         }
     }
 
@@ -103,6 +114,7 @@ impl App {
 
 impl eframe::App for App {
     fn logic(&mut self, context: &egui::Context, _frame: &mut eframe::Frame) {
+        self.times.begin();
         self.hold_back_closing(context);
         for command in actions::pressed(&self.state, context) {
             self.state.apply(command);
@@ -118,6 +130,7 @@ impl eframe::App for App {
             context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
         }
+        self.times.end(Phase::Logic);
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
@@ -146,10 +159,10 @@ impl eframe::App for App {
                 .default_size(330.0)
                 .min_size(220.0)
                 .show(ui, |ui| panels::right_panel(state, inspector, ui, out));
-            let viewport = &mut self.viewport;
+            let (viewport, times) = (&mut self.viewport, &mut self.times);
             egui::CentralPanel::no_frame().show(ui, |ui| {
                 let place = ui.available_rect_before_wrap();
-                viewport.show(state, ui, out);
+                viewport.show(state, ui, out, times);
                 overlays(state, ui, place, out);
             });
         } else {
@@ -160,10 +173,12 @@ impl eframe::App for App {
         }
         panels::ask(state, ui.ctx(), out);
         drop_hint(ui.ctx());
+        self.times.end(Phase::Panels);
         for command in commands {
             self.state.apply(command);
             ui.ctx().request_repaint();
         }
+        self.times.end(Phase::Commands);
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {

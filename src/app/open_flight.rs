@@ -206,6 +206,14 @@ impl OpenFlight {
         open
     }
 
+    /// Lets it go. Millions of points take longer to free than a frame may: a thread does it.
+    pub fn let_go(self: Box<Self>) {
+        // Where there is no thread, it is freed here.
+        let _ = std::thread::Builder::new()
+            .name("let go".to_owned())
+            .spawn(move || drop(self));
+    }
+
     /// The settings of now.
     pub fn settings(&self) -> FlightSettings {
         self.history.now().settings

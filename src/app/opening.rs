@@ -17,7 +17,9 @@ use crate::formats::{self, FileError, OpenOptions};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
 use crate::picture;
-use crate::render::{CloudGeometry, MeshGeometry, Normals, PhotoImage};
+use crate::render::{
+    CloudBuffers, CloudGeometry, Gpu, LargePhoto, MeshBuffers, MeshGeometry, Normals, PhotoImage,
+};
 use crate::scale::ImageKind;
 
 /// The longer side of a thumbnail, pixels: for the table and the image planes in the viewport.
@@ -78,12 +80,12 @@ impl State {
 
     /// Makes ready what the viewport draws of the surface.
     pub fn start_geometry(&mut self) {
-        let Some(open) = &self.open else {
+        let (Some(open), Some(gpu)) = (&self.open, self.gpu.clone()) else {
             return;
         };
         let (flight, frame) = (open.flight.clone(), open.frame);
         self.start(Task::Geometry, move |progress| {
-            Done::Geometry(geometry(&flight, &frame, progress))
+            Done::Geometry(geometry(&flight, &frame, &gpu, progress))
         });
     }
 
@@ -139,7 +141,7 @@ impl State {
             return;
         };
         let file = open.photo_files.get(photo).cloned().unwrap_or_default();
-        let flight = open.flight.clone();
+        let (flight, gpu) = (open.flight.clone(), self.gpu.clone());
         self.start(Task::Preview, move |_| {
             let posed = &flight.parts().photos[photo];
             let picture = match &file.path {
@@ -148,7 +150,9 @@ impl State {
                     let camera = flight.camera(posed);
                     let image = flight.parts().image;
                     PreviewPicture {
-                        projected: undistorted(&full, camera, PROJECTED).convert(),
+                        projected: gpu.map(|gpu| {
+                            LargePhoto::new(&gpu, &undistorted(&full, camera, PROJECTED).convert())
+                        }),
                         large: Arc::new(color_image(&as_scaled(&full, camera, image, PREVIEW))),
                     }
                 }),
@@ -308,9 +312,11 @@ fn bounds_of(flight: &Flight) -> Bounds {
     bounds
 }
 
+/// Triangulates, makes ready and uploads: the window's thread has nothing left to do with it.
 fn geometry(
     flight: &Flight,
     frame: &LocalFrame,
+    gpu: &Gpu,
     progress: &Progress,
 ) -> Result<Box<Geometry>, Fault> {
     let surface = &flight.parts().surface;
@@ -323,13 +329,15 @@ fn geometry(
     progress.advance(2, 4)?;
     let colors = surface.colors();
     let mesh = MeshGeometry::new(frame, surface.vertices(), colors, &normals, &triangles);
+    drop(triangles);
     progress.advance(3, 4)?;
+    let mesh = MeshBuffers::new(gpu, &mesh);
     let cloud = CloudGeometry::new(frame, surface.vertices(), colors, &normals);
-    let points = surface.vertices().len();
+    progress.advance(4, 4)?;
     Ok(Box::new(Geometry {
-        cloud,
+        cloud: CloudBuffers::new(gpu, &cloud),
         mesh,
-        points,
+        points: surface.vertices().len(),
     }))
 }
 

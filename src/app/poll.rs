@@ -182,7 +182,12 @@ impl State {
                 self.open = other;
                 return;
             }
-            (None, _) => None,
+            (None, before) => {
+                if let Some(before) = before {
+                    before.let_go();
+                }
+                None
+            }
         };
         if again.is_none() {
             self.work.cancel_all();
@@ -197,7 +202,7 @@ impl State {
         let limits = self.preferences.limits;
         let mut open = Box::new(OpenFlight::new(self.opened, loaded, &limits));
         if let Some(before) = again {
-            open.keep_from(*before);
+            open.keep_from(before);
             open.judge(&limits);
         }
         self.open = Some(open);
@@ -271,13 +276,14 @@ impl State {
 
 impl OpenFlight {
     /// Takes over what the engineer did from the flight before it was read again.
-    fn keep_from(&mut self, before: Self) {
+    fn keep_from(&mut self, mut before: Box<Self>) {
         self.saved = before.saved;
-        self.history = before.history;
+        std::mem::swap(&mut self.history, &mut before.history);
         self.proposed = before.proposed;
         self.selected = before.selected;
-        self.order = before.order;
+        std::mem::swap(&mut self.order, &mut before.order);
         self.looking = before.looking;
+        before.let_go();
     }
 
     fn take_picked(&mut self, picked: Picked) {

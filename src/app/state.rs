@@ -8,6 +8,7 @@ use super::open_flight::OpenFlight;
 use super::preferences::Preferences;
 use super::work::Work;
 use crate::fault::one_line;
+use crate::render::Gpu;
 
 /// How many lines the log keeps.
 const LOG_LINES: usize = 2000;
@@ -45,6 +46,8 @@ pub enum HeldBack {
 pub struct State {
     /// For clipboard, theme and window; also what wakes the window up.
     pub context: egui::Context,
+    /// The window's graphics device, where there is one: jobs upload what the viewport draws.
+    pub gpu: Option<Gpu>,
     /// Remembered from day to day.
     pub preferences: Preferences,
     /// The flight on the screen; `None` on the start page.
@@ -92,6 +95,7 @@ impl State {
         let state = Self {
             work: Work::new(context.clone()),
             context,
+            gpu: None,
             preferences,
             open: None,
             log: Vec::new(),

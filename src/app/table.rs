@@ -200,6 +200,15 @@ mod tests {
             ..TableOrder::default()
         };
         assert_eq!(shown(&["b", "img_10", "IMG_9", "a"], &order), [3, 0, 2, 1]);
+        // Leading zeros do not count, more digits than a number holds do.
+        let names = [
+            "n2",
+            "n01",
+            "n",
+            "n100000000000000000000",
+            "n99999999999999999999",
+        ];
+        assert_eq!(shown(&names, &order), [2, 1, 0, 4, 3]);
     }
 
     #[test]

@@ -11,6 +11,7 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::DVec2;
 
 use super::command::{Command, Look};
+use super::frame_times::{FrameTimes, Phase};
 use super::open_flight::{Measure, OpenFlight};
 use super::panels::verdict_color;
 use super::state::{PictureRequest, State};
@@ -24,11 +25,13 @@ use crate::render::{
 /// How long the view must rest before everything is drawn.
 const REST: Duration = Duration::from_millis(250);
 
-/// Points drawn while the view moves, on a graphics card and without one.
+/// Points drawn while the view moves, on a graphics card and without one. They stand for the
+/// triangles too where those are more than twice as many.
 const MOVING_POINTS: [usize; 2] = [2_000_000, 100_000];
 
-/// Triangles up to which the surface is drawn while the view moves, likewise.
-const MOVING_TRIANGLES: [usize; 2] = [4_000_000, 300_000];
+/// Triangles or points drawn in one frame when the view has come to rest, likewise: the window
+/// answers meanwhile.
+const PORTION: [usize; 2] = [usize::MAX, 400_000];
 
 /// The viewport with what it has uploaded.
 pub struct Viewport {
@@ -42,8 +45,8 @@ struct Graphics {
     texture: Option<egui::TextureId>,
     uploaded: Uploaded,
     drawn: Option<(View, Show, [u32; 2])>,
-    triangles: usize,
-    moved: Option<(View, Instant)>,
+    /// What was looked at last, and since when; `None` where that is new.
+    moved: Option<(View, [u32; 2], Instant)>,
 }
 
 /// What the renderer has, to see what is new.
@@ -72,15 +75,25 @@ impl Viewport {
                     texture: None,
                     uploaded: Uploaded::default(),
                     drawn: None,
-                    triangles: 0,
                     moved: None,
                 }
             }),
         }
     }
 
+    /// The graphics device, for jobs to upload to.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.graphics.as_ref().map(|graphics| &graphics.gpu)
+    }
+
     /// Draws the viewport and what lies on it.
-    pub fn show(&mut self, state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    pub fn show(
+        &mut self,
+        state: &State,
+        ui: &mut egui::Ui,
+        commands: &mut Vec<Command>,
+        times: &mut FrameTimes,
+    ) {
         let Some(open) = &state.open else {
             return;
         };
@@ -113,8 +126,11 @@ impl Viewport {
                 if let Some(error) = graphics.gpu.take_error() {
                     commands.push(Command::Report(format!("graphics: {error}")));
                 }
+                times.end(Phase::Panels);
                 graphics.upload(open, ui.visuals());
+                times.end(Phase::Upload);
                 graphics.draw(&scene, &show, ui);
+                times.end(Phase::Draw);
                 let labels = graphics.renderer.labels(&scene.view, &show, size);
                 for label in &labels {
                     write(&scene, label, ui);
@@ -334,11 +350,11 @@ impl Graphics {
         if !same_geometry {
             uploaded.geometry.clone_from(&open.geometry);
             let geometry = open.geometry.as_deref();
-            self.renderer
-                .set_cloud(geometry.map(|geometry| &geometry.cloud));
-            self.renderer
-                .set_mesh(geometry.map(|geometry| &geometry.mesh));
-            self.drawn = None;
+            let cloud = geometry.map(|geometry| geometry.cloud.clone());
+            self.renderer.set_cloud_buffers(cloud);
+            let mesh = geometry.map(|geometry| geometry.mesh.clone());
+            self.renderer.set_mesh_buffers(mesh);
+            (self.drawn, self.moved) = (None, None);
         }
         let views = open.views.as_ref().map(|views| Arc::as_ptr(views).addr());
         let photos = Some((Arc::as_ptr(&open.outcomes).addr(), views));
@@ -356,7 +372,7 @@ impl Graphics {
             });
             self.renderer.set_photos(photos.collect());
             uploaded.looks.clear();
-            self.drawn = None;
+            (self.drawn, self.moved) = (None, None);
         }
         let looks: Vec<PhotoLook> = open
             .judged
@@ -392,9 +408,9 @@ impl Graphics {
             uploaded.projected = projected;
             let picture = preview.and_then(|preview| {
                 let picture = preview.picture.as_ref().ok()?;
-                Some((preview.photo, &picture.projected))
+                Some((preview.photo, picture.projected.clone()?))
             });
-            self.renderer.set_projected_photo(picture);
+            self.renderer.set_uploaded_photo(picture);
             self.drawn = None;
         }
     }
@@ -403,37 +419,28 @@ impl Graphics {
     fn draw(&mut self, scene: &Scene, show: &Show, ui: &egui::Ui) {
         let mut show = show.clone();
         let now = Instant::now();
-        let moved = self
-            .moved
-            .as_ref()
-            .is_none_or(|(view, _)| *view != scene.view);
-        if moved {
-            self.moved = Some((scene.view, now));
-        }
-        let rested = self
-            .moved
-            .as_ref()
-            .is_none_or(|(_, since)| now.duration_since(*since) >= REST);
+        let rests_since = match self.moved {
+            Some((view, size, since)) if view == scene.view && size == scene.size => since,
+            _ => now,
+        };
+        self.moved = Some((scene.view, scene.size, rests_since));
         let software = usize::from(self.gpu.software);
-        let heavy = self.triangles > MOVING_TRIANGLES[software];
-        let points = self
-            .uploaded
-            .geometry
-            .as_ref()
-            .map_or(0, |geometry| geometry.points);
-        let many = points > MOVING_POINTS[software] && (show.cloud || (show.mesh && heavy));
-        if !rested && (many || (show.mesh && heavy)) {
+        let points = self.uploaded.geometry.as_deref();
+        let points = points.map_or(0, |geometry| geometry.points);
+        let many = points > MOVING_POINTS[software];
+        if many && now.duration_since(rests_since) < REST {
             show.max_points = Some(MOVING_POINTS[software]);
-            if heavy && show.mesh {
-                (show.mesh, show.cloud, show.wireframe) = (false, true, false);
-            }
+            show.wireframe = false;
             ui.ctx().request_repaint_after(REST);
         }
         let wanted = (scene.view, show, scene.size);
         if self.drawn.as_ref() != Some(&wanted) {
-            let drawn = self.renderer.draw(&wanted.0, &wanted.1, scene.size);
-            if wanted.1.mesh {
-                self.triangles = self.triangles.max(drawn.triangles);
+            let portion = PORTION[software];
+            let drawn = self
+                .renderer
+                .draw_portion(&wanted.0, &wanted.1, scene.size, portion);
+            if !drawn.whole {
+                ui.ctx().request_repaint();
             }
             if let Some(view) = self.renderer.color_view() {
                 let mut renderer = self.state.renderer.write();
@@ -451,7 +458,7 @@ impl Graphics {
                     Some(_) => {}
                 }
             }
-            self.drawn = Some(wanted);
+            self.drawn = drawn.whole.then_some(wanted);
         }
         if let Some(texture) = self.texture {
             let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));

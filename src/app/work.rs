@@ -8,14 +8,13 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use egui::ColorImage;
-use image::RgbaImage;
 
 use crate::fault::Fault;
 use crate::flight::{Flight, FlightSettings, Outcome};
 use crate::formats::{FlightOrigin, Opened};
 use crate::geometry::Bounds;
 use crate::jobs::{Job, Progress};
-use crate::render::{CloudGeometry, MeshGeometry, PhotoImage};
+use crate::render::{CloudBuffers, LargePhoto, MeshBuffers, PhotoImage};
 use crate::scale::ViewFacts;
 
 /// What is being done. Of each task one job runs at a time.
@@ -95,13 +94,13 @@ pub struct Loaded {
     pub again_for: Option<u64>,
 }
 
-/// What the viewport draws.
+/// What the viewport draws, on the graphics device.
 #[derive(Debug)]
 pub struct Geometry {
     /// The points.
-    pub cloud: CloudGeometry,
+    pub cloud: CloudBuffers,
     /// The triangles.
-    pub mesh: MeshGeometry,
+    pub mesh: MeshBuffers,
     /// How many points there are.
     pub points: usize,
 }
@@ -155,7 +154,7 @@ pub struct PreviewPicture {
     /// For the inspector.
     pub large: Arc<ColorImage>,
     /// For the viewport: over the look through the camera, and on the surface.
-    pub projected: RgbaImage,
+    pub projected: Option<LargePhoto>,
 }
 
 /// The jobs under way.

@@ -226,6 +226,7 @@ impl Flight {
             ..
         } = &self.parts;
         let unusable = |error| Fault::new(format!("{error}"), "check the surface file");
+        progress.stage("making the surface ready for many rays");
         let mut caster = surface
             .caster_for(photos.len() * ViewFacts::RAYS)
             .map_err(unusable)?;

@@ -1,7 +1,8 @@
 //! Passes over every texel of the picture, which read what earlier ones drew.
 
 use wgpu::{
-    BindGroup, BindGroupLayout, Device, PrimitiveTopology, RenderPass, RenderPipeline, TextureView,
+    BindGroup, BindGroupLayout, CompareFunction, Device, PrimitiveTopology, RenderPass,
+    RenderPipeline, TextureView,
 };
 
 use super::pipeline::{Recipe, group_layout, module, pipeline, texel_group, texels};
@@ -15,12 +16,13 @@ pub(super) struct Cover {
 }
 
 impl Cover {
-    /// A pass that reads this many textures.
+    /// A pass that reads this many textures, and writes depths or not.
     pub(super) fn new(
         device: &Device,
         frame: &BindGroupLayout,
         shader: Shader,
         textures: u32,
+        writes_depth: bool,
     ) -> Self {
         let entries: Vec<_> = (0..textures).map(texels).collect();
         let layout = group_layout(device, shader.0, &entries);
@@ -34,7 +36,7 @@ impl Cover {
                 buffers: &[],
                 topology: PrimitiveTopology::TriangleList,
                 cull: None,
-                depth: None,
+                depth: writes_depth.then_some((CompareFunction::Always, true)),
                 translucent: false,
                 constants: &[],
             },

@@ -6,7 +6,7 @@ use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, Device, Queue, Shad
 use super::pipeline::{buffer, group_layout};
 
 /// The uniform; its fields are explained in the shader.
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Frame {
     pub(super) clip_from_local: [[f32; 4]; 4],

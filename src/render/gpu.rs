@@ -106,6 +106,12 @@ impl Gpu {
         }
     }
 
+    /// Lets the device take what was written into buffers and textures: otherwise it would wait for
+    /// the next frame, and cost the window's thread time.
+    pub(super) fn hand_over(&self) {
+        self.queue.submit([]);
+    }
+
     /// The first thing that went wrong on the device since the last call.
     pub fn take_error(&self) -> Option<String> {
         self.errors

@@ -10,8 +10,8 @@ use super::pipeline::{Recipe, buffer, count, module, pipeline};
 use super::scene::{Extent, MeshGeometry, MeshTile, Vertex};
 use super::shaders;
 
-/// A mesh on the graphics card. Uploading can be done on a worker thread.
-#[derive(Debug, Default)]
+/// A mesh on the graphics card. Uploading can be done on a worker thread; clones share the buffers.
+#[derive(Debug, Clone, Default)]
 pub struct MeshBuffers {
     tiles: Vec<Tile>,
     /// See [`MeshGeometry`].
@@ -30,8 +30,10 @@ impl MeshBuffers {
             ends: 2 * count(&tile.edges),
             extent: tile.extent,
         };
+        let tiles = mesh.tiles.iter().map(upload).collect();
+        gpu.hand_over();
         Self {
-            tiles: mesh.tiles.iter().map(upload).collect(),
+            tiles,
             elevation: mesh.elevation,
         }
     }
@@ -45,7 +47,7 @@ pub(super) struct Mesh {
     pub(super) mesh: MeshBuffers,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Tile {
     vertices: Buffer,
     triangles: Buffer,
@@ -123,20 +125,23 @@ impl Mesh {
             .sum()
     }
 
-    /// Draws the triangles in sight, and says how many they were.
+    /// Draws triangles in sight from the tile `from` on, about `most` of them. Says how many they
+    /// were, and the tile to go on with where some are left.
     pub(super) fn draw(
         &self,
         pass: &mut RenderPass<'_>,
+        from: usize,
+        most: usize,
         in_sight: &impl Fn(&Extent) -> bool,
-    ) -> usize {
+    ) -> (usize, Option<usize>) {
         pass.set_pipeline(&self.faces);
-        self.draw_triangles(pass, in_sight)
+        self.draw_triangles(pass, from, most, in_sight)
     }
 
     /// Draws their depths alone.
     pub(super) fn draw_depth(&self, pass: &mut RenderPass<'_>) {
         pass.set_pipeline(&self.depth_alone);
-        self.draw_triangles(pass, &|_| true);
+        self.draw_triangles(pass, 0, usize::MAX, &|_| true);
     }
 
     /// Draws the edges of the triangles in sight.
@@ -156,15 +161,23 @@ impl Mesh {
     fn draw_triangles(
         &self,
         pass: &mut RenderPass<'_>,
+        from: usize,
+        most: usize,
         in_sight: &impl Fn(&Extent) -> bool,
-    ) -> usize {
+    ) -> (usize, Option<usize>) {
         let mut drawn = 0;
-        for tile in self.mesh.tiles.iter().filter(|tile| in_sight(&tile.extent)) {
+        for (place, tile) in self.mesh.tiles.iter().enumerate().skip(from) {
+            if !in_sight(&tile.extent) {
+                continue;
+            }
+            if drawn >= most {
+                return (drawn, Some(place));
+            }
             pass.set_vertex_buffer(0, tile.vertices.slice(..));
             pass.set_index_buffer(tile.triangles.slice(..), IndexFormat::Uint32);
             pass.draw_indexed(0..tile.corners, 0, 0..1);
             drawn += tile.corners as usize / 3;
         }
-        drawn
+        (drawn, None)
     }
 }

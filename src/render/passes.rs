@@ -17,6 +17,7 @@ use super::photo_lines::{camera_depth, fill_colors, ink, photo_lines};
 use super::renderer::Renderer;
 use super::scene::{Extent, narrow, narrow_matrix, narrow_number};
 use super::show::{Background, ColorBy, Show};
+use super::sight::{Sight, SurfaceTarget};
 use super::targets::Targets;
 use super::view::{Projection, View};
 
@@ -33,14 +34,16 @@ impl Renderer {
         (distance(&self.photos[nearest]) < radius * 1e-9).then_some(nearest)
     }
 
-    /// Draws a part of a picture and says how many points and triangles it took.
+    /// Draws a part of a picture, of the surface about `most` triangles or points where that will do.
+    /// Returns whether the surface is whole.
     pub(super) fn draw_part(
         &mut self,
-        targets: &Targets,
+        targets: &mut Targets,
         view: &View,
         show: &Show,
         part: Part,
-    ) -> (usize, usize) {
+        most: usize,
+    ) -> bool {
         let (middle, radius) = self.sphere();
         let whole = pair(part.of);
         let samples = f64::from(targets.samples);
@@ -156,7 +159,26 @@ impl Renderer {
         if project || (show.color_by == ColorBy::Scale && selected.is_some()) {
             self.draw_photo_depth(&mut encoder, show.selected, &main, photo_near);
         }
-        let drawn = self.draw_surface(&mut encoder, targets, show, share, &in_sight);
+        let too_many = show.max_points.is_some_and(|most| {
+            show.mesh && !self.points.is_empty() && self.mesh.count(&in_sight) > 2 * most
+        });
+        let shapes = [show.mesh && !too_many, show.cloud || too_many];
+        let version = (self.version, if project { self.photo_version } else { 0 });
+        let sight = Sight::new(&main, show.color_by, version, shapes, share);
+        let shown = targets.surface.sight.as_ref();
+        let mut complete = shown == Some(&sight);
+        if !complete {
+            let stands_in = shown.is_some_and(|shown| shown.same_view(&sight));
+            if targets.next.sight.as_ref() != Some(&sight) {
+                targets.next.begin(sight);
+            }
+            let most = if stands_in { most } else { usize::MAX };
+            self.draw_surface(&mut encoder, &mut targets.next, most, &in_sight);
+            complete = targets.next.is_whole();
+            if complete {
+                std::mem::swap(&mut targets.surface, &mut targets.next);
+            }
+        }
         self.draw_relief(&mut encoder, targets);
         self.draw_fills(&mut encoder, targets, show);
         self.draw_overlay(
@@ -185,7 +207,7 @@ impl Renderer {
             self.resolve.draw(&mut pass, &group);
         }
         self.gpu.queue.submit([encoder.finish()]);
-        drawn
+        complete
     }
 
     /// How deep the selected photo sees, where that is not known yet.
@@ -228,46 +250,50 @@ impl Renderer {
         self.mesh.draw_depth(&mut pass);
     }
 
+    /// Draws the surface, or goes on with it: about `most` triangles and points.
     fn draw_surface(
         &self,
         encoder: &mut CommandEncoder,
-        targets: &Targets,
-        show: &Show,
-        share: f64,
+        target: &mut SurfaceTarget,
+        most: usize,
         in_sight: &impl Fn(&Extent) -> bool,
-    ) -> (usize, usize) {
+    ) {
+        let begins = target.drawn == [0; 2];
         let mut pass = pass(
             encoder,
             "surface",
-            &targets.surface,
-            Some(wgpu::Color::TRANSPARENT),
-            Some(depth(&targets.depth, true)),
+            &target.color,
+            begins.then_some(wgpu::Color::TRANSPARENT),
+            Some(depth(&target.depth, begins)),
         );
         pass.set_bind_group(0, &self.main_frame.group, &[]);
         pass.set_bind_group(1, &self.surface_photo.group, &[]);
-        let mut drawn = (0, 0);
-        let too_many = show.max_points.is_some_and(|most| {
-            show.mesh && !self.points.is_empty() && self.mesh.count(in_sight) > 2 * most
-        });
-        if show.mesh && !too_many {
-            drawn.1 = self.mesh.draw(&mut pass, in_sight);
+        let share = target.sight.as_ref().map_or(1.0, |sight| sight.share);
+        let mut left = most;
+        if let Some(from) = target.next[0] {
+            let (drawn, next) = self.mesh.draw(&mut pass, from, left, in_sight);
+            target.next[0] = next;
+            target.drawn[0] += drawn;
+            left = left.saturating_sub(drawn);
         }
-        if show.cloud || too_many {
-            drawn.0 = self.points.draw(&mut pass, share, in_sight);
+        if let Some(from) = target.next[1] {
+            let (drawn, next) = self.points.draw(&mut pass, share, from, left, in_sight);
+            target.next[1] = next;
+            target.drawn[1] += drawn;
         }
-        drawn
     }
 
     fn draw_relief(&self, encoder: &mut CommandEncoder, targets: &Targets) {
-        let group = self
-            .edl
-            .group(&self.gpu.device, &[&targets.surface, &targets.depth]);
+        let group = self.edl.group(
+            &self.gpu.device,
+            &[&targets.surface.color, &targets.surface.depth],
+        );
         let mut pass = pass(
             encoder,
             "edl",
             &targets.sampled,
             Some(wgpu::Color::TRANSPARENT),
-            None,
+            Some(depth(&targets.depth, true)),
         );
         pass.set_bind_group(0, &self.main_frame.group, &[]);
         self.edl.draw(&mut pass, &group);
@@ -293,7 +319,7 @@ impl Renderer {
         if pyramids.is_empty() {
             return;
         }
-        let group = self.fill.group(&self.gpu.device, &targets.depth);
+        let group = self.fill.group(&self.gpu.device, &targets.surface.depth);
         let mut pass = pass(encoder, "fill", &targets.sampled, None, None);
         pass.set_bind_group(0, &self.main_frame.group, &[]);
         self.fill

@@ -10,8 +10,8 @@ use super::pipeline::{Recipe, buffer, count, module, pipeline};
 use super::scene::{CloudGeometry, CloudTile, Extent, Vertex};
 use super::shaders;
 
-/// A cloud on the graphics card. Uploading can be done on a worker thread.
-#[derive(Debug, Default)]
+/// A cloud on the graphics card. Uploading can be done on a worker thread; clones share the buffers.
+#[derive(Debug, Clone, Default)]
 pub struct CloudBuffers {
     tiles: Vec<Tile>,
     /// See [`CloudGeometry`].
@@ -28,8 +28,10 @@ impl CloudBuffers {
             count: count(&tile.points),
             extent: tile.extent,
         };
+        let tiles = cloud.tiles.iter().map(upload).collect();
+        gpu.hand_over();
         Self {
-            tiles: cloud.tiles.iter().map(upload).collect(),
+            tiles,
             spacing: cloud.spacing,
             elevation: cloud.elevation,
         }
@@ -42,7 +44,7 @@ pub(super) struct Points {
     pub(super) cloud: CloudBuffers,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Tile {
     points: Buffer,
     count: u32,
@@ -103,27 +105,31 @@ impl Points {
         }
     }
 
-    /// Draws this share of the points in sight, and says how many they were.
+    /// Draws this share of the points in sight from the tile `from` on, about `most` of them. Says
+    /// how many they were, and the tile to go on with where some are left.
     pub(super) fn draw(
         &self,
         pass: &mut RenderPass<'_>,
         share: f64,
+        from: usize,
+        most: usize,
         in_sight: &impl Fn(&Extent) -> bool,
-    ) -> usize {
+    ) -> (usize, Option<usize>) {
         pass.set_pipeline(&self.pipeline);
         let mut drawn = 0;
-        for tile in self
-            .cloud
-            .tiles
-            .iter()
-            .filter(|tile| in_sight(&tile.extent))
-        {
+        for (place, tile) in self.cloud.tiles.iter().enumerate().skip(from) {
+            if !in_sight(&tile.extent) {
+                continue;
+            }
+            if drawn >= most {
+                return (drawn, Some(place));
+            }
             // `as` saturates.
             let count = (f64::from(tile.count) * share).floor() as u32;
             pass.set_vertex_buffer(0, tile.points.slice(..));
             pass.draw(0..4, 0..count);
             drawn += count as usize;
         }
-        drawn
+        (drawn, None)
     }
 }

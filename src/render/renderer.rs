@@ -22,7 +22,7 @@ use super::readback::read_back;
 use super::resolve::resolve;
 use super::scene::{CloudGeometry, Extent, MeshGeometry, narrow};
 use super::show::{ColorBy, PhotoLook, Show};
-use super::surface::SurfacePhoto;
+use super::surface::{LargePhoto, SurfacePhoto};
 use super::targets::Targets;
 use super::view::View;
 use super::words::write_words;
@@ -57,6 +57,10 @@ pub struct Renderer {
     pub(super) strokes_for: Option<(Show, Option<usize>)>,
     /// Which photo the depths in `surface_photo` are of.
     pub(super) depth_of: Option<usize>,
+    /// Counts what was uploaded of the surface.
+    pub(super) version: u64,
+    /// Counts the photos to lay on it.
+    pub(super) photo_version: u64,
     pub(super) targets: Option<Targets>,
 }
 
@@ -69,6 +73,8 @@ pub struct Drawn {
     pub points: usize,
     /// Triangles of the mesh drawn.
     pub triangles: usize,
+    /// Whether the surface is whole; else an earlier picture of it still stands in.
+    pub whole: bool,
 }
 
 impl Renderer {
@@ -98,6 +104,8 @@ impl Renderer {
             strokes: StrokeBuffer::default(),
             strokes_for: None,
             depth_of: None,
+            version: 0,
+            photo_version: 0,
             targets: None,
             gpu: gpu.clone(),
         }
@@ -121,6 +129,7 @@ impl Renderer {
     /// Takes a cloud that is uploaded already, or takes it away.
     pub fn set_cloud_buffers(&mut self, cloud: Option<CloudBuffers>) {
         self.points.cloud = cloud.unwrap_or_default();
+        self.version += 1;
     }
 
     /// Uploads the mesh, or takes it away.
@@ -131,6 +140,7 @@ impl Renderer {
     /// Takes a mesh that is uploaded already, or takes it away.
     pub fn set_mesh_buffers(&mut self, mesh: Option<MeshBuffers>) {
         self.mesh.mesh = mesh.unwrap_or_default();
+        self.version += 1;
         self.depth_of = None;
     }
 
@@ -160,18 +170,31 @@ impl Renderer {
     /// ([`Show::project_photo`]) or over the look through its camera ([`Show::photo_blend`]). Both
     /// are drawn only while it is the selected one.
     pub fn set_projected_photo(&mut self, photo: Option<(usize, &RgbaImage)>) {
-        self.surface_photo
-            .set_picture(&self.gpu.device, &self.gpu.queue, photo);
+        let upload = |(index, image)| (index, LargePhoto::new(&self.gpu, image));
+        self.set_uploaded_photo(photo.map(upload));
+    }
+
+    /// [`Self::set_projected_photo`] with one that is uploaded already.
+    pub fn set_uploaded_photo(&mut self, photo: Option<(usize, LargePhoto)>) {
+        self.surface_photo.set_picture(&self.gpu.device, photo);
+        self.photo_version += 1;
     }
 
     /// Draws a frame of `size` pixels; see it through [`Self::color_view`]. Errors of the device are
     /// kept in [`Gpu::take_error`].
     pub fn draw(&mut self, view: &View, show: &Show, size: [u32; 2]) -> Drawn {
-        let most = self.gpu.device.limits().max_texture_dimension_2d;
-        let size = size.map(|edge| edge.clamp(1, most));
+        self.draw_portion(view, show, size, usize::MAX)
+    }
+
+    /// [`Self::draw`], which draws about `most` triangles or points of the surface in one call where
+    /// an earlier picture of it from the same view can stand in. Call again until
+    /// [`Drawn::whole`].
+    pub fn draw_portion(&mut self, view: &View, show: &Show, size: [u32; 2], most: usize) -> Drawn {
+        let edge = self.gpu.device.limits().max_texture_dimension_2d;
+        let size = size.map(|side| side.clamp(1, edge));
         let texels = 4 * u64::from(size[0]) * u64::from(size[1]);
         let samples =
-            if self.gpu.software || texels > MOST_SAMPLED_TEXELS || size[0].max(size[1]) * 2 > most
+            if self.gpu.software || texels > MOST_SAMPLED_TEXELS || size[0].max(size[1]) * 2 > edge
             {
                 1
             } else {
@@ -179,13 +202,15 @@ impl Renderer {
             };
         let kept = self.targets.take().filter(|t| t.size == size);
         let new_texture = kept.is_none();
-        let targets = kept.unwrap_or_else(|| Targets::new(&self.gpu.device, size, samples));
-        let (points, triangles) = self.draw_part(&targets, view, show, Part::whole(size));
+        let mut targets = kept.unwrap_or_else(|| Targets::new(&self.gpu.device, size, samples));
+        let whole = self.draw_part(&mut targets, view, show, Part::whole(size), most);
+        let [triangles, points] = targets.surface.drawn;
         self.targets = Some(targets);
         Drawn {
             new_texture,
             points,
             triangles,
+            whole,
         }
     }
 
@@ -235,8 +260,8 @@ impl Renderer {
                     size: [0, 1].map(|i| most.min(size[i] - origin[i])),
                     of: size,
                 };
-                let targets = Targets::new(&self.gpu.device, part.size, 2);
-                self.draw_part(&targets, view, show, part);
+                let mut targets = Targets::new(&self.gpu.device, part.size, 2);
+                self.draw_part(&mut targets, view, show, part, usize::MAX);
                 let pixels = read_back(&self.gpu, &targets.picture)?;
                 self.gpu.check()?;
                 image::imageops::replace(
@@ -345,18 +370,18 @@ mod tests {
     use super::*;
     use crate::render::{Normals, Orbit};
 
-    /// A heap of 20 units with a grid under it, which reach over every seam.
-    fn heap(gpu: &Gpu) -> (Renderer, Orbit) {
+    /// A heap of 20 units with a grid under it, which reach over every seam; `cells` along an edge.
+    fn heap(gpu: &Gpu, cells: u32) -> (Renderer, Orbit) {
         let mut vertices = Vec::new();
         let mut triangles = Vec::new();
-        for row in 0..41_u32 {
-            for column in 0..41_u32 {
-                let (x, y) = (f64::from(column) * 0.5 - 10.0, f64::from(row) * 0.5 - 10.0);
+        for row in 0..=cells {
+            for column in 0..=cells {
+                let [x, y] = [column, row].map(|i| f64::from(i) * 20.0 / f64::from(cells) - 10.0);
                 vertices.push(DVec3::new(x, y, 4.0 * (-(x * x + y * y) / 30.0).exp()));
-                if row < 40 && column < 40 {
-                    let at = row * 41 + column;
-                    triangles.push([at, at + 1, at + 42]);
-                    triangles.push([at, at + 42, at + 41]);
+                if row < cells && column < cells {
+                    let at = row * (cells + 1) + column;
+                    triangles.push([at, at + 1, at + cells + 2]);
+                    triangles.push([at, at + cells + 2, at + cells + 1]);
                 }
             }
         }
@@ -375,7 +400,7 @@ mod tests {
     #[test]
     fn parts_make_the_whole() {
         let gpu = Gpu::headless().unwrap();
-        let (mut renderer, mut orbit) = heap(&gpu);
+        let (mut renderer, mut orbit) = heap(&gpu, 40);
         let show = Show {
             ground: Some(0.0),
             wireframe: true,
@@ -403,7 +428,7 @@ mod tests {
     #[test]
     fn a_frame_in_the_window_is_read_back_as_drawn() {
         let gpu = Gpu::headless().unwrap();
-        let (mut renderer, orbit) = heap(&gpu);
+        let (mut renderer, orbit) = heap(&gpu, 40);
         let show = Show::default();
         renderer.draw(&orbit.view(), &show, [120, 80]);
         let frame = read_back(&gpu, &renderer.targets.as_ref().unwrap().picture).unwrap();
@@ -420,5 +445,42 @@ mod tests {
         // The heap is in the middle, the background in the corner.
         assert_eq!(frame.get_pixel(119, 0).0, [24, 26, 30, 255]);
         assert!(frame.get_pixel(60, 45)[0] > 90);
+    }
+
+    /// A large surface drawn in portions ends as the one drawn at once; until then the picture before
+    /// it stands in.
+    #[test]
+    fn portions_make_the_whole() {
+        let gpu = Gpu::headless().unwrap();
+        let size = [160, 120];
+        let frame = |renderer: &Renderer| {
+            read_back(&gpu, &renderer.targets.as_ref().unwrap().picture).unwrap()
+        };
+        let (mut at_once, orbit) = heap(&gpu, 400);
+        let view = orbit.view();
+        let slope = Show {
+            color_by: ColorBy::Slope,
+            ..Show::default()
+        };
+        assert!(at_once.draw(&view, &slope, size).whole);
+        let expected = frame(&at_once);
+
+        let (mut renderer, _) = heap(&gpu, 400);
+        renderer.draw(&view, &Show::default(), size);
+        let before = frame(&renderer);
+        assert!(before != expected);
+        let mut calls = 1;
+        while !renderer.draw_portion(&view, &slope, size, 1).whole {
+            assert!(frame(&renderer) == before);
+            calls += 1;
+        }
+        // 320 000 triangles in tiles of at most 65 536.
+        assert!(calls >= 5, "{calls}");
+        assert!(frame(&renderer) == expected);
+        // From elsewhere nothing can stand in.
+        let mut other = orbit;
+        other.orbit(DVec2::new(100.0, 0.0));
+        assert!(renderer.draw_portion(&other.view(), &slope, size, 1).whole);
+        assert_eq!(gpu.take_error(), None);
     }
 }

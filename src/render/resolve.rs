@@ -7,5 +7,5 @@ use super::shaders;
 
 /// Reads the picture with all its samples.
 pub(super) fn resolve(device: &Device, frame: &BindGroupLayout) -> Cover {
-    Cover::new(device, frame, shaders::RESOLVE, 1)
+    Cover::new(device, frame, shaders::RESOLVE, 1, false)
 }

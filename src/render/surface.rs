@@ -4,16 +4,55 @@
 use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 use wgpu::{
-    BindGroup, BindGroupLayout, Device, Extent3d, Queue, Sampler, TextureFormat, TextureUsages,
+    BindGroup, BindGroupLayout, Device, Extent3d, Sampler, TextureFormat, TextureUsages,
     TextureView,
 };
 
+use super::gpu::Gpu;
 use super::images::{array_view, trilinear, write_levels};
 use super::pipeline::{group_layout, pictures, sampler, texels};
 use super::targets::{COLOR, DEPTH};
 
 /// Longer edge of the texture of how deep a photo sees.
 const DEPTH_EDGE: f64 = 1024.0;
+
+/// An undistorted photo on the graphics card, to be laid on the surface. Uploading can be done on a
+/// worker thread; clones share the texture.
+#[derive(Debug, Clone)]
+pub struct LargePhoto(TextureView);
+
+impl LargePhoto {
+    /// Uploads a photo with its halvings, so that it does not glitter from afar.
+    pub fn new(gpu: &Gpu, image: &RgbaImage) -> Self {
+        let most = gpu.device.limits().max_texture_dimension_2d;
+        let longest = image.width().max(image.height());
+        let first = if longest > most {
+            let shrunk = |edge: u32| {
+                // Fits u32: it is less than before.
+                let edge = u64::from(edge) * u64::from(most) / u64::from(longest);
+                u32::try_from(edge).unwrap_or(most).max(1)
+            };
+            let (width, height) = (shrunk(image.width()), shrunk(image.height()));
+            resize(image, width, height, FilterType::Triangle)
+        } else {
+            image.clone()
+        };
+        let mut levels = vec![first];
+        while let Some(last) = levels.last()
+            && last.width().max(last.height()) > 1
+        {
+            let (width, height) = ((last.width() / 2).max(1), (last.height() / 2).max(1));
+            let halved = resize(last, width, height, FilterType::Triangle);
+            levels.push(halved);
+        }
+        let size = [levels[0].width(), levels[0].height()];
+        let count = u32::try_from(levels.len()).unwrap_or(1);
+        let texture = texture(&gpu.device, COLOR, size, count);
+        write_levels(&gpu.queue, &texture, 0, &levels);
+        gpu.hand_over();
+        Self(array_view(&texture))
+    }
+}
 
 #[derive(Debug)]
 pub(super) struct SurfacePhoto {
@@ -47,44 +86,13 @@ impl SurfacePhoto {
         }
     }
 
-    /// Uploads a picture with its halvings, so that it does not glitter from afar.
-    pub(super) fn set_picture(
-        &mut self,
-        device: &Device,
-        queue: &Queue,
-        photo: Option<(usize, &RgbaImage)>,
-    ) {
-        self.index = photo.map(|(index, _)| index);
-        let Some((_, image)) = photo else {
-            return;
-        };
-        let most = device.limits().max_texture_dimension_2d;
-        let longest = image.width().max(image.height());
-        let first = if longest > most {
-            let shrunk = |edge: u32| {
-                // Fits u32: it is less than before.
-                let edge = u64::from(edge) * u64::from(most) / u64::from(longest);
-                u32::try_from(edge).unwrap_or(most).max(1)
-            };
-            let (width, height) = (shrunk(image.width()), shrunk(image.height()));
-            resize(image, width, height, FilterType::Triangle)
-        } else {
-            image.clone()
-        };
-        let mut levels = vec![first];
-        while let Some(last) = levels.last()
-            && last.width().max(last.height()) > 1
-        {
-            let (width, height) = ((last.width() / 2).max(1), (last.height() / 2).max(1));
-            let halved = resize(last, width, height, FilterType::Triangle);
-            levels.push(halved);
+    /// Takes the picture of the photo with this index.
+    pub(super) fn set_picture(&mut self, device: &Device, photo: Option<(usize, LargePhoto)>) {
+        self.index = photo.as_ref().map(|(index, _)| *index);
+        if let Some((_, LargePhoto(picture))) = photo {
+            self.picture = picture;
+            self.bind(device);
         }
-        let size = [levels[0].width(), levels[0].height()];
-        let count = u32::try_from(levels.len()).unwrap_or(1);
-        let texture = texture(device, COLOR, size, count);
-        write_levels(queue, &texture, 0, &levels);
-        self.picture = array_view(&texture);
-        self.bind(device);
     }
 
     /// A new, empty texture for how deep a photo with this image size sees.

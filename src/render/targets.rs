@@ -2,6 +2,8 @@
 
 use wgpu::{Device, Extent3d, TextureFormat, TextureUsages, TextureView};
 
+use super::sight::SurfaceTarget;
+
 /// Gamma-space colours, as egui wants them.
 pub(super) const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
 /// Reverse-z needs floating point.
@@ -14,8 +16,10 @@ pub(super) struct Targets {
     pub(super) size: [u32; 2],
     /// Samples along each edge of a pixel, 1 or 2.
     pub(super) samples: u32,
-    /// The surface alone.
-    pub(super) surface: TextureView,
+    /// The surface that is seen.
+    pub(super) surface: SurfaceTarget,
+    /// The one under way, which takes its place when it is whole.
+    pub(super) next: SurfaceTarget,
     /// Of the surface, later of photos and lines too.
     pub(super) depth: TextureView,
     /// Everything, with all samples; the picture itself where there is one sample.
@@ -46,12 +50,18 @@ impl Targets {
         };
         let view =
             |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let surface = |label| {
+            let [color, depth] = [COLOR, DEPTH]
+                .map(|format| view(&make(label, samples, format, TextureUsages::empty())));
+            SurfaceTarget::new(color, depth)
+        };
         let picture = make("picture", 1, COLOR, TextureUsages::COPY_SRC);
         let picture_view = view(&picture);
         Self {
             size,
             samples,
-            surface: view(&make("surface", samples, COLOR, TextureUsages::empty())),
+            surface: surface("surface"),
+            next: surface("next surface"),
             depth: view(&make("depth", samples, DEPTH, TextureUsages::empty())),
             sampled: if samples == 1 {
                 picture_view.clone()

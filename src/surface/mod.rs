@@ -14,7 +14,7 @@ mod thinning;
 mod walk;
 
 use std::ops::Range;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use glam::DVec3;
 
@@ -121,6 +121,8 @@ struct Whole {
     blocks: OnceLock<Vec<VertexBlock>>,
     /// The same as a mesh, once somebody asked.
     mesh: OnceLock<Arc<Whole>>,
+    /// Held while it is made: threads that ask at the same time wait for the one that makes it.
+    making: Mutex<()>,
 }
 
 #[derive(Debug)]
@@ -215,6 +217,7 @@ impl Surface {
             shape,
             blocks: OnceLock::new(),
             mesh: OnceLock::new(),
+            making: Mutex::default(),
         };
         Ok(Self {
             whole: Arc::new(whole),
@@ -292,16 +295,23 @@ impl Surface {
             Shape::Cloud(sites) => sites,
         };
         if self.whole.mesh.get().is_none() {
-            let triangles = delaunay::triangulate(sites.points())?;
-            let mesh = Mesh::new(sites.points().to_vec(), sites.colors().to_vec(), triangles)?;
-            // Another thread may have been quicker: its mesh is the same.
-            let _ = self.whole.mesh.set(Arc::new(Whole {
-                frame: self.whole.frame,
-                magnitude: self.whole.magnitude,
-                shape: Shape::Mesh(mesh),
-                blocks: OnceLock::new(),
-                mesh: OnceLock::new(),
-            }));
+            // A thread that panicked while it held the lock has set nothing.
+            let making = self.whole.making.lock();
+            let _making = making.unwrap_or_else(PoisonError::into_inner);
+            if self.whole.mesh.get().is_none() {
+                let triangles = delaunay::triangulate(sites.points())?;
+                let (points, colors) = (sites.points().to_vec(), sites.colors().to_vec());
+                let whole = Whole {
+                    frame: self.whole.frame,
+                    magnitude: self.whole.magnitude,
+                    shape: Shape::Mesh(Mesh::new(points, colors, triangles)?),
+                    blocks: OnceLock::new(),
+                    mesh: OnceLock::new(),
+                    making: Mutex::default(),
+                };
+                // It is empty: whoever sets it holds the lock.
+                let _ = self.whole.mesh.set(Arc::new(whole));
+            }
         }
         match self.whole.mesh.get().map(|whole| &whole.shape) {
             Some(Shape::Mesh(mesh)) => Ok(mesh),
