@@ -129,14 +129,17 @@ pub const COPY_SCALES: Action = Action {
     label: "Copy scales",
     hover: "Copy the selected photo's top and bottom scale, as Split-Desktop's dialog asks for them",
     shortcut: keys(SHIFT, Key::C),
-    command: |state| with_photo(state, Command::CopyScales),
+    command: |state| state.scales_to_copy().map(|_| Command::CopyScales),
 };
 /// See its `hover`.
 pub const CHOOSE_TRUSTED: Action = Action {
     label: "Choose trusted photos",
     hover: "Choose for export the photos without any reason for doubt",
     shortcut: None,
-    command: |state| with_flight(state, Command::ChooseAll(Choice::Trusted)),
+    command: |state| {
+        let looked = state.open.as_ref()?.views.is_some();
+        looked.then_some(Command::ChooseAll(Choice::Trusted))
+    },
 };
 /// See its `hover`.
 pub const CHOOSE_ALL: Action = Action {
@@ -311,7 +314,13 @@ pub fn all() -> impl Iterator<Item = Action> {
 /// The commands of the shortcuts that were pressed in this frame. Keys without Ctrl belong to a text
 /// field while one has the focus.
 pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
+    if state.held_back.is_some() {
+        // A question waits for its answer first.
+        return Vec::new();
+    }
     let typing = context.egui_wants_keyboard_input();
+    // A text field has an undo of its own.
+    let editing = context.text_edit_focused();
     let mut actions: Vec<Action> = all().filter(|action| action.shortcut.is_some()).collect();
     // Ctrl+Shift+Z before Ctrl+Z: egui takes the first that fits, and more modifiers fit less.
     actions.sort_by_key(|action| {
@@ -323,7 +332,8 @@ pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
         let Some(shortcut) = action.shortcut else {
             continue;
         };
-        if typing && !shortcut.modifiers.command {
+        let undoes = [UNDO.shortcut, REDO.shortcut].contains(&action.shortcut);
+        if (typing && !shortcut.modifiers.command) || (editing && undoes) {
             continue;
         }
         if let Some(command) = (action.command)(state)

@@ -11,6 +11,7 @@ use super::state::{HeldBack, PictureRequest, Severity, State, sample_flight};
 use super::table::Column;
 use super::work::Task;
 use crate::flight::{FlightSettings, Verdict};
+use crate::render::MOST_PIXELS;
 use crate::units::LengthUnit;
 
 impl State {
@@ -35,20 +36,7 @@ impl State {
             Command::Save => self.save(),
             Command::SaveAs(path) => self.save_as(path),
             Command::Export(folder) => self.export(folder),
-            Command::Picture {
-                path,
-                size,
-                transparent,
-                corner_rays,
-            } => {
-                self.asking = None;
-                self.picture = self.open.is_some().then_some(PictureRequest {
-                    path,
-                    size,
-                    transparent,
-                    corner_rays,
-                });
-            }
+            Command::Picture(request) => self.ask_picture(request),
             Command::Ask(asking) => self.ask(asking),
             Command::Browse(what, folder) => self.browse(what, folder),
             Command::Cancel(task) => {
@@ -81,6 +69,7 @@ impl State {
             }
             Command::Copy(text) => self.context.copy_text(text),
             Command::Report(text) => self.say(Severity::Error, &text),
+            Command::TakeAnswer => self.answered = None,
             Command::Set(_) | Command::Undo | Command::Redo => self.edit_settings(&command),
             Command::Select(_) | Command::SelectBy(_) => {
                 if let Some(open) = &mut self.open {
@@ -118,11 +107,12 @@ impl State {
 
     /// Leaves the flight on the screen, unless something would be lost: then asks first.
     fn leave(&mut self, command: Command) {
-        let changed = self.open.as_ref().is_some_and(|open| open.is_changed());
-        if changed {
-            self.held_back = Some(match command {
-                Command::Quit => HeldBack::Quit,
-                other => HeldBack::Command(Box::new(other)),
+        let quits = command == Command::Quit;
+        if self.is_changed() || (quits && self.work.is_writing()) {
+            self.held_back = Some(if quits {
+                HeldBack::Quit
+            } else {
+                HeldBack::Leave(Box::new(command))
             });
         } else {
             self.go(command);
@@ -142,7 +132,8 @@ impl State {
                 ),
             },
             Command::Close => {
-                self.work.cancel_all();
+                self.work.cancel(Task::Open);
+                self.work.cancel_for_flight();
                 if let Some(open) = self.open.take() {
                     open.let_go();
                 }
@@ -157,7 +148,12 @@ impl State {
     pub(super) fn go_on(&mut self, held_back: HeldBack) {
         match held_back {
             HeldBack::Quit => self.quit(),
-            HeldBack::Command(command) => self.go(*command),
+            HeldBack::Leave(command) => self.go(*command),
+            HeldBack::Replace(command) => match *command {
+                Command::SaveAs(path) => self.start_saving(path),
+                Command::Picture(request) => self.picture = Some(request),
+                _ => {}
+            },
         }
     }
 
@@ -229,8 +225,13 @@ impl State {
     }
 
     /// What "copy scales" copies: the selected photo's top and bottom scale in the chosen unit.
+    ///
+    /// `None` while scales for the settings of now are being computed.
     pub fn scales_to_copy(&self) -> Option<String> {
         let open = self.open.as_ref()?;
+        if open.settings() != open.computed {
+            return None;
+        }
         let scale = open.scale(open.selected?)?;
         let unit = self.preferences.unit();
         let factor = unit.in_units_of(open.flight.parts().unit);
@@ -263,14 +264,57 @@ impl State {
 
     fn save_as(&mut self, path: PathBuf) {
         self.asking = None;
-        if !self.work.is_running(Task::Save) {
+        if self.open.is_none() || self.is_busy(Task::Save) {
+            return;
+        }
+        let own = self
+            .open
+            .as_ref()
+            .and_then(|open| open.origin.flight_file());
+        if own != Some(path.as_path()) && path.exists() {
+            self.held_back = Some(HeldBack::Replace(Box::new(Command::SaveAs(path))));
+        } else {
             self.start_saving(path);
         }
     }
 
     fn export(&mut self, folder: PathBuf) {
         self.asking = None;
-        self.start_export(folder);
+        if !self.is_busy(Task::Export) {
+            self.start_export(folder);
+        }
+    }
+
+    fn ask_picture(&mut self, request: PictureRequest) {
+        self.asking = None;
+        let [width, height] = request.size.map(u64::from);
+        if self.open.is_none() || self.is_busy(Task::Picture) {
+            return;
+        }
+        if width * height > MOST_PIXELS {
+            let most = MOST_PIXELS / 1_000_000;
+            let text = format!(
+                "a picture of {width} x {height} pixels is too large; choose at most {most} million pixels"
+            );
+            self.say(Severity::Error, &text);
+        } else if request.path.exists() {
+            self.held_back = Some(HeldBack::Replace(Box::new(Command::Picture(request))));
+        } else {
+            self.picture = Some(request);
+        }
+    }
+
+    /// Whether a task of this kind still writes; then says so.
+    fn is_busy(&mut self, task: Task) -> bool {
+        let busy = self.work.is_running(task);
+        if busy {
+            let text = format!(
+                "{}: the one before is still under way; wait for it",
+                task.in_words()
+            );
+            self.say(Severity::Error, &text);
+        }
+        busy
     }
 }
 
@@ -298,6 +342,8 @@ impl OpenFlight {
                 self.history.set(edit);
                 self.arrange();
             }
+            // Nothing is trusted before it was looked at.
+            Command::ChooseAll(Choice::Trusted) if self.views.is_none() => {}
             Command::ChooseAll(choice) => {
                 let mut edit = self.history.now().clone();
                 for (place, judged) in edit.chosen.iter_mut().zip(&self.judged) {
@@ -347,7 +393,7 @@ impl OpenFlight {
         }
     }
 
-    fn select(&mut self, photo: Option<usize>) {
+    pub(super) fn select(&mut self, photo: Option<usize>) {
         self.selected = photo.filter(|&photo| photo < self.outcomes.len());
         // Looking through a camera goes on through the next one.
         if self.looking.through.is_some() {

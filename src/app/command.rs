@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::layers::Layers;
 use super::preferences::Theme;
+use super::state::PictureRequest;
 use super::table::Column;
 use super::work::{DialogFor, Task};
 use crate::flight::{FlightSettings, Limits, Verdict};
@@ -106,16 +107,7 @@ pub enum Command {
     /// Exports the chosen photos into this folder.
     Export(PathBuf),
     /// Writes a picture of the viewport.
-    Picture {
-        /// Where to.
-        path: PathBuf,
-        /// In pixels.
-        size: [u32; 2],
-        /// Without a background, or on white.
-        transparent: bool,
-        /// With the layers of the paper's figure instead of those on the screen.
-        corner_rays: bool,
-    },
+    Picture(PictureRequest),
     /// Opens a small window that asks for a place, or closes it.
     Ask(Option<Asking>),
     /// Opens the desktop's own dialog; for opening, `true` asks for a folder.
@@ -186,6 +178,8 @@ pub enum Command {
     CopyScales,
     /// Copies a text.
     Copy(String),
+    /// The path that the desktop's dialog gave stands in the field now.
+    TakeAnswer,
     /// Tells what went wrong outside of the state: in the graphics device.
     Report(String),
 }

@@ -46,6 +46,17 @@ impl<T: PartialEq> History<T> {
         self.redo.pop_if(|after| *after == self.now);
     }
 
+    /// Changes every state, done and undone, without a step: for what no person did. Where two
+    /// neighbours become the same, there is no step between them any more.
+    pub fn each(&mut self, change: impl FnMut(&mut T)) {
+        let states = self.undone_to.iter_mut().chain([&mut self.now]);
+        states.chain(&mut self.redo).for_each(change);
+        self.undone_to.dedup();
+        self.redo.dedup();
+        self.undone_to.pop_if(|before| *before == self.now);
+        self.redo.pop_if(|after| *after == self.now);
+    }
+
     /// Whether there is a state before this one.
     pub fn can_undo(&self) -> bool {
         !self.undone_to.is_empty()
@@ -115,6 +126,21 @@ mod tests {
         assert_eq!(*history.now(), 'a');
         history.replace('b');
         assert!(!history.can_redo() && !history.can_undo());
+    }
+
+    #[test]
+    fn what_no_person_did_is_in_every_state() {
+        let mut history = History::new((1, false));
+        history.set((2, false));
+        history.set((3, false));
+        history.undo();
+        history.each(|state| state.1 = true);
+        for expected in [(2, true), (1, true)] {
+            assert_eq!(*history.now(), expected);
+            history.undo();
+        }
+        assert!(history.redo() && history.redo());
+        assert_eq!(*history.now(), (3, true));
     }
 
     #[test]

@@ -82,6 +82,11 @@ impl Layers {
             ground: false,
             project_photo: false,
             wireframe: false,
+            color_by: match self.color_by {
+                // The scale is that of one photo; the figure is of all.
+                ColorBy::Scale => ColorBy::Rgb,
+                other => other,
+            },
             ..self
         }
     }

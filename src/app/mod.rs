@@ -100,12 +100,8 @@ impl App {
 
     fn hold_back_closing(&mut self, context: &egui::Context) {
         let closes = context.input(|input| input.viewport().close_requested());
-        let changed = self
-            .state
-            .open
-            .as_ref()
-            .is_some_and(|open| open.is_changed());
-        if closes && changed && !self.state.may_quit {
+        let loses = self.state.is_changed() || self.state.work.is_writing();
+        if closes && loses && !self.state.may_quit {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.state.held_back = Some(HeldBack::Quit);
         }
@@ -121,6 +117,10 @@ impl eframe::App for App {
         }
         let dropped = context.input(|input| input.raw.dropped_files.clone());
         if let Some(file) = dropped.first() {
+            if dropped.len() > 1 {
+                let text = "several files were dropped: the first is opened";
+                self.state.say(Severity::Note, text);
+            }
             self.state.apply(Command::Open(file.path().to_owned()));
         }
         self.state.poll();

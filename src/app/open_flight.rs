@@ -9,9 +9,7 @@ use super::history::History;
 use super::picker::Picker;
 use super::table::{Row, TableOrder};
 use super::work::{Geometry, Loaded, PreviewPicture};
-use crate::flight::{
-    Doubt, Flight, FlightSettings, Limits, Outcome, PhotoFileState, Verdict, judge,
-};
+use crate::flight::{Doubt, Flight, FlightSettings, Limits, Outcome, Verdict, judge_all};
 use crate::formats::{FlightOrigin, PhotoFile};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::render::{Orbit, PhotoImage};
@@ -117,11 +115,11 @@ pub struct OpenFlight {
     pub shown: Vec<usize>,
     /// Small textures for the table.
     pub thumbnails: Vec<Option<egui::TextureHandle>>,
-    /// Small pictures for the viewport, with how many have come.
+    /// Small pictures for the viewport.
     pub images: Vec<Option<Arc<PhotoImage>>>,
     /// The selected photo.
     pub preview: Option<Preview>,
-    /// What the viewport draws, and how many times it has changed.
+    /// What the viewport draws.
     pub geometry: Option<Arc<Geometry>>,
     /// Where coordinates are small.
     pub frame: LocalFrame,
@@ -261,40 +259,25 @@ impl OpenFlight {
             outcome: self.outcomes.get(photo)?,
             view: self.view(photo),
             judged: self.judged.get(photo)?,
+            verdict: self.verdict(photo),
             chosen: self.history.now().chosen.get(photo).copied()?,
         })
     }
 
     /// Judges all photos anew, and sorts and filters the table.
     pub fn judge(&mut self, limits: &Limits) {
-        let parts = self.flight.parts();
-        self.judged = parts
-            .photos
-            .iter()
-            .zip(self.outcomes.iter())
-            .enumerate()
-            .map(|(index, (photo, outcome))| {
-                let camera = self.flight.camera(photo);
-                let unknown = PhotoFileState::NotNamed;
-                let file = self.photo_files.get(index);
-                let (verdict, doubts) = judge(
-                    outcome,
-                    self.view(index),
-                    file.map_or(&unknown, |file| &file.state),
-                    (camera.width, camera.height),
-                    parts.unit,
-                    limits,
-                );
-                Judged { verdict, doubts }
-            })
+        let views = self.views.as_ref().map(|views| views.as_slice());
+        let files = self.photo_files.iter().map(|file| &file.state);
+        self.judged = judge_all(&self.flight, &self.outcomes, views, files, limits)
+            .into_iter()
+            .map(|(verdict, doubts)| Judged { verdict, doubts })
             .collect();
         if self.views.is_some() && !self.proposed {
             // What can be trusted is proposed for export; the rest waits for the engineer.
             self.proposed = true;
-            let mut edit = self.history.now().clone();
             let verdicts = self.judged.iter().map(|judged| judged.verdict);
-            edit.chosen = verdicts.map(|verdict| verdict == Verdict::Trust).collect();
-            self.history.replace(edit);
+            let proposal: Vec<bool> = verdicts.map(|verdict| verdict == Verdict::Trust).collect();
+            self.history.each(|edit| edit.chosen.clone_from(&proposal));
         }
         self.arrange();
     }
@@ -307,10 +290,24 @@ impl OpenFlight {
         self.shown = self.order.shown(&rows);
     }
 
+    /// What to do with a photo's scale; `None` while nothing speaks against it, but its footprint was
+    /// not looked at yet.
+    pub fn verdict(&self, photo: usize) -> Option<Verdict> {
+        let verdict = self.judged.get(photo)?.verdict;
+        (verdict != Verdict::Trust || self.views.is_some()).then_some(verdict)
+    }
+
     /// How many photos have this verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
-        let judged = self.judged.iter();
-        judged.filter(|judged| judged.verdict == verdict).count()
+        let photos = 0..self.judged.len();
+        photos
+            .filter(|&photo| self.verdict(photo) == Some(verdict))
+            .count()
+    }
+
+    /// How many photos are chosen for export.
+    pub fn chosen_count(&self) -> usize {
+        self.history.now().chosen.iter().filter(|&&c| c).count()
     }
 
     /// The elevation of the ground: as set, or where a ray needed it, or the surface's middle.

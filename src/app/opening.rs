@@ -6,7 +6,6 @@ use std::sync::Arc;
 use image::RgbImage;
 use image::buffer::ConvertBuffer;
 
-use super::open_flight::OpenFlight;
 use super::state::{Severity, State};
 use super::work::{DialogFor, Done, Geometry, Loaded, PreviewPicture, Task, Thumbnail};
 use crate::camera::Camera;
@@ -142,7 +141,12 @@ impl State {
         };
         let file = open.photo_files.get(photo).cloned().unwrap_or_default();
         let (flight, gpu) = (open.flight.clone(), self.gpu.clone());
-        self.start(Task::Preview, move |_| {
+        self.start(Task::Preview, move |progress| {
+            // Who runs through the table with a key held down wants none of the photos between.
+            std::thread::sleep(std::time::Duration::from_millis(60));
+            if progress.is_cancelled() {
+                return Done::Cancelled;
+            }
             let posed = &flight.parts().photos[photo];
             let picture = match &file.path {
                 None => Err(format!("the file of photo '{}' is not there", posed.name)),
@@ -225,16 +229,7 @@ impl State {
             };
             let exported = exports::export_for_split_desktop(&folder, &request, progress);
             Done::Exported(match exported {
-                Ok(summary) => {
-                    let sentence = format!(
-                        "{}: {} photos exported, pictures of {} made, of {} there already; open scales.html",
-                        folder.display(),
-                        summary.photos,
-                        summary.made,
-                        summary.kept
-                    );
-                    Ok((sentence, summary.warnings))
-                }
+                Ok(summary) => Ok((format!("{}: {summary}", folder.display()), summary.warnings)),
                 Err(error) => Err(error.to_string()),
             })
         });
@@ -390,12 +385,5 @@ fn offer(
                 std::thread::sleep(std::time::Duration::from_millis(5));
             }
         }
-    }
-}
-
-impl OpenFlight {
-    /// The files that the export reads besides the photos.
-    pub fn chosen_count(&self) -> usize {
-        self.history.now().chosen.iter().filter(|&&c| c).count()
     }
 }

@@ -34,9 +34,11 @@ impl State {
             }
         }
         if !self.work.is_idle() {
-            // Often enough for a progress bar; idle windows draw nothing.
+            // Often enough for a progress bar; idle windows draw nothing. A dialog can take minutes.
+            let only_dialog = self.work.running().all(|(task, _)| task == Task::Dialog);
+            let pause = if only_dialog { 500 } else { 100 };
             self.context
-                .request_repaint_after(std::time::Duration::from_millis(100));
+                .request_repaint_after(std::time::Duration::from_millis(pause));
         }
     }
 
@@ -93,7 +95,7 @@ impl State {
             Done::Views(Err(fault)) | Done::Geometry(Err(fault)) => {
                 self.say(Severity::Error, &fault.to_string());
             }
-            Done::Thumbnails => {}
+            Done::Thumbnails | Done::Cancelled => {}
             Done::Preview { photo, picture } => {
                 if let Some(open) = &mut self.open
                     && open.selected == Some(photo)
@@ -190,10 +192,15 @@ impl State {
             }
         };
         if again.is_none() {
-            self.work.cancel_all();
+            self.work.cancel_for_flight();
             self.preferences.remember(&loaded.path);
-            let warnings = loaded.opened.warnings.clone();
-            for warning in warnings {
+        }
+        for warning in loaded.opened.warnings.clone() {
+            // Read again with other settings, a file can have something new to say.
+            let known = again
+                .as_ref()
+                .is_some_and(|before| before.warnings.contains(&warning));
+            if !known {
                 self.say(Severity::Warning, &warning);
             }
         }
@@ -278,6 +285,10 @@ impl OpenFlight {
     /// Takes over what the engineer did from the flight before it was read again.
     fn keep_from(&mut self, mut before: Box<Self>) {
         self.saved = before.saved;
+        // Saved elsewhere while the file was read.
+        self.path.clone_from(&before.path);
+        self.origin = before.origin.clone();
+        self.measure = before.measure;
         std::mem::swap(&mut self.history, &mut before.history);
         self.proposed = before.proposed;
         self.selected = before.selected;
@@ -307,7 +318,7 @@ impl OpenFlight {
             }
             Purpose::Select => {
                 if let Some(photo) = self.photo_at(&picked) {
-                    self.selected = Some(photo);
+                    self.select(Some(photo));
                 }
             }
         }

@@ -33,13 +33,15 @@ pub struct LogLine {
     pub text: String,
 }
 
-/// What is held back until the engineer says that unsaved changes may go.
+/// What is held back until the engineer says that something may be lost.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HeldBack {
     /// Leaving the program.
     Quit,
     /// Another flight, or the start page.
-    Command(Box<Command>),
+    Leave(Box<Command>),
+    /// Writing where there is a file already.
+    Replace(Box<Command>),
 }
 
 /// The whole state of the window.
@@ -126,6 +128,11 @@ impl State {
             self.log.remove(0);
         }
         self.log.push(line);
+    }
+
+    /// Whether the flight's settings are not saved.
+    pub fn is_changed(&self) -> bool {
+        self.open.as_ref().is_some_and(|open| open.is_changed())
     }
 
     /// The window's title.

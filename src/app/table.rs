@@ -64,6 +64,8 @@ pub struct Row<'a> {
     pub view: Option<&'a ViewFacts>,
     /// Its verdict.
     pub judged: &'a Judged,
+    /// Its verdict once everything was looked at.
+    pub verdict: Option<Verdict>,
     /// Whether it is chosen for export.
     pub chosen: bool,
 }
@@ -106,7 +108,7 @@ impl TableOrder {
         let mut shown: Vec<usize> = (0..rows.len())
             .filter(|&place| {
                 let row = &rows[place];
-                self.verdict.is_none_or(|v| v == row.judged.verdict)
+                self.verdict.is_none_or(|v| Some(v) == row.verdict)
                     && (wanted.is_empty()
                         || row.photo.name.to_lowercase().contains(&wanted)
                         || row
@@ -187,6 +189,7 @@ mod tests {
                 outcome,
                 view: None,
                 judged,
+                verdict: Some(judged.verdict),
                 chosen: false,
             })
             .collect();

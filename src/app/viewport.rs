@@ -17,10 +17,12 @@ use super::panels::verdict_color;
 use super::state::{PictureRequest, State};
 use super::work::{Done, Geometry, Task};
 use crate::exports;
+use crate::flight::Outcome;
 use crate::picture::{Anchor, significant_digits};
 use crate::render::{
     Background, Gpu, Label, PhotoGeometry, PhotoLook, Renderer, Show, View, viridis,
 };
+use crate::scale::ViewFacts;
 
 /// How long the view must rest before everything is drawn.
 const REST: Duration = Duration::from_millis(250);
@@ -54,8 +56,8 @@ struct Graphics {
 struct Uploaded {
     flight: Option<u64>,
     geometry: Option<Arc<Geometry>>,
-    /// The addresses of outcomes and views.
-    photos: Option<(usize, Option<usize>)>,
+    /// The scales and views that the photos' lines were made of.
+    photos: Option<(Arc<Vec<Outcome>>, Option<Arc<Vec<Option<ViewFacts>>>>)>,
     images: Vec<bool>,
     projected: Option<(usize, u64)>,
     looks: Vec<PhotoLook>,
@@ -356,10 +358,16 @@ impl Graphics {
             self.renderer.set_mesh_buffers(mesh);
             (self.drawn, self.moved) = (None, None);
         }
-        let views = open.views.as_ref().map(|views| Arc::as_ptr(views).addr());
-        let photos = Some((Arc::as_ptr(&open.outcomes).addr(), views));
-        if uploaded.photos != photos {
-            uploaded.photos = photos;
+        let same_photos = uploaded.photos.as_ref().is_some_and(|(outcomes, views)| {
+            Arc::ptr_eq(outcomes, &open.outcomes)
+                && match (views, &open.views) {
+                    (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+                    (None, None) => true,
+                    _ => false,
+                }
+        });
+        if !same_photos {
+            uploaded.photos = Some((open.outcomes.clone(), open.views.clone()));
             let photos = open.flight.parts().photos.iter().enumerate();
             let photos = photos.map(|(index, photo)| {
                 PhotoGeometry::new(
@@ -377,8 +385,13 @@ impl Graphics {
         let looks: Vec<PhotoLook> = open
             .judged
             .iter()
-            .map(|judged| {
-                let [red, green, blue, _] = verdict_color(judged.verdict, visuals).to_array();
+            .enumerate()
+            .map(|(photo, _)| {
+                let color = match open.verdict(photo) {
+                    Some(verdict) => verdict_color(verdict, visuals),
+                    None => visuals.text_color(),
+                };
+                let [red, green, blue, _] = color.to_array();
                 PhotoLook {
                     visible: true,
                     color: [red, green, blue],

@@ -116,6 +116,8 @@ pub enum Done {
     Views(Result<Vec<Option<ViewFacts>>, Fault>),
     /// For the viewport.
     Geometry(Result<Box<Geometry>, Fault>),
+    /// Nobody wants it any more.
+    Cancelled,
     /// All thumbnails have been sent.
     Thumbnails,
     /// The selected photo, undistorted as its scale assumes, or why it cannot be shown.
@@ -218,6 +220,25 @@ impl Work {
             }
             *running != task
         });
+    }
+
+    /// Cancels what belongs to the flight on the screen; what is written goes on.
+    pub fn cancel_for_flight(&mut self) {
+        for task in [
+            Task::Scales,
+            Task::Views,
+            Task::Geometry,
+            Task::Thumbnails,
+            Task::Preview,
+        ] {
+            self.cancel(task);
+        }
+    }
+
+    /// Whether a file is being written.
+    pub fn is_writing(&self) -> bool {
+        let tasks = [Task::Export, Task::Save, Task::Picture];
+        tasks.into_iter().any(|task| self.is_running(task))
     }
 
     /// Cancels everything.

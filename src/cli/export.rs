@@ -7,10 +7,9 @@ use clap::{Args, ValueEnum};
 use super::{Answer, OutputUnit};
 use crate::exports::{self, ExportRequest, ScaleReport};
 use crate::fault::Fault;
-use crate::flight::{Limits, Outcome, Verdict, judge};
+use crate::flight::{Limits, Verdict, judge_all};
 use crate::formats::{self, FileError, OpenOptions};
 use crate::jobs::Progress;
-use crate::scale::ViewFacts;
 
 #[derive(Debug, Args)]
 pub(super) struct ExportArguments {
@@ -50,27 +49,8 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
     let outcomes = flight.scales(progress).map_err(in_flight)?;
     let views = flight.views(&outcomes, progress).map_err(in_flight)?;
     let limits = Limits::default();
-    let judged: Vec<_> = flight
-        .parts()
-        .photos
-        .iter()
-        .zip(&opened.photo_files)
-        .zip(outcomes.iter().zip(&views))
-        .map(
-            |((photo, file), (outcome, view)): (_, (&Outcome, &Option<ViewFacts>))| {
-                let camera = flight.camera(photo);
-                let size = (camera.width, camera.height);
-                judge(
-                    outcome,
-                    view.as_ref(),
-                    &file.state,
-                    size,
-                    flight.parts().unit,
-                    &limits,
-                )
-            },
-        )
-        .collect();
+    let files = opened.photo_files.iter().map(|file| &file.state);
+    let judged = judge_all(flight, &outcomes, Some(&views), files, &limits);
     let selected: Vec<bool> = judged
         .iter()
         .map(|(verdict, _)| arguments.photos == Selection::All || *verdict == Verdict::Trust)
@@ -109,15 +89,13 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
     .map_err(|error| error.to_string())?;
     let report = ScaleReport::new(flight, &outcomes, unit).of_photos(&selected);
     let mut warnings = opened.warnings;
-    warnings.extend(summary.warnings);
+    warnings.extend(summary.warnings.iter().cloned());
     warnings.extend(super::notes_of(&report));
     Ok(Answer {
         text: format!(
-            "{}: {} photos, pictures of {} made, of {} there already; open scales.html\n",
-            arguments.to.display(),
-            summary.photos,
-            summary.made,
-            summary.kept
+            "{}: {summary}
+",
+            arguments.to.display()
         ),
         warnings,
     })

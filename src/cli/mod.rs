@@ -278,7 +278,10 @@ fn window(flight: Option<PathBuf>) -> ExitCode {
         ));
         return ExitCode::from(2);
     }
-    match crate::app::run(flight) {
+    let ran = crate::app::run(flight);
+    // What was being written when the window closed is not finished.
+    exports::remove_unfinished();
+    match ran {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => fail(&message),
     }

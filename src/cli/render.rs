@@ -17,13 +17,11 @@ use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
 use crate::picture;
 use crate::render::{
-    Background, CloudGeometry, ColorBy, Gpu, MeshGeometry, Normals, Orbit, PhotoGeometry,
-    PhotoImage, Renderer, Scope, Show, View,
+    Background, CloudGeometry, ColorBy, Gpu, MOST_PIXELS, MeshGeometry, Normals, Orbit,
+    PhotoGeometry, PhotoImage, Renderer, Scope, Show, View,
 };
 use crate::scale::{Corner, CornerOutcome, Ground, PhotoScale, ViewFacts};
 
-/// The largest picture, in pixels.
-const MOST_PIXELS: u64 = 200_000_000;
 /// Longer edge of the photo that is laid on the surface or over the view.
 const PHOTO_EDGE: u32 = 2048;
 

@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub use camera_entry::{CameraEntry, CameraSource};
 pub use file::{FlightFile, PhotoSource};
 pub use name_order::compare_names;
-pub use verdict::{Doubt, Limits, PhotoFileState, Verdict, judge};
+pub use verdict::{Doubt, Limits, PhotoFileState, Verdict, judge, judge_all};
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;

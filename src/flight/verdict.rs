@@ -8,7 +8,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::Outcome;
+use super::{Flight, Outcome};
 use crate::scale::{CornerName, CornerOutcome, EdgeScales, ViewFacts};
 use crate::units::LengthUnit;
 
@@ -334,6 +334,29 @@ pub fn judge(
 fn ratio(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     let (a, b) = (a?, b?);
     Some((a / b).max(b / a))
+}
+
+/// Judges every photo of a flight, in their order. `outcomes` and `views` are those of
+/// [`Flight::scales`] and [`Flight::views`]; without `views` nothing of them can raise a doubt.
+pub fn judge_all<'a>(
+    flight: &Flight,
+    outcomes: &[Outcome],
+    views: Option<&[Option<ViewFacts>]>,
+    files: impl IntoIterator<Item = &'a PhotoFileState>,
+    limits: &Limits,
+) -> Vec<(Verdict, Vec<Doubt>)> {
+    let photos = flight.parts().photos.iter();
+    photos
+        .zip(outcomes)
+        .zip(files)
+        .enumerate()
+        .map(|(index, ((photo, outcome), file))| {
+            let camera = flight.camera(photo);
+            let size = (camera.width, camera.height);
+            let view = views.and_then(|views| views.get(index)?.as_ref());
+            judge(outcome, view, file, size, flight.parts().unit, limits)
+        })
+        .collect()
 }
 
 fn doubts_of_view(view: &ViewFacts, unit: LengthUnit, limits: &Limits) -> Vec<Doubt> {

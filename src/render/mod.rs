@@ -54,7 +54,7 @@ pub use orbit::Orbit;
 pub use photo_geometry::PhotoGeometry;
 pub use photo_image::PhotoImage;
 pub use points::CloudBuffers;
-pub use renderer::{Drawn, Renderer};
+pub use renderer::{Drawn, MOST_PIXELS, Renderer};
 pub use scene::{CloudGeometry, MeshGeometry, Normals};
 pub use show::{Background, ColorBy, PhotoLook, Scope, Show};
 pub use surface::LargePhoto;

@@ -34,6 +34,9 @@ const MOST_SAMPLED_TEXELS: u64 = 1 << 24;
 /// Pixels that parts of a large picture overlap by, so that relief has no seams.
 const OVERLAP: u32 = 16;
 
+/// The largest picture, in pixels: 0.8 GB in memory.
+pub const MOST_PIXELS: u64 = 200_000_000;
+
 /// Draws a flight. Holds what was uploaded and the textures of the last frame.
 #[derive(Debug)]
 pub struct Renderer {

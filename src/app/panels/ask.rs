@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use crate::app::actions;
 use crate::app::command::{Asking, Command};
-use crate::app::state::State;
+use crate::app::state::{HeldBack, PictureRequest, State};
 use crate::app::work::DialogFor;
 
 /// Draws the small window that is open, and the question before losing changes.
@@ -49,30 +49,71 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
 
 fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) {
     let modal = egui::Modal::new(egui::Id::unique("unsaved")).show(context, |ui| {
-        ui.set_width(340.0);
-        ui.heading("Unsaved changes");
-        if let Some(open) = &state.open {
-            ui.label(format!(
-                "The settings of {} have changed since they were saved.",
-                open.flight.parts().name
-            ));
+        ui.set_width(360.0);
+        match &state.held_back {
+            Some(HeldBack::Replace(command)) => replace(command, ui, commands),
+            _ if state.is_changed() => unsaved(state, ui, commands),
+            _ => writing(ui, commands),
         }
-        ui.add_space(8.0);
-        ui.horizontal(|ui| {
-            if ui.button("Save them").clicked() {
-                commands.push(Command::SaveFirst);
-            }
-            if ui.button("Discard changes").clicked() {
-                commands.push(Command::Discard);
-            }
-            if ui.button("Stay here").clicked() {
-                commands.push(Command::Keep);
-            }
-        });
     });
     if modal.should_close() {
         commands.push(Command::Keep);
     }
+}
+
+fn unsaved(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.heading("Unsaved changes");
+    if let Some(open) = &state.open {
+        ui.label(format!(
+            "The settings of {} have changed since they were saved.",
+            open.flight.parts().name
+        ));
+    }
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if ui.button("Save them").clicked() {
+            commands.push(Command::SaveFirst);
+        }
+        if ui.button("Discard changes").clicked() {
+            commands.push(Command::Discard);
+        }
+        if ui.button("Stay here").clicked() {
+            commands.push(Command::Keep);
+        }
+    });
+}
+
+fn writing(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.heading("Still writing");
+    ui.label("Files are being written. An export that is stopped goes on where it was next time.");
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if ui.button("Stop and quit").clicked() {
+            commands.push(Command::Discard);
+        }
+        if ui.button("Stay here").clicked() {
+            commands.push(Command::Keep);
+        }
+    });
+}
+
+fn replace(command: &Command, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.heading("Replace the file?");
+    let path = match command {
+        Command::SaveAs(path) => path.display().to_string(),
+        Command::Picture(request) => request.path.display().to_string(),
+        _ => String::new(),
+    };
+    ui.label(format!("There is a file already: {path}"));
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if ui.button("Replace it").clicked() {
+            commands.push(Command::Discard);
+        }
+        if ui.button("Keep the file").clicked() {
+            commands.push(Command::Keep);
+        }
+    });
 }
 
 /// A path that is typed, or chosen in the desktop's dialog. Returns the text of now, and whether
@@ -85,18 +126,16 @@ fn path_field(
     commands: &mut Vec<Command>,
 ) -> (String, bool) {
     // Kept until another flight is open.
-    let id = ui.scope_id().with(("path", state.opened));
+    let id = ui.scope_id().with((
+        "path",
+        state.open.as_ref().map(|open| open.origin.suggested_file()),
+    ));
     let mut path: String = ui
         .data(|data| data.get_temp(id))
         .unwrap_or_else(|| start.to_owned());
     if let Some(answered) = &state.answered {
-        let answered = answered.display().to_string();
-        let taken = ui.scope_id().with("taken");
-        let before: Option<String> = ui.data(|data| data.get_temp(taken));
-        if before.as_ref() != Some(&answered) {
-            path.clone_from(&answered);
-            ui.data_mut(|data| data.insert_temp(taken, answered));
-        }
+        path = answered.display().to_string();
+        commands.push(Command::TakeAnswer);
     }
     let field = ui.add(egui::TextEdit::singleline(&mut path).desired_width(440.0));
     field.widget_info(|| {
@@ -241,12 +280,12 @@ fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if let Some(path) = path
         && (button.clicked() || entered)
     {
-        commands.push(Command::Picture {
+        commands.push(Command::Picture(PictureRequest {
             path,
             size: [options.0, options.1],
             transparent: options.2,
             corner_rays: options.3,
-        });
+        }));
     }
 }
 

@@ -38,9 +38,13 @@ impl Inspector {
         let photo = open.selected.unwrap_or(0);
         ui.horizontal(|ui| {
             ui.add(egui::Label::new(egui::RichText::new(&row.photo.name).strong()).truncate());
-            let verdict = row.judged.verdict;
-            let text = format!("{} {verdict}", verdict_sign(verdict));
-            ui.colored_label(verdict_color(verdict, ui.visuals()), text);
+            if let Some(verdict) = row.verdict {
+                let text = format!("{} {verdict}", verdict_sign(verdict));
+                ui.colored_label(verdict_color(verdict, ui.visuals()), text);
+            }
+            if open.settings() != open.computed {
+                ui.weak("computing…");
+            }
         });
         self.take_texture(open, ui);
         self.picture(state, open, photo, ui);

@@ -139,7 +139,7 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
                 let scale = |scale: Option<f64>| or_dash(scale.map(|scale| scale * factor), 4);
                 row.col(|ui| text(ui, scale(known.top())));
                 row.col(|ui| text(ui, scale(known.bottom())));
-                row.col(|ui| verdict(known.judged.verdict, &known.judged.doubts, ui));
+                row.col(|ui| verdict(known.verdict, &known.judged.doubts, ui));
                 row.col(|ui| {
                     text(
                         ui,
@@ -260,8 +260,8 @@ fn thumbnail(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
         }
         None => {
             let (place, _) = ui.allocate_exact_size(size, egui::Sense::empty());
-            let colour = ui.visuals().faint_bg_color;
-            ui.painter().rect_filled(place, 2.0, colour);
+            let color = ui.visuals().faint_bg_color;
+            ui.painter().rect_filled(place, 2.0, color);
         }
     }
 }
@@ -271,7 +271,11 @@ fn text(ui: &mut egui::Ui, text: String) {
     ui.add(egui::Label::new(text).selectable(false).truncate());
 }
 
-fn verdict(verdict: Verdict, doubts: &[crate::flight::Doubt], ui: &mut egui::Ui) {
+fn verdict(verdict: Option<Verdict>, doubts: &[crate::flight::Doubt], ui: &mut egui::Ui) {
+    let Some(verdict) = verdict else {
+        ui.weak("…").on_hover_text("Not looked at yet");
+        return;
+    };
     let words = format!("{} {verdict}", verdict_sign(verdict));
     let words = egui::RichText::new(words).color(verdict_color(verdict, ui.visuals()));
     let label = ui.add(egui::Label::new(words).selectable(false).truncate());

@@ -28,6 +28,7 @@ mod plan;
 mod sheet;
 mod wgs84;
 
+use std::fmt;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -96,6 +97,16 @@ pub struct ExportSummary {
     pub kept: usize,
     /// What to know, one sentence each; photos without pictures are among them.
     pub warnings: Vec<String>,
+}
+
+impl fmt::Display for ExportSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} photos, pictures of {} made, of {} there already; open scales.html",
+            self.photos, self.made, self.kept
+        )
+    }
 }
 
 /// Exports the selected photos into `dir`, which is made where it is not there. `progress` counts

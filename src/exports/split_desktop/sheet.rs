@@ -38,7 +38,11 @@ pub(super) fn html(
     // As Split-Desktop and every file manager list the image files: so the eye goes down both lists.
     let mut lines: Vec<(&ReportLine, usize)> =
         report.lines.iter().zip(chosen.iter().copied()).collect();
-    lines.sort_by(|(a, _), (b, _)| compare_names(&a.photo, &b.photo));
+    let listed = |(line, index): (&ReportLine, usize)| match pictures.get(index) {
+        Some(Ok(names)) => names.photo.clone(),
+        _ => line.photo.clone(),
+    };
+    lines.sort_by(|a, b| compare_names(&listed(*a), &listed(*b)));
     for ((line, index), number) in lines.into_iter().zip(1_usize..) {
         let judged = request.judged.get(index);
         let picture = pictures.get(index).map_or(Err("no pictures"), |names| {
@@ -110,6 +114,13 @@ fn row(
         verdict = judgement.as_str();
         reasons.extend(doubts.iter().map(Doubt::to_string));
     }
+    let ground = line.ground.map_or_else(String::new, |z| {
+        format!(
+            ", ground at {} {}",
+            significant_digits(z, 6),
+            report.world_unit
+        )
+    });
     let class = verdict.replace(' ', "-");
     let reasons = match reasons.is_empty() {
         true => String::new(),
@@ -124,7 +135,7 @@ fn row(
     format!(
         "<tr><td class=\"picture\">{shown}</td><td><div class=\"name\">{number}. {name}</div>{file}\
          <div class=\"verdict {class}\">{verdict}</div>\
-         <div class=\"small\">{} of 4 corners on the surface</div>{reasons}</td>{}{}</tr>\n",
+         <div class=\"small\">{} of 4 corners on the surface{ground}</div>{reasons}</td>{}{}</tr>\n",
         line.corners_on_surface,
         scale_cell(line.scale.top, report.unit),
         scale_cell(line.scale.bottom, report.unit),
@@ -178,7 +189,11 @@ fn settings(request: &ExportRequest<'_>) -> String {
     };
     let length =
         |length: Option<f64>| length.map_or_else(|| "none".to_owned(), |l| format!("{l} {unit}"));
-    let percent = |share: f64| format!("{} % of the footprint's mean edge", share * 100.0);
+    let percent = |share: f64| {
+        // Without the noise of the product.
+        let percent = (share * 1e6).round() / 1e4;
+        format!("{percent} % of the footprint's mean edge")
+    };
     let rows = [
         ("World unit", unit.to_string()),
         (
@@ -192,6 +207,10 @@ fn settings(request: &ExportRequest<'_>) -> String {
         (
             "Doubt: top/bottom ratio above",
             limits.top_bottom_ratio.to_string(),
+        ),
+        (
+            "Doubt: left/right ratio above",
+            limits.left_right_ratio.to_string(),
         ),
         ("Doubt: triangle edge above", percent(limits.triangle_share)),
         (
