@@ -56,6 +56,9 @@ impl State {
                     self.work.cancel(task);
                     self.say(Severity::Note, &format!("{}: cancelled", task.in_words()));
                     self.take_back_settings();
+                    if task == Task::Save {
+                        self.after_saving = None;
+                    }
                 }
             }
             Command::Unit(unit) => self.set_unit(unit),
@@ -173,11 +176,12 @@ impl State {
         if needs_flight && self.open.is_none() {
             return;
         }
-        self.answered = None;
-        self.asking = asking;
         if asking != Some(Asking::SaveAs) {
+            // Who does not say where to save does not want to go on either.
             self.after_saving = None;
         }
+        self.answered = None;
+        self.asking = asking;
     }
 
     fn set_unit(&mut self, unit: LengthUnit) {
@@ -234,7 +238,7 @@ impl State {
         let shown = |scale: Option<f64>| {
             scale.map_or_else(
                 || "no scale".to_owned(),
-                |scale| super::numbers::significant(scale * factor, 6),
+                |scale| crate::picture::significant_digits(scale * factor, 6),
             )
         };
         Some(format!(

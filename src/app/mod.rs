@@ -17,7 +17,6 @@ pub mod apply;
 pub mod command;
 pub mod history;
 pub mod layers;
-pub mod numbers;
 pub mod open_flight;
 pub mod opening;
 pub mod panels;

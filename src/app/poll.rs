@@ -283,11 +283,7 @@ impl OpenFlight {
     fn take_picked(&mut self, picked: Picked) {
         let point = picked.hit.map(|hit| hit.point);
         match picked.purpose {
-            Purpose::Hover => {
-                if let Some(point) = point {
-                    self.hover = Some(point);
-                }
-            }
+            Purpose::Hover => self.hover = point,
             Purpose::Center => {
                 if let Some(point) = point {
                     self.looking.through = None;

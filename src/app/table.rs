@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::open_flight::Judged;
-use crate::flight::{Outcome, Photo, Verdict};
+use crate::flight::{Outcome, Photo, Verdict, compare_names};
 use crate::scale::ViewFacts;
 
 /// What the table can be sorted by.
@@ -140,48 +140,13 @@ impl TableOrder {
         match self.by {
             Column::Flight => Ordering::Equal,
             Column::Export => turn(b.chosen.cmp(&a.chosen)),
-            Column::Name => turn(by_number(&a.photo.name, &b.photo.name)),
+            Column::Name => turn(compare_names(&a.photo.name, &b.photo.name)),
             Column::Top => number(|row| row.top()),
             Column::Bottom => number(|row| row.bottom()),
             Column::Height => number(|row| row.height()),
             Column::Tilt => number(|row| row.view.map(|view| view.tilt)),
             Column::Corners => number(|row| row.corners().map(|count| count as f64)),
             Column::Verdict => turn(a.judged.verdict.cmp(&b.judged.verdict)),
-        }
-    }
-}
-
-/// Compares names as people do: IMG_9 before IMG_10.
-fn by_number(a: &str, b: &str) -> Ordering {
-    let (mut a, mut b) = (a.chars().peekable(), b.chars().peekable());
-    loop {
-        match (a.peek().copied(), b.peek().copied()) {
-            (None, None) => return Ordering::Equal,
-            (None, Some(_)) => return Ordering::Less,
-            (Some(_), None) => return Ordering::Greater,
-            (Some(x), Some(y)) if x.is_ascii_digit() && y.is_ascii_digit() => {
-                let digits = |chars: &mut std::iter::Peekable<std::str::Chars<'_>>| {
-                    let mut digits = String::new();
-                    while let Some(digit) = chars.next_if(char::is_ascii_digit) {
-                        digits.push(digit);
-                    }
-                    digits
-                };
-                let (x, y) = (digits(&mut a), digits(&mut b));
-                let (x, y) = (x.trim_start_matches('0'), y.trim_start_matches('0'));
-                let order = x.len().cmp(&y.len()).then_with(|| x.cmp(y));
-                if order != Ordering::Equal {
-                    return order;
-                }
-            }
-            (Some(x), Some(y)) => {
-                let order = x.to_lowercase().cmp(y.to_lowercase());
-                if order != Ordering::Equal {
-                    return order;
-                }
-                a.next();
-                b.next();
-            }
         }
     }
 }

@@ -16,7 +16,7 @@ use super::panels::verdict_color;
 use super::state::{PictureRequest, State};
 use super::work::{Done, Geometry, Task};
 use crate::exports;
-use crate::picture::Anchor;
+use crate::picture::{Anchor, significant_digits};
 use crate::render::{
     Background, Gpu, Label, PhotoGeometry, PhotoLook, Renderer, Show, View, viridis,
 };
@@ -521,7 +521,7 @@ fn legend(scene: &Scene, legend: Option<&crate::render::Legend>, ui: &egui::Ui) 
         (legend.range[1], bar.top()),
         (legend.range[0], bar.bottom()),
     ] {
-        let text = super::numbers::significant(value, 4);
+        let text = significant_digits(value, 4);
         let at = pos2(bar.right() + 5.0, y);
         painter.text(at, Align2::LEFT_CENTER, text, font.clone(), color);
     }
@@ -549,7 +549,7 @@ fn distance(scene: &Scene, open: &OpenFlight, ui: &egui::Ui) {
         painter.line_segment([*a, *b], Stroke::new(2.0, color));
         let text = format!(
             "{} {}",
-            super::numbers::significant(first.distance(second), 4),
+            significant_digits(first.distance(second), 4),
             open.flight.parts().unit
         );
         let at = a.lerp(*b, 0.5);

@@ -96,6 +96,12 @@ impl Renderer {
             image_from_local: narrow_matrix(image_from_local).to_cols_array_2d(),
             background,
             ink: opaque(ink(show)),
+            eye: if view.is_parallel() {
+                narrow(-axis).extend(0.0)
+            } else {
+                narrow(eye).extend(1.0)
+            }
+            .to_array(),
             size: targets.sampled_size().map(|edge| edge as f32),
             depths: if view.is_parallel() {
                 [narrow_number(far), narrow_number(far - near)]

@@ -44,7 +44,8 @@ pub(super) struct Vertex {
 pub struct Normals(Vec<[i8; 4]>);
 
 impl Normals {
-    /// The normals of a surface's vertices: the mean of the triangles around each, by area.
+    /// The normals of a surface's vertices, to either side: the mean of the triangles around each,
+    /// by area.
     pub fn of(
         frame: &LocalFrame,
         vertices: impl Iterator<Item = DVec3>,
@@ -59,7 +60,14 @@ impl Normals {
             if let (Some(a), Some(b), Some(c)) = (a, b, c) {
                 let normal = (b - a).cross(c - a);
                 for &corner in triangle {
-                    sums[corner as usize] += normal;
+                    let sum = &mut sums[corner as usize];
+                    // Files wind neighbours differently: opposite normals must not cancel out. Two
+                    // that look up are right however steep the edge between them is.
+                    *sum = match sum.dot(normal) < 0.0 {
+                        true if normal.z < 0.0 => *sum - normal,
+                        true if sum.z < 0.0 => normal - *sum,
+                        _ => *sum + normal,
+                    };
                 }
             }
         }
@@ -270,4 +278,36 @@ fn elevation(frame: &LocalFrame, places: &[Vec3]) -> [f64; 2] {
     let last = z.len() - 1;
     let at = |share: usize| f64::from(z[last * share / 100]) + frame.origin().z;
     [at(1), at(99)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Bounds;
+
+    /// A slope of 45 degrees as two triangles, wound alike or against each other: one normal, to
+    /// either side.
+    #[test]
+    fn normals_do_not_depend_on_the_winding() {
+        let vertices = [
+            DVec3::ZERO,
+            DVec3::X,
+            DVec3::new(1.0, 1.0, 1.0),
+            DVec3::new(0.0, 1.0, 1.0),
+        ];
+        let frame = LocalFrame::near(&Bounds::of(&vertices).unwrap());
+        for triangles in [
+            [[0, 1, 2], [0, 2, 3]],
+            [[0, 2, 1], [0, 2, 3]],
+            [[0, 1, 2], [0, 3, 2]],
+            [[0, 2, 1], [0, 3, 2]],
+        ] {
+            let normals = Normals::of(&frame, vertices.iter().copied(), &triangles);
+            for index in 0..4 {
+                // 127 / sqrt(2) is 89.8.
+                let [x, y, z, _] = normals.get(index);
+                assert!(x == 0 && y == -z && z.abs() == 90, "{x} {y} {z}");
+            }
+        }
+    }
 }
