@@ -176,12 +176,12 @@ impl State {
         if needs_flight && self.open.is_none() {
             return;
         }
+        self.answered = None;
+        self.asking = asking;
         if asking != Some(Asking::SaveAs) {
             // Who does not say where to save does not want to go on either.
             self.after_saving = None;
         }
-        self.answered = None;
-        self.asking = asking;
     }
 
     fn set_unit(&mut self, unit: LengthUnit) {
