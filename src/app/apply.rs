@@ -44,6 +44,9 @@ impl State {
                     self.work.cancel(task);
                     self.say(Severity::Note, &format!("{}: cancelled", task.in_words()));
                     self.take_back_settings();
+                    if task == Task::Save {
+                        self.after_saving = None;
+                    }
                 }
             }
             Command::Unit(unit) => self.set_unit(unit),

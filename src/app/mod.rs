@@ -148,16 +148,24 @@ impl eframe::App for App {
                 .show(ui, |ui| panels::log_panel(state, ui, out));
         }
         if state.open.is_some() {
+            // However narrow the window is, a part of it is left for the viewport.
+            let width = ui.available_width();
             egui::Panel::left("photos")
                 .resizable(true)
-                .default_size(400.0)
+                .default_size(500.0)
                 .min_size(180.0)
-                .show(ui, |ui| panels::photos_table(state, ui, out));
+                .max_size((width * 0.4).max(180.0))
+                .show(ui, |ui| {
+                    egui::ScrollArea::horizontal()
+                        .auto_shrink(false)
+                        .show(ui, |ui| panels::photos_table(state, ui, out));
+                });
             let inspector = &mut self.inspector;
             egui::Panel::right("inspector")
                 .resizable(true)
                 .default_size(330.0)
                 .min_size(220.0)
+                .max_size((width * 0.4).max(220.0))
                 .show(ui, |ui| panels::right_panel(state, inspector, ui, out));
             let (viewport, times) = (&mut self.viewport, &mut self.times);
             egui::CentralPanel::no_frame().show(ui, |ui| {

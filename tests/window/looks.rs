@@ -18,7 +18,7 @@ fn sample(screen: &Screen, name: &str, prepare: impl FnOnce(&mut Desk)) {
 #[test]
 fn dark() {
     let screen = Screen {
-        size: [1280.0, 720.0],
+        size: [1000.0, 520.0],
         pixels_per_point: 1.0,
         theme: Theme::Dark,
     };
@@ -28,7 +28,7 @@ fn dark() {
 #[test]
 fn light() {
     let screen = Screen {
-        size: [1000.0, 560.0],
+        size: [900.0, 480.0],
         pixels_per_point: 1.0,
         theme: Theme::Light,
     };
@@ -41,11 +41,13 @@ fn light() {
 #[test]
 fn at_200_percent() {
     let screen = Screen {
-        size: [800.0, 400.0],
+        size: [640.0, 330.0],
         pixels_per_point: 2.0,
         theme: Theme::Dark,
     };
-    sample(&screen, "window_200_percent", |_| {});
+    sample(&screen, "window_200_percent", |desk| {
+        desk.click(Role::Tab, "Limits");
+    });
 }
 
 #[test]
