@@ -10,6 +10,8 @@ struct Frame {
     background: vec4<f32>,
     // Of lines that stand out from the background.
     ink: vec4<f32>,
+    // The eye in the local frame and 1; in parallel projection the way to it and 0.
+    eye: vec4<f32>,
     // Of the picture, in texels.
     size: vec2<f32>,
     // Perspective: (near, 0). Parallel: (far, far - near).

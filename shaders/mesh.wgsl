@@ -23,7 +23,9 @@ fn vertex(
 
 @fragment
 fn fragment(corner: Corner) -> @location(0) vec4<f32> {
-    return surface_color(corner.local, corner.color, corner.normal);
+    let face = cross(dpdx(corner.local), dpdy(corner.local));
+    let normal = seen_side(corner.normal, face, corner.local);
+    return surface_color(corner.local, corner.color, normal);
 }
 
 // An edge lies on its triangles.
@@ -34,5 +36,5 @@ fn edge_vertex(@location(0) local: vec3<f32>) -> @builtin(position) vec4<f32> {
 
 @fragment
 fn edge_fragment() -> @location(0) vec4<f32> {
-    return frame.ink * 0.35;
+    return frame.ink * 0.28;
 }

@@ -31,7 +31,11 @@ fn vertex(
 
 @fragment
 fn fragment(point: Point) -> @location(0) vec4<f32> {
-    let color = surface_color(point.local, point.color, point.normal);
+    let color = surface_color(
+        point.local,
+        point.color,
+        seen_side(point.normal, point.normal, point.local),
+    );
     // The smallest ones are squares: a circle of one texel would have holes.
     if point.radius > 1.0 && dot(point.corner, point.corner) > 1.0 {
         discard;

@@ -43,6 +43,13 @@ fn seen(at: vec3<f32>) -> f32 {
     return sum;
 }
 
+// The normal on the side that is seen: files wind their triangles either way. `face` is across the
+// piece of surface, to whichever side.
+fn seen_side(normal: vec3<f32>, face: vec3<f32>, local: vec3<f32>) -> vec3<f32> {
+    let to_eye = frame.eye.xyz - local * frame.eye.w;
+    return select(normal, -normal, dot(normal, face) * dot(face, to_eye) < 0.0);
+}
+
 fn surface_color(local: vec3<f32>, own: vec3<f32>, normal: vec3<f32>) -> vec4<f32> {
     let image = frame.image_from_local * vec4(local, 1.0);
     let share = image.xy / image.z;

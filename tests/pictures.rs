@@ -39,6 +39,20 @@ fn gpu() -> Gpu {
     Gpu::headless().unwrap_or_else(|fault| panic!("{fault}"))
 }
 
+/// The device that the snapshots were drawn with: thin lines differ from driver to driver.
+fn gpu_of_snapshots() -> Gpu {
+    let gpu = gpu();
+    let driver = gpu.device.adapter_info();
+    assert!(
+        gpu.software && driver.backend == wgpu::Backend::Vulkan,
+        "snapshots are compared as the processor draws them, not {} ({}); install the Debian package \
+         mesa-vulkan-drivers",
+        driver.name,
+        driver.backend,
+    );
+    gpu
+}
+
 /// A flight with everything that can be drawn.
 struct Scene {
     frame: LocalFrame,
@@ -204,7 +218,7 @@ fn marked_photo() -> RgbaImage {
 /// One for each primitive and colour mode.
 #[test]
 fn primitives_look_as_they_did() {
-    let gpu = gpu();
+    let gpu = gpu_of_snapshots();
     let scene = Scene::heap(DVec3::ZERO);
     let mut renderer = scene.renderer(&gpu);
     for index in 0..3 {
@@ -364,6 +378,7 @@ fn primitives_look_as_they_did() {
 /// The paper's figure of the bundled sample, from the command.
 #[test]
 fn the_corner_ray_figure_of_the_sample() {
+    let _ = gpu_of_snapshots();
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("figure.png");
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");

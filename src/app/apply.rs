@@ -25,6 +25,10 @@ impl State {
                 Some(HeldBack::Command(command)) => self.go(*command),
                 None => {}
             },
+            Command::SaveFirst => {
+                self.after_saving = self.held_back.take();
+                self.save();
+            }
             Command::Keep => self.held_back = None,
             Command::Save => self.save(),
             Command::SaveAs(path) => self.save_as(path),
@@ -157,6 +161,10 @@ impl State {
         if needs_flight && self.open.is_none() {
             return;
         }
+        if asking.is_none() {
+            // Who does not say where to save does not want to go on either.
+            self.after_saving = None;
+        }
         self.answered = None;
         self.asking = asking;
     }
@@ -212,7 +220,7 @@ impl State {
         let shown = |scale: Option<f64>| {
             scale.map_or_else(
                 || "no scale".to_owned(),
-                |scale| super::numbers::significant(scale * factor, 6),
+                |scale| crate::picture::significant_digits(scale * factor, 6),
             )
         };
         Some(format!(

@@ -126,6 +126,8 @@ pub enum Command {
     Quit,
     /// Goes on with what was held back because something would be lost.
     Discard,
+    /// Saves, and then goes on with what was held back.
+    SaveFirst,
     /// Does not go on.
     Keep,
 

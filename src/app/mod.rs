@@ -18,7 +18,6 @@ pub mod command;
 pub mod frame_times;
 pub mod history;
 pub mod layers;
-pub mod numbers;
 pub mod open_flight;
 pub mod opening;
 pub mod panels;

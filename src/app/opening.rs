@@ -113,15 +113,16 @@ impl State {
                 };
                 let camera = flight.camera(photo);
                 // What is wrong with a photo is said where it is looked at, and in its verdict.
-                let Ok(small) = photo_for_scale(path, camera, flight.parts().image, THUMBNAIL)
-                else {
+                let Ok(large) = read_photo(path) else {
                     continue;
                 };
+                let image = flight.parts().image;
+                let plane = undistorted(&large, camera, THUMBNAIL);
                 let thumbnail = Thumbnail {
                     flight: number,
                     photo: index,
-                    small: color_image(&picture::reduced(&small, ROW_THUMBNAIL)),
-                    image: PhotoImage::new(&small.convert()),
+                    small: color_image(&as_scaled(&large, camera, image, ROW_THUMBNAIL)),
+                    image: PhotoImage::new(&plane.convert()),
                 };
                 // Waits until the window has taken some; a cancelled job gives up.
                 if !offer(&send, thumbnail, progress) {
@@ -148,17 +149,17 @@ impl State {
             let posed = &flight.parts().photos[photo];
             let picture = match &file.path {
                 None => Err(format!("the file of photo '{}' is not there", posed.name)),
-                Some(path) => {
+                Some(path) => read_photo(path).map(|full| {
                     let camera = flight.camera(posed);
-                    let large = photo_for_scale(path, camera, flight.parts().image, PREVIEW);
-                    large.map(|large| PreviewPicture {
+                    let image = flight.parts().image;
+                    PreviewPicture {
                         projected: gpu.map(|gpu| {
-                            let reduced = picture::reduced(&large, PROJECTED);
-                            LargePhoto::new(&gpu, &reduced.convert())
+                            let projected = undistorted(&full, camera, PROJECTED);
+                            LargePhoto::new(&gpu, &projected.convert())
                         }),
-                        large: Arc::new(color_image(&large)),
-                    })
-                }
+                        large: Arc::new(color_image(&as_scaled(&full, camera, image, PREVIEW))),
+                    }
+                }),
             };
             Done::Preview { photo, picture }
         });
@@ -190,10 +191,13 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let Some(views) = open.views.clone() else {
+        let computing = [Task::Open, Task::Scales, Task::Views];
+        let computing = computing.into_iter().any(|task| self.work.is_running(task));
+        let views = open.views.clone().filter(|_| !computing);
+        let Some(views) = views else {
             self.say(
                 Severity::Error,
-                "the footprints are still being computed; export when they are there",
+                "scales and footprints are still being computed; export when they are there",
             );
             return;
         };
@@ -343,22 +347,29 @@ fn geometry(
     }))
 }
 
-/// A photo as its scale assumes it: undistorted or as shot, reduced.
-fn photo_for_scale(
-    path: &Path,
-    camera: &Camera,
-    image: ImageKind,
-    max_side: u32,
-) -> Result<RgbImage, String> {
-    let at = |fault: Fault| FileError::new(path, fault).to_string();
+/// Reads a photo.
+fn read_photo(path: &Path) -> Result<RgbImage, String> {
     let bytes = formats::read_bytes(path).map_err(|error| error.to_string())?;
-    let photo = picture::decode(&bytes).map_err(at)?;
-    let fits = photo.dimensions() == (camera.width, camera.height);
-    // A photo of another size is shown as it is: its verdict says that it does not fit.
-    Ok(match image {
-        ImageKind::Undistorted if fits => picture::undistorted(&photo, camera, max_side),
-        _ => picture::reduced(&photo, max_side),
-    })
+    picture::decode(&bytes).map_err(|fault| FileError::new(path, fault).to_string())
+}
+
+/// A photo as its scale assumes it, reduced.
+fn as_scaled(photo: &RgbImage, camera: &Camera, image: ImageKind, max_side: u32) -> RgbImage {
+    match image {
+        ImageKind::Undistorted => undistorted(photo, camera, max_side),
+        ImageKind::AsShot => picture::reduced(photo, max_side),
+    }
+}
+
+/// A photo without the distortion of its lens, reduced: what the viewport's pinhole cameras show,
+/// whatever the scales are for.
+fn undistorted(photo: &RgbImage, camera: &Camera, max_side: u32) -> RgbImage {
+    if photo.dimensions() == (camera.width, camera.height) {
+        picture::undistorted(photo, camera, max_side)
+    } else {
+        // A photo of another size is shown as it is: its verdict says that it does not fit.
+        picture::reduced(photo, max_side)
+    }
 }
 
 fn color_image(picture: &RgbImage) -> egui::ColorImage {

@@ -33,6 +33,8 @@ pub struct Picked {
     pub ray: Ray,
     /// The nearest place on the surface.
     pub hit: Option<Hit>,
+    /// How many rays this answers: itself, and older ones that nobody needs any more.
+    answered: usize,
 }
 
 /// Casts rays for the window.
@@ -62,16 +64,18 @@ impl Picker {
                 while let Ok(first) = asked.recv() {
                     let mut batch = vec![first];
                     batch.extend(asked.try_iter());
+                    let mut answered = 0;
                     for (place, &(purpose, ray)) in batch.iter().enumerate() {
+                        answered += 1;
                         let newer = batch[place + 1..].iter().any(|(p, _)| *p == purpose);
+                        if purpose == Purpose::Hover && newer {
+                            continue;
+                        }
                         let picked = Picked {
                             purpose,
                             ray,
-                            hit: if purpose == Purpose::Hover && newer {
-                                None
-                            } else {
-                                caster.cast(&ray)
-                            },
+                            hit: caster.cast(&ray),
+                            answered: std::mem::take(&mut answered),
                         };
                         if answer.send(picked).is_err() {
                             return;
@@ -99,7 +103,8 @@ impl Picker {
     /// The answers that have come.
     pub fn answers(&mut self) -> Vec<Picked> {
         let answers: Vec<Picked> = self.answers.try_iter().collect();
-        self.waiting = self.waiting.saturating_sub(answers.len());
+        let answered = answers.iter().map(|picked| picked.answered).sum();
+        self.waiting = self.waiting.saturating_sub(answered);
         answers
     }
 

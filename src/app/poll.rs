@@ -123,6 +123,10 @@ impl State {
                     open.origin = origin;
                     open.saved = settings;
                 }
+                if let Some(held_back) = self.after_saving.take() {
+                    self.held_back = Some(held_back);
+                    self.apply(super::command::Command::Discard);
+                }
             }
             Done::Dialog(what, Some(path)) => match what {
                 DialogFor::Open => self.apply(super::command::Command::Open(path)),
@@ -253,11 +257,7 @@ impl OpenFlight {
     fn take_picked(&mut self, picked: Picked) {
         let point = picked.hit.map(|hit| hit.point);
         match picked.purpose {
-            Purpose::Hover => {
-                if let Some(point) = point {
-                    self.hover = Some(point);
-                }
-            }
+            Purpose::Hover => self.hover = point,
             Purpose::Center => {
                 if let Some(point) = point {
                     self.looking.through = None;

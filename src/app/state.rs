@@ -66,6 +66,8 @@ pub struct State {
     pub answered: Option<PathBuf>,
     /// What waits for "discard".
     pub held_back: Option<HeldBack>,
+    /// What is to be done once the changes are saved.
+    pub after_saving: Option<HeldBack>,
     /// Whether the window may close.
     pub may_quit: bool,
     /// How many flights were opened.
@@ -102,6 +104,7 @@ impl State {
             asking: None,
             answered: None,
             held_back: None,
+            after_saving: None,
             may_quit: false,
             opened: 0,
             picture: None,

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::open_flight::Judged;
-use crate::flight::{Outcome, Photo, Verdict};
+use crate::flight::{Outcome, Photo, Verdict, compare_names};
 use crate::scale::ViewFacts;
 
 /// What the table can be sorted by.
@@ -140,39 +140,13 @@ impl TableOrder {
         match self.by {
             Column::Flight => Ordering::Equal,
             Column::Export => turn(b.chosen.cmp(&a.chosen)),
-            Column::Name => turn(by_number(&a.photo.name, &b.photo.name)),
+            Column::Name => turn(compare_names(&a.photo.name, &b.photo.name)),
             Column::Top => number(|row| row.top()),
             Column::Bottom => number(|row| row.bottom()),
             Column::Height => number(|row| row.height()),
             Column::Tilt => number(|row| row.view.map(|view| view.tilt)),
             Column::Corners => number(|row| row.corners().map(|count| count as f64)),
             Column::Verdict => turn(a.judged.verdict.cmp(&b.judged.verdict)),
-        }
-    }
-}
-
-/// Compares names as people do: IMG_9 before IMG_10. Allocates nothing: thousands of names are sorted
-/// within a frame.
-fn by_number(mut a: &str, mut b: &str) -> Ordering {
-    let digits = |name: &str| name.bytes().take_while(u8::is_ascii_digit).count();
-    loop {
-        let order = match (digits(a), digits(b)) {
-            (0, _) | (_, 0) => match (a.chars().next(), b.chars().next()) {
-                (Some(x), Some(y)) => {
-                    (a, b) = (&a[x.len_utf8()..], &b[y.len_utf8()..]);
-                    x.to_lowercase().cmp(y.to_lowercase())
-                }
-                (x, y) => return x.is_some().cmp(&y.is_some()),
-            },
-            (in_a, in_b) => {
-                let (x, y);
-                ((x, a), (y, b)) = (a.split_at(in_a), b.split_at(in_b));
-                let (x, y) = (x.trim_start_matches('0'), y.trim_start_matches('0'));
-                x.len().cmp(&y.len()).then_with(|| x.cmp(y))
-            }
-        };
-        if order != Ordering::Equal {
-            return order;
         }
     }
 }

@@ -17,7 +17,7 @@ use super::panels::verdict_color;
 use super::state::{PictureRequest, State};
 use super::work::{Done, Geometry, Task};
 use crate::exports;
-use crate::picture::Anchor;
+use crate::picture::{Anchor, significant_digits};
 use crate::render::{
     Background, Gpu, Label, PhotoGeometry, PhotoLook, Renderer, Show, View, viridis,
 };
@@ -182,7 +182,9 @@ impl Viewport {
         };
         graphics.upload(open, &egui::Visuals::light());
         graphics.uploaded.looks.clear();
-        let drawn = graphics.renderer.picture(&view(open), &show, size);
+        let drawn = graphics
+            .renderer
+            .picture_with_words(&view(open), &show, size);
         graphics.drawn = None;
         let written = state.work.start(Task::Picture, move |progress| {
             progress.stage("writing the picture");
@@ -477,11 +479,23 @@ fn write(scene: &Scene, label: &Label, ui: &egui::Ui) {
         Anchor::BottomRight => Align2::RIGHT_BOTTOM,
     };
     let [red, green, blue] = label.color;
-    ui.painter().with_clip_rect(scene.place).text(
-        scene.screen(label.at),
+    let painter = ui.painter().with_clip_rect(scene.place);
+    let (at, font) = (scene.screen(label.at), FontId::proportional(13.0));
+    // A halo, because what lies behind may be of any colour.
+    let bright = u16::from(red) + u16::from(green) + u16::from(blue) > 382;
+    let halo = if bright {
+        Color32::from_black_alpha(170)
+    } else {
+        Color32::from_white_alpha(190)
+    };
+    for (x, y) in [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)] {
+        painter.text(at + vec2(x, y), anchor, &label.text, font.clone(), halo);
+    }
+    painter.text(
+        at,
         anchor,
         &label.text,
-        FontId::proportional(13.0),
+        font,
         Color32::from_rgb(red, green, blue),
     );
 }
@@ -512,7 +526,7 @@ fn legend(scene: &Scene, legend: Option<&crate::render::Legend>, ui: &egui::Ui) 
         (legend.range[1], bar.top()),
         (legend.range[0], bar.bottom()),
     ] {
-        let text = super::numbers::significant(value, 4);
+        let text = significant_digits(value, 4);
         let at = pos2(bar.right() + 5.0, y);
         painter.text(at, Align2::LEFT_CENTER, text, font.clone(), color);
     }
@@ -540,7 +554,7 @@ fn distance(scene: &Scene, open: &OpenFlight, ui: &egui::Ui) {
         painter.line_segment([*a, *b], Stroke::new(2.0, color));
         let text = format!(
             "{} {}",
-            super::numbers::significant(first.distance(second), 4),
+            significant_digits(first.distance(second), 4),
             open.flight.parts().unit
         );
         let at = a.lerp(*b, 0.5);

@@ -4,6 +4,7 @@ mod camera_entry;
 mod file;
 mod file_text;
 mod known_keys;
+mod name_order;
 #[cfg(test)]
 mod tests;
 mod verdict;
@@ -13,6 +14,7 @@ use std::sync::Arc;
 
 pub use camera_entry::{CameraEntry, CameraSource};
 pub use file::{FlightFile, PhotoSource};
+pub use name_order::compare_names;
 pub use verdict::{Doubt, Limits, PhotoFileState, Verdict, judge};
 
 use crate::camera::{Camera, Pose};

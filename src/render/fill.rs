@@ -6,8 +6,9 @@ use wgpu::{
     RenderPass, RenderPipeline, TextureView, VertexStepMode, vertex_attr_array,
 };
 
+use super::photo_geometry::PhotoGeometry;
 use super::pipeline::{Recipe, buffer, count, group_layout, module, pipeline, texel_group, texels};
-use super::scene::{PhotoGeometry, narrow, narrow_matrix, narrow_number};
+use super::scene::{narrow, narrow_matrix, narrow_number};
 use super::shaders;
 
 /// The pyramid of a photo for the graphics card.

@@ -14,6 +14,7 @@ pub(super) struct Frame {
     pub(super) image_from_local: [[f32; 4]; 4],
     pub(super) background: [f32; 4],
     pub(super) ink: [f32; 4],
+    pub(super) eye: [f32; 4],
     pub(super) size: [f32; 2],
     pub(super) depths: [f32; 2],
     pub(super) texel: f32,

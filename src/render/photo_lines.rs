@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::lines::{Pen, Stroke};
-use super::scene::PhotoGeometry;
+use super::photo_geometry::PhotoGeometry;
 use super::show::{Background, PhotoLook, Show};
 
 /// Of the selected photo.

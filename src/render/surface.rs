@@ -131,7 +131,8 @@ fn texture(
         size: Extent3d {
             width: size[0].max(1),
             height: size[1].max(1),
-            depth_or_array_layers: 1,
+            // OpenGL takes a texture of one layer for none of a list, as which the shaders read it.
+            depth_or_array_layers: if format == DEPTH { 1 } else { 2 },
         },
         mip_level_count,
         sample_count: 1,

@@ -60,7 +60,7 @@ fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
         ui.add_space(8.0);
         ui.horizontal(|ui| {
             if ui.button("Save them").clicked() {
-                commands.extend([Command::Keep, Command::Save]);
+                commands.push(Command::SaveFirst);
             }
             if ui.button("Discard changes").clicked() {
                 commands.push(Command::Discard);
@@ -84,7 +84,8 @@ fn path_field(
     browse: &[(&str, DialogFor, bool)],
     commands: &mut Vec<Command>,
 ) -> (String, bool) {
-    let id = ui.scope_id().with("path");
+    // Kept until another flight is open.
+    let id = ui.scope_id().with(("path", state.opened));
     let mut path: String = ui
         .data(|data| data.get_temp(id))
         .unwrap_or_else(|| start.to_owned());
@@ -104,9 +105,14 @@ fn path_field(
         info
     });
     let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
-    if ui.memory(|memory| memory.focused().is_none()) && field.gained_focus() {
+    // She asked for this window, so what she types next belongs here.
+    let seen = ui.scope_id().with("seen");
+    let now = ui.ctx().cumulative_frame_nr();
+    let last: Option<u64> = ui.data(|data| data.get_temp(seen));
+    if last.is_none_or(|last| last + 1 < now) {
         field.request_focus();
     }
+    ui.data_mut(|data| data.insert_temp(seen, now));
     ui.horizontal(|ui| {
         for (name, what, folder) in browse {
             let hover = "Choose in the desktop's own dialog";
@@ -155,11 +161,9 @@ fn export(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
          GeoJSON.",
         open.outcomes.len()
     ));
-    let start = open
-        .path
-        .parent()
-        .unwrap_or(std::path::Path::new(""))
-        .join("split-desktop");
+    let start = open.origin.suggested_file();
+    let start = start.parent().unwrap_or(std::path::Path::new(""));
+    let start = start.join("split-desktop");
     let browse = [("Browse…", DialogFor::Export, true)];
     let start = std::path::absolute(&start).unwrap_or(start);
     let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);

@@ -9,8 +9,8 @@ pub(super) fn number_field(
     value: f64,
     suffix: &str,
 ) -> Option<f64> {
-    let mut text = crate::app::numbers::significant(value, 10);
-    if text.contains('.') && !text.contains('e') {
+    let mut text = crate::picture::significant_digits(value, 10);
+    if text.contains('.') {
         text = text.trim_end_matches('0').trim_end_matches('.').to_owned();
     }
     let typed = text_field(ui, label, hover, &text, 90.0);

@@ -4,14 +4,13 @@
 use egui::{Color32, Pos2, Rect, Sense, Stroke, Vec2, pos2, vec2};
 use glam::DVec2;
 
-use super::{verdict_color, verdict_sign};
+use super::{or_dash, verdict_color, verdict_sign};
 use crate::app::actions;
 use crate::app::command::Command;
-use crate::app::numbers::{or_dash, significant};
 use crate::app::open_flight::OpenFlight;
 use crate::app::state::State;
 use crate::flight::Outcome;
-use crate::picture::{BarEdge, ScaleBar, scale_bars};
+use crate::picture::{BarEdge, ScaleBar, scale_bars, significant_digits};
 use crate::scale::{CornerOutcome, ImageKind, PhotoScale};
 
 /// The inspector keeps the photo's texture and how it is zoomed.
@@ -258,8 +257,7 @@ fn scales(
 ) {
     let unit = state.preferences.unit();
     let factor = unit.in_units_of(open.flight.parts().unit);
-    let shown =
-        |scale: Option<f64>, digits: usize| or_dash(scale.map(|scale| scale * factor), digits);
+    let shown = |scale: Option<f64>, digits: u8| or_dash(scale.map(|scale| scale * factor), digits);
     ui.horizontal(|ui| {
         for (name, value) in [("Top", scale.scale.top), ("Bottom", scale.scale.bottom)] {
             ui.vertical(|ui| {
@@ -280,7 +278,10 @@ fn scales(
         ui.label(format!("Left {}", shown(scale.scale.left, 5)));
         ui.label(format!("Right {}", shown(scale.scale.right, 5)));
         if let (Some(top), Some(bottom)) = (scale.scale.top, scale.scale.bottom) {
-            ui.label(format!("Top/bottom {}", significant(top / bottom, 4)));
+            ui.label(format!(
+                "Top/bottom {}",
+                significant_digits(top / bottom, 4)
+            ));
         }
     });
     ui.separator();

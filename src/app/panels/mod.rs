@@ -28,6 +28,7 @@ pub use view_buttons::{blend_slider, view_buttons};
 use super::command::{Command, Tab};
 use super::state::State;
 use crate::flight::Verdict;
+use crate::picture::significant_digits;
 
 /// The right panel: its tabs and the one that is shown.
 pub fn right_panel(
@@ -85,4 +86,9 @@ pub fn verdict_sign(verdict: Verdict) -> &'static str {
         Verdict::Check => "⚠",
         Verdict::NoScale => "✖",
     }
+}
+
+/// A number that may be missing.
+fn or_dash(value: Option<f64>, digits: u8) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| significant_digits(value, digits))
 }

@@ -2,9 +2,8 @@
 
 use egui_extras::{Column as Width, TableBuilder};
 
-use super::{verdict_color, verdict_sign};
+use super::{or_dash, verdict_color, verdict_sign};
 use crate::app::command::Command;
-use crate::app::numbers::or_dash;
 use crate::app::open_flight::OpenFlight;
 use crate::app::state::State;
 use crate::app::table::Column;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::plan::PhotoNames;
 use super::{CheckedInput, ExportRequest};
 use crate::exports::{ReportLine, ScaleReport};
-use crate::flight::{Doubt, Verdict};
+use crate::flight::{Doubt, Verdict, compare_names};
 use crate::picture::significant_digits;
 use crate::scale::{Ground, ImageKind};
 use crate::units::LengthUnit;
@@ -35,7 +35,11 @@ pub(super) fn html(
 ) -> String {
     let title = escaped(&report.flight);
     let mut rows = String::new();
-    for ((line, &index), number) in report.lines.iter().zip(chosen).zip(1_usize..) {
+    // As Split-Desktop and every file manager list the image files: so the eye goes down both lists.
+    let mut lines: Vec<(&ReportLine, usize)> =
+        report.lines.iter().zip(chosen.iter().copied()).collect();
+    lines.sort_by(|(a, _), (b, _)| compare_names(&a.photo, &b.photo));
+    for ((line, index), number) in lines.into_iter().zip(1_usize..) {
         let judged = request.judged.get(index);
         let picture = pictures.get(index).map_or(Err("no pictures"), |names| {
             names.as_ref().map_err(String::as_str)
@@ -65,7 +69,7 @@ pub(super) fn html(
          <meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}: scales</title>\n\
          <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n\
          <p>Image scales for Split-Desktop in <b>pixels per {unit}</b>, of {image}. {where_from}</p>\n\
-         <p class=\"small\">{} of {total} photos, in the order of the flight's photos.{noticed}</p>\n\
+         <p class=\"small\">{} of {total} photos, in the order of their names.{noticed}</p>\n\
          <table class=\"photos\">\n<thead><tr><th>Photo with its scale</th><th>Name, verdict</th>\
          <th>TOP scale</th><th>BOTTOM scale</th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n\
          {}{}{}</body>\n</html>\n",
