@@ -20,14 +20,16 @@ impl State {
             Command::Open(_) | Command::OpenSample | Command::Close | Command::Quit => {
                 self.leave(command);
             }
-            Command::Discard => match self.held_back.take() {
-                Some(HeldBack::Quit) => self.quit(),
-                Some(HeldBack::Command(command)) => self.go(*command),
-                None => {}
-            },
+            Command::Discard => {
+                if let Some(held_back) = self.held_back.take() {
+                    self.go_on(held_back);
+                }
+            }
             Command::SaveFirst => {
-                self.after_saving = self.held_back.take();
-                self.save();
+                if let Some(held_back) = self.held_back.take() {
+                    self.after_saving = Some(held_back);
+                    self.save();
+                }
             }
             Command::Keep => self.held_back = None,
             Command::Save => self.save(),
@@ -50,8 +52,11 @@ impl State {
             Command::Ask(asking) => self.ask(asking),
             Command::Browse(what, folder) => self.browse(what, folder),
             Command::Cancel(task) => {
-                self.work.cancel(task);
-                self.say(Severity::Note, &format!("{}: cancelled", task.in_words()));
+                if task.can_be_cancelled() && self.work.is_running(task) {
+                    self.work.cancel(task);
+                    self.say(Severity::Note, &format!("{}: cancelled", task.in_words()));
+                    self.take_back_settings();
+                }
             }
             Command::Unit(unit) => self.set_unit(unit),
             Command::Limits(limits) => {
@@ -126,6 +131,7 @@ impl State {
 
     fn go(&mut self, command: Command) {
         self.asking = None;
+        self.after_saving = None;
         match command {
             Command::Open(path) => self.start_opening(path, None),
             Command::OpenSample => match sample_flight() {
@@ -147,6 +153,14 @@ impl State {
         }
     }
 
+    /// Goes on with what was held back.
+    pub(super) fn go_on(&mut self, held_back: HeldBack) {
+        match held_back {
+            HeldBack::Quit => self.quit(),
+            HeldBack::Command(command) => self.go(*command),
+        }
+    }
+
     fn quit(&mut self) {
         self.work.cancel_all();
         self.may_quit = true;
@@ -161,12 +175,12 @@ impl State {
         if needs_flight && self.open.is_none() {
             return;
         }
-        if asking.is_none() {
+        self.answered = None;
+        self.asking = asking;
+        if asking != Some(Asking::SaveAs) {
             // Who does not say where to save does not want to go on either.
             self.after_saving = None;
         }
-        self.answered = None;
-        self.asking = asking;
     }
 
     fn set_unit(&mut self, unit: LengthUnit) {
@@ -196,18 +210,21 @@ impl State {
         open.arrange();
         let now = open.settings();
         if now != before {
-            self.settings_changed(&before, &now);
+            self.settings_changed(now);
         }
     }
 
     /// Computes anew what depends on the settings.
-    pub fn settings_changed(&mut self, before: &FlightSettings, now: &FlightSettings) {
-        if before.surface.thinning == now.surface.thinning {
+    pub fn settings_changed(&mut self, now: FlightSettings) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        if open.computed.surface.thinning == now.surface.thinning {
             self.start_scales();
-        } else if let Some(open) = &self.open {
+        } else {
             // Thinned points are gone from memory: the file has them.
             let (path, number) = (open.path.clone(), open.number);
-            self.start_opening(path, Some((number, *now)));
+            self.start_opening(path, Some((number, now)));
         }
     }
 

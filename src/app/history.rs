@@ -38,9 +38,12 @@ impl<T: PartialEq> History<T> {
         self.redo.clear();
     }
 
-    /// Changes the state of now without a step: for what no person did.
+    /// Changes the state of now without a step: for what no person did. Where it becomes the state
+    /// before it or after it, there is no step between the two any more.
     pub fn replace(&mut self, now: T) {
         self.now = now;
+        self.undone_to.pop_if(|before| *before == self.now);
+        self.redo.pop_if(|after| *after == self.now);
     }
 
     /// Whether there is a state before this one.
@@ -100,6 +103,18 @@ mod tests {
         assert!(!history.can_redo());
         assert!(history.undo());
         assert_eq!(*history.now(), 'a');
+    }
+
+    #[test]
+    fn a_state_that_is_taken_back_is_no_step() {
+        let mut history = History::new('a');
+        history.set('b');
+        history.set('c');
+        history.replace('b');
+        assert!(history.undo());
+        assert_eq!(*history.now(), 'a');
+        history.replace('b');
+        assert!(!history.can_redo() && !history.can_undo());
     }
 
     #[test]

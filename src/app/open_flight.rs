@@ -96,6 +96,9 @@ pub struct OpenFlight {
     pub origin: FlightOrigin,
     /// The settings in that file.
     pub saved: FlightSettings,
+    /// The settings that the flight and its outcomes were computed with: those of now, but for the
+    /// moment until a change is computed.
+    pub computed: FlightSettings,
     /// The settings and choices of now, with those before.
     pub history: History<Edit>,
     /// Of each photo.
@@ -168,6 +171,7 @@ impl OpenFlight {
             warnings: opened.warnings,
             origin: opened.origin,
             saved,
+            computed: opened.settings,
             history: History::new(Edit {
                 settings: opened.settings,
                 chosen: vec![false; count],
@@ -218,6 +222,17 @@ impl OpenFlight {
     /// Whether something would be lost if it were closed.
     pub fn is_changed(&self) -> bool {
         self.settings() != self.saved
+    }
+
+    /// Takes a change of the settings back that will not be computed: what is on the screen must be
+    /// what the settings say.
+    pub fn take_back_settings(&mut self) {
+        if self.settings() != self.computed {
+            let mut edit = self.history.now().clone();
+            edit.settings = self.computed;
+            self.history.replace(edit);
+            self.arrange();
+        }
     }
 
     /// The photo's name.

@@ -45,9 +45,6 @@ impl State {
     /// settings to read it with once more.
     pub fn start_opening(&mut self, path: PathBuf, again: Option<(u64, FlightSettings)>) {
         self.notice = None;
-        for task in [Task::Scales, Task::Views, Task::Geometry] {
-            self.work.cancel(task);
-        }
         self.start(Task::Open, move |progress| {
             Done::Opened(Box::new(open(path, again, progress)))
         });
@@ -59,12 +56,12 @@ impl State {
             return;
         };
         let (flight, settings) = (open.flight.clone(), open.settings());
-        self.work.cancel(Task::Views);
+        // Footprints under way go on: where these scales are cancelled, they are still wanted.
         self.start(Task::Scales, move |progress| {
             let compute = || {
                 let flight = flight.with_settings(&settings)?;
                 let outcomes = flight.scales(progress)?;
-                Ok((Arc::new(flight), outcomes))
+                Ok((Arc::new(flight), outcomes, settings))
             };
             Done::Scales(compute())
         });
@@ -191,10 +188,8 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let computing = [Task::Open, Task::Scales, Task::Views];
-        let computing = computing.into_iter().any(|task| self.work.is_running(task));
-        let views = open.views.clone().filter(|_| !computing);
-        let Some(views) = views else {
+        let views = open.views.clone();
+        let Some(views) = views.filter(|_| open.settings() == open.computed) else {
             self.say(
                 Severity::Error,
                 "scales and footprints are still being computed; export when they are there",

@@ -14,7 +14,7 @@ const THUMBNAILS_A_FRAME: usize = 8;
 impl State {
     /// Takes what is there, and asks for another frame while something is under way.
     pub fn poll(&mut self) {
-        for done in self.work.finished() {
+        while let Some(done) = self.work.finished() {
             match done {
                 Ok(done) => self.take(done),
                 Err(fault) => self.say(Severity::Error, &fault.to_string()),
@@ -44,19 +44,23 @@ impl State {
         match done {
             Done::Opened(result) => match *result {
                 Ok(loaded) => self.take_flight(loaded),
-                Err(message) => self.say(Severity::Error, &message),
+                Err(message) => {
+                    self.say(Severity::Error, &message);
+                    self.take_back_settings();
+                }
             },
-            Done::Scales(Ok((flight, outcomes))) => {
+            Done::Scales(Ok((flight, outcomes, settings))) => {
                 let limits = self.preferences.limits;
                 let Some(open) = &mut self.open else {
                     return;
                 };
                 let before = open.flight.parts();
-                let (image, surface) = (before.image, before.surface.clone());
                 let after = flight.parts();
-                let other_image = image != after.image;
-                let other_surface = !Arc::ptr_eq(&surface, &after.surface);
+                let other_image = before.image != after.image;
+                // Of one reading of the file the points are the same.
+                let other_surface = before.surface.max_edge() != after.surface.max_edge();
                 open.flight = flight;
+                open.computed = settings;
                 open.outcomes = Arc::new(outcomes);
                 open.views = None;
                 open.judge(&limits);
@@ -82,7 +86,11 @@ impl State {
                     open.geometry = Some(Arc::from(geometry));
                 }
             }
-            Done::Scales(Err(fault)) | Done::Views(Err(fault)) | Done::Geometry(Err(fault)) => {
+            Done::Scales(Err(fault)) => {
+                self.say(Severity::Error, &fault.to_string());
+                self.take_back_settings();
+            }
+            Done::Views(Err(fault)) | Done::Geometry(Err(fault)) => {
                 self.say(Severity::Error, &fault.to_string());
             }
             Done::Thumbnails => {}
@@ -107,9 +115,13 @@ impl State {
             Done::Picture(Ok(path)) => {
                 self.say(Severity::Note, &format!("{}: written", path.display()));
             }
-            Done::Exported(Err(message))
-            | Done::Saved(Err(message))
-            | Done::Picture(Err(message)) => self.say(Severity::Error, &message),
+            Done::Exported(Err(message)) | Done::Picture(Err(message)) => {
+                self.say(Severity::Error, &message);
+            }
+            Done::Saved(Err(message)) => {
+                self.after_saving = None;
+                self.say(Severity::Error, &message);
+            }
             Done::Saved(Ok((origin, settings))) => {
                 if let Some(path) = origin.flight_file() {
                     let path = path.to_owned();
@@ -123,9 +135,12 @@ impl State {
                     open.origin = origin;
                     open.saved = settings;
                 }
-                if let Some(held_back) = self.after_saving.take() {
-                    self.held_back = Some(held_back);
-                    self.apply(super::command::Command::Discard);
+                let changed = self.open.as_ref().is_some_and(|open| open.is_changed());
+                match self.after_saving.take() {
+                    // Changed again meanwhile: she is asked again.
+                    Some(held_back) if changed => self.held_back = Some(held_back),
+                    Some(held_back) => self.go_on(held_back),
+                    None => {}
                 }
             }
             Done::Dialog(what, Some(path)) => match what {
@@ -141,10 +156,27 @@ impl State {
         }
     }
 
+    /// Where neither scales nor the file are on their way any more, a change of the settings that
+    /// was not computed goes.
+    pub(super) fn take_back_settings(&mut self) {
+        let on_the_way = self.work.is_running(Task::Scales) || self.work.is_running(Task::Open);
+        if let Some(open) = &mut self.open
+            && !on_the_way
+        {
+            open.take_back_settings();
+        }
+    }
+
     fn take_flight(&mut self, loaded: Loaded) {
+        let count = loaded.outcomes.len();
         let again = match (loaded.again_for, self.open.take()) {
-            // The same flight with other surface options: what the engineer did stays.
-            (Some(number), Some(before)) if number == before.number => Some(before),
+            // The same flight with other surface options: what the engineer did stays, unless its
+            // files have other photos by now.
+            (Some(number), Some(before)) if number == before.number => {
+                // Scales of the flight before would come over those of this one.
+                self.work.cancel(Task::Scales);
+                Some(before).filter(|before| before.outcomes.len() == count)
+            }
             // She has gone on to another flight meanwhile.
             (Some(_), other) => {
                 self.open = other;
@@ -185,7 +217,7 @@ impl State {
         let now = open.settings();
         if now != read_with {
             // Changed again while the file was read.
-            self.settings_changed(&read_with, &now);
+            self.settings_changed(now);
             return;
         }
         let sentence = format!(

@@ -66,7 +66,7 @@ pub struct State {
     pub answered: Option<PathBuf>,
     /// What waits for "discard".
     pub held_back: Option<HeldBack>,
-    /// What is to be done once the changes are saved.
+    /// What goes on once the changes are saved.
     pub after_saving: Option<HeldBack>,
     /// Whether the window may close.
     pub may_quit: bool,

@@ -182,9 +182,11 @@ impl Viewport {
         };
         graphics.upload(open, &egui::Visuals::light());
         graphics.uploaded.looks.clear();
-        let drawn = graphics
-            .renderer
-            .picture_with_words(&view(open), &show, size);
+        let mut view = view(open);
+        if let Some(seen) = open.looking.size {
+            view = view.reframed(seen, DVec2::from(size.map(f64::from)));
+        }
+        let drawn = graphics.renderer.picture_with_words(&view, &show, size);
         graphics.drawn = None;
         let written = state.work.start(Task::Picture, move |progress| {
             progress.stage("writing the picture");

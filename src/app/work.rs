@@ -58,6 +58,12 @@ impl Task {
             Self::Dialog => "Dialog",
         }
     }
+
+    /// Whether it can be cancelled: without footprints and triangles the flight on the screen would
+    /// stay half-finished.
+    pub fn can_be_cancelled(self) -> bool {
+        !matches!(self, Self::Views | Self::Geometry)
+    }
 }
 
 /// Why a native dialog was opened.
@@ -104,8 +110,8 @@ pub struct Geometry {
 pub enum Done {
     /// A flight, or why it cannot be opened.
     Opened(Box<Result<Loaded, String>>),
-    /// Scales after a setting changed.
-    Scales(Result<(Arc<Flight>, Vec<Outcome>), Fault>),
+    /// Scales after a setting changed, with the settings.
+    Scales(Result<(Arc<Flight>, Vec<Outcome>, FlightSettings), Fault>),
     /// How the photos look at the surface.
     Views(Result<Vec<Option<ViewFacts>>, Fault>),
     /// For the viewport.
@@ -238,13 +244,12 @@ impl Work {
         self.running.is_empty()
     }
 
-    /// Takes what is done. A job that panicked is a fault of ours, told like any other.
-    pub fn finished(&mut self) -> Vec<Result<Done, Fault>> {
-        let (finished, running): (Vec<_>, Vec<_>) = std::mem::take(&mut self.running)
-            .into_iter()
-            .partition(|(_, job)| job.is_finished());
-        self.running = running;
-        finished.into_iter().map(|(_, job)| job.finish()).collect()
+    /// Takes the first that is done: one at a time, because taking it may cancel others that are done
+    /// as well. A job that panicked is a fault of ours, told like any other.
+    pub fn finished(&mut self) -> Option<Result<Done, Fault>> {
+        let place = self.running.iter().position(|(_, job)| job.is_finished())?;
+        let (_, job) = self.running.remove(place);
+        Some(job.finish())
     }
 }
 

@@ -55,7 +55,7 @@ impl FlightFile {
             };
             set(&mut document, "scale", "image", image)?;
         }
-        let text = document.to_string();
+        let text = with_line_ends_of(text, document.to_string());
         // What is read next time must be what was meant.
         if Self::parse(&text)?.settings() == *settings {
             Ok(text)
@@ -106,7 +106,16 @@ impl FlightFile {
                 None => {}
             }
         }
-        Ok(document.to_string())
+        Ok(with_line_ends_of(text, document.to_string()))
+    }
+}
+
+/// toml_edit writes LF alone; a file from Windows keeps its CRLF.
+fn with_line_ends_of(before: &str, now: String) -> String {
+    if before.contains("\r\n") {
+        now.replace("\r\n", "\n").replace('\n', "\r\n")
+    } else {
+        now
     }
 }
 
@@ -203,6 +212,21 @@ folder = "photos"
         assert!(text.contains("ground = \"auto\"     # toe"), "{text}");
         assert!(!text.contains("max_edge") && !text.contains("thinning"));
         assert!(text.starts_with("# The east bench, shot 12.\n"));
+    }
+
+    #[test]
+    fn a_file_from_windows_keeps_its_line_ends() {
+        let text = COMMENTED.replace('\n', "\r\n");
+        let mut settings = settings();
+        assert_eq!(
+            FlightFile::text_with_settings(&text, &settings).unwrap(),
+            text
+        );
+        settings.ground = Ground::At(161.25);
+        assert_eq!(
+            FlightFile::text_with_settings(&text, &settings).unwrap(),
+            text.replace("= 160 ", "= 161.25 ")
+        );
     }
 
     #[test]

@@ -114,6 +114,27 @@ impl View {
         }
     }
 
+    /// The same view for a picture of another shape: it shows at least what a viewport of size `seen`
+    /// shows.
+    #[must_use]
+    pub fn reframed(&self, seen: DVec2, picture: DVec2) -> Self {
+        let wider = (seen.x / seen.y) / (picture.x / picture.y);
+        let wider = wider.max(1.0);
+        let projection = match self.projection {
+            Projection::Perspective { fov_y } => Projection::Perspective {
+                fov_y: 2.0 * ((fov_y * 0.5).tan() * wider).atan(),
+            },
+            Projection::Orthographic { height } => Projection::Orthographic {
+                height: height * wider,
+            },
+            photo @ Projection::Photo { .. } => photo,
+        };
+        Self {
+            projection,
+            ..*self
+        }
+    }
+
     /// Where the photo lies in a viewport that looks through its camera: its top left and bottom
     /// right pixel. `None` in the other projections.
     pub fn photo_rectangle(&self, size: DVec2) -> Option<[DVec2; 2]> {
@@ -242,6 +263,22 @@ mod tests {
                     // Coordinates of 5 000 000 are known to 1e-9, which 1 m away is 1e-6 px.
                     assert!(seen.distance(pixel) < 3e-6, "{pixel} {seen} at {t}");
                 }
+            }
+        }
+    }
+
+    /// What touches an edge of the viewport touches that edge of a narrower or a wider picture.
+    #[test]
+    fn a_picture_of_another_shape_shows_all_that_was_seen() {
+        for view in &views()[1..] {
+            for (picture, edge) in [
+                (DVec2::new(500.0, 900.0), DVec2::new(0.0, 350.0)),
+                (DVec2::new(900.0, 300.0), DVec2::new(500.0, 0.0)),
+            ] {
+                let point = view.ray(edge, SIZE).at(70.0);
+                let now = view.reframed(SIZE, picture);
+                let seen = now.project(point, picture).unwrap();
+                assert!((seen / picture).distance(edge / SIZE) < 1e-6, "{seen}");
             }
         }
     }

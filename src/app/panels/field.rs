@@ -54,3 +54,10 @@ pub(super) fn text_field(
     ui.data_mut(|data| data.remove::<String>(id));
     (left && typed != text).then_some(typed)
 }
+
+/// What a screen reader says of a list to choose from: its name and what is chosen.
+pub(super) fn combo_box(name: &str, chosen: &str) -> egui::WidgetInfo {
+    let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name);
+    info.current_text_value = Some(chosen.to_owned());
+    info
+}

@@ -1,6 +1,6 @@
 //! The flight's settings; each change is computed at once and can be undone.
 
-use super::field::number_field;
+use super::field::{combo_box, number_field};
 use crate::app::command::Command;
 use crate::app::state::State;
 use crate::flight::FlightSettings;
@@ -43,7 +43,8 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
             }
         })
         .response
-        .on_hover_text("Of the cloud and the poses, as your package wrote them");
+        .on_hover_text("Of the cloud and the poses, as your package wrote them")
+        .widget_info(|| combo_box("Unit of the world's coordinates", now.unit.symbol()));
     ui.add_space(8.0);
 
     ui.strong("Ground");

@@ -1,5 +1,6 @@
 //! What the viewport shows, in one small panel.
 
+use super::field::combo_box;
 use crate::app::command::Command;
 use crate::app::layers::Layers;
 use crate::app::state::State;
@@ -42,7 +43,8 @@ pub fn layers_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
             }
         })
         .response
-        .on_hover_text("What the colours of surface and points mean");
+        .on_hover_text("What the colours of surface and points mean")
+        .widget_info(|| combo_box("Colour by", color_name(now.color_by)));
     ui.checkbox(&mut next.eye_dome, "Relief shading")
         .on_hover_text("Eye-dome lighting: edges in depth are darkened");
     ui.checkbox(&mut next.project_photo, "Photo on the surface")

@@ -46,6 +46,9 @@ pub fn right_panel(
             let shown = ui
                 .selectable_label(state.tab == tab, name)
                 .on_hover_text(hover);
+            shown.widget_info(|| {
+                egui::WidgetInfo::selected(egui::Role::Tab, true, state.tab == tab, name)
+            });
             if shown.clicked() {
                 commands.push(Command::Tab(tab));
             }

@@ -2,6 +2,7 @@
 
 use egui_extras::{Column as Width, TableBuilder};
 
+use super::field::combo_box;
 use super::{or_dash, verdict_color, verdict_sign};
 use crate::app::command::Command;
 use crate::app::open_flight::OpenFlight;
@@ -212,7 +213,8 @@ fn filter(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
                 }
             })
             .response
-            .on_hover_text("Show only photos with this verdict");
+            .on_hover_text("Show only photos with this verdict")
+            .widget_info(|| combo_box("Filter by verdict", wanted));
         ui.weak(format!("{} of {}", open.shown.len(), open.outcomes.len()));
     });
 }

@@ -14,11 +14,13 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
                 .desired_height(14.0);
             ui.label(task.in_words());
             ui.add(bar).on_hover_text(sentence);
-            let cancel = ui.small_button("✖");
-            let label = format!("Cancel {}", task.in_words().to_lowercase());
-            cancel.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
-            if cancel.on_hover_text(&label).clicked() {
-                commands.push(Command::Cancel(task));
+            if task.can_be_cancelled() {
+                let cancel = ui.small_button("✖");
+                let label = format!("Cancel {}", task.in_words().to_lowercase());
+                cancel.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
+                if cancel.on_hover_text(&label).clicked() {
+                    commands.push(Command::Cancel(task));
+                }
             }
             ui.separator();
         }

@@ -1,0 +1,127 @@
+//! The export through its small window, read back and compared with that of the command.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use fragscale::app::Command;
+
+use crate::common::fragscale;
+use crate::desk::{Desk, copy, flight};
+
+/// The lines of a scales.csv, the head first.
+fn lines(folder: &Path) -> Vec<String> {
+    let text = fs::read_to_string(folder.join("scales.csv")).expect("scales.csv");
+    text.lines().map(str::to_owned).collect()
+}
+
+fn names(folder: &Path) -> BTreeSet<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    entries
+        .map(|entry| {
+            entry
+                .expect("an entry")
+                .file_name()
+                .into_string()
+                .expect("UTF-8")
+        })
+        .collect()
+}
+
+#[test]
+fn the_chosen_photos_are_exported_as_the_command_exports_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (ours, theirs) = (folder.path().join("window"), folder.path().join("command"));
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.click(Role::RadioButton, "Pixels per in");
+    desk.click(Role::Button, "Edit");
+    desk.click(Role::Button, "Choose all photos with a scale");
+    for photo in ["IMG_0001.jpg", "IMG_0004.jpg", "IMG_0009.jpg"] {
+        desk.click(Role::CheckBox, &format!("Export {photo}"));
+    }
+    desk.click(Role::Button, "Export chosen photos");
+    assert!(desk.says("6 of 9 photos are chosen"));
+    desk.type_path(&ours);
+    desk.click(Role::Button, "Export now");
+    assert!(
+        desk.logged("6 photos exported"),
+        "{:?}",
+        desk.harness.state().state().log
+    );
+    assert!(
+        !desk.shows(Role::Button, "Export now"),
+        "the small window is closed"
+    );
+
+    let sample = flight("assets/sample");
+    let arguments = [
+        "export",
+        sample.to_str().expect("UTF-8"),
+        "--to",
+        theirs.to_str().expect("UTF-8"),
+        "--unit",
+        "in",
+    ];
+    let output = fragscale(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let left_out = ["IMG_0001", "IMG_0004", "IMG_0009"];
+    let (window, command) = (lines(&ours), lines(&theirs));
+    assert_eq!(command.len(), 10);
+    let of_chosen: Vec<String> = command
+        .into_iter()
+        .filter(|line| !left_out.iter().any(|name| line.starts_with(name)))
+        .collect();
+    assert_eq!(window, of_chosen);
+    // The same folders, in them the chosen photos only.
+    assert_eq!(names(&ours), names(&theirs));
+    for entry in fs::read_dir(&ours).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            let files = names(&path);
+            assert_eq!(files.len(), 6, "{}: {files:?}", path.display());
+            assert!(
+                !files
+                    .iter()
+                    .any(|file| left_out.iter().any(|name| file.contains(name)))
+            );
+        }
+    }
+    let html = fs::read_to_string(ours.join("scales.html")).expect("scales.html");
+    assert!(html.contains("IMG_0002.jpg") && !html.contains("IMG_0004.jpg"));
+}
+
+#[test]
+fn the_place_that_is_proposed_belongs_to_the_flight() {
+    let (first, second) = (copy("tests/windrow"), copy("tests/windrow"));
+    let mut desk = Desk::new(Some(first.path()));
+    for folder in [first.path(), second.path()] {
+        desk.harness
+            .state_mut()
+            .apply(Command::Open(folder.to_owned()));
+        desk.settle();
+        for keys in [Key::E, Key::P] {
+            desk.press(Modifiers::COMMAND, keys);
+            let path = desk.node(Role::TextInput, "Path").value().expect("a path");
+            let wanted = folder.to_str().expect("UTF-8");
+            assert!(path.starts_with(wanted), "{path} for {wanted}");
+            desk.press(Modifiers::NONE, Key::Escape);
+        }
+    }
+}
+
+#[test]
+fn nothing_is_exported_while_the_numbers_are_computed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let to = folder.path().join("export");
+    let mut desk = Desk::new(Some(&flight("tests/windrow")));
+    let app = desk.harness.state_mut();
+    let mut settings = app.state().open.as_ref().expect("a flight").settings();
+    settings.image = fragscale::scale::ImageKind::AsShot;
+    app.apply(Command::Set(settings));
+    app.apply(Command::Export(to.clone()));
+    desk.settle();
+    assert!(desk.says("still being computed"));
+    assert!(!to.exists());
+}

@@ -1,0 +1,60 @@
+//! The whole window as it looks, kept as pictures (`tests/snapshots`; `UPDATE_SNAPSHOTS=1` makes them
+//! new). Small ones, because they are kept.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Theme};
+
+use crate::desk::{Desk, Screen, flight};
+
+/// The window with the sample flight, after somebody has done something.
+fn sample(screen: &Screen, name: &str, prepare: impl FnOnce(&mut Desk)) {
+    let mut desk = Desk::drawn(Some(&flight("assets/sample")), screen);
+    prepare(&mut desk);
+    desk.harness.remove_cursor();
+    desk.settle();
+    desk.harness.snapshot(name);
+}
+
+#[test]
+fn dark() {
+    let screen = Screen {
+        size: [1280.0, 720.0],
+        pixels_per_point: 1.0,
+        theme: Theme::Dark,
+    };
+    sample(&screen, "window_dark", |_| {});
+}
+
+#[test]
+fn light() {
+    let screen = Screen {
+        size: [1000.0, 560.0],
+        pixels_per_point: 1.0,
+        theme: Theme::Light,
+    };
+    sample(&screen, "window_light", |desk| {
+        desk.press(Modifiers::NONE, Key::T);
+        desk.click(Role::Tab, "Flight");
+    });
+}
+
+#[test]
+fn at_200_percent() {
+    let screen = Screen {
+        size: [800.0, 400.0],
+        pixels_per_point: 2.0,
+        theme: Theme::Dark,
+    };
+    sample(&screen, "window_200_percent", |_| {});
+}
+
+#[test]
+fn the_start_page() {
+    let screen = Screen {
+        size: [640.0, 400.0],
+        pixels_per_point: 1.0,
+        theme: Theme::Light,
+    };
+    let mut desk = Desk::drawn(None, &screen);
+    desk.harness.snapshot("window_start");
+}

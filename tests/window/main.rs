@@ -1,0 +1,27 @@
+//! The window, driven as an engineer drives it: through the names of its parts, with mouse and keys.
+//!
+//! Most tests need no graphics device; those that look at pictures or write one say which package to
+//! install where there is none.
+
+#![cfg(feature = "app")]
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    unreachable_pub,
+    missing_docs,
+    reason = "in a test a panic is the report"
+)]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod broken;
+mod desk;
+mod export;
+mod looks;
+mod photos;
+mod random;
+mod settings;
+mod viewport;

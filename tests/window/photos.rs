@@ -1,0 +1,225 @@
+//! The table of photos, against what the command says of the same flight.
+
+use std::collections::HashMap;
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers};
+
+use crate::common::scales_json;
+use crate::desk::{Desk, flight};
+
+/// Top and bottom scale of each photo in pixels per centimetre, from the command.
+fn scales() -> HashMap<String, [f64; 2]> {
+    let json = scales_json(&flight("assets/sample"), &["--unit", "cm"]);
+    let photos = json["photos"].as_array().expect("photos");
+    let edge =
+        |photo: &serde_json::Value, edge: &str| photo["scale"][edge].as_f64().expect("a scale");
+    photos
+        .iter()
+        .map(|photo| {
+            let name = photo["photo"].as_str().expect("a name");
+            (name.to_owned(), [edge(photo, "top"), edge(photo, "bottom")])
+        })
+        .collect()
+}
+
+/// Whether `shown` is `value` to this many significant digits.
+#[track_caller]
+fn assert_shown(shown: &str, value: f64, digits: i32) {
+    let number: f64 = shown
+        .parse()
+        .unwrap_or_else(|_| panic!("'{shown}' is no number"));
+    let last = 10_f64.powi(value.log10().floor() as i32 + 1 - digits);
+    assert!(
+        (number - value).abs() <= last * 0.500_001,
+        "{shown} for {value}"
+    );
+    let count = shown.chars().filter(char::is_ascii_digit).count();
+    assert_eq!(count, digits as usize, "{shown} for {value}");
+}
+
+#[test]
+fn the_sample_opens_from_the_start_page_with_the_commands_scales() {
+    let mut desk = Desk::new(None);
+    desk.click(Role::Button, "Open the sample flight");
+    let scales = scales();
+    let rows = desk.rows();
+    assert_eq!(rows.len(), 9);
+    for (photo, cells) in &rows {
+        let [top, bottom] = scales[photo];
+        assert_eq!(&cells[0], photo);
+        assert_shown(&cells[1], top, 4);
+        assert_shown(&cells[2], bottom, 4);
+        assert_eq!(cells[4], "4/4");
+    }
+    // The other unit is the same number with another factor.
+    desk.click(Role::RadioButton, "Pixels per m");
+    for (photo, cells) in desk.rows() {
+        assert_shown(&cells[1], scales[&photo][0] * 100.0, 4);
+        assert_shown(&cells[2], scales[&photo][1] * 100.0, 4);
+    }
+}
+
+/// A frame with a shortcut in it; what went to the clipboard.
+fn shortcut(desk: &mut Desk, modifiers: Modifiers, key: Key) -> Option<String> {
+    let event = |pressed| Event::Key {
+        key,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers,
+    };
+    desk.harness
+        .input_mut()
+        .events
+        .push(Event::ModifiersChanged(modifiers));
+    let copied = desk.frame([event(true)]);
+    desk.frame([event(false), Event::ModifiersChanged(Modifiers::NONE)]);
+    copied
+}
+
+#[test]
+fn photos_are_selected_by_their_rows_and_by_keys() {
+    let mut desk = Desk::new(Some(&flight("tests/windrow")));
+    assert_eq!(desk.selected(), "IMG_0001.jpg");
+    desk.click(Role::Row, "Photo IMG_0004.jpg");
+    assert_eq!(desk.selected(), "IMG_0004.jpg");
+    assert!(desk.shows(Role::Image, "Photo IMG_0004.jpg with its scale"));
+    desk.press(Modifiers::NONE, Key::ArrowDown);
+    assert_eq!(desk.selected(), "IMG_0005.jpg");
+    for _ in 0..7 {
+        desk.press(Modifiers::NONE, Key::ArrowUp);
+    }
+    assert_eq!(desk.selected(), "IMG_0001.jpg", "the first row is the end");
+    // The keys follow the rows as they are shown.
+    desk.click(Role::Button, "Sort by scale at the top edge");
+    let order = desk.photos();
+    desk.click(Role::Row, &format!("Photo {}", order[3]));
+    desk.press(Modifiers::NONE, Key::ArrowDown);
+    assert_eq!(desk.selected(), order[4]);
+}
+
+#[test]
+fn the_table_sorts_by_the_top_scale_both_ways_and_back() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    let scales = scales();
+    let top =
+        |photos: &[String]| -> Vec<f64> { photos.iter().map(|photo| scales[photo][0]).collect() };
+    let of_flight = desk.photos();
+    assert!(
+        !top(&of_flight).is_sorted(),
+        "the order of the flight is another"
+    );
+    for (turned, name) in [(false, "up"), (true, "down")] {
+        desk.click(Role::Button, "Sort by scale at the top edge");
+        let mut scales = top(&desk.photos());
+        assert_eq!(scales.len(), 9);
+        if turned {
+            scales.reverse();
+        }
+        assert!(scales.is_sorted(), "{name}: {scales:?}");
+    }
+    desk.click(Role::Button, "Sort by scale at the top edge");
+    assert_eq!(desk.photos(), of_flight);
+}
+
+#[test]
+fn the_table_is_filtered_by_text_and_by_verdict() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.fill("Filter photos", "img_0007");
+    assert_eq!(desk.photos(), ["IMG_0007.jpg"]);
+    desk.fill("Filter photos", "");
+    assert_eq!(desk.photos().len(), 9);
+    let with = |desk: &Desk, verdict: &str| -> Vec<String> {
+        let rows = desk.rows().into_iter();
+        rows.filter(|(_, cells)| cells[3].ends_with(verdict))
+            .map(|(photo, _)| photo)
+            .collect()
+    };
+    let trusted = with(&desk, "trust");
+    assert!(trusted.len() > 5, "{trusted:?}");
+    desk.click(Role::Tab, "Limits");
+    desk.fill("Top and bottom scale differ more than", "1.1");
+    let mut doubted: Vec<String> = scales()
+        .into_iter()
+        .filter(|(_, [top, bottom])| (bottom / top).max(top / bottom) > 1.1)
+        .map(|(photo, _)| photo)
+        .collect();
+    assert!(!doubted.is_empty() && doubted.len() < 9, "{doubted:?}");
+    let check = with(&desk, "check");
+    assert_eq!(
+        check,
+        desk.photos()
+            .into_iter()
+            .filter(|photo| doubted.contains(photo) || !trusted.contains(photo))
+            .collect::<Vec<_>>()
+    );
+    desk.click(Role::Button, "Only photos: check");
+    assert_eq!(desk.photos(), check);
+    desk.click(Role::ComboBox, "Filter by verdict");
+    desk.click(Role::Button, "trust");
+    assert_eq!(desk.photos().len(), 9 - check.len());
+    desk.click(Role::Button, "Only photos: trust");
+    // The text looks into the reasons too.
+    desk.fill("Filter photos", "TOP AND THE BOTTOM");
+    let mut shown = desk.photos();
+    shown.sort();
+    doubted.sort();
+    assert_eq!(shown, doubted);
+    desk.fill("Filter photos", "");
+    desk.click(Role::Button, "Usual limits");
+    assert_eq!(with(&desk, "trust"), trusted);
+}
+
+#[test]
+fn choices_for_export_are_undone_and_done_again() {
+    let mut desk = Desk::new(Some(&flight("tests/windrow")));
+    let chosen = |desk: &Desk| desk.open().history.now().chosen.clone();
+    desk.click(Role::Button, "Edit");
+    desk.click(Role::Button, "Choose all photos with a scale");
+    assert_eq!(chosen(&desk), [true; 9]);
+    desk.click(Role::CheckBox, "Export IMG_0003.jpg");
+    assert!(!chosen(&desk)[2]);
+    desk.click(Role::Row, "Photo IMG_0005.jpg");
+    desk.press(Modifiers::NONE, Key::Space);
+    let both = chosen(&desk);
+    assert_eq!(both.iter().filter(|&&chosen| chosen).count(), 7);
+    assert!(!both[2] && !both[4]);
+    desk.press(Modifiers::COMMAND, Key::Z);
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(chosen(&desk), [true; 9]);
+    desk.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    desk.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!(chosen(&desk), both);
+    assert_eq!(desk.selected(), "IMG_0005.jpg", "undo leaves the selection");
+    assert!(!desk.open().is_changed(), "choices are not in flight.toml");
+}
+
+#[test]
+fn scales_are_copied_as_the_dialog_asks_for_them() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.click(Role::Row, "Photo IMG_0002.jpg");
+    let [top, bottom] = scales()["IMG_0002.jpg"];
+    desk.node(Role::Button, "Copy top and bottom scale").click();
+    desk.harness.step();
+    let copied = desk.copied();
+    let from_keys = shortcut(&mut desk, Modifiers::COMMAND | Modifiers::SHIFT, Key::C);
+    for copied in [copied, from_keys] {
+        let copied = copied.expect("something was copied");
+        let (a, b) = copied.split_once('\t').expect("two numbers");
+        assert_shown(a, top, 6);
+        assert_shown(b, bottom, 6);
+    }
+}
+
+#[test]
+fn every_tab_of_the_right_panel_opens() {
+    let mut desk = Desk::new(Some(&flight("tests/windrow")));
+    assert!(desk.says("Top, px/cm"));
+    desk.click(Role::Tab, "Flight");
+    assert!(desk.says("Unit of the world's coordinates"));
+    desk.click(Role::Tab, "Limits");
+    assert!(desk.says("A photo is to check when one of these holds"));
+    desk.click(Role::Tab, "Photo");
+    assert!(desk.says("Corner points, m"));
+}
