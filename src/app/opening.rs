@@ -151,8 +151,7 @@ impl State {
                     let image = flight.parts().image;
                     PreviewPicture {
                         projected: gpu.map(|gpu| {
-                            let projected = undistorted(&full, camera, PROJECTED);
-                            LargePhoto::new(&gpu, &projected.convert())
+                            LargePhoto::new(&gpu, &undistorted(&full, camera, PROJECTED).convert())
                         }),
                         large: Arc::new(color_image(&as_scaled(&full, camera, image, PREVIEW))),
                     }

@@ -164,13 +164,13 @@ impl Renderer {
         });
         let shapes = [show.mesh && !too_many, show.cloud || too_many];
         let version = (self.version, if project { self.photo_version } else { 0 });
-        let wanted = Sight::new(&main, show.color_by, version, shapes, share);
+        let sight = Sight::new(&main, show.color_by, version, shapes, share);
         let shown = targets.surface.sight.as_ref();
-        let mut complete = shown == Some(&wanted);
+        let mut complete = shown == Some(&sight);
         if !complete {
-            let stands_in = shown.is_some_and(|shown| shown.same_view(&wanted));
-            if targets.next.sight.as_ref() != Some(&wanted) {
-                targets.next.begin(wanted);
+            let stands_in = shown.is_some_and(|shown| shown.same_view(&sight));
+            if targets.next.sight.as_ref() != Some(&sight) {
+                targets.next.begin(sight);
             }
             let most = if stands_in { most } else { usize::MAX };
             self.draw_surface(&mut encoder, &mut targets.next, most, &in_sight);

@@ -485,7 +485,7 @@ mod tests {
         assert!(frame(&renderer) == expected);
         // From elsewhere nothing can stand in.
         let mut other = orbit;
-        other.orbit(DVec2::new(100.0, 0.0));
+        other.orbit(glam::DVec2::new(100.0, 0.0));
         assert!(renderer.draw_portion(&other.view(), &slope, size, 1).whole);
         assert_eq!(gpu.take_error(), None);
     }

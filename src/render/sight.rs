@@ -41,7 +41,8 @@ impl Sight {
         if by != ColorBy::Scale && frame.project == 0 {
             // No matter which photo is selected.
             frame.image_from_local = [[0.0; 4]; 4];
-            (frame.photo_scale, frame.photo_near) = (0.0, 0.0);
+            frame.photo_scale = 0.0;
+            frame.photo_near = 0.0;
         }
         let [mesh, cloud] = shapes;
         Self {
