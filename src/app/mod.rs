@@ -174,6 +174,7 @@ impl eframe::App for App {
                 overlays(state, ui, place, out);
             });
         } else {
+            self.viewport.clear();
             egui::CentralPanel::default_margins().show(ui, |ui| {
                 panels::notice(state, ui, out);
                 panels::start_page(state, ui, out);

@@ -88,6 +88,17 @@ impl Viewport {
         self.graphics.as_ref().map(|graphics| &graphics.gpu)
     }
 
+    /// Lets go of what was uploaded of a flight that is closed.
+    pub fn clear(&mut self) {
+        if let Some(graphics) = &mut self.graphics
+            && graphics.uploaded.flight.is_some()
+        {
+            graphics.uploaded = Uploaded::default();
+            graphics.renderer.clear();
+            (graphics.drawn, graphics.moved) = (None, None);
+        }
+    }
+
     /// Draws the viewport and what lies on it.
     pub fn show(
         &mut self,

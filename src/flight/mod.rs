@@ -227,9 +227,10 @@ impl Flight {
         } = &self.parts;
         let unusable = |error| Fault::new(format!("{error}"), "check the surface file");
         progress.stage("making the surface ready for many rays");
-        let mut caster = surface
-            .caster_for(photos.len() * ViewFacts::RAYS)
-            .map_err(unusable)?;
+        let rays = photos.len() * ViewFacts::RAYS;
+        surface.triangulate_for(rays).map_err(unusable)?;
+        progress.advance(0, photos.len() as u64)?;
+        let mut caster = surface.caster_for(rays).map_err(unusable)?;
         let mut finder = GroundFinder::new(*ground, surface);
         let mut views = Vec::with_capacity(photos.len());
         progress.stage("draping footprints");

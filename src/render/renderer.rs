@@ -117,6 +117,11 @@ impl Renderer {
     /// Begins another flight: takes everything away. All geometry must be made in this frame.
     pub fn start(&mut self, frame: &LocalFrame) {
         self.frame = *frame;
+        self.clear();
+    }
+
+    /// Takes everything away.
+    pub fn clear(&mut self) {
         self.set_cloud(None);
         self.set_mesh(None);
         self.set_photos(Vec::new());
@@ -372,6 +377,7 @@ fn without_margin(pixels: &RgbaImage, x: u32, y: u32) -> RgbaImage {
 mod tests {
     use super::*;
     use crate::render::{Normals, Orbit};
+    use glam::DVec2;
 
     /// A heap of 20 units with a grid under it, which reach over every seam; `cells` along an edge.
     fn heap(gpu: &Gpu, cells: u32) -> (Renderer, Orbit) {

@@ -258,15 +258,32 @@ impl Surface {
         Ok(Caster { surface: self, way })
     }
 
+    /// The first half of the work of [`Self::caster_for`]: a job can be cancelled between them.
+    ///
+    /// # Errors
+    /// Where the triangulation fails.
+    pub fn triangulate_for(&self, rays: usize) -> Result<(), SurfaceError> {
+        if self.pays_whole(rays) {
+            self.mesh()?;
+        }
+        Ok(())
+    }
+
+    /// Whether so many rays are worth a mesh of the whole surface.
+    fn pays_whole(&self, rays: usize) -> bool {
+        match &self.whole.shape {
+            Shape::Cloud(sites) => sites.points().len() <= rays.saturating_mul(SITES_PER_RAY),
+            Shape::Mesh(_) => true,
+        }
+    }
+
     /// Makes ready for about this many rays. Where they are so many that it pays, a cloud is
     /// triangulated whole, which the next caster for many finds done.
     ///
     /// # Errors
     /// Where the triangulation fails.
     pub fn caster_for(&self, rays: usize) -> Result<Caster<'_>, SurfaceError> {
-        if let Shape::Cloud(sites) = &self.whole.shape
-            && sites.points().len() > rays.saturating_mul(SITES_PER_RAY)
-        {
+        if !self.pays_whole(rays) {
             return self.caster();
         }
         let mesh = self.mesh()?;
