@@ -188,6 +188,12 @@ impl State {
 
     /// Undo, redo, and what they go over.
     fn edit_settings(&mut self, command: &Command) {
+        if self.is_opening() && self.reads_other {
+            // What is changed now would go with this flight, or its reading would stop the other's.
+            let text = "another flight is being opened; change settings when it is there";
+            self.say(Severity::Note, text);
+            return;
+        }
         let Some(open) = &mut self.open else {
             return;
         };
@@ -257,11 +263,12 @@ impl State {
             return;
         };
         match open.origin.flight_file() {
-            Some(path) => {
+            // The bundled flight stays as it came.
+            Some(path) if path.parent() != sample_flight().as_deref() => {
                 let path = path.to_owned();
                 self.save_as(path);
             }
-            None => self.ask(Some(Asking::SaveAs)),
+            _ => self.ask(Some(Asking::SaveAs)),
         }
     }
 

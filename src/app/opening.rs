@@ -44,6 +44,7 @@ impl State {
     /// settings to read it with once more.
     pub fn start_opening(&mut self, path: PathBuf, again: Option<(u64, FlightSettings)>) {
         self.notice = None;
+        self.reads_other = again.is_none();
         self.start(Task::Open, move |progress| {
             Done::Opened(Box::new(open(path, again, progress)))
         });

@@ -72,6 +72,8 @@ pub struct State {
     pub after_saving: Option<HeldBack>,
     /// Whether the window may close.
     pub may_quit: bool,
+    /// Whether the flight that is being read is another one than that on the screen.
+    pub reads_other: bool,
     /// How many flights were opened.
     pub opened: u64,
     /// A picture of the viewport that was asked for; the viewport draws it.
@@ -108,6 +110,7 @@ impl State {
             held_back: None,
             after_saving: None,
             may_quit: false,
+            reads_other: false,
             opened: 0,
             picture: None,
         };

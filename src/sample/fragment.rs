@@ -458,12 +458,14 @@ mod tests {
                 // A face has three corners at least.
                 prop_assert!(gaps.iter().filter(|gap| **gap < 1e-9).count() >= 3);
             }
-            // Each triangle lies in a plane, and its normal points out.
+            // Each triangle lies in a plane, and its normal points out. The smallest lie in several
+            // planes within this tolerance, and of a sliver rounding alone has a direction.
             for [a, b, c] in body.corners() {
                 let inside = |plane: &&Plane| [a, b, c].iter()
                     .all(|v| (plane.offset - plane.normal.dot(*v)).abs() < 1e-9);
-                let plane = body.planes().iter().find(inside);
-                prop_assert!(plane.is_some_and(|p| (b - a).cross(c - a).dot(p.normal) > 0.0));
+                let area = (b - a).cross(c - a);
+                let mut planes = body.planes().iter().filter(inside);
+                prop_assert!(planes.any(|p| area.dot(p.normal) > 0.0 || area.length() < 1e-12));
             }
             let centroid = body.centroid().unwrap_or(DVec3::ONE);
             prop_assert!(centroid.length() < 1e-14);

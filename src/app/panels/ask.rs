@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use crate::app::actions;
 use crate::app::command::{Asking, Command};
-use crate::app::state::{HeldBack, PictureRequest, State};
+use crate::app::state::{HeldBack, PictureRequest, State, sample_flight};
 use crate::app::work::DialogFor;
 
 /// Draws the small window that is open, and the question before losing changes.
@@ -227,7 +227,11 @@ fn save_as(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.label(
         "The flight's settings and where its files are; the files themselves stay as they are.",
     );
-    let start = open.origin.suggested_file();
+    let mut start = open.origin.suggested_file();
+    if start.parent() == sample_flight().as_deref() {
+        // The bundled flight stays as it came.
+        start = PathBuf::from("sample-flight.toml");
+    }
     let start = std::path::absolute(&start).unwrap_or(start);
     let browse = [("Browse…", DialogFor::SaveAs, false)];
     let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
