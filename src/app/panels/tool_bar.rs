@@ -86,6 +86,6 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 }
 
 /// Signs have names for those who do not see them.
-fn label<'a>(text: &'a str, action: actions::Action) -> &'a str {
+fn label(text: &str, action: actions::Action) -> &str {
     if text.is_ascii() { text } else { action.label }
 }
