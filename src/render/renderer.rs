@@ -377,7 +377,6 @@ fn without_margin(pixels: &RgbaImage, x: u32, y: u32) -> RgbaImage {
 mod tests {
     use super::*;
     use crate::render::{Normals, Orbit};
-    use glam::DVec2;
 
     /// A heap of 20 units with a grid under it, which reach over every seam; `cells` along an edge.
     fn heap(gpu: &Gpu, cells: u32) -> (Renderer, Orbit) {
