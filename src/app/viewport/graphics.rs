@@ -1,0 +1,199 @@
+//! What the viewport has uploaded, and when it draws anew.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use eframe::egui_wgpu::RenderState;
+use egui::{Color32, Pos2, Rect, pos2};
+
+use super::Scene;
+use crate::app::open_flight::OpenFlight;
+use crate::app::panels::verdict_color;
+use crate::app::work::Geometry;
+use crate::flight::Outcome;
+use crate::render::{Gpu, PhotoGeometry, PhotoLook, Renderer, Show, View};
+use crate::scale::ViewFacts;
+
+/// How long the view must rest before everything is drawn.
+const REST: Duration = Duration::from_millis(250);
+
+/// Points drawn while the view moves, on a graphics card and without one. They stand for the
+/// triangles too where those are more than twice as many.
+const MOVING_POINTS: [usize; 2] = [2_000_000, 100_000];
+
+/// Triangles or points drawn in one frame when the view has come to rest, likewise: the window
+/// answers meanwhile.
+const PORTION: [usize; 2] = [usize::MAX, 400_000];
+
+pub(super) struct Graphics {
+    pub(super) state: RenderState,
+    pub(super) gpu: Gpu,
+    pub(super) renderer: Renderer,
+    pub(super) texture: Option<egui::TextureId>,
+    pub(super) uploaded: Uploaded,
+    pub(super) drawn: Option<(View, Show, [u32; 2])>,
+    /// What was looked at last, and since when; `None` where that is new.
+    pub(super) moved: Option<(View, [u32; 2], Instant)>,
+}
+
+/// What the renderer has, to see what is new.
+#[derive(Default)]
+pub(super) struct Uploaded {
+    pub(super) flight: Option<u64>,
+    pub(super) geometry: Option<Arc<Geometry>>,
+    /// The scales and views that the photos' lines were made of.
+    pub(super) photos: Option<(Arc<Vec<Outcome>>, Option<Arc<Vec<Option<ViewFacts>>>>)>,
+    pub(super) images: Vec<bool>,
+    pub(super) projected: Option<(usize, u64)>,
+    pub(super) looks: Vec<PhotoLook>,
+}
+
+impl Graphics {
+    /// Uploads what is new.
+    pub(super) fn upload(&mut self, open: &OpenFlight, visuals: &egui::Visuals) {
+        let uploaded = &mut self.uploaded;
+        if uploaded.flight != Some(open.number) {
+            *uploaded = Uploaded {
+                flight: Some(open.number),
+                images: vec![false; open.images.len()],
+                ..Uploaded::default()
+            };
+            self.renderer.start(&open.frame);
+            self.drawn = None;
+        }
+        let same_geometry = match (&uploaded.geometry, &open.geometry) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        if !same_geometry {
+            uploaded.geometry.clone_from(&open.geometry);
+            let geometry = open.geometry.as_deref();
+            let cloud = geometry.map(|geometry| geometry.cloud.clone());
+            self.renderer.set_cloud_buffers(cloud);
+            let mesh = geometry.map(|geometry| geometry.mesh.clone());
+            self.renderer.set_mesh_buffers(mesh);
+            (self.drawn, self.moved) = (None, None);
+        }
+        let same_photos = uploaded.photos.as_ref().is_some_and(|(outcomes, views)| {
+            Arc::ptr_eq(outcomes, &open.outcomes)
+                && match (views, &open.views) {
+                    (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+                    (None, None) => true,
+                    _ => false,
+                }
+        });
+        if !same_photos {
+            uploaded.photos = Some((open.outcomes.clone(), open.views.clone()));
+            let photos = open.flight.parts().photos.iter().enumerate();
+            let photos = photos.map(|(index, photo)| {
+                PhotoGeometry::new(
+                    &open.frame,
+                    open.flight.camera(photo),
+                    &photo.pose,
+                    open.scale(index),
+                    open.view(index),
+                )
+            });
+            self.renderer.set_photos(photos.collect());
+            uploaded.looks.clear();
+            (self.drawn, self.moved) = (None, None);
+        }
+        let looks: Vec<PhotoLook> = open
+            .judged
+            .iter()
+            .enumerate()
+            .map(|(photo, _)| {
+                let color = match open.verdict(photo) {
+                    Some(verdict) => verdict_color(verdict, visuals),
+                    None => visuals.text_color(),
+                };
+                let [red, green, blue, _] = color.to_array();
+                PhotoLook {
+                    visible: true,
+                    color: [red, green, blue],
+                }
+            })
+            .collect();
+        if uploaded.looks != looks {
+            self.renderer.set_looks(&looks);
+            uploaded.looks = looks;
+            self.drawn = None;
+        }
+        for (index, image) in open.images.iter().enumerate() {
+            if let Some(image) = image
+                && !uploaded.images[index]
+            {
+                self.renderer.set_photo_image(index, image);
+                uploaded.images[index] = true;
+                self.drawn = None;
+            }
+        }
+        let preview = open
+            .preview
+            .as_ref()
+            .filter(|preview| Some(preview.photo) == open.selected);
+        let projected = preview.map(|preview| (preview.photo, preview.number));
+        if uploaded.projected != projected {
+            uploaded.projected = projected;
+            let picture = preview.and_then(|preview| {
+                let picture = preview.picture.as_ref().ok()?;
+                Some((preview.photo, picture.projected.clone()?))
+            });
+            self.renderer.set_uploaded_photo(picture);
+            self.drawn = None;
+        }
+    }
+
+    /// Draws the scene where it has changed, and shows it.
+    pub(super) fn draw(&mut self, scene: &Scene, show: &Show, ui: &egui::Ui) {
+        let mut show = show.clone();
+        let now = Instant::now();
+        let rests_since = match self.moved {
+            Some((view, size, since)) if view == scene.view && size == scene.size => since,
+            _ => now,
+        };
+        self.moved = Some((scene.view, scene.size, rests_since));
+        let software = usize::from(self.gpu.software);
+        let points = self.uploaded.geometry.as_deref();
+        let points = points.map_or(0, |geometry| geometry.points);
+        let many = points > MOVING_POINTS[software];
+        if many && now.duration_since(rests_since) < REST {
+            show.max_points = Some(MOVING_POINTS[software]);
+            show.wireframe = false;
+            ui.ctx().request_repaint_after(REST);
+        }
+        let wanted = (scene.view, show, scene.size);
+        if self.drawn.as_ref() != Some(&wanted) {
+            let portion = PORTION[software];
+            let drawn = self
+                .renderer
+                .draw_portion(&wanted.0, &wanted.1, scene.size, portion);
+            if !drawn.whole {
+                ui.ctx().request_repaint();
+            }
+            if let Some(view) = self.renderer.color_view() {
+                let mut renderer = self.state.renderer.write();
+                let device = &self.state.device;
+                let nearest = eframe::wgpu::FilterMode::Nearest;
+                match self.texture {
+                    None => {
+                        self.texture =
+                            Some(renderer.register_native_texture(device, view, nearest));
+                    }
+                    Some(texture) if drawn.new_texture => {
+                        renderer
+                            .update_egui_texture_from_wgpu_texture(device, view, nearest, texture);
+                    }
+                    Some(_) => {}
+                }
+            }
+            self.drawn = drawn.whole.then_some(wanted);
+        }
+        if let Some(texture) = self.texture {
+            let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+            ui.painter()
+                .image(texture, scene.place, whole, Color32::WHITE);
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! The viewport: shows the renderer's picture, turns the mouse into commands, writes the words.
+//!
+//! The picture is drawn into a texture of its own, and only when something of it has changed; every
+//! other frame of the window shows the same texture again.
+
+mod graphics;
+mod mouse;
+mod words;
+
+use eframe::egui_wgpu::RenderState;
+use egui::{Align2, FontId, Pos2, Rect, Sense, vec2};
+use glam::DVec2;
+
+use super::command::{Command, Look};
+use super::frame_times::{FrameTimes, Phase};
+use super::open_flight::OpenFlight;
+use super::state::{PictureRequest, State};
+use super::work::{Done, Task};
+use crate::exports;
+use crate::render::{Background, Gpu, Renderer, Show, View};
+use graphics::{Graphics, Uploaded};
+use mouse::mouse;
+use words::{distance, legend, write};
+
+/// The viewport with what it has uploaded.
+pub struct Viewport {
+    graphics: Option<Graphics>,
+}
+
+impl Viewport {
+    /// With eframe's graphics device; without one it says so.
+    pub fn new(state: Option<&RenderState>) -> Self {
+        Self {
+            graphics: state.map(|state| {
+                let info = state.adapter.get_info();
+                let gpu = Gpu::of_window(state.device.clone(), state.queue.clone(), &info);
+                Graphics {
+                    renderer: Renderer::new(&gpu),
+                    state: state.clone(),
+                    gpu,
+                    texture: None,
+                    uploaded: Uploaded::default(),
+                    drawn: None,
+                    moved: None,
+                }
+            }),
+        }
+    }
+
+    /// The graphics device, for jobs to upload to.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.graphics.as_ref().map(|graphics| &graphics.gpu)
+    }
+
+    /// Lets go of what was uploaded of a flight that is closed.
+    pub fn clear(&mut self) {
+        if let Some(graphics) = &mut self.graphics
+            && graphics.uploaded.flight.is_some()
+        {
+            graphics.uploaded = Uploaded::default();
+            graphics.renderer.clear();
+            (graphics.drawn, graphics.moved) = (None, None);
+        }
+    }
+
+    /// Draws the viewport and what lies on it.
+    pub fn show(
+        &mut self,
+        state: &State,
+        ui: &mut egui::Ui,
+        commands: &mut Vec<Command>,
+        times: &mut FrameTimes,
+    ) {
+        let Some(open) = &state.open else {
+            return;
+        };
+        let place = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(place, Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
+        let pixels_per_point = f64::from(ui.ctx().pixels_per_point());
+        let size = [place.width(), place.height()]
+            .map(|side| ((f64::from(side) * pixels_per_point).round() as u32).max(1));
+        let scene = Scene {
+            place,
+            pixels_per_point,
+            size,
+            view: view(open),
+        };
+        if open.looking.size != Some(scene.size()) {
+            commands.push(Command::Look(Look::Resized(scene.size())));
+        }
+        mouse(&scene, open, ui, &response, commands);
+        let show = show(state, open, ui, pixels_per_point);
+        match &mut self.graphics {
+            None => {
+                let text = "No graphics device: install a Vulkan or OpenGL driver (on Debian mesa-vulkan-drivers)";
+                let font = FontId::proportional(14.0);
+                let color = ui.visuals().warn_fg_color;
+                ui.painter()
+                    .text(place.center(), Align2::CENTER_CENTER, text, font, color);
+            }
+            Some(graphics) => {
+                if let Some(error) = graphics.gpu.take_error() {
+                    commands.push(Command::Report(format!("graphics: {error}")));
+                }
+                times.end(Phase::Panels);
+                graphics.upload(open, ui.visuals());
+                times.end(Phase::Upload);
+                graphics.draw(&scene, &show, ui);
+                times.end(Phase::Draw);
+                let labels = graphics.renderer.labels(&scene.view, &show, size);
+                for label in &labels {
+                    write(&scene, label, ui);
+                }
+                legend(&scene, graphics.renderer.legend(&show).as_ref(), ui);
+            }
+        }
+        distance(&scene, open, ui);
+        if open.geometry.is_none() && state.work.is_running(Task::Geometry) {
+            let text = "Preparing the surface…";
+            let font = FontId::proportional(14.0);
+            let color = ui.visuals().weak_text_color();
+            ui.painter()
+                .text(place.center(), Align2::CENTER_CENTER, text, font, color);
+        }
+    }
+
+    /// Draws a picture that was asked for, and has it written.
+    pub fn take_picture(&mut self, state: &mut State) {
+        let Some(request) = state.picture.take() else {
+            return;
+        };
+        let (Some(graphics), Some(open)) = (&mut self.graphics, &state.open) else {
+            state.apply(Command::Report(
+                "no picture: there is no graphics device".to_owned(),
+            ));
+            return;
+        };
+        let PictureRequest {
+            path,
+            size,
+            transparent,
+            corner_rays,
+        } = request;
+        let mut layers = state.preferences.layers;
+        if corner_rays {
+            layers = layers.corner_ray_figure();
+        }
+        let mut show = layers.show(Some(open.ground()));
+        show.unit = open.flight.parts().unit;
+        show.selected = if corner_rays { None } else { open.selected };
+        show.photo_blend = blend(open);
+        // Lines as thick as in a report's figure, whatever the size.
+        show.pixels_per_point = (f64::from(size[0].max(size[1])) / 1280.0).max(1.0);
+        show.background = if transparent {
+            Background::Transparent
+        } else {
+            Background::Color([255, 255, 255])
+        };
+        graphics.upload(open, &egui::Visuals::light());
+        graphics.uploaded.looks.clear();
+        let mut view = view(open);
+        if let Some(seen) = open.looking.size {
+            view = view.reframed(seen, DVec2::from(size.map(f64::from)));
+        }
+        let drawn = graphics.renderer.picture_with_words(&view, &show, size);
+        graphics.drawn = None;
+        let written = state.work.start(Task::Picture, move |progress| {
+            progress.stage("writing the picture");
+            let write = || -> Result<(), String> {
+                let picture = drawn.map_err(|fault| fault.to_string())?;
+                let mut bytes = std::io::Cursor::new(Vec::new());
+                picture
+                    .write_to(&mut bytes, image::ImageFormat::Png)
+                    .map_err(|error| error.to_string())?;
+                exports::write_whole(&path, bytes.get_ref()).map_err(|error| {
+                    format!("it cannot be written ({error}); choose another place")
+                })
+            };
+            let written = write().map_err(|what| format!("{}: {what}", path.display()));
+            Done::Picture(written.map(|()| path))
+        });
+        if let Err(fault) = written {
+            state.apply(Command::Report(fault.to_string()));
+        }
+    }
+}
+
+/// What a frame looks at.
+struct Scene {
+    place: Rect,
+    pixels_per_point: f64,
+    size: [u32; 2],
+    view: View,
+}
+
+impl Scene {
+    fn size(&self) -> DVec2 {
+        DVec2::new(f64::from(self.size[0]), f64::from(self.size[1]))
+    }
+
+    /// A place on the screen in the viewport's own pixels.
+    fn pixel(&self, at: Pos2) -> DVec2 {
+        let offset = at - self.place.min;
+        DVec2::new(f64::from(offset.x), f64::from(offset.y)) * self.pixels_per_point
+    }
+
+    fn screen(&self, pixel: DVec2) -> Pos2 {
+        let points = pixel / self.pixels_per_point;
+        self.place.min + vec2(points.x as f32, points.y as f32)
+    }
+}
+
+fn view(open: &OpenFlight) -> View {
+    let through = open
+        .looking
+        .through
+        .and_then(|photo| Some((photo, open.flight.parts().photos.get(photo)?)));
+    match through {
+        None => open.looking.orbit.view(),
+        Some((index, photo)) => {
+            // The scale bar is true where the photo looks.
+            let focus = open
+                .view(index)
+                .and_then(|view| view.height)
+                .unwrap_or(open.looking.orbit.distance);
+            View::of_photo(
+                open.flight.camera(photo),
+                &photo.pose,
+                focus.abs().max(1e-6),
+            )
+        }
+    }
+}
+
+fn blend(open: &OpenFlight) -> f64 {
+    match open.looking.through {
+        Some(_) => open.looking.blend,
+        None => 0.0,
+    }
+}
+
+fn show(state: &State, open: &OpenFlight, ui: &egui::Ui, pixels_per_point: f64) -> Show {
+    let mut show = state.preferences.layers.show(Some(open.ground()));
+    show.unit = open.flight.parts().unit;
+    show.selected = open.selected;
+    show.hovered = open.hovered_photo;
+    show.photo_blend = blend(open);
+    show.pixels_per_point = pixels_per_point;
+    let [red, green, blue, _] = ui.visuals().extreme_bg_color.to_array();
+    show.background = Background::Color([red, green, blue]);
+    show
+}

@@ -1,0 +1,61 @@
+//! The mouse over the viewport, as commands.
+
+use glam::DVec2;
+
+use super::Scene;
+use crate::app::command::{Command, Look};
+use crate::app::open_flight::OpenFlight;
+
+pub(super) fn mouse(
+    scene: &Scene,
+    open: &OpenFlight,
+    ui: &egui::Ui,
+    response: &egui::Response,
+    commands: &mut Vec<Command>,
+) {
+    let size = scene.size();
+    let delta = response.drag_delta();
+    let delta = DVec2::new(f64::from(delta.x), f64::from(delta.y)) * scene.pixels_per_point;
+    let shift = ui.input(|input| input.modifiers.shift);
+    let moves = response.dragged_by(egui::PointerButton::Secondary)
+        || response.dragged_by(egui::PointerButton::Middle)
+        || (shift && response.dragged_by(egui::PointerButton::Primary));
+    if delta != DVec2::ZERO {
+        if moves {
+            commands.push(Command::Look(Look::Pan(delta, size)));
+        } else if response.dragged_by(egui::PointerButton::Primary) {
+            // The same turn for the same way of the hand, whatever the screen's density.
+            commands.push(Command::Look(Look::Orbit(delta / scene.pixels_per_point)));
+        }
+    }
+    let Some(at) = response.hover_pos() else {
+        if open.hover.is_some() {
+            commands.push(Command::Hover(None));
+        }
+        return;
+    };
+    let cursor = scene.pixel(at);
+    let ray = scene.view.ray(cursor, size);
+    let (scroll, pinch, still) = ui.input(|input| {
+        (
+            input.smooth_scroll_delta().y,
+            input.zoom_delta(),
+            input.pointer.delta() == egui::Vec2::ZERO,
+        )
+    });
+    let factor = (-f64::from(scroll) * 0.004).exp() / f64::from(pinch);
+    if factor != 1.0 {
+        commands.push(Command::Look(Look::Zoom {
+            cursor,
+            size,
+            factor,
+        }));
+    }
+    if response.double_clicked() {
+        commands.push(Command::DoubleClick(ray));
+    } else if response.clicked() {
+        commands.push(Command::Click(ray));
+    } else if !still && !response.dragged() {
+        commands.push(Command::Hover(Some(ray)));
+    }
+}
