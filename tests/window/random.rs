@@ -7,6 +7,7 @@ use fragscale::app::command::{Asking, Choice, Look, Tab};
 use fragscale::app::layers::Layers;
 use fragscale::app::open_flight::{Measure, OpenFlight};
 use fragscale::app::preferences::Theme;
+use fragscale::app::state::PictureRequest;
 use fragscale::app::table::Column;
 use fragscale::app::work::Task;
 use fragscale::app::{Command, State};
@@ -142,12 +143,12 @@ fn command(dice: &mut Dice, state: &State, places: &Places) -> Command {
         4 => Command::Save,
         5 => Command::SaveAs(places.output.join(format!("flight-{}.toml", dice.below(3)))),
         6 => Command::Export(places.output.join(format!("export-{}", dice.below(2)))),
-        7 => Command::Picture {
+        7 => Command::Picture(PictureRequest {
             path: places.output.join("figure.png"),
             size: [64, 48],
             transparent: dice.coin(),
             corner_rays: dice.coin(),
-        },
+        }),
         8 | 9 => Command::Ask(dice.one_of(&[
             None,
             Some(Asking::Open),
