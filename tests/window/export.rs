@@ -46,7 +46,7 @@ fn the_chosen_photos_are_exported_as_the_command_exports_them() {
     desk.type_path(&ours);
     desk.click(Role::Button, "Export now");
     assert!(
-        desk.logged("6 photos exported"),
+        desk.logged("6 photos, pictures of 6 made"),
         "{:?}",
         desk.harness.state().state().log
     );

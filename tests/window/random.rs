@@ -257,7 +257,8 @@ fn check(state: &State) {
     let wanted: BTreeSet<usize> = (0..count)
         .filter(|&photo| {
             let judged = &open.judged[photo];
-            let verdict = open.order.verdict.is_none_or(|v| v == judged.verdict);
+            let wanted = open.order.verdict;
+            let verdict = wanted.is_none_or(|wanted| open.verdict(photo) == Some(wanted));
             let doubts = judged.doubts.iter().map(ToString::to_string);
             let named = parts.photos[photo].name.clone();
             let mut texts = doubts.chain([named]).map(|text| text.to_lowercase());
