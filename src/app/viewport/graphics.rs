@@ -42,7 +42,8 @@ pub(super) struct Uploaded {
     pub(super) flight: Option<u64>,
     pub(super) geometry: Option<Arc<Geometry>>,
     /// The scales and views that the photos' lines were made of.
-    pub(super) photos: Option<(Arc<Vec<Outcome>>, Option<Arc<Vec<Option<ViewFacts>>>>)>,
+    pub(super) outcomes: Option<Arc<Vec<Outcome>>>,
+    pub(super) views: Option<Arc<Vec<Option<ViewFacts>>>>,
     pub(super) images: Vec<bool>,
     pub(super) projected: Option<(usize, u64)>,
     pub(super) looks: Vec<PhotoLook>,
@@ -61,11 +62,7 @@ impl Graphics {
             self.renderer.start(&open.frame);
             self.drawn = None;
         }
-        let same_geometry = match (&uploaded.geometry, &open.geometry) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (None, None) => true,
-            _ => false,
-        };
+        let same_geometry = same(uploaded.geometry.as_ref(), open.geometry.as_ref());
         if !same_geometry {
             uploaded.geometry.clone_from(&open.geometry);
             let geometry = open.geometry.as_deref();
@@ -75,16 +72,11 @@ impl Graphics {
             self.renderer.set_mesh_buffers(mesh);
             (self.drawn, self.moved) = (None, None);
         }
-        let same_photos = uploaded.photos.as_ref().is_some_and(|(outcomes, views)| {
-            Arc::ptr_eq(outcomes, &open.outcomes)
-                && match (views, &open.views) {
-                    (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-                    (None, None) => true,
-                    _ => false,
-                }
-        });
+        let same_photos = same(uploaded.outcomes.as_ref(), Some(&open.outcomes))
+            && same(uploaded.views.as_ref(), open.views.as_ref());
         if !same_photos {
-            uploaded.photos = Some((open.outcomes.clone(), open.views.clone()));
+            uploaded.outcomes = Some(open.outcomes.clone());
+            uploaded.views.clone_from(&open.views);
             let photos = open.flight.parts().photos.iter().enumerate();
             let photos = photos.map(|(index, photo)| {
                 PhotoGeometry::new(
@@ -195,5 +187,14 @@ impl Graphics {
             ui.painter()
                 .image(texture, scene.place, whole, Color32::WHITE);
         }
+    }
+}
+
+/// Whether both are the same piece of memory, or both missing.
+fn same<T>(a: Option<&Arc<T>>, b: Option<&Arc<T>>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        (None, None) => true,
+        _ => false,
     }
 }
