@@ -23,8 +23,7 @@ pub(super) fn write(scene: &Scene, label: &Label, ui: &egui::Ui) {
     let painter = ui.painter().with_clip_rect(scene.place);
     let (at, font) = (scene.screen(label.at), FontId::proportional(13.0));
     // A halo, because what lies behind may be of any colour.
-    let bright = u16::from(red) + u16::from(green) + u16::from(blue) > 382;
-    let halo = if bright {
+    let halo = if ui.visuals().dark_mode {
         Color32::from_black_alpha(170)
     } else {
         Color32::from_white_alpha(190)
