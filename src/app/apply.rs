@@ -264,7 +264,7 @@ impl State {
         };
         match open.origin.flight_file() {
             // The bundled flight stays as it came.
-            Some(path) if path.parent() != sample_flight().as_deref() => {
+            Some(path) if !open.bundled => {
                 let path = path.to_owned();
                 self.save_as(path);
             }

@@ -1,12 +1,13 @@
 //! The flight that is open: what was read, what was computed, what the engineer has done with it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
 use super::history::History;
 use super::picker::Picker;
+use super::state::sample_flight;
 use super::table::{Row, TableOrder};
 use super::work::{Geometry, Loaded, PreviewPicture};
 use crate::flight::{Doubt, Flight, FlightSettings, Limits, Outcome, Verdict, judge_all};
@@ -92,6 +93,8 @@ pub struct OpenFlight {
     pub warnings: Vec<String>,
     /// Where it came from, and where it is saved.
     pub origin: FlightOrigin,
+    /// Whether it is the flight that comes with the program, which stays as it came.
+    pub bundled: bool,
     /// The settings in that file.
     pub saved: FlightSettings,
     /// The settings that the flight and its outcomes were computed with: those of now, but for the
@@ -167,6 +170,7 @@ impl OpenFlight {
             crs: opened.crs,
             inputs: opened.inputs,
             warnings: opened.warnings,
+            bundled: is_bundled(&opened.origin.suggested_file()),
             origin: opened.origin,
             saved,
             computed: opened.settings,
@@ -334,4 +338,11 @@ fn first_look(bounds: &Bounds) -> Orbit {
     let mut orbit = Orbit::new(bounds);
     orbit.pitch = 0.9;
     orbit
+}
+
+/// Whether a flight.toml is that of the bundled flight, however its path is written.
+fn is_bundled(file: &Path) -> bool {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    let folder = file.parent().and_then(real);
+    folder.is_some() && folder == sample_flight().as_deref().and_then(real)
 }

@@ -134,6 +134,7 @@ impl State {
                     }
                 }
                 if let Some(open) = &mut self.open {
+                    open.bundled = false;
                     open.origin = origin;
                     open.saved = settings;
                 }
@@ -288,6 +289,7 @@ impl OpenFlight {
         // Saved elsewhere while the file was read.
         self.path.clone_from(&before.path);
         self.origin = before.origin.clone();
+        self.bundled = before.bundled;
         self.measure = before.measure;
         std::mem::swap(&mut self.history, &mut before.history);
         self.proposed = before.proposed;

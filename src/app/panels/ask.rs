@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use crate::app::actions;
 use crate::app::command::{Asking, Command};
-use crate::app::state::{HeldBack, PictureRequest, State, sample_flight};
+use crate::app::open_flight::OpenFlight;
+use crate::app::state::{HeldBack, PictureRequest, State};
 use crate::app::work::DialogFor;
 
 /// Draws the small window that is open, and the question before losing changes.
@@ -164,6 +165,19 @@ fn path_field(
     (path, entered)
 }
 
+/// Where something is written if nobody says otherwise: `name` beside the flight's file, without a
+/// name that file. The bundled flight stays as it came: what is made of it goes to where the program
+/// was started.
+fn proposed(open: &OpenFlight, name: Option<&str>) -> PathBuf {
+    let file = open.origin.suggested_file();
+    let start = match name {
+        _ if open.bundled => PathBuf::from(name.unwrap_or("sample-flight.toml")),
+        Some(name) => file.with_file_name(name),
+        None => file,
+    };
+    std::path::absolute(&start).unwrap_or(start)
+}
+
 /// A path as typed, where it is one: without the quotes that file managers put around.
 fn typed(path: &str) -> Option<PathBuf> {
     let path = path.trim().trim_matches(['"', '\'']);
@@ -200,11 +214,8 @@ fn export(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
          GeoJSON.",
         open.outcomes.len()
     ));
-    let start = open.origin.suggested_file();
-    let start = start.parent().unwrap_or(std::path::Path::new(""));
-    let start = start.join("split-desktop");
+    let start = proposed(open, Some("split-desktop"));
     let browse = [("Browse…", DialogFor::Export, true)];
-    let start = std::path::absolute(&start).unwrap_or(start);
     let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
     ui.separator();
     let path = typed(&path).filter(|_| chosen > 0);
@@ -227,12 +238,7 @@ fn save_as(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.label(
         "The flight's settings and where its files are; the files themselves stay as they are.",
     );
-    let mut start = open.origin.suggested_file();
-    if start.parent() == sample_flight().as_deref() {
-        // The bundled flight stays as it came.
-        start = PathBuf::from("sample-flight.toml");
-    }
-    let start = std::path::absolute(&start).unwrap_or(start);
+    let start = proposed(open, None);
     let browse = [("Browse…", DialogFor::SaveAs, false)];
     let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
     ui.separator();
@@ -272,10 +278,7 @@ fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         ui.radio_value(&mut options.3, true, "The corner-ray figure");
     });
     ui.data_mut(|data| data.insert_temp(id, options));
-    let folder = open.origin.suggested_file();
-    let folder = folder.parent().unwrap_or(std::path::Path::new(""));
-    let start = folder.join("figure.png");
-    let start = std::path::absolute(&start).unwrap_or(start);
+    let start = proposed(open, Some("figure.png"));
     let browse = [("Browse…", DialogFor::Picture, false)];
     let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
     ui.separator();
