@@ -142,6 +142,9 @@ impl State {
         };
         let file = open.photo_files.get(photo).cloned().unwrap_or_default();
         let (flight, gpu) = (open.flight.clone(), self.gpu.clone());
+        // egui refuses larger textures than the graphics device takes.
+        let largest = self.context.input(|input| input.max_texture_side);
+        let largest = u32::try_from(largest).map_or(PREVIEW, |largest| largest.min(PREVIEW));
         self.start(Task::Preview, move |progress| {
             // Who runs through the table with a key held down wants none of the photos between.
             std::thread::sleep(std::time::Duration::from_millis(60));
@@ -158,7 +161,7 @@ impl State {
                         projected: gpu.map(|gpu| {
                             LargePhoto::new(&gpu, &undistorted(&full, camera, PROJECTED).convert())
                         }),
-                        large: Arc::new(color_image(&as_scaled(&full, camera, image, PREVIEW))),
+                        large: Arc::new(color_image(&as_scaled(&full, camera, image, largest))),
                     }
                 }),
             };
