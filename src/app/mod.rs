@@ -4,7 +4,7 @@
 //! ```text
 //! panels/, viewport   read the State, send Commands
 //! actions             menu entry, shortcut and tooltip in one
-//! apply               the one function that applies a Command
+//! apply               the one function that applies a Command; apply_to_flight its second half
 //! opening -> work     long work as jobs; poll takes their results
 //! picker              rays of the mouse on a thread of their own
 //! ```
@@ -14,6 +14,7 @@
 
 pub mod actions;
 pub mod apply;
+pub mod apply_to_flight;
 pub mod command;
 pub mod frame_times;
 pub mod history;

@@ -1,6 +1,7 @@
 //! A flight: one review, with everything that its scales depend on. Validated when made.
 
 mod camera_entry;
+mod doubt;
 mod file;
 mod file_text;
 mod known_keys;
@@ -13,9 +14,10 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 pub use camera_entry::{CameraEntry, CameraSource};
+pub use doubt::Doubt;
 pub use file::{FlightFile, PhotoSource};
 pub use name_order::compare_names;
-pub use verdict::{Doubt, Limits, PhotoFileState, Verdict, judge, judge_all};
+pub use verdict::{Limits, PhotoFileState, Verdict, judge, judge_all};
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
