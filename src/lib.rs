@@ -12,7 +12,7 @@
 //! holds that):
 //!
 //! ```text
-//! F7  main.rs  cli.rs            the command line
+//! F7  main.rs  cli/              the command line
 //! F6  app/                       the window: state, commands, panels, dialogs
 //! F5  render/                    wgpu: scene -> picture; knows no egui, reads no file
 //!     sample/                    the paper's lab, simulated
