@@ -292,7 +292,11 @@ fn a_command_line_that_is_not_understood_ends_with_2() {
         &["scales", "a", "--format", "yaml"],
         &["scails", "a"],
         &["info"],
+        // With the window, no command means the window.
+        #[cfg(not(feature = "app"))]
         &[],
+        #[cfg(feature = "app")]
+        &["no such flight"],
     ] {
         let output = fragscale(arguments);
         let stderr = String::from_utf8(output.stderr).expect("UTF-8");
@@ -304,6 +308,39 @@ fn a_command_line_that_is_not_understood_ends_with_2() {
     }
     assert!(stdout_of(&["--help"]).contains("scales"));
     assert!(stdout_of(&["--version"]).starts_with("fragscale "));
+}
+
+/// The window needs a screen, and says what does not.
+#[cfg(all(feature = "app", target_os = "linux"))]
+#[test]
+fn without_a_screen_there_is_no_window() {
+    for arguments in [&[][..], &[sample().to_str().expect("UTF-8")]] {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_fragscale"))
+            .args(arguments)
+            .env_remove("DISPLAY")
+            .env_remove("WAYLAND_DISPLAY")
+            .env_remove("WAYLAND_SOCKET")
+            .output()
+            .expect("the command starts");
+        let stderr = String::from_utf8(output.stderr).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(1), "{stderr}");
+        assert!(
+            stderr.starts_with("error: there is no screen") && stderr.lines().count() == 1,
+            "{stderr}"
+        );
+    }
+}
+
+/// A mistyped command is not taken for a flight.
+#[cfg(feature = "app")]
+#[test]
+fn a_mistyped_command_is_recognised() {
+    let output = fragscale(&["scails", "a"]);
+    let stderr = String::from_utf8(output.stderr).expect("UTF-8");
+    assert!(
+        stderr.contains("'scails' is neither a command (perhaps 'scales')"),
+        "{stderr}"
+    );
 }
 
 #[test]

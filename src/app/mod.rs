@@ -252,11 +252,20 @@ fn drop_hint(context: &egui::Context) {
     }
 }
 
+/// What to do where no window opens.
+const WITHOUT_SCREEN: &str = "on a machine without a screen use 'fragscale scales', 'fragscale export' or 'fragscale render'";
+
 /// Opens the window and runs until it is closed.
 ///
 /// # Errors
 /// Where no window can be opened.
 pub fn run(path: Option<PathBuf>) -> Result<(), String> {
+    let screen = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"];
+    if cfg!(target_os = "linux") && screen.iter().all(|name| std::env::var_os(name).is_none()) {
+        return Err(format!(
+            "there is no screen (neither DISPLAY nor WAYLAND_DISPLAY is set); {WITHOUT_SCREEN}"
+        ));
+    }
     let mut setup = eframe::egui_wgpu::WgpuSetupCreateNew::without_display_handle();
     setup.device_descriptor = Arc::new(crate::render::device_descriptor);
     let options = eframe::NativeOptions {
@@ -278,11 +287,7 @@ pub fn run(path: Option<PathBuf>) -> Result<(), String> {
         options,
         Box::new(|context| Ok(Box::new(App::new(context, path)))),
     )
-    .map_err(|error| {
-        format!(
-            "the window cannot be opened ({error}); on a machine without a screen use 'fragscale scales', 'fragscale export' or 'fragscale render'"
-        )
-    })
+    .map_err(|error| format!("the window cannot be opened ({error}); {WITHOUT_SCREEN}"))
 }
 
 /// The program's sign: a footprint under a camera.

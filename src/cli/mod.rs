@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
@@ -204,7 +204,8 @@ pub fn run() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) if !error.use_stderr() => return print(&error.to_string()),
         Err(error) => {
-            say(&format!("error: {}", usage_in_one_line(&error.to_string())));
+            let what = unknown_command().unwrap_or_else(|| usage_in_one_line(&error.to_string()));
+            say(&format!("error: {what}"));
             return ExitCode::from(2);
         }
     };
@@ -271,11 +272,8 @@ pub fn run() -> ExitCode {
 /// Opens the window, with a flight where one is named.
 #[cfg(feature = "app")]
 fn window(flight: Option<PathBuf>) -> ExitCode {
-    if let Some(path) = flight.as_deref().filter(|path| !path.exists()) {
-        say(&format!(
-            "error: {}: neither a file or folder nor a command; see 'fragscale --help'",
-            path.display()
-        ));
+    if let Some(what) = unknown_command() {
+        say(&format!("error: {what}"));
         return ExitCode::from(2);
     }
     let ran = crate::app::run(flight);
@@ -452,6 +450,27 @@ fn fail(message: &str) -> ExitCode {
 /// A line on standard error. Where even that is closed, the exit status is all that is left.
 fn say(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
+}
+
+/// Where the first word is neither a command nor a file that is there, what it could have meant:
+/// clap takes it for a flight and stumbles over the second word.
+fn unknown_command() -> Option<String> {
+    let word = std::env::args_os().nth(1)?;
+    let text = word.to_string_lossy();
+    let arguments = Arguments::command();
+    let names: Vec<&str> = arguments.get_subcommands().map(|c| c.get_name()).collect();
+    if text.starts_with('-') || names.contains(&text.as_ref()) || Path::new(&word).exists() {
+        return None;
+    }
+    let likeness = |name: &&str| strsim::jaro_winkler(&text, name);
+    let nearest = names
+        .into_iter()
+        .max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
+        .filter(|name| likeness(name) > 0.8);
+    let tip = nearest.map_or_else(String::new, |name| format!(" (perhaps '{name}')"));
+    Some(one_line(&format!(
+        "'{text}' is neither a command{tip} nor a file or folder; see 'fragscale --help'"
+    )))
 }
 
 /// clap explains over several lines; here the first, with its tip, and where to read more.
