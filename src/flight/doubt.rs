@@ -18,14 +18,14 @@ pub enum Doubt {
     Ratio {
         /// The larger over the smaller.
         ratio: f64,
-        /// [`Limits::top_bottom_ratio`].
+        /// [`super::Limits::top_bottom_ratio`].
         limit: f64,
     },
     /// Left and right differ too much.
     Sideways {
         /// The larger over the smaller.
         ratio: f64,
-        /// [`Limits::left_right_ratio`].
+        /// [`super::Limits::left_right_ratio`].
         limit: f64,
     },
     /// A corner lies over a hole of the cloud.
