@@ -7,7 +7,6 @@ use super::state::{HeldBack, PictureRequest, Severity, State, sample_flight};
 use super::work::Task;
 use crate::flight::FlightSettings;
 use crate::render::MOST_PIXELS;
-use crate::units::LengthUnit;
 
 impl State {
     /// Does what a command says.
@@ -44,7 +43,7 @@ impl State {
                     }
                 }
             }
-            Command::Unit(unit) => self.set_unit(unit),
+            Command::Unit(unit) => self.preferences.set_unit(unit),
             Command::Limits(limits) => {
                 self.preferences.limits = limits;
                 if let Some(open) = &mut self.open {
@@ -175,10 +174,6 @@ impl State {
             // Who does not say where to save does not want to go on either.
             self.after_saving = None;
         }
-    }
-
-    fn set_unit(&mut self, unit: LengthUnit) {
-        self.preferences.set_unit(unit);
     }
 
     /// Undo, redo, and what they go over.

@@ -245,10 +245,7 @@ impl OpenFlight {
 
     /// The photo's scale, where it has one.
     pub fn scale(&self, photo: usize) -> Option<&PhotoScale> {
-        match self.outcomes.get(photo)? {
-            Outcome::Scale(scale) => Some(scale),
-            Outcome::Trouble(_) => None,
-        }
+        self.outcomes.get(photo)?.scale()
     }
 
     /// How the photo looks at the surface, once known.
@@ -322,10 +319,7 @@ impl OpenFlight {
                 let mut used: Vec<f64> = self
                     .outcomes
                     .iter()
-                    .filter_map(|outcome| match outcome {
-                        Outcome::Scale(scale) => scale.ground,
-                        Outcome::Trouble(_) => None,
-                    })
+                    .filter_map(|outcome| outcome.scale()?.ground)
                     .collect();
                 crate::geometry::median(&mut used).unwrap_or(self.surface_bounds.min.z)
             }

@@ -13,7 +13,7 @@ use crate::exports::{self, ExportRequest};
 use crate::fault::Fault;
 use crate::flight::{Flight, FlightSettings};
 use crate::formats::{self, FileError, OpenOptions};
-use crate::geometry::{Bounds, LocalFrame};
+use crate::geometry::LocalFrame;
 use crate::jobs::Progress;
 use crate::picture;
 use crate::render::{
@@ -286,7 +286,7 @@ fn open(
         formats::open_flight(&path, &options, progress).map_err(|error| error.to_string())?;
     let at_path = |fault: Fault| FileError::new(&path, fault).to_string();
     let outcomes = opened.flight.scales(progress).map_err(at_path)?;
-    let surface_bounds = bounds_of(&opened.flight);
+    let surface_bounds = opened.flight.parts().surface.bounds();
     Ok(Loaded {
         path,
         opened,
@@ -294,21 +294,6 @@ fn open(
         surface_bounds,
         again_for: again.map(|(number, _)| number),
     })
-}
-
-fn bounds_of(flight: &Flight) -> Bounds {
-    let mut vertices = flight.parts().surface.vertices();
-    // A surface has vertices.
-    let first = vertices.next().unwrap_or_default();
-    let mut bounds = Bounds {
-        min: first,
-        max: first,
-    };
-    for vertex in vertices {
-        bounds.min = bounds.min.min(vertex);
-        bounds.max = bounds.max.max(vertex);
-    }
-    bounds
 }
 
 /// Triangulates, makes ready and uploads: the window's thread has nothing left to do with it.

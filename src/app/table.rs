@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use super::open_flight::Judged;
 use crate::flight::{Outcome, Photo, Verdict, compare_names};
-use crate::scale::ViewFacts;
+use crate::scale::{PhotoScale, ViewFacts};
 
 /// What the table can be sorted by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -73,26 +73,17 @@ pub struct Row<'a> {
 impl Row<'_> {
     /// The scale at the top edge, pixels per world unit.
     pub fn top(&self) -> Option<f64> {
-        match self.outcome {
-            Outcome::Scale(scale) => scale.scale.top,
-            Outcome::Trouble(_) => None,
-        }
+        self.outcome.scale()?.scale.top
     }
 
     /// The scale at the bottom edge, pixels per world unit.
     pub fn bottom(&self) -> Option<f64> {
-        match self.outcome {
-            Outcome::Scale(scale) => scale.scale.bottom,
-            Outcome::Trouble(_) => None,
-        }
+        self.outcome.scale()?.scale.bottom
     }
 
     /// How many corners are on the surface.
     pub fn corners(&self) -> Option<usize> {
-        match self.outcome {
-            Outcome::Scale(scale) => Some(scale.corners_on_surface()),
-            Outcome::Trouble(_) => None,
-        }
+        self.outcome.scale().map(PhotoScale::corners_on_surface)
     }
 
     fn height(&self) -> Option<f64> {

@@ -243,9 +243,7 @@ fn draw(
     let views = flight.views(&outcomes, progress)?;
 
     let surface = &parts.surface;
-    let cloud_bounds = Bounds::of(&surface.vertices().collect::<Vec<_>>());
-    let bounds = cloud_bounds
-        .ok_or_else(|| Fault::new("the surface has no vertex", "check the surface file"))?;
+    let bounds = surface.bounds();
     let frame = LocalFrame::near(&bounds);
     let photos: Vec<PhotoGeometry> = parts
         .photos
@@ -254,13 +252,7 @@ fn draw(
         .zip(&views)
         .map(|((photo, outcome), view)| {
             let camera = flight.camera(photo);
-            PhotoGeometry::new(
-                &frame,
-                camera,
-                &photo.pose,
-                scale_of(outcome),
-                view.as_ref(),
-            )
+            PhotoGeometry::new(&frame, camera, &photo.pose, outcome.scale(), view.as_ref())
         })
         .collect();
     progress.stage("drawing");
@@ -288,7 +280,7 @@ fn draw(
     let view = match looked_through {
         Some(index) => {
             let photo = &parts.photos[index];
-            let scale = scale_of(&outcomes[index]);
+            let scale = outcomes[index].scale();
             let focus = depth_of(scale, views[index].as_ref()).unwrap_or(1.0);
             View::of_photo(flight.camera(photo), &photo.pose, focus)
         }
@@ -307,13 +299,6 @@ fn needs_selected(arguments: &RenderArguments) -> Option<&'static str> {
     }
     let of_one = |item: &&Item| item.name == "photo" || item.scope == Scope::Selected;
     arguments.show.iter().find(of_one).map(|item| item.name)
-}
-
-fn scale_of(outcome: &Outcome) -> Option<&PhotoScale> {
-    match outcome {
-        Outcome::Scale(scale) => Some(scale),
-        Outcome::Trouble(_) => None,
-    }
 }
 
 /// How far a photo's footprint is away.
@@ -366,9 +351,7 @@ fn show(
         ground: shown("ground").then(|| {
             // Under which photo, if the elevation is found anew for each? Under the first that
             // needed it, or else under everything.
-            let found = outcomes
-                .iter()
-                .find_map(|outcome| scale_of(outcome)?.ground);
+            let found = outcomes.iter().find_map(|outcome| outcome.scale()?.ground);
             match parts.ground {
                 Ground::At(z) => z,
                 Ground::Auto => found.unwrap_or(bounds.min.z),
@@ -397,7 +380,7 @@ fn show(
 fn points_to_fit(parts: &FlightParts, outcomes: &[Outcome]) -> Vec<DVec3> {
     let vertices = parts.surface.vertices();
     let step = (vertices.len() / 20_000).max(1);
-    let corners = outcomes.iter().filter_map(scale_of);
+    let corners = outcomes.iter().filter_map(Outcome::scale);
     let corners = corners.flat_map(|scale| scale.corners.iter().filter_map(Corner::point));
     let centers = parts.photos.iter().map(|photo| photo.pose.center);
     vertices

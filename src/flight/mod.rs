@@ -23,7 +23,7 @@ use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::scale::{Ground, GroundFinder, ImageKind, PhotoScale, ViewFacts};
-use crate::surface::{Surface, SurfaceOptions};
+use crate::surface::{Surface, SurfaceError, SurfaceOptions};
 use crate::units::LengthUnit;
 
 /// One image with its camera and pose.
@@ -84,6 +84,16 @@ pub enum Outcome {
     Scale(Box<PhotoScale>),
     /// The photo's own [`Photo::trouble`]: nothing was computed.
     Trouble(String),
+}
+
+impl Outcome {
+    /// Corners and scales, where there are any.
+    pub fn scale(&self) -> Option<&PhotoScale> {
+        match self {
+            Self::Scale(scale) => Some(scale),
+            Self::Trouble(_) => None,
+        }
+    }
 }
 
 impl Flight {
@@ -190,7 +200,6 @@ impl Flight {
             photos,
             ..
         } = &self.parts;
-        let unusable = |error| Fault::new(format!("{error}"), "check the surface file");
         let mut caster = surface.caster().map_err(unusable)?;
         let mut finder = GroundFinder::new(*ground, surface);
         let mut outcomes = Vec::with_capacity(photos.len());
@@ -227,7 +236,6 @@ impl Flight {
             photos,
             ..
         } = &self.parts;
-        let unusable = |error| Fault::new(format!("{error}"), "check the surface file");
         progress.stage("making the surface ready for many rays");
         let rays = photos.len() * ViewFacts::RAYS;
         surface.triangulate_for(rays).map_err(unusable)?;
@@ -238,7 +246,7 @@ impl Flight {
         progress.stage("draping footprints");
         for (photo, outcome) in photos.iter().zip(outcomes) {
             progress.advance(views.len() as u64, photos.len() as u64)?;
-            let Outcome::Scale(scale) = outcome else {
+            let Some(scale) = outcome.scale() else {
                 views.push(None);
                 continue;
             };
@@ -254,4 +262,9 @@ impl Flight {
         }
         Ok(views)
     }
+}
+
+/// What a surface that cannot be met means for a flight.
+fn unusable(error: SurfaceError) -> Fault {
+    Fault::new(error.to_string(), "check the surface file")
 }

@@ -371,6 +371,20 @@ impl Surface {
         blocks.get_or_init(|| blocks::blocks(self.vertices()))
     }
 
+    /// The box around all vertices, in the world. The first call makes the blocks.
+    pub fn bounds(&self) -> Bounds {
+        // A surface has vertices, so the box that nothing is in does not stay.
+        let nothing = Bounds {
+            min: DVec3::INFINITY,
+            max: DVec3::NEG_INFINITY,
+        };
+        let blocks = self.vertex_blocks().iter();
+        blocks.fold(nothing, |all, block| Bounds {
+            min: all.min.min(block.bounds.min),
+            max: all.max.max(block.bounds.max),
+        })
+    }
+
     /// The colour of each vertex (red, green, blue), in the order of [`Self::vertices`]; empty where
     /// the file has none.
     pub fn colors(&self) -> &[[u8; 3]] {

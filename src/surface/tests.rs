@@ -682,3 +682,26 @@ proptest! {
         }
     }
 }
+
+/// Over several blocks of vertices, at UTM coordinates, from a formula: no digit is lost.
+#[test]
+fn bounds_are_those_of_the_vertices() {
+    let points: Vec<DVec3> = (0..20_000_u32)
+        .map(|i| {
+            let (x, y) = (f64::from(i % 200), f64::from(i / 200));
+            DVec3::new(500_000.25 + x, 5_000_000.5 + 2.0 * y, 160.0 + (x * y) / 8.0)
+        })
+        .collect();
+    let surface = Surface::new(Cloud {
+        points,
+        ..Cloud::default()
+    })
+    .unwrap();
+    assert!(surface.vertex_blocks().len() > 1);
+    let bounds = surface.bounds();
+    assert_eq!(bounds.min, DVec3::new(500_000.25, 5_000_000.5, 160.0));
+    assert_eq!(
+        bounds.max,
+        DVec3::new(500_199.25, 5_000_198.5, 160.0 + 199.0 * 99.0 / 8.0)
+    );
+}
