@@ -22,6 +22,7 @@
 //! F2  scale/                     corner rays -> corner points -> scales; footprints
 //! F1  camera/   surface/         intrinsics, distortion, pose | triangulation, ray casting
 //!     fragmentation/             size distributions
+//!     geodesy/  georeference/    coordinate systems | a frame of its own brought to the world
 //! F0  geometry/ units.rs jobs.rs fault.rs
 //! ```
 //!
@@ -48,6 +49,7 @@ pub mod fault;
 pub mod flight;
 pub mod formats;
 pub mod fragmentation;
+pub mod geodesy;
 pub mod geometry;
 pub mod jobs;
 pub mod picture;

@@ -16,12 +16,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Modules and their floors. `fault` is the cellar: a sentence that every floor can say.
-const FLOORS: [(&str, i32); 17] = [
+const FLOORS: [(&str, i32); 19] = [
     ("fault", -1),
     ("geometry", 0),
     ("jobs", 0),
     ("units", 0),
     ("camera", 1),
+    ("geodesy", 1),
+    ("georeference", 1),
     ("surface", 1),
     ("scale", 2),
     ("flight", 3),

@@ -16,7 +16,7 @@ use std::fs;
 use common::{scale, scales_json, shared_data};
 use fragscale::camera::Pose;
 use fragscale::exports::write_whole;
-use fragscale::formats::{OpenOptions, Opened, detect, open_flight, read_reconstruction};
+use fragscale::formats::{OpenOptions, Opened, open_flight, read_project};
 use fragscale::jobs::Progress;
 use glam::{DMat3, DQuat, DVec3};
 use serde_json::Value;
@@ -143,8 +143,8 @@ fn colmap_and_visualsfm_agree_after_a_similarity() {
         return;
     };
     let read = |path| {
-        let kind = detect(path).expect("a kind");
-        read_reconstruction(path, &kind).expect("a reconstruction")
+        let project = read_project(path, &Progress::default());
+        project.expect("a reconstruction").reconstruction
     };
     let poses = |reconstruction: &fragscale::formats::Reconstruction| -> Vec<(String, Pose)> {
         let photos = reconstruction.photos.iter();

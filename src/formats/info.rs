@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::{
     CloudFile, FileError, Kind, OpenOptions, PosesFile, Reconstruction, detect, open_flight,
-    read_camera, read_cloud, read_poses, read_reconstruction,
+    read_camera, read_cloud, read_poses, read_project,
 };
 use crate::camera::{Camera, Pose};
 use crate::flight::Flight;
@@ -24,8 +24,8 @@ pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
         Kind::Cloud(_) => cloud_info(&read_cloud(path, progress)?),
         Kind::Camera => camera_info(&read_camera(path)?),
         Kind::Poses => poses_info(&read_poses(path)?),
-        Kind::Nvm | Kind::Colmap(_) | Kind::Odm => {
-            reconstruction_info(&read_reconstruction(path, &kind)?)
+        Kind::Reconstruction(..) => {
+            reconstruction_info(&read_project(path, progress)?.reconstruction)
         }
         Kind::Flight(_) => {
             let opened = open_flight(path, &OpenOptions::default(), progress)?;

@@ -18,6 +18,7 @@ mod odm;
 mod open;
 mod opensfm;
 mod origin;
+mod package;
 mod photo_files;
 mod photo_size;
 mod ply;
@@ -37,8 +38,9 @@ pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{OpenOptions, Opened, PhotoFile, open_flight};
 pub use origin::FlightOrigin;
+pub use package::Package;
 pub use poses_csv::{PoseLine, PosesFile};
-pub use reconstruction::{Observation, PosedPhoto, Reconstruction};
+pub use reconstruction::{MeasuredPosition, Observation, PosedPhoto, Project, Reconstruction};
 
 use crate::camera::Camera;
 use crate::fault::Fault;
@@ -55,12 +57,8 @@ pub enum Kind {
     Camera,
     /// A poses.csv.
     Poses,
-    /// A VisualSFM reconstruction.
-    Nvm,
-    /// A COLMAP model in this folder.
-    Colmap(PathBuf),
-    /// An OpenDroneMap project folder.
-    Odm,
+    /// Cameras and posed photos as this package wrote them, in this file or folder.
+    Reconstruction(Package, PathBuf),
 }
 
 /// A format of clouds and meshes.
@@ -84,9 +82,7 @@ impl Kind {
             Self::Cloud(_) => "a cloud or mesh",
             Self::Camera => "a camera calibration",
             Self::Poses => "poses",
-            Self::Nvm => "a VisualSFM reconstruction",
-            Self::Colmap(_) => "a COLMAP reconstruction",
-            Self::Odm => "an OpenDroneMap project",
+            Self::Reconstruction(package, _) => package.in_words(),
         }
     }
 }
@@ -119,12 +115,14 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
             Fault::new("it is empty", "export it again"),
         ));
     }
+    if let Some((package, path)) = package::of_file(path, &start) {
+        return Ok(Kind::Reconstruction(package, path));
+    }
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&start);
     for (magic, kind) in [
         (&b"LASF"[..], Kind::Cloud(CloudFormat::Las)),
         (b"ply\n", Kind::Cloud(CloudFormat::Ply)),
         (b"ply\r", Kind::Cloud(CloudFormat::Ply)),
-        (b"NVM_V3", Kind::Nvm),
         (b"%YAML", Kind::Camera),
         (b"<?xml", Kind::Camera),
         (b"<opencv_storage", Kind::Camera),
@@ -138,20 +136,12 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         .unwrap_or_default()
         .to_string_lossy()
         .to_ascii_lowercase();
-    if ["cameras", "images", "points3d"]
-        .iter()
-        .any(|part| name.starts_with(part))
-        && let Some(model) = path.parent().and_then(colmap::model_folder)
-    {
-        return Ok(Kind::Colmap(model));
-    }
     let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
     Ok(match extension {
         "toml" => Kind::Flight(path.to_owned()),
         "ply" => Kind::Cloud(CloudFormat::Ply),
         "las" | "laz" => Kind::Cloud(CloudFormat::Las),
         "obj" => Kind::Cloud(CloudFormat::Obj),
-        "nvm" => Kind::Nvm,
         "yaml" | "yml" | "xml" => Kind::Camera,
         "csv" | "txt" if has_photo_column(text) => Kind::Poses,
         "csv" | "txt" | "xyz" | "asc" => Kind::Cloud(CloudFormat::Xyz),
@@ -172,11 +162,8 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
     if flight.is_file() {
         return Ok(Kind::Flight(flight));
     }
-    if odm::is_odm_folder(path) {
-        return Ok(Kind::Odm);
-    }
-    if let Some(model) = colmap::model_folder(path) {
-        return Ok(Kind::Colmap(model));
+    if let Some((package, path)) = package::of_folder(path) {
+        return Ok(Kind::Reconstruction(package, path));
     }
     let of_model = |part: &str| {
         [".bin", ".txt"]
@@ -261,20 +248,18 @@ pub fn read_camera(path: &Path) -> Result<Camera, FileError> {
     camera_file::read(&text).map_err(|fault| FileError::new(path, fault))
 }
 
-/// Reads a reconstruction of this kind.
+/// Reads what a package wrote.
 ///
 /// # Errors
-/// With the file and the place in it, and where the kind is another one.
-pub fn read_reconstruction(path: &Path, kind: &Kind) -> Result<Reconstruction, FileError> {
-    match kind {
-        Kind::Colmap(folder) => colmap::read_folder(folder),
-        Kind::Nvm => nvm::read(&read_text(path)?).map_err(|fault| FileError::new(path, fault)),
-        Kind::Odm => Ok(odm::read_folder(path)?.reconstruction),
-        _ => Err(FileError::new(
+/// With the file and the place in it, and where `path` holds no reconstruction.
+pub fn read_project(path: &Path, progress: &Progress) -> Result<Project, FileError> {
+    match detect(path)? {
+        Kind::Reconstruction(package, path) => package::read(package, &path, progress),
+        other => Err(FileError::new(
             path,
             Fault::new(
-                format!("it holds {}, not a reconstruction", kind.in_words()),
-                "give a COLMAP folder, an NVM file or an OpenDroneMap folder",
+                format!("it holds {}, not a reconstruction", other.in_words()),
+                "give the file or folder that a photogrammetry package wrote",
             ),
         )),
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::input::{FileError, read_bytes, read_text};
 use super::origin::FlightOrigin;
 use super::photo_files::{PhotoFolder, fit_cameras_to_files};
-use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, odm, poses_csv};
+use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, poses_csv, read_project};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{
@@ -70,9 +70,7 @@ pub fn open_flight(
     let kind = detect(path)?;
     let source = match &kind {
         Kind::Flight(file) => Source::of_file(file, progress)?,
-        Kind::Colmap(_) | Kind::Nvm | Kind::Odm => {
-            Source::of_reconstruction(path, &kind, progress)?
-        }
+        Kind::Reconstruction(..) => Source::of_reconstruction(path, progress)?,
         Kind::Cloud(_) | Kind::Camera | Kind::Poses => {
             return Err(FileError::new(
                 path,
@@ -134,8 +132,7 @@ impl Source {
             }
             PhotoSource::Reconstruction(name, transform) => {
                 let path = folder.join(name);
-                let kind = detect(&path)?;
-                let mut reconstruction = source.read_reconstruction(&path, &kind, progress)?;
+                let mut reconstruction = source.read_reconstruction(&path, progress)?;
                 if let Some(matrix) = transform {
                     let similarity = Similarity::from_row_major(&matrix).map_err(|error| {
                         at_file(Fault::new(
@@ -160,7 +157,7 @@ impl Source {
         Ok(source)
     }
 
-    fn of_reconstruction(path: &Path, kind: &Kind, progress: &Progress) -> Result<Self, FileError> {
+    fn of_reconstruction(path: &Path, progress: &Progress) -> Result<Self, FileError> {
         let mut source = Self {
             file: path.to_owned(),
             name: name_of(path),
@@ -180,7 +177,7 @@ impl Source {
             photos: Vec::new(),
             warnings: Vec::new(),
         };
-        let reconstruction = source.read_reconstruction(path, kind, progress)?;
+        let reconstruction = source.read_reconstruction(path, progress)?;
         if reconstruction.crs.is_none() {
             let path = path.display();
             source.warnings.push(format!(
@@ -198,18 +195,14 @@ impl Source {
     fn read_reconstruction(
         &mut self,
         path: &Path,
-        kind: &Kind,
         progress: &Progress,
     ) -> Result<Reconstruction, FileError> {
         progress.stage(format!("reading {}", path.display()));
         self.inputs.push(path.to_owned());
-        if let Kind::Odm = kind {
-            let project = odm::read_folder(path)?;
-            self.surface = self.surface.take().or(project.surface);
-            self.photo_folder = self.photo_folder.take().or(project.photos);
-            return Ok(project.reconstruction);
-        }
-        super::read_reconstruction(path, kind)
+        let project = read_project(path, progress)?;
+        self.surface = self.surface.take().or(project.surface);
+        self.photo_folder = self.photo_folder.take().or(project.photos);
+        Ok(project.reconstruction)
     }
 
     fn take_reconstruction(

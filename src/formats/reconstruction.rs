@@ -1,9 +1,12 @@
 //! What a structure-from-motion package made of a flight: cameras, posed photos, sparse points.
 
+use std::path::PathBuf;
+
 use glam::DVec2;
 
 use crate::camera::{Camera, Distortion, Pose};
 use crate::fault::Fault;
+use crate::geodesy::Geographic;
 use crate::geometry::{Similarity, median};
 use crate::surface::Cloud;
 
@@ -29,13 +32,48 @@ pub struct Observation {
     pub pixel: DVec2,
 }
 
+/// Where a photo was taken as its receiver measured it: no result of the adjustment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredPosition {
+    /// The image file's name, as in [`PosedPhoto::name`].
+    pub photo: String,
+    /// On WGS 84; the height as the package wrote it.
+    pub position: Geographic,
+}
+
+/// A reconstruction with what else its package left on disk.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Project {
+    /// Cameras, poses and sparse points.
+    pub reconstruction: Reconstruction,
+    /// The file of the dense cloud or mesh, in the reconstruction's frame unless it says otherwise.
+    pub surface: Option<PathBuf>,
+    /// The folder of the photo files.
+    pub photos: Option<PathBuf>,
+}
+
+impl From<Reconstruction> for Project {
+    fn from(reconstruction: Reconstruction) -> Self {
+        Self {
+            reconstruction,
+            ..Self::default()
+        }
+    }
+}
+
 /// A reconstruction in its own frame, in fragscale's conventions.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reconstruction {
     /// The package, as `info` names it: "colmap", "visualsfm", ...
     pub package: &'static str,
-    /// The coordinate system that the package states: "EPSG:n", WKT or "ECEF".
+    /// The coordinate system that the package states: "EPSG:n", WKT or "ECEF". Where it is one of
+    /// longitude and latitude, positions are (degrees east, degrees north, metres up), and rotations
+    /// take camera axes to east, north, up at the photo's own place.
     pub crs: Option<String>,
+    /// Where the origin stands of a frame without `crs` whose axes are east, north and up there.
+    pub enu_origin: Option<Geographic>,
+    /// Receivers' positions of photos, aligned or not; empty where the package keeps none.
+    pub measured_positions: Vec<MeasuredPosition>,
     /// Cameras. Where `sizes_known` is false they have width = height = 0, and cx, cy count from
     /// the middle of the image, unless `principal_points_from_corner`.
     pub cameras: Vec<Camera>,

@@ -32,21 +32,10 @@ use crate::fault::Fault;
 use crate::formats::input::{FileError, text_from_bytes};
 use crate::formats::json::parse;
 use crate::formats::opensfm::OpenSfm;
-use crate::formats::reconstruction::{PosedPhoto, Reconstruction};
+use crate::formats::reconstruction::{PosedPhoto, Project, Reconstruction};
 use cameras::with_cameras;
 use georeference::{Frames, optional};
 use poses::{from_shots, from_sparse};
-
-/// What an OpenDroneMap folder holds.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct OdmProject {
-    /// Cameras, poses and sparse points, in the georeferenced frame where there is one.
-    pub reconstruction: Reconstruction,
-    /// The dense cloud, in the same frame.
-    pub surface: Option<PathBuf>,
-    /// The folder of the photo files.
-    pub photos: Option<PathBuf>,
-}
 
 /// Whether a folder looks like an OpenDroneMap project that has poses.
 pub(super) fn is_odm_folder(dir: &Path) -> bool {
@@ -59,7 +48,7 @@ pub(super) fn is_odm_folder(dir: &Path) -> bool {
 ///
 /// # Errors
 /// Names the file that cannot be used. What only adds sparse points is a warning where it is broken.
-pub(super) fn read_folder(dir: &Path) -> Result<OdmProject, FileError> {
+pub(super) fn read_folder(dir: &Path) -> Result<Project, FileError> {
     let mut warnings = Vec::new();
     let shots_file = dir.join("odm_report/shots.geojson");
     let sparse_file = dir.join("opensfm/reconstruction.json");
@@ -92,7 +81,7 @@ pub(super) fn read_folder(dir: &Path) -> Result<OdmProject, FileError> {
     };
     let (cameras, photos) = with_cameras(dir, posed.shots, sparse, &mut warnings)?;
     warnings.extend(unaligned(dir, &photos));
-    Ok(OdmProject {
+    Ok(Project {
         reconstruction: Reconstruction {
             package: "opendronemap",
             crs: frames.crs.filter(|_| posed.in_world),
@@ -217,7 +206,7 @@ mod tests {
         dir
     }
 
-    fn names(project: &OdmProject) -> Vec<&str> {
+    fn names(project: &Project) -> Vec<&str> {
         let photos = project.reconstruction.photos.iter();
         photos.map(|photo| &*photo.name).collect()
     }
