@@ -43,9 +43,10 @@ const QUICK: Duration = Duration::from_millis(500);
     args_conflicts_with_subcommands = true
 )]
 struct Arguments {
-    /// Open this flight in a window; without it, the window's start page.
+    /// Open this flight in a window, perhaps with its surface and the folder of its photos; without
+    /// it, the window's start page.
     #[cfg(feature = "app")]
-    flight: Option<PathBuf>,
+    flight: Vec<PathBuf>,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -271,7 +272,7 @@ pub fn run() -> ExitCode {
 
 /// Opens the window, with a flight where one is named.
 #[cfg(feature = "app")]
-fn window(flight: Option<PathBuf>) -> ExitCode {
+fn window(flight: Vec<PathBuf>) -> ExitCode {
     if let Some(what) = unknown_command() {
         say(&format!("error: {what}"));
         return ExitCode::from(2);

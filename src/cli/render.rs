@@ -13,7 +13,7 @@ use crate::camera::Camera;
 use crate::exports;
 use crate::fault::Fault;
 use crate::flight::{FlightParts, Outcome};
-use crate::formats::{FileError, Opened, PhotoFile};
+use crate::formats::{self, FileError, Opened, PhotoFile};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
 use crate::picture;

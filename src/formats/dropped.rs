@@ -11,13 +11,12 @@ use crate::fault::Fault;
 pub struct Dropped {
     /// The flight or reconstruction; `None` where only what belongs to one was named.
     pub flight: Option<PathBuf>,
-    /// The surface and the photos that were named beside it.
+    /// The surface and the folder of photos that were named beside it.
     pub options: OpenOptions,
 }
 
 impl Dropped {
-    /// Looks what each path holds. Photos alone are a flight of their own; beside a flight they are
-    /// its image files.
+    /// Looks what each path holds.
     ///
     /// # Errors
     /// Where one holds nothing that is known, or two are the same part of a flight.
@@ -40,10 +39,7 @@ impl Dropped {
                 ));
             }
         }
-        match dropped.flight {
-            Some(_) => dropped.options.photos = photos,
-            None => dropped.flight = photos,
-        }
+        dropped.options.photos = photos;
         Ok(dropped)
     }
 }

@@ -31,6 +31,11 @@ impl FlightOrigin {
         self.is_flight_file.then_some(self.path.as_path())
     }
 
+    /// Whether the flight has another surface or other photos than its flight.toml names.
+    pub fn has_other_files(&self) -> bool {
+        self.is_flight_file && self.is_changed
+    }
+
     /// Where to save it, if nobody says otherwise: in the flight.toml that it came from, or beside the
     /// reconstruction as NAME.toml.
     pub fn suggested_file(&self) -> PathBuf {
