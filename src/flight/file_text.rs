@@ -67,6 +67,31 @@ impl FlightFile {
         }
     }
 
+    /// The text of a flight.toml with another surface's file and another folder of image files, where
+    /// they are given; paths relative to it.
+    ///
+    /// # Errors
+    /// Where the text is no flight.
+    pub fn text_with_files(
+        text: &str,
+        surface: Option<&str>,
+        folder: Option<&str>,
+    ) -> Result<String, Fault> {
+        let old = Self::parse(text)?;
+        let mut document = document(text)?;
+        for (table, key, old, new) in [
+            ("surface", "file", old.surface(), surface),
+            ("photos", "folder", old.photo_folder(), folder),
+        ] {
+            if let Some(new) = new
+                && old != Some(new)
+            {
+                set(&mut document, table, key, new)?;
+            }
+        }
+        Ok(with_line_ends_of(text, document.to_string()))
+    }
+
     /// The text of a flight.toml with every path in it replaced by `path_for` of it: for a copy in
     /// another folder.
     ///

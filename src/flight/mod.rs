@@ -7,6 +7,7 @@ mod file_check;
 mod file_text;
 mod known_keys;
 mod name_order;
+mod placement;
 #[cfg(test)]
 mod tests;
 mod verdict;

@@ -7,6 +7,7 @@
 mod camera_file;
 mod cloud_file;
 mod colmap;
+mod dropped;
 mod fields;
 mod info;
 mod input;
@@ -28,6 +29,7 @@ mod reconstruction;
 #[cfg(test)]
 mod test_data;
 mod text_lines;
+mod world_frame;
 mod xyz;
 
 use std::fs;
@@ -35,6 +37,7 @@ use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 pub use cloud_file::CloudFile;
+pub use dropped::Dropped;
 pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{OpenOptions, Opened, PhotoFile, open_flight};
