@@ -552,14 +552,14 @@ mod tests {
             "{place:?}"
         );
         assert!((place.latitude - 46.8).abs() < 1e-9);
-        // With its shift (-168, -60, 320 m) in three dimensions, by hand from Helmert's formulas.
-        let shifted = at("EPSG:27572", 600_000.0, 2_200_000.0, 0.0);
+        // With its shift of (-168, -60, 320) m: PROJ's answer for those steps.
+        let shifted = at("EPSG:27572", 700_000.0, 2_300_000.0, 0.0);
         assert!(
-            (shifted.longitude - place.longitude) * 76_400.0 < -40.0,
+            (shifted.longitude - 3.668_692_443_289).abs() < 1e-9,
             "{shifted:?}"
         );
         assert!(
-            (shifted.longitude - place.longitude) * 76_400.0 > -60.0,
+            (shifted.latitude - 47.691_879_000_030).abs() < 1e-9,
             "{shifted:?}"
         );
     }
