@@ -55,8 +55,8 @@ pub struct App {
 }
 
 impl App {
-    /// The start page, or the flight at `path`, which is opened at once.
-    pub fn new(context: &eframe::CreationContext<'_>, path: Option<PathBuf>) -> Self {
+    /// The start page, or the flight that is named, which is opened at once.
+    pub fn new(context: &eframe::CreationContext<'_>, paths: Vec<PathBuf>) -> Self {
         let preferences = context
             .storage
             .and_then(|storage| eframe::get_value(storage, PREFERENCES))
@@ -282,7 +282,7 @@ pub fn run(paths: Vec<PathBuf>) -> Result<(), String> {
     eframe::run_native(
         "fragscale",
         options,
-        Box::new(|context| Ok(Box::new(App::new(context, path)))),
+        Box::new(|context| Ok(Box::new(App::new(context, paths)))),
     )
     .map_err(|error| format!("the window cannot be opened ({error}); {WITHOUT_SCREEN}"))
 }
