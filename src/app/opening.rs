@@ -135,11 +135,14 @@ impl State {
                 };
                 let image = flight.parts().image;
                 let plane = undistorted(&large, camera, THUMBNAIL);
+                let surface = &flight.parts().surface;
+                let colors = picture::Agreement::of(surface, camera, &photo.pose, &plane);
                 let thumbnail = Thumbnail {
                     flight: number,
                     photo: index,
                     small: color_image(&as_scaled(&large, camera, image, ROW_THUMBNAIL)),
                     image: PhotoImage::new(&plane.convert()),
+                    warning: colors.and_then(|colors| colors.warning(&photo.name)),
                 };
                 // Waits until the window has taken some; a cancelled job gives up.
                 if !offer(&send, thumbnail, progress) {

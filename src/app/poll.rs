@@ -260,6 +260,7 @@ impl State {
             photo,
             small,
             image,
+            warning,
         } = thumbnail;
         let Some(open) = &mut self.open else {
             return;
@@ -273,6 +274,13 @@ impl State {
             egui::TextureOptions::LINEAR,
         ));
         open.images[photo] = Some(Arc::new(image));
+        if let Some(warning) = warning
+            && !open.warnings.contains(&warning)
+        {
+            // Exports carry it, too.
+            open.warnings.push(warning.clone());
+            self.say(Severity::Warning, &warning);
+        }
     }
 
     /// Whether nothing is under way.

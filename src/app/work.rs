@@ -161,6 +161,8 @@ pub struct Thumbnail {
     pub small: ColorImage,
     /// For the viewport.
     pub image: PhotoImage,
+    /// That its colours do not match those of the surface, in a sentence.
+    pub warning: Option<String>,
 }
 
 /// The selected photo, undistorted as its scale assumes.

@@ -7,6 +7,7 @@
 //!
 //! With the environment variable FRAGSCALE_BACKTRACE set, a panic prints its place as usual.
 
+mod check;
 mod export;
 mod flight_arguments;
 #[cfg(feature = "render")]
@@ -57,6 +58,8 @@ enum Command {
     Scales(ScalesArguments),
     /// Export photos with their scales for Split-Desktop.
     Export(export::ExportArguments),
+    /// Look for what makes a flight's scales wrong: places, cameras, colours that do not match.
+    Check(check::CheckArguments),
     /// Say what a file or folder holds.
     Info(InfoArguments),
     /// Make a simulated flight whose every answer is known.
@@ -239,6 +242,10 @@ pub fn run() -> ExitCode {
         Command::Export(arguments) => (
             None,
             Box::new(move |progress| export::export(&arguments, progress)),
+        ),
+        Command::Check(arguments) => (
+            None,
+            Box::new(move |progress| check::check(&arguments, progress)),
         ),
         Command::Info(arguments) => (None, Box::new(move |progress| info(&arguments, progress))),
         Command::Sample(arguments) => {

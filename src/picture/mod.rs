@@ -4,6 +4,7 @@
 //! the file stores them, because poses and calibrations are for the stored pixels: an EXIF
 //! orientation turns nothing here.
 
+mod agreement;
 mod canvas;
 mod decode;
 mod encode;
@@ -14,6 +15,7 @@ mod scale_bar;
 mod text;
 mod undistort;
 
+pub use agreement::{Agreement, Flip};
 pub use canvas::{Canvas, Color, Halo};
 pub use decode::{DecodedPhoto, PhotoFormat, decode, decode_photo};
 pub use encode::encode;

@@ -83,68 +83,6 @@ fn on_the_start_page_it_is_told_too() {
     assert!(!desk.says(&sentence(&nowhere)));
 }
 
-#[derive(Debug)]
-struct Dropped(PathBuf);
-
-impl egui::DroppedFile for Dropped {
-    fn path(&self) -> &Path {
-        &self.0
-    }
-
-    fn bytes(&self) -> Result<Vec<u8>, String> {
-        Err("the window reads by itself".to_owned())
-    }
-}
-
-/// Lets a file or folder go over the window.
-fn drop_on(desk: &mut Desk, path: &Path) {
-    let file = Arc::new(Dropped(path.to_owned()));
-    desk.harness.input_mut().dropped_files.push(file);
-    desk.harness.step();
-    desk.settle();
-}
-
-#[test]
-fn a_folder_is_opened_by_dropping_it() {
-    let mut desk = Desk::new(None);
-    drop_on(&mut desk, &flight("tests/windrow"));
-    assert_eq!(desk.open().flight.parts().name, "Windrow");
-    assert_eq!(desk.rows().len(), 9);
-    drop_on(&mut desk, &flight("tests/fixtures/nvm-points-photos"));
-    assert_ne!(desk.open().flight.parts().name, "Windrow");
-}
-
-/// A real flight over a lake shore, as OpenDroneMap left it: the photos lie where its own report says.
-#[test]
-fn brighton_opens_by_dropping_its_folder() {
-    let Some(folder) = shared_data("odm-brighton-0") else {
-        return;
-    };
-    let mut desk = Desk::new(None);
-    drop_on(&mut desk, &folder);
-    let open = desk.open();
-    assert_eq!(open.outcomes.len(), 7);
-    assert_eq!(open.crs.as_deref(), Some("EPSG:32615"), "UTM zone 15 north");
-    let surface = open.surface_bounds;
-    for photo in 0..7 {
-        let scale = open.scale(photo).expect("a scale");
-        for edge in [scale.scale.top, scale.scale.bottom] {
-            // At 36 to 38 m above ground, 4000 px wide and f = 0.5555 widths: f / Z is 58 to 62 px/m.
-            let edge = edge.expect("an edge");
-            assert!((54.0..63.0).contains(&edge), "{edge} px/m");
-        }
-        let center = open.flight.parts().photos[photo].pose.center;
-        let above = center.z - surface.center().z;
-        assert!((30.0..45.0).contains(&above), "{above} m above the shore");
-        // What its middle shows is on the shore that was measured, or within a photo's size of it.
-        let points: Vec<_> = scale.corners.iter().filter_map(|c| c.point()).collect();
-        let middle = points.iter().sum::<glam::DVec3>() / points.len() as f64;
-        let off = (middle - surface.center()).truncate().abs();
-        assert!(off.max_element() < surface.size().truncate().max_element() / 2.0 + 40.0);
-    }
-    assert!(desk.logged("3 of 7 image files are missing"));
-}
-
 /// A broken flight comes while the one before is still being computed.
 #[test]
 fn a_failed_opening_leaves_no_half_computed_flight() {

@@ -19,6 +19,7 @@ mod common;
 
 mod broken;
 mod desk;
+mod dropping;
 mod export;
 mod looks;
 mod photos;

@@ -1,0 +1,259 @@
+//! Whether a photo shows the colours that the cloud has where its pose says: a pose in another
+//! convention, with an axis flipped or of another flight, gives footprints as smooth as a right one,
+//! but the colours do not match.
+//!
+//! The brightness of the cloud's vertices and of the pixels that they project to are compared by
+//! their correlation (Pearson's r): it does not mind exposure, white balance or contrast. What is
+//! hidden behind something lowers it a little; nobody looks for hidden points here.
+
+use glam::DVec2;
+use image::RgbImage;
+
+use crate::camera::{Camera, Pose};
+use crate::surface::Surface;
+
+/// How many vertices are looked at; the standard error of r is under 1/sqrt(n).
+const LOOKED_AT: usize = 200_000;
+
+/// With fewer pairs r says nothing.
+const FEWEST: usize = 200;
+
+/// A correlation under which the colours do not match. Of right poses it is over 0.5 (0.87 on
+/// the bundled flight); of wrong ones it is what shadows and slopes make it, 0 to 0.2.
+const POOR: f64 = 0.3;
+
+/// How much better a flipped photo has to match before it is called flipped.
+const BETTER: f64 = 0.2;
+
+/// How the colours of one photo match.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Agreement {
+    /// How many vertices were compared.
+    pub points: usize,
+    /// Pearson's r of the brightness, -1 to 1.
+    pub correlation: f64,
+    /// The best r of a flipped photo, and how it was flipped.
+    pub flipped: (f64, Flip),
+}
+
+/// A photo turned over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flip {
+    /// Left and right exchanged.
+    LeftRight,
+    /// Top and bottom exchanged.
+    TopBottom,
+    /// Turned by 180 degrees.
+    HalfTurn,
+}
+
+impl Flip {
+    const ALL: [Self; 3] = [Self::LeftRight, Self::TopBottom, Self::HalfTurn];
+
+    fn of(self, [u, v]: [f64; 2]) -> [f64; 2] {
+        match self {
+            Self::LeftRight => [1.0 - u, v],
+            Self::TopBottom => [u, 1.0 - v],
+            Self::HalfTurn => [1.0 - u, 1.0 - v],
+        }
+    }
+
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::LeftRight => "left and right exchanged",
+            Self::TopBottom => "top and bottom exchanged",
+            Self::HalfTurn => "a turn by 180 degrees",
+        }
+    }
+}
+
+impl Agreement {
+    /// Compares a surface's colours with an undistorted photo of any size. `None` where the surface
+    /// has no colours, or too few of its vertices are in the photo.
+    pub fn of(
+        surface: &Surface,
+        camera: &Camera,
+        pose: &Pose,
+        undistorted: &RgbImage,
+    ) -> Option<Self> {
+        let colors = surface.colors();
+        let step = colors.len().div_ceil(LOOKED_AT).max(1);
+        let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+        let seen: Vec<(f64, [f64; 2])> = surface
+            .vertices()
+            .zip(colors)
+            .step_by(step)
+            .filter_map(|(vertex, color)| {
+                let pixel = camera.pixel_undistorted(pose.camera_from_world(vertex))?;
+                let place = (pixel / size).to_array();
+                let inside = place.iter().all(|share| (0.0..1.0).contains(share));
+                inside.then(|| (brightness(*color), place))
+            })
+            .collect();
+        if seen.len() < FEWEST {
+            return None;
+        }
+        let correlation_of = |flip: &dyn Fn([f64; 2]) -> [f64; 2]| {
+            let pairs = seen.iter().filter_map(|(cloud, place)| {
+                Some((*cloud, brightness(pixel_at(undistorted, flip(*place))?)))
+            });
+            correlation(pairs)
+        };
+        let flipped = Flip::ALL.map(|flip| (correlation_of(&|place| flip.of(place)), flip));
+        Some(Self {
+            points: seen.len(),
+            correlation: correlation_of(&|place| place),
+            flipped: flipped.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?,
+        })
+    }
+
+    /// What is wrong with the pose of `photo`, if its colours say so.
+    pub fn warning(&self, photo: &str) -> Option<String> {
+        let Self {
+            points,
+            correlation,
+            flipped: (best, flip),
+        } = *self;
+        if best > correlation + BETTER && best > POOR {
+            return Some(format!(
+                "photo '{photo}': its colours match those of the surface (r = {best:.2} at {points} points, else {correlation:.2}) after {}: an axis of its pose is flipped",
+                flip.in_words()
+            ));
+        }
+        (correlation < POOR).then(|| {
+            format!(
+                "photo '{photo}': its colours do not match those of the surface where its pose says (r = {correlation:.2} at {points} points; a right pose gives over 0.5): check its pose, its camera and whether it is this surface"
+            )
+        })
+    }
+}
+
+/// ITU-R BT.601's luma, 0 to 255.
+fn brightness([red, green, blue]: [u8; 3]) -> f64 {
+    0.299 * f64::from(red) + 0.587 * f64::from(green) + 0.114 * f64::from(blue)
+}
+
+/// The pixel at these shares of width and height, both from 0 to under 1.
+fn pixel_at(image: &RgbImage, [u, v]: [f64; 2]) -> Option<[u8; 3]> {
+    let (width, height) = image.dimensions();
+    // Truncated: the first pixel reaches from 0 to 1.
+    let (x, y) = (
+        (u * f64::from(width)) as u32,
+        (v * f64::from(height)) as u32,
+    );
+    let pixel = image.get_pixel_checked(
+        x.min(width.saturating_sub(1)),
+        y.min(height.saturating_sub(1)),
+    )?;
+    Some(pixel.0)
+}
+
+/// Pearson's r, in one pass after Welford; 0 where one side does not vary.
+fn correlation(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (mut n, mut mean, mut sums) = (0.0, (0.0, 0.0), (0.0, 0.0, 0.0));
+    for (a, b) in pairs {
+        n += 1.0;
+        let (da, db) = (a - mean.0, b - mean.1);
+        mean = (mean.0 + da / n, mean.1 + db / n);
+        let after = (a - mean.0, b - mean.1);
+        sums = (
+            sums.0 + da * after.0,
+            sums.1 + db * after.1,
+            sums.2 + da * after.1,
+        );
+    }
+    let spread = (sums.0 * sums.1).sqrt();
+    if spread > 0.0 { sums.2 / spread } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DMat3, DVec3};
+
+    use super::*;
+    use crate::camera::Distortion;
+    use crate::surface::Cloud;
+
+    #[test]
+    fn the_correlation_is_pearsons() {
+        // Anscombe's first quartet: r = 0.816.
+        let x = [10.0, 8.0, 13.0, 9.0, 11.0, 14.0, 6.0, 4.0, 12.0, 7.0, 5.0];
+        let y = [
+            8.04, 6.95, 7.58, 8.81, 8.33, 9.96, 7.24, 4.26, 10.84, 4.82, 5.68,
+        ];
+        let r = correlation(x.into_iter().zip(y));
+        assert!((r - 0.816_42).abs() < 1e-5, "{r}");
+        assert_eq!(correlation([(1.0, 2.0), (1.0, 3.0)].into_iter()), 0.0);
+    }
+
+    /// A chequered square of 2 m seen straight from above, each field of its own brightness.
+    fn scene() -> (Surface, Camera, Pose, RgbImage) {
+        let shade = |x: u32, y: u32| {
+            let field = (x / 8 * 7 + y / 8 * 13) % 29;
+            u8::try_from(field * 8).unwrap()
+        };
+        let mut cloud = Cloud::default();
+        for y in 0..64 {
+            for x in 0..64 {
+                let at = DVec3::new(f64::from(x) + 0.5, 63.5 - f64::from(y), 0.0) / 32.0;
+                cloud.points.push(at);
+                cloud.colors.push([shade(x, y); 3]);
+            }
+        }
+        let image = RgbImage::from_fn(64, 64, |x, y| image::Rgb([shade(x, y) / 2 + 60; 3]));
+        let camera = Camera {
+            name: String::new(),
+            width: 640,
+            height: 640,
+            fx: 640.0,
+            fy: 640.0,
+            cx: 320.0,
+            cy: 320.0,
+            skew: 0.0,
+            distortion: Distortion::None,
+        };
+        let pose = Pose::from_tilt_pan(DVec3::new(1.0, 1.0, 2.0), [90.0, 0.0]);
+        (Surface::new(cloud).unwrap(), camera, pose, image)
+    }
+
+    #[test]
+    fn a_right_pose_matches_and_a_flipped_one_is_recognised() {
+        let (surface, camera, pose, image) = scene();
+        let right = Agreement::of(&surface, &camera, &pose, &image).unwrap();
+        // Not all: rounding may exclude vertices on the photo's edge.
+        assert!(right.points > 4000 && right.correlation > 0.99, "{right:?}");
+        assert_eq!(right.warning("a"), None);
+        let turned = Pose {
+            rotation: pose.rotation * DMat3::from_rotation_z(std::f64::consts::PI),
+            ..pose
+        };
+        let wrong = Agreement::of(&surface, &camera, &turned, &image).unwrap();
+        assert_eq!(wrong.flipped.1, Flip::HalfTurn);
+        let said = wrong.warning("a").unwrap();
+        assert!(said.contains("turn by 180 degrees"), "{said}");
+        let quarter = Pose {
+            rotation: pose.rotation * DMat3::from_rotation_z(std::f64::consts::FRAC_PI_2),
+            ..pose
+        };
+        let said = Agreement::of(&surface, &camera, &quarter, &image)
+            .unwrap()
+            .warning("a");
+        assert!(said.unwrap().contains("do not match"));
+    }
+
+    #[test]
+    fn without_colours_or_points_nothing_is_said() {
+        let (surface, camera, pose, image) = scene();
+        let away = Pose {
+            center: pose.center + DVec3::X * 100.0,
+            ..pose
+        };
+        assert_eq!(Agreement::of(&surface, &camera, &away, &image), None);
+        let cloud = Cloud {
+            points: surface.vertices().collect(),
+            ..Cloud::default()
+        };
+        let plain = Surface::new(cloud).unwrap();
+        assert_eq!(Agreement::of(&plain, &camera, &pose, &image), None);
+    }
+}
