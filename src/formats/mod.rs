@@ -9,6 +9,7 @@ mod cloud_file;
 mod colmap;
 mod dropped;
 mod fields;
+mod georeferencing;
 mod info;
 mod input;
 mod json;
@@ -21,6 +22,7 @@ mod opensfm;
 mod origin;
 mod package;
 mod photo_files;
+mod photo_names;
 mod photo_size;
 mod ply;
 mod poses_csv;
@@ -38,6 +40,10 @@ use std::path::{Path, PathBuf};
 
 pub use cloud_file::CloudFile;
 pub use dropped::Dropped;
+pub use georeferencing::{
+    GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind, LengthResidual,
+    PositionResidual, georeference,
+};
 pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{OpenOptions, Opened, PhotoFile, open_flight};

@@ -16,6 +16,8 @@ mod geo_file;
 pub(super) mod mrk;
 mod table;
 
+pub(super) use mrk::number_of_photo;
+
 use std::collections::HashMap;
 use std::path::Path;
 
