@@ -9,6 +9,7 @@
 
 mod export;
 mod flight_arguments;
+mod georeference;
 #[cfg(feature = "render")]
 mod render;
 
@@ -56,6 +57,8 @@ enum Command {
     Scales(ScalesArguments),
     /// Export photos with their scales for Split-Desktop.
     Export(export::ExportArguments),
+    /// Bring a reconstruction in a frame of its own to the world by known positions or distances.
+    Georeference(georeference::GeoreferenceArguments),
     /// Say what a file or folder holds.
     Info(InfoArguments),
     /// Make a simulated flight whose every answer is known.
@@ -238,6 +241,10 @@ pub fn run() -> ExitCode {
         Command::Export(arguments) => (
             None,
             Box::new(move |progress| export::export(&arguments, progress)),
+        ),
+        Command::Georeference(arguments) => (
+            None,
+            Box::new(move |progress| georeference::georeference(&arguments, progress)),
         ),
         Command::Info(arguments) => (None, Box::new(move |progress| info(&arguments, progress))),
         Command::Sample(arguments) => {
