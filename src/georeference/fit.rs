@@ -213,19 +213,27 @@ impl Problem {
             _ => 1.0 + 5.0 / (count - 3) as f64,
         };
         let stated = if self.has_accuracies { 1.0 } else { 0.0 };
-        let spread = (middle / LENGTH_50 * correction).max(stated);
-        let limit = |weight: f64| (LENGTH_999 * spread).max(self.rounding * weight.sqrt());
-        let within = |distances: &[f64]| -> Vec<usize> {
+        let first = (middle / LENGTH_50 * correction).max(stated);
+        let within = |distances: &[f64], spread: f64| -> Vec<usize> {
             let near = |index: &usize| {
                 let weight = self.pairs.get(*index).map_or(1.0, |pair| pair.2);
-                distances.get(*index).is_some_and(|d| *d <= limit(weight))
+                let limit = (LENGTH_999 * spread).max(self.rounding * weight.sqrt());
+                distances.get(*index).is_some_and(|d| *d <= limit)
             };
             (0..count).filter(near).collect()
         };
-        let mut used = within(&distances);
+        let mut used = within(&distances, first);
         for _ in 0..20 {
             let similarity = self.of_indices(&used).ok_or_else(on_a_line)?;
-            let next = within(&self.distances(&similarity));
+            let distances = self.distances(&similarity);
+            // The best of many threes fits better than the noise is; all together tell it.
+            let squares: f64 = used
+                .iter()
+                .filter_map(|i| distances.get(*i))
+                .map(|d| d * d)
+                .sum();
+            let spread = (squares / (3 * used.len() - 7) as f64).sqrt().max(first);
+            let next = within(&distances, spread);
             if next == used {
                 break;
             }
