@@ -224,6 +224,9 @@ impl Problem {
         };
         let mut used = within(&distances, first);
         for _ in 0..20 {
+            if used.len() < 3 {
+                break;
+            }
             let similarity = self.of_indices(&used).ok_or_else(on_a_line)?;
             let distances = self.distances(&similarity);
             // The best of many threes fits better than the noise is; all together tell it.
