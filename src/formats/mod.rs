@@ -7,6 +7,7 @@
 mod camera_file;
 mod cloud_file;
 mod colmap;
+mod drone_photos;
 mod fields;
 mod info;
 mod input;
@@ -20,6 +21,7 @@ mod opensfm;
 mod origin;
 mod package;
 mod photo_files;
+mod photo_metadata;
 mod photo_size;
 mod ply;
 mod poses_csv;
