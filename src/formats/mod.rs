@@ -8,6 +8,7 @@ mod camera_file;
 mod cloud_file;
 mod colmap;
 mod drone_photos;
+mod dropped;
 mod fields;
 mod info;
 mod input;
@@ -20,6 +21,7 @@ mod open;
 mod opensfm;
 mod origin;
 mod package;
+mod photo_checks;
 mod photo_files;
 mod photo_metadata;
 mod photo_size;
@@ -30,6 +32,7 @@ mod reconstruction;
 #[cfg(test)]
 mod test_data;
 mod text_lines;
+mod world_frame;
 mod xyz;
 
 use std::fs;
@@ -37,11 +40,13 @@ use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 pub use cloud_file::CloudFile;
+pub use dropped::Dropped;
 pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{OpenOptions, Opened, PhotoFile, open_flight};
 pub use origin::FlightOrigin;
 pub use package::Package;
+pub use photo_checks::photo_checks;
 pub use poses_csv::{PoseLine, PosesFile};
 pub use position_list::{
     ControlPoint, ControlPoints, NamedPosition, PositionList, positions_of_photos,

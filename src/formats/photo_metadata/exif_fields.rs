@@ -19,6 +19,8 @@ pub(super) struct ExifFields {
     pub(super) serial: Option<String>,
     pub(super) lens: Option<String>,
     pub(super) time: Option<String>,
+    /// The program or firmware that wrote the file last.
+    pub(super) software: Option<String>,
     /// Of the image as the camera wrote it.
     pub(super) size: Option<(u32, u32)>,
     /// 1 where the pixels lie as they are seen.
@@ -66,6 +68,7 @@ pub(super) fn read(tiff: Vec<u8>) -> Result<ExifFields, String> {
         serial: exif.text(Tag::BodySerialNumber),
         lens: exif.text(Tag::LensModel),
         time: exif.text(Tag::DateTimeOriginal),
+        software: exif.text(Tag::Software),
         size: pixels(Tag::PixelXDimension).zip(pixels(Tag::PixelYDimension)),
         orientation: exif.whole(Tag::Orientation),
         focal_length: exif.focal_length(),
