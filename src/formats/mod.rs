@@ -7,6 +7,7 @@
 mod camera_file;
 mod cloud_file;
 mod colmap;
+mod drone_photos;
 mod dropped;
 mod fields;
 mod georeferencing;
@@ -21,7 +22,9 @@ mod open;
 mod opensfm;
 mod origin;
 mod package;
+mod photo_checks;
 mod photo_files;
+mod photo_metadata;
 mod photo_names;
 mod photo_size;
 mod ply;
@@ -49,6 +52,7 @@ pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{OpenOptions, Opened, PhotoFile, open_flight};
 pub use origin::FlightOrigin;
 pub use package::Package;
+pub use photo_checks::photo_checks;
 pub use poses_csv::{PoseLine, PosesFile};
 pub use position_list::{
     ControlPoint, ControlPoints, NamedPosition, PositionList, positions_of_photos,

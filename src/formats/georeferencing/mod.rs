@@ -337,15 +337,6 @@ fn of_receivers(
         return Ok(None);
     }
     let list = positions_of_photos(folder)?;
-    if list.positions.is_empty() {
-        return Err(FileError::new(
-            folder,
-            Fault::new(
-                "no photo in it carries a position",
-                "give a list of positions, control points or a known distance",
-            ),
-        ));
-    }
     Ok(Some((folder.clone(), list)))
 }
 
