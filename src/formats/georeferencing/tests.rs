@@ -421,6 +421,54 @@ fn sceaux_in_two_frames() {
     }
 }
 
+/// The project's cameras and points in a frame of their own.
+fn brighton_of_its_own(stated: &Reconstruction) -> Reconstruction {
+    let mut own = stated.clone();
+    own.crs = None;
+    own.measured_positions.clear();
+    own.transform(&Similarity::new(
+        0.02,
+        DMat3::from_euler(EulerRot::XYZ, 1.0, 2.0, 3.0),
+        DVec3::new(-9_000.0, -100_000.0, 30.0),
+    ));
+    own
+}
+
+/// The positions in four of its photos (EXIF of a consumer's drone), against NumPy and PROJ: the scale
+/// of least squares, its standard error by the formula of `georeference::fit`, and that of the turn.
+#[test]
+fn brighton_by_four_receivers() {
+    let Some(folder) = shared_data("odm-brighton-0") else {
+        return;
+    };
+    let project = read_project(&folder, &Progress::default()).unwrap();
+    let own = brighton_of_its_own(&project.reconstruction);
+    let request = GeoreferenceRequest {
+        photos: Some(folder.join("images")),
+        ..GeoreferenceRequest::default()
+    };
+    let found = georeferenced(&folder, &own, true, &request).unwrap();
+    assert_eq!(found.crs.as_deref(), Some("EPSG:32615"));
+    assert_eq!((found.used(), found.positions.len()), (4, 4));
+    let scale = found.similarity.scale * 0.02;
+    assert!((scale - 1.041_871).abs() < 1e-4, "{scale}");
+    let error = found.scale_error.unwrap();
+    assert!((error - 0.013_945).abs() < 1e-4, "{error}");
+    let turn = found.turn_error_degrees.unwrap();
+    assert!((turn - 1.219).abs() < 0.02, "{turn}");
+    assert!(
+        found
+            .warnings
+            .iter()
+            .any(|w| w.contains("nearly on a line"))
+    );
+    assert!(
+        found.warnings.iter().any(|w| w.contains("4 of 7 photos")),
+        "{:?}",
+        found.warnings
+    );
+}
+
 /// OpenSfM's frame and what shots.geojson of the same project states of the photos.
 #[test]
 fn brighton_by_its_shots() {
@@ -429,16 +477,7 @@ fn brighton_by_its_shots() {
     };
     let project = read_project(&folder, &Progress::default()).unwrap();
     let stated = project.reconstruction;
-    // The same in a frame of its own.
-    let mut own = stated.clone();
-    own.crs = None;
-    own.measured_positions.clear();
-    let back = Similarity::new(
-        0.02,
-        DMat3::from_euler(EulerRot::XYZ, 1.0, 2.0, 3.0),
-        DVec3::new(-9_000.0, -100_000.0, 30.0),
-    );
-    own.transform(&back);
+    let mut own = brighton_of_its_own(&stated);
     let shots: serde_json::Value =
         serde_json::from_slice(&fs::read(folder.join("odm_report/shots.geojson")).unwrap())
             .unwrap();
