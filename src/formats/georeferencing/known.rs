@@ -3,9 +3,14 @@
 use glam::DVec3;
 
 use crate::fault::Fault;
-use crate::geodesy::{Crs, CrsKind};
+use crate::geodesy::{Crs, CrsKind, Geographic};
 use crate::geometry::median;
 use crate::units::LengthUnit;
+
+/// By how much a metre of the grid may differ from one on the ground.
+const WRONG_GRID: f64 = 0.005;
+/// From where on that is said.
+const POOR_GRID: f64 = 0.001;
 
 /// The world, and the coordinate system of a list.
 #[derive(Debug, Clone)]
@@ -30,11 +35,15 @@ impl World {
             Some(stated) => Some(Crs::understand(stated)?),
             None => asked.clone(),
         };
-        let crs = match (asked, &list) {
-            (Some(asked), _) => Some(asked),
-            (None, Some(list)) if list.kind() == CrsKind::Projected => Some(list.clone()),
-            (None, Some(list)) => Some(utm_of(list, positions)?),
-            (None, None) => {
+        let middle = list
+            .as_ref()
+            .map(|list| middle_of(list, positions))
+            .transpose()?;
+        let crs = match (asked, &list, middle) {
+            (Some(asked), ..) => Some(asked),
+            (None, Some(list), _) if list.kind() == CrsKind::Projected => Some(list.clone()),
+            (None, Some(_), Some(middle)) => Some(Crs::utm_at(middle)),
+            _ => {
                 warnings.push(
                     "the positions state no coordinate system: they are taken as metres of a local one with z up"
                         .to_owned(),
@@ -56,6 +65,9 @@ impl World {
                 let what = format!("the unit of {} is {} m long", crs.name(), crs.unit_metres());
                 Fault::new(what, "give a system in metres or feet")
             })?;
+            if let Some(scale) = middle.and_then(|middle| crs.grid_scale(middle)) {
+                warnings.extend(check_grid(crs, scale)?);
+            }
             if let Some(list) = &list
                 && list.heights() != crs.heights()
                 && crs.heights() != NOT_SAID
@@ -136,21 +148,36 @@ impl World {
 /// As [`Crs::heights`] says it.
 const NOT_SAID: &str = "not said";
 
-/// The zone of UTM that most positions lie in.
-fn utm_of(list: &Crs, positions: &[DVec3]) -> Result<Crs, Fault> {
+/// A metre of the grid has to be one on the ground: in Web Mercator, made for looking, it is not.
+fn check_grid(crs: &Crs, scale: f64) -> Result<Option<String>, Fault> {
+    let sentence = format!(
+        "a metre of {} is {:.4} m on the ground there",
+        crs.name(),
+        1.0 / scale
+    );
+    if (scale - 1.0).abs() > WRONG_GRID {
+        return Err(Fault::new(
+            sentence,
+            "give a coordinate system that keeps lengths there, such as its zone of UTM",
+        ));
+    }
+    Ok(((scale - 1.0).abs() > POOR_GRID).then_some(sentence))
+}
+
+/// The middle of a list's positions on the Earth.
+fn middle_of(list: &Crs, positions: &[DVec3]) -> Result<Geographic, Fault> {
     let places: Vec<_> = positions
         .iter()
         .filter_map(|p| list.to_geographic(*p))
         .collect();
-    let of = |part: fn(&crate::geodesy::Geographic) -> f64| {
-        median(&mut places.iter().map(part).collect::<Vec<f64>>())
-    };
+    let of =
+        |part: fn(&Geographic) -> f64| median(&mut places.iter().map(part).collect::<Vec<f64>>());
     match (of(|p| p.longitude), of(|p| p.latitude)) {
-        (Some(longitude), Some(latitude)) => Ok(Crs::utm_at(crate::geodesy::Geographic {
+        (Some(longitude), Some(latitude)) => Ok(Geographic {
             longitude,
             latitude,
             height: 0.0,
-        })),
+        }),
         _ => Err(Fault::new(
             format!("its positions are not places in {}", list.name()),
             "check the coordinate system and the order of the coordinates",

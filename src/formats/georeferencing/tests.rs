@@ -324,6 +324,14 @@ fn what_is_refused() {
     let two = "EPSG:32632\nIMG_0001.JPG 1 2 3\nIMG_0002.JPG 2 3 4\n";
     assert!(sentence(two, None).contains("too few"));
     assert!(sentence(two, Some("EPSG:4326")).contains("no projected"));
+    let mercator = sentence(
+        two.replace("1 2 3", "435200 6201300 460").as_str(),
+        Some("EPSG:3857"),
+    );
+    assert!(
+        mercator.contains("a metre of EPSG:3857 is 0.5"),
+        "{mercator}"
+    );
     assert!(sentence(two, Some("somewhere")).contains("'somewhere'"));
     let line = "EPSG:32632\nIMG_0000.JPG 435200 6201300 460\nIMG_0001.JPG 435212 6201300 460.6\nIMG_0002.JPG 435224 6201300 461.2\nIMG_0003.JPG 435236 6201300 460.6\n";
     assert!(
