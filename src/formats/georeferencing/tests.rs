@@ -324,10 +324,12 @@ fn what_is_refused() {
     let two = "EPSG:32632\nIMG_0001.JPG 1 2 3\nIMG_0002.JPG 2 3 4\n";
     assert!(sentence(two, None).contains("too few"));
     assert!(sentence(two, Some("EPSG:4326")).contains("no projected"));
-    let mercator = sentence(
-        two.replace("1 2 3", "435200 6201300 460").as_str(),
-        Some("EPSG:3857"),
-    );
+    let mut all = "EPSG:32632\n".to_owned();
+    for (i, c) in centers().iter().enumerate() {
+        writeln!(all, "IMG_{i:04}.JPG {} {} {}", c.x, c.y, c.z).unwrap();
+    }
+    // At 55.95 degrees north.
+    let mercator = sentence(&all, Some("EPSG:3857"));
     assert!(
         mercator.contains("a metre of EPSG:3857 is 0.5"),
         "{mercator}"
