@@ -60,6 +60,10 @@ fn text(path: &Path) -> &str {
     path.to_str().expect("UTF-8")
 }
 
+fn command<'a>(model: &'a Path, more: &[&'a str]) -> Vec<&'a str> {
+    [&["georeference", text(model)], more].concat()
+}
+
 /// 1000 px at 30 m are 33.3 px/m.
 #[test]
 fn known_positions_give_scales_in_metres() {
@@ -107,23 +111,22 @@ fn the_table_and_the_errors_are_lines() {
     model(folder.path());
     let list = folder.path().join("list.csv");
     fs::write(&list, positions()).expect("written");
-    let of = |more: &[&str]| [&["georeference", text(folder.path())], more].concat();
-    let table = stdout_of(&of(&["--positions", text(&list)]));
+    let table = stdout_of(&command(folder.path(), &["--positions", text(&list)]));
     assert!(table.starts_with("position"), "{table}");
     assert!(
         table.contains("5 of 5 positions used, RMS 0.000 m\n"),
         "{table}"
     );
-    let scaled = stdout_of(&of(&["--distance", "0,0,0 -1,0,0 2.5"]));
+    let scaled = stdout_of(&command(folder.path(), &["--distance", "0,0,0 -1,0,0 2.5"]));
     assert!(scaled.contains("scale: 2.5 m to one"), "{scaled}");
     // Exit status 1, one line, and no file.
     let flight = folder.path().join("none.toml");
-    let output = fragscale(&of(&["-o", text(&flight)]));
+    let output = fragscale(&command(folder.path(), &["-o", text(&flight)]));
     assert_eq!(output.status.code(), Some(1));
     let error = String::from_utf8(output.stderr).expect("UTF-8");
     assert_eq!(error.lines().count(), 1, "{error}");
     assert!(error.contains("nothing is known of its place"), "{error}");
     assert!(!flight.exists());
-    let usage = fragscale(&of(&["--distance", "1 2"]));
+    let usage = fragscale(&command(folder.path(), &["--distance", "1 2"]));
     assert_eq!(usage.status.code(), Some(2));
 }
