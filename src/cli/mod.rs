@@ -10,6 +10,7 @@
 mod check;
 mod export;
 mod flight_arguments;
+mod georeference;
 #[cfg(feature = "render")]
 mod render;
 
@@ -60,6 +61,8 @@ enum Command {
     Export(export::ExportArguments),
     /// Look for what makes a flight's scales wrong: places, cameras, colours that do not match.
     Check(check::CheckArguments),
+    /// Bring a reconstruction in a frame of its own to the world by known positions or distances.
+    Georeference(georeference::GeoreferenceArguments),
     /// Say what a file or folder holds.
     Info(InfoArguments),
     /// Make a simulated flight whose every answer is known.
@@ -246,6 +249,10 @@ pub fn run() -> ExitCode {
         Command::Check(arguments) => (
             None,
             Box::new(move |progress| check::check(&arguments, progress)),
+        ),
+        Command::Georeference(arguments) => (
+            None,
+            Box::new(move |progress| georeference::georeference(&arguments, progress)),
         ),
         Command::Info(arguments) => (None, Box::new(move |progress| info(&arguments, progress))),
         Command::Sample(arguments) => {

@@ -7,8 +7,10 @@
 mod camera_file;
 mod cloud_file;
 mod colmap;
+mod drone_photos;
 mod dropped;
 mod fields;
+mod georeferencing;
 mod info;
 mod input;
 mod json;
@@ -20,7 +22,10 @@ mod open;
 mod opensfm;
 mod origin;
 mod package;
+mod photo_checks;
 mod photo_files;
+mod photo_metadata;
+mod photo_names;
 mod photo_size;
 mod ply;
 mod poses_csv;
@@ -38,11 +43,16 @@ use std::path::{Path, PathBuf};
 
 pub use cloud_file::CloudFile;
 pub use dropped::Dropped;
+pub use georeferencing::{
+    GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind, LengthResidual,
+    PositionResidual, georeference,
+};
 pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{OpenOptions, Opened, PhotoFile, open_flight};
 pub use origin::FlightOrigin;
 pub use package::Package;
+pub use photo_checks::photo_checks;
 pub use poses_csv::{PoseLine, PosesFile};
 pub use position_list::{
     ControlPoint, ControlPoints, NamedPosition, PositionList, positions_of_photos,

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::input::{FileError, read_bytes, read_text};
 use super::origin::FlightOrigin;
+use super::photo_checks::photo_checks;
 use super::photo_files::{PhotoFolder, fit_cameras_to_files};
 use super::world_frame::{Frame, Known};
 use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, poses_csv, read_project};
@@ -453,9 +454,11 @@ impl Source {
         .map_err(|fault| FileError::new(&self.file, fault))?;
         let file = self.file.display();
         let misplaced = flight.placement_warnings();
+        let contradicting = photo_checks(&flight, &photo_files);
         self.warnings.extend(
             misplaced
                 .into_iter()
+                .chain(contradicting)
                 .map(|warning| format!("{file}: {warning}")),
         );
         Ok(Opened {

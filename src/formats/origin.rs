@@ -145,7 +145,7 @@ impl FlightOrigin {
 }
 
 /// The folder that a file is in.
-fn folder_of(file: &Path) -> &Path {
+pub(super) fn folder_of(file: &Path) -> &Path {
     match file.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -153,7 +153,7 @@ fn folder_of(file: &Path) -> &Path {
 }
 
 /// A path from the root with its links followed, as far as it exists.
-fn real(path: &Path) -> PathBuf {
+pub(super) fn real(path: &Path) -> PathBuf {
     fs::canonicalize(path)
         .or_else(|_| std::path::absolute(path))
         .unwrap_or_else(|_| path.to_owned())
@@ -161,7 +161,7 @@ fn real(path: &Path) -> PathBuf {
 
 /// How a file in `folder` (canonical) names `path`: with slashes, relative where the two have more
 /// than the root in common.
-fn path_from(folder: &Path, path: &Path) -> Result<String, Fault> {
+pub(super) fn path_from(folder: &Path, path: &Path) -> Result<String, Fault> {
     let path = real(path);
     let text = |part: &OsStr| {
         part.to_str().map(str::to_owned).ok_or_else(|| {

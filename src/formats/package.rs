@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::input::{FileError, read_text};
 use super::reconstruction::Project;
-use super::{colmap, nvm, odm};
+use super::{colmap, drone_photos, nvm, odm};
 use crate::jobs::Progress;
 
 /// What wrote a reconstruction.
@@ -19,6 +19,8 @@ pub enum Package {
     OpenDroneMap,
     /// VisualSFM's .nvm.
     VisualSfm,
+    /// Photos with nothing beside them, placed by their own EXIF and XMP.
+    Photos,
 }
 
 impl Package {
@@ -28,6 +30,7 @@ impl Package {
             Self::Colmap => "a COLMAP reconstruction",
             Self::OpenDroneMap => "an OpenDroneMap project",
             Self::VisualSfm => "a VisualSFM reconstruction",
+            Self::Photos => "photos",
         }
     }
 }
@@ -47,6 +50,13 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
         let model = colmap::model_folder(path.parent()?)?;
         return Some((Package::Colmap, model));
     }
+    if drone_photos::is_photo(path)
+        && [&b"\xff\xd8\xff"[..], b"\x89PNG"]
+            .iter()
+            .any(|magic| start.starts_with(magic))
+    {
+        return this(Package::Photos);
+    }
     None
 }
 
@@ -55,19 +65,24 @@ pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
     if odm::is_odm_folder(path) {
         return Some((Package::OpenDroneMap, path.to_owned()));
     }
-    Some((Package::Colmap, colmap::model_folder(path)?))
+    if let Some(model) = colmap::model_folder(path) {
+        return Some((Package::Colmap, model));
+    }
+    // Last, because many packages leave their photos beside what they made of them.
+    drone_photos::has_photos(path).then(|| (Package::Photos, path.to_owned()))
 }
 
 /// Reads what the package wrote.
 pub(super) fn read(
     package: Package,
     path: &Path,
-    _progress: &Progress,
+    progress: &Progress,
 ) -> Result<Project, FileError> {
     let at = |fault| FileError::new(path, fault);
     match package {
         Package::Colmap => colmap::read_folder(path).map(Project::from),
         Package::OpenDroneMap => odm::read_folder(path),
+        Package::Photos => drone_photos::read(path, progress),
         Package::VisualSfm => nvm::read(&read_text(path)?).map(Project::from).map_err(at),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use proj4rs::Proj;
 use proj4rs::transform::transform;
 
@@ -14,6 +14,9 @@ use crate::fault::Fault;
 /// How far, in units of the system, going there and back may be off before the projection is not
 /// believed.
 const THERE_AND_BACK: f64 = 1e-3;
+/// Degrees, some 10 m: the central difference over twice that errs by far less than a millionth of a
+/// degree.
+const STEP: f64 = 1e-4;
 
 /// What kind of coordinates a system has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -237,24 +240,47 @@ impl Crs {
             CrsKind::Geographic => Some(DMat3::IDENTITY),
             CrsKind::Geocentric => Some(enu_axes(place)),
             CrsKind::Projected => {
-                // Some 10 m to either side: the central difference errs by far less than a
-                // millionth of a degree.
-                let at = |east: f64, north: f64| {
-                    self.from_geographic(Geographic {
-                        longitude: place.longitude + east,
-                        latitude: place.latitude + north,
-                        height: 0.0,
-                    })
-                };
-                let step = 1e-4;
-                let north = (at(0.0, step)? - at(0.0, -step)?).truncate();
-                let east = (at(step, 0.0)? - at(-step, 0.0)?).truncate();
+                let (east, north) = self.grid_steps(place)?;
                 let north = north.try_normalize()?;
                 let across = DVec3::new(north.y, -north.x, 0.0);
                 (across.truncate().dot(east) > 0.0)
                     .then(|| DMat3::from_cols(across, north.extend(0.0), DVec3::Z))
             }
         }
+    }
+
+    /// How many metres of the grid are one on the ellipsoid at a place, towards the north: 0.9996 in
+    /// the middle of a UTM zone, 2 in Web Mercator at 60 degrees. 1 for systems that are not
+    /// projected; `None` where the projection does not hold.
+    pub fn grid_scale(&self, place: Geographic) -> Option<f64> {
+        if self.kind != CrsKind::Projected {
+            return Some(1.0);
+        }
+        let ends = [STEP, -STEP].map(|step| {
+            ecef_from_geographic(Geographic {
+                latitude: place.latitude + step,
+                height: 0.0,
+                ..place
+            })
+        });
+        let (_, north) = self.grid_steps(place)?;
+        Some(north.length() * self.unit_metres / ends[0].distance(ends[1]))
+    }
+
+    /// How the grid's coordinates change over two [`STEP`]s to the east and to the north.
+    fn grid_steps(&self, place: Geographic) -> Option<(DVec2, DVec2)> {
+        let at = |east: f64, north: f64| {
+            let point = self.from_geographic(Geographic {
+                longitude: place.longitude + east,
+                latitude: place.latitude + north,
+                height: 0.0,
+            });
+            point.map(DVec3::truncate)
+        };
+        Some((
+            at(STEP, 0.0)? - at(-STEP, 0.0)?,
+            at(0.0, STEP)? - at(0.0, -STEP)?,
+        ))
     }
 
     /// Whether coordinates mean the same in both: by their codes, else by what they are made of: both
@@ -742,6 +768,32 @@ mod tests {
         assert!((grid * DVec3::X - DVec3::NEG_X).length() < 1e-9);
         let ecef = Crs::understand("ECEF").unwrap();
         assert_eq!(ecef.grid_from_enu(place), Some(enu_axes(place)));
+    }
+
+    /// UTM's factor in the middle of its zone; Web Mercator's a / (M cos(latitude)), with M the radius of
+    /// the meridian (EPSG guidance note 7-2, 3.5.2).
+    #[test]
+    fn the_grid_is_longer_or_shorter_than_the_ground() {
+        let place = Geographic {
+            longitude: 15.0,
+            latitude: 60.0,
+            height: 0.0,
+        };
+        let scale = |name: &str| Crs::understand(name).unwrap().grid_scale(place).unwrap();
+        assert!((scale("EPSG:32633") - 0.9996).abs() < 1e-9);
+        let e2 = 0.006_694_379_990_14;
+        let meridian = 6_378_137.0 * (1.0 - e2) / (1.0_f64 - e2 * 0.75).powf(1.5);
+        let expected = 6_378_137.0 / (meridian * 0.5);
+        assert!((scale("EPSG:3857") / expected - 1.0).abs() < 1e-9);
+        assert_eq!(scale("ECEF"), 1.0);
+        // In feet as in metres.
+        let place = Geographic {
+            longitude: -120.8,
+            latitude: 47.9,
+            height: 0.0,
+        };
+        let feet = Crs::understand("EPSG:2285").unwrap().grid_scale(place);
+        assert!((feet.unwrap() - 1.0).abs() < 2e-4, "{feet:?}");
     }
 
     #[test]

@@ -7,10 +7,12 @@
 //! everything is counted from the middle of the points.
 
 mod fit;
+mod lengths;
 mod student;
 mod triangulate;
 mod umeyama;
 
 pub use fit::{Fit, Pair, fit};
+pub use lengths::{LengthsFit, scale_of_lengths};
 pub use triangulate::{Sight, Triangulated, triangulate};
 pub use umeyama::similarity_of;

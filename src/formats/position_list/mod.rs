@@ -16,13 +16,16 @@ mod geo_file;
 pub(super) mod mrk;
 mod table;
 
-use std::collections::HashMap;
+pub(super) use mrk::number_of_photo;
+
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 use glam::{DVec2, DVec3};
 
 use super::input::{FileError, read_text};
 use super::odm::crs_from_text;
+use super::{drone_photos, photo_metadata};
 use crate::fault::Fault;
 
 /// Where photos were taken, as a list beside them or their own headers say it.
@@ -88,12 +91,60 @@ pub fn read_control_points(path: &Path) -> Result<ControlPoints, FileError> {
     control_points_from_text(&read_text(path)?).map_err(|fault| FileError::new(path, fault))
 }
 
-/// The positions that the photos in a folder carry in their EXIF and XMP.
+/// The positions that the photos in a folder carry in their EXIF and XMP; photos without one are
+/// left out and counted.
 ///
 /// # Errors
-/// Where the folder cannot be read.
-pub fn positions_of_photos(_folder: &Path) -> Result<PositionList, FileError> {
-    Ok(PositionList::default())
+/// Where the folder cannot be read, or no photo has a position.
+pub fn positions_of_photos(folder: &Path) -> Result<PositionList, FileError> {
+    let mut list = PositionList {
+        crs: Some("EPSG:4326".to_owned()),
+        ..PositionList::default()
+    };
+    let files = drone_photos::photos_in(folder)?;
+    let mut references = BTreeSet::new();
+    for file in &files {
+        let Ok(metadata) = photo_metadata::read_file(file) else {
+            continue;
+        };
+        let Some((place, height)) = metadata
+            .place
+            .and_then(|place| Some((place, place.height?)))
+        else {
+            continue;
+        };
+        references.insert(height);
+        let name = file.file_name().unwrap_or_default();
+        list.positions.push(NamedPosition {
+            name: name.to_string_lossy().into_owned(),
+            position: DVec3::new(
+                place.place.longitude,
+                place.place.latitude,
+                place.place.height,
+            ),
+            accuracy: place.deviation,
+        });
+    }
+    if list.positions.is_empty() {
+        let what = match files.len() {
+            0 => "a folder without photos".to_owned(),
+            count => format!("none of its {count} photos says where and how high it was taken"),
+        };
+        let remedy = "give a list of positions, or control points";
+        return Err(FileError::new(folder, Fault::new(what, remedy)));
+    }
+    let without = files.len() - list.positions.len();
+    if without > 0 {
+        let all = files.len();
+        list.warnings.push(format!(
+            "{without} of {all} photos do not say where and how high they were taken"
+        ));
+    }
+    for reference in references {
+        list.warnings
+            .push(format!("the photos' heights {}", reference.in_words()));
+    }
+    Ok(list)
 }
 
 fn positions_from_text(text: &str) -> Result<PositionList, Fault> {

@@ -1,0 +1,206 @@
+//! `fragscale georeference`: a reconstruction in a frame of its own is brought to the world, and
+//! written as a flight.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+
+use super::Answer;
+use crate::exports;
+use crate::fault::Fault;
+use crate::formats::{
+    self, FileError, GeoreferenceRequest, Georeferenced, KnownDistance, KnownKind,
+};
+use crate::jobs::Progress;
+
+#[derive(Debug, Args)]
+pub(super) struct GeoreferenceArguments {
+    /// A reconstruction in a frame of its own: an NVM file, a COLMAP folder, ...
+    reconstruction: PathBuf,
+    /// The folder of the photos: their own positions, where no list is given, and their sizes.
+    #[arg(long, value_name = "FOLDER")]
+    photos: Option<PathBuf>,
+    /// A list of the photos' positions: CSV, OpenDroneMap's geo.txt, DJI's .MRK.
+    #[arg(long, value_name = "FILE")]
+    positions: Option<PathBuf>,
+    /// Ground control points with their marks in photos: OpenDroneMap's gcp_list.txt.
+    #[arg(long, value_name = "FILE")]
+    gcp: Option<PathBuf>,
+    /// A known distance in metres between two points of the reconstruction,
+    /// "x1,y1,z1 x2,y2,z2 12.5", or between two control points, "name1 name2 12.5"; gives the scale
+    /// alone. May be repeated.
+    #[arg(
+        long,
+        value_name = "POINTS",
+        allow_hyphen_values = true,
+        conflicts_with = "positions"
+    )]
+    distance: Vec<KnownDistance>,
+    /// With --distance: turn the plane of the reconstruction's points level.
+    #[arg(long, requires = "distance")]
+    level: bool,
+    /// The coordinate system of the world, and of lists that state none: EPSG:n, WKT or a PROJ text;
+    /// without it that of the list, or the zone of UTM that the positions lie in.
+    #[arg(long, value_name = "CRS", allow_hyphen_values = true)]
+    crs: Option<String>,
+    /// How to write the residuals.
+    #[arg(long, value_enum, default_value = "table")]
+    format: GeoreferenceFormat,
+    /// Write the flight to this flight.toml.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum GeoreferenceFormat {
+    Table,
+    Json,
+}
+
+pub(super) fn georeference(
+    arguments: &GeoreferenceArguments,
+    progress: &Progress,
+) -> Result<Answer, String> {
+    let request = GeoreferenceRequest {
+        photos: arguments.photos.clone(),
+        positions: arguments.positions.clone(),
+        control_points: arguments.gcp.clone(),
+        distances: arguments.distance.clone(),
+        crs: arguments.crs.clone(),
+        level: arguments.level,
+    };
+    let path = &arguments.reconstruction;
+    let result =
+        formats::georeference(path, &request, progress).map_err(|error| error.to_string())?;
+    if let Some(target) = &arguments.output {
+        let text = result
+            .flight_text(target, path, arguments.photos.as_deref())
+            .map_err(|error| error.to_string())?;
+        exports::write_whole(target, text.as_bytes()).map_err(|error| {
+            let what = format!("it cannot be written ({error})");
+            let fault = Fault::new(what, "choose a folder that may be written to");
+            FileError::new(target, fault).to_string()
+        })?;
+    }
+    Ok(Answer {
+        text: match arguments.format {
+            GeoreferenceFormat::Table => table(&result),
+            GeoreferenceFormat::Json => format!("{}\n", value(&result)),
+        },
+        warnings: result.warnings,
+    })
+}
+
+/// A line a known position, then what follows from them.
+fn table(result: &Georeferenced) -> String {
+    let mut text = String::new();
+    let unit = result.unit;
+    if !result.positions.is_empty() {
+        let names = result.positions.iter().map(|p| p.name.chars().count());
+        let width = names.max().unwrap_or_default().max(8);
+        text += &format!(
+            "{:width$} {:>10} {:>10} {:>10} {:>10}\n",
+            "position",
+            format!("dE {unit}"),
+            format!("dN {unit}"),
+            format!("dU {unit}"),
+            format!("length {unit}"),
+        );
+        for position in &result.positions {
+            let [east, north, up] = position.residual.to_array();
+            let length = position.residual.length();
+            let used = if position.used { "used" } else { "not used" };
+            let marks =
+                (position.marks_px).map_or_else(String::new, |px| format!(", marks {px:.2} px"));
+            text += &format!(
+                "{:width$} {east:>10.3} {north:>10.3} {up:>10.3} {length:>10.3}  {used}{marks}\n",
+                position.name,
+            );
+        }
+    }
+    for length in &result.lengths {
+        text += &format!(
+            "{}: {:.4} m known, {:.4} m fitted\n",
+            length.name, length.known, length.fitted
+        );
+    }
+    if let Some(rms) = result.rms {
+        let (used, all) = (result.used(), result.positions.len());
+        text += &format!("{used} of {all} positions used, RMS {rms:.3} {unit}\n");
+    }
+    text += &format!(
+        "scale: {} {unit} to one of the reconstruction's units",
+        result.similarity.scale
+    );
+    match (result.scale_error, result.scale_interval) {
+        (Some(error), Some(interval)) => {
+            text += &format!(
+                ", ± {} (standard error), ± {} (95 %)\n",
+                percent(error),
+                percent(interval)
+            );
+        }
+        _ => text += ", from one distance that nothing checks\n",
+    }
+    if let Some(turn) = result.turn_error_degrees {
+        text += &format!("least sure turn: ± {turn:.3} degrees (standard error)\n");
+    }
+    let crs = result
+        .crs
+        .as_deref()
+        .unwrap_or("local, no coordinate system");
+    text += &format!("world: {crs}, in {unit}\n");
+    if let Some(heights) = &result.heights {
+        text += &format!("heights count from: {heights}\n");
+    }
+    text
+}
+
+/// Two digits that count.
+fn percent(share: f64) -> String {
+    let percent = share * 100.0;
+    match percent {
+        p if p >= 10.0 => format!("{p:.0} %"),
+        p if p >= 1.0 => format!("{p:.1} %"),
+        p if p >= 0.1 => format!("{p:.2} %"),
+        p if p >= 0.001 => format!("{p:.4} %"),
+        p => format!("{p:.1e} %"),
+    }
+}
+
+fn value(result: &Georeferenced) -> Value {
+    let positions = result.positions.iter().map(|position| {
+        let [east, north, up] = position.residual.to_array();
+        json!({
+            "name": position.name,
+            "kind": match position.kind {
+                KnownKind::Photo => "photo",
+                KnownKind::ControlPoint => "control point",
+            },
+            "east": east,
+            "north": north,
+            "up": up,
+            "length": position.residual.length(),
+            "used": position.used,
+            "marks_px": position.marks_px,
+        })
+    });
+    let lengths = result.lengths.iter().map(
+        |length| json!({ "name": length.name, "known_m": length.known, "fitted_m": length.fitted }),
+    );
+    json!({
+        "transform": result.similarity.to_row_major(),
+        "crs": result.crs,
+        "unit": result.unit.symbol(),
+        "heights": result.heights,
+        "scale": result.similarity.scale,
+        "scale_standard_error": result.scale_error,
+        "scale_interval_95": result.scale_interval,
+        "turn_standard_error_degrees": result.turn_error_degrees,
+        "rms": result.rms,
+        "positions": positions.collect::<Vec<_>>(),
+        "distances": lengths.collect::<Vec<_>>(),
+        "warnings": result.warnings,
+    })
+}

@@ -1,0 +1,186 @@
+//! The world that known positions are brought to, and their way there.
+
+use glam::DVec3;
+
+use crate::fault::Fault;
+use crate::geodesy::{Crs, CrsKind, Geographic};
+use crate::geometry::median;
+use crate::units::LengthUnit;
+
+/// By how much a metre of the grid may differ from one on the ground.
+const WRONG_GRID: f64 = 0.005;
+/// From where on that is said.
+const POOR_GRID: f64 = 0.001;
+
+/// The world, and the coordinate system of a list.
+#[derive(Debug, Clone)]
+pub(super) struct World {
+    /// `None` where neither the user nor the list states a system: then the list's numbers are the
+    /// world's, in metres.
+    crs: Option<Crs>,
+    list: Option<Crs>,
+    unit: LengthUnit,
+}
+
+impl World {
+    /// `asked` is what the user states, `stated` what the list does, `positions` those of the list.
+    pub(super) fn new(
+        asked: Option<&str>,
+        stated: Option<&str>,
+        positions: &[DVec3],
+        warnings: &mut Vec<String>,
+    ) -> Result<Self, Fault> {
+        let asked = asked.map(Crs::understand).transpose()?;
+        let list = match stated {
+            Some(stated) => Some(Crs::understand(stated)?),
+            None => asked.clone(),
+        };
+        let middle = list
+            .as_ref()
+            .map(|list| middle_of(list, positions))
+            .transpose()?;
+        let crs = match (asked, &list, middle) {
+            (Some(asked), ..) => Some(asked),
+            (None, Some(list), _) if list.kind() == CrsKind::Projected => Some(list.clone()),
+            (None, Some(_), Some(middle)) => Some(Crs::utm_at(middle)),
+            _ => {
+                warnings.push(
+                    "the positions state no coordinate system: they are taken as metres of a local one with z up"
+                        .to_owned(),
+                );
+                None
+            }
+        };
+        let mut unit = LengthUnit::Metre;
+        if let Some(crs) = &crs {
+            if crs.kind() != CrsKind::Projected {
+                return Err(Fault::new(
+                    format!("{} is no projected coordinate system", crs.name()),
+                    "give a projected one such as EPSG:32633, or none for UTM",
+                ));
+            }
+            let is_unit =
+                |unit: &LengthUnit| (unit.metres() / crs.unit_metres() - 1.0).abs() < 1e-7;
+            unit = LengthUnit::ALL.into_iter().find(is_unit).ok_or_else(|| {
+                let what = format!("the unit of {} is {} m long", crs.name(), crs.unit_metres());
+                Fault::new(what, "give a system in metres or feet")
+            })?;
+            if let Some(scale) = middle.and_then(|middle| crs.grid_scale(middle)) {
+                warnings.extend(check_grid(crs, scale)?);
+            }
+            if let Some(list) = &list
+                && list.heights() != crs.heights()
+                && crs.heights() != NOT_SAID
+            {
+                warnings.push(format!(
+                    "heights are carried over as they are: they count from {} ({})",
+                    list.heights(),
+                    "no geoid is added"
+                ));
+            }
+        }
+        Ok(Self { crs, list, unit })
+    }
+
+    /// The same world for another list.
+    pub(super) fn with_list(
+        &self,
+        stated: Option<&str>,
+        asked: Option<&str>,
+    ) -> Result<Self, Fault> {
+        let list = stated.or(asked).map(Crs::understand).transpose()?;
+        if list.is_some() != self.crs.is_some() {
+            return Err(Fault::new(
+                "the photos' positions and the control points are not in one world",
+                "state the coordinate system of both, or of neither",
+            ));
+        }
+        Ok(Self {
+            list,
+            ..self.clone()
+        })
+    }
+
+    /// The name of its coordinate system.
+    pub(super) fn name(&self) -> Option<&str> {
+        self.crs.as_ref().map(Crs::name)
+    }
+
+    pub(super) fn unit(&self) -> LengthUnit {
+        self.unit
+    }
+
+    /// What heights count from: what the list's do.
+    pub(super) fn heights(&self) -> &str {
+        let list = self.list.as_ref().map_or(NOT_SAID, Crs::heights);
+        let own = self.crs.as_ref().map_or(NOT_SAID, Crs::heights);
+        if list == NOT_SAID { own } else { list }
+    }
+
+    /// A position of the list in the world.
+    pub(super) fn of(&self, position: DVec3) -> Result<DVec3, Fault> {
+        let (Some(crs), Some(list)) = (&self.crs, &self.list) else {
+            return Ok(position);
+        };
+        let point = if list.same_as(crs) {
+            Some(position)
+        } else {
+            list.to_geographic(position)
+                .and_then(|place| crs.from_geographic(place))
+        };
+        let point = point.ok_or_else(|| {
+            let shown = position.to_array().map(|x| x.to_string()).join(", ");
+            Fault::new(
+                format!(
+                    "the position {shown} of {} has no place in {}",
+                    list.name(),
+                    crs.name()
+                ),
+                "check the coordinate system and the order of the coordinates",
+            )
+        })?;
+        // One unit of length for all three.
+        let up = crs.vertical_unit_metres() / self.unit.metres();
+        Ok(point.with_z(point.z * up))
+    }
+}
+
+/// As [`Crs::heights`] says it.
+const NOT_SAID: &str = "not said";
+
+/// A metre of the grid has to be one on the ground: in Web Mercator, made for looking, it is not.
+fn check_grid(crs: &Crs, scale: f64) -> Result<Option<String>, Fault> {
+    let sentence = format!(
+        "a metre of {} is {:.4} m on the ground there",
+        crs.name(),
+        1.0 / scale
+    );
+    if (scale - 1.0).abs() > WRONG_GRID {
+        return Err(Fault::new(
+            sentence,
+            "give a coordinate system that keeps lengths there, such as its zone of UTM",
+        ));
+    }
+    Ok(((scale - 1.0).abs() > POOR_GRID).then_some(sentence))
+}
+
+/// The middle of a list's positions on the Earth.
+fn middle_of(list: &Crs, positions: &[DVec3]) -> Result<Geographic, Fault> {
+    let places: Vec<_> = positions
+        .iter()
+        .filter_map(|p| list.to_geographic(*p))
+        .collect();
+    let of =
+        |part: fn(&Geographic) -> f64| median(&mut places.iter().map(part).collect::<Vec<f64>>());
+    match (of(|p| p.longitude), of(|p| p.latitude)) {
+        (Some(longitude), Some(latitude)) => Ok(Geographic {
+            longitude,
+            latitude,
+            height: 0.0,
+        }),
+        _ => Err(Fault::new(
+            format!("its positions are not places in {}", list.name()),
+            "check the coordinate system and the order of the coordinates",
+        )),
+    }
+}

@@ -1,0 +1,305 @@
+//! What a photo's metadata say about its intrinsics, the most trustworthy first, each with the error
+//! of the focal length to be expected. A scale (pixels per metre) is off by the same part.
+//!
+//! 1. DJI's DewarpData (DewarpDataK6), where DewarpFlag is not 1 (then the photo is rectified
+//!    already): "YYYY-MM-DD;fx,fy,cx,cy,k1,k2,p1,p2,k3[,k4,k5,k6]", the date optional, pixels, cx and
+//!    cy from the middle of the photo, OpenCV's distortion (DJI, Matrice 4 Series User Manual, pages
+//!    90 and 91). Calibrated for this very camera: 0.3 %, because focus and temperature move it.
+//! 2. Pix4D's tags (support.pix4d.com, "Specifications of XMP Camera Tags"): PerspectiveFocalLength
+//!    and PrincipalPoint in mm from the corner of the sensor, PerspectiveDistortion "R1,R2,R3,T1,T2"
+//!    (OpenCV's k1 k2 k3 p1 p2), with EXIF's pixels per mm: 0.5 %.
+//! 3. CalibratedFocalLength in pixels. Skydio's, with X and Y, is this camera's (0.5 %), and its
+//!    optical centre counts from the centre of the first pixel (2027.5 of 4056). DJI's is the lens's
+//!    design (page 91), and its DewarpData deviate by 0.2 to 0.5 % from it: 1 %.
+//! 4. EXIF's FocalLength in mm and its focal plane's pixels per mm: the nominal length, 2 % and half
+//!    its last digit.
+//! 5. EXIF's FocalLengthIn35mmFilm: CIPA DC-008 compares the DIAGONALS (43.27 mm), 3 % and half a
+//!    millimetre. Measured: Kodak Z612 (shared/data/sceaux-images, calibrated f 2905.88 px) 1.4 % by
+//!    the diagonal, 5 % by the width. Photos wider than 3:2 are mostly cut from a 4:3 sensor, whose
+//!    diagonal counts then: 10 %.
+//!
+//! Pixels of 1 to 3 belong to the size that the camera wrote (EXIF's PixelXDimension); where the file
+//! has been reduced since, they are scaled.
+
+use super::exif_fields::ExifFields;
+use super::xmp::{Vocabulary, Xmp};
+use crate::camera::{Brown, Distortion};
+
+/// The diagonal of 35 mm film, 36 x 24 mm.
+const FILM_DIAGONAL_MM: f64 = 43.266_615_305_567_87;
+
+/// Where intrinsics come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum FocalSource {
+    /// DJI's DewarpData.
+    Dewarp,
+    /// Pix4D's tags.
+    Pix4dTags,
+    /// Skydio's calibration.
+    SkydioCalibrated,
+    /// DJI's CalibratedFocalLength.
+    DesignedLens,
+    /// EXIF's focal length and focal plane resolution.
+    FocalPlane,
+    /// EXIF's 35 mm equivalent.
+    FilmEquivalent,
+}
+
+impl FocalSource {
+    /// For messages.
+    pub(crate) fn in_words(self) -> &'static str {
+        match self {
+            Self::Dewarp => "DJI's DewarpData (this camera's calibration)",
+            Self::Pix4dTags => "XMP's PerspectiveFocalLength",
+            Self::SkydioCalibrated => "Skydio's CalibratedFocalLength",
+            Self::DesignedLens => "CalibratedFocalLength (the lens's design)",
+            Self::FocalPlane => "EXIF's focal length and sensor resolution",
+            Self::FilmEquivalent => "EXIF's 35 mm equivalent",
+        }
+    }
+}
+
+/// Intrinsics that the metadata state, for the photo file as it is; pixels from its outer corner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FocalCandidate {
+    pub(crate) source: FocalSource,
+    pub(crate) fx: f64,
+    pub(crate) fy: f64,
+    pub(crate) cx: f64,
+    pub(crate) cy: f64,
+    pub(crate) distortion: Distortion,
+    /// How far the focal length is expected to be off, as a part of it.
+    pub(crate) relative_error: f64,
+}
+
+/// All that the metadata state, the most trustworthy first.
+pub(super) fn candidates(
+    exif: &ExifFields,
+    xmp: &Xmp,
+    size: (u32, u32),
+    warnings: &mut Vec<String>,
+) -> Vec<FocalCandidate> {
+    let Some(frame) = Frame::new(exif, size, warnings) else {
+        return Vec::new();
+    };
+    if let Some(zoom) = exif.digital_zoom.filter(|&zoom| zoom > 1.0) {
+        warnings.push(format!(
+            "it was taken with a digital zoom of {zoom}, which focal lengths in metadata may or may not hold"
+        ));
+    }
+    let all = [
+        dewarp(xmp, &frame, warnings),
+        pix4d_tags(xmp, exif, &frame),
+        skydio(xmp, &frame, warnings),
+        designed(xmp, &frame),
+        focal_plane(exif, &frame),
+        film_equivalent(exif, &frame),
+    ];
+    let (width, _) = frame.written;
+    let mut candidates = Vec::new();
+    for candidate in all.into_iter().flatten() {
+        // From a fisheye's to a long telephoto's.
+        if (0.2..=100.0).contains(&(candidate.fx / width)) && candidate.fy > 0.0 {
+            candidates.push(frame.in_file(candidate));
+        } else {
+            warnings.push(format!(
+                "{} gives a focal length of {:.1} px for a width of {width} px; it is not used",
+                candidate.source.in_words(),
+                candidate.fx
+            ));
+        }
+    }
+    candidates
+}
+
+/// The image as the camera wrote it, and as the file is.
+struct Frame {
+    written: (f64, f64),
+    scale: f64,
+}
+
+impl Frame {
+    fn new(exif: &ExifFields, size: (u32, u32), warnings: &mut Vec<String>) -> Option<Self> {
+        let (width, height) = (f64::from(size.0), f64::from(size.1));
+        let Some((w, h)) = exif.size.filter(|&written| written != size) else {
+            return Some(Self {
+                written: (width, height),
+                scale: 1.0,
+            });
+        };
+        let (w, h) = (f64::from(w), f64::from(h));
+        let scale = width / w;
+        if (h * scale - height).abs() > 1.0_f64.max(scale) {
+            warnings.push(format!(
+                "the file is {width} x {height}, its EXIF says {w} x {h}: it was cut or turned, so no focal length is taken from its metadata"
+            ));
+            return None;
+        }
+        warnings.push(format!(
+            "the file is {width} x {height}, the camera wrote {w} x {h}: its focal length is scaled"
+        ));
+        Some(Self {
+            written: (w, h),
+            scale,
+        })
+    }
+
+    fn middle(&self) -> (f64, f64) {
+        (self.written.0 / 2.0, self.written.1 / 2.0)
+    }
+
+    fn in_file(&self, candidate: FocalCandidate) -> FocalCandidate {
+        FocalCandidate {
+            fx: candidate.fx * self.scale,
+            fy: candidate.fy * self.scale,
+            cx: candidate.cx * self.scale,
+            cy: candidate.cy * self.scale,
+            ..candidate
+        }
+    }
+
+    /// A pinhole whose principal point is the middle.
+    fn plain(&self, source: FocalSource, f: (f64, f64), relative_error: f64) -> FocalCandidate {
+        let (cx, cy) = self.middle();
+        FocalCandidate {
+            source,
+            fx: f.0,
+            fy: f.1,
+            cx,
+            cy,
+            distortion: Distortion::None,
+            relative_error,
+        }
+    }
+}
+
+/// Finite numbers between commas; `None` where one is none.
+fn numbers(text: &str) -> Option<Vec<f64>> {
+    let parse = |word: &str| word.trim().parse::<f64>().ok().filter(|n| n.is_finite());
+    text.split(',').map(parse).collect()
+}
+
+fn dewarp(xmp: &Xmp, frame: &Frame, warnings: &mut Vec<String>) -> Option<FocalCandidate> {
+    if xmp.number(Vocabulary::Dji, "DewarpFlag") == Some(1.0) {
+        return None;
+    }
+    for name in ["DewarpDataK6", "DewarpData"] {
+        let Some(text) = xmp.text(Vocabulary::Dji, name) else {
+            continue;
+        };
+        let values = text.rsplit(';').next().unwrap_or(text);
+        let (fx, fy, cx, cy, rest) = match numbers(values).as_deref() {
+            Some(&[fx, fy, cx, cy, ref rest @ ..]) => (fx, fy, cx, cy, rest.to_vec()),
+            _ => (0.0, 0.0, 0.0, 0.0, Vec::new()),
+        };
+        // Uncalibrated cameras write zeros.
+        if fx <= 0.0 || fy <= 0.0 {
+            continue;
+        }
+        let mut coefficients = [0.0; 8];
+        if rest.len() > coefficients.len() {
+            warnings.push(format!(
+                "its {name} has {} numbers, more than is known; it is not used",
+                rest.len() + 4
+            ));
+            continue;
+        }
+        for (coefficient, value) in coefficients.iter_mut().zip(rest) {
+            *coefficient = value;
+        }
+        let (middle_x, middle_y) = frame.middle();
+        return Some(FocalCandidate {
+            cx: middle_x + cx,
+            cy: middle_y + cy,
+            distortion: Distortion::Brown(Brown::new(coefficients)),
+            ..frame.plain(FocalSource::Dewarp, (fx, fy), 0.003)
+        });
+    }
+    None
+}
+
+fn pix4d_tags(xmp: &Xmp, exif: &ExifFields, frame: &Frame) -> Option<FocalCandidate> {
+    let text = |name| xmp.text(Vocabulary::Pix4dCamera, name);
+    if text("ModelType").is_some_and(|model| !model.eq_ignore_ascii_case("perspective")) {
+        return None;
+    }
+    let length = xmp.number(Vocabulary::Pix4dCamera, "PerspectiveFocalLength")?;
+    let (x, y) = exif.plane?;
+    let mut candidate = frame.plain(FocalSource::Pix4dTags, (length * x, length * y), 0.005);
+    if let Some([cx, cy]) = text("PrincipalPoint").and_then(numbers).as_deref() {
+        (candidate.cx, candidate.cy) = (cx * x, cy * y);
+    }
+    if let Some(&[r1, r2, r3, t1, t2]) = text("PerspectiveDistortion").and_then(numbers).as_deref()
+    {
+        let brown = Brown::new([r1, r2, t1, t2, r3, 0.0, 0.0, 0.0]);
+        candidate.distortion = Distortion::Brown(brown);
+    }
+    Some(candidate)
+}
+
+fn skydio(xmp: &Xmp, frame: &Frame, warnings: &mut Vec<String>) -> Option<FocalCandidate> {
+    let number = |name: &str| xmp.number(Vocabulary::Skydio, name);
+    let fx = number("CalibratedFocalLength/X").or_else(|| number("CalibratedFocalLengthX"))?;
+    let fy = number("CalibratedFocalLength/Y").or_else(|| number("CalibratedFocalLengthY"))?;
+    let mut candidate = frame.plain(FocalSource::SkydioCalibrated, (fx, fy), 0.005);
+    let center = |axis| {
+        number(&format!("CalibratedOpticalCenter/{axis}"))
+            .or_else(|| number(&format!("CalibratedOpticalCenter{axis}")))
+    };
+    if let (Some(x), Some(y)) = (center("X"), center("Y")) {
+        (candidate.cx, candidate.cy) = (x + 0.5, y + 0.5);
+    }
+    let bent = xmp.text(Vocabulary::Skydio, "DewarpData");
+    if let Some(bent) = bent.filter(|text| text.contains(|c: char| ('1'..='9').contains(&c))) {
+        warnings.push(format!(
+            "Skydio's distortion ({bent}) is left out, because its formula is not published"
+        ));
+    }
+    Some(candidate)
+}
+
+fn designed(xmp: &Xmp, frame: &Frame) -> Option<FocalCandidate> {
+    [Vocabulary::Dji, Vocabulary::Autel]
+        .into_iter()
+        .find_map(|vocabulary| {
+            let number = |name| xmp.number(vocabulary, name).filter(|&n| n > 0.0);
+            let f = number("CalibratedFocalLength")?;
+            let mut candidate = frame.plain(FocalSource::DesignedLens, (f, f), 0.01);
+            let x = number("CalibratedOpticalCenterX");
+            let y = number("CalibratedOpticalCenterY");
+            if let (Some(x), Some(y)) = (x, y) {
+                let (middle_x, middle_y) = frame.middle();
+                // A centre far from the middle belongs to another image size, and so does the length.
+                if (x / middle_x - 1.0).abs() > 0.1 || (y / middle_y - 1.0).abs() > 0.1 {
+                    return None;
+                }
+                (candidate.cx, candidate.cy) = (x, y);
+            }
+            Some(candidate)
+        })
+}
+
+fn focal_plane(exif: &ExifFields, frame: &Frame) -> Option<FocalCandidate> {
+    let length = exif.focal_length?;
+    let (x, y) = exif.plane?;
+    // A sensor between 1 and 70 mm: some programs write nonsense here.
+    if !(1.0..=70.0).contains(&(frame.written.0 / x)) {
+        return None;
+    }
+    let f = length.millimetres;
+    let error = 0.02 + 0.5 * length.step / f;
+    Some(frame.plain(FocalSource::FocalPlane, (f * x, f * y), error))
+}
+
+fn film_equivalent(exif: &ExifFields, frame: &Frame) -> Option<FocalCandidate> {
+    let film = exif.film_equivalent?;
+    let (width, height) = frame.written;
+    let (long, short) = (width.max(height), width.min(height));
+    let (diagonal, error) = if long / short > 1.55 {
+        (long * 1.25, 0.1)
+    } else {
+        (long.hypot(short), 0.03 + 0.5 / film)
+    };
+    let f = film / FILM_DIAGONAL_MM * diagonal;
+    Some(frame.plain(FocalSource::FilmEquivalent, (f, f), error))
+}
