@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::input::FileError;
-use super::{Kind, OpenOptions, detect};
+use super::{Kind, OpenOptions, Package, detect};
 use crate::fault::Fault;
 
 /// What several paths are to each other.
@@ -26,6 +26,7 @@ impl Dropped {
         for path in paths {
             let (part, name) = match detect(path)? {
                 Kind::Cloud(_) => (&mut dropped.options.surface, "surfaces"),
+                Kind::Reconstruction(Package::Photos, _) => (&mut photos, "folders of photos"),
                 Kind::Flight(_) | Kind::Reconstruction(..) => (&mut dropped.flight, "flights"),
                 kind @ (Kind::Camera | Kind::Poses) => return Err(no_part(path, &kind)),
             };

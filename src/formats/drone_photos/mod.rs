@@ -30,13 +30,14 @@ use crate::fault::Fault;
 use crate::jobs::Progress;
 use cameras::Cameras;
 
-/// The endings of image files, in small letters.
-const ENDINGS: [&str; 5] = ["jpg", "jpeg", "png", "tif", "tiff"];
+/// The endings of photos, in small letters. TIFF files are elevation models as often, and their
+/// metadata are not looked into.
+const ENDINGS: [&str; 3] = ["jpg", "jpeg", "png"];
 
 /// How many photos a warning names.
 const NAMED: usize = 3;
 
-/// Whether a file is named like an image.
+/// Whether a file is named like a photo.
 pub(super) fn is_photo(path: &Path) -> bool {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     let ending = ending.to_ascii_lowercase();
