@@ -161,6 +161,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::flight::ReconstructionFlight;
     use crate::surface::SurfaceOptions;
     use crate::units::LengthUnit;
 
@@ -308,9 +309,15 @@ folder = "photos"
             name in "\\PC*",
             surface in prop::option::of("[a-z ü\"\\\\]{1,9}"),
         ) {
-            let file = FlightFile::for_reconstruction(
-                &name, "../odm", Some("../odm/images"), surface.as_deref(), &settings,
-            );
+            let flight = ReconstructionFlight {
+                name: &name,
+                reconstruction: "../odm",
+                transform: Some([0.1, 0.0, 0.0, 5e5, 0.0, 0.1, 0.0, 5e6, 0.0, 0.0, 0.1, 1.0 / 3.0, 0.0, 0.0, 0.0, 1.0]),
+                folder: Some("../odm/images"),
+                surface: surface.as_deref(),
+                crs: Some("EPSG:32633"),
+            };
+            let file = FlightFile::for_reconstruction(&flight, &settings);
             let read = FlightFile::parse(&file.to_toml().unwrap()).unwrap();
             prop_assert_eq!(read.settings(), settings);
             prop_assert_eq!(read, file);

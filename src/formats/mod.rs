@@ -23,6 +23,7 @@ mod photo_files;
 mod photo_size;
 mod ply;
 mod poses_csv;
+mod position_list;
 mod reconstruction;
 #[cfg(test)]
 mod test_data;
@@ -40,6 +41,10 @@ pub use open::{OpenOptions, Opened, PhotoFile, open_flight};
 pub use origin::FlightOrigin;
 pub use package::Package;
 pub use poses_csv::{PoseLine, PosesFile};
+pub use position_list::{
+    ControlPoint, ControlPoints, NamedPosition, PositionList, positions_of_photos,
+    read_control_points, read_positions,
+};
 pub use reconstruction::{MeasuredPosition, Observation, PosedPhoto, Project, Reconstruction};
 
 use crate::camera::Camera;

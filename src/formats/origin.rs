@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::input::{FileError, read_text};
 use crate::fault::Fault;
-use crate::flight::{FlightFile, FlightSettings};
+use crate::flight::{FlightFile, FlightSettings, ReconstructionFlight};
 
 /// Where an opened flight came from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -96,15 +96,16 @@ impl FlightOrigin {
         let reconstruction = path(&self.path)?;
         let photos = self.photo_folder.as_deref().map(path).transpose()?;
         let surface = self.surface.as_deref().map(path).transpose()?;
-        FlightFile::for_reconstruction(
-            &self.name,
-            &reconstruction,
-            photos.as_deref(),
-            surface.as_deref(),
-            settings,
-        )
-        .to_toml()
-        .map_err(at_target)
+        let flight = ReconstructionFlight {
+            name: &self.name,
+            reconstruction: &reconstruction,
+            folder: photos.as_deref(),
+            surface: surface.as_deref(),
+            ..ReconstructionFlight::default()
+        };
+        FlightFile::for_reconstruction(&flight, settings)
+            .to_toml()
+            .map_err(at_target)
     }
 
     /// The same flight once it was saved at `target`.
