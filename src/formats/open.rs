@@ -3,16 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::input::{FileError, read_bytes, read_text};
+use super::input::{FileError, read_text};
 use super::origin::FlightOrigin;
 use super::photo_files::{PhotoFolder, fit_cameras_to_files};
-use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, poses_csv, read_project};
+use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, read_project};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{
     CameraEntry, CameraSource, Flight, FlightFile, FlightParts, FlightSettings, Photo,
     PhotoFileState, PhotoSource,
 };
+use crate::geodesy::{Crs, CrsKind};
 use crate::geometry::Similarity;
 use crate::jobs::Progress;
 use crate::scale::{Ground, ImageKind};
@@ -337,10 +338,21 @@ impl Source {
     }
 
     fn add_poses(&mut self, path: &Path, cameras: &[Option<String>]) -> Result<(), FileError> {
-        let poses =
-            poses_csv::read(&read_bytes(path)?).map_err(|fault| FileError::new(path, fault))?;
+        let poses = super::read_poses(path)?;
         self.warn(path, &poses.warnings);
         self.inputs.push(path.to_owned());
+        let is_geographic = |crs: &Crs| crs.kind() == CrsKind::Geographic;
+        if let Some(crs) = poses.crs
+            && Crs::understand(&crs).is_ok_and(|crs| is_geographic(&crs))
+        {
+            return Err(FileError::new(
+                path,
+                Fault::new(
+                    "its positions are longitudes and latitudes, not lengths",
+                    "export it in a metric system, such as UTM",
+                ),
+            ));
+        }
         for line in poses.lines {
             let camera = camera_of(&line, cameras).map_err(|fault| FileError::new(path, fault))?;
             self.photos.push(Photo {
