@@ -38,6 +38,8 @@ pub(super) struct Sensor {
 
 /// A `<camera>`, enabled or not.
 pub(super) struct Photo<'a> {
+    /// As frames and tie points call it.
+    pub(super) id: &'a str,
     /// Unique among the photos.
     pub(super) name: String,
     /// Index of its sensor.
@@ -246,6 +248,7 @@ pub(super) fn photos<'a>(
                 .map(|pose| after(&pose, offset)),
         };
         photos.push(Photo {
+            id: node.attribute("id").unwrap_or_default(),
             name,
             sensor,
             component: node

@@ -16,7 +16,8 @@
 //! - A document of several chunks, which share no frame: the active one is read if it has an aligned
 //!   photo, else the first that has. An XML whose root is `<chunk>` (a project's) reads as well.
 //! - Photos are named by their label, in projects by their file.
-//! - Not read: `<region>`, `<markers>`, `<covariance>`, `<settings>`, dense clouds and models.
+//! - Tie points of a .psx: `points.rs`. Not read: `<region>`, `<markers>`, `<covariance>`, `<settings>`,
+//!   dense clouds and models.
 //!
 //! The text that the same dialogue exports with angles: `opk.rs`.
 
@@ -25,6 +26,7 @@ mod cameras;
 mod georeference;
 mod names;
 mod opk;
+mod points;
 mod project;
 #[cfg(test)]
 mod tests;
@@ -40,6 +42,7 @@ pub(super) use project::read_project;
 
 use self::cameras::{Photo, Sensor, count_components, photos, sensors};
 use self::georeference::{Kept, Placing, Reference, moved};
+use self::points::TiePoints;
 use self::xml::{child, children, is_off, root_element};
 use crate::fault::Fault;
 use crate::formats::{MeasuredPosition, PosedPhoto, Reconstruction};
@@ -92,7 +95,7 @@ pub(super) fn read_xml(text: &str) -> Result<Reconstruction, Fault> {
         return Err(Fault::new("it holds no aligned photo", ALIGN));
     };
     let frame = child(chunk, "frames").and_then(|frames| child(frames, "frame"));
-    let mut found = read_chunk(chunk, frame)?;
+    let mut found = read_chunk(chunk, frame, None)?;
     if chunks.len() > 1 {
         found.warnings.push(one_of_chunks(chunk, chunks.len()));
     }
@@ -127,7 +130,11 @@ fn paths_of<'a>(frame: Option<Node<'a, '_>>) -> HashMap<&'a str, &'a str> {
 }
 
 /// Reads a chunk; `frame` names the files of its photos.
-fn read_chunk(chunk: Node<'_, '_>, frame: Option<Node<'_, '_>>) -> Result<Reconstruction, Fault> {
+fn read_chunk(
+    chunk: Node<'_, '_>,
+    frame: Option<Node<'_, '_>>,
+    tie_points: Option<TiePoints>,
+) -> Result<Reconstruction, Fault> {
     let mut found = Reconstruction {
         package: "metashape",
         sizes_known: true,
@@ -160,9 +167,16 @@ fn read_chunk(chunk: Node<'_, '_>, frame: Option<Node<'_, '_>>) -> Result<Recons
     leave_out_unusable(&mut usable, &sensors, &mut found.warnings)?;
     let placing = Placing::of_chunk(chunk)?;
     let kept = leave_out_components(&mut usable, &placing, &mut found.warnings);
-    add_photos(&mut found, &usable, &placing, sensors);
+    let photo_of_camera = add_photos(&mut found, &usable, &placing, sensors);
     if found.photos.is_empty() {
         return Err(Fault::new("it holds no photo that can be used", ALIGN));
+    }
+    if let Some(tie_points) = tie_points {
+        let is_kept = |component: Option<&str>| match kept {
+            Kept::Placed => placing.of(component).is_some(),
+            Kept::Alone(alone) => component.is_none() || component == alone,
+        };
+        tie_points.add_to(&mut found, &placing, is_kept, &photo_of_camera);
     }
     let rolling = usable.iter().filter(|photo| photo.rolling_shutter).count();
     if rolling > 0 {
@@ -242,13 +256,15 @@ fn leave_out_components<'a>(
     kept
 }
 
-/// Adds the photos in the world, and the cameras that can be used.
-fn add_photos(
+/// Adds the photos in the world, and the cameras that can be used; returns where each photo went, by
+/// its camera's id.
+fn add_photos<'a>(
     found: &mut Reconstruction,
-    photos: &[Photo<'_>],
+    photos: &[Photo<'a>],
     placing: &Placing<'_>,
     sensors: Vec<Sensor>,
-) {
+) -> HashMap<&'a str, u32> {
+    let mut photo_of_camera = HashMap::new();
     let mut camera_of_sensor = HashMap::new();
     for (index, sensor) in sensors.into_iter().enumerate() {
         // The faults of sensors with photos are said by now.
@@ -261,6 +277,9 @@ fn add_photos(
         let camera = photo.sensor.and_then(|index| camera_of_sensor.get(&index));
         if let (Some(pose), Some(&camera)) = (photo.pose, camera) {
             let world = placing.of(photo.component);
+            if let Ok(index) = u32::try_from(found.photos.len()) {
+                photo_of_camera.insert(photo.id, index);
+            }
             found.photos.push(PosedPhoto {
                 name: photo.name.clone(),
                 camera,
@@ -268,6 +287,7 @@ fn add_photos(
             });
         }
     }
+    photo_of_camera
 }
 
 /// Says which frame the transform led to.

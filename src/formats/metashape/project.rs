@@ -12,12 +12,14 @@
 //! frame.zip, or to the .psz. Of several frames (moments of a moving scene) the first is read. Zip
 //! files are inflated up to a limit, so a zip bomb is refused.
 
+use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Component, Path, PathBuf};
 
 use roxmltree::Node;
 use zip::ZipArchive;
 
+use super::points::TiePoints;
 use super::xml::{child, children, parse};
 use super::{ALIGN, has_aligned, one_of_chunks, paths_of, read_chunk, read_xml};
 use crate::fault::Fault;
@@ -124,13 +126,14 @@ fn read_chunk_file(path: &Path, chunk: Node<'_, '_>, count: usize) -> Result<Pro
             let document = parse(text).map_err(|fault| FileError::new(frame, fault))?;
             let root = document.root_element();
             let photos = folder_of(frame, paths_of(Some(root)).into_values());
-            let reconstruction = read_chunk(chunk, Some(root)).map_err(at)?;
+            let tie_points = read_tie_points(frame, root)?;
+            let reconstruction = read_chunk(chunk, Some(root), tie_points).map_err(at)?;
             Project {
                 photos,
                 ..Project::from(reconstruction)
             }
         }
-        None => Project::from(read_chunk(chunk, None).map_err(at)?),
+        None => Project::from(read_chunk(chunk, None, None).map_err(at)?),
     };
     if frames.len() > 1 {
         let count = frames.len();
@@ -141,6 +144,22 @@ fn read_chunk_file(path: &Path, chunk: Node<'_, '_>, count: usize) -> Result<Pro
     }
     project.reconstruction.warnings.extend(warnings);
     Ok(project)
+}
+
+/// The tie points of a frame, where they were copied along.
+fn read_tie_points(path: &Path, frame: Node<'_, '_>) -> Result<Option<TiePoints>, FileError> {
+    let named = child(frame, "point_cloud").and_then(|cloud| cloud.attribute("path"));
+    let Some(named) = named else {
+        return Ok(None);
+    };
+    let path = below(path, named)?;
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let text = read_document(&path)?;
+    let document = parse(&text).map_err(|fault| FileError::new(&path, fault))?;
+    let mut archive = open_archive(&path)?;
+    Ok(Some(TiePoints::read(&mut archive, document.root_element())))
 }
 
 /// The file that another one names relative to its own folder, and that lies below it.
@@ -179,10 +198,16 @@ fn read_document(path: &Path) -> Result<String, FileError> {
     read_entry(path, LARGEST)
 }
 
+fn open_archive(path: &Path) -> Result<ZipArchive<BufReader<File>>, FileError> {
+    ZipArchive::new(BufReader::new(open_file(path)?))
+        .map_err(|error| unreadable(path, &error.to_string()))
+}
+
 fn read_entry(path: &Path, largest: u64) -> Result<String, FileError> {
-    let broken = |error: zip::result::ZipError| unreadable(path, &error.to_string());
-    let mut archive = ZipArchive::new(BufReader::new(open_file(path)?)).map_err(broken)?;
-    let entry = archive.by_name("doc.xml").map_err(broken)?;
+    let mut archive = open_archive(path)?;
+    let entry = archive
+        .by_name("doc.xml")
+        .map_err(|error| unreadable(path, &error.to_string()))?;
     let mut bytes = Vec::new();
     entry
         .take(largest + 1)
@@ -288,6 +313,50 @@ mod tests {
         let found = read_project(&psx).unwrap().reconstruction;
         assert_eq!(found.photos[1].name, "two");
         assert!(found.warnings.join("\n").contains("named by their labels"));
+    }
+
+    /// A point 10 in front of both cameras, which look along the chunk's z from (5, 6, 7): in the
+    /// middle of both images, where the first one measures 3 px to the right of it.
+    #[test]
+    fn tie_points_with_their_projections() {
+        let ply = |properties: &str, rows: &str| {
+            let count = rows.lines().count();
+            format!("ply\nformat ascii 1.0\nelement vertex {count}\n{properties}end_header\n{rows}")
+        };
+        let xyz = "property float x\nproperty float y\nproperty float z\nproperty int id\n";
+        let xy = "property float x\nproperty float y\nproperty float size\nproperty int id\n";
+        let list = "<point_cloud version=\"1.7.0\"><tracks path=\"tracks.ply\"/><points path=\"points0.ply\"/>\
+            <projections camera_id=\"0\" path=\"p0.ply\"/><projections camera_id=\"3\" path=\"p3.ply\"/>\
+            <projections camera_id=\"4\" path=\"p4.ply\"/></point_cloud>";
+        let folder = tempfile::tempdir().unwrap();
+        let psx = project(folder.path());
+        let files = folder.path().join("Pile 1.files/0/0");
+        let frame = "<frame><cameras/><point_cloud path=\"point_cloud/point_cloud.zip\"/></frame>";
+        zipped(&files.join("frame.zip"), "doc.xml", frame.as_bytes());
+        let path = files.join("point_cloud/point_cloud.zip");
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        let mut writer = ZipWriter::new(File::create(&path).unwrap());
+        for (name, content) in [
+            ("doc.xml", list.to_owned()),
+            ("points0.ply", ply(xyz, "5 6 17 42\n1 2 3 7\n")),
+            ("p0.ply", ply(xy, "23 15 1 42\n1 1 1 99\n")),
+            ("p3.ply", ply(xy, "20 15 1 42\n")),
+            (
+                "p4.ply",
+                "ply\nformat ascii 1.0\nproperty uint64 keypoint\n".to_owned(),
+            ),
+        ] {
+            writer
+                .start_file(name, SimpleFileOptions::default())
+                .unwrap();
+            writer.write_all(content.as_bytes()).unwrap();
+        }
+        writer.finish().unwrap();
+        let found = read_project(&psx).unwrap().reconstruction;
+        assert_eq!((found.cloud.points.len(), found.observations.len()), (2, 2));
+        assert_eq!(found.median_reprojection_px(), Some(1.5));
+        let warnings = found.warnings.join("\n");
+        assert!(warnings.contains("not all read: 'p4.ply'"), "{warnings}");
     }
 
     #[test]
