@@ -7,14 +7,10 @@
 //! ```
 //!
 //! ROS's `plumb_bob` is its first five coefficients, `rational_polynomial` all eight.
-//!
-//! The inverse follows the straight line from the principal point to the wanted point, so it ends
-//! on the branch of the model that the middle of the image lies on, or finds that this branch ends
-//! (its Jacobian loses rank) before it arrives. Newton's method from a fixed start, as OpenCV does
-//! it, may land on the far side of the fold without saying so.
 
 use glam::{DMat2, DVec2};
 
+use super::branch::invert;
 use super::distortion::NotInvertible;
 use super::polynomial::smallest_positive_root;
 
@@ -65,10 +61,7 @@ impl Brown {
 
     /// The distorted point of an ideal one, or `None` beyond the fold.
     pub fn distorted_from_ideal(&self, ideal: DVec2) -> Option<DVec2> {
-        if ideal.length_squared() >= self.fold_squared {
-            return None;
-        }
-        let (distorted, jacobian) = self.map(ideal);
+        let (distorted, jacobian) = self.on_branch(ideal)?;
         (jacobian.determinant() > 0.0).then_some(distorted)
     }
 
@@ -81,54 +74,13 @@ impl Brown {
         distorted: DVec2,
         tolerance: f64,
     ) -> Result<DVec2, NotInvertible> {
-        let mut ideal = DVec2::ZERO;
-        let mut reached = 0.0;
-        let mut step: f64 = 0.25;
-        while reached < 1.0 {
-            let next = (reached + step).min(1.0);
-            match self.newton(ideal, distorted * next, tolerance) {
-                Some(found) => {
-                    ideal = found;
-                    reached = next;
-                    step *= 2.0;
-                }
-                // Near the fold the steps shrink without end: closer than this is beyond it.
-                None if step < 1e-9 => {
-                    let radius = distorted.length();
-                    return Err(NotInvertible {
-                        radius,
-                        fold: radius * reached,
-                    });
-                }
-                None => step /= 4.0,
-            }
-        }
-        Ok(ideal)
+        invert(|ideal| self.on_branch(ideal), distorted, tolerance)
     }
 
-    /// Newton's method for a target near `distort(start)`; `None` where it does not converge at
-    /// once or would leave the branch of `start`.
-    fn newton(&self, start: DVec2, target: DVec2, tolerance: f64) -> Option<DVec2> {
-        let mut ideal = start;
-        let mut last_error = f64::INFINITY;
-        for _ in 0..8 {
-            let (distorted, jacobian) = self.map(ideal);
-            if jacobian.determinant() <= 0.0 || ideal.length_squared() >= self.fold_squared {
-                return None;
-            }
-            let error = (target - distorted).length();
-            // On past the tolerance to the floor of rounding: one more step is cheap, and the
-            // branch is then known to be the right one.
-            if error == 0.0 || (error <= tolerance && error >= last_error / 2.0) {
-                return Some(ideal);
-            }
-            if error >= last_error {
-                return None;
-            }
-            last_error = error;
-            ideal += jacobian.inverse() * (target - distorted);
-        }
-        (last_error <= tolerance).then_some(ideal)
+    /// The distorted point and the derivative of the map, or `None` beyond the fold of the radial
+    /// factor.
+    fn on_branch(&self, ideal: DVec2) -> Option<(DVec2, DMat2)> {
+        (ideal.length_squared() < self.fold_squared).then(|| self.map(ideal))
     }
 
     /// The distorted point and the derivative of the map.

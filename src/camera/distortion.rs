@@ -9,6 +9,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::agisoft::{Agisoft, AgisoftProjection};
 use super::brown::Brown;
 use super::fisheye::Fisheye;
 use super::visualsfm::VisualSfm;
@@ -25,6 +26,8 @@ pub enum Distortion {
     Fisheye(Fisheye),
     /// VisualSFM's radial term, which acts on the measured point.
     VisualSfm(VisualSfm),
+    /// Agisoft's model where it has terms that OpenCV's lack.
+    Agisoft(Agisoft),
 }
 
 /// The model does not reach this point of the image: no direction is seen there.
@@ -47,6 +50,11 @@ impl Distortion {
             Self::Brown(_) => "brown",
             Self::Fisheye(_) => "fisheye",
             Self::VisualSfm(_) => "visualsfm",
+            Self::Agisoft(model) => match model.projection() {
+                AgisoftProjection::Frame => "agisoft-frame",
+                AgisoftProjection::EquidistantFisheye => "agisoft-equidistant-fisheye",
+                AgisoftProjection::EquisolidFisheye => "agisoft-equisolid-fisheye",
+            },
         }
     }
 
@@ -57,23 +65,20 @@ impl Distortion {
             Self::Brown(model) => model.coefficients().to_vec(),
             Self::Fisheye(model) => model.coefficients().to_vec(),
             Self::VisualSfm(model) => vec![model.k],
+            Self::Agisoft(model) => model.coefficients().to_vec(),
         }
     }
 
     /// The distorted image point of a direction in camera axes, or `None` where the lens does not
     /// see it (behind the camera, or beyond the fold).
     pub fn distorted_from_direction(&self, direction: DVec3) -> Option<DVec2> {
-        if let Self::Fisheye(model) = self {
-            return model.distorted_from_direction(direction);
-        }
-        if direction.z <= 0.0 {
-            return None;
-        }
-        let ideal = direction.truncate() / direction.z;
+        let ideal = || (direction.z > 0.0).then(|| direction.truncate() / direction.z);
         match self {
-            Self::None | Self::Fisheye(_) => Some(ideal),
-            Self::Brown(model) => model.distorted_from_ideal(ideal),
-            Self::VisualSfm(model) => model.distorted_from_ideal(ideal),
+            Self::None => ideal(),
+            Self::Brown(model) => model.distorted_from_ideal(ideal()?),
+            Self::Fisheye(model) => model.distorted_from_direction(direction),
+            Self::VisualSfm(model) => model.distorted_from_ideal(ideal()?),
+            Self::Agisoft(model) => model.distorted_from_direction(direction),
         }
     }
 
@@ -94,6 +99,7 @@ impl Distortion {
                 .extend(1.0)),
             Self::Fisheye(model) => model.direction_from_distorted(distorted, tolerance),
             Self::VisualSfm(model) => Ok(model.ideal_from_distorted(distorted)?.extend(1.0)),
+            Self::Agisoft(model) => model.direction_from_distorted(distorted, tolerance),
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Cameras: intrinsics, distortion, poses; pixel -> ray, point -> pixel.
 
+mod agisoft;
+mod branch;
 mod brown;
 mod distortion;
 mod fisheye;
@@ -10,6 +12,7 @@ mod visualsfm;
 
 use glam::{DVec2, DVec3};
 
+pub use agisoft::{Agisoft, AgisoftProjection};
 pub use brown::Brown;
 pub use distortion::{Distortion, NotInvertible};
 pub use fisheye::Fisheye;
@@ -291,7 +294,18 @@ mod tests {
         let fisheye = (-0.3..0.3_f64, small(), small(), small())
             .prop_map(|(a, b, c, d)| Distortion::Fisheye(Fisheye::new([a, b, c, d])));
         let visualsfm = (-0.4..0.4_f64).prop_map(|k| Distortion::VisualSfm(VisualSfm { k }));
-        prop_oneof![Just(Distortion::None), brown, fisheye, visualsfm]
+        let projection = prop_oneof![
+            Just(AgisoftProjection::Frame),
+            Just(AgisoftProjection::EquidistantFisheye),
+            Just(AgisoftProjection::EquisolidFisheye),
+        ];
+        let numbers = || [-0.3..0.3_f64, small(), small(), small()];
+        let agisoft =
+            (projection, numbers(), numbers()).prop_map(|(projection, k, [p, q, r, s])| {
+                let p = [p * 0.01, q * 0.1, r * 10.0, s * 10.0];
+                Distortion::Agisoft(Agisoft::new(projection, k, p))
+            });
+        prop_oneof![Just(Distortion::None), brown, fisheye, visualsfm, agisoft]
     }
 
     proptest! {

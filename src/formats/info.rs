@@ -93,7 +93,7 @@ fn camera_info(camera: &Camera) -> Value {
     json!({"kind": "camera", "cameras": [camera_value(camera)], "warnings": warnings})
 }
 
-/// A poses.csv.
+/// The poses of photos.
 fn poses_info(file: &PosesFile) -> Value {
     let photos = file
         .lines
@@ -101,6 +101,7 @@ fn poses_info(file: &PosesFile) -> Value {
         .map(|line| photo_value(&line.photo, line.camera.as_deref(), &line.pose));
     json!({
         "kind": "poses",
+        "crs": file.crs,
         "photos": photos.collect::<Vec<_>>(),
         "warnings": file.warnings,
     })

@@ -15,6 +15,7 @@ mod info;
 mod input;
 mod json;
 mod las;
+mod metashape;
 mod nvm;
 mod obj;
 mod odm;
@@ -73,7 +74,7 @@ pub enum Kind {
     Cloud(CloudFormat),
     /// The calibration of a camera.
     Camera,
-    /// A poses.csv.
+    /// The poses of photos: a poses.csv, or Metashape's text.
     Poses,
     /// Cameras and posed photos as this package wrote them, in this file or folder.
     Reconstruction(Package, PathBuf),
@@ -106,7 +107,7 @@ impl Kind {
 }
 
 /// Everything that can be opened, for messages.
-const SUPPORTED: &str = "flight.toml, PLY, LAS, LAZ, OBJ, XYZ/TXT/CSV, NVM, camera YAML or XML, poses.csv, a COLMAP or OpenDroneMap folder";
+const SUPPORTED: &str = "flight.toml, PLY, LAS, LAZ, OBJ, XYZ/TXT/CSV, NVM, Metashape's cameras.xml and .psx, camera YAML or XML, poses.csv, a COLMAP or OpenDroneMap folder";
 
 /// Tells what a file or folder holds: by its first bytes where they are distinctive, else by its
 /// name.
@@ -162,6 +163,7 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         "obj" => Kind::Cloud(CloudFormat::Obj),
         "yaml" | "yml" | "xml" => Kind::Camera,
         "csv" | "txt" if has_photo_column(text) => Kind::Poses,
+        "csv" | "txt" if metashape::is_opk(&String::from_utf8_lossy(text)) => Kind::Poses,
         "csv" | "txt" | "xyz" | "asc" => Kind::Cloud(CloudFormat::Xyz),
         _ => {
             return Err(FileError::new(
@@ -283,10 +285,15 @@ pub fn read_project(path: &Path, progress: &Progress) -> Result<Project, FileErr
     }
 }
 
-/// Reads a poses.csv.
+/// Reads a poses.csv, or the text that Metashape exports.
 ///
 /// # Errors
 /// With the file and the place in it.
 fn read_poses(path: &Path) -> Result<PosesFile, FileError> {
-    poses_csv::read(&read_bytes(path)?).map_err(|fault| FileError::new(path, fault))
+    let bytes = read_bytes(path)?;
+    let poses = match text_from_bytes(&bytes) {
+        Ok(text) if metashape::is_opk(text) => metashape::read_opk(text),
+        _ => poses_csv::read(&bytes),
+    };
+    poses.map_err(|fault| FileError::new(path, fault))
 }

@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::input::{FileError, read_bytes, read_text};
+use super::input::{FileError, read_text};
 use super::origin::FlightOrigin;
 use super::photo_checks::photo_checks;
 use super::photo_files::{PhotoFolder, fit_cameras_to_files};
 use super::world_frame::{Frame, Known};
-use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, poses_csv, read_project};
+use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, read_project};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{
@@ -370,10 +370,13 @@ impl Source {
     }
 
     fn add_poses(&mut self, path: &Path, cameras: &[Option<String>]) -> Result<(), FileError> {
-        let poses =
-            poses_csv::read(&read_bytes(path)?).map_err(|fault| FileError::new(path, fault))?;
+        let poses = super::read_poses(path)?;
         self.warn(path, &poses.warnings);
         self.inputs.push(path.to_owned());
+        let mut said = Vec::new();
+        self.poses_frame = Frame::of_poses(poses.crs.as_deref(), None, &mut said)
+            .map_err(|fault| FileError::new(path, fault))?;
+        self.warn(path, &said);
         for line in poses.lines {
             let camera = camera_of(&line, cameras).map_err(|fault| FileError::new(path, fault))?;
             self.photos.push(Photo {

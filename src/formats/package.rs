@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::input::{FileError, read_text};
 use super::reconstruction::Project;
-use super::{colmap, drone_photos, nvm, odm};
+use super::{colmap, drone_photos, metashape, nvm, odm};
 use crate::jobs::Progress;
 
 /// What wrote a reconstruction.
@@ -15,6 +15,8 @@ use crate::jobs::Progress;
 pub enum Package {
     /// COLMAP's model folder.
     Colmap,
+    /// Agisoft Metashape's cameras.xml, .psx or .psz.
+    Metashape,
     /// OpenDroneMap's project folder.
     OpenDroneMap,
     /// VisualSFM's .nvm.
@@ -28,6 +30,7 @@ impl Package {
     pub fn in_words(self) -> &'static str {
         match self {
             Self::Colmap => "a COLMAP reconstruction",
+            Self::Metashape => "a Metashape project",
             Self::OpenDroneMap => "an OpenDroneMap project",
             Self::VisualSfm => "a VisualSFM reconstruction",
             Self::Photos => "photos",
@@ -43,6 +46,9 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
     let this = |package| Some((package, path.to_owned()));
     if text.starts_with(b"NVM_V3") || name.ends_with(".nvm") {
         return this(Package::VisualSfm);
+    }
+    if metashape::is_project(&name, text) {
+        return this(Package::Metashape);
     }
     let of_colmap = ["cameras", "images", "points3d"]
         .map(|part| [format!("{part}.bin"), format!("{part}.txt")]);
@@ -81,6 +87,7 @@ pub(super) fn read(
     let at = |fault| FileError::new(path, fault);
     match package {
         Package::Colmap => colmap::read_folder(path).map(Project::from),
+        Package::Metashape => metashape::read_project(path),
         Package::OpenDroneMap => odm::read_folder(path),
         Package::Photos => drone_photos::read(path, progress),
         Package::VisualSfm => nvm::read(&read_text(path)?).map(Project::from).map_err(at),

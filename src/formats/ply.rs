@@ -17,7 +17,8 @@ use std::io::BufRead;
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
-    ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType,
+    ScalarType,
 };
 
 use super::cloud_file::{CloudFile, first_not_finite};
@@ -30,24 +31,7 @@ use crate::jobs::Progress;
 /// Where it is no PLY file, is cut off, has no vertices with x, y, z, or a coordinate that is not
 /// finite.
 pub(super) fn read(input: impl BufRead, progress: &Progress) -> Result<CloudFile, Fault> {
-    let mut reader = Reader::new(input);
-    let header = Parser::<Skipped>::new()
-        .read_header(&mut reader)
-        .map_err(|e| parse_fault(&e, e.line().unwrap_or(0) as u64))?;
-    if (header.version.major, header.version.minor) != (1, 0) {
-        let (major, minor) = (header.version.major, header.version.minor);
-        return Err(Fault::new(
-            format!("it is PLY of version {major}.{minor}; only 1.0 is known"),
-            "export version 1.0",
-        ));
-    }
-    let mut input = Elements {
-        encoding: header.encoding,
-        // The reader already counts the line after the header.
-        line: (reader.line() as u64).saturating_sub(1),
-        input: reader.into_inner(),
-        text: String::new(),
-    };
+    let (header, mut input) = read_header(input)?;
     let mut file = CloudFile::default();
     let mut has_vertices = false;
     for (name, element) in &header.elements {
@@ -103,6 +87,47 @@ pub(super) fn read(input: impl BufRead, progress: &Progress) -> Result<CloudFile
         ));
     }
     Ok(file)
+}
+
+/// Reads records of another kind than points: what their vertices hold.
+///
+/// # Errors
+/// As [`read`], and those of `take`.
+pub(super) fn read_vertices<E: PropertyAccess>(
+    input: impl BufRead,
+    mut take: impl FnMut(E) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    let (header, mut input) = read_header(input)?;
+    let progress = Progress::default();
+    for (name, element) in &header.elements {
+        match name.as_str() {
+            "vertex" => input.read_all(element, &progress, &mut take)?,
+            _ => input.read_all(element, &progress, |_: Skipped| Ok(()))?,
+        }
+    }
+    Ok(())
+}
+
+fn read_header<R: BufRead>(input: R) -> Result<(Header, Elements<R>), Fault> {
+    let mut reader = Reader::new(input);
+    let header = Parser::<Skipped>::new()
+        .read_header(&mut reader)
+        .map_err(|e| parse_fault(&e, e.line().unwrap_or(0) as u64))?;
+    if (header.version.major, header.version.minor) != (1, 0) {
+        let (major, minor) = (header.version.major, header.version.minor);
+        return Err(Fault::new(
+            format!("it is PLY of version {major}.{minor}; only 1.0 is known"),
+            "export version 1.0",
+        ));
+    }
+    let elements = Elements {
+        encoding: header.encoding,
+        // The reader already counts the line after the header.
+        line: (reader.line() as u64).saturating_sub(1),
+        input: reader.into_inner(),
+        text: String::new(),
+    };
+    Ok((header, elements))
 }
 
 /// The elements behind the header.
@@ -271,6 +296,21 @@ fn channel(name: &str) -> Option<usize> {
         .position(|(long, short)| is(long, short))
 }
 
+/// The number of a scalar property.
+pub(super) fn number(property: &Property) -> Option<f64> {
+    Some(match *property {
+        Property::Char(v) => f64::from(v),
+        Property::UChar(v) => f64::from(v),
+        Property::Short(v) => f64::from(v),
+        Property::UShort(v) => f64::from(v),
+        Property::Int(v) => f64::from(v),
+        Property::UInt(v) => f64::from(v),
+        Property::Float(v) => f64::from(v),
+        Property::Double(v) => v,
+        _ => return None,
+    })
+}
+
 struct Vertex {
     position: DVec3,
     color: [u8; 3],
@@ -286,17 +326,10 @@ impl PropertyAccess for Vertex {
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
         if let Some(axis) = axis(name) {
-            self.position[axis] = match property {
-                Property::Char(v) => f64::from(v),
-                Property::UChar(v) => f64::from(v),
-                Property::Short(v) => f64::from(v),
-                Property::UShort(v) => f64::from(v),
-                Property::Int(v) => f64::from(v),
-                Property::UInt(v) => f64::from(v),
-                Property::Float(v) => f64::from(v),
-                Property::Double(v) => v,
-                _ => return PropertyAccessResult::UnsupportedType,
+            let Some(number) = number(&property) else {
+                return PropertyAccessResult::UnsupportedType;
             };
+            self.position[axis] = number;
         } else if let Some(channel) = channel(name) {
             // `as` saturates.
             self.color[channel] = match property {

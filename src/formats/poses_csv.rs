@@ -31,6 +31,9 @@ pub struct PoseLine {
 pub struct PosesFile {
     /// One a photo; the names differ.
     pub lines: Vec<PoseLine>,
+    /// The coordinate system of the centres, where the file tells. Where it is one of longitude and
+    /// latitude, centres and rotations are as in a `Reconstruction` with such a system.
+    pub crs: Option<String>,
     /// What was passed over.
     pub warnings: Vec<String>,
 }
@@ -80,6 +83,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
     let columns = Columns::find(line_of(text, &header), &header)?;
     let mut file = PosesFile {
         warnings: columns.warnings(&header),
+        crs: None,
         lines: Vec::new(),
     };
     let mut seen: HashMap<String, u64> = HashMap::new();

@@ -70,6 +70,9 @@ pub struct Reconstruction {
     /// longitude and latitude, positions are (degrees east, degrees north, metres up), and rotations
     /// take camera axes to east, north, up at the photo's own place.
     pub crs: Option<String>,
+    /// The map projection ("EPSG:n" or WKT) that the engineer chose in a package whose frame is
+    /// another one: a target to bring the photos to.
+    pub preferred_crs: Option<String>,
     /// Where the origin stands of a frame without `crs` whose axes are east, north and up there.
     pub enu_origin: Option<Geographic>,
     /// Receivers' positions of photos, aligned or not; empty where the package keeps none.

@@ -1,6 +1,7 @@
 //! A camera in a file of its own. Which kind it is, the content tells:
 //!
-//! - XML, beginning with `<`: an OpenCV FileStorage.
+//! - XML whose root is `<calibration>`: Agisoft's.
+//! - Other XML, beginning with `<`: an OpenCV FileStorage.
 //! - YAML that begins with `%YAML:`, or YAML or JSON with an `opencv-matrix` in it: the same.
 //! - Other YAML (and JSON, which is YAML): ROS.
 
@@ -12,6 +13,7 @@ mod yaml_tree;
 
 use crate::camera::Camera;
 use crate::fault::Fault;
+use crate::formats::metashape;
 
 /// Reads a camera from the text of a calibration file.
 ///
@@ -20,6 +22,9 @@ use crate::fault::Fault;
 /// # Errors
 /// Where the file is of no known kind, or what it says is no camera that fragscale can model.
 pub(super) fn read(text: &str) -> Result<Camera, Fault> {
+    if metashape::is_calibration(text) {
+        return metashape::read_calibration(text);
+    }
     if text.trim_start().starts_with('<') {
         return opencv_storage::read_xml(text);
     }

@@ -34,8 +34,8 @@ pub fn ost_yaml(camera: &Camera) -> Result<String, String> {
             }
         }
         Distortion::Fisheye(lens) => ("equidistant", lens.coefficients().to_vec()),
-        Distortion::VisualSfm(_) => {
-            return Err("ROS has no model for the lens 'visualsfm'".to_owned());
+        other @ (Distortion::VisualSfm(_) | Distortion::Agisoft(_)) => {
+            return Err(format!("ROS has no model for the lens '{}'", other.name()));
         }
     };
     let Camera {
