@@ -21,12 +21,14 @@ mod origin;
 mod package;
 mod photo_files;
 mod photo_size;
+mod pix4d;
 mod ply;
 mod poses_csv;
 mod reconstruction;
 #[cfg(test)]
 mod test_data;
 mod text_lines;
+mod xml_document;
 mod xyz;
 
 use std::fs;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::input::{FileError, read_text};
 use super::reconstruction::Project;
-use super::{colmap, nvm, odm};
+use super::{colmap, nvm, odm, pix4d};
 use crate::jobs::Progress;
 
 /// What wrote a reconstruction.
@@ -17,6 +17,8 @@ pub enum Package {
     Colmap,
     /// OpenDroneMap's project folder.
     OpenDroneMap,
+    /// Pix4Dmapper's params folder or project.
+    Pix4d,
     /// VisualSFM's .nvm.
     VisualSfm,
 }
@@ -27,6 +29,7 @@ impl Package {
         match self {
             Self::Colmap => "a COLMAP reconstruction",
             Self::OpenDroneMap => "an OpenDroneMap project",
+            Self::Pix4d => "a Pix4D calibration",
             Self::VisualSfm => "a VisualSFM reconstruction",
         }
     }
@@ -40,6 +43,9 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
     let this = |package| Some((package, path.to_owned()));
     if text.starts_with(b"NVM_V3") || name.ends_with(".nvm") {
         return this(Package::VisualSfm);
+    }
+    if pix4d::is_pix4d_file(path, &name) {
+        return this(Package::Pix4d);
     }
     let of_colmap = ["cameras", "images", "points3d"]
         .map(|part| [format!("{part}.bin"), format!("{part}.txt")]);
@@ -55,7 +61,14 @@ pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
     if odm::is_odm_folder(path) {
         return Some((Package::OpenDroneMap, path.to_owned()));
     }
-    Some((Package::Colmap, colmap::model_folder(path)?))
+    if pix4d::has_params(path) {
+        return Some((Package::Pix4d, path.to_owned()));
+    }
+    if let Some(model) = colmap::model_folder(path) {
+        return Some((Package::Colmap, model));
+    }
+    // Last, because beside a .p4d there may lie what another package made of the same photos.
+    pix4d::is_bare_project(path).then(|| (Package::Pix4d, path.to_owned()))
 }
 
 /// Reads what the package wrote.
@@ -68,6 +81,7 @@ pub(super) fn read(
     match package {
         Package::Colmap => colmap::read_folder(path).map(Project::from),
         Package::OpenDroneMap => odm::read_folder(path),
+        Package::Pix4d => pix4d::read(path),
         Package::VisualSfm => nvm::read(&read_text(path)?).map(Project::from).map_err(at),
     }
 }
