@@ -4,6 +4,7 @@
 //! A reader turns bytes into the core's types plus a list of warnings. It knows no path: it returns
 //! a [`Fault`], and the dispatcher puts the file's name in front.
 
+mod blocks_exchange;
 mod camera_file;
 mod cloud_file;
 mod colmap;
@@ -23,6 +24,7 @@ mod photo_files;
 mod photo_size;
 mod pix4d;
 mod ply;
+mod polynomial_fisheye;
 mod poses_csv;
 mod reconstruction;
 #[cfg(test)]

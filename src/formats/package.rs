@@ -7,12 +7,14 @@ use std::path::{Path, PathBuf};
 
 use super::input::{FileError, read_text};
 use super::reconstruction::Project;
-use super::{colmap, nvm, odm, pix4d};
+use super::{blocks_exchange, colmap, nvm, odm, pix4d};
 use crate::jobs::Progress;
 
 /// What wrote a reconstruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Package {
+    /// Bentley's BlocksExchange XML.
+    ContextCapture,
     /// COLMAP's model folder.
     Colmap,
     /// OpenDroneMap's project folder.
@@ -27,6 +29,7 @@ impl Package {
     /// What it is, for people.
     pub fn in_words(self) -> &'static str {
         match self {
+            Self::ContextCapture => "a ContextCapture block",
             Self::Colmap => "a COLMAP reconstruction",
             Self::OpenDroneMap => "an OpenDroneMap project",
             Self::Pix4d => "a Pix4D calibration",
@@ -44,6 +47,9 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
     if text.starts_with(b"NVM_V3") || name.ends_with(".nvm") {
         return this(Package::VisualSfm);
     }
+    if has(text, "<BlocksExchange") {
+        return this(Package::ContextCapture);
+    }
     if pix4d::is_pix4d_file(path, &name) {
         return this(Package::Pix4d);
     }
@@ -54,6 +60,13 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
         return Some((Package::Colmap, model));
     }
     None
+}
+
+/// Whether a word stands in the first bytes.
+fn has(start: &[u8], word: &str) -> bool {
+    start
+        .windows(word.len())
+        .any(|window| window == word.as_bytes())
 }
 
 /// Recognises a folder.
@@ -79,6 +92,9 @@ pub(super) fn read(
 ) -> Result<Project, FileError> {
     let at = |fault| FileError::new(path, fault);
     match package {
+        Package::ContextCapture => blocks_exchange::read(&read_text(path)?)
+            .map(Project::from)
+            .map_err(at),
         Package::Colmap => colmap::read_folder(path).map(Project::from),
         Package::OpenDroneMap => odm::read_folder(path),
         Package::Pix4d => pix4d::read(path),
