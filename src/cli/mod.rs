@@ -8,6 +8,7 @@
 //! With the environment variable FRAGSCALE_BACKTRACE set, a panic prints its place as usual.
 
 mod export;
+mod flight_arguments;
 #[cfg(feature = "render")]
 mod render;
 
@@ -21,9 +22,11 @@ use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
+use flight_arguments::FlightArguments;
+
 use crate::exports;
 use crate::fault::{Fault, one_line};
-use crate::formats::{self, FileError, OpenOptions};
+use crate::formats::{self, FileError};
 use crate::jobs::{Job, Progress};
 use crate::sample::{self, Lens, Preset, SampleOptions};
 use crate::units::LengthUnit;
@@ -64,8 +67,8 @@ enum Command {
 
 #[derive(Debug, Args)]
 struct ScalesArguments {
-    /// A flight.toml, or a reconstruction: a COLMAP folder, an NVM file, an OpenDroneMap folder.
-    flight: PathBuf,
+    #[command(flatten)]
+    flight: FlightArguments,
     /// Scales are in pixels per this unit.
     #[arg(long, value_enum, default_value = "cm")]
     unit: OutputUnit,
@@ -75,9 +78,6 @@ struct ScalesArguments {
     /// Write to this file instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Use this cloud or mesh instead of the flight's surface.
-    #[arg(long, value_name = "FILE")]
-    surface: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -286,13 +286,8 @@ fn window(flight: Option<PathBuf>) -> ExitCode {
 }
 
 fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, String> {
-    let options = OpenOptions {
-        surface: arguments.surface.clone(),
-        settings: None,
-    };
-    let path = &arguments.flight;
-    let opened =
-        formats::open_flight(path, &options, progress).map_err(|error| error.to_string())?;
+    let opened = arguments.flight.open(progress)?;
+    let path = &arguments.flight.flight;
     let outcomes = opened
         .flight
         .scales(progress)

@@ -106,6 +106,7 @@ fn poses_info(file: &PosesFile) -> Value {
         .map(|line| photo_value(&line.photo, line.camera.as_deref(), &line.pose));
     json!({
         "kind": "poses",
+        "crs": file.crs,
         "photos": photos.collect::<Vec<_>>(),
         "warnings": file.warnings,
     })

@@ -8,6 +8,7 @@ mod blocks_exchange;
 mod camera_file;
 mod cloud_file;
 mod colmap;
+mod dropped;
 mod fields;
 mod info;
 mod input;
@@ -26,10 +27,14 @@ mod pix4d;
 mod ply;
 mod polynomial_fisheye;
 mod poses_csv;
+mod poses_opk;
+mod position_list;
+mod realitycapture;
 mod reconstruction;
 #[cfg(test)]
 mod test_data;
 mod text_lines;
+mod world_frame;
 mod xml_document;
 mod xyz;
 
@@ -38,12 +43,17 @@ use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 pub use cloud_file::CloudFile;
+pub use dropped::Dropped;
 pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{OpenOptions, Opened, PhotoFile, open_flight};
 pub use origin::FlightOrigin;
 pub use package::Package;
 pub use poses_csv::{PoseLine, PosesFile};
+pub use position_list::{
+    ControlPoint, ControlPoints, NamedPosition, PositionList, positions_of_photos,
+    read_control_points, read_positions,
+};
 pub use reconstruction::{MeasuredPosition, Observation, PosedPhoto, Project, Reconstruction};
 
 use crate::camera::Camera;
@@ -147,7 +157,8 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         "las" | "laz" => Kind::Cloud(CloudFormat::Las),
         "obj" => Kind::Cloud(CloudFormat::Obj),
         "yaml" | "yml" | "xml" => Kind::Camera,
-        "csv" | "txt" if has_photo_column(text) => Kind::Poses,
+        "csv" | "txt" if has_photo_column(text) || poses_opk::is_table(text) => Kind::Poses,
+        "geojson" | "json" if poses_opk::is_geojson(text) => Kind::Poses,
         "csv" | "txt" | "xyz" | "asc" => Kind::Cloud(CloudFormat::Xyz),
         _ => {
             return Err(FileError::new(
@@ -269,10 +280,24 @@ pub fn read_project(path: &Path, progress: &Progress) -> Result<Project, FileErr
     }
 }
 
-/// Reads a poses.csv.
+/// Reads a poses.csv, or another list of poses (see `poses_opk`). A .prj beside it of the same name
+/// states the coordinate system where the list does not.
 ///
 /// # Errors
 /// With the file and the place in it.
 fn read_poses(path: &Path) -> Result<PosesFile, FileError> {
-    poses_csv::read(&read_bytes(path)?).map_err(|fault| FileError::new(path, fault))
+    let bytes = read_bytes(path)?;
+    let at = |fault| FileError::new(path, fault);
+    let mut poses = if poses_opk::is_geojson(&bytes) {
+        poses_opk::read_geojson(&bytes).map_err(at)?
+    } else if poses_opk::is_table(&bytes) {
+        poses_opk::read_table(&bytes).map_err(at)?
+    } else {
+        poses_csv::read(&bytes).map_err(at)?
+    };
+    let system = path.with_extension("prj");
+    if poses.crs.is_none() && system.is_file() {
+        poses.crs = Some(read_text(&system)?.trim().to_owned()).filter(|crs| !crs.is_empty());
+    }
+    Ok(poses)
 }

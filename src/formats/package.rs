@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::input::{FileError, read_text};
 use super::reconstruction::Project;
-use super::{blocks_exchange, colmap, nvm, odm, pix4d};
+use super::{blocks_exchange, colmap, nvm, odm, pix4d, realitycapture};
 use crate::jobs::Progress;
 
 /// What wrote a reconstruction.
@@ -21,6 +21,10 @@ pub enum Package {
     OpenDroneMap,
     /// Pix4Dmapper's params folder or project.
     Pix4d,
+    /// RealityCapture's CSV of cameras.
+    RealityCaptureCsv,
+    /// The folder of RealityCapture's XMP sidecars.
+    RealityCaptureXmp,
     /// VisualSFM's .nvm.
     VisualSfm,
 }
@@ -33,6 +37,7 @@ impl Package {
             Self::Colmap => "a COLMAP reconstruction",
             Self::OpenDroneMap => "an OpenDroneMap project",
             Self::Pix4d => "a Pix4D calibration",
+            Self::RealityCaptureCsv | Self::RealityCaptureXmp => "RealityCapture's cameras",
             Self::VisualSfm => "a VisualSFM reconstruction",
         }
     }
@@ -49,6 +54,16 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
     }
     if has(text, "<BlocksExchange") {
         return this(Package::ContextCapture);
+    }
+    if String::from_utf8_lossy(text)
+        .lines()
+        .take(3)
+        .any(realitycapture::is_header)
+    {
+        return this(Package::RealityCaptureCsv);
+    }
+    if name.ends_with(".xmp") && has(text, "capturingreality.com/ns/xcr") {
+        return Some((Package::RealityCaptureXmp, path.parent()?.to_owned()));
     }
     if pix4d::is_pix4d_file(path, &name) {
         return this(Package::Pix4d);
@@ -74,6 +89,9 @@ pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
     if odm::is_odm_folder(path) {
         return Some((Package::OpenDroneMap, path.to_owned()));
     }
+    if realitycapture::has_sidecars(path) {
+        return Some((Package::RealityCaptureXmp, path.to_owned()));
+    }
     if pix4d::has_params(path) {
         return Some((Package::Pix4d, path.to_owned()));
     }
@@ -98,6 +116,10 @@ pub(super) fn read(
         Package::Colmap => colmap::read_folder(path).map(Project::from),
         Package::OpenDroneMap => odm::read_folder(path),
         Package::Pix4d => pix4d::read(path),
+        Package::RealityCaptureCsv => realitycapture::read_csv(&read_text(path)?)
+            .map(Project::from)
+            .map_err(at),
+        Package::RealityCaptureXmp => realitycapture::read_folder(path),
         Package::VisualSfm => nvm::read(&read_text(path)?).map(Project::from).map_err(at),
     }
 }

@@ -31,6 +31,8 @@ pub struct PoseLine {
 pub struct PosesFile {
     /// One a photo; the names differ.
     pub lines: Vec<PoseLine>,
+    /// The coordinate system of the positions, where it is stated: "EPSG:n", WKT or a PROJ string.
+    pub crs: Option<String>,
     /// What was passed over.
     pub warnings: Vec<String>,
 }
@@ -79,6 +81,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
         })?;
     let columns = Columns::find(line_of(text, &header), &header)?;
     let mut file = PosesFile {
+        crs: None,
         warnings: columns.warnings(&header),
         lines: Vec::new(),
     };

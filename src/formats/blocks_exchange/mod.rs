@@ -23,7 +23,7 @@
 //!   P2 are OpenCV's p2 and p1.
 //! - AspectRatio is taken as fy / fx, Skew as pixels; a warning says so where they are not 1 and 0.
 //! - A fish-eye is read where it is OpenCV's (see `polynomial_fisheye`), else its photos are left out.
-//! - Definitions: `EPSG:h+v` (v is said in a warning), `EPSG:4978`, WKT, PROJ strings,
+//! - Definitions: `EPSG:n+m` (m: heights), `EPSG:4978`, WKT, PROJ strings,
 //!   `ENU:latitude,longitude[,height]`. Longitude stands in x, latitude in y. Others are local.
 //! - Where photos have different systems, those of the first one are read. Photos without whole pose,
 //!   and those outside the main component (Component 1) where there is one, are left out. Only the
@@ -375,12 +375,6 @@ impl<'a, 'input> Reader<'a, 'input> {
         };
         match system::read(text_of(system, "Definition").unwrap_or_default()) {
             System::Named(crs) => self.found.crs = Some(crs),
-            System::WithHeights(crs, vertical) => {
-                self.found.crs = Some(crs);
-                self.found.warnings.push(format!(
-                    "heights are in the vertical system EPSG:{vertical}; they are taken as they are"
-                ));
-            }
             System::EastNorthUp(origin) => self.found.enu_origin = Some(origin),
             System::Local => {}
             System::Unknown(definition) => self.found.warnings.push(format!(

@@ -5,10 +5,8 @@ use crate::geodesy::Geographic;
 /// What a definition stands for.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum System {
-    /// "EPSG:n", WKT, a PROJ string or "ECEF".
+    /// "EPSG:n", "EPSG:n+m" (m: heights), WKT, a PROJ string or "ECEF".
     Named(String),
-    /// "EPSG:n" with heights in the vertical system of this number.
-    WithHeights(String, u32),
     /// East, north, up at this place.
     EastNorthUp(Geographic),
     /// A frame of its own.
@@ -48,7 +46,7 @@ pub(super) fn read(definition: &str) -> System {
         return match codes.as_deref() {
             Some([4978]) => System::Named("ECEF".to_owned()),
             Some([code]) => System::Named(format!("EPSG:{code}")),
-            Some([code, vertical]) => System::WithHeights(format!("EPSG:{code}"), *vertical),
+            Some([code, vertical]) => System::Named(format!("EPSG:{code}+{vertical}")),
             _ => System::Unknown(definition.to_owned()),
         };
     }

@@ -16,9 +16,15 @@ const EXPORT: &str = "export \"Internal/External camera parameters\" from Realit
 /// Whether a line names the columns of a photo's position and RealityCapture's angles.
 pub(in crate::formats) fn is_header(line: &str) -> bool {
     let columns = columns(line);
-    let has = |names: &[&str]| columns.iter().any(|column| names.contains(&column.as_str()));
+    let has = |names: &[&str]| {
+        columns
+            .iter()
+            .any(|column| names.contains(&column.as_str()))
+    };
     line.trim_start().starts_with('#')
-        && ["name", "x", "y", "pitch", "roll"].iter().all(|name| has(&[name]))
+        && ["name", "x", "y", "pitch", "roll"]
+            .iter()
+            .all(|name| has(&[name]))
         && has(&["heading", "yaw"])
         && has(&["alt", "z"])
 }
@@ -31,7 +37,10 @@ fn columns(line: &str) -> Vec<String> {
 }
 
 fn delimiter(line: &str) -> char {
-    [',', ';', '\t'].into_iter().find(|c| line.contains(*c)).unwrap_or(',')
+    [',', ';', '\t']
+        .into_iter()
+        .find(|c| line.contains(*c))
+        .unwrap_or(',')
 }
 
 /// Reads the CSV; the cameras have no sizes yet.
@@ -39,7 +48,9 @@ fn delimiter(line: &str) -> char {
 /// # Errors
 /// With the line: a missing column, a number that is not finite, a photo named twice; no photo.
 pub(in crate::formats) fn read_csv(text: &str) -> Result<Reconstruction, Fault> {
-    let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
+    let mut lines = (1..)
+        .zip(text.lines())
+        .filter(|(_, line)| !line.trim().is_empty());
     let (header_line, header) = lines
         .by_ref()
         .find(|(_, line)| is_header(line))
@@ -48,12 +59,20 @@ pub(in crate::formats) fn read_csv(text: &str) -> Result<Reconstruction, Fault> 
     let find = |known: &[&str]| names.iter().position(|name| known.contains(&name.as_str()));
     let needed = |known: &[&'static str]| {
         find(known).map(|column| (column, known[0])).ok_or_else(|| {
-            Fault::at(header_line, format!("there is no column {}", known[0]), EXPORT)
+            Fault::at(
+                header_line,
+                format!("there is no column {}", known[0]),
+                EXPORT,
+            )
         })
     };
     let name = needed(&["name"])?;
     let position = [needed(&["x"])?, needed(&["y"])?, needed(&["alt", "z"])?];
-    let angles = [needed(&["heading", "yaw"])?, needed(&["pitch"])?, needed(&["roll"])?];
+    let angles = [
+        needed(&["heading", "yaw"])?,
+        needed(&["pitch"])?,
+        needed(&["roll"])?,
+    ];
     let focal = needed(&["f", "f_35mm", "f_35", "focal"])?;
     // The template of the columns may be shortened.
     let optional: [Option<(usize, &str)>; 8] = [
@@ -77,14 +96,19 @@ pub(in crate::formats) fn read_csv(text: &str) -> Result<Reconstruction, Fault> 
         if text.trim_start().starts_with('#') {
             continue;
         }
-        let fields: Vec<&str> =
-            text.split(delimiter(header)).map(|field| field.trim().trim_matches('"')).collect();
+        let fields: Vec<&str> = text
+            .split(delimiter(header))
+            .map(|field| field.trim().trim_matches('"'))
+            .collect();
         let number = |(column, name): (usize, &str)| {
             let text = fields.get(column).copied().unwrap_or_default();
-            text.parse::<f64>().ok().filter(|n| n.is_finite()).ok_or_else(|| {
-                let what = format!("column {name}: '{}' is not a finite number", shown(text));
-                Fault::at(line, what, "write decimal points, and export it again")
-            })
+            text.parse::<f64>()
+                .ok()
+                .filter(|n| n.is_finite())
+                .ok_or_else(|| {
+                    let what = format!("column {name}: '{}' is not a finite number", shown(text));
+                    Fault::at(line, what, "write decimal points, and export it again")
+                })
         };
         let photo = fields.get(name.0).copied().unwrap_or_default();
         if photo.is_empty() {

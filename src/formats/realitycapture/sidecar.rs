@@ -24,7 +24,10 @@ const IMAGES: [&str; 6] = ["jpg", "jpeg", "png", "tif", "tiff", "dng"];
 
 /// Whether a folder's first sidecar is one of RealityCapture's.
 pub(in crate::formats) fn has_sidecars(folder: &Path) -> bool {
-    let Some(first) = files(folder).into_iter().find(|path| has_end(path, &["xmp"])) else {
+    let Some(first) = files(folder)
+        .into_iter()
+        .find(|path| has_end(path, &["xmp"]))
+    else {
         return false;
     };
     let mut start = Vec::new();
@@ -94,13 +97,17 @@ pub(in crate::formats) fn read_folder(folder: &Path) -> Result<Project, FileErro
 /// A folder's files, sorted.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten();
-    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    let mut files: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .collect();
     files.sort();
     files
 }
 
 fn has_end(path: &Path, ends: &[&str]) -> bool {
-    let end = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase());
+    let end = path
+        .extension()
+        .map(|end| end.to_string_lossy().to_ascii_lowercase());
     end.is_some_and(|end| ends.contains(&end.as_str()))
 }
 
@@ -108,7 +115,9 @@ fn has_end(path: &Path, ends: &[&str]) -> bool {
 fn photo_of(sidecar: &Path, files: &[PathBuf]) -> String {
     let stem = sidecar.file_stem().unwrap_or_default();
     // Sorted files with one stem stand side by side, but "a-b.jpg" stands between "a.jpg" and "a.xmp".
-    let photo = files.iter().find(|file| file.file_stem() == Some(stem) && has_end(file, &IMAGES));
+    let photo = files
+        .iter()
+        .find(|file| file.file_stem() == Some(stem) && has_end(file, &IMAGES));
     let name = photo.and_then(|photo| photo.file_name()).unwrap_or(stem);
     name.to_string_lossy().into_owned()
 }
@@ -137,14 +146,18 @@ impl Sidecar {
                 return Ok(None);
             };
             let mut fields = Fields::new(line_of(node), text, EXPORT);
-            let numbers: Result<Vec<f64>, Fault> = (0..count).map(|_| fields.number(name)).collect();
+            let numbers: Result<Vec<f64>, Fault> =
+                (0..count).map(|_| fields.number(name)).collect();
             match fields.rest() {
                 "" => numbers.map(Some),
                 _ => Err(fields.fault(format!("{name} has more than {count} numbers"))),
             }
         };
         let number = |name: &str| Ok::<_, Fault>(numbers(name, 1)?.map(|n| n[0]));
-        let pose = match (numbers("Position", 3)?.as_deref(), numbers("Rotation", 9)?.as_deref()) {
+        let pose = match (
+            numbers("Position", 3)?.as_deref(),
+            numbers("Rotation", 9)?.as_deref(),
+        ) {
             (Some(&[x, y, z]), Some(&[a, b, c, d, e, f, g, h, i])) => {
                 // Its rows are the camera's axes in the world.
                 let pose = Pose::from_row_major(DVec3::new(x, y, z), [a, d, g, b, e, h, c, f, i]);
@@ -174,7 +187,9 @@ impl Sidecar {
             pose,
             is_absolute: term(node, "Coordinates") == Some("absolute"),
             lens,
-            model: term(node, "DistortionModel").unwrap_or("perspective").to_owned(),
+            model: term(node, "DistortionModel")
+                .unwrap_or("perspective")
+                .to_owned(),
             other: [
                 number("Skew")?.unwrap_or(0.0),
                 number("AspectRatio")?.unwrap_or(1.0) - 1.0,
@@ -187,14 +202,23 @@ impl Sidecar {
         let lens = self.lens.ok_or("no focal length")?;
         let [skew, aspect] = self.other;
         if skew != 0.0 || aspect != 0.0 {
-            return Err(format!("a skew of {skew} and an aspect ratio of {}", aspect + 1.0));
+            return Err(format!(
+                "a skew of {skew} and an aspect ratio of {}",
+                aspect + 1.0
+            ));
         }
         let is_plain = lens.coefficients == [0.0; 6];
         match self.model.as_str() {
-            "perspective" => Lens { coefficients: [0.0; 6], ..lens }.camera(name),
+            "perspective" => Lens {
+                coefficients: [0.0; 6],
+                ..lens
+            }
+            .camera(name),
             "brown3" | "brown4" | "brown3t2" | "brown4t2" => lens.camera(name),
             _ if is_plain => lens.camera(name),
-            model => Err(format!("the distortion model '{model}', which cannot be read")),
+            model => Err(format!(
+                "the distortion model '{model}', which cannot be read"
+            )),
         }
     }
 }
@@ -209,7 +233,10 @@ fn has_terms(node: Node<'_, '_>) -> bool {
 /// The text of an attribute or child of RealityCapture's.
 fn term<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     let attribute = node.attributes().find(|attribute| {
-        attribute.name() == name && attribute.namespace().is_some_and(|ns| ns.contains(NAMESPACE))
+        attribute.name() == name
+            && attribute
+                .namespace()
+                .is_some_and(|ns| ns.contains(NAMESPACE))
     });
     if let Some(attribute) = attribute {
         return Some(attribute.value().trim());
