@@ -19,6 +19,7 @@ mod obj;
 mod odm;
 mod open;
 mod opensfm;
+mod opf;
 mod origin;
 mod package;
 mod photo_files;

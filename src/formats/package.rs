@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::input::{FileError, read_text};
 use super::reconstruction::Project;
-use super::{blocks_exchange, colmap, nvm, odm, pix4d, realitycapture};
+use super::{blocks_exchange, colmap, nvm, odm, opf, pix4d, realitycapture};
 use crate::jobs::Progress;
 
 /// What wrote a reconstruction.
@@ -19,6 +19,8 @@ pub enum Package {
     Colmap,
     /// OpenDroneMap's project folder.
     OpenDroneMap,
+    /// Pix4D's Open Photogrammetry Format.
+    Opf,
     /// Pix4Dmapper's params folder or project.
     Pix4d,
     /// RealityCapture's CSV of cameras.
@@ -36,6 +38,7 @@ impl Package {
             Self::ContextCapture => "a ContextCapture block",
             Self::Colmap => "a COLMAP reconstruction",
             Self::OpenDroneMap => "an OpenDroneMap project",
+            Self::Opf => "an OPF project",
             Self::Pix4d => "a Pix4D calibration",
             Self::RealityCaptureCsv | Self::RealityCaptureXmp => "RealityCapture's cameras",
             Self::VisualSfm => "a VisualSFM reconstruction",
@@ -65,6 +68,12 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
     if name.ends_with(".xmp") && has(text, "capturingreality.com/ns/xcr") {
         return Some((Package::RealityCaptureXmp, path.parent()?.to_owned()));
     }
+    if has(text, "\"application/opf-project+json\"") {
+        return this(Package::Opf);
+    }
+    if has(text, "\"application/opf-") {
+        return Some((Package::Opf, opf::project_in(path.parent()?)?));
+    }
     if pix4d::is_pix4d_file(path, &name) {
         return this(Package::Pix4d);
     }
@@ -88,6 +97,9 @@ fn has(start: &[u8], word: &str) -> bool {
 pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
     if odm::is_odm_folder(path) {
         return Some((Package::OpenDroneMap, path.to_owned()));
+    }
+    if let Some(project) = opf::project_in(path) {
+        return Some((Package::Opf, project));
     }
     if realitycapture::has_sidecars(path) {
         return Some((Package::RealityCaptureXmp, path.to_owned()));
@@ -115,6 +127,7 @@ pub(super) fn read(
             .map_err(at),
         Package::Colmap => colmap::read_folder(path).map(Project::from),
         Package::OpenDroneMap => odm::read_folder(path),
+        Package::Opf => opf::read(path),
         Package::Pix4d => pix4d::read(path),
         Package::RealityCaptureCsv => realitycapture::read_csv(&read_text(path)?)
             .map(Project::from)
