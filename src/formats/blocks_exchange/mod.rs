@@ -22,7 +22,8 @@
 //! - Distortion: `u (1 + K1 r2 + K2 r4 + K3 r6) + 2 P2 u v + P1 (r2 + 2 u2)` and alike for v: P1 and
 //!   P2 are OpenCV's p2 and p1.
 //! - AspectRatio is taken as fy / fx, Skew as pixels; a warning says so where they are not 1 and 0.
-//! - A fish-eye is read where it is OpenCV's (see `polynomial_fisheye`), else its photos are left out.
+//! - A fish-eye is read where it is OpenCV's or near it (see `polynomial_fisheye`), else its photos are
+//!   left out.
 //! - Definitions: `EPSG:n+m` (m: heights), `EPSG:4978`, WKT, PROJ strings,
 //!   `ENU:latitude,longitude[,height]`. Longitude stands in x, latitude in y. Others are local.
 //! - Where photos have different systems, those of the first one are read. Photos without whole pose,

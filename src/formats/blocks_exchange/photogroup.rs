@@ -46,7 +46,7 @@ pub(super) fn camera(
     }
     match text_of(group, "CameraModelType").unwrap_or("Perspective") {
         "Perspective" => {}
-        "Fisheye" => return fisheye(group, camera),
+        "Fisheye" => return fisheye(group, camera, warnings),
         other => {
             return Ok(Err(format!(
                 "their camera model '{}' is not known",
@@ -98,7 +98,11 @@ pub(super) fn camera(
     Ok(Ok(camera))
 }
 
-fn fisheye(group: Node<'_, '_>, camera: Camera) -> Result<Result<Camera, String>, Fault> {
+fn fisheye(
+    group: Node<'_, '_>,
+    camera: Camera,
+    warnings: &mut Vec<String>,
+) -> Result<Result<Camera, String>, Fault> {
     let Some(matrix) = child(group, "FisheyeFocalMatrix") else {
         return Ok(Err("the fish-eye's focal matrix is not said".to_owned()));
     };
@@ -117,7 +121,14 @@ fn fisheye(group: Node<'_, '_>, camera: Camera) -> Result<Result<Camera, String>
             *coefficient = optional(lens, name)?.unwrap_or(*coefficient);
         }
     }
-    Ok(polynomial_fisheye::with_lens(camera, affine, &polynomial))
+    let lens = polynomial_fisheye::with_lens(camera, affine, &polynomial);
+    Ok(lens.map(|(camera, off)| {
+        if let Some(off) = off {
+            let name = shown(&camera.name);
+            warnings.push(format!("'{name}': its fish-eye is fitted, to {off:.3} px"));
+        }
+        camera
+    }))
 }
 
 /// Where the camera axes of the Photogroup's rotations lie among right, down and forward: its

@@ -185,9 +185,9 @@ fn components_systems_and_fisheyes_are_counted() {
     let found = read(&block("", DOWN, fisheye, "")).unwrap();
     assert!((found.cameras[0].fx - 500.0 * std::f64::consts::FRAC_2_PI).abs() < 1e-9);
     let bent =
-        format!("{fisheye}<FisheyeDistortion><P0>0</P0><P1>1</P1><P2>0.1</P2></FisheyeDistortion>");
+        format!("{fisheye}<FisheyeDistortion><P0>0</P0><P1>1</P1><P2>0.9</P2></FisheyeDistortion>");
     let refused = read(&block("", DOWN, &bent, "")).unwrap_err();
-    assert!(refused.what.contains("p2 = 0.1"), "{refused}");
+    assert!(refused.what.contains("p2 = 0.9"), "{refused}");
 }
 
 #[test]

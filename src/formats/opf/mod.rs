@@ -18,7 +18,8 @@
 //!   than the horizontal one, heights stay in the horizontal one, with a warning.
 //! - Pixels count from the top-left corner of the top-left pixel.
 //! - perspective: R1 R2 R3 T1 T2 are OpenCV's k1 k2 k3 p1 p2 (Pix4D's article 202559089). fisheye is
-//!   read where it is OpenCV's (see `polynomial_fisheye`); such and spherical ones are else left out.
+//!   read where it is OpenCV's or near it (see `polynomial_fisheye`); others and spherical ones are
+//!   left out.
 //! - Image sizes stand in the input cameras; without them they come from the photos.
 //! - Of several resources of one format the first is read, but for camera lists: of them all. A
 //!   calibrated camera that no list names is called by its number.
@@ -180,19 +181,29 @@ fn sensors(
     let mut cameras = HashMap::new();
     for sensor in calibrated {
         let [width, height] = sizes.get(&sensor.id).copied().unwrap_or([0, 0]);
-        let camera = camera(sensor, width, height);
-        if let Err(why) = &camera {
-            warnings.push(format!(
-                "photos of sensor {} are left out: {why}",
-                sensor.id
-            ));
-        }
-        cameras.insert(sensor.id, camera.ok());
+        let id = sensor.id;
+        let camera = match camera(sensor, width, height) {
+            Ok((camera, off)) => {
+                let said = |off| format!("sensor {id}: its fish-eye is fitted, to {off:.3} px");
+                warnings.extend(off.map(said));
+                Some(camera)
+            }
+            Err(why) => {
+                warnings.push(format!("photos of sensor {id} are left out: {why}"));
+                None
+            }
+        };
+        cameras.insert(id, camera);
     }
     cameras
 }
 
-fn camera(sensor: &CalibratedSensor, width: u32, height: u32) -> Result<Camera, String> {
+/// The camera, and by how many pixels it is off where it had to be fitted.
+fn camera(
+    sensor: &CalibratedSensor,
+    width: u32,
+    height: u32,
+) -> Result<(Camera, Option<f64>), String> {
     let blank = |[cx, cy]: [f64; 2]| Camera {
         name: sensor.id.to_string(),
         width,
@@ -204,7 +215,7 @@ fn camera(sensor: &CalibratedSensor, width: u32, height: u32) -> Result<Camera, 
         skew: 0.0,
         distortion: Distortion::None,
     };
-    let camera = match &sensor.internals {
+    let (camera, off) = match &sensor.internals {
         Internals::Perspective {
             principal_point_px,
             focal_length_px,
@@ -213,7 +224,7 @@ fn camera(sensor: &CalibratedSensor, width: u32, height: u32) -> Result<Camera, 
         } => {
             let plain = [*r1, *r2, *r3, *t1, *t2] == [0.0; 5];
             let brown = Brown::new([*r1, *r2, *t1, *t2, *r3, 0.0, 0.0, 0.0]);
-            Camera {
+            let camera = Camera {
                 fx: *focal_length_px,
                 fy: *focal_length_px,
                 distortion: if plain {
@@ -222,7 +233,8 @@ fn camera(sensor: &CalibratedSensor, width: u32, height: u32) -> Result<Camera, 
                     Distortion::Brown(brown)
                 },
                 ..blank(*principal_point_px)
-            }
+            };
+            (camera, None)
         }
         Internals::Fisheye {
             principal_point_px,
@@ -232,7 +244,7 @@ fn camera(sensor: &CalibratedSensor, width: u32, height: u32) -> Result<Camera, 
         Internals::Other => return Err("its camera model is not perspective or fish-eye".into()),
     };
     if camera.fx > 0.0 && camera.fy > 0.0 {
-        Ok(camera)
+        Ok((camera, off))
     } else {
         Err(format!("its focal length is {} px", camera.fx))
     }

@@ -22,17 +22,18 @@ const EXPORT: &str = "export the XMP metadata from RealityCapture again";
 /// What a photo's name may end with.
 const IMAGES: [&str; 6] = ["jpg", "jpeg", "png", "tif", "tiff", "dng"];
 
-/// Whether a folder's first sidecar is one of RealityCapture's.
+/// How many sidecars are looked at: other programs leave some as well.
+const LOOKED_AT: usize = 10;
+
+/// Whether one of a folder's first sidecars is RealityCapture's.
 pub(in crate::formats) fn has_sidecars(folder: &Path) -> bool {
-    let Some(first) = files(folder)
-        .into_iter()
-        .find(|path| has_end(path, &["xmp"]))
-    else {
-        return false;
-    };
-    let mut start = Vec::new();
-    let read = open_file(&first).map(|file| file.take(4096).read_to_end(&mut start));
-    matches!(read, Ok(Ok(_))) && String::from_utf8_lossy(&start).contains(NAMESPACE)
+    let files = files(folder);
+    let sidecars = files.iter().filter(|path| has_end(path, &["xmp"]));
+    sidecars.take(LOOKED_AT).any(|path| {
+        let mut start = Vec::new();
+        let read = open_file(path).map(|file| file.take(4096).read_to_end(&mut start));
+        matches!(read, Ok(Ok(_))) && String::from_utf8_lossy(&start).contains(NAMESPACE)
+    })
 }
 
 /// Reads the sidecars of a folder, in the order of their names; the cameras have no sizes yet.
