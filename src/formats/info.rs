@@ -61,6 +61,11 @@ fn reconstruction_info(reconstruction: &Reconstruction) -> Value {
                 // What a package does not write is null, not 0.
                 value["width"] = Value::Null;
                 value["height"] = Value::Null;
+                if reconstruction.intrinsics_in_longer_sides {
+                    for name in ["fx", "fy", "skew"] {
+                        value[name] = Value::Null;
+                    }
+                }
                 if !reconstruction.principal_points_from_corner {
                     value["cx"] = Value::Null;
                     value["cy"] = Value::Null;

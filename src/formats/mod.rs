@@ -4,6 +4,7 @@
 //! A reader turns bytes into the core's types plus a list of warnings. It knows no path: it returns
 //! a [`Fault`], and the dispatcher puts the file's name in front.
 
+mod blocks_exchange;
 mod camera_file;
 mod cloud_file;
 mod colmap;
@@ -21,6 +22,7 @@ mod obj;
 mod odm;
 mod open;
 mod opensfm;
+mod opf;
 mod origin;
 mod package;
 mod photo_checks;
@@ -28,14 +30,19 @@ mod photo_files;
 mod photo_metadata;
 mod photo_names;
 mod photo_size;
+mod pix4d;
 mod ply;
+mod polynomial_fisheye;
 mod poses_csv;
+mod poses_opk;
 mod position_list;
+mod realitycapture;
 mod reconstruction;
 #[cfg(test)]
 mod test_data;
 mod text_lines;
 mod world_frame;
+mod xml_document;
 mod xyz;
 
 use std::fs;
@@ -162,8 +169,9 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         "las" | "laz" => Kind::Cloud(CloudFormat::Las),
         "obj" => Kind::Cloud(CloudFormat::Obj),
         "yaml" | "yml" | "xml" => Kind::Camera,
-        "csv" | "txt" if has_photo_column(text) => Kind::Poses,
+        "csv" | "txt" if has_photo_column(text) || poses_opk::is_table(text) => Kind::Poses,
         "csv" | "txt" if metashape::is_opk(&String::from_utf8_lossy(text)) => Kind::Poses,
+        "geojson" | "json" if poses_opk::is_geojson(text) => Kind::Poses,
         "csv" | "txt" | "xyz" | "asc" => Kind::Cloud(CloudFormat::Xyz),
         _ => {
             return Err(FileError::new(
@@ -285,15 +293,28 @@ pub fn read_project(path: &Path, progress: &Progress) -> Result<Project, FileErr
     }
 }
 
-/// Reads a poses.csv, or the text that Metashape exports.
+/// Reads a poses.csv, or another list of poses (see `poses_opk`). A .prj beside it of the same name
+/// states the coordinate system where the list does not.
 ///
 /// # Errors
 /// With the file and the place in it.
 fn read_poses(path: &Path) -> Result<PosesFile, FileError> {
     let bytes = read_bytes(path)?;
-    let poses = match text_from_bytes(&bytes) {
-        Ok(text) if metashape::is_opk(text) => metashape::read_opk(text),
-        _ => poses_csv::read(&bytes),
+    let at = |fault| FileError::new(path, fault);
+    let mut poses = if poses_opk::is_geojson(&bytes) {
+        poses_opk::read_geojson(&bytes).map_err(at)?
+    } else if let Ok(text) = text_from_bytes(&bytes)
+        && metashape::is_opk(text)
+    {
+        metashape::read_opk(text).map_err(at)?
+    } else if poses_opk::is_table(&bytes) {
+        poses_opk::read_table(&bytes).map_err(at)?
+    } else {
+        poses_csv::read(&bytes).map_err(at)?
     };
-    poses.map_err(|fault| FileError::new(path, fault))
+    let system = path.with_extension("prj");
+    if poses.crs.is_none() && system.is_file() {
+        poses.crs = Some(read_text(&system)?.trim().to_owned()).filter(|crs| !crs.is_empty());
+    }
+    Ok(poses)
 }

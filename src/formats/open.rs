@@ -10,7 +10,7 @@ use super::origin::FlightOrigin;
 use super::photo_checks::photo_checks;
 use super::photo_files::{PhotoFolder, fit_cameras_to_files};
 use super::world_frame::{Frame, Known};
-use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, read_project};
+use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, read_poses, read_project};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{
@@ -370,13 +370,11 @@ impl Source {
     }
 
     fn add_poses(&mut self, path: &Path, cameras: &[Option<String>]) -> Result<(), FileError> {
-        let poses = super::read_poses(path)?;
+        let mut poses = read_poses(path)?;
+        self.poses_frame = Frame::of_poses(poses.crs.as_deref(), None, &mut poses.warnings)
+            .map_err(|fault| FileError::new(path, fault))?;
         self.warn(path, &poses.warnings);
         self.inputs.push(path.to_owned());
-        let mut said = Vec::new();
-        self.poses_frame = Frame::of_poses(poses.crs.as_deref(), None, &mut said)
-            .map_err(|fault| FileError::new(path, fault))?;
-        self.warn(path, &said);
         for line in poses.lines {
             let camera = camera_of(&line, cameras).map_err(|fault| FileError::new(path, fault))?;
             self.photos.push(Photo {

@@ -7,18 +7,30 @@ use std::path::{Path, PathBuf};
 
 use super::input::{FileError, read_text};
 use super::reconstruction::Project;
-use super::{colmap, drone_photos, metashape, nvm, odm};
+use super::{
+    blocks_exchange, colmap, drone_photos, metashape, nvm, odm, opf, pix4d, realitycapture,
+};
 use crate::jobs::Progress;
 
 /// What wrote a reconstruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Package {
+    /// Bentley's BlocksExchange XML.
+    ContextCapture,
     /// COLMAP's model folder.
     Colmap,
     /// Agisoft Metashape's cameras.xml, .psx or .psz.
     Metashape,
     /// OpenDroneMap's project folder.
     OpenDroneMap,
+    /// Pix4D's Open Photogrammetry Format.
+    Opf,
+    /// Pix4Dmapper's params folder or project.
+    Pix4d,
+    /// RealityCapture's CSV of cameras.
+    RealityCaptureCsv,
+    /// The folder of RealityCapture's XMP sidecars.
+    RealityCaptureXmp,
     /// VisualSFM's .nvm.
     VisualSfm,
     /// Photos with nothing beside them, placed by their own EXIF and XMP.
@@ -29,9 +41,13 @@ impl Package {
     /// What it is, for people.
     pub fn in_words(self) -> &'static str {
         match self {
+            Self::ContextCapture => "a ContextCapture block",
             Self::Colmap => "a COLMAP reconstruction",
             Self::Metashape => "a Metashape project",
             Self::OpenDroneMap => "an OpenDroneMap project",
+            Self::Opf => "an OPF project",
+            Self::Pix4d => "a Pix4D calibration",
+            Self::RealityCaptureCsv | Self::RealityCaptureXmp => "RealityCapture's cameras",
             Self::VisualSfm => "a VisualSFM reconstruction",
             Self::Photos => "photos",
         }
@@ -50,6 +66,28 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
     if metashape::is_project(&name, text) {
         return this(Package::Metashape);
     }
+    if has(text, "<BlocksExchange") {
+        return this(Package::ContextCapture);
+    }
+    if String::from_utf8_lossy(text)
+        .lines()
+        .take(3)
+        .any(realitycapture::is_header)
+    {
+        return this(Package::RealityCaptureCsv);
+    }
+    if name.ends_with(".xmp") && has(text, "capturingreality.com/ns/xcr") {
+        return Some((Package::RealityCaptureXmp, path.parent()?.to_owned()));
+    }
+    if has(text, "\"application/opf-project+json\"") {
+        return this(Package::Opf);
+    }
+    if has(text, "\"application/opf-") {
+        return Some((Package::Opf, opf::project_in(path.parent()?)?));
+    }
+    if pix4d::is_pix4d_file(path, &name) {
+        return this(Package::Pix4d);
+    }
     let of_colmap = ["cameras", "images", "points3d"]
         .map(|part| [format!("{part}.bin"), format!("{part}.txt")]);
     if of_colmap.as_flattened().contains(&name) {
@@ -66,15 +104,35 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
     None
 }
 
+/// Whether a word stands in the first bytes.
+fn has(start: &[u8], word: &str) -> bool {
+    start
+        .windows(word.len())
+        .any(|window| window == word.as_bytes())
+}
+
 /// Recognises a folder.
 pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
     if odm::is_odm_folder(path) {
         return Some((Package::OpenDroneMap, path.to_owned()));
     }
+    if let Some(project) = opf::project_in(path) {
+        return Some((Package::Opf, project));
+    }
+    if realitycapture::has_sidecars(path) {
+        return Some((Package::RealityCaptureXmp, path.to_owned()));
+    }
+    if pix4d::has_params(path) {
+        return Some((Package::Pix4d, path.to_owned()));
+    }
     if let Some(model) = colmap::model_folder(path) {
         return Some((Package::Colmap, model));
     }
-    // Last, because many packages leave their photos beside what they made of them.
+    // Last, because beside a .p4d there may lie what another package made of the same photos, and
+    // beside what a package made there are often its photos.
+    if pix4d::is_bare_project(path) {
+        return Some((Package::Pix4d, path.to_owned()));
+    }
     drone_photos::has_photos(path).then(|| (Package::Photos, path.to_owned()))
 }
 
@@ -86,10 +144,19 @@ pub(super) fn read(
 ) -> Result<Project, FileError> {
     let at = |fault| FileError::new(path, fault);
     match package {
+        Package::ContextCapture => blocks_exchange::read(&read_text(path)?)
+            .map(Project::from)
+            .map_err(at),
         Package::Colmap => colmap::read_folder(path).map(Project::from),
         Package::Metashape => metashape::read_project(path),
         Package::OpenDroneMap => odm::read_folder(path),
         Package::Photos => drone_photos::read(path, progress),
+        Package::Opf => opf::read(path),
+        Package::Pix4d => pix4d::read(path),
+        Package::RealityCaptureCsv => realitycapture::read_csv(&read_text(path)?)
+            .map(Project::from)
+            .map_err(at),
+        Package::RealityCaptureXmp => realitycapture::read_folder(path),
         Package::VisualSfm => nvm::read(&read_text(path)?).map(Project::from).map_err(at),
     }
 }

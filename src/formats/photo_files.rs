@@ -25,13 +25,14 @@ impl<'a> PhotoFolder<'a> {
         Self { folder }
     }
 
-    /// The file of a photo: its name below the folder, or the last part of its name in the folder.
+    /// The file of a photo: its name below the folder, or the last part of its name in the folder;
+    /// lists of poses and labels often leave out the extension.
     fn find(&self, photo: &str) -> Option<PathBuf> {
         let folder = self.folder?;
         let last = photo.rsplit(['/', '\\']).next().unwrap_or(photo);
-        [photo, last]
-            .into_iter()
-            .map(|name| folder.join(name))
+        let ends = ["", ".jpg", ".JPG", ".jpeg", ".tif", ".TIF", ".tiff", ".png"];
+        ends.iter()
+            .flat_map(|end| [photo, last].map(|name| folder.join(format!("{name}{end}"))))
             .find(|path| path.is_file())
     }
 

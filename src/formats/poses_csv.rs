@@ -31,8 +31,9 @@ pub struct PoseLine {
 pub struct PosesFile {
     /// One a photo; the names differ.
     pub lines: Vec<PoseLine>,
-    /// The coordinate system of the centres, where the file tells. Where it is one of longitude and
-    /// latitude, centres and rotations are as in a `Reconstruction` with such a system.
+    /// The coordinate system of the centres, where the file tells: "EPSG:n", WKT or a PROJ text. Where
+    /// it is one of longitude and latitude, centres and rotations are as in a `Reconstruction` with
+    /// such a system.
     pub crs: Option<String>,
     /// What was passed over.
     pub warnings: Vec<String>,

@@ -91,6 +91,9 @@ pub struct Reconstruction {
     /// Whether cx, cy count from the top-left corner although the sizes are not known: a calibration
     /// that was given to the package in pixels.
     pub principal_points_from_corner: bool,
+    /// Whether fx, fy, cx, cy and the skew are in units of the image's longer side until the sizes
+    /// are set: a package that writes focal lengths in parts of the film.
+    pub intrinsics_in_longer_sides: bool,
     /// Whether the observations count from the middle of the image (else from its top-left corner).
     pub observed_from_middle: bool,
     /// The median reprojection error in the frame that the package solved in, where the reader had
@@ -113,12 +116,25 @@ impl Reconstruction {
         for (index, camera) in self.cameras.iter_mut().enumerate() {
             let (width, height) = size_of(index)?;
             (camera.width, camera.height) = (width, height);
+            if self.intrinsics_in_longer_sides {
+                let longer = f64::from(width.max(height));
+                for value in [
+                    &mut camera.fx,
+                    &mut camera.fy,
+                    &mut camera.cx,
+                    &mut camera.cy,
+                    &mut camera.skew,
+                ] {
+                    *value *= longer;
+                }
+            }
             if !self.principal_points_from_corner {
                 camera.cx += f64::from(width) / 2.0;
                 camera.cy += f64::from(height) / 2.0;
             }
         }
         self.sizes_known = true;
+        self.intrinsics_in_longer_sides = false;
         Ok(())
     }
 
@@ -130,7 +146,8 @@ impl Reconstruction {
             return self.solved_reprojection_px;
         }
         let one_origin = self.observed_from_middle != self.principal_points_from_corner;
-        if !self.sizes_known && !one_origin {
+        let unknown = self.intrinsics_in_longer_sides || !one_origin;
+        if !self.sizes_known && unknown {
             return None;
         }
         let errors = self.observations.iter().filter_map(|o| self.error_px(o));

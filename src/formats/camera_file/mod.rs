@@ -3,11 +3,13 @@
 //! - XML whose root is `<calibration>`: Agisoft's.
 //! - Other XML, beginning with `<`: an OpenCV FileStorage.
 //! - YAML that begins with `%YAML:`, or YAML or JSON with an `opencv-matrix` in it: the same.
+//! - YAML with `focal_len`: Orthority.
 //! - Other YAML (and JSON, which is YAML): ROS.
 
 mod opencv_camera;
 mod opencv_storage;
 mod opencv_xml;
+mod orthority_camera;
 mod ros_camera;
 mod yaml_tree;
 
@@ -31,6 +33,8 @@ pub(super) fn read(text: &str) -> Result<Camera, Fault> {
     let tree = yaml_tree::first_document(text)?;
     if yaml_tree::has_opencv_directive(text) || opencv_storage::has_matrix(&tree) {
         opencv_storage::from_tree(&tree)
+    } else if let Some(cameras) = orthority_camera::cameras(&tree) {
+        orthority_camera::from_tree(&cameras)
     } else {
         ros_camera::from_tree(&tree)
     }
