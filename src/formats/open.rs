@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::input::{FileError, read_bytes, read_text};
+use super::flight_poses::{self, PhotosToPose};
+use super::input::{FileError, read_text};
 use super::origin::FlightOrigin;
 use super::photo_files::{PhotoFolder, fit_cameras_to_files};
-use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, poses_csv, read_project};
+use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, read_project};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{
@@ -71,7 +72,7 @@ pub fn open_flight(
     let source = match &kind {
         Kind::Flight(file) => Source::of_file(file, progress)?,
         Kind::Reconstruction(..) => Source::of_reconstruction(path, progress)?,
-        Kind::Cloud(_) | Kind::Camera | Kind::Poses => {
+        Kind::Cloud(_) | Kind::Camera | Kind::Poses | Kind::Trajectory(_) => {
             return Err(FileError::new(
                 path,
                 Fault::new(
@@ -128,7 +129,12 @@ impl Source {
         match file.photo_source() {
             PhotoSource::Poses(name) => {
                 let names = source.add_cameras(path, folder, &file.cameras)?;
-                source.add_poses(&folder.join(name), &names)?;
+                let photos = PhotosToPose {
+                    flight_folder: folder,
+                    cameras: &file.cameras,
+                    folder: source.photo_folder.clone(),
+                };
+                source.add_poses(&folder.join(name), &photos, &names, progress)?;
             }
             PhotoSource::Reconstruction(name, transform) => {
                 let path = folder.join(name);
@@ -336,9 +342,14 @@ impl Source {
         Ok(names)
     }
 
-    fn add_poses(&mut self, path: &Path, cameras: &[Option<String>]) -> Result<(), FileError> {
-        let poses =
-            poses_csv::read(&read_bytes(path)?).map_err(|fault| FileError::new(path, fault))?;
+    fn add_poses(
+        &mut self,
+        path: &Path,
+        photos: &PhotosToPose<'_>,
+        cameras: &[Option<String>],
+        progress: &Progress,
+    ) -> Result<(), FileError> {
+        let poses = flight_poses::read(path, photos, progress)?;
         self.warn(path, &poses.warnings);
         self.inputs.push(path.to_owned());
         for line in poses.lines {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::input::{FileError, read_text};
 use super::reconstruction::Project;
-use super::{colmap, nvm, odm};
+use super::{colmap, nvm, odm, ros};
 use crate::jobs::Progress;
 
 /// What wrote a reconstruction.
@@ -19,6 +19,8 @@ pub enum Package {
     OpenDroneMap,
     /// VisualSFM's .nvm.
     VisualSfm,
+    /// A recording of ROS: a bag, a rosbag2 folder, .db3 or .mcap.
+    Ros,
 }
 
 impl Package {
@@ -28,6 +30,7 @@ impl Package {
             Self::Colmap => "a COLMAP reconstruction",
             Self::OpenDroneMap => "an OpenDroneMap project",
             Self::VisualSfm => "a VisualSFM reconstruction",
+            Self::Ros => "a ROS recording",
         }
     }
 }
@@ -40,6 +43,9 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
     let this = |package| Some((package, path.to_owned()));
     if text.starts_with(b"NVM_V3") || name.ends_with(".nvm") {
         return this(Package::VisualSfm);
+    }
+    if ros::is_recording(start, &name) {
+        return this(Package::Ros);
     }
     let of_colmap = ["cameras", "images", "points3d"]
         .map(|part| [format!("{part}.bin"), format!("{part}.txt")]);
@@ -55,6 +61,9 @@ pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
     if odm::is_odm_folder(path) {
         return Some((Package::OpenDroneMap, path.to_owned()));
     }
+    if ros::is_recording_folder(path) {
+        return Some((Package::Ros, path.to_owned()));
+    }
     Some((Package::Colmap, colmap::model_folder(path)?))
 }
 
@@ -62,12 +71,16 @@ pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
 pub(super) fn read(
     package: Package,
     path: &Path,
-    _progress: &Progress,
+    progress: &Progress,
 ) -> Result<Project, FileError> {
     let at = |fault| FileError::new(path, fault);
     match package {
         Package::Colmap => colmap::read_folder(path).map(Project::from),
         Package::OpenDroneMap => odm::read_folder(path),
         Package::VisualSfm => nvm::read(&read_text(path)?).map(Project::from).map_err(at),
+        Package::Ros => {
+            let recording = ros::read(path, progress)?;
+            recording.reconstruction().map(Project::from).map_err(at)
+        }
     }
 }
