@@ -138,3 +138,135 @@ impl PhotosToPose<'_> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{DMat3, DVec3};
+    use image::RgbImage;
+
+    use super::*;
+    use crate::formats::{OpenOptions, Opened, open_flight};
+
+    const SENSOR: &str = "sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  \
+        data: [0, -1, 0, 0.5, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\nresolution: [8, 6]\n\
+        camera_model: pinhole\nintrinsics: [10, 10, 3.5, 2.5]\n\
+        distortion_model: radial-tangential\ndistortion_coefficients: [0, 0, 0, 0]\n";
+    const INLINE: &str =
+        "[[camera]]\nwidth = 8\nheight = 6\nfx = 10.0\nfy = 10.0\ncx = 4.0\ncy = 3.0\n";
+    const FILE: &str = "[[camera]]\nfile = \"sensor.yaml\"\n";
+    const TUM: &str = "10 0 0 9 1 0 0 0\n10.4 4 0 9 1 0 0 0\n";
+    const EUROC: &str = "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n\
+        1403715525000000000,1,2,3,1,0,0,0\n1403715525400000000,5,2,3,1,0,0,0\n";
+
+    /// A flight over four points, with photos of these names.
+    fn opened(poses: (&str, &str), camera: &str, photos: &[&str]) -> Result<Opened, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+        write(poses.0, poses.1);
+        write("sensor.yaml", SENSOR);
+        write("pile.xyz", "-9 -9 0\n9 -9 0\n9 9 0\n-9 9 0\n");
+        let toml = format!(
+            "format = 1\n[world]\nunit = \"m\"\n[surface]\nfile = \"pile.xyz\"\n{camera}[photos]\nposes = \"{}\"\n{}",
+            poses.0,
+            if photos.is_empty() {
+                ""
+            } else {
+                "folder = \"photos\"\n"
+            }
+        );
+        write("flight.toml", &toml);
+        fs::create_dir(folder.path().join("photos")).unwrap();
+        write("photos/notes.txt", "10.2");
+        for photo in photos {
+            RgbImage::new(8, 6)
+                .save(folder.path().join("photos").join(photo))
+                .unwrap();
+        }
+        open_flight(folder.path(), &OpenOptions::default(), &Progress::default())
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn photos_named_by_stamps_take_the_poses_of_a_trajectory() {
+        let opened = opened(
+            ("t.txt", TUM),
+            INLINE,
+            &["10.1.png", "10.300.png", "11.png"],
+        )
+        .unwrap();
+        let photos = &opened.flight.parts().photos;
+        let found: Vec<(&str, DVec3)> = photos
+            .iter()
+            .map(|p| (p.name.as_str(), p.pose.center))
+            .collect();
+        assert_eq!(
+            found,
+            [
+                ("10.1.png", DVec3::new(1.0, 0.0, 9.0)),
+                ("10.300.png", DVec3::new(3.0, 0.0, 9.0))
+            ]
+        );
+        // Half a turn about x: the camera looks down.
+        assert!((photos[0].pose.rotation.z_axis - DVec3::NEG_Z).length() < 1e-15);
+        let warnings = opened.warnings.join("\n");
+        assert!(
+            warnings.contains("t.txt: a TUM trajectory does not say which axes move"),
+            "{warnings}"
+        );
+        assert!(
+            warnings.contains("1 of 3 image files have no pose"),
+            "{warnings}"
+        );
+        assert!(!warnings.contains("missing"), "{warnings}");
+    }
+
+    #[test]
+    fn a_bodys_poses_become_the_cameras() {
+        let photos = ["1403715525100000000.png"];
+        let flown = opened(("data.csv", EUROC), FILE, &photos).unwrap();
+        let pose = flown.flight.parts().photos[0].pose;
+        // A quarter of the way along x, and T_BS puts the camera half a metre further.
+        assert!((pose.center - DVec3::new(2.5, 2.0, 3.0)).length() < 1e-12);
+        assert!(
+            pose.rotation
+                .abs_diff_eq(DMat3::from_cols(DVec3::Y, DVec3::NEG_X, DVec3::Z), 1e-15)
+        );
+        assert!(
+            !flown.warnings.iter().any(|w| w.contains("T_BS")),
+            "{:?}",
+            flown.warnings
+        );
+        let error = opened(("data.csv", EUROC), INLINE, &photos).unwrap_err();
+        assert!(
+            error.contains(
+                "those of the body, and the camera does not say where it sits on it (T_BS)"
+            ),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn what_is_missing_is_said() {
+        let error = opened(("t.txt", TUM), INLINE, &[]).unwrap_err();
+        assert!(
+            error.contains(
+                "the photos are the image files called by their stamps; name their folder"
+            ),
+            "{error}"
+        );
+        let two = "[[camera]]\nname = \"a\"\nfile = \"sensor.yaml\"\n[[camera]]\nname = \"b\"\nfile = \"sensor.yaml\"\n";
+        let error = opened(("t.txt", TUM), two, &["10.1.png"]).unwrap_err();
+        assert!(
+            error.contains("several cameras, and poses over time name none"),
+            "{error}"
+        );
+        let error = opened(("t.txt", TUM), INLINE, &["20.png"]).unwrap_err();
+        assert!(
+            error.contains("t.txt: none of 1 image files has a pose"),
+            "{error}"
+        );
+        // What is no trajectory is a poses.csv, as ever.
+        let error = opened(("t.csv", "photo,x,y\n"), INLINE, &["10.1.png"]).unwrap_err();
+        assert!(error.contains("there is no column z"), "{error}");
+    }
+}

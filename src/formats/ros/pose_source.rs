@@ -37,7 +37,7 @@ pub(super) fn pose_source(recording: &Recording, frame: &str) -> Result<PoseSour
         let below = way.below(topic.child.as_deref()?)?;
         Some((index, topic, below))
     });
-    let carriers: Vec<(usize, &PoseTopic, Vec<(String, Link)>)> = carriers.collect();
+    let carriers: Vec<_> = carriers.collect();
     match &carriers[..] {
         [(_, topic, below)] => {
             let assumption = None;

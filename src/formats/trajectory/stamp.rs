@@ -96,6 +96,7 @@ mod tests {
             ("0.0000000005", 1),
             ("0.00000000049", 0),
             ("1e-30", 0),
+            ("1e-2147483648", 0),
             ("+2e0", 2_000_000_000),
         ] {
             assert_eq!(Stamp::parse(text), Some(Stamp(nanoseconds)), "{text}");
@@ -111,7 +112,6 @@ mod tests {
             assert_eq!(Stamp::parse(text), None, "{text}");
         }
         assert_eq!(Stamp::parse(&"1".repeat(61)), None);
-        assert_eq!(Stamp::parse("1e-2147483648"), None);
     }
 
     #[test]
