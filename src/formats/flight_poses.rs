@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::input::{FileError, read_bytes};
-use super::trajectory::{Moving, PosedFiles, chained};
+use super::trajectory::{PosedFiles, chained};
 use super::{
     Kind, Package, PoseLine, PosesFile, detect, poses_csv, read_camera_mount, read_trajectory, ros,
 };
@@ -45,15 +45,16 @@ pub(super) fn read(
         Ok(Kind::Trajectory(format)) => {
             let trajectory = read_trajectory(path, format, progress)?;
             let mut posed = trajectory.pose_files(&photos.files(path)?).map_err(at)?;
-            if trajectory.moving == Moving::Body {
+            let mut warnings = trajectory.warnings;
+            if format.is_of_body() {
                 let mount = photos.mount(path)?;
                 for (_, pose) in &mut posed.photos {
                     *pose = chained(pose, &mount);
                 }
-                (posed, Vec::new())
             } else {
-                (posed, trajectory.warnings)
+                warnings.push(format.caveat().to_owned());
             }
+            (posed, warnings)
         }
         Ok(Kind::Reconstruction(Package::Ros, folder)) => {
             let files = photos.files(path)?;

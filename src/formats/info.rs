@@ -114,10 +114,12 @@ fn poses_info(file: &PosesFile) -> Value {
 fn trajectory_info(trajectory: &Trajectory) -> Value {
     let poses = trajectory.poses.iter();
     let photos = poses.map(|p| photo_value(&p.name, None, &p.pose));
+    let mut warnings = vec![trajectory.format.caveat()];
+    warnings.extend(trajectory.warnings.iter().map(String::as_str));
     json!({
         "kind": "poses",
         "photos": photos.collect::<Vec<_>>(),
-        "warnings": trajectory.warnings,
+        "warnings": warnings,
     })
 }
 

@@ -8,6 +8,8 @@
 //! - A photo is called by its topic and its stamp in nanoseconds: `cam0/image_raw/1403715273262142976`.
 //! - Its pose is that of its frame (`pose_source.rs`) at its stamp. It is interpolated, not over more
 //!   than half a second, and never extrapolated.
+//! - The world is the frame that the poses are in; called `earth`, it is ECEF (REP 105), else no
+//!   coordinate system is known.
 //! - `sensor_msgs/NavSatFix` gives measured positions, interpolated over 1.5 s at most. They are those
 //!   of the antenna: its distance to the camera is not known here.
 
@@ -44,10 +46,11 @@ impl Recording {
             (false, false) => None,
         };
         if let Some(missing) = missing {
-            return Err(Fault::new(
-                format!("the recording holds {missing}"),
-                USE_AS_POSES,
-            ));
+            let mut what = format!("the recording holds {missing}");
+            if let Some(other) = self.not_read().next() {
+                what = format!("{what}; {other}");
+            }
+            return Err(Fault::new(what, USE_AS_POSES));
         }
         let mut reconstruction = Reconstruction {
             package: "ros",
@@ -58,8 +61,20 @@ impl Recording {
         let shots = self.photo_topics(&mut reconstruction.warnings)?;
         let mut without: Vec<(String, NoPose)> = Vec::new();
         let mut stamps = Vec::new();
+        let mut world_frame: Option<String> = None;
         for shot in &shots {
             let source = pose_source(self, &shot.camera_topic.frame)?;
+            let world = world_frame.get_or_insert_with(|| source.way.root.clone());
+            if *world != source.way.root {
+                let what = format!(
+                    "the cameras' poses are in two world_frame, '{world}' and '{}'",
+                    source.way.root
+                );
+                return Err(Fault::new(
+                    what,
+                    "record the tf between the two, or one camera",
+                ));
+            }
             reconstruction.warnings.extend(source.assumption.clone());
             let camera = reconstruction.cameras.len();
             reconstruction.cameras.push(shot.camera.clone());
@@ -74,6 +89,10 @@ impl Recording {
                     Err(reason) => without.push((name, reason)),
                 }
             }
+        }
+        // REP 105: the frame called earth is ECEF.
+        if world_frame.as_deref() == Some("earth") {
+            reconstruction.crs = Some("ECEF".to_owned());
         }
         let count = without.len() + reconstruction.photos.len();
         if let Some((name, reason)) = without.first() {
@@ -197,7 +216,9 @@ impl Recording {
             _ => (name, ""),
         };
         let (namespace, last) = base.rsplit_once('/').unwrap_or(("", base));
-        if matches!(image.encoding.as_str(), "16UC1" | "32FC1") || transport == "compressedDepth" {
+        let is_depth = matches!(image.encoding.as_str(), "16UC1" | "32FC1")
+            || image.encoding.contains("compressedDepth");
+        if is_depth || transport == "compressedDepth" {
             return Err("depth images".to_owned());
         }
         if last.starts_with("image_rect") {

@@ -13,7 +13,7 @@
 //! without images or CameraInfo is no flight; `info` prints its poses, and a flight.toml may name it
 //! as `[photos] poses`.
 //!
-//! The world is whatever frame the poses are in (REP 103: metres, z up); no coordinate system is known.
+//! The world is whatever frame the poses are in (REP 103: metres, z up).
 //! Not read: pixels (a photo's file must be exported, by the usual tools under its stamp), point
 //! clouds, anything encoded otherwise than by ROS 1 or CDR, and recordings that are compressed as whole
 //! files (`.db3.zstd`, `.mcap.zstd`).

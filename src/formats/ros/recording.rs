@@ -182,16 +182,23 @@ impl Recording {
         self.topics.iter().map(|topic| topic.messages).sum()
     }
 
+    /// Which topics are encoded in ways that are not read, one sentence each.
+    pub(super) fn not_read(&self) -> impl Iterator<Item = String> {
+        let topics = self.topics.iter();
+        let others = topics.filter(|topic| Serialization::of_name(&topic.encoding).is_none());
+        others.map(|topic| {
+            format!(
+                "{}: its {} messages are encoded as '{}' and not read (only ros1 and cdr are)",
+                topic.name, topic.messages, topic.encoding
+            )
+        })
+    }
+
     /// What is to be said of the recording whatever is made of it.
     pub(in crate::formats) fn warnings(&self) -> Vec<String> {
         let mut warnings = self.file_warnings.clone();
+        warnings.extend(self.not_read());
         for topic in &self.topics {
-            if Serialization::of_name(&topic.encoding).is_none() {
-                warnings.push(format!(
-                    "{}: its {} messages are encoded as '{}' and not read (only ros1 and cdr are)",
-                    topic.name, topic.messages, topic.encoding
-                ));
-            }
             if let Some((count, why)) = topic.malformed {
                 warnings.push(format!(
                     "{}: {count} of {} messages are no {} (the first {why}) and are left out",

@@ -20,8 +20,8 @@ use std::io::BufRead;
 
 use glam::DVec3;
 
+use super::TrajectoryPose;
 use super::stamp::Stamp;
-use super::{Moving, Trajectory, TrajectoryFormat, TrajectoryPose};
 use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::formats::fields::shown;
@@ -50,7 +50,7 @@ fn column(names: &[&str], begin: &str, end: &str) -> Option<usize> {
         .position(|name| name.starts_with(begin) && name.ends_with(end))
 }
 
-pub(super) fn read(mut lines: TextLines<impl BufRead>) -> Result<Trajectory, Fault> {
+pub(super) fn read(mut lines: TextLines<impl BufRead>) -> Result<Vec<TrajectoryPose>, Fault> {
     let header = lines.next_line()?.unwrap_or_default();
     let names: Vec<&str> = names(header).collect();
     let find = |begin: &str, axis: &str| {
@@ -81,14 +81,7 @@ pub(super) fn read(mut lines: TextLines<impl BufRead>) -> Result<Trajectory, Fau
             poses.push(pose(number, line, &columns)?);
         }
     }
-    Ok(Trajectory {
-        format: TrajectoryFormat::Euroc,
-        moving: Moving::Body,
-        poses,
-        warnings: vec![
-            "these are poses of the body (its IMU), not of a camera; a flight needs the camera's sensor.yaml, whose T_BS leads from one to the other".to_owned(),
-        ],
-    })
+    Ok(poses)
 }
 
 fn pose(line: u64, text: &str, columns: &[usize; 7]) -> Result<TrajectoryPose, Fault> {

@@ -15,8 +15,8 @@ use std::io::BufRead;
 
 use glam::{DMat3, DQuat, DVec3};
 
+use super::TrajectoryPose;
 use super::stamp::Stamp;
-use super::{Moving, Trajectory, TrajectoryFormat, TrajectoryPose};
 use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::formats::fields::Fields;
@@ -33,7 +33,7 @@ pub(super) fn looks_like(lines: &[&str]) -> bool {
     !lines.is_empty() && lines.iter().all(|line| pose(0, line).is_ok())
 }
 
-pub(super) fn read(mut lines: TextLines<impl BufRead>) -> Result<Trajectory, Fault> {
+pub(super) fn read(mut lines: TextLines<impl BufRead>) -> Result<Vec<TrajectoryPose>, Fault> {
     let mut poses = Vec::new();
     loop {
         let number = lines.line() + 1;
@@ -52,14 +52,7 @@ pub(super) fn read(mut lines: TextLines<impl BufRead>) -> Result<Trajectory, Fau
             pose: pose(number, line)?,
         });
     }
-    Ok(Trajectory {
-        format: TrajectoryFormat::Kitti,
-        moving: Moving::Camera,
-        poses,
-        warnings: vec![
-            "the world of KITTI poses is the first camera (y down, z forward) unless somebody turned it; fragscale needs z up".to_owned(),
-        ],
-    })
+    Ok(poses)
 }
 
 fn pose(line: u64, text: &str) -> Result<Pose, Fault> {

@@ -22,6 +22,7 @@ mod stamp;
 mod track;
 mod tum;
 
+use std::cmp::Ordering;
 use std::io::BufRead;
 
 pub(in crate::formats) use photos::{PosedFiles, pose_photos};
@@ -43,13 +44,26 @@ pub enum TrajectoryFormat {
     Kitti,
 }
 
-/// What a trajectory's poses belong to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::formats) enum Moving {
-    /// A camera: x right, y down, z forward.
-    Camera,
-    /// A body that cameras are mounted on; where, is to be known from elsewhere.
-    Body,
+impl TrajectoryFormat {
+    /// Whether the poses are those of a body that cameras are mounted on, not of a camera.
+    pub(in crate::formats) fn is_of_body(self) -> bool {
+        self == Self::Euroc
+    }
+
+    /// What its poses leave open, for people.
+    pub(in crate::formats) fn caveat(self) -> &'static str {
+        match self {
+            Self::Tum => {
+                "a TUM trajectory does not say which axes move: they are taken for a camera's (x right, y down, z forward)"
+            }
+            Self::Euroc => {
+                "these are poses of the body (its IMU), not of a camera; a flight needs the camera's sensor.yaml, whose T_BS leads from one to the other"
+            }
+            Self::Kitti => {
+                "the world of KITTI poses is the first camera (y down, z forward) unless somebody turned it; fragscale needs z up"
+            }
+        }
+    }
 }
 
 /// A pose of a trajectory.
@@ -69,11 +83,9 @@ pub(in crate::formats) struct TrajectoryPose {
 pub(in crate::formats) struct Trajectory {
     /// What wrote it.
     pub(in crate::formats) format: TrajectoryFormat,
-    /// What moves.
-    pub(in crate::formats) moving: Moving,
     /// In the file's order.
     pub(in crate::formats) poses: Vec<TrajectoryPose>,
-    /// What the reader had to assume, one sentence each.
+    /// What is wrong with the file's order, one sentence each.
     pub(in crate::formats) warnings: Vec<String>,
 }
 
@@ -126,38 +138,43 @@ pub(super) fn recognise(start: &str, whole: bool, name: &str) -> Option<Trajecto
 /// With the line of what is wrong.
 pub(super) fn read(format: TrajectoryFormat, input: impl BufRead) -> Result<Trajectory, Fault> {
     let lines = TextLines::new(input);
-    let mut trajectory = match format {
+    let poses = match format {
         TrajectoryFormat::Tum => tum::read(lines),
         TrajectoryFormat::Euroc => euroc::read(lines),
         TrajectoryFormat::Kitti => kitti::read(lines),
     }?;
-    if trajectory.poses.is_empty() {
+    if poses.is_empty() {
         return Err(Fault::new("it has no poses", "give a line for each pose"));
     }
-    warn_of_disorder(&mut trajectory);
-    Ok(trajectory)
+    Ok(Trajectory {
+        format,
+        warnings: disorder(&poses),
+        poses,
+    })
 }
 
 /// Counts stamps that go back or stand twice.
-fn warn_of_disorder(trajectory: &mut Trajectory) {
+fn disorder(poses: &[TrajectoryPose]) -> Vec<String> {
     let (mut back, mut twice) = (0_usize, 0_usize);
-    for (before, after) in trajectory.poses.iter().zip(trajectory.poses.iter().skip(1)) {
+    for (before, after) in poses.iter().zip(poses.iter().skip(1)) {
         match before.key.cmp(&after.key) {
-            std::cmp::Ordering::Less => {}
-            std::cmp::Ordering::Equal => twice += 1,
-            std::cmp::Ordering::Greater => back += 1,
+            Ordering::Less => {}
+            Ordering::Equal => twice += 1,
+            Ordering::Greater => back += 1,
         }
     }
+    let mut warnings = Vec::new();
     if back > 0 {
-        trajectory.warnings.push(format!(
+        warnings.push(format!(
             "{back} stamps are older than the one in front of them; the poses are sorted by time where photos take them"
         ));
     }
     if twice > 0 {
-        trajectory.warnings.push(format!(
+        warnings.push(format!(
             "{twice} stamps stand twice in a row; photos take the first pose of each"
         ));
     }
+    warnings
 }
 
 #[cfg(test)]

@@ -17,8 +17,8 @@ use std::io::BufRead;
 
 use glam::DVec3;
 
+use super::TrajectoryPose;
 use super::stamp::Stamp;
-use super::{Moving, Trajectory, TrajectoryFormat, TrajectoryPose};
 use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::formats::fields::{Fields, shown};
@@ -64,7 +64,7 @@ fn length(words: &[&str]) -> f64 {
     squares.sum::<f64>().sqrt()
 }
 
-pub(super) fn read(mut lines: TextLines<impl BufRead>) -> Result<Trajectory, Fault> {
+pub(super) fn read(mut lines: TextLines<impl BufRead>) -> Result<Vec<TrajectoryPose>, Fault> {
     let mut poses = Vec::new();
     loop {
         let number = lines.line() + 1;
@@ -78,14 +78,7 @@ pub(super) fn read(mut lines: TextLines<impl BufRead>) -> Result<Trajectory, Fau
         let text = line.replace(',', " ");
         poses.push(pose(Fields::new(number, &text, REMEDY))?);
     }
-    Ok(Trajectory {
-        format: TrajectoryFormat::Tum,
-        moving: Moving::Camera,
-        poses,
-        warnings: vec![
-            "a TUM trajectory does not say which axes move: they are taken for a camera's (x right, y down, z forward)".to_owned(),
-        ],
-    })
+    Ok(poses)
 }
 
 fn pose(mut fields: Fields<'_>) -> Result<TrajectoryPose, Fault> {

@@ -508,6 +508,40 @@ fn only_raw_images_of_a_known_camera_are_photos() {
     );
 }
 
+/// REP 105 calls the frame of ECEF earth; two cameras must be in one world.
+#[test]
+fn the_world_is_the_topmost_frame() {
+    let style = Style::Ros1;
+    let mut entries = flight(style);
+    assert_eq!(flown(&entries).unwrap().crs, None);
+    let earth = Out::new(style).u32(1).header(0, "earth").text("map");
+    let earth = turned(earth, [4e6, 1e6, 4.8e6], 0.0);
+    entries.push(entry("/tf_static", "tf2_msgs/TFMessage", earth));
+    let above = flown(&entries).unwrap();
+    assert_eq!(above.crs.as_deref(), Some("ECEF"));
+    let expected = expected(0.1).center + DVec3::new(4e6, 1e6, 4.8e6);
+    assert!((above.photos[0].pose.center - expected).length() < 1e-8);
+    // A second camera, of a body that is tracked on its own.
+    let info = Out::new(style)
+        .header(0, "other")
+        .u32(6)
+        .u32(8)
+        .text("")
+        .u32(0);
+    let info = info
+        .f64s(&[9.0, 0.0, 3.5, 0.0, 9.0, 2.5, 0.0, 0.0, 1.0])
+        .f64s(&[0.0; 21]);
+    let info = info.u32(0).u32(0).u32(0).u32(0).u32(0).u32(0).byte(0);
+    entries.push(entry("/two/camera_info", "sensor_msgs/CameraInfo", info));
+    entries.push(image_of(style, "/two/image_raw", 100, "rgb8", [8, 6]));
+    entries.push(odometry("/odom", 0, "other"));
+    let fault = flown(&entries).unwrap_err();
+    assert_eq!(
+        fault.what,
+        "the cameras' poses are in two worlds, 'earth' and 'map'"
+    );
+}
+
 #[test]
 fn what_is_missing_is_named() {
     let style = Style::Ros1;
@@ -551,7 +585,8 @@ fn messages_that_cannot_be_read_are_counted() {
         ]
     );
     let json = of_mcap(&mcap(&entries[..2], "json", ::mcap::WriteOptions::new())).unwrap();
-    assert!(json.reconstruction().is_err());
+    let fault = json.reconstruction().unwrap_err();
+    assert!(fault.what.contains("encoded as 'json'"), "{fault}");
     assert!(
         json.warnings()[0].contains("encoded as 'json' and not read"),
         "{:?}",
