@@ -28,7 +28,9 @@ impl Dropped {
                 Kind::Cloud(_) => (&mut dropped.options.surface, "surfaces"),
                 Kind::Reconstruction(Package::Photos, _) => (&mut photos, "folders of photos"),
                 Kind::Flight(_) | Kind::Reconstruction(..) => (&mut dropped.flight, "flights"),
-                kind @ (Kind::Camera | Kind::Poses) => return Err(no_part(path, &kind)),
+                kind @ (Kind::Camera | Kind::Poses | Kind::Trajectory(_)) => {
+                    return Err(no_part(path, &kind));
+                }
             };
             if let Some(first) = part.replace(path.clone()) {
                 return Err(FileError::new(

@@ -4,9 +4,11 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use super::ros::Recording;
+use super::trajectory::Trajectory;
 use super::{
-    CloudFile, FileError, Kind, OpenOptions, PosesFile, Reconstruction, detect, open_flight,
-    read_camera, read_cloud, read_poses, read_project,
+    CloudFile, FileError, Kind, OpenOptions, Package, PosesFile, Reconstruction, detect,
+    open_flight, read_camera, read_cloud, read_poses, read_project, read_trajectory, ros,
 };
 use crate::camera::{Camera, Pose};
 use crate::flight::Flight;
@@ -24,6 +26,8 @@ pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
         Kind::Cloud(_) => cloud_info(&read_cloud(path, progress)?),
         Kind::Camera => camera_info(&read_camera(path)?),
         Kind::Poses => poses_info(&read_poses(path)?),
+        Kind::Trajectory(format) => trajectory_info(&read_trajectory(path, format, progress)?),
+        Kind::Reconstruction(Package::Ros, path) => recording_info(&ros::read(&path, progress)?),
         Kind::Reconstruction(..) => {
             reconstruction_info(&read_project(path, progress)?.reconstruction)
         }
@@ -110,6 +114,46 @@ fn poses_info(file: &PosesFile) -> Value {
         "photos": photos.collect::<Vec<_>>(),
         "warnings": file.warnings,
     })
+}
+
+/// A trajectory: its stamps stand for photos, and no camera is known.
+fn trajectory_info(trajectory: &Trajectory) -> Value {
+    let poses = trajectory.poses.iter();
+    let photos = poses.map(|p| photo_value(&p.name, None, &p.pose));
+    let mut warnings = vec![trajectory.format.caveat()];
+    warnings.extend(trajectory.warnings.iter().map(String::as_str));
+    json!({
+        "kind": "poses",
+        "photos": photos.collect::<Vec<_>>(),
+        "warnings": warnings,
+    })
+}
+
+/// A ROS recording: what a reconstruction says where it is a flight, else its poses; in both cases its
+/// topics.
+fn recording_info(recording: &Recording) -> Value {
+    let mut value = match recording.reconstruction() {
+        Ok(reconstruction) => reconstruction_info(&reconstruction),
+        Err(fault) => {
+            let mut warnings = recording.warnings();
+            warnings.push(format!("it is no flight: {fault}"));
+            let poses = recording.named_poses();
+            let photos = poses
+                .iter()
+                .map(|(name, pose)| photo_value(name, None, pose));
+            json!({
+                "kind": "poses",
+                "photos": photos.collect::<Vec<_>>(),
+                "warnings": warnings,
+            })
+        }
+    };
+    let topics = recording.topics.iter().map(
+        |topic| json!({"name": topic.name, "type": topic.type_name, "messages": topic.messages}),
+    );
+    value["messages"] = recording.messages().into();
+    value["topics"] = topics.collect();
+    value
 }
 
 /// A flight, opened with all its files: cameras at their photos' size, photos in the world.

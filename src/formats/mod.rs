@@ -11,6 +11,7 @@ mod colmap;
 mod drone_photos;
 mod dropped;
 mod fields;
+mod flight_poses;
 mod georeferencing;
 mod info;
 mod input;
@@ -38,9 +39,11 @@ mod poses_opk;
 mod position_list;
 mod realitycapture;
 mod reconstruction;
+mod ros;
 #[cfg(test)]
 mod test_data;
 mod text_lines;
+mod trajectory;
 mod world_frame;
 mod xml_document;
 mod xyz;
@@ -67,8 +70,9 @@ pub use position_list::{
     read_control_points, read_positions,
 };
 pub use reconstruction::{MeasuredPosition, Observation, PosedPhoto, Project, Reconstruction};
+pub use trajectory::TrajectoryFormat;
 
-use crate::camera::Camera;
+use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
 use crate::jobs::Progress;
 
@@ -83,6 +87,8 @@ pub enum Kind {
     Camera,
     /// The poses of photos: a poses.csv, or Metashape's text.
     Poses,
+    /// Poses over time.
+    Trajectory(TrajectoryFormat),
     /// Cameras and posed photos as this package wrote them, in this file or folder.
     Reconstruction(Package, PathBuf),
 }
@@ -108,13 +114,17 @@ impl Kind {
             Self::Cloud(_) => "a cloud or mesh",
             Self::Camera => "a camera calibration",
             Self::Poses => "poses",
+            Self::Trajectory(_) => "a trajectory",
             Self::Reconstruction(package, _) => package.in_words(),
         }
     }
 }
 
 /// Everything that can be opened, for messages.
-const SUPPORTED: &str = "flight.toml, PLY, LAS, LAZ, OBJ, XYZ/TXT/CSV, NVM, Metashape's cameras.xml and .psx, camera YAML or XML, poses.csv, a COLMAP or OpenDroneMap folder";
+const SUPPORTED: &str = "flight.toml, PLY, LAS, LAZ, OBJ, XYZ/TXT/CSV, NVM, Metashape's cameras.xml and .psx, camera YAML or XML, poses.csv, TUM, EuRoC or KITTI trajectories, ROS bags, .db3 or .mcap, a COLMAP, OpenDroneMap or rosbag2 folder";
+
+/// How many bytes of a file are looked at to tell its kind.
+const DETECTED_BY: usize = 4096;
 
 /// Tells what a file or folder holds: by its first bytes where they are distinctive, else by its
 /// name.
@@ -127,7 +137,7 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
     }
     let mut start = Vec::new();
     open_file(path)?
-        .take(4096)
+        .take(DETECTED_BY as u64)
         .read_to_end(&mut start)
         .map_err(|e| {
             FileError::new(
@@ -163,6 +173,13 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         .to_string_lossy()
         .to_ascii_lowercase();
     let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
+    if matches!(extension, "csv" | "txt" | "tum" | "kitti") {
+        let whole = start.len() < DETECTED_BY;
+        let text = String::from_utf8_lossy(text);
+        if let Some(format) = trajectory::recognise(&text, whole, &name) {
+            return Ok(Kind::Trajectory(format));
+        }
+    }
     Ok(match extension {
         "toml" => Kind::Flight(path.to_owned()),
         "ply" => Kind::Cloud(CloudFormat::Ply),
@@ -291,6 +308,22 @@ pub fn read_project(path: &Path, progress: &Progress) -> Result<Project, FileErr
             ),
         )),
     }
+}
+
+/// Where a camera's file says that it sits on the body that carries it; `None` where it does not.
+fn read_camera_mount(path: &Path) -> Result<Option<Pose>, FileError> {
+    camera_file::read_mount(&read_text(path)?).map_err(|fault| FileError::new(path, fault))
+}
+
+/// Reads a trajectory.
+fn read_trajectory(
+    path: &Path,
+    format: TrajectoryFormat,
+    progress: &Progress,
+) -> Result<trajectory::Trajectory, FileError> {
+    progress.stage(format!("reading {}", path.display()));
+    let input = BufReader::with_capacity(1 << 18, open_file(path)?);
+    trajectory::read(format, input).map_err(|fault| FileError::new(path, fault))
 }
 
 /// Reads a poses.csv, or another list of poses (see `poses_opk`). A .prj beside it of the same name

@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::flight_poses::{self, PhotosToPose};
 use super::input::{FileError, read_text};
 use super::origin::FlightOrigin;
 use super::photo_checks::photo_checks;
 use super::photo_files::{PhotoFolder, fit_cameras_to_files};
 use super::world_frame::{Frame, Known};
-use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, read_poses, read_project};
+use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, read_project};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{
@@ -78,7 +79,7 @@ pub fn open_flight(
     let source = match &kind {
         Kind::Flight(file) => Source::of_file(file, options, progress)?,
         Kind::Reconstruction(..) => Source::of_reconstruction(path, options, progress)?,
-        Kind::Cloud(_) | Kind::Camera | Kind::Poses => {
+        Kind::Cloud(_) | Kind::Camera | Kind::Poses | Kind::Trajectory(_) => {
             return Err(FileError::new(
                 path,
                 Fault::new(
@@ -162,7 +163,12 @@ impl Source {
         match file.photo_source() {
             PhotoSource::Poses(name) => {
                 let names = source.add_cameras(path, folder, &file.cameras)?;
-                source.add_poses(&folder.join(name), &names)?;
+                let photos = PhotosToPose {
+                    flight_folder: folder,
+                    cameras: &file.cameras,
+                    folder: source.photo_folder.clone(),
+                };
+                source.add_poses(&folder.join(name), &photos, &names, progress)?;
             }
             PhotoSource::Reconstruction(name, transform) => {
                 let path = folder.join(name);
@@ -369,8 +375,14 @@ impl Source {
         Ok(names)
     }
 
-    fn add_poses(&mut self, path: &Path, cameras: &[Option<String>]) -> Result<(), FileError> {
-        let mut poses = read_poses(path)?;
+    fn add_poses(
+        &mut self,
+        path: &Path,
+        photos: &PhotosToPose<'_>,
+        cameras: &[Option<String>],
+        progress: &Progress,
+    ) -> Result<(), FileError> {
+        let mut poses = flight_poses::read(path, photos, progress)?;
         self.poses_frame = Frame::of_poses(poses.crs.as_deref(), None, &mut poses.warnings)
             .map_err(|fault| FileError::new(path, fault))?;
         self.warn(path, &poses.warnings);

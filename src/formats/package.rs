@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::input::{FileError, read_text};
 use super::reconstruction::Project;
 use super::{
-    blocks_exchange, colmap, drone_photos, metashape, nvm, odm, opf, pix4d, realitycapture,
+    blocks_exchange, colmap, drone_photos, metashape, nvm, odm, opf, pix4d, realitycapture, ros,
 };
 use crate::jobs::Progress;
 
@@ -35,6 +35,8 @@ pub enum Package {
     VisualSfm,
     /// Photos with nothing beside them, placed by their own EXIF and XMP.
     Photos,
+    /// A recording of ROS: a bag, a rosbag2 folder, .db3 or .mcap.
+    Ros,
 }
 
 impl Package {
@@ -50,6 +52,7 @@ impl Package {
             Self::RealityCaptureCsv | Self::RealityCaptureXmp => "RealityCapture's cameras",
             Self::VisualSfm => "a VisualSFM reconstruction",
             Self::Photos => "photos",
+            Self::Ros => "a ROS recording",
         }
     }
 }
@@ -88,6 +91,9 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
     if pix4d::is_pix4d_file(path, &name) {
         return this(Package::Pix4d);
     }
+    if ros::is_recording(start, &name) {
+        return this(Package::Ros);
+    }
     let of_colmap = ["cameras", "images", "points3d"]
         .map(|part| [format!("{part}.bin"), format!("{part}.txt")]);
     if of_colmap.as_flattened().contains(&name) {
@@ -125,6 +131,9 @@ pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
     if pix4d::has_params(path) {
         return Some((Package::Pix4d, path.to_owned()));
     }
+    if ros::is_recording_folder(path) {
+        return Some((Package::Ros, path.to_owned()));
+    }
     if let Some(model) = colmap::model_folder(path) {
         return Some((Package::Colmap, model));
     }
@@ -158,5 +167,9 @@ pub(super) fn read(
             .map_err(at),
         Package::RealityCaptureXmp => realitycapture::read_folder(path),
         Package::VisualSfm => nvm::read(&read_text(path)?).map(Project::from).map_err(at),
+        Package::Ros => {
+            let recording = ros::read(path, progress)?;
+            recording.reconstruction().map(Project::from).map_err(at)
+        }
     }
 }

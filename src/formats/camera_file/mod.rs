@@ -4,8 +4,10 @@
 //! - Other XML, beginning with `<`: an OpenCV FileStorage.
 //! - YAML that begins with `%YAML:`, or YAML or JSON with an `opencv-matrix` in it: the same.
 //! - YAML with `focal_len`: Orthority.
-//! - Other YAML (and JSON, which is YAML): ROS.
+//! - Other YAML (and JSON, which is YAML) with `intrinsics` and `resolution`: EuRoC's sensor.yaml.
+//! - Other YAML (and JSON): ROS.
 
+mod euroc_camera;
 mod opencv_camera;
 mod opencv_storage;
 mod opencv_xml;
@@ -13,9 +15,11 @@ mod orthority_camera;
 mod ros_camera;
 mod yaml_tree;
 
-use crate::camera::Camera;
+use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
 use crate::formats::metashape;
+
+pub(super) use ros_camera::of_message as of_camera_info;
 
 /// Reads a camera from the text of a calibration file.
 ///
@@ -35,9 +39,23 @@ pub(super) fn read(text: &str) -> Result<Camera, Fault> {
         opencv_storage::from_tree(&tree)
     } else if let Some(cameras) = orthority_camera::cameras(&tree) {
         orthority_camera::from_tree(&cameras)
+    } else if euroc_camera::is_sensor(&tree) {
+        euroc_camera::from_tree(&tree)
     } else {
         ros_camera::from_tree(&tree)
     }
+}
+
+/// Where a camera's file says that it sits on the body that carries it: `body_from_camera`. `None`
+/// where it says nothing; only a EuRoC sensor.yaml does.
+///
+/// # Errors
+/// Where what it says is no rigid motion.
+pub(super) fn read_mount(text: &str) -> Result<Option<Pose>, Fault> {
+    if text.trim_start().starts_with('<') {
+        return Ok(None);
+    }
+    euroc_camera::body_from_camera(&yaml_tree::first_document(text)?)
 }
 
 #[cfg(test)]

@@ -73,6 +73,16 @@ impl<'a> Matrix<'a> {
         Ok(matrix(Some((rows, cols)), values))
     }
 
+    /// The numbers of a message, which have no place in a text.
+    pub(super) fn of_message(key: &'a str, values: &[f64]) -> Self {
+        Self {
+            key,
+            line: 0,
+            shape: None,
+            values: values.to_vec(),
+        }
+    }
+
     /// Its numbers.
     pub(super) fn values(&self) -> &[f64] {
         &self.values

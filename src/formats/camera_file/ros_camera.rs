@@ -95,19 +95,52 @@ fn refuse_crop(tree: &Node, size: (u32, u32)) -> Result<(), Fault> {
         let part = roi.node.get(key);
         part.map_or(Ok(0), |part| part.node.whole(&format!("roi: {key}")))
     };
-    let offset = (side("x_offset")?, side("y_offset")?);
-    let (width, height) = (side("width")?, side("height")?);
-    let whole = offset == (0, 0) && ((width, height) == (0, 0) || (width, height) == size);
-    if whole {
+    let region = [
+        side("x_offset")?,
+        side("y_offset")?,
+        side("width")?,
+        side("height")?,
+    ];
+    whole_image(region, size).map_err(|fault| Fault {
+        line: Some(roi.line),
+        ..fault
+    })
+}
+
+/// Refuses a region of interest (x, y, width, height) that is not the whole image.
+fn whole_image(region: [u32; 4], size: (u32, u32)) -> Result<(), Fault> {
+    let [x, y, width, height] = region;
+    if (x, y) == (0, 0) && ((width, height) == (0, 0) || (width, height) == size) {
         return Ok(());
     }
-    let (x, y) = offset;
     let place = quoted(&format!("{width} x {height} at {x}, {y}"));
-    Err(Fault::at(
-        roi.line,
+    Err(Fault::new(
         format!("the region of interest {place} is a crop: K is not that of its photos"),
         "record without a region of interest, or write the crop's own camera inline",
     ))
+}
+
+/// The camera of a `CameraInfo` message: its size, its region of interest (x, y, width, height), K, the
+/// model's name and D.
+///
+/// # Errors
+/// Where it is no camera that fragscale can model.
+pub(in crate::formats) fn of_message(
+    size: (u32, u32),
+    region: [u32; 4],
+    k: &[f64],
+    model: &str,
+    d: &[f64],
+) -> Result<Camera, Fault> {
+    whole_image(region, size)?;
+    let lens = Matrix::of_message("D", d).lens(model, 0);
+    let camera =
+        lens.and_then(|lens| opencv_camera::camera("", size, &Matrix::of_message("K", k), lens));
+    // A message has no lines.
+    camera.map_err(|fault| Fault {
+        line: None,
+        ..fault
+    })
 }
 
 #[cfg(test)]
