@@ -7,11 +7,15 @@
 mod camera_file;
 mod cloud_file;
 mod colmap;
+mod e57;
 mod fields;
+mod geotiff;
+mod gltf;
 mod info;
 mod input;
 mod json;
 mod las;
+mod leica;
 mod nvm;
 mod obj;
 mod odm;
@@ -19,18 +23,20 @@ mod open;
 mod opensfm;
 mod origin;
 mod package;
+mod pcd;
 mod photo_files;
 mod photo_size;
 mod ply;
 mod poses_csv;
 mod reconstruction;
+mod stl;
 #[cfg(test)]
 mod test_data;
 mod text_lines;
 mod xyz;
 
 use std::fs;
-use std::io::{BufReader, Read};
+use std::io::{BufRead, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 
 pub use cloud_file::CloudFile;
@@ -72,6 +78,20 @@ pub enum CloudFormat {
     Obj,
     /// Points as text.
     Xyz,
+    /// Laser scans, ASTM E2807.
+    E57,
+    /// The Point Cloud Library's.
+    Pcd,
+    /// Leica's points.
+    Pts,
+    /// Leica's scans.
+    Ptx,
+    /// Triangles for stereolithography.
+    Stl,
+    /// glTF 2.0 as JSON or as .glb.
+    Gltf,
+    /// An elevation model.
+    GeoTiff,
 }
 
 impl Kind {
@@ -88,7 +108,7 @@ impl Kind {
 }
 
 /// Everything that can be opened, for messages.
-const SUPPORTED: &str = "flight.toml, PLY, LAS, LAZ, OBJ, XYZ/TXT/CSV, NVM, camera YAML or XML, poses.csv, a COLMAP or OpenDroneMap folder";
+const SUPPORTED: &str = "flight.toml, PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, XYZ/TXT/CSV, NVM, camera YAML or XML, poses.csv, a COLMAP or OpenDroneMap folder";
 
 /// Tells what a file or folder holds: by its first bytes where they are distinctive, else by its
 /// name.
@@ -123,6 +143,13 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         (&b"LASF"[..], Kind::Cloud(CloudFormat::Las)),
         (b"ply\n", Kind::Cloud(CloudFormat::Ply)),
         (b"ply\r", Kind::Cloud(CloudFormat::Ply)),
+        (b"ASTM-E57", Kind::Cloud(CloudFormat::E57)),
+        (b"# .PCD", Kind::Cloud(CloudFormat::Pcd)),
+        (b"glTF", Kind::Cloud(CloudFormat::Gltf)),
+        (b"II*\0", Kind::Cloud(CloudFormat::GeoTiff)),
+        (b"MM\0*", Kind::Cloud(CloudFormat::GeoTiff)),
+        (b"II+\0", Kind::Cloud(CloudFormat::GeoTiff)),
+        (b"MM\0+", Kind::Cloud(CloudFormat::GeoTiff)),
         (b"%YAML", Kind::Camera),
         (b"<?xml", Kind::Camera),
         (b"<opencv_storage", Kind::Camera),
@@ -142,6 +169,13 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         "ply" => Kind::Cloud(CloudFormat::Ply),
         "las" | "laz" => Kind::Cloud(CloudFormat::Las),
         "obj" => Kind::Cloud(CloudFormat::Obj),
+        "e57" => Kind::Cloud(CloudFormat::E57),
+        "pcd" => Kind::Cloud(CloudFormat::Pcd),
+        "pts" => Kind::Cloud(CloudFormat::Pts),
+        "ptx" => Kind::Cloud(CloudFormat::Ptx),
+        "stl" => Kind::Cloud(CloudFormat::Stl),
+        "gltf" | "glb" => Kind::Cloud(CloudFormat::Gltf),
+        "tif" | "tiff" => Kind::Cloud(CloudFormat::GeoTiff),
         "yaml" | "yml" | "xml" => Kind::Camera,
         "csv" | "txt" if has_photo_column(text) => Kind::Poses,
         "csv" | "txt" | "xyz" | "asc" => Kind::Cloud(CloudFormat::Xyz),
@@ -221,7 +255,7 @@ pub fn read_cloud(path: &Path, progress: &Progress) -> Result<CloudFile, FileErr
                 path,
                 Fault::new(
                     format!("it holds {}, not a surface", other.in_words()),
-                    "give a PLY, LAS, LAZ, OBJ or XYZ/TXT/CSV file",
+                    "give a cloud, a mesh or an elevation model",
                 ),
             ));
         }
@@ -230,13 +264,52 @@ pub fn read_cloud(path: &Path, progress: &Progress) -> Result<CloudFile, FileErr
     let file = open_file(path)?;
     let size = file.metadata().map_or(0, |metadata| metadata.len());
     let input = BufReader::with_capacity(1 << 18, file);
-    let cloud = match format {
+    let beside = |name: &str| gltf::read_beside(path, name);
+    read_cloud_as(format, input, size, &beside, progress)
+        .map_err(|fault| FileError::new(path, fault))
+}
+
+/// Reads a cloud or mesh that is in memory, as a file of that format. A glTF's buffers in files of
+/// their own are not there.
+///
+/// # Errors
+/// With the place in it.
+pub fn read_cloud_bytes(
+    format: CloudFormat,
+    bytes: Vec<u8>,
+    progress: &Progress,
+) -> Result<CloudFile, Fault> {
+    let size = bytes.len() as u64;
+    let beside = |name: &str| {
+        Err(Fault::new(
+            format!("its buffer '{name}' is a file of its own"),
+            "export it as .glb",
+        ))
+    };
+    read_cloud_as(format, Cursor::new(bytes), size, &beside, progress)
+}
+
+/// Hands `input`, of `size` bytes, to the reader of its format. `beside` reads a file that it names.
+fn read_cloud_as(
+    format: CloudFormat,
+    input: impl BufRead + Seek + Send + Sync + 'static,
+    size: u64,
+    beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>,
+    progress: &Progress,
+) -> Result<CloudFile, Fault> {
+    match format {
         CloudFormat::Ply => ply::read(input, progress),
         CloudFormat::Las => las::read(input, progress),
         CloudFormat::Obj => obj::read(input, size, progress),
         CloudFormat::Xyz => xyz::read(input, size, progress),
-    };
-    cloud.map_err(|fault| FileError::new(path, fault))
+        CloudFormat::E57 => e57::read(input, progress),
+        CloudFormat::Pcd => pcd::read(input, size, progress),
+        CloudFormat::Pts => leica::read_pts(input, size, progress),
+        CloudFormat::Ptx => leica::read_ptx(input, size, progress),
+        CloudFormat::Stl => stl::read(input, size, progress),
+        CloudFormat::Gltf => gltf::read(input, beside, progress),
+        CloudFormat::GeoTiff => geotiff::read(input, size, progress),
+    }
 }
 
 /// Reads a camera's calibration.
