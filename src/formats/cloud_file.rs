@@ -81,9 +81,12 @@ pub(super) fn rounding(points: &[DVec3]) -> Option<String> {
     let bounds = Bounds::of(points)?;
     let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
     let rounding = largest * f64::from(f32::EPSILON) / 2.0;
-    (rounding > bounds.size().max_element() * 1e-5).then(|| {
+    let size = bounds.size().max_element();
+    // A single place has no size to compare with.
+    (size > 0.0 && rounding > size * 1e-5).then(|| {
+        let digits = if rounding < 0.005 { 6 } else { 2 };
         format!(
-            "its coordinates are 32-bit floats of up to {largest:.0}, which rounds them to about {rounding:.2}; export doubles, or subtract an offset"
+            "its coordinates are 32-bit floats of up to {largest:.0}, which rounds them to about {rounding:.digits$}; export doubles, or subtract an offset"
         )
     })
 }

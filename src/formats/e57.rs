@@ -365,6 +365,7 @@ mod tests {
             scan.finalize().unwrap();
         }
         writer.finalize().unwrap();
+        drop(writer);
         bytes.into_inner()
     }
 

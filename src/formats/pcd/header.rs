@@ -94,9 +94,7 @@ impl Header {
             if fields.rest().is_empty() || fields.rest().starts_with('#') {
                 continue;
             }
-            let keyword = fields.word("a keyword")?;
-            match keyword {
-                "VERSION" => {}
+            match fields.word("a keyword")? {
                 // Before 0.6 they were called columns.
                 "FIELDS" | "COLUMNS" => {
                     names = fields
@@ -155,10 +153,8 @@ impl Header {
                         return Err(fields.fault(format!("its data is '{other}'")));
                     }
                 },
-                other => {
-                    let other = shown(other);
-                    return Err(fields.fault(format!("its header has '{other}'")));
-                }
+                // PCL passes over what it does not know, too.
+                _ => {}
             }
         };
         let counts = counts.unwrap_or_else(|| vec![1; names.len()]);
