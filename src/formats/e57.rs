@@ -457,22 +457,61 @@ mod tests {
         );
     }
 
+    /// Makes the checksums of all pages right: CRC-32C, bit by bit.
+    fn with_checksums(mut bytes: Vec<u8>) -> Vec<u8> {
+        for page in bytes.as_chunks_mut::<1024>().0 {
+            let (data, end) = page.split_at_mut(1020);
+            let mut crc = u32::MAX;
+            for byte in data {
+                crc ^= u32::from(*byte);
+                for _ in 0..8 {
+                    crc = (crc >> 1) ^ if crc & 1 == 1 { 0x82f6_3b78 } else { 0 };
+                }
+            }
+            end.copy_from_slice(&(!crc).to_be_bytes());
+        }
+        bytes
+    }
+
+    /// The bytes with one text in place of another of the same length.
+    fn replaced(mut bytes: Vec<u8>, from: &str, to: &str) -> Vec<u8> {
+        assert_eq!(from.len(), to.len());
+        let places: Vec<usize> = (0..bytes.len())
+            .filter(|&at| bytes[at..].starts_with(from.as_bytes()))
+            .collect();
+        assert!(!places.is_empty(), "no '{from}'");
+        for at in places {
+            bytes[at..at + to.len()].copy_from_slice(to.as_bytes());
+        }
+        with_checksums(bytes)
+    }
+
     #[test]
-    fn constant_points_end() {
-        let constant = |name| Record {
+    fn points_without_end_are_refused() {
+        // Fields whose values are all equal take no bytes, so that any number of points fits.
+        let field = |name| Record {
             name,
-            data_type: RecordDataType::Integer { min: 7, max: 7 },
+            data_type: RecordDataType::Integer { min: 4, max: 5 },
         };
-        let bytes = written(&[(
-            vec![
-                constant(RecordName::CartesianX),
-                constant(RecordName::CartesianY),
-                constant(RecordName::CartesianZ),
-            ],
-            Vec::new(),
-            None,
-        )]);
-        assert!(read_bytes(&bytes).is_err());
+        let prototype = vec![
+            field(RecordName::CartesianX),
+            field(RecordName::CartesianY),
+            field(RecordName::CartesianZ),
+        ];
+        let point = vec![RecordValue::Integer(4); 3];
+        let bytes = written(&[(prototype, vec![point], None)]);
+        assert_eq!(
+            read_bytes(&bytes).unwrap().cloud.points,
+            [DVec3::splat(4.0)]
+        );
+        let constant = replaced(bytes.clone(), "maximum=\"5\"", "maximum=\"4\"");
+        let fault = read_bytes(&constant).unwrap_err();
+        assert!(
+            fault.what.contains("all its points are the same"),
+            "{fault}"
+        );
+        let lying = replaced(bytes, "recordCount=\"1\"", "recordCount=\"9\"");
+        assert!(read_bytes(&lying).is_err());
     }
 
     #[test]

@@ -263,7 +263,7 @@ fn what_points_nowhere_is_an_error() {
         ("/accessors/0/byteOffset", json!(u64::MAX)),
         ("/accessors/0/type", json!("MAT4")),
         ("/accessors/0/componentType", json!(5130)),
-        ("/accessors/1/bufferView", json!(0)),
+        ("/accessors/1/bufferView", json!(9)),
         ("/bufferViews/0/byteOffset", json!(u64::MAX)),
         ("/bufferViews/2/byteStride", json!(0)),
         ("/buffers/0/byteLength", json!(77)),
