@@ -349,8 +349,11 @@ mod tests {
         assert_eq!(fault.what, "it has no points");
     }
 
-    /// A file of scans, each with its prototype, its values and its pose.
-    fn written(scans: &[(Vec<Record>, Vec<Vec<RecordValue>>, Option<Transform>)]) -> Vec<u8> {
+    /// The fields of a scan, the values of its points, its pose.
+    type Scan = (Vec<Record>, Vec<Vec<RecordValue>>, Option<Transform>);
+
+    /// A file of scans.
+    fn written(scans: &[Scan]) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());
         let mut writer = E57Writer::new(&mut bytes, "file").unwrap();
         writer.set_coordinate_metadata(Some("PROJCS[\"x\"]".to_owned()));
