@@ -11,7 +11,10 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let Some((ends, bytes)) = bytes.split_at_checked(8) else {
         return;
     };
-    let end = |four: &[u8]| four.iter().fold(0, |end, &byte| end << 8 | usize::from(byte));
+    let end = |four: &[u8]| {
+        four.iter()
+            .fold(0, |end, &byte| end << 8 | usize::from(byte))
+    };
     let first = end(&ends[..4]).min(bytes.len());
     let second = end(&ends[4..]).clamp(first, bytes.len());
     let folder = tempfile::tempdir().expect("a folder to write to");
