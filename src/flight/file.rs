@@ -10,7 +10,7 @@ use super::camera_entry::CameraEntry;
 use super::known_keys::{key_line, line_of, refuse_unknown_keys};
 use crate::fault::Fault;
 use crate::scale::{Ground, ImageKind};
-use crate::surface::SurfaceOptions;
+use crate::surface::{SurfaceOptions, UpAxis};
 use crate::units::LengthUnit;
 
 /// The text of a flight. Paths are relative to the file and stay text here.
@@ -23,7 +23,7 @@ pub struct FlightFile {
     pub name: Option<String>,
     pub(super) world: World,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    surface: Option<SurfaceEntry>,
+    pub(super) surface: Option<SurfaceEntry>,
     /// The `[[camera]]` tables.
     #[serde(default, rename = "camera", skip_serializing_if = "Vec::is_empty")]
     pub cameras: Vec<CameraEntry>,
@@ -42,9 +42,11 @@ pub(super) struct World {
 }
 
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-struct SurfaceEntry {
+pub(super) struct SurfaceEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     file: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) up: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     max_edge: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -182,6 +184,7 @@ impl FlightFile {
         let SurfaceOptions { max_edge, thinning } = settings.surface;
         let surface = SurfaceEntry {
             file: flight.surface.map(str::to_owned),
+            up: None,
             max_edge,
             thinning,
         };
@@ -246,6 +249,13 @@ impl FlightFile {
     /// The surface's file, relative to flight.toml.
     pub fn surface(&self) -> Option<&str> {
         self.surface.as_ref()?.file.as_deref()
+    }
+
+    /// Which axis of the surface's file points up.
+    pub fn surface_up(&self) -> UpAxis {
+        let up = self.surface.as_ref().and_then(|s| s.up.as_deref());
+        // `parse` has checked it.
+        up.and_then(|up| up.parse().ok()).unwrap_or_default()
     }
 
     /// What is left out of the surface.
@@ -373,6 +383,21 @@ image = "as-shot"
             (file.surface(), file.settings().surface.max_edge),
             (None, Some(3.0))
         );
+    }
+
+    #[test]
+    fn the_axis_that_points_up() {
+        assert_eq!(FlightFile::parse(WHOLE).unwrap().surface_up(), UpAxis::Z);
+        let text = WHOLE.replace("\"pile.ply\"", "\"pile.ply\"\nup = \"y\"");
+        let file = FlightFile::parse(&text).unwrap();
+        assert_eq!(file.surface_up(), UpAxis::Y);
+        assert_eq!(FlightFile::parse(&file.to_toml().unwrap()), Ok(file));
+        let fault = FlightFile::parse(&text.replace("\"y\"", "\"up\"")).unwrap_err();
+        assert_eq!(fault.line, Some(10));
+        assert!(fault.what.contains("surface.up is 'up'"), "{fault}");
+        let text = "format = 1\nworld.unit = \"m\"\nsurface.up = \"y\"\n[photos]\nreconstruction = \"a.nvm\"";
+        let fault = FlightFile::parse(text).unwrap_err();
+        assert!(fault.what.contains("belongs to surface.file"), "{fault}");
     }
 
     #[test]

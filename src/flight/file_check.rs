@@ -3,7 +3,7 @@
 use super::FlightFile;
 use crate::fault::Fault;
 use crate::scale::Ground;
-use crate::surface::SurfaceError;
+use crate::surface::{SurfaceError, UpAxis};
 use crate::units::LengthUnit;
 
 impl FlightFile {
@@ -66,6 +66,16 @@ impl FlightFile {
                 "surface.file is empty".to_owned(),
                 "name a cloud or mesh",
             );
+        }
+        if let Some(up) = self.surface.as_ref().and_then(|s| s.up.as_deref()) {
+            if let Err(unknown) = up.parse::<UpAxis>() {
+                let what = format!("surface.up {unknown}");
+                return at("surface", "up", what, "write \"x\", \"y\" or \"z\"");
+            }
+            if self.surface().is_none() {
+                let what = "surface.up belongs to surface.file".to_owned();
+                return at("surface", "up", what, "remove it, or name the file");
+            }
         }
         if let Err(SurfaceError::Option { name, value }) = self.surface_options().validate() {
             return at(

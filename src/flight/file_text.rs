@@ -87,6 +87,12 @@ impl FlightFile {
                 && old != Some(new)
             {
                 set(&mut document, table, key, new)?;
+                if key == "file"
+                    && let Some(surface) = document.get_mut("surface").and_then(as_table)
+                {
+                    // It was said of the file before.
+                    surface.remove("up");
+                }
             }
         }
         Ok(with_line_ends_of(text, document.to_string()))

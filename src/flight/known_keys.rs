@@ -15,7 +15,7 @@ const KNOWN_KEYS: [(&str, &[&str]); 6] = [
         ],
     ),
     ("world", &["unit", "ground", "crs"]),
-    ("surface", &["file", "max_edge", "thinning"]),
+    ("surface", &["file", "up", "max_edge", "thinning"]),
     (
         "camera",
         &[

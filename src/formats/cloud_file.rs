@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::fault::Fault;
 use crate::geometry::Bounds;
 use crate::surface::Cloud;
 
@@ -19,20 +20,75 @@ pub struct CloudFile {
 }
 
 impl CloudFile {
+    /// Adds a point. Where only some points have colours, the others are grey.
+    pub(super) fn push(&mut self, point: DVec3, color: Option<[u8; 3]>) {
+        let colors = &mut self.cloud.colors;
+        if color.is_some() && colors.is_empty() {
+            colors.resize(self.cloud.points.len(), GREY);
+        }
+        if color.is_some() || !colors.is_empty() {
+            colors.push(color.unwrap_or(GREY));
+        }
+        self.cloud.points.push(point);
+    }
+
     /// Warns where coordinates that were stored as f32 are too large for the cloud's own extent:
     /// UTM northings in f32 are rounded to half a metre.
     pub(super) fn warn_if_rounded(&mut self) {
-        let Some(bounds) = Bounds::of(&self.cloud.points) else {
+        self.warnings.extend(rounding(&self.cloud.points));
+    }
+
+    /// Notes a coordinate system as the file states it, and whether it is one of degrees.
+    pub(super) fn set_crs(&mut self, crs: &str) {
+        let crs = crs.trim_matches(|c: char| c == '\0' || c.is_whitespace());
+        if crs.is_empty() {
             return;
-        };
-        let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
-        let rounding = largest * f64::from(f32::EPSILON) / 2.0;
-        if rounding > bounds.size().max_element() * 1e-5 {
-            self.warnings.push(format!(
-                "its coordinates are 32-bit floats of up to {largest:.0}, which rounds them to about {rounding:.2}; export doubles, or subtract an offset"
-            ));
+        }
+        self.crs = Some(crs.to_owned());
+        self.set_geographic(
+            ["GEOGCS", "GEOGCRS", "GEODCRS"]
+                .iter()
+                .any(|word| crs.starts_with(word)),
+        );
+    }
+
+    /// Notes whether the coordinates are degrees.
+    pub(super) fn set_geographic(&mut self, geographic: bool) {
+        self.geographic = geographic;
+        if geographic {
+            self.warnings
+                .push("its coordinates are degrees, not lengths".to_owned());
         }
     }
+
+    /// Refuses a file of which nothing was left.
+    pub(super) fn expect_points(&self) -> Result<(), Fault> {
+        if self.cloud.points.is_empty() {
+            return Err(Fault::new(
+                "it has no points",
+                "export points with x, y and z",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The colour of points without one among points with colours.
+const GREY: [u8; 3] = [128; 3];
+
+/// What to say about coordinates that were stored as f32 where that has rounded them noticeably.
+pub(super) fn rounding(points: &[DVec3]) -> Option<String> {
+    let bounds = Bounds::of(points)?;
+    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let rounding = largest * f64::from(f32::EPSILON) / 2.0;
+    let size = bounds.size().max_element();
+    // A single place has no size to compare with.
+    (size > 0.0 && rounding > size * 1e-5).then(|| {
+        let digits = if rounding < 0.005 { 6 } else { 2 };
+        format!(
+            "its coordinates are 32-bit floats of up to {largest:.0}, which rounds them to about {rounding:.digits$}; export doubles, or subtract an offset"
+        )
+    })
 }
 
 /// The index, from 0, of the first point with a coordinate that is not a finite number.

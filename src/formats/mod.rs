@@ -10,13 +10,17 @@ mod cloud_file;
 mod colmap;
 mod drone_photos;
 mod dropped;
+mod e57;
 mod fields;
 mod flight_poses;
 mod georeferencing;
+mod geotiff;
+mod gltf;
 mod info;
 mod input;
 mod json;
 mod las;
+mod leica;
 mod metashape;
 mod nvm;
 mod obj;
@@ -26,6 +30,7 @@ mod opensfm;
 mod opf;
 mod origin;
 mod package;
+mod pcd;
 mod photo_checks;
 mod photo_files;
 mod photo_metadata;
@@ -40,6 +45,7 @@ mod position_list;
 mod realitycapture;
 mod reconstruction;
 mod ros;
+mod stl;
 #[cfg(test)]
 mod test_data;
 mod text_lines;
@@ -49,7 +55,7 @@ mod xml_document;
 mod xyz;
 
 use std::fs;
-use std::io::{BufReader, Read};
+use std::io::{BufRead, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 
 pub use cloud_file::CloudFile;
@@ -104,6 +110,20 @@ pub enum CloudFormat {
     Obj,
     /// Points as text.
     Xyz,
+    /// Laser scans, ASTM E2807.
+    E57,
+    /// The Point Cloud Library's.
+    Pcd,
+    /// Leica's points.
+    Pts,
+    /// Leica's scans.
+    Ptx,
+    /// Triangles for stereolithography.
+    Stl,
+    /// glTF 2.0 as JSON or as .glb.
+    Gltf,
+    /// An elevation model.
+    GeoTiff,
 }
 
 impl Kind {
@@ -121,7 +141,7 @@ impl Kind {
 }
 
 /// Everything that can be opened, for messages.
-const SUPPORTED: &str = "flight.toml, PLY, LAS, LAZ, OBJ, XYZ/TXT/CSV, NVM, Metashape's cameras.xml and .psx, camera YAML or XML, poses.csv, TUM, EuRoC or KITTI trajectories, ROS bags, .db3 or .mcap, a COLMAP, OpenDroneMap or rosbag2 folder";
+const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos";
 
 /// How many bytes of a file are looked at to tell its kind.
 const DETECTED_BY: usize = 4096;
@@ -159,6 +179,13 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         (&b"LASF"[..], Kind::Cloud(CloudFormat::Las)),
         (b"ply\n", Kind::Cloud(CloudFormat::Ply)),
         (b"ply\r", Kind::Cloud(CloudFormat::Ply)),
+        (b"ASTM-E57", Kind::Cloud(CloudFormat::E57)),
+        (b"# .PCD", Kind::Cloud(CloudFormat::Pcd)),
+        (b"glTF", Kind::Cloud(CloudFormat::Gltf)),
+        (b"II*\0", Kind::Cloud(CloudFormat::GeoTiff)),
+        (b"MM\0*", Kind::Cloud(CloudFormat::GeoTiff)),
+        (b"II+\0", Kind::Cloud(CloudFormat::GeoTiff)),
+        (b"MM\0+", Kind::Cloud(CloudFormat::GeoTiff)),
         (b"%YAML", Kind::Camera),
         (b"<?xml", Kind::Camera),
         (b"<opencv_storage", Kind::Camera),
@@ -185,6 +212,13 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         "ply" => Kind::Cloud(CloudFormat::Ply),
         "las" | "laz" => Kind::Cloud(CloudFormat::Las),
         "obj" => Kind::Cloud(CloudFormat::Obj),
+        "e57" => Kind::Cloud(CloudFormat::E57),
+        "pcd" => Kind::Cloud(CloudFormat::Pcd),
+        "pts" => Kind::Cloud(CloudFormat::Pts),
+        "ptx" => Kind::Cloud(CloudFormat::Ptx),
+        "stl" => Kind::Cloud(CloudFormat::Stl),
+        "gltf" | "glb" => Kind::Cloud(CloudFormat::Gltf),
+        "tif" | "tiff" => Kind::Cloud(CloudFormat::GeoTiff),
         "yaml" | "yml" | "xml" => Kind::Camera,
         "csv" | "txt" if has_photo_column(text) || poses_opk::is_table(text) => Kind::Poses,
         "csv" | "txt" if metashape::is_opk(&String::from_utf8_lossy(text)) => Kind::Poses,
@@ -266,7 +300,7 @@ pub fn read_cloud(path: &Path, progress: &Progress) -> Result<CloudFile, FileErr
                 path,
                 Fault::new(
                     format!("it holds {}, not a surface", other.in_words()),
-                    "give a PLY, LAS, LAZ, OBJ or XYZ/TXT/CSV file",
+                    "give a cloud, a mesh or an elevation model",
                 ),
             ));
         }
@@ -275,13 +309,52 @@ pub fn read_cloud(path: &Path, progress: &Progress) -> Result<CloudFile, FileErr
     let file = open_file(path)?;
     let size = file.metadata().map_or(0, |metadata| metadata.len());
     let input = BufReader::with_capacity(1 << 18, file);
-    let cloud = match format {
+    let beside = |name: &str| gltf::read_beside(path, name);
+    read_cloud_as(format, input, size, &beside, progress)
+        .map_err(|fault| FileError::new(path, fault))
+}
+
+/// Reads a cloud or mesh that is in memory, as a file of that format. A glTF's buffers in files of
+/// their own are not there.
+///
+/// # Errors
+/// With the place in it.
+pub fn read_cloud_bytes(
+    format: CloudFormat,
+    bytes: Vec<u8>,
+    progress: &Progress,
+) -> Result<CloudFile, Fault> {
+    let size = bytes.len() as u64;
+    let beside = |name: &str| {
+        Err(Fault::new(
+            format!("its buffer '{name}' is a file of its own"),
+            "export it as .glb",
+        ))
+    };
+    read_cloud_as(format, Cursor::new(bytes), size, &beside, progress)
+}
+
+/// Hands `input`, of `size` bytes, to the reader of its format. `beside` reads a file that it names.
+fn read_cloud_as(
+    format: CloudFormat,
+    input: impl BufRead + Seek + Send + Sync + 'static,
+    size: u64,
+    beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>,
+    progress: &Progress,
+) -> Result<CloudFile, Fault> {
+    match format {
         CloudFormat::Ply => ply::read(input, progress),
         CloudFormat::Las => las::read(input, progress),
         CloudFormat::Obj => obj::read(input, size, progress),
         CloudFormat::Xyz => xyz::read(input, size, progress),
-    };
-    cloud.map_err(|fault| FileError::new(path, fault))
+        CloudFormat::E57 => e57::read(input, progress),
+        CloudFormat::Pcd => pcd::read(input, size, progress),
+        CloudFormat::Pts => leica::read_pts(input, size, progress),
+        CloudFormat::Ptx => leica::read_ptx(input, size, progress),
+        CloudFormat::Stl => stl::read(input, size, progress),
+        CloudFormat::Gltf => gltf::read(input, beside, progress),
+        CloudFormat::GeoTiff => geotiff::read(input, size, progress),
+    }
 }
 
 /// Reads a camera's calibration.

@@ -22,7 +22,7 @@ use crate::geodesy::Crs;
 use crate::geometry::Similarity;
 use crate::jobs::Progress;
 use crate::scale::{Ground, ImageKind};
-use crate::surface::{Surface, SurfaceOptions};
+use crate::surface::{Surface, SurfaceOptions, UpAxis, doubtful_up};
 use crate::units::LengthUnit;
 
 /// What the user says beside the flight itself.
@@ -111,6 +111,8 @@ struct Source {
     inputs: Vec<PathBuf>,
     /// The surface's file; `None` for the reconstruction's own points.
     surface: Option<PathBuf>,
+    /// The axis of that file that points up.
+    surface_up: UpAxis,
     reconstruction_cloud: CloudFile,
     photo_folder: Option<PathBuf>,
     cameras: Vec<Camera>,
@@ -131,6 +133,7 @@ impl Source {
             preferred_crs: None,
             inputs: Vec::new(),
             surface: options.surface.clone(),
+            surface_up: UpAxis::Z,
             reconstruction_cloud: CloudFile::default(),
             photo_folder: options.photos.clone(),
             cameras: Vec::new(),
@@ -160,6 +163,7 @@ impl Source {
         let file_in = |name: Option<&str>| name.map(|name| folder.join(name));
         source.surface = source.surface.or(file_in(file.surface()));
         source.photo_folder = source.photo_folder.or(file_in(file.photo_folder()));
+        source.surface_up = file.surface_up();
         match file.photo_source() {
             PhotoSource::Poses(name) => {
                 let names = source.add_cameras(path, folder, &file.cameras)?;
@@ -413,6 +417,10 @@ impl Source {
             &mut self.photos,
             &mut self.warnings,
         );
+        if options.surface.is_some() {
+            // What is said of the flight's own file does not hold for another.
+            self.surface_up = UpAxis::Z;
+        }
         let surface = self.surface.take();
         let origin = FlightOrigin {
             path: self.file.clone(),
@@ -424,7 +432,17 @@ impl Source {
         };
         let file = match &surface {
             Some(path) => {
-                let file = super::read_cloud(path, progress)?;
+                let mut file = super::read_cloud(path, progress)?;
+                for point in &mut file.cloud.points {
+                    *point = self.surface_up.to_z_up(*point);
+                }
+                if let Some((axis, along_axis, along_z)) = doubtful_up(&file.cloud) {
+                    let (along_axis, along_z) = (100.0 * along_axis, 100.0 * along_z);
+                    let axis = axis.name();
+                    file.warnings.push(format!(
+                        "seen along {axis}, {along_axis:.0} % of its area faces one way, along z {along_z:.0} %: where {axis} is up in the file, write up = \"{axis}\" below [surface] in a flight.toml (a steep wall looks the same)"
+                    ));
+                }
                 self.warn(path, &file.warnings);
                 self.inputs.push(path.clone());
                 Some(file)
@@ -619,5 +637,58 @@ fn camera_of(line: &PoseLine, names: &[Option<String>]) -> Result<usize, Fault> 
                     format!("name one of {}", known()),
                 )
             }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::test_data::shared_data;
+
+    /// Opens a flight over that surface, as the file has it or with `more` below [surface].
+    fn opened(surface: &Path, more: &str) -> Opened {
+        let folder = tempfile::tempdir().unwrap();
+        let flight = folder.path().join("flight.toml");
+        let text = format!(
+            "format = 1\nworld.unit = \"m\"\n[surface]\nfile = '{}'\n{more}\n[[camera]]\nwidth = 4\nheight = 3\n\
+             fx = 4\nfy = 4\ncx = 2\ncy = 1.5\n[photos]\nposes = \"poses.csv\"\n",
+            surface.display()
+        );
+        std::fs::write(&flight, text).unwrap();
+        let poses = "photo,x,y,z,qx,qy,qz,qw\na.jpg,50,-300,250,1,0,0,0\n";
+        std::fs::write(folder.path().join("poses.csv"), poses).unwrap();
+        open_flight(&flight, &OpenOptions::default(), &Progress::default()).unwrap()
+    }
+
+    #[test]
+    fn a_quarry_with_y_up() {
+        let Some(folder) = shared_data("authume-quarry-terrain/Geometries") else {
+            return;
+        };
+        let mut area = 0.0;
+        for name in ["DTM_Blue_zone.stl", "DTM_Gray_zone.stl", "DTM_Red_zone.stl"] {
+            let path = folder.join("STL").join(name);
+            let as_it_is = opened(&path, "");
+            let doubts = |opened: &Opened| {
+                let about_up = |warning: &&String| warning.contains("up = \"y\"");
+                opened.warnings.iter().filter(about_up).count()
+            };
+            assert_eq!(doubts(&as_it_is), 1, "{:?}", as_it_is.warnings);
+            let turned = opened(&path, "up = \"y\"");
+            assert_eq!(doubts(&turned), 0);
+            let surface = &turned.flight.parts().surface;
+            let bounds = surface.bounds();
+            assert!(bounds.min.z > 153.0 && bounds.max.z < 214.5, "{bounds:?}");
+            let vertices: Vec<_> = surface.vertices().collect();
+            for triangle in surface.triangles().unwrap() {
+                let [a, b, c] = triangle.map(|corner| vertices[corner as usize].truncate());
+                area += (b - a).perp_dot(c - a).abs() / 2.0;
+            }
+        }
+        // The README's number.
+        assert!((area - 21_465.0).abs() < 1.0, "{area}");
+        let cloud = opened(&folder.join("Point_cloud/Terrain.xyz"), "up = \"y\"");
+        let bounds = cloud.flight.parts().surface.bounds();
+        assert!(bounds.min.z > 153.0 && bounds.max.z < 214.5, "{bounds:?}");
     }
 }

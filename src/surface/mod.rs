@@ -11,6 +11,7 @@ mod hull;
 mod mesh;
 mod sites;
 mod thinning;
+mod up_axis;
 mod walk;
 
 use std::ops::Range;
@@ -20,6 +21,7 @@ use glam::DVec3;
 
 pub use blocks::VertexBlock;
 pub use cloud::Cloud;
+pub use up_axis::{UpAxis, doubtful_up};
 
 use crate::geometry::{Bounds, LocalFrame, Ray};
 use mesh::Mesh;

@@ -122,8 +122,14 @@ fn crs(header: &las::Header) -> Option<String> {
     let keys = header.get_geotiff_crs().ok()??;
     // 32767 means "defined by other keys", 0 undefined.
     let code = |key: Option<u16>| key.filter(|&code| code != 0 && code != 32_767);
-    let code = code(keys.get_projected_crs_geo_key_value())
-        .or_else(|| code(keys.get_geodetic_crs_geo_key_value()))?;
+    let projected = keys.get_projected_crs_geo_key_value();
+    let code = match code(projected) {
+        // The base of a projection that is defined by parameters is not its own system.
+        None if projected.is_none() || keys.get_gt_model_type_geo_key_value() == Some(2) => {
+            code(keys.get_geodetic_crs_geo_key_value())?
+        }
+        of_projection => of_projection?,
+    };
     Some(format!("EPSG:{code}"))
 }
 

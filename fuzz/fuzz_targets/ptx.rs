@@ -1,0 +1,8 @@
+#![no_main]
+
+use fragscale::formats::{CloudFormat, read_cloud_bytes};
+use fragscale::jobs::Progress;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let _ = read_cloud_bytes(CloudFormat::Ptx, bytes.to_vec(), &Progress::default());
+});
