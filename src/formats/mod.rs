@@ -4,6 +4,7 @@
 //! A reader turns bytes into the core's types plus a list of warnings. It knows no path: it returns
 //! a [`Fault`], and the dispatcher puts the file's name in front.
 
+mod bundler;
 mod camera_file;
 mod cloud_file;
 mod colmap;
@@ -11,11 +12,16 @@ mod fields;
 mod info;
 mod input;
 mod json;
+mod json_packages;
 mod las;
+mod meshroom;
+mod middlebury;
+mod nerfstudio;
 mod nvm;
 mod obj;
 mod odm;
 mod open;
+mod open3d;
 mod opensfm;
 mod origin;
 mod package;
@@ -24,6 +30,7 @@ mod photo_size;
 mod ply;
 mod poses_csv;
 mod reconstruction;
+mod rounded_rotation;
 #[cfg(test)]
 mod test_data;
 mod text_lines;
@@ -55,7 +62,7 @@ pub enum Kind {
     Cloud(CloudFormat),
     /// The calibration of a camera.
     Camera,
-    /// A poses.csv.
+    /// The poses of photos: a poses.csv, or Open3D's .log.
     Poses,
     /// Cameras and posed photos as this package wrote them, in this file or folder.
     Reconstruction(Package, PathBuf),
@@ -88,7 +95,7 @@ impl Kind {
 }
 
 /// Everything that can be opened, for messages.
-const SUPPORTED: &str = "flight.toml, PLY, LAS, LAZ, OBJ, XYZ/TXT/CSV, NVM, camera YAML or XML, poses.csv, a COLMAP or OpenDroneMap folder";
+const SUPPORTED: &str = "flight.toml, PLY, LAS, LAZ, OBJ, XYZ/TXT/CSV, NVM, Bundler, OpenSfM, Meshroom, nerfstudio and Open3D files, Middlebury _par.txt, camera YAML or XML, poses.csv, a COLMAP or OpenDroneMap folder";
 
 /// Tells what a file or folder holds: by its first bytes where they are distinctive, else by its
 /// name.
@@ -144,6 +151,7 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         "obj" => Kind::Cloud(CloudFormat::Obj),
         "yaml" | "yml" | "xml" => Kind::Camera,
         "csv" | "txt" if has_photo_column(text) => Kind::Poses,
+        "log" | "txt" if open3d::is_log(&String::from_utf8_lossy(text)) => Kind::Poses,
         "csv" | "txt" | "xyz" | "asc" => Kind::Cloud(CloudFormat::Xyz),
         _ => {
             return Err(FileError::new(
@@ -265,10 +273,15 @@ pub fn read_project(path: &Path, progress: &Progress) -> Result<Project, FileErr
     }
 }
 
-/// Reads a poses.csv.
+/// Reads a poses.csv, or Open3D's .log.
 ///
 /// # Errors
 /// With the file and the place in it.
 fn read_poses(path: &Path) -> Result<PosesFile, FileError> {
-    poses_csv::read(&read_bytes(path)?).map_err(|fault| FileError::new(path, fault))
+    let bytes = read_bytes(path)?;
+    let poses = match text_from_bytes(&bytes) {
+        Ok(text) if open3d::is_log(text) => open3d::read_log(text),
+        _ => poses_csv::read(&bytes),
+    };
+    poses.map_err(|fault| FileError::new(path, fault))
 }

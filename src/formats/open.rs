@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::input::{FileError, read_bytes, read_text};
+use super::input::{FileError, read_text};
 use super::origin::FlightOrigin;
 use super::photo_files::{PhotoFolder, fit_cameras_to_files};
-use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, poses_csv, read_project};
+use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, read_project};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{
@@ -337,8 +337,7 @@ impl Source {
     }
 
     fn add_poses(&mut self, path: &Path, cameras: &[Option<String>]) -> Result<(), FileError> {
-        let poses =
-            poses_csv::read(&read_bytes(path)?).map_err(|fault| FileError::new(path, fault))?;
+        let poses = super::read_poses(path)?;
         self.warn(path, &poses.warnings);
         self.inputs.push(path.to_owned());
         for line in poses.lines {

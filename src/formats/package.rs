@@ -5,9 +5,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::input::{FileError, read_text};
+use super::input::{FileError, read_bytes, read_text};
 use super::reconstruction::Project;
-use super::{colmap, nvm, odm};
+use super::{bundler, colmap, json_packages, meshroom, middlebury, nerfstudio, nvm, odm};
+use super::{open3d, opensfm};
 use crate::jobs::Progress;
 
 /// What wrote a reconstruction.
@@ -19,6 +20,18 @@ pub enum Package {
     OpenDroneMap,
     /// VisualSFM's .nvm.
     VisualSfm,
+    /// OpenSfM's reconstruction.json.
+    OpenSfm,
+    /// Bundler's bundle.out.
+    Bundler,
+    /// Meshroom's .sfm, which AliceVision writes.
+    Meshroom,
+    /// transforms.json, which nerfstudio and instant-ngp read.
+    Nerfstudio,
+    /// Open3D's trajectory or parameters of a camera.
+    Open3d,
+    /// The Middlebury multi-view benchmark's _par.txt.
+    Middlebury,
 }
 
 impl Package {
@@ -28,6 +41,12 @@ impl Package {
             Self::Colmap => "a COLMAP reconstruction",
             Self::OpenDroneMap => "an OpenDroneMap project",
             Self::VisualSfm => "a VisualSFM reconstruction",
+            Self::OpenSfm => "an OpenSfM reconstruction",
+            Self::Bundler => "a Bundler reconstruction",
+            Self::Meshroom => "a Meshroom scene",
+            Self::Nerfstudio => "nerfstudio's transforms",
+            Self::Open3d => "an Open3D camera trajectory",
+            Self::Middlebury => "Middlebury camera parameters",
         }
     }
 }
@@ -40,6 +59,18 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
     let this = |package| Some((package, path.to_owned()));
     if text.starts_with(b"NVM_V3") || name.ends_with(".nvm") {
         return this(Package::VisualSfm);
+    }
+    if bundler::is_bundle(text, &name) {
+        return this(Package::Bundler);
+    }
+    if meshroom::is_scene(text, &name) {
+        return this(Package::Meshroom);
+    }
+    if name.ends_with("_par.txt") {
+        return this(Package::Middlebury);
+    }
+    if let Some(package) = json_packages::of_file(path, text) {
+        return this(package);
     }
     let of_colmap = ["cameras", "images", "points3d"]
         .map(|part| [format!("{part}.bin"), format!("{part}.txt")]);
@@ -55,7 +86,16 @@ pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
     if odm::is_odm_folder(path) {
         return Some((Package::OpenDroneMap, path.to_owned()));
     }
-    Some((Package::Colmap, colmap::model_folder(path)?))
+    if let Some(model) = colmap::model_folder(path) {
+        return Some((Package::Colmap, model));
+    }
+    let files = [
+        (Package::OpenSfm, opensfm::dataset_file(path)),
+        (Package::Bundler, bundler::bundle_of_folder(path)),
+        (Package::Nerfstudio, nerfstudio::transforms_of_folder(path)),
+    ];
+    let found = |(package, file): (Package, Option<PathBuf>)| Some((package, file?));
+    files.into_iter().find_map(found)
 }
 
 /// Reads what the package wrote.
@@ -69,5 +109,15 @@ pub(super) fn read(
         Package::Colmap => colmap::read_folder(path).map(Project::from),
         Package::OpenDroneMap => odm::read_folder(path),
         Package::VisualSfm => nvm::read(&read_text(path)?).map(Project::from).map_err(at),
+        Package::OpenSfm => opensfm::read_file(path),
+        Package::Bundler => bundler::read_file(path),
+        Package::Meshroom => meshroom::read_file(path),
+        Package::Nerfstudio => nerfstudio::read_file(path),
+        Package::Open3d => open3d::read(&read_bytes(path)?)
+            .map(Project::from)
+            .map_err(at),
+        Package::Middlebury => middlebury::read(&read_text(path)?)
+            .map(Project::from)
+            .map_err(at),
     }
 }
