@@ -83,7 +83,7 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
 
 /// Recognises a folder.
 pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
-    if odm::is_odm_folder(path) {
+    if odm::is_project(path) {
         return Some((Package::OpenDroneMap, path.to_owned()));
     }
     if let Some(model) = colmap::model_folder(path) {

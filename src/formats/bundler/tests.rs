@@ -111,7 +111,12 @@ fn what_is_wrong_is_named() {
             20,
             "the file ends where a point's position",
         ),
-        ("3 1", "18446744073709551615 1", 18, "R of the camera that begins here"),
+        (
+            "3 1",
+            "18446744073709551615 1",
+            18,
+            "R of the camera that begins here",
+        ),
         ("100 0.1", "nan 0.1", 3, "the focal length is 'nan'"),
         ("100 0.1", "1e999 0.1", 3, "the focal length"),
         ("1 0 0\n0 1 0\n0 0 1", "1 0 0\n0 1 0\n0 0 -1", 3, "mirrors"),
