@@ -128,6 +128,7 @@ fn table(c: &mut Criterion) {
     let vertices: Vec<_> = opened.flight.parts().surface.vertices().collect();
     let loaded = Loaded {
         path,
+        options: OpenOptions::default(),
         opened,
         outcomes,
         surface_bounds: Bounds::of(&vertices).expect("vertices"),

@@ -51,6 +51,7 @@ pub mod formats;
 pub mod fragmentation;
 pub mod geodesy;
 pub mod geometry;
+pub mod georeference;
 pub mod jobs;
 pub mod picture;
 #[cfg(feature = "render")]

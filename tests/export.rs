@@ -541,7 +541,7 @@ fn a_flight_on_the_map_has_kml() {
         summary
             .warnings
             .iter()
-            .any(|w| w.contains("names no EPSG code")),
+            .any(|w| w.contains("'a mine grid' is not known")),
         "{summary:?}"
     );
     // The KML of before would now be wrong.

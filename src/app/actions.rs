@@ -37,7 +37,7 @@ fn with_photo(state: &State, command: Command) -> Option<Command> {
 /// See its `hover`.
 pub const OPEN: Action = Action {
     label: "Open…",
-    hover: "Open a flight: a flight.toml, a COLMAP or OpenDroneMap folder, an NVM file",
+    hover: "Open a flight: a flight.toml, or what a photogrammetry package wrote",
     shortcut: keys(Modifiers::COMMAND, Key::O),
     command: |_| Some(Command::Ask(Some(Asking::Open))),
 };
@@ -54,6 +54,16 @@ pub const OPEN_FOLDER: Action = Action {
     hover: "Choose a folder with the desktop's own dialog",
     shortcut: None,
     command: |_| Some(Command::Browse(DialogFor::Open, true)),
+};
+/// See its `hover`.
+pub const ADD: Action = Action {
+    label: "Add surface or photos…",
+    hover: "Give the flight another cloud or mesh as its surface, or the folder of its photos",
+    shortcut: keys(SHIFT, Key::O),
+    command: |state| {
+        let wanted = state.open.is_some() || state.tried.is_some();
+        wanted.then_some(Command::Ask(Some(Asking::Add)))
+    },
 };
 /// See its `hover`.
 pub const OPEN_SAMPLE: Action = Action {
@@ -260,6 +270,7 @@ pub const MENUS: [(&str, &[Option<Action>]); 5] = [
             Some(OPEN),
             Some(OPEN_FILE),
             Some(OPEN_FOLDER),
+            Some(ADD),
             Some(OPEN_SAMPLE),
             None,
             Some(SAVE),

@@ -12,7 +12,12 @@ impl State {
     /// Does what a command says.
     pub fn apply(&mut self, command: Command) {
         match command {
-            Command::Open(_) | Command::OpenSample | Command::Close | Command::Quit => {
+            Command::Open(_)
+            | Command::Drop(_)
+            | Command::Add(_)
+            | Command::OpenSample
+            | Command::Close
+            | Command::Quit => {
                 self.leave(command);
             }
             Command::Discard => {
@@ -120,9 +125,11 @@ impl State {
         self.asking = None;
         self.after_saving = None;
         match command {
-            Command::Open(path) => self.start_opening(path, None),
+            Command::Open(path) => self.start_opening(vec![path], false),
+            Command::Drop(paths) => self.start_opening(paths, false),
+            Command::Add(path) => self.start_opening(vec![path], true),
             Command::OpenSample => match sample_flight() {
-                Some(path) => self.start_opening(path, None),
+                Some(path) => self.start_opening(vec![path], false),
                 None => self.say(
                     Severity::Error,
                     "the bundled flight is not beside the program; make one with 'fragscale sample DIR'",
@@ -135,6 +142,7 @@ impl State {
                     open.let_go();
                 }
                 self.notice = None;
+                self.tried = None;
             }
             Command::Quit => self.quit(),
             _ => {}
@@ -166,6 +174,9 @@ impl State {
             Some(Asking::Export | Asking::SaveAs | Asking::Picture)
         );
         if needs_flight && self.open.is_none() {
+            return;
+        }
+        if asking == Some(Asking::Add) && self.open.is_none() && self.tried.is_none() {
             return;
         }
         self.answered = None;
@@ -218,8 +229,7 @@ impl State {
             self.start_scales();
         } else {
             // Thinned points are gone from memory: the file has them.
-            let (path, number) = (open.path.clone(), open.number);
-            self.start_opening(path, Some((number, now)));
+            self.open_again(now);
         }
     }
 

@@ -32,6 +32,8 @@ pub enum Tab {
 pub enum Asking {
     /// Which flight to open.
     Open,
+    /// Which surface or photos the flight shall have.
+    Add,
     /// Where the export goes.
     Export,
     /// Where flight.toml goes.
@@ -96,6 +98,12 @@ pub enum Look {
 pub enum Command {
     /// Opens a flight.
     Open(PathBuf),
+    /// Opens what was dropped: a flight, perhaps with its surface and photos; a surface alone is for
+    /// the flight that could not be opened last, else for the one on the screen.
+    Drop(Vec<PathBuf>),
+    /// Gives the flight on the screen, or the one that could not be opened last, this surface or this
+    /// folder of photos.
+    Add(PathBuf),
     /// Opens the bundled flight.
     OpenSample,
     /// Goes back to the start page.

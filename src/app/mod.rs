@@ -55,8 +55,8 @@ pub struct App {
 }
 
 impl App {
-    /// The start page, or the flight at `path`, which is opened at once.
-    pub fn new(context: &eframe::CreationContext<'_>, path: Option<PathBuf>) -> Self {
+    /// The start page, or the flight that is named, which is opened at once.
+    pub fn new(context: &eframe::CreationContext<'_>, paths: Vec<PathBuf>) -> Self {
         let preferences = context
             .storage
             .and_then(|storage| eframe::get_value(storage, PREFERENCES))
@@ -72,8 +72,8 @@ impl App {
             state.say(Severity::Error, &format!("no frame times: {error}"));
             FrameTimes::default()
         });
-        if let Some(path) = path {
-            state.apply(Command::Open(path));
+        if !paths.is_empty() {
+            state.apply(Command::Drop(paths));
         }
         Self {
             state,
@@ -117,12 +117,9 @@ impl eframe::App for App {
             self.state.apply(command);
         }
         let dropped = context.input(|input| input.raw.dropped_files.clone());
-        if let Some(file) = dropped.first() {
-            if dropped.len() > 1 {
-                let text = "several files were dropped: the first is opened";
-                self.state.say(Severity::Note, text);
-            }
-            self.state.apply(Command::Open(file.path().to_owned()));
+        if !dropped.is_empty() {
+            let paths = dropped.iter().map(|file| file.path().to_owned());
+            self.state.apply(Command::Drop(paths.collect()));
         }
         self.state.poll();
         self.viewport.take_picture(&mut self.state);
@@ -259,7 +256,7 @@ const WITHOUT_SCREEN: &str = "on a machine without a screen use 'fragscale scale
 ///
 /// # Errors
 /// Where no window can be opened.
-pub fn run(path: Option<PathBuf>) -> Result<(), String> {
+pub fn run(paths: Vec<PathBuf>) -> Result<(), String> {
     let screen = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"];
     if cfg!(target_os = "linux") && screen.iter().all(|name| std::env::var_os(name).is_none()) {
         return Err(format!(
@@ -285,7 +282,7 @@ pub fn run(path: Option<PathBuf>) -> Result<(), String> {
     eframe::run_native(
         "fragscale",
         options,
-        Box::new(|context| Ok(Box::new(App::new(context, path)))),
+        Box::new(|context| Ok(Box::new(App::new(context, paths)))),
     )
     .map_err(|error| format!("the window cannot be opened ({error}); {WITHOUT_SCREEN}"))
 }

@@ -11,7 +11,7 @@ use super::state::sample_flight;
 use super::table::{Row, TableOrder};
 use super::work::{Geometry, Loaded, PreviewPicture};
 use crate::flight::{Doubt, Flight, FlightSettings, Limits, Outcome, Verdict, judge_all};
-use crate::formats::{FlightOrigin, PhotoFile};
+use crate::formats::{FlightOrigin, OpenOptions, PhotoFile};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::render::{Orbit, PhotoImage};
 use crate::scale::{PhotoScale, ViewFacts};
@@ -81,6 +81,8 @@ pub struct OpenFlight {
     pub number: u64,
     /// What the user named.
     pub path: PathBuf,
+    /// The surface and photos that were named beside it.
+    pub options: OpenOptions,
     /// With the settings of now, once they are computed.
     pub flight: Arc<Flight>,
     /// Of each photo.
@@ -147,6 +149,7 @@ impl OpenFlight {
     pub fn new(number: u64, loaded: Loaded, limits: &Limits) -> Self {
         let Loaded {
             path,
+            options,
             opened,
             outcomes,
             surface_bounds,
@@ -165,6 +168,7 @@ impl OpenFlight {
         let mut open = Self {
             number,
             path,
+            options,
             flight: Arc::new(opened.flight),
             photo_files: Arc::new(opened.photo_files),
             crs: opened.crs,
@@ -223,7 +227,7 @@ impl OpenFlight {
 
     /// Whether something would be lost if it were closed.
     pub fn is_changed(&self) -> bool {
-        self.settings() != self.saved
+        self.settings() != self.saved || self.origin.has_other_files()
     }
 
     /// Takes a change of the settings back that will not be computed: what is on the screen must be

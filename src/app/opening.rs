@@ -7,12 +7,12 @@ use image::RgbImage;
 use image::buffer::ConvertBuffer;
 
 use super::state::{Severity, State};
-use super::work::{DialogFor, Done, Geometry, Loaded, PreviewPicture, Task, Thumbnail};
+use super::work::{DialogFor, Done, Geometry, Loaded, NotOpened, PreviewPicture, Task, Thumbnail};
 use crate::camera::Camera;
 use crate::exports::{self, ExportRequest};
 use crate::fault::Fault;
 use crate::flight::{Flight, FlightSettings};
-use crate::formats::{self, FileError, OpenOptions};
+use crate::formats::{self, Dropped, FileError, OpenOptions};
 use crate::geometry::LocalFrame;
 use crate::jobs::Progress;
 use crate::picture;
@@ -40,13 +40,33 @@ impl State {
         }
     }
 
-    /// Reads a flight and computes its scales. `again` is the number of the open flight and the
-    /// settings to read it with once more.
-    pub fn start_opening(&mut self, path: PathBuf, again: Option<(u64, FlightSettings)>) {
+    /// Reads what was named and computes its scales. A surface alone is for the flight that could not
+    /// be opened last, else for the one on the screen; photos alone are, too, if they are to be
+    /// `added`, else a flight of their own.
+    pub fn start_opening(&mut self, paths: Vec<PathBuf>, added: bool) {
+        let on_screen = self.open.as_ref();
+        let base = on_screen.map(|open| (open.path.clone(), open.options.clone()));
+        let base = self.tried.clone().or(base);
         self.notice = None;
-        self.reads_other = again.is_none();
+        self.reads_other = true;
         self.start(Task::Open, move |progress| {
-            Done::Opened(Box::new(open(path, again, progress)))
+            let loaded = named(&paths, base, added)
+                .and_then(|(path, options)| open(path, options, None, progress));
+            Done::Opened(Box::new(loaded))
+        });
+    }
+
+    /// Reads the flight on the screen once more, with other settings.
+    pub fn open_again(&mut self, settings: FlightSettings) {
+        let Some(open_now) = &self.open else {
+            return;
+        };
+        let (path, options) = (open_now.path.clone(), open_now.options.clone());
+        let again = (open_now.number, settings);
+        self.notice = None;
+        self.reads_other = false;
+        self.start(Task::Open, move |progress| {
+            Done::Opened(Box::new(open(path, options, Some(again), progress)))
         });
     }
 
@@ -254,6 +274,11 @@ impl State {
                             .await
                     }
                     DialogFor::Open => dialog.set_title("Open a flight").pick_file().await,
+                    DialogFor::Add if folder => {
+                        let dialog = dialog.set_title("Folder of the flight's photos");
+                        dialog.pick_folder().await
+                    }
+                    DialogFor::Add => dialog.set_title("Surface of the flight").pick_file().await,
                     DialogFor::Export => {
                         let dialog = dialog.set_title("Export for Split-Desktop into");
                         dialog.pick_folder().await
@@ -273,22 +298,69 @@ impl State {
     }
 }
 
+/// Which flight was named, with which surface and photos; `base` is the one that a surface or photos
+/// alone belong to.
+fn named(
+    paths: &[PathBuf],
+    base: Option<(PathBuf, OpenOptions)>,
+    added: bool,
+) -> Result<(PathBuf, OpenOptions), NotOpened> {
+    let not_opened = |why| NotOpened { why, tried: None };
+    let dropped = Dropped::sort(paths).map_err(|error| not_opened(error.to_string()))?;
+    let OpenOptions {
+        surface,
+        mut photos,
+        ..
+    } = dropped.options;
+    let flight = match dropped.flight {
+        None if !added => photos.take(),
+        flight => flight,
+    };
+    match (flight, base) {
+        (Some(flight), _) => Ok((
+            flight,
+            OpenOptions {
+                surface,
+                photos,
+                settings: None,
+            },
+        )),
+        (None, Some((path, before))) => Ok((
+            path,
+            OpenOptions {
+                surface: surface.or(before.surface),
+                photos: photos.or(before.photos),
+                settings: None,
+            },
+        )),
+        (None, None) => {
+            let name = paths.first().map(|path| path.display().to_string());
+            Err(not_opened(format!(
+                "{}: a surface without photos; drop it together with the photos or with what the photogrammetry package wrote",
+                name.unwrap_or_default()
+            )))
+        }
+    }
+}
+
 fn open(
     path: PathBuf,
+    mut options: OpenOptions,
     again: Option<(u64, FlightSettings)>,
     progress: &Progress,
-) -> Result<Loaded, String> {
-    let options = OpenOptions {
-        surface: None,
-        settings: again.map(|(_, settings)| settings),
+) -> Result<Loaded, NotOpened> {
+    options.settings = again.map(|(_, settings)| settings);
+    let not_opened = |error: FileError| NotOpened {
+        why: error.to_string(),
+        tried: Some((path.clone(), options.clone())),
     };
-    let opened =
-        formats::open_flight(&path, &options, progress).map_err(|error| error.to_string())?;
-    let at_path = |fault: Fault| FileError::new(&path, fault).to_string();
+    let opened = formats::open_flight(&path, &options, progress).map_err(not_opened)?;
+    let at_path = |fault: Fault| not_opened(FileError::new(&path, fault));
     let outcomes = opened.flight.scales(progress).map_err(at_path)?;
     let surface_bounds = opened.flight.parts().surface.bounds();
     Ok(Loaded {
         path,
+        options,
         opened,
         outcomes,
         surface_bounds,

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use super::open_flight::{Measure, OpenFlight, Preview};
 use super::picker::{Picked, Picker, Purpose};
 use super::state::{Severity, State};
-use super::work::{DialogFor, Done, Loaded, Task, Thumbnail};
+use super::work::{DialogFor, Done, Loaded, NotOpened, Task, Thumbnail};
 use crate::flight::Verdict;
+use crate::formats::OpenOptions;
 
 /// Thumbnails taken in one frame: uploading each takes a fraction of a millisecond.
 const THUMBNAILS_A_FRAME: usize = 8;
@@ -46,8 +47,9 @@ impl State {
         match done {
             Done::Opened(result) => match *result {
                 Ok(loaded) => self.take_flight(loaded),
-                Err(message) => {
-                    self.say(Severity::Error, &message);
+                Err(NotOpened { why, tried }) => {
+                    self.say(Severity::Error, &why);
+                    self.tried = tried;
                     self.take_back_settings();
                 }
             },
@@ -131,6 +133,8 @@ impl State {
                     self.say(Severity::Note, &format!("{}: saved", path.display()));
                     if let Some(open) = &mut self.open {
                         open.path = path;
+                        // They stand in the file now.
+                        open.options = OpenOptions::default();
                     }
                 }
                 if let Some(open) = &mut self.open {
@@ -148,7 +152,7 @@ impl State {
             }
             Done::Dialog(what, Some(path)) => match what {
                 DialogFor::Open => self.apply(super::command::Command::Open(path)),
-                DialogFor::Export | DialogFor::SaveAs | DialogFor::Picture => {
+                DialogFor::Add | DialogFor::Export | DialogFor::SaveAs | DialogFor::Picture => {
                     self.answered = Some(path);
                 }
             },
@@ -206,6 +210,7 @@ impl State {
             }
         }
         self.opened += 1;
+        self.tried = None;
         let read_with = loaded.opened.settings;
         let limits = self.preferences.limits;
         let mut open = Box::new(OpenFlight::new(self.opened, loaded, &limits));
@@ -288,6 +293,7 @@ impl OpenFlight {
         self.saved = before.saved;
         // Saved elsewhere while the file was read.
         self.path.clone_from(&before.path);
+        self.options.clone_from(&before.options);
         self.origin = before.origin.clone();
         self.bundled = before.bundled;
         self.measure = before.measure;

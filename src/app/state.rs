@@ -8,6 +8,7 @@ use super::open_flight::OpenFlight;
 use super::preferences::Preferences;
 use super::work::Work;
 use crate::fault::one_line;
+use crate::formats::OpenOptions;
 use crate::render::Gpu;
 
 /// How many lines the log keeps.
@@ -72,6 +73,8 @@ pub struct State {
     pub after_saving: Option<HeldBack>,
     /// Whether the window may close.
     pub may_quit: bool,
+    /// The flight that could not be opened last, with what was named beside it.
+    pub tried: Option<(PathBuf, OpenOptions)>,
     /// Whether the flight that is being read is another one than that on the screen.
     pub reads_other: bool,
     /// How many flights were opened.
@@ -110,6 +113,7 @@ impl State {
             held_back: None,
             after_saving: None,
             may_quit: false,
+            tried: None,
             reads_other: false,
             opened: 0,
             picture: None,

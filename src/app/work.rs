@@ -11,7 +11,7 @@ use egui::ColorImage;
 
 use crate::fault::Fault;
 use crate::flight::{Flight, FlightSettings, Outcome};
-use crate::formats::{FlightOrigin, Opened};
+use crate::formats::{FlightOrigin, OpenOptions, Opened};
 use crate::geometry::Bounds;
 use crate::jobs::{Job, Progress};
 use crate::render::{CloudBuffers, LargePhoto, MeshBuffers, PhotoImage};
@@ -71,6 +71,8 @@ impl Task {
 pub enum DialogFor {
     /// A flight's file or folder.
     Open,
+    /// A surface, or the folder of the photos.
+    Add,
     /// Where the export folder goes.
     Export,
     /// Where flight.toml goes.
@@ -84,6 +86,8 @@ pub enum DialogFor {
 pub struct Loaded {
     /// What the user named.
     pub path: PathBuf,
+    /// The surface and photos that she named beside it.
+    pub options: OpenOptions,
     /// What was read.
     pub opened: Opened,
     /// Of each photo.
@@ -92,6 +96,15 @@ pub struct Loaded {
     pub surface_bounds: Bounds,
     /// The number of the open flight that was read again with other surface options.
     pub again_for: Option<u64>,
+}
+
+/// A flight that cannot be opened.
+#[derive(Debug)]
+pub struct NotOpened {
+    /// Why, in a line.
+    pub why: String,
+    /// What was tried, if a flight was named: its surface or its photos may be named next.
+    pub tried: Option<(PathBuf, OpenOptions)>,
 }
 
 /// What the viewport draws, on the graphics device.
@@ -109,7 +122,7 @@ pub struct Geometry {
 #[derive(Debug)]
 pub enum Done {
     /// A flight, or why it cannot be opened.
-    Opened(Box<Result<Loaded, String>>),
+    Opened(Box<Result<Loaded, NotOpened>>),
     /// Scales after a setting changed, with the settings.
     Scales(Result<(Arc<Flight>, Vec<Outcome>, FlightSettings), Fault>),
     /// How the photos look at the surface.

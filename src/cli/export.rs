@@ -4,26 +4,24 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::flight_arguments::FlightArguments;
 use super::{Answer, OutputUnit};
 use crate::exports::{self, ExportRequest, ScaleReport};
 use crate::fault::Fault;
 use crate::flight::{Limits, Verdict, judge_all};
-use crate::formats::{self, FileError, OpenOptions};
+use crate::formats::FileError;
 use crate::jobs::Progress;
 
 #[derive(Debug, Args)]
 pub(super) struct ExportArguments {
-    /// A flight.toml, or a reconstruction: a COLMAP folder, an NVM file, an OpenDroneMap folder.
-    flight: PathBuf,
+    #[command(flatten)]
+    flight: FlightArguments,
     /// The folder to export to; new, or one of an earlier export, which is then completed.
     #[arg(long, value_name = "DIR")]
     to: PathBuf,
     /// Scales are in pixels per this unit.
     #[arg(long, value_enum, default_value = "cm")]
     unit: OutputUnit,
-    /// Use this cloud or mesh instead of the flight's surface.
-    #[arg(long, value_name = "FILE")]
-    surface: Option<PathBuf>,
     /// Which photos: all, or those without any doubt.
     #[arg(long, value_enum, default_value = "all")]
     photos: Selection,
@@ -37,13 +35,8 @@ enum Selection {
 
 /// Opens, computes, judges, exports.
 pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result<Answer, String> {
-    let path = &arguments.flight;
-    let options = OpenOptions {
-        surface: arguments.surface.clone(),
-        settings: None,
-    };
-    let opened =
-        formats::open_flight(path, &options, progress).map_err(|error| error.to_string())?;
+    let opened = arguments.flight.open(progress)?;
+    let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let flight = &opened.flight;
     let outcomes = flight.scales(progress).map_err(in_flight)?;

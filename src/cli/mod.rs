@@ -8,6 +8,7 @@
 //! With the environment variable FRAGSCALE_BACKTRACE set, a panic prints its place as usual.
 
 mod export;
+mod flight_arguments;
 #[cfg(feature = "render")]
 mod render;
 
@@ -21,9 +22,11 @@ use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
+use flight_arguments::FlightArguments;
+
 use crate::exports;
 use crate::fault::{Fault, one_line};
-use crate::formats::{self, FileError, OpenOptions};
+use crate::formats::{self, FileError};
 use crate::jobs::{Job, Progress};
 use crate::sample::{self, Lens, Preset, SampleOptions};
 use crate::units::LengthUnit;
@@ -40,9 +43,10 @@ const QUICK: Duration = Duration::from_millis(500);
     args_conflicts_with_subcommands = true
 )]
 struct Arguments {
-    /// Open this flight in a window; without it, the window's start page.
+    /// Open this flight in a window, perhaps with its surface and the folder of its photos; without
+    /// it, the window's start page.
     #[cfg(feature = "app")]
-    flight: Option<PathBuf>,
+    flight: Vec<PathBuf>,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -64,8 +68,8 @@ enum Command {
 
 #[derive(Debug, Args)]
 struct ScalesArguments {
-    /// A flight.toml, or a reconstruction: a COLMAP folder, an NVM file, an OpenDroneMap folder.
-    flight: PathBuf,
+    #[command(flatten)]
+    flight: FlightArguments,
     /// Scales are in pixels per this unit.
     #[arg(long, value_enum, default_value = "cm")]
     unit: OutputUnit,
@@ -75,9 +79,6 @@ struct ScalesArguments {
     /// Write to this file instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Use this cloud or mesh instead of the flight's surface.
-    #[arg(long, value_name = "FILE")]
-    surface: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -271,7 +272,7 @@ pub fn run() -> ExitCode {
 
 /// Opens the window, with a flight where one is named.
 #[cfg(feature = "app")]
-fn window(flight: Option<PathBuf>) -> ExitCode {
+fn window(flight: Vec<PathBuf>) -> ExitCode {
     if let Some(what) = unknown_command() {
         say(&format!("error: {what}"));
         return ExitCode::from(2);
@@ -286,13 +287,8 @@ fn window(flight: Option<PathBuf>) -> ExitCode {
 }
 
 fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, String> {
-    let options = OpenOptions {
-        surface: arguments.surface.clone(),
-        settings: None,
-    };
-    let path = &arguments.flight;
-    let opened =
-        formats::open_flight(path, &options, progress).map_err(|error| error.to_string())?;
+    let opened = arguments.flight.open(progress)?;
+    let path = &arguments.flight.flight;
     let outcomes = opened
         .flight
         .scales(progress)

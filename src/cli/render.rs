@@ -8,11 +8,12 @@ use glam::{DVec2, DVec3};
 use image::{DynamicImage, RgbaImage};
 
 use super::Answer;
+use super::flight_arguments::FlightArguments;
 use crate::camera::Camera;
 use crate::exports;
 use crate::fault::Fault;
 use crate::flight::{FlightParts, Outcome};
-use crate::formats::{self, FileError, OpenOptions, Opened, PhotoFile};
+use crate::formats::{self, FileError, Opened, PhotoFile};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
 use crate::picture;
@@ -27,8 +28,8 @@ const PHOTO_EDGE: u32 = 2048;
 
 #[derive(Debug, Args)]
 pub(super) struct RenderArguments {
-    /// A flight.toml, or a reconstruction: a COLMAP folder, an NVM file, an OpenDroneMap folder.
-    flight: PathBuf,
+    #[command(flatten)]
+    flight: FlightArguments,
     /// The picture to write, a PNG.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -180,9 +181,8 @@ fn share(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn render(arguments: &RenderArguments, progress: &Progress) -> Result<Answer, String> {
-    let path = &arguments.flight;
-    let opened = formats::open_flight(path, &OpenOptions::default(), progress)
-        .map_err(|error| error.to_string())?;
+    let opened = arguments.flight.open(progress)?;
+    let path = &arguments.flight.flight;
     let at_flight = |fault| FileError::new(path, fault).to_string();
     let picture = draw(arguments, &opened, progress).map_err(at_flight)?;
     progress.stage("writing the picture");

@@ -10,33 +10,35 @@ use super::camera_entry::CameraEntry;
 use super::known_keys::{key_line, line_of, refuse_unknown_keys};
 use crate::fault::Fault;
 use crate::scale::{Ground, ImageKind};
-use crate::surface::{SurfaceError, SurfaceOptions};
+use crate::surface::SurfaceOptions;
 use crate::units::LengthUnit;
 
 /// The text of a flight. Paths are relative to the file and stay text here.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FlightFile {
     /// Version of the format: 1.
-    format: u32,
+    pub(super) format: u32,
     /// For people.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    world: World,
+    pub(super) world: World,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     surface: Option<SurfaceEntry>,
     /// The `[[camera]]` tables.
     #[serde(default, rename = "camera", skip_serializing_if = "Vec::is_empty")]
     pub cameras: Vec<CameraEntry>,
-    photos: PhotosEntry,
+    pub(super) photos: PhotosEntry,
     #[serde(default, skip_serializing_if = "ScaleEntry::is_default")]
     scale: ScaleEntry,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct World {
-    unit: String,
+pub(super) struct World {
+    pub(super) unit: String,
     #[serde(default)]
-    ground: GroundEntry,
+    pub(super) ground: GroundEntry,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) crs: Option<String>,
 }
 
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -50,15 +52,15 @@ struct SurfaceEntry {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct PhotosEntry {
+pub(super) struct PhotosEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    poses: Option<String>,
+    pub(super) poses: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    reconstruction: Option<String>,
+    pub(super) reconstruction: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    folder: Option<String>,
+    pub(super) folder: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    transform: Option<Vec<f64>>,
+    pub(super) transform: Option<Vec<f64>>,
 }
 
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -84,7 +86,7 @@ enum ImageEntry {
 
 /// A number or "auto".
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct GroundEntry(Ground);
+pub(super) struct GroundEntry(pub(super) Ground);
 
 impl Serialize for GroundEntry {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -133,6 +135,23 @@ pub enum PhotoSource<'a> {
     Reconstruction(&'a str, Option<[f64; 16]>),
 }
 
+/// What a flight.toml says of a reconstruction. Paths are relative to the file that it will be.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ReconstructionFlight<'a> {
+    /// For people.
+    pub name: &'a str,
+    /// The file or folder that a package wrote.
+    pub reconstruction: &'a str,
+    /// The row-major similarity from the package's frame to the world.
+    pub transform: Option<[f64; 16]>,
+    /// The folder of the image files.
+    pub folder: Option<&'a str>,
+    /// The surface's file, where it is not the reconstruction's own points.
+    pub surface: Option<&'a str>,
+    /// The coordinate system of the world.
+    pub crs: Option<&'a str>,
+}
+
 impl FlightFile {
     /// Reads the text of a flight.toml.
     ///
@@ -155,36 +174,32 @@ impl FlightFile {
         Ok(file)
     }
 
-    /// A flight whose photos come from a reconstruction. The names are paths relative to the file that
-    /// it will be: of the reconstruction, of the folder of its image files, of the surface's file where
-    /// that is not the reconstruction's own points.
+    /// A flight whose photos come from a reconstruction.
     pub fn for_reconstruction(
-        name: &str,
-        reconstruction: &str,
-        folder: Option<&str>,
-        surface: Option<&str>,
+        flight: &ReconstructionFlight<'_>,
         settings: &FlightSettings,
     ) -> Self {
         let SurfaceOptions { max_edge, thinning } = settings.surface;
         let surface = SurfaceEntry {
-            file: surface.map(str::to_owned),
+            file: flight.surface.map(str::to_owned),
             max_edge,
             thinning,
         };
         Self {
             format: 1,
-            name: Some(name.to_owned()),
+            name: Some(flight.name.to_owned()),
             world: World {
                 unit: settings.unit.symbol().to_owned(),
                 ground: GroundEntry(settings.ground),
+                crs: flight.crs.map(str::to_owned),
             },
             surface: (surface != SurfaceEntry::default()).then_some(surface),
             cameras: Vec::new(),
             photos: PhotosEntry {
                 poses: None,
-                reconstruction: Some(reconstruction.to_owned()),
-                folder: folder.map(str::to_owned),
-                transform: None,
+                reconstruction: Some(flight.reconstruction.to_owned()),
+                folder: flight.folder.map(str::to_owned),
+                transform: flight.transform.map(Vec::from),
             },
             scale: ScaleEntry {
                 image: match settings.image {
@@ -204,117 +219,15 @@ impl FlightFile {
             .map_err(|e| Fault::new(format!("the flight cannot be written ({e})"), "report this"))
     }
 
-    /// What the types do not say.
-    fn check(&self, line: impl Fn(&str, &str) -> u64) -> Result<(), Fault> {
-        let at = |table: &str, key: &str, what: String, remedy: &str| {
-            Err(Fault::at(line(table, key), what, remedy))
-        };
-        if self.format != 1 {
-            let what = format!("format {} is not known", self.format);
-            return at(
-                "",
-                "format",
-                what,
-                "write format = 1, or use a newer fragscale",
-            );
-        }
-        if let Err(unknown) = self.world.unit.parse::<LengthUnit>() {
-            let what = format!("world.unit {unknown}");
-            return at("world", "unit", what, "name the unit of the coordinates");
-        }
-        if let Ground::At(z) = self.world.ground.0
-            && !z.is_finite()
-        {
-            return at(
-                "world",
-                "ground",
-                format!("the ground is {z}"),
-                "give a finite elevation or \"auto\"",
-            );
-        }
-        let photos = &self.photos;
-        let camera_files = self
-            .cameras
-            .iter()
-            .map(|camera| ("camera", "file", &camera.file));
-        let files = [
-            ("photos", "poses", &photos.poses),
-            ("photos", "reconstruction", &photos.reconstruction),
-            ("photos", "folder", &photos.folder),
-        ];
-        for (table, key, file) in files.into_iter().chain(camera_files) {
-            if file.as_deref() == Some("") {
-                return at(
-                    table,
-                    key,
-                    format!("{table}.{key} is empty"),
-                    "name a file, or remove the key",
-                );
-            }
-        }
-        if self.surface() == Some("") {
-            return at(
-                "surface",
-                "file",
-                "surface.file is empty".to_owned(),
-                "name a cloud or mesh",
-            );
-        }
-        if let Err(SurfaceError::Option { name, value }) = self.surface_options().validate() {
-            return at(
-                "surface",
-                name,
-                format!("surface.{name} is {value}"),
-                "give a positive length in the world's unit, or remove the key",
-            );
-        }
-        match (&photos.poses, &photos.reconstruction) {
-            (Some(_), Some(_)) => {
-                let what = "photos has both poses and reconstruction".to_owned();
-                return at("photos", "poses", what, "keep the one that holds");
-            }
-            (None, None) => {
-                let what = "photos has neither poses nor reconstruction".to_owned();
-                return at(
-                    "photos",
-                    "folder",
-                    what,
-                    "name the poses.csv or the reconstruction",
-                );
-            }
-            (Some(_), None) if self.surface().is_none() => {
-                let what = "there is no surface".to_owned();
-                return at("", "world", what, "add [surface] file = \"...\"");
-            }
-            _ => {}
-        }
-        if let Some(transform) = &photos.transform {
-            if photos.reconstruction.is_none() {
-                let what = "photos.transform belongs to a reconstruction".to_owned();
-                return at(
-                    "photos",
-                    "transform",
-                    what,
-                    "remove it, or use reconstruction",
-                );
-            }
-            if transform.len() != 16 {
-                let what = format!("photos.transform has {} numbers", transform.len());
-                return at(
-                    "photos",
-                    "transform",
-                    what,
-                    "give the 16 of a row-major 4x4",
-                );
-            }
-        }
-        Ok(())
-    }
-
     /// The unit of all world coordinates.
     pub fn unit(&self) -> LengthUnit {
         // `parse` has checked it.
         self.world.unit.parse().unwrap_or(LengthUnit::Metre)
+    }
+
+    /// The coordinate system of the world, where the file names one: "EPSG:n", WKT or a PROJ text.
+    pub fn crs(&self) -> Option<&str> {
+        self.world.crs.as_deref()
     }
 
     /// The fall-back plane.

@@ -67,6 +67,31 @@ impl FlightFile {
         }
     }
 
+    /// The text of a flight.toml with another surface's file and another folder of image files, where
+    /// they are given; paths relative to it.
+    ///
+    /// # Errors
+    /// Where the text is no flight.
+    pub fn text_with_files(
+        text: &str,
+        surface: Option<&str>,
+        folder: Option<&str>,
+    ) -> Result<String, Fault> {
+        let old = Self::parse(text)?;
+        let mut document = document(text)?;
+        for (table, key, old, new) in [
+            ("surface", "file", old.surface(), surface),
+            ("photos", "folder", old.photo_folder(), folder),
+        ] {
+            if let Some(new) = new
+                && old != Some(new)
+            {
+                set(&mut document, table, key, new)?;
+            }
+        }
+        Ok(with_line_ends_of(text, document.to_string()))
+    }
+
     /// The text of a flight.toml with every path in it replaced by `path_for` of it: for a copy in
     /// another folder.
     ///
@@ -161,6 +186,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::flight::ReconstructionFlight;
     use crate::surface::SurfaceOptions;
     use crate::units::LengthUnit;
 
@@ -308,9 +334,15 @@ folder = "photos"
             name in "\\PC*",
             surface in prop::option::of("[a-z ü\"\\\\]{1,9}"),
         ) {
-            let file = FlightFile::for_reconstruction(
-                &name, "../odm", Some("../odm/images"), surface.as_deref(), &settings,
-            );
+            let flight = ReconstructionFlight {
+                name: &name,
+                reconstruction: "../odm",
+                transform: Some([0.1, 0.0, 0.0, 5e5, 0.0, 0.1, 0.0, 5e6, 0.0, 0.0, 0.1, 1.0 / 3.0, 0.0, 0.0, 0.0, 1.0]),
+                folder: Some("../odm/images"),
+                surface: surface.as_deref(),
+                crs: Some("EPSG:32633"),
+            };
+            let file = FlightFile::for_reconstruction(&flight, &settings);
             let read = FlightFile::parse(&file.to_toml().unwrap()).unwrap();
             prop_assert_eq!(read.settings(), settings);
             prop_assert_eq!(read, file);

@@ -14,7 +14,7 @@ const KNOWN_KEYS: [(&str, &[&str]); 6] = [
             "format", "name", "world", "surface", "camera", "photos", "scale",
         ],
     ),
-    ("world", &["unit", "ground"]),
+    ("world", &["unit", "ground", "crs"]),
     ("surface", &["file", "max_edge", "thinning"]),
     (
         "camera",

@@ -3,9 +3,11 @@
 mod camera_entry;
 mod doubt;
 mod file;
+mod file_check;
 mod file_text;
 mod known_keys;
 mod name_order;
+mod placement;
 #[cfg(test)]
 mod tests;
 mod verdict;
@@ -15,7 +17,7 @@ use std::sync::Arc;
 
 pub use camera_entry::{CameraEntry, CameraSource};
 pub use doubt::Doubt;
-pub use file::{FlightFile, PhotoSource};
+pub use file::{FlightFile, PhotoSource, ReconstructionFlight};
 pub use name_order::compare_names;
 pub use verdict::{Limits, PhotoFileState, Verdict, judge, judge_all};
 

@@ -8,7 +8,8 @@
 //! | object | frames | nerfstudio |
 //! | object | extrinsic and intrinsic, or class_name and parameters | Open3D |
 //!
-//! A file that breaks off is told by the keys before that, so that its reader can say where.
+//! A file that breaks off is told by the keys before that, so that its reader can say where. Files of
+//! other names (.gltf, .geojson) are not looked into.
 
 use std::fmt;
 use std::path::Path;
@@ -18,9 +19,10 @@ use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess,
 use super::Package;
 use super::input::read_bytes;
 
-/// The package of a file whose first bytes are `start`.
+/// The package of a .json file whose first bytes are `start`.
 pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<Package> {
-    if !matches!(start.trim_ascii_start().first(), Some(b'{' | b'[')) {
+    let is_json = path.extension()?.eq_ignore_ascii_case("json");
+    if !is_json || !matches!(start.trim_ascii_start().first(), Some(b'{' | b'[')) {
         return None;
     }
     of_json(&read_bytes(path).ok()?)

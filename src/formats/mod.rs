@@ -8,10 +8,12 @@ mod bundler;
 mod camera_file;
 mod cloud_file;
 mod colmap;
+mod dropped;
 mod fields;
 mod info;
 mod input;
 mod json;
+mod json_camera;
 mod json_packages;
 mod las;
 mod meshroom;
@@ -29,11 +31,13 @@ mod photo_files;
 mod photo_size;
 mod ply;
 mod poses_csv;
+mod position_list;
 mod reconstruction;
 mod rounded_rotation;
 #[cfg(test)]
 mod test_data;
 mod text_lines;
+mod world_frame;
 mod xyz;
 
 use std::fs;
@@ -41,12 +45,17 @@ use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 pub use cloud_file::CloudFile;
+pub use dropped::Dropped;
 pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{OpenOptions, Opened, PhotoFile, open_flight};
 pub use origin::FlightOrigin;
 pub use package::Package;
 pub use poses_csv::{PoseLine, PosesFile};
+pub use position_list::{
+    ControlPoint, ControlPoints, NamedPosition, PositionList, positions_of_photos,
+    read_control_points, read_positions,
+};
 pub use reconstruction::{MeasuredPosition, Observation, PosedPhoto, Project, Reconstruction};
 
 use crate::camera::Camera;
@@ -95,7 +104,7 @@ impl Kind {
 }
 
 /// Everything that can be opened, for messages.
-const SUPPORTED: &str = "flight.toml, PLY, LAS, LAZ, OBJ, XYZ/TXT/CSV, NVM, Bundler, OpenSfM, Meshroom, nerfstudio and Open3D files, Middlebury _par.txt, camera YAML or XML, poses.csv, a COLMAP or OpenDroneMap folder";
+const SUPPORTED: &str = "flight.toml, PLY, LAS, LAZ, OBJ, XYZ/TXT/CSV, NVM, Bundler, OpenSfM, Meshroom, nerfstudio and Open3D files, Middlebury _par.txt, camera YAML, XML or JSON, poses.csv, a COLMAP or OpenDroneMap folder";
 
 /// Tells what a file or folder holds: by its first bytes where they are distinctive, else by its
 /// name.
@@ -150,6 +159,7 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         "las" | "laz" => Kind::Cloud(CloudFormat::Las),
         "obj" => Kind::Cloud(CloudFormat::Obj),
         "yaml" | "yml" | "xml" => Kind::Camera,
+        "json" if json_camera::is_camera(&String::from_utf8_lossy(text)) => Kind::Camera,
         "csv" | "txt" if has_photo_column(text) => Kind::Poses,
         "log" | "txt" if open3d::is_log(&String::from_utf8_lossy(text)) => Kind::Poses,
         "csv" | "txt" | "xyz" | "asc" => Kind::Cloud(CloudFormat::Xyz),
@@ -253,7 +263,12 @@ pub fn read_cloud(path: &Path, progress: &Progress) -> Result<CloudFile, FileErr
 /// With the file and the place in it.
 pub fn read_camera(path: &Path) -> Result<Camera, FileError> {
     let text = read_text(path)?;
-    camera_file::read(&text).map_err(|fault| FileError::new(path, fault))
+    let camera = if json_camera::is_camera(&text) {
+        json_camera::read(&text)
+    } else {
+        camera_file::read(&text)
+    };
+    camera.map_err(|fault| FileError::new(path, fault))
 }
 
 /// Reads what a package wrote.

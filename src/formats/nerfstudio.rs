@@ -19,7 +19,8 @@
 //! - transform_matrix is `world_from_camera`, row-major, with OpenGL's camera axes: x right, y UP, z BACK.
 //! - camera_model: OPENCV, PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, RADIAL or none is brown k1 k2 p1 p2 k3;
 //!   nerfstudio's k4 of these is the term of r8, which is refused unless it is 0. OPENCV_FISHEYE and
-//!   instant-ngp's is_fisheye are fisheye k1..k4. Others are refused for their photos.
+//!   instant-ngp's is_fisheye are fisheye k1..k4. Others (nerfstudio's EQUIRECTANGULAR, ...; instant-ngp's
+//!   ftheta_p0, latlong, equirectangular) are refused for their photos.
 //! - The frame is the file's; applied_transform (and applied_scale) tell how the original
 //!   reconstruction's was changed into it. ply_file_path is a cloud in the file's frame.
 //! - file_path is relative to the file; without an extension it stands for a .png.
@@ -64,7 +65,7 @@ pub(super) fn read_file(path: &Path) -> Result<Project, FileError> {
     Ok(Project {
         reconstruction,
         surface,
-        photos: Some(folder.to_owned()).filter(|_| path.parent().is_some()),
+        photos: Some(folder.to_owned()),
     })
 }
 
@@ -97,6 +98,9 @@ struct RawIntrinsics {
     cy: Option<f64>,
     camera_angle_x: Option<f64>,
     camera_angle_y: Option<f64>,
+    ftheta_p0: Option<f64>,
+    latlong: Option<bool>,
+    equirectangular: Option<bool>,
     k1: Option<f64>,
     k2: Option<f64>,
     k3: Option<f64>,
@@ -266,6 +270,9 @@ impl RawIntrinsics {
             camera_angle_y: self
                 .camera_angle_y
                 .or(file.camera_angle_y.filter(|_| !own_y)),
+            ftheta_p0: self.ftheta_p0.or(file.ftheta_p0),
+            latlong: self.latlong.or(file.latlong),
+            equirectangular: self.equirectangular.or(file.equirectangular),
             k1: self.k1.or(file.k1),
             k2: self.k2.or(file.k2),
             k3: self.k3.or(file.k3),
@@ -288,6 +295,11 @@ impl RawIntrinsics {
     }
 
     fn unsupported_model(&self) -> Option<String> {
+        let panorama = self.latlong == Some(true) || self.equirectangular == Some(true);
+        if panorama || self.ftheta_p0.is_some() {
+            let model = if panorama { "a panorama" } else { "F-theta" };
+            return Some(model.to_owned());
+        }
         match self.is_fisheye() {
             Some(false) if self.k4.unwrap_or(0.0) != 0.0 => {
                 Some("a perspective one with k4".into())
@@ -469,6 +481,8 @@ mod tests {
                 "",
                 "EQUIRECTANGULAR",
             ),
+            (r#""fl_x": 1, "ftheta_p0": 0.1"#, "", "F-theta"),
+            (r#""fl_x": 1, "latlong": true"#, "", "a panorama"),
             (r#""fl_x": "1""#, "", "invalid type"),
             (r#""fl_x": NaN"#, "", "expected value"),
         ] {

@@ -3,9 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::input::{FileError, read_text};
 use super::origin::FlightOrigin;
 use super::photo_files::{PhotoFolder, fit_cameras_to_files};
+use super::world_frame::{Frame, Known};
 use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, read_project};
 use crate::camera::Camera;
 use crate::fault::Fault;
@@ -13,6 +16,7 @@ use crate::flight::{
     CameraEntry, CameraSource, Flight, FlightFile, FlightParts, FlightSettings, Photo,
     PhotoFileState, PhotoSource,
 };
+use crate::geodesy::Crs;
 use crate::geometry::Similarity;
 use crate::jobs::Progress;
 use crate::scale::{Ground, ImageKind};
@@ -24,6 +28,8 @@ use crate::units::LengthUnit;
 pub struct OpenOptions {
     /// A cloud or mesh to use instead of the flight's own surface.
     pub surface: Option<PathBuf>,
+    /// The folder of the image files, instead of the flight's own.
+    pub photos: Option<PathBuf>,
     /// What to set instead of what the flight says.
     pub settings: Option<FlightSettings>,
 }
@@ -69,8 +75,8 @@ pub fn open_flight(
 ) -> Result<Opened, FileError> {
     let kind = detect(path)?;
     let source = match &kind {
-        Kind::Flight(file) => Source::of_file(file, progress)?,
-        Kind::Reconstruction(..) => Source::of_reconstruction(path, progress)?,
+        Kind::Flight(file) => Source::of_file(file, options, progress)?,
+        Kind::Reconstruction(..) => Source::of_reconstruction(path, options, progress)?,
         Kind::Cloud(_) | Kind::Camera | Kind::Poses => {
             return Err(FileError::new(
                 path,
@@ -90,10 +96,16 @@ struct Source {
     file: PathBuf,
     name: String,
     settings: FlightSettings,
+    /// Whether somebody says the unit of the world, in `settings`.
+    unit_is_stated: bool,
     /// The flight.toml, where there is one.
     flight_file: Option<FlightFile>,
-    /// Of the reconstruction, then of the surface's file.
-    crs: Option<String>,
+    /// The system of the world that flight.toml names.
+    named_crs: Option<Crs>,
+    /// The frame of the poses and of the reconstruction's points.
+    poses_frame: Frame,
+    /// The system that the reconstruction's package works in, where its poses are in another.
+    preferred_crs: Option<Crs>,
     inputs: Vec<PathBuf>,
     /// The surface's file; `None` for the reconstruction's own points.
     surface: Option<PathBuf>,
@@ -105,26 +117,47 @@ struct Source {
 }
 
 impl Source {
-    fn of_file(path: &Path, progress: &Progress) -> Result<Self, FileError> {
+    fn new(file: &Path, settings: FlightSettings, options: &OpenOptions) -> Self {
+        Self {
+            file: file.to_owned(),
+            name: name_of(file),
+            settings,
+            unit_is_stated: true,
+            flight_file: None,
+            named_crs: None,
+            poses_frame: Frame::AsIs(None),
+            preferred_crs: None,
+            inputs: Vec::new(),
+            surface: options.surface.clone(),
+            reconstruction_cloud: CloudFile::default(),
+            photo_folder: options.photos.clone(),
+            cameras: Vec::new(),
+            photos: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    fn of_file(path: &Path, options: &OpenOptions, progress: &Progress) -> Result<Self, FileError> {
         let at_file = |fault| FileError::new(path, fault);
         let text = read_text(path)?;
         let file = FlightFile::parse(&text).map_err(at_file)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        let photo_folder = file.photo_folder().map(|name| folder.join(name));
-        let mut source = Self {
-            file: path.to_owned(),
-            name: file.name.clone().unwrap_or_else(|| name_of(path)),
-            settings: file.settings(),
-            flight_file: None,
-            crs: None,
-            inputs: vec![path.to_owned()],
-            surface: file.surface().map(|name| folder.join(name)),
-            reconstruction_cloud: CloudFile::default(),
-            photo_folder,
-            cameras: Vec::new(),
-            photos: Vec::new(),
-            warnings: Vec::new(),
-        };
+        let mut source = Self::new(path, file.settings(), options);
+        source.name = file.name.clone().unwrap_or_else(|| name_of(path));
+        source.named_crs = file
+            .crs()
+            .map(Crs::understand)
+            .transpose()
+            .map_err(|fault| {
+                at_file(Fault::new(
+                    format!("world.crs: {}", fault.what),
+                    fault.remedy,
+                ))
+            })?;
+        source.inputs.push(path.to_owned());
+        let file_in = |name: Option<&str>| name.map(|name| folder.join(name));
+        source.surface = source.surface.or(file_in(file.surface()));
+        source.photo_folder = source.photo_folder.or(file_in(file.photo_folder()));
         match file.photo_source() {
             PhotoSource::Poses(name) => {
                 let names = source.add_cameras(path, folder, &file.cameras)?;
@@ -141,6 +174,9 @@ impl Source {
                         ))
                     })?;
                     reconstruction.transform(&similarity);
+                    // Now it is in the world, whatever that is called.
+                    reconstruction.crs = None;
+                    reconstruction.enu_origin = None;
                 }
                 source
                     .take_reconstruction(&path, reconstruction, &file.cameras)
@@ -157,28 +193,21 @@ impl Source {
         Ok(source)
     }
 
-    fn of_reconstruction(path: &Path, progress: &Progress) -> Result<Self, FileError> {
-        let mut source = Self {
-            file: path.to_owned(),
-            name: name_of(path),
-            settings: FlightSettings {
-                unit: LengthUnit::Metre,
-                ground: Ground::Auto,
-                image: ImageKind::Undistorted,
-                surface: SurfaceOptions::default(),
-            },
-            flight_file: None,
-            crs: None,
-            inputs: Vec::new(),
-            surface: None,
-            reconstruction_cloud: CloudFile::default(),
-            photo_folder: None,
-            cameras: Vec::new(),
-            photos: Vec::new(),
-            warnings: Vec::new(),
+    fn of_reconstruction(
+        path: &Path,
+        options: &OpenOptions,
+        progress: &Progress,
+    ) -> Result<Self, FileError> {
+        let settings = FlightSettings {
+            unit: LengthUnit::Metre,
+            ground: Ground::Auto,
+            image: ImageKind::Undistorted,
+            surface: SurfaceOptions::default(),
         };
+        let mut source = Self::new(path, settings, options);
+        source.unit_is_stated = false;
         let reconstruction = source.read_reconstruction(path, progress)?;
-        if reconstruction.crs.is_none() {
+        if reconstruction.crs.is_none() && reconstruction.enu_origin.is_none() {
             let path = path.display();
             source.warnings.push(format!(
                 "{path}: the reconstruction states neither a unit nor which way is up; its frame is taken as metres with z up"
@@ -213,7 +242,10 @@ impl Source {
     ) -> Result<(), FileError> {
         let at = |fault| FileError::new(path, fault);
         self.warn(path, &reconstruction.warnings);
-        self.crs = reconstruction.crs.take();
+        let (crs, origin) = (reconstruction.crs.as_deref(), reconstruction.enu_origin);
+        let mut said = Vec::new();
+        self.poses_frame = Frame::of_poses(crs, origin, &mut said).map_err(at)?;
+        self.warn(path, &said);
         let sizes = sizes_of_entries(entries).map_err(at)?;
         let given = |name: &str| {
             sizes
@@ -366,31 +398,27 @@ impl Source {
             &mut self.photos,
             &mut self.warnings,
         );
-        let surface = options.surface.clone().or(self.surface.take());
+        let surface = self.surface.take();
         let origin = FlightOrigin {
             path: self.file.clone(),
             is_flight_file: self.flight_file.is_some(),
             name: self.name.clone(),
+            is_changed: options.surface.is_some() || options.photos.is_some(),
             photo_folder: self.photo_folder.clone(),
             surface: surface.clone(),
         };
-        let (surface_file, cloud) = match surface {
+        let file = match &surface {
             Some(path) => {
-                let file = super::read_cloud(&path, progress)?;
-                self.warn(&path, &file.warnings);
+                let file = super::read_cloud(path, progress)?;
+                self.warn(path, &file.warnings);
                 self.inputs.push(path.clone());
-                self.crs = self.crs.take().or_else(|| file.crs.clone());
-                (path, file)
+                Some(file)
             }
-            None => (self.file.clone(), self.reconstruction_cloud),
+            None => None,
         };
+        let surface_file = surface.unwrap_or_else(|| self.file.clone());
+        let (cloud, world) = self.bring_to_world(&surface_file, file, progress)?;
         let at_surface = |fault| FileError::new(&surface_file, fault);
-        if cloud.geographic {
-            return Err(at_surface(Fault::new(
-                "its coordinates are degrees, not lengths",
-                "project it to a metric system, such as UTM",
-            )));
-        }
         if cloud.cloud.points.is_empty() {
             return Err(at_surface(Fault::new(
                 "it has no 3D points to make a surface of",
@@ -422,16 +450,93 @@ impl Source {
             photos: self.photos,
         })
         .map_err(|fault| FileError::new(&self.file, fault))?;
+        let file = self.file.display();
+        let misplaced = flight.placement_warnings();
+        self.warnings.extend(
+            misplaced
+                .into_iter()
+                .map(|warning| format!("{file}: {warning}")),
+        );
         Ok(Opened {
             flight,
             warnings: self.warnings,
             photo_files,
-            crs: self.crs,
+            crs: world.crs().map(str::to_owned),
             settings,
             file: self.flight_file.map(|file| (self.file, file)),
             origin,
             inputs: self.inputs,
         })
+    }
+
+    /// Brings the poses and the surface (that of `file`, or the reconstruction's own points) to the
+    /// flight's world.
+    fn bring_to_world(
+        &mut self,
+        surface_file: &Path,
+        file: Option<CloudFile>,
+        progress: &Progress,
+    ) -> Result<(CloudFile, Frame), FileError> {
+        let at_surface = |fault| FileError::new(surface_file, fault);
+        let path = self.file.clone();
+        let at_poses = |fault| FileError::new(&path, fault);
+        let mut said = Vec::new();
+        let surface = file.as_ref().map(|file| Frame::of_cloud(file, &mut said));
+        let surface = surface.transpose().map_err(at_surface)?;
+        self.warn(surface_file, &said);
+        let centers = self.photos.iter().map(|photo| photo.pose.center);
+        let first_point = file.as_ref().and_then(|file| file.cloud.points.first());
+        let known = Known {
+            named: self.named_crs.clone(),
+            on_surface: first_point.copied().unwrap_or_default(),
+            surface: surface.clone(),
+            poses: self.poses_frame.clone(),
+            preferred: self.preferred_crs.clone(),
+            middle: centers.sum::<DVec3>() / self.photos.len().max(1) as f64,
+        };
+        let world = known.world().map_err(at_poses)?;
+        let of_poses = self.poses_frame.to(&world);
+        let (mut cloud, of_points) = match (file, &surface) {
+            (Some(file), Some(frame)) => (file, frame.to(&world)),
+            _ => (std::mem::take(&mut self.reconstruction_cloud), of_poses),
+        };
+        if !of_poses.is_none() || !of_points.is_none() {
+            progress.stage("bringing poses and surface to one coordinate system");
+        }
+        for photo in &mut self.photos {
+            photo.pose = of_poses.pose(&photo.name, &photo.pose).map_err(at_poses)?;
+        }
+        of_points
+            .points(&mut cloud.cloud.points)
+            .map_err(at_surface)?;
+        let poses_moved = of_poses.in_words("the poses");
+        let points_moved = of_points.in_words("the points");
+        self.warn(&path, poses_moved.as_slice());
+        if surface.is_some() {
+            self.warn(surface_file, points_moved.as_slice());
+        }
+        if let Some(unit) = world.unit()
+            && unit != self.settings.unit
+        {
+            let name = world.crs().unwrap_or_default();
+            if !self.unit_is_stated {
+                self.settings.unit = unit;
+            } else if poses_moved.is_some() {
+                let what = format!(
+                    "the world is {name}, which counts in {unit}, not {}",
+                    self.settings.unit
+                );
+                let remedy = format!("write world.unit = \"{unit}\"");
+                return Err(at_poses(Fault::new(what, remedy)));
+            } else {
+                let warning = format!(
+                    "the surface is in {name}, which counts in {unit}, but the flight's unit is {}",
+                    self.settings.unit
+                );
+                self.warn(surface_file, &[warning]);
+            }
+        }
+        Ok((cloud, world))
     }
 
     fn warn(&mut self, path: &Path, warnings: &[String]) {

@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::input::{FileError, read_text};
 use crate::fault::Fault;
-use crate::flight::{FlightFile, FlightSettings};
+use crate::flight::{FlightFile, FlightSettings, ReconstructionFlight};
 
 /// Where an opened flight came from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,6 +15,8 @@ pub struct FlightOrigin {
     pub(super) path: PathBuf,
     /// Which of the two.
     pub(super) is_flight_file: bool,
+    /// Whether the surface or the folder of the image files are others than it names.
+    pub(super) is_changed: bool,
     /// The flight's name.
     pub(super) name: String,
     /// The folder of the image files, if any.
@@ -27,6 +29,11 @@ impl FlightOrigin {
     /// The flight.toml that the flight came from, or `None` where it was a reconstruction.
     pub fn flight_file(&self) -> Option<&Path> {
         self.is_flight_file.then_some(self.path.as_path())
+    }
+
+    /// Whether the flight has another surface or other photos than its flight.toml names.
+    pub fn has_other_files(&self) -> bool {
+        self.is_flight_file && self.is_changed
     }
 
     /// Where to save it, if nobody says otherwise: in the flight.toml that it came from, or beside the
@@ -74,6 +81,12 @@ impl FlightOrigin {
             let text = read_text(&self.path)?;
             let text = FlightFile::text_with_settings(&text, settings).map_err(at_source)?;
             let old_folder = folder_of(&self.path);
+            let text = match self.is_changed {
+                true => self
+                    .with_other_files(&text, old_folder)
+                    .map_err(at_source)?,
+                false => text,
+            };
             if real(old_folder) == folder {
                 return Ok(text);
             }
@@ -96,15 +109,27 @@ impl FlightOrigin {
         let reconstruction = path(&self.path)?;
         let photos = self.photo_folder.as_deref().map(path).transpose()?;
         let surface = self.surface.as_deref().map(path).transpose()?;
-        FlightFile::for_reconstruction(
-            &self.name,
-            &reconstruction,
-            photos.as_deref(),
-            surface.as_deref(),
-            settings,
-        )
-        .to_toml()
-        .map_err(at_target)
+        let flight = ReconstructionFlight {
+            name: &self.name,
+            reconstruction: &reconstruction,
+            folder: photos.as_deref(),
+            surface: surface.as_deref(),
+            ..ReconstructionFlight::default()
+        };
+        FlightFile::for_reconstruction(&flight, settings)
+            .to_toml()
+            .map_err(at_target)
+    }
+
+    /// The text of the flight.toml in `folder` with the surface and the photos of now.
+    fn with_other_files(&self, text: &str, folder: &Path) -> Result<String, Fault> {
+        let folder = real(folder);
+        let path = |path: &Option<PathBuf>| {
+            let path = path.as_deref();
+            path.map(|path| path_from(&folder, path)).transpose()
+        };
+        let (surface, photos) = (path(&self.surface)?, path(&self.photo_folder)?);
+        FlightFile::text_with_files(text, surface.as_deref(), photos.as_deref())
     }
 
     /// The same flight once it was saved at `target`.
@@ -113,6 +138,7 @@ impl FlightOrigin {
         Self {
             path: target.to_owned(),
             is_flight_file: true,
+            is_changed: false,
             ..self.clone()
         }
     }

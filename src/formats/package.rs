@@ -3,6 +3,7 @@
 //! One line a package in each of the three places: a file is recognised by its name or its first
 //! bytes, a folder by what lies in it.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::input::{FileError, read_bytes, read_text};
@@ -93,9 +94,21 @@ pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
         (Package::OpenSfm, opensfm::dataset_file(path)),
         (Package::Bundler, bundler::bundle_of_folder(path)),
         (Package::Nerfstudio, nerfstudio::transforms_of_folder(path)),
+        (Package::Meshroom, only_file(path, ".sfm")),
+        (Package::Middlebury, only_file(path, "_par.txt")),
     ];
     let found = |(package, file): (Package, Option<PathBuf>)| Some((package, file?));
     files.into_iter().find_map(found)
+}
+
+/// The file of a folder whose name ends so, where there is only one.
+fn only_file(folder: &Path, end: &str) -> Option<PathBuf> {
+    let entries = fs::read_dir(folder).ok()?.flatten();
+    let mut found = entries.map(|entry| entry.path()).filter(|path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.to_ascii_lowercase().ends_with(end) && path.is_file()
+    });
+    found.next().filter(|_| found.next().is_none())
 }
 
 /// Reads what the package wrote.
@@ -119,5 +132,68 @@ pub(super) fn read(
         Package::Middlebury => middlebury::read(&read_text(path)?)
             .map(Project::from)
             .map_err(at),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_are_told_by_what_lies_in_them() {
+        for (file, package) in [
+            ("opensfm/reconstruction.json", Package::OpenSfm),
+            ("reconstruction.json", Package::OpenSfm),
+            ("bundle/bundle.out", Package::Bundler),
+            ("transforms.json", Package::Nerfstudio),
+            ("cameras.sfm", Package::Meshroom),
+            ("templeR_par.txt", Package::Middlebury),
+            (
+                "submodels/submodel_0000/odm_report/shots.geojson",
+                Package::OpenDroneMap,
+            ),
+        ] {
+            let dir = tempfile::tempdir().unwrap();
+            let path = dir.path().join(file);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(&path, "[").unwrap();
+            let found = of_folder(dir.path());
+            assert_eq!(found.map(|(package, _)| package), Some(package), "{file}");
+        }
+        let dir = tempfile::tempdir().unwrap();
+        assert_eq!(of_folder(dir.path()), None);
+        for name in ["a_par.txt", "b_par.txt"] {
+            fs::write(dir.path().join(name), "").unwrap();
+        }
+        assert_eq!(of_folder(dir.path()), None);
+    }
+
+    #[test]
+    fn files_are_told_by_their_beginning_or_name() {
+        for (name, start, package) in [
+            ("x.out", "# Bundle file v0.3\n", Package::Bundler),
+            ("synth_0.out", "drews 1.0\n", Package::Bundler),
+            ("cameras.sfm", "{", Package::Meshroom),
+            ("sfm.abc", "Ogawa", Package::Meshroom),
+            ("dino_par.txt", "16\n", Package::Middlebury),
+            ("x.json", r#"[{"shots": {}}]"#, Package::OpenSfm),
+            ("x.json", r#"{"views": [], "poses": []}"#, Package::Meshroom),
+            (
+                "transforms_train.json",
+                r#"{"frames": []}"#,
+                Package::Nerfstudio,
+            ),
+            (
+                "x.json",
+                r#"{"intrinsic": {}, "extrinsic": []}"#,
+                Package::Open3d,
+            ),
+        ] {
+            let dir = tempfile::tempdir().unwrap();
+            let path = dir.path().join(name);
+            fs::write(&path, start).unwrap();
+            let found = of_file(&path, start.as_bytes());
+            assert_eq!(found, Some((package, path)), "{name}");
+        }
     }
 }

@@ -35,6 +35,28 @@ pub enum NotSimilarity {
 }
 
 impl Similarity {
+    /// From its parts: a scale above 0 and a proper rotation.
+    pub fn new(scale: f64, rotation: DMat3, translation: DVec3) -> Self {
+        Self {
+            scale,
+            rotation,
+            linear: rotation * scale,
+            translation,
+        }
+    }
+
+    /// The row-major 4x4 matrix, as [`Similarity::from_row_major`] takes it.
+    pub fn to_row_major(&self) -> [f64; 16] {
+        let [x, y, z] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis];
+        let t = self.translation;
+        [
+            x.x, y.x, z.x, t.x, //
+            x.y, y.y, z.y, t.y, //
+            x.z, y.z, z.z, t.z, //
+            0.0, 0.0, 0.0, 1.0,
+        ]
+    }
+
     /// From a row-major 4x4 matrix. Its columns may deviate from a similarity by a relative 1e-5:
     /// files carry rounded matrices. The rotation is then made exact by Gram-Schmidt.
     ///
@@ -103,6 +125,17 @@ mod tests {
             similarity.apply(DVec3::new(1.0, 0.0, 0.5)),
             DVec3::new(10.0, 22.0, 31.0)
         );
+    }
+
+    #[test]
+    fn numbers_come_back() {
+        let rotation = DMat3::from_euler(glam::EulerRot::ZYX, 0.1, 0.2, 0.3);
+        let similarity = Similarity::new(0.37, rotation, DVec3::new(5e5, 5e6, 100.1));
+        let back = Similarity::from_row_major(&similarity.to_row_major()).unwrap();
+        assert_eq!(back.to_row_major(), similarity.to_row_major());
+        let point = DVec3::new(1.0, -2.0, 3.0);
+        assert_eq!(back.apply(point), similarity.apply(point));
+        assert!((back.scale - 0.37).abs() < 1e-15);
     }
 
     #[test]

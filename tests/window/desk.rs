@@ -36,7 +36,7 @@ impl Desk {
             .with_size([1280.0, 720.0])
             .with_step_dt(1.0 / 60.0)
             .with_max_steps(30)
-            .build_eframe(|context| App::new(context, path));
+            .build_eframe(|context| App::new(context, path.into_iter().collect()));
         let mut desk = Self { harness };
         desk.settle();
         desk
@@ -55,7 +55,7 @@ impl Desk {
             .with_max_steps(30)
             .with_render_cursor(false)
             .wgpu()
-            .build_eframe(|context| App::new(context, path));
+            .build_eframe(|context| App::new(context, path.into_iter().collect()));
         let mut desk = Self { harness };
         desk.settle();
         desk

@@ -14,6 +14,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
     if let Some(asking) = state.asking {
         let title = match asking {
             Asking::Open => "Open a flight",
+            Asking::Add => "Add surface or photos",
             Asking::Export => "Export for Split-Desktop",
             Asking::SaveAs => "Save flight",
             Asking::Picture => "Save picture",
@@ -31,6 +32,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                 ui.set_max_width(460.0);
                 match asking {
                     Asking::Open => open(state, ui, commands),
+                    Asking::Add => add(state, ui, commands),
                     Asking::Export => export(state, ui, commands),
                     Asking::SaveAs => save_as(state, ui, commands),
                     Asking::Picture => picture(state, ui, commands),
@@ -186,7 +188,10 @@ fn typed(path: &str) -> Option<PathBuf> {
 }
 
 fn open(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    ui.label("A flight.toml, a COLMAP or OpenDroneMap folder, or a VisualSFM .nvm file:");
+    ui.label(
+        "A flight.toml, a file or folder that a photogrammetry package wrote, or a folder of photos \
+         with positions and angles in them:",
+    );
     let browse = [
         ("Browse for a file…", DialogFor::Open, false),
         ("Browse for a folder…", DialogFor::Open, true),
@@ -199,6 +204,31 @@ fn open(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         && (button.clicked() || entered)
     {
         commands.push(Command::Open(path));
+    }
+}
+
+fn add(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let name = match (&state.tried, &state.open) {
+        (Some((path, _)), _) => path.display().to_string(),
+        (None, Some(open)) => open.flight.parts().name.clone(),
+        (None, None) => return,
+    };
+    ui.label(format!(
+        "For {name}: a cloud or mesh to be its surface, or the folder of its photos. It can also be \
+         dropped on this window."
+    ));
+    let browse = [
+        ("Browse for a surface…", DialogFor::Add, false),
+        ("Browse for a folder of photos…", DialogFor::Add, true),
+    ];
+    let (path, entered) = path_field(state, ui, "", &browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Add it"));
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::Add(path));
     }
 }
 

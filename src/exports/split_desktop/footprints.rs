@@ -8,14 +8,17 @@ use serde_json::{Value, json};
 
 use super::ExportRequest;
 use super::kml;
-use super::wgs84::ToWgs84;
 use crate::exports::{ReportLine, ScaleReport};
+use crate::fault::Fault;
+use crate::geodesy::{Crs, CrsKind};
 use crate::scale::FootprintPoint;
+use crate::units::LengthUnit;
 
 /// The footprints of a flight on their way out.
 pub(super) struct Footprints<'a> {
     request: &'a ExportRequest<'a>,
-    to_wgs84: Option<ToWgs84>,
+    /// The flight's coordinate system, where it leads to longitude and latitude.
+    crs: Option<Crs>,
     warning: Option<String>,
 }
 
@@ -35,22 +38,22 @@ pub(super) struct PhotoFootprint<'a> {
 impl<'a> Footprints<'a> {
     pub(super) fn new(request: &'a ExportRequest<'a>) -> Self {
         let crs = request.crs;
-        let understood = crs.map(|crs| ToWgs84::new(crs, request.flight.parts().unit));
-        let (to_wgs84, warning) = match understood {
+        let understood = crs.map(|crs| map_system(crs, request.flight.parts().unit));
+        let (crs, warning) = match understood {
             None => (None, None),
             Some(Ok(system)) => (Some(system), None),
             Some(Err(fault)) => (None, Some(fault.to_string())),
         };
         Self {
             request,
-            to_wgs84,
+            crs,
             warning,
         }
     }
 
     /// Whether longitudes and latitudes are known.
     pub(super) fn is_on_maps(&self) -> bool {
-        self.to_wgs84.is_some()
+        self.crs.is_some()
     }
 
     /// Why a stated coordinate system is not used.
@@ -90,10 +93,11 @@ impl<'a> Footprints<'a> {
 
     fn position(&self, point: &FootprintPoint) -> Option<Vec<f64>> {
         let point = point.point()?;
-        match &self.to_wgs84 {
-            Some(system) => system
-                .degrees(point.x, point.y)
-                .map(|degrees| degrees.to_vec()),
+        match &self.crs {
+            Some(crs) => {
+                let place = crs.to_geographic(point)?;
+                Some(vec![place.longitude, place.latitude])
+            }
             None => Some(point.to_array().to_vec()),
         }
     }
@@ -123,6 +127,27 @@ impl<'a> Footprints<'a> {
         self.is_on_maps()
             .then(|| kml::document(report, self.of_photos(report, chosen)))
     }
+}
+
+/// The coordinate system of a flight: a projected one whose unit is the flight's.
+fn map_system(crs: &str, unit: LengthUnit) -> Result<Crs, Fault> {
+    let refuse = |what: String| {
+        Fault::new(
+            what,
+            "the footprints stay in local coordinates, without KML",
+        )
+    };
+    let crs = Crs::understand(crs).map_err(|fault| refuse(fault.what))?;
+    let name = crs.name();
+    if crs.kind() != CrsKind::Projected {
+        return Err(refuse(format!("{name} is no projected system")));
+    }
+    // A US survey foot and a foot differ by 2 parts in a million: a metre on a state's northing.
+    if (crs.unit_metres() / unit.metres() - 1.0).abs() > 1e-7 {
+        let what = format!("{name} is not in {unit}, the unit of the flight");
+        return Err(refuse(what));
+    }
+    Ok(crs)
 }
 
 fn feature(footprint: &PhotoFootprint<'_>, report: &ScaleReport) -> Value {
@@ -176,6 +201,18 @@ fn closed_ring(mut ring: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_leads_to_no_map_says_why() {
+        let why = |crs, unit| map_system(crs, unit).unwrap_err().what;
+        assert!(why("EPSG:4326", LengthUnit::Metre).contains("no projected system"));
+        assert!(why("ECEF", LengthUnit::Metre).contains("no projected system"));
+        assert!(why("EPSG:32633", LengthUnit::Foot).contains("not in ft"));
+        assert!(why("EPSG:2285", LengthUnit::Foot).contains("not in ft"));
+        assert!(why("EPSG:65000", LengthUnit::Metre).contains("65000"));
+        assert!(map_system("EPSG:2285", LengthUnit::UsSurveyFoot).is_ok());
+        assert!(map_system("EPSG:32633", LengthUnit::Metre).is_ok());
+    }
 
     #[test]
     fn rings_are_closed_and_counterclockwise() {

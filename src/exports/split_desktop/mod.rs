@@ -26,7 +26,6 @@ mod names;
 mod pictures;
 mod plan;
 mod sheet;
-mod wgs84;
 
 use std::fmt;
 use std::fs;

@@ -251,7 +251,7 @@ fn parse_coords(text: &str) -> (Option<String>, Option<DVec2>) {
 
 /// "EPSG:n" where the text is that already or says UTM on WGS 84, else the text itself; `None` where
 /// it is empty.
-fn crs_from_text(text: &str) -> Option<String> {
+pub(in crate::formats) fn crs_from_text(text: &str) -> Option<String> {
     let text = text.lines().next()?.trim().trim_matches('\'').trim();
     if text.is_empty() {
         return None;

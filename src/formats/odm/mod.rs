@@ -36,6 +36,7 @@ use crate::formats::json::parse;
 use crate::formats::opensfm::OpenSfm;
 use crate::formats::reconstruction::{PosedPhoto, Project, Reconstruction};
 use cameras::with_cameras;
+pub(super) use georeference::crs_from_text;
 use georeference::{Frames, optional};
 use poses::{from_shots, from_sparse};
 

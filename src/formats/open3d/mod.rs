@@ -114,6 +114,14 @@ pub(super) fn read(json: &[u8]) -> Result<Reconstruction, Fault> {
     Ok(found)
 }
 
+/// Reads one `PinholeCameraIntrinsic`.
+///
+/// # Errors
+/// Where it is no JSON of that shape, or the matrix is none of a camera.
+pub(super) fn read_intrinsic(json: &[u8]) -> Result<Camera, Fault> {
+    parse::<RawIntrinsic>(json)?.camera(0)
+}
+
 fn broken(what: String) -> Fault {
     Fault::new(what, "write it again with Open3D")
 }

@@ -71,8 +71,7 @@ pub(in crate::formats) struct CameraModel {
 ///
 /// # Errors
 /// Where it is no JSON of that shape, or a camera cannot be used, naming it.
-#[cfg(test)]
-pub(crate) fn read(json: &[u8]) -> Result<Vec<Camera>, Fault> {
+pub(in crate::formats) fn read(json: &[u8]) -> Result<Vec<Camera>, Fault> {
     let models: Object<CameraModel> = crate::formats::json::parse(json)?;
     let cameras = models.0.into_iter();
     cameras.map(|(id, model)| model.camera(&id)).collect()

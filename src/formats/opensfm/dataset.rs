@@ -11,19 +11,26 @@
 //! | `reconstruction.topocentric.json`, `exported_geocoords.txt` | OpenDroneMap has put projected coordinates less an offset into `reconstruction.json` |
 
 use std::collections::HashSet;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::OpenSfm;
-use crate::formats::input::{FileError, read_bytes, text_from_bytes};
+use crate::formats::input::{FileError, open_file, read_bytes, text_from_bytes};
 use crate::formats::photo_files::folder_of_photos;
 use crate::formats::reconstruction::{Project, Reconstruction};
 
-/// The `reconstruction.json` of a data set's folder, or of the `opensfm` folder in it.
+/// The `reconstruction.json` of a data set's folder, or of the `opensfm` folder in it. Its report has
+/// the same name, but is no list.
 pub(in crate::formats) fn dataset_file(folder: &Path) -> Option<PathBuf> {
+    let begins_a_list = |file: &PathBuf| {
+        let mut start = Vec::new();
+        let read = open_file(file).map(|file| file.take(64).read_to_end(&mut start));
+        read.is_ok() && start.trim_ascii_start().starts_with(b"[")
+    };
     ["reconstruction.json", "opensfm/reconstruction.json"]
         .map(|name| folder.join(name))
         .into_iter()
-        .find(|file| file.is_file())
+        .find(begins_a_list)
 }
 
 /// Reads a `reconstruction.json` and what lies beside it.
@@ -154,6 +161,9 @@ mod tests {
         assert_eq!(found.warnings, ["1 of 2 photos were not aligned"]);
         assert_eq!(project.photos, Some(dir.path().join("opensfm/../images")));
         assert!(found.enu_origin.is_some());
+        fs::create_dir(dir.path().join("reports")).unwrap();
+        fs::write(dir.path().join("reports/reconstruction.json"), "{}").unwrap();
+        assert_eq!(dataset_file(&dir.path().join("reports")), None);
         assert_eq!(
             dataset_file(dir.path()),
             Some(dir.path().join("opensfm/reconstruction.json"))

@@ -1,0 +1,33 @@
+//! Which flight, with which surface and photos: what every command that opens a flight understands.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::formats::{self, OpenOptions, Opened};
+use crate::jobs::Progress;
+
+#[derive(Debug, Args)]
+pub(super) struct FlightArguments {
+    /// A flight.toml, a file or folder that a photogrammetry package wrote, or a folder of photos with
+    /// positions and angles in them.
+    pub(super) flight: PathBuf,
+    /// Use this cloud or mesh instead of the flight's surface.
+    #[arg(long, value_name = "FILE")]
+    surface: Option<PathBuf>,
+    /// The folder of the image files, where the flight does not name it.
+    #[arg(long, value_name = "DIR")]
+    photo_folder: Option<PathBuf>,
+}
+
+impl FlightArguments {
+    /// Opens it; an error is one line.
+    pub(super) fn open(&self, progress: &Progress) -> Result<Opened, String> {
+        let options = OpenOptions {
+            surface: self.surface.clone(),
+            photos: self.photo_folder.clone(),
+            settings: None,
+        };
+        formats::open_flight(&self.flight, &options, progress).map_err(|error| error.to_string())
+    }
+}

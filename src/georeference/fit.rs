@@ -1,0 +1,572 @@
+//! The similarity between two frames from pairs of positions of which some may be wrong.
+//!
+//! Three pairs make a similarity. Of many threes (all, or random ones of a fixed seed) the best ten
+//! are drawn together on the half of the pairs that fits best (the concentration steps of Rousseeuw &
+//! Van Driessen, "A fast algorithm for the minimum covariance determinant estimator", 1999), and the
+//! one with the least median residual wins (least median of squares, Rousseeuw 1984): up to half of
+//! the pairs may be wrong. The spread of the good ones follows from that median. Pairs farther off
+//! than 99 % of good ones would be are outliers; where accuracies are stated, no pair is one within
+//! its accuracy. What is left is fitted again, all together.
+//!
+//! The standard error of the scale. With q the sources and y the targets, both from their weighted
+//! means, and R the rotation, the scale is s = sum(w q·Rᵀy) / sum(w |q|²) (Umeyama 1991, equation 42,
+//! written out). A small turn moves y across q and leaves s as it is, so to the first order
+//!
+//! ```text
+//! var(s) = sum(w qᵀ RᵀC R q) / (sum(w |q|²))²,   C = 3 / (3 n - 7) · sum(w r rᵀ)
+//! ```
+//!
+//! with C the covariance of a residual r of weight 1: n pairs are 3 n numbers, and 7 were fitted. For
+//! equal weights and noise that is the same in all directions it is sigma² / sum(|q|²). It supposes
+//! that the errors of the positions are independent. Those of a drifting receiver are not, and then
+//! the true error is larger.
+
+use glam::{DMat3, DVec3};
+
+use super::student::t95;
+use super::umeyama::similarity_of;
+use crate::fault::Fault;
+use crate::geometry::{Similarity, median};
+
+/// Of good residuals' lengths in space, 99 % are below this many standard deviations (of one
+/// coordinate): the root of the quantile of chi squared with three degrees of freedom.
+const LENGTH_99: f64 = 3.368_214;
+/// And half are below this many.
+const LENGTH_50: f64 = 1.538_172;
+/// As many threes are tried at most.
+const MOST_THREES: usize = 2000;
+/// As many of them are drawn together.
+const FINALISTS: usize = 10;
+/// Radians that the turn about the long axis of the positions may be unsure by (one standard
+/// deviation): 5 degrees. More, and they lie on a line.
+const LARGEST_TURN_ERROR: f64 = 0.087_266_462_6;
+/// Relative standard error of a scale beyond which there is no scale.
+const LARGEST_SCALE_ERROR: f64 = 0.1;
+
+/// One position in both frames.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair {
+    /// In the reconstruction's frame.
+    pub source: DVec3,
+    /// In the world.
+    pub target: DVec3,
+    /// Standard deviation of a coordinate of `target`, in units of the world, where it is stated.
+    pub accuracy: Option<f64>,
+}
+
+/// A fitted similarity and how well it fits. Lengths are in units of the world.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fit {
+    /// From the reconstruction's frame to the world.
+    pub similarity: Similarity,
+    /// Where each target lies from its fitted source, in the order of the pairs.
+    pub residuals: Vec<DVec3>,
+    /// Which pairs were used.
+    pub used: Vec<bool>,
+    /// The root of the mean squared length of the used residuals.
+    pub rms: f64,
+    /// The standard error of the scale, relative to it.
+    pub scale_error: f64,
+    /// Half the width of the scale's 95 % interval, relative to it (Student's t).
+    pub scale_interval: f64,
+    /// The standard error, in radians, of the turn about the long axis of the positions, which is the
+    /// least sure.
+    pub turn_error: f64,
+}
+
+impl Fit {
+    /// How many pairs were used.
+    pub fn count(&self) -> usize {
+        self.used.iter().filter(|used| **used).count()
+    }
+}
+
+/// Fits.
+///
+/// # Errors
+/// Fewer than three pairs, numbers that are not finite, positions on a line or in one place, positions
+/// that do not agree with each other, or do not determine the scale to 10 %.
+pub fn fit(pairs: &[Pair]) -> Result<Fit, Fault> {
+    let count = pairs.len();
+    if count < 3 {
+        return Err(Fault::new(
+            format!("{count} known positions are too few for a place in the world"),
+            "give three at least that are not on a line, or known distances for the scale alone",
+        ));
+    }
+    let is_good = |pair: &Pair| {
+        let known = pair.accuracy.is_none_or(|a| a > 0.0 && a.is_finite());
+        pair.source.is_finite() && pair.target.is_finite() && known
+    };
+    if !pairs.iter().all(is_good) {
+        return Err(Fault::new(
+            "a known position is not finite",
+            "correct it or leave it out",
+        ));
+    }
+    // Everything is counted from the middle: coordinates of the Earth would eat the digits.
+    let middle = pairs.iter().map(|pair| pair.target).sum::<DVec3>() / count as f64;
+    let problem = Problem::new(pairs, middle);
+    let best = problem.most_agreed_on().ok_or_else(on_a_line)?;
+    let used = problem.inliers(&best)?;
+    problem.finish(&used, middle)
+}
+
+fn on_a_line() -> Fault {
+    Fault::new(
+        "the known positions lie on a line, so that the turn about it is not determined",
+        "add positions beside it, such as ground control points or a crossing strip",
+    )
+}
+
+/// The pairs with their weights, targets from the middle.
+struct Problem {
+    pairs: Vec<(DVec3, DVec3, f64)>,
+    /// Whether accuracies are stated: then residuals count in them, and a weight is their inverse
+    /// square.
+    has_accuracies: bool,
+    /// Residuals of that length are rounding.
+    rounding: f64,
+}
+
+impl Problem {
+    fn new(pairs: &[Pair], middle: DVec3) -> Self {
+        // Pairs without an accuracy beside others are taken to be as good as the others' median.
+        let mut stated: Vec<f64> = pairs.iter().filter_map(|pair| pair.accuracy).collect();
+        let usual = median(&mut stated);
+        let weight = |pair: &Pair| pair.accuracy.or(usual).unwrap_or(1.0).powi(-2);
+        let pairs: Vec<_> = (pairs.iter())
+            .map(|pair| (pair.source, pair.target - middle, weight(pair)))
+            .collect();
+        let extent = pairs.iter().map(|pair| pair.1.length()).fold(0.0, f64::max);
+        Self {
+            has_accuracies: usual.is_some(),
+            rounding: 1e-7 * extent,
+            pairs,
+        }
+    }
+
+    /// The residuals' lengths, in accuracies where those are stated.
+    fn distances(&self, similarity: &Similarity) -> Vec<f64> {
+        (self.pairs.iter())
+            .map(|(p, q, w)| q.distance(similarity.apply(*p)) * w.sqrt())
+            .collect()
+    }
+
+    fn of_indices(&self, indices: &[usize]) -> Option<Similarity> {
+        let chosen: Vec<_> = (indices.iter())
+            .filter_map(|&index| self.pairs.get(index).copied())
+            .collect();
+        similarity_of(&chosen)
+    }
+
+    /// The similarity with the least median residual.
+    fn most_agreed_on(&self) -> Option<Similarity> {
+        let score = |similarity: &Similarity| {
+            median(&mut self.distances(similarity)).unwrap_or(f64::INFINITY)
+        };
+        let mut found: Vec<(f64, Similarity)> = threes(self.pairs.len())
+            .filter_map(|three| self.of_indices(&three))
+            .map(|similarity| (score(&similarity), similarity))
+            .collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.truncate(FINALISTS);
+        let mut drawn_together: Vec<(f64, Similarity)> = (found.iter())
+            .map(|(_, similarity)| self.concentrated(similarity))
+            .map(|similarity| (score(&similarity), similarity))
+            .collect();
+        drawn_together.append(&mut found);
+        let best = drawn_together
+            .into_iter()
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map(|(_, similarity)| similarity)
+    }
+
+    /// Fits the better half again and again.
+    fn concentrated(&self, start: &Similarity) -> Similarity {
+        let mut similarity = *start;
+        // The size of the half that lets most pairs be wrong (Rousseeuw & Leroy 1987), where three
+        // pairs make a similarity.
+        let half = usize::midpoint(self.pairs.len(), 4).min(self.pairs.len());
+        for _ in 0..10 {
+            let distances = self.distances(&similarity);
+            let mut order: Vec<usize> = (0..distances.len()).collect();
+            order.sort_by(|&a, &b| distances[a].total_cmp(&distances[b]));
+            order.truncate(half);
+            match self.of_indices(&order) {
+                Some(next) => similarity = next,
+                None => break,
+            }
+        }
+        similarity
+    }
+
+    /// The pairs that agree with a similarity, and with the one that they then make together.
+    fn inliers(&self, best: &Similarity) -> Result<Vec<usize>, Fault> {
+        let count = self.pairs.len();
+        let distances = self.distances(best);
+        let middle = median(&mut distances.clone()).unwrap_or_default();
+        // Few pairs fit too well: the correction of Rousseeuw & Leroy 1987 (p. 202).
+        let correction = match count {
+            3 => f64::INFINITY,
+            _ => 1.0 + 5.0 / (count - 3) as f64,
+        };
+        let stated = if self.has_accuracies { 1.0 } else { 0.0 };
+        let spread = (middle / LENGTH_50 * correction).max(stated);
+        let limit = |weight: f64| (LENGTH_99 * spread).max(self.rounding * weight.sqrt());
+        let within = |distances: &[f64]| -> Vec<usize> {
+            let near = |index: &usize| {
+                let weight = self.pairs.get(*index).map_or(1.0, |pair| pair.2);
+                distances.get(*index).is_some_and(|d| *d <= limit(weight))
+            };
+            (0..count).filter(near).collect()
+        };
+        let mut used = within(&distances);
+        for _ in 0..20 {
+            let similarity = self.of_indices(&used).ok_or_else(on_a_line)?;
+            let next = within(&self.distances(&similarity));
+            if next == used {
+                break;
+            }
+            used = next;
+        }
+        if used.len() < 3 || used.len() * 2 < count {
+            return Err(Fault::new(
+                format!(
+                    "only {} of {count} known positions agree with each other",
+                    used.len()
+                ),
+                "check that they are those of these photos",
+            ));
+        }
+        Ok(used)
+    }
+
+    fn finish(&self, indices: &[usize], middle: DVec3) -> Result<Fit, Fault> {
+        let local = self.of_indices(indices).ok_or_else(on_a_line)?;
+        let used: Vec<bool> = (0..self.pairs.len())
+            .map(|index| indices.contains(&index))
+            .collect();
+        let residuals: Vec<DVec3> = (self.pairs.iter())
+            .map(|(p, q, _)| *q - local.apply(*p))
+            .collect();
+        let chosen: Vec<(DVec3, DVec3, f64, DVec3)> = (self.pairs.iter().zip(&residuals))
+            .zip(&used)
+            .filter(|(_, used)| **used)
+            .map(|(((p, q, w), r), _)| (*p, *q, *w, *r))
+            .collect();
+        let total: f64 = chosen.iter().map(|c| c.2).sum();
+        let source = chosen.iter().map(|c| c.0 * c.2).sum::<DVec3>() / total;
+        let target = chosen.iter().map(|c| c.1 * c.2).sum::<DVec3>() / total;
+        let free = 3 * chosen.len() - 7;
+        let covariance = chosen
+            .iter()
+            .map(|c| outer(c.3) * c.2)
+            .fold(DMat3::ZERO, |a, b| a + b)
+            * (3.0 / free as f64);
+        let rotation = local.rotation;
+        let (mut weighted, mut spread) = (0.0, 0.0);
+        let (mut sources, mut targets) = (DMat3::ZERO, DMat3::ZERO);
+        for (p, q, w, _) in &chosen {
+            let turned = rotation * (*p - source);
+            weighted += w * turned.dot(covariance * turned);
+            spread += w * turned.length_squared();
+            sources += outer(*p - source) * (w * local.scale * local.scale);
+            targets += outer(*q - target) * *w;
+        }
+        let scale_error = weighted.sqrt() / spread / local.scale;
+        // Of one coordinate, of weight 1.
+        let sigma =
+            ((covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z) / 3.0).sqrt();
+        let across = beside_the_axis(sources).min(beside_the_axis(targets));
+        let turn_error = sigma / across;
+        if !(turn_error < LARGEST_TURN_ERROR) {
+            return Err(on_a_line());
+        }
+        if !(scale_error < LARGEST_SCALE_ERROR) {
+            return Err(Fault::new(
+                format!(
+                    "the known positions give the scale to {:.0} % only",
+                    scale_error * 100.0
+                ),
+                "check that they are those of these photos, or add more exact ones",
+            ));
+        }
+        let squares: f64 = chosen.iter().map(|c| c.3.length_squared()).sum();
+        Ok(Fit {
+            similarity: Similarity::new(local.scale, rotation, local.translation + middle),
+            residuals,
+            used,
+            rms: (squares / chosen.len() as f64).sqrt(),
+            scale_error,
+            scale_interval: scale_error * t95(free),
+            turn_error,
+        })
+    }
+}
+
+fn outer(v: DVec3) -> DMat3 {
+    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
+}
+
+/// The root of the summed squares of the distances from the longest axis, of points with that sum of
+/// outer products.
+fn beside_the_axis(sum: DMat3) -> f64 {
+    let matrix = nalgebra::Matrix3::from_column_slice(&sum.to_cols_array());
+    let mut values: Vec<f64> = matrix.symmetric_eigenvalues().iter().copied().collect();
+    values.sort_by(f64::total_cmp);
+    values
+        .iter()
+        .take(2)
+        .map(|value| value.max(0.0))
+        .sum::<f64>()
+        .sqrt()
+}
+
+/// Threes of indices: all of them where they are few, else random ones, always the same.
+fn threes(count: usize) -> Box<dyn Iterator<Item = [usize; 3]>> {
+    if count * (count - 1) * (count - 2) / 6 <= MOST_THREES {
+        return Box::new((0..count).flat_map(move |a| {
+            (a + 1..count).flat_map(move |b| (b + 1..count).map(move |c| [a, b, c]))
+        }));
+    }
+    let mut random = SplitMix(20_170_601);
+    let mut index = move || (random.next() % count as u64) as usize;
+    let three = move || [index(), index(), index()];
+    Box::new(
+        std::iter::repeat_with(three)
+            .filter(|[a, b, c]| a != b && b != c && c != a)
+            .take(MOST_THREES),
+    )
+}
+
+/// Steele, Lea & Flood, "Fast splittable pseudorandom number generators", 2014.
+pub(super) struct SplitMix(pub(super) u64);
+
+impl SplitMix {
+    pub(super) fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Normal numbers by Box and Muller.
+    struct Noise(SplitMix);
+
+    impl Noise {
+        fn uniform(&mut self) -> f64 {
+            ((self.0.next() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+        }
+
+        fn normal(&mut self) -> f64 {
+            let (u, v) = (self.uniform(), self.uniform());
+            (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+        }
+
+        fn vector(&mut self) -> DVec3 {
+            DVec3::new(self.normal(), self.normal(), self.normal())
+        }
+    }
+
+    fn truth() -> Similarity {
+        let rotation = DMat3::from_euler(glam::EulerRot::ZYX, 2.0, -0.4, 1.0);
+        Similarity::new(12.5, rotation, DVec3::new(512_345.678, 5_812_345.25, 312.5))
+    }
+
+    /// A flight of strips in the reconstruction's frame: `count` places, a little rough in height.
+    fn flight(count: usize, noise: &mut Noise) -> Vec<DVec3> {
+        (0..count)
+            .map(|i| {
+                let (strip, along) = (i / 10, i % 10);
+                DVec3::new(along as f64, 2.0 * strip as f64, 3.0) + noise.vector() * 0.1
+            })
+            .collect()
+    }
+
+    fn pairs_of(points: &[DVec3], sigma: f64, noise: &mut Noise) -> Vec<Pair> {
+        (points.iter())
+            .map(|&source| Pair {
+                source,
+                target: truth().apply(source) + noise.vector() * sigma,
+                accuracy: None,
+            })
+            .collect()
+    }
+
+    #[test]
+    fn exact_positions_give_the_exact_similarity() {
+        let mut noise = Noise(SplitMix(1));
+        for count in [3, 4, 7, 100] {
+            let mut points = flight(count, &mut noise);
+            points[2].y += 3.0;
+            let found = fit(&pairs_of(&points, 0.0, &mut noise)).unwrap();
+            assert_eq!(found.count(), count);
+            assert!((found.similarity.scale / 12.5 - 1.0).abs() < 1e-9);
+            assert!(found.rms < 1e-8 && found.scale_error < 1e-9, "{found:?}");
+            let far = DVec3::new(4.0, 3.0, -8.0);
+            let off = found.similarity.apply(far).distance(truth().apply(far));
+            assert!(off < 1e-7, "{off}");
+        }
+    }
+
+    /// Many flights with known noise: the scales scatter as the closed form
+    /// sigma / sqrt(sum |q|^2) says, the stated errors agree with it, and the 95 % interval holds the
+    /// truth in 95 of 100.
+    #[test]
+    fn the_standard_error_is_true() {
+        let mut noise = Noise(SplitMix(2));
+        let points = flight(30, &mut noise);
+        let mean = points.iter().sum::<DVec3>() / 30.0;
+        let spread: f64 = points.iter().map(|p| (*p - mean).length_squared()).sum();
+        let sigma = 1.5;
+        let closed_form = sigma / spread.sqrt() / 12.5;
+        let trials = 600;
+        let (mut squares, mut stated, mut held, mut used) = (0.0, 0.0, 0, 0);
+        for _ in 0..trials {
+            let found = fit(&pairs_of(&points, sigma, &mut noise)).unwrap();
+            let error = found.similarity.scale / 12.5 - 1.0;
+            squares += error * error;
+            stated += found.scale_error / f64::from(trials);
+            held += i32::from(error.abs() < found.scale_interval);
+            used += found.count();
+        }
+        let scatter = (squares / f64::from(trials)).sqrt();
+        // 600 trials tell a standard deviation to 3 %.
+        assert!(
+            (scatter / closed_form - 1.0).abs() < 0.12,
+            "{scatter} {closed_form}"
+        );
+        assert!(
+            (stated / closed_form - 1.0).abs() < 0.05,
+            "{stated} {closed_form}"
+        );
+        let share = f64::from(held) / f64::from(trials);
+        assert!((0.92..0.975).contains(&share), "{share}");
+        assert!(used > 30 * 600 * 97 / 100, "{used}");
+    }
+
+    /// Heights three times as noisy as positions: the scale of a level flight does not suffer.
+    #[test]
+    fn noise_that_differs_by_direction() {
+        let mut noise = Noise(SplitMix(3));
+        let points = flight(50, &mut noise);
+        let level = Similarity::new(12.5, DMat3::IDENTITY, DVec3::ZERO);
+        let (mut squares, mut stated) = (0.0, 0.0);
+        for _ in 0..300 {
+            let pairs: Vec<Pair> = (points.iter())
+                .map(|&source| Pair {
+                    source,
+                    target: level.apply(source) + noise.vector() * DVec3::new(0.5, 0.5, 1.5),
+                    accuracy: None,
+                })
+                .collect();
+            let found = fit(&pairs).unwrap();
+            squares += (found.similarity.scale / 12.5 - 1.0).powi(2) / 300.0;
+            stated += found.scale_error / 300.0;
+        }
+        let scatter = squares.sqrt();
+        assert!((stated / scatter - 1.0).abs() < 0.2, "{stated} {scatter}");
+    }
+
+    #[test]
+    fn a_third_of_the_positions_may_be_wrong() {
+        let mut noise = Noise(SplitMix(4));
+        for count in [10, 40, 200] {
+            let points = flight(count, &mut noise);
+            let mut pairs = pairs_of(&points, 0.5, &mut noise);
+            let wrong = count * 3 / 10;
+            for pair in pairs.iter_mut().take(wrong) {
+                // All by the same 60 m: they agree with each other.
+                pair.target += DVec3::new(60.0, 5.0, 8.0) + noise.vector();
+            }
+            let found = fit(&pairs).unwrap();
+            assert!(found.used[..wrong].iter().all(|used| !used), "{count}");
+            let kept = found.used[wrong..].iter().filter(|used| **used).count();
+            assert!(kept * 10 >= (count - wrong) * 9, "{kept} of {count}");
+            assert!((found.similarity.scale / 12.5 - 1.0).abs() < 4.0 * found.scale_error);
+        }
+    }
+
+    /// Two groups of photos far apart and not on a line together.
+    #[test]
+    fn two_clusters() {
+        let mut noise = Noise(SplitMix(5));
+        let points: Vec<DVec3> = (0..40)
+            .map(|i| DVec3::X * if i % 2 == 0 { 0.0 } else { 200.0 } + noise.vector())
+            .collect();
+        let found = fit(&pairs_of(&points, 0.2, &mut noise)).unwrap();
+        assert!(found.count() >= 38);
+        assert!((found.similarity.scale / 12.5 - 1.0).abs() < 4.0 * found.scale_error);
+    }
+
+    #[test]
+    fn a_line_is_refused() {
+        let mut noise = Noise(SplitMix(6));
+        for (sideways, sigma) in [(0.0, 0.0), (0.0, 0.5), (0.002, 0.5)] {
+            let points: Vec<DVec3> = (0..30)
+                .map(|i| {
+                    DVec3::new(f64::from(i), 0.5 * f64::from(i), 0.1) + noise.vector() * sideways
+                })
+                .collect();
+            let fault = fit(&pairs_of(&points, sigma, &mut noise)).unwrap_err();
+            assert!(fault.what.contains("on a line"), "{fault}");
+        }
+        // The same strip from an exact receiver: its wobble is enough.
+        let points: Vec<DVec3> = (0..30)
+            .map(|i| DVec3::new(f64::from(i), 0.5 * f64::from(i), 0.1) + noise.vector() * 0.1)
+            .collect();
+        assert!(fit(&pairs_of(&points, 0.02, &mut noise)).is_ok());
+    }
+
+    #[test]
+    fn accuracies_weigh_and_forgive() {
+        let mut noise = Noise(SplitMix(7));
+        let points = flight(20, &mut noise);
+        let mut pairs = pairs_of(&points, 0.01, &mut noise);
+        for pair in &mut pairs {
+            pair.accuracy = Some(0.01);
+        }
+        // A poor receiver on the second half says so: used, with little weight.
+        for pair in &mut pairs[10..] {
+            pair.target += noise.vector() * 5.0;
+            pair.accuracy = Some(5.0);
+        }
+        let found = fit(&pairs).unwrap();
+        assert!(found.count() >= 18, "{found:?}");
+        let best: f64 = found.residuals[..10]
+            .iter()
+            .map(|r| r.length())
+            .fold(0.0, f64::max);
+        assert!(best < 0.05, "{best}");
+    }
+
+    #[test]
+    fn what_says_nothing_is_refused() {
+        let mut noise = Noise(SplitMix(8));
+        let points = flight(20, &mut noise);
+        let mut pairs = pairs_of(&points, 0.0, &mut noise);
+        assert!(fit(&pairs[..2]).unwrap_err().what.contains("too few"));
+        for pair in &mut pairs {
+            pair.target = noise.vector() * 100.0;
+        }
+        assert!(fit(&pairs).is_err());
+        pairs[0].target = DVec3::NAN;
+        assert!(fit(&pairs).unwrap_err().what.contains("finite"));
+        let same = vec![
+            Pair {
+                source: DVec3::X,
+                target: DVec3::Y,
+                accuracy: None
+            };
+            5
+        ];
+        assert!(fit(&same).is_err());
+    }
+}
