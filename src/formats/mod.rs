@@ -5,6 +5,7 @@
 //! a [`Fault`], and the dispatcher puts the file's name in front.
 
 mod blocks_exchange;
+mod bundler;
 mod camera_file;
 mod cloud_file;
 mod colmap;
@@ -19,13 +20,19 @@ mod gltf;
 mod info;
 mod input;
 mod json;
+mod json_camera;
+mod json_packages;
 mod las;
 mod leica;
+mod meshroom;
 mod metashape;
+mod middlebury;
+mod nerfstudio;
 mod nvm;
 mod obj;
 mod odm;
 mod open;
+mod open3d;
 mod opensfm;
 mod opf;
 mod origin;
@@ -45,6 +52,7 @@ mod position_list;
 mod realitycapture;
 mod reconstruction;
 mod ros;
+mod rounded_rotation;
 mod stl;
 #[cfg(test)]
 mod test_data;
@@ -91,7 +99,7 @@ pub enum Kind {
     Cloud(CloudFormat),
     /// The calibration of a camera.
     Camera,
-    /// The poses of photos: a poses.csv, or Metashape's text.
+    /// The poses of photos: a poses.csv, or what packages write like it.
     Poses,
     /// Poses over time.
     Trajectory(TrajectoryFormat),
@@ -220,8 +228,10 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         "gltf" | "glb" => Kind::Cloud(CloudFormat::Gltf),
         "tif" | "tiff" => Kind::Cloud(CloudFormat::GeoTiff),
         "yaml" | "yml" | "xml" => Kind::Camera,
+        "json" if json_camera::is_camera(&String::from_utf8_lossy(text)) => Kind::Camera,
         "csv" | "txt" if has_photo_column(text) || poses_opk::is_table(text) => Kind::Poses,
         "csv" | "txt" if metashape::is_opk(&String::from_utf8_lossy(text)) => Kind::Poses,
+        "log" | "txt" if open3d::is_log(&String::from_utf8_lossy(text)) => Kind::Poses,
         "geojson" | "json" if poses_opk::is_geojson(text) => Kind::Poses,
         "csv" | "txt" | "xyz" | "asc" => Kind::Cloud(CloudFormat::Xyz),
         _ => {
@@ -363,7 +373,12 @@ fn read_cloud_as(
 /// With the file and the place in it.
 pub fn read_camera(path: &Path) -> Result<Camera, FileError> {
     let text = read_text(path)?;
-    camera_file::read(&text).map_err(|fault| FileError::new(path, fault))
+    let camera = if json_camera::is_camera(&text) {
+        json_camera::read(&text)
+    } else {
+        camera_file::read(&text)
+    };
+    camera.map_err(|fault| FileError::new(path, fault))
 }
 
 /// Reads what a package wrote.
@@ -413,6 +428,10 @@ fn read_poses(path: &Path) -> Result<PosesFile, FileError> {
         && metashape::is_opk(text)
     {
         metashape::read_opk(text).map_err(at)?
+    } else if let Ok(text) = text_from_bytes(&bytes)
+        && open3d::is_log(text)
+    {
+        open3d::read_log(text).map_err(at)?
     } else if poses_opk::is_table(&bytes) {
         poses_opk::read_table(&bytes).map_err(at)?
     } else {

@@ -3,12 +3,14 @@
 //! One line a package in each of the three places: a file is recognised by its name or its first
 //! bytes, a folder by what lies in it.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::input::{FileError, read_text};
+use super::input::{FileError, read_bytes, read_text};
 use super::reconstruction::Project;
 use super::{
-    blocks_exchange, colmap, drone_photos, metashape, nvm, odm, opf, pix4d, realitycapture, ros,
+    blocks_exchange, bundler, colmap, drone_photos, json_packages, meshroom, metashape, middlebury,
+    nerfstudio, nvm, odm, open3d, opensfm, opf, pix4d, realitycapture, ros,
 };
 use crate::jobs::Progress;
 
@@ -37,6 +39,18 @@ pub enum Package {
     Photos,
     /// A recording of ROS: a bag, a rosbag2 folder, .db3 or .mcap.
     Ros,
+    /// OpenSfM's reconstruction.json.
+    OpenSfm,
+    /// Bundler's bundle.out.
+    Bundler,
+    /// Meshroom's .sfm, which AliceVision writes.
+    Meshroom,
+    /// transforms.json, which nerfstudio and instant-ngp read.
+    Nerfstudio,
+    /// Open3D's trajectory or parameters of a camera.
+    Open3d,
+    /// The Middlebury multi-view benchmark's _par.txt.
+    Middlebury,
 }
 
 impl Package {
@@ -53,6 +67,12 @@ impl Package {
             Self::VisualSfm => "a VisualSFM reconstruction",
             Self::Photos => "photos",
             Self::Ros => "a ROS recording",
+            Self::OpenSfm => "an OpenSfM reconstruction",
+            Self::Bundler => "a Bundler reconstruction",
+            Self::Meshroom => "a Meshroom scene",
+            Self::Nerfstudio => "nerfstudio's transforms",
+            Self::Open3d => "an Open3D camera trajectory",
+            Self::Middlebury => "Middlebury camera parameters",
         }
     }
 }
@@ -94,6 +114,18 @@ pub(super) fn of_file(path: &Path, start: &[u8]) -> Option<(Package, PathBuf)> {
     if ros::is_recording(start, &name) {
         return this(Package::Ros);
     }
+    if bundler::is_bundle(text, &name) {
+        return this(Package::Bundler);
+    }
+    if meshroom::is_scene(text, &name) {
+        return this(Package::Meshroom);
+    }
+    if name.ends_with("_par.txt") {
+        return this(Package::Middlebury);
+    }
+    if let Some(package) = json_packages::of_file(path, text) {
+        return this(package);
+    }
     let of_colmap = ["cameras", "images", "points3d"]
         .map(|part| [format!("{part}.bin"), format!("{part}.txt")]);
     if of_colmap.as_flattened().contains(&name) {
@@ -119,7 +151,7 @@ fn has(start: &[u8], word: &str) -> bool {
 
 /// Recognises a folder.
 pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
-    if odm::is_odm_folder(path) {
+    if odm::is_project(path) {
         return Some((Package::OpenDroneMap, path.to_owned()));
     }
     if let Some(project) = opf::project_in(path) {
@@ -137,12 +169,33 @@ pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
     if let Some(model) = colmap::model_folder(path) {
         return Some((Package::Colmap, model));
     }
+    let files = [
+        (Package::OpenSfm, opensfm::dataset_file(path)),
+        (Package::Bundler, bundler::bundle_of_folder(path)),
+        (Package::Nerfstudio, nerfstudio::transforms_of_folder(path)),
+        (Package::Meshroom, only_file(path, ".sfm")),
+        (Package::Middlebury, only_file(path, "_par.txt")),
+    ];
+    let found = |(package, file): (Package, Option<PathBuf>)| Some((package, file?));
+    if let Some(found) = files.into_iter().find_map(found) {
+        return Some(found);
+    }
     // Last, because beside a .p4d there may lie what another package made of the same photos, and
     // beside what a package made there are often its photos.
     if pix4d::is_bare_project(path) {
         return Some((Package::Pix4d, path.to_owned()));
     }
     drone_photos::has_photos(path).then(|| (Package::Photos, path.to_owned()))
+}
+
+/// The file of a folder whose name ends so, where there is only one.
+fn only_file(folder: &Path, end: &str) -> Option<PathBuf> {
+    let entries = fs::read_dir(folder).ok()?.flatten();
+    let mut found = entries.map(|entry| entry.path()).filter(|path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.to_ascii_lowercase().ends_with(end) && path.is_file()
+    });
+    found.next().filter(|_| found.next().is_none())
 }
 
 /// Reads what the package wrote.
@@ -170,6 +223,79 @@ pub(super) fn read(
         Package::Ros => {
             let recording = ros::read(path, progress)?;
             recording.reconstruction().map(Project::from).map_err(at)
+        }
+        Package::OpenSfm => opensfm::read_file(path),
+        Package::Bundler => bundler::read_file(path),
+        Package::Meshroom => meshroom::read_file(path),
+        Package::Nerfstudio => nerfstudio::read_file(path),
+        Package::Open3d => open3d::read(&read_bytes(path)?)
+            .map(Project::from)
+            .map_err(at),
+        Package::Middlebury => middlebury::read(&read_text(path)?)
+            .map(Project::from)
+            .map_err(at),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_are_told_by_what_lies_in_them() {
+        for (file, package) in [
+            ("opensfm/reconstruction.json", Package::OpenSfm),
+            ("reconstruction.json", Package::OpenSfm),
+            ("bundle/bundle.out", Package::Bundler),
+            ("transforms.json", Package::Nerfstudio),
+            ("cameras.sfm", Package::Meshroom),
+            ("templeR_par.txt", Package::Middlebury),
+            (
+                "submodels/submodel_0000/odm_report/shots.geojson",
+                Package::OpenDroneMap,
+            ),
+        ] {
+            let dir = tempfile::tempdir().unwrap();
+            let path = dir.path().join(file);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(&path, "[").unwrap();
+            let found = of_folder(dir.path());
+            assert_eq!(found.map(|(package, _)| package), Some(package), "{file}");
+        }
+        let dir = tempfile::tempdir().unwrap();
+        assert_eq!(of_folder(dir.path()), None);
+        for name in ["a_par.txt", "b_par.txt"] {
+            fs::write(dir.path().join(name), "").unwrap();
+        }
+        assert_eq!(of_folder(dir.path()), None);
+    }
+
+    #[test]
+    fn files_are_told_by_their_beginning_or_name() {
+        for (name, start, package) in [
+            ("x.out", "# Bundle file v0.3\n", Package::Bundler),
+            ("synth_0.out", "drews 1.0\n", Package::Bundler),
+            ("cameras.sfm", "{", Package::Meshroom),
+            ("sfm.abc", "Ogawa", Package::Meshroom),
+            ("dino_par.txt", "16\n", Package::Middlebury),
+            ("x.json", r#"[{"shots": {}}]"#, Package::OpenSfm),
+            ("x.json", r#"{"views": [], "poses": []}"#, Package::Meshroom),
+            (
+                "transforms_train.json",
+                r#"{"frames": []}"#,
+                Package::Nerfstudio,
+            ),
+            (
+                "x.json",
+                r#"{"intrinsic": {}, "extrinsic": []}"#,
+                Package::Open3d,
+            ),
+        ] {
+            let dir = tempfile::tempdir().unwrap();
+            let path = dir.path().join(name);
+            fs::write(&path, start).unwrap();
+            let found = of_file(&path, start.as_bytes());
+            assert_eq!(found, Some((package, path)), "{name}");
         }
     }
 }

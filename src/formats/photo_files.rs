@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::input::open_file;
 use super::open::PhotoFile;
-use super::photo_size;
+use super::{Reconstruction, photo_size};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{Photo, PhotoFileState};
@@ -61,6 +61,20 @@ impl<'a> PhotoFolder<'a> {
             .and_then(|file| photo_size::read(BufReader::new(file)));
         Some(size)
     }
+}
+
+/// The first of `folders` that holds the file of one of the first photos.
+pub(super) fn folder_of_photos(
+    folders: impl IntoIterator<Item = PathBuf>,
+    reconstruction: &Reconstruction,
+) -> Option<PathBuf> {
+    /// Some photos may have been moved; to look for all could take long on a network drive.
+    const TRIED: usize = 3;
+    folders.into_iter().find(|folder| {
+        let files = PhotoFolder::new(Some(folder));
+        let mut photos = reconstruction.photos.iter().take(TRIED);
+        photos.any(|photo| files.find(&photo.name).is_some())
+    })
 }
 
 /// Rescales each camera to the size of its photo files, where those have the same shape; photos of

@@ -1,7 +1,7 @@
 //! Which camera took which photo of an OpenDroneMap project.
 //!
 //! Written from ODM's `opendm/camera.py` and `stages/run_opensfm.py`. `cameras.json` holds the models
-//! of `opensfm/reconstruction.json` (opensfm_camera.rs) without "v2 " in front of their names. ODM
+//! of `opensfm/reconstruction.json` (opensfm/camera.rs) without "v2 " in front of their names. ODM
 //! never overwrites a `cameras.json` that it finds, so it may be an older one: where the numbers
 //! differ, those beside the poses stand. Joined submodels may each have solved a camera of the same
 //! name; `shots.geojson` tells then that the focal length was another one.

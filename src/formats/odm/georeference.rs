@@ -30,6 +30,7 @@ use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::formats::input::{FileError, read_bytes, text_from_bytes};
 use crate::formats::json::parse;
+use crate::formats::rounded_rotation::nearest_rotation;
 
 /// How far, in metres, a camera centre may lie from where `shots.geojson` states it. The right map
 /// agrees to rounding (1e-8 m), wrong ones are metres off.
@@ -234,12 +235,6 @@ fn unusable(why: &str) -> Fault {
         format!("the 4x4 transform cannot be used: {why}"),
         "run the georeferencing of OpenDroneMap again",
     )
-}
-
-/// The orthogonal factor of a matrix near to a rotation, by Newton's iteration for the polar
-/// decomposition, which converges quadratically; eight steps are more than enough from 1 % off.
-fn nearest_rotation(matrix: DMat3) -> DMat3 {
-    (0..8).fold(matrix, |m, _| (m + m.inverse().transpose()) * 0.5)
 }
 
 /// The coordinate system and the offset of a `coords.txt`, where it holds them.

@@ -16,12 +16,14 @@
 //! | `images/` | the photos |
 //!
 //! Intrinsics stand for the image size of the solution, which is often a reduced one. The cloud in
-//! `odm_filterpoints` is in the local frame, so it is no surface. Submodels are not joined.
+//! `odm_filterpoints` is in the local frame, so it is no surface. A project of submodels alone is joined
+//! (submodels.rs).
 
 mod cameras;
 mod georeference;
 mod poses;
 mod shots;
+mod submodels;
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -38,18 +40,34 @@ pub(super) use georeference::crs_from_text;
 use georeference::{Frames, optional};
 use poses::{from_shots, from_sparse};
 
-/// Whether a folder looks like an OpenDroneMap project that has poses.
-pub(super) fn is_odm_folder(dir: &Path) -> bool {
+/// Whether a folder looks like an OpenDroneMap project that has poses, or submodels that have.
+pub(super) fn is_project(dir: &Path) -> bool {
+    is_odm_folder(dir) || !submodels::submodels_of(dir).is_empty()
+}
+
+/// Whether a folder looks like an OpenDroneMap project that has poses itself.
+fn is_odm_folder(dir: &Path) -> bool {
     dir.join("odm_report/shots.geojson").is_file()
         || (dir.join("opensfm/reconstruction.json").is_file()
             && (dir.join("odm_georeferencing").is_dir() || dir.join("cameras.json").is_file()))
 }
 
-/// Reads an OpenDroneMap project folder.
+/// Reads an OpenDroneMap project folder, or joins its submodels.
 ///
 /// # Errors
 /// Names the file that cannot be used. What only adds sparse points is a warning where it is broken.
 pub(super) fn read_folder(dir: &Path) -> Result<Project, FileError> {
+    if !is_odm_folder(dir) {
+        let submodels = submodels::submodels_of(dir);
+        if !submodels.is_empty() {
+            return submodels::read(dir, &submodels);
+        }
+    }
+    read_one(dir)
+}
+
+/// Reads a project that has poses itself.
+fn read_one(dir: &Path) -> Result<Project, FileError> {
     let mut warnings = Vec::new();
     let shots_file = dir.join("odm_report/shots.geojson");
     let sparse_file = dir.join("opensfm/reconstruction.json");

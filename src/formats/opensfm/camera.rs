@@ -22,12 +22,16 @@
 //! | brown | focal_x focal_y c_x c_y k1 k2 k3 p1 p2 | brown k1 k2 p1 p2 k3 |
 //! | fisheye | focal k1 k2 | fisheye k1 k2 |
 //! | fisheye_opencv | focal_x focal_y c_x c_y k1 k2 k3 k4 | fisheye k1 k2 k3 k4 |
+//! | fisheye62 | the same and k5 k6 p1 p2 | as fisheye_opencv, where those are 0 |
+//! | fisheye624 | the same and s0 s1 s2 s3 | as fisheye_opencv, where those are 0 |
+//! | dual | focal k1 k2 transition (0.5 if left out) | as perspective where transition is 1, as fisheye where it is 0 |
 //!
 //! OpenSfM keeps its brown coefficients in the order k1 k2 k3 p1 p2, but names them in JSON; its
 //! tangential term is 2 p1 x y + p2 (r2 + 2 x2), 2 p2 x y + p1 (r2 + 2 y2), which is OpenCV's. It
 //! holds focal_y as focal_x times an aspect ratio, which its JSON does not show. Its fish-eyes take
 //! theta = atan2(r, z) and distort by 1 + k1 theta2 + k2 theta4 ..., which is OpenCV's.
-//! `*_prior` keys are the values before the adjustment. `fisheye62`, `fisheye624`, `dual` and the
+//! dual projects to `transition` times the perspective point plus the rest times the fish-eye's.
+//! `*_prior` keys are the values before the adjustment. What else these types can hold and the
 //! panoramas (`spherical`, `equirectangular`) have no counterpart here.
 
 use serde::Deserialize;
@@ -51,8 +55,15 @@ pub(in crate::formats) struct CameraModel {
     k2: Option<f64>,
     k3: Option<f64>,
     k4: Option<f64>,
+    k5: Option<f64>,
+    k6: Option<f64>,
     p1: Option<f64>,
     p2: Option<f64>,
+    s0: Option<f64>,
+    s1: Option<f64>,
+    s2: Option<f64>,
+    s3: Option<f64>,
+    transition: Option<f64>,
 }
 
 /// The cameras of a `camera_models.json` or `cameras.json`, in the file's order, each named as in
@@ -60,8 +71,7 @@ pub(in crate::formats) struct CameraModel {
 ///
 /// # Errors
 /// Where it is no JSON of that shape, or a camera cannot be used, naming it.
-#[cfg(test)]
-pub(crate) fn read(json: &[u8]) -> Result<Vec<Camera>, Fault> {
+pub(in crate::formats) fn read(json: &[u8]) -> Result<Vec<Camera>, Fault> {
     let models: Object<CameraModel> = crate::formats::json::parse(json)?;
     let cameras = models.0.into_iter();
     cameras.map(|(id, model)| model.camera(&id)).collect()
@@ -88,23 +98,51 @@ pub(in crate::formats) fn usable_cameras(
 }
 
 impl CameraModel {
-    /// The camera of this model, named `id`.
-    pub(super) fn camera(&self, id: &str) -> Result<Camera, Fault> {
-        let projection = self.projection_type.as_deref().unwrap_or("perspective");
+    /// The lens, and whether the model has one focal length and no principal point; `None` where
+    /// fragscale has no such lens.
+    fn lens(&self) -> Option<(Distortion, bool)> {
         let or_zero = |value: Option<f64>| value.unwrap_or(0.0);
         let [k1, k2, k3, k4] = [self.k1, self.k2, self.k3, self.k4].map(or_zero);
         let [p1, p2] = [self.p1, self.p2].map(or_zero);
         let brown =
             |k2, p1, p2, k3| Distortion::Brown(Brown::new([k1, k2, p1, p2, k3, 0.0, 0.0, 0.0]));
-        let (distortion, one_focal) = match projection {
+        let fisheye = |k3, k4| Distortion::Fisheye(Fisheye::new([k1, k2, k3, k4]));
+        let beyond_opencv = [
+            self.k5, self.k6, self.p1, self.p2, self.s0, self.s1, self.s2, self.s3,
+        ];
+        Some(match self.projection() {
             "perspective" => (brown(k2, 0.0, 0.0, 0.0), true),
             "simple_radial" => (brown(0.0, 0.0, 0.0, 0.0), false),
             "radial" => (brown(k2, 0.0, 0.0, 0.0), false),
             "brown" => (brown(k2, p1, p2, k3), false),
-            "fisheye" => (Distortion::Fisheye(Fisheye::new([k1, k2, 0.0, 0.0])), true),
-            "fisheye_opencv" => (Distortion::Fisheye(Fisheye::new([k1, k2, k3, k4])), false),
-            other => return Err(unsupported(id, other)),
-        };
+            "fisheye" => (fisheye(0.0, 0.0), true),
+            "fisheye_opencv" => (fisheye(k3, k4), false),
+            "fisheye62" | "fisheye624" if beyond_opencv.map(or_zero) == [0.0; 8] => {
+                (fisheye(k3, k4), false)
+            }
+            "dual" if self.transition == Some(1.0) => (brown(k2, 0.0, 0.0, 0.0), true),
+            "dual" if self.transition == Some(0.0) => (fisheye(0.0, 0.0), true),
+            _ => return None,
+        })
+    }
+
+    fn projection(&self) -> &str {
+        self.projection_type.as_deref().unwrap_or("perspective")
+    }
+
+    /// Why fragscale cannot use the model named `id`, where it has no such lens.
+    pub(super) fn unsupported(&self, id: &str) -> Option<Fault> {
+        match self.lens() {
+            Some(_) => None,
+            None => Some(unsupported(id, self.projection())),
+        }
+    }
+
+    /// The camera of this model, named `id`.
+    pub(super) fn camera(&self, id: &str) -> Result<Camera, Fault> {
+        let projection = self.projection();
+        let (distortion, one_focal) = self.lens().ok_or_else(|| unsupported(id, projection))?;
+        let or_zero = |value: Option<f64>| value.unwrap_or(0.0);
         let required = |value: Option<f64>, key: &str| {
             value.ok_or_else(|| {
                 Fault::new(
@@ -276,6 +314,30 @@ mod tests {
     }
 
     #[test]
+    fn larger_models_are_used_where_they_say_no_more_than_ours() {
+        let fisheye = "\"projection_type\": \"fisheye624\", \"focal_x\": 0.5, \"focal_y\": 0.5, \
+             \"k1\": 0.1, \"k4\": 0.0004, \"k5\": 0, \"p1\": 0.0, \"s3\": 0";
+        let camera = one(fisheye).unwrap();
+        assert_eq!(camera.distortion.name(), "fisheye");
+        assert_eq!(camera.distortion.coefficients(), [0.1, 0.0, 0.0, 0.0004]);
+        for more in ["\"k5\": 1e-9", "\"p1\": -1e-9", "\"s3\": 1"] {
+            let zero = &more[..5];
+            let model = fisheye.replace(&format!("{zero} 0.0"), more);
+            let model = model.replace(&format!("{zero} 0"), more);
+            assert!(model.contains(more) && one(&model).is_err(), "{model}");
+        }
+        let dual = |transition: &str| {
+            one(&format!(
+                "\"projection_type\": \"dual\", \"focal\": 0.5, \"k1\": 0.1{transition}"
+            ))
+        };
+        let name = |camera: Camera| camera.distortion.name();
+        assert_eq!(dual(", \"transition\": 1").map(name), Ok("brown"));
+        assert_eq!(dual(", \"transition\": 0.0").map(name), Ok("fisheye"));
+        assert!(dual(", \"transition\": 0.5").is_err() && dual("").is_err());
+    }
+
+    #[test]
     fn what_cannot_be_used_is_named() {
         for other in [
             "dual",
@@ -285,8 +347,10 @@ mod tests {
             "equirectangular",
             "pinhole",
         ] {
-            let fault =
-                one(&format!("\"projection_type\": \"{other}\", \"focal\": 1")).unwrap_err();
+            let fault = one(&format!(
+                "\"projection_type\": \"{other}\", \"focal\": 1, \"k5\": 1"
+            ))
+            .unwrap_err();
             assert!(
                 fault.what.contains(other) && fault.what.contains("\"c\""),
                 "{fault}"

@@ -7,21 +7,29 @@
 //! [RECONSTRUCTION, ...]           the one with most shots first; shots of different ones have
 //!                                 nothing in common, not even a frame
 //! RECONSTRUCTION {
-//!   cameras     {name: model}     see camera.rs
-//!   shots       {name: {camera, rotation [3], translation [3]}}
-//!   points      {name: {coordinates [3], color [3]}}         may be left out
-//!   pano_shots  panoramas                                    left out here, with a warning
-//!   reference_lla, rig_cameras, rig_instances, biases, ...   not needed
+//!   cameras        {name: model}                             see camera.rs
+//!   shots          {name: {camera, rotation [3], translation [3], gps_position [3], gps_dop}}
+//!   points         {name: {coordinates [3], color [3]}}      may be left out
+//!   pano_shots     panoramas                                 left out here, with a warning
+//!   reference_lla  {latitude, longitude, altitude}           also in reference_lla.json
+//!   rig_cameras    {name: {rotation, translation}}
+//!   rig_instances  {name: {rotation, translation, rig_camera_ids {shot: rig camera}}}
+//!   biases, ...                                              not needed
 //! }
 //! ```
 //!
 //! rotation is an axis of length angle (radians), translation may be left out (0):
 //! x_camera = R x_world + t, with camera axes x right, y down, z forward. A shot of a rig carries its
-//! own pose as well. The world is east-north-up at `reference_lla` where there was GPS, else
-//! arbitrary; it names no coordinate system. Colours are 0 to 255, written as floats. Image points
-//! count in the photo as stored, whatever its EXIF orientation.
+//! own pose as well; one that does not has the rig camera's after its instance's. The world is
+//! east-north-up at `reference_lla` (WGS 84) where there was GPS, else arbitrary and the reference is
+//! 0, 0, 0; it names no coordinate system. gps_position is what the receiver said, in that frame; a
+//! gps_dop of 999999 stands for a photo without GPS. Colours are 0 to 255, written as floats. Image
+//! points count in the photo as stored, whatever its EXIF orientation.
 
 pub(super) mod camera;
+mod dataset;
+mod reference;
+mod rig;
 mod tracks;
 
 use std::collections::HashMap;
@@ -37,6 +45,9 @@ use crate::formats::json::{Object, parse};
 use crate::formats::reconstruction::{PosedPhoto, Reconstruction};
 use crate::surface::Cloud;
 use camera::{CameraModel, usable_cameras};
+pub(super) use dataset::{dataset_file, read_file};
+use reference::{Measured, RawReference, enu_origin, measured_positions};
+use rig::{RawRigCamera, RawRigInstance, Rigs};
 
 /// A `reconstruction.json` with the names of its points, which `tracks.csv` calls them by.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +56,8 @@ pub(super) struct OpenSfm {
     pub reconstruction: Reconstruction,
     /// Index into the cloud's points, by name.
     point_indices: HashMap<String, u32>,
+    /// What the receivers said of the photos, in the file's order.
+    measured: Vec<Measured>,
 }
 
 /// Reads the first, largest reconstruction of a `reconstruction.json`.
@@ -65,16 +78,16 @@ impl OpenSfm {
     /// camera that is not there, or nothing was aligned.
     pub(super) fn read(json: &[u8]) -> Result<Self, Fault> {
         let list: List = parse(json)?;
-        let Some(raw) = list.first else {
+        let Some(mut raw) = list.largest else {
             return Err(nothing_aligned("it holds no reconstruction"));
         };
         if raw.shots.0.is_empty() {
-            return Err(nothing_aligned("its first reconstruction has no shots"));
+            return Err(nothing_aligned("its reconstruction has no shots"));
         }
         let mut warnings = Vec::new();
         if list.others > 0 {
             warnings.push(format!(
-                "{} more reconstructions with {} photos in all, not connected to the first, are left out",
+                "{} more reconstructions with {} photos in all, not connected to the largest, are left out",
                 list.others, list.other_shots
             ));
         }
@@ -82,6 +95,7 @@ impl OpenSfm {
             let count = raw.pano_shots.0.len();
             warnings.push(format!("{count} panoramas are left out"));
         }
+        leave_out_unsupported(&mut raw, &mut warnings)?;
         let is_used = |id: &str| raw.shots.0.iter().any(|(_, shot)| shot.camera == id);
         let cameras = usable_cameras(&raw.cameras, is_used, &mut warnings)?;
         let camera_indices: HashMap<&str, usize> = cameras
@@ -89,6 +103,13 @@ impl OpenSfm {
             .enumerate()
             .map(|(index, camera)| (camera.name.as_str(), index))
             .collect();
+        let enu_origin = raw.reference_lla.and_then(enu_origin);
+        let of_shots = raw.shots.0.iter();
+        let measured: Vec<Measured> = of_shots
+            .filter_map(|(name, shot)| Measured::of_shot(name, shot.gps_position, shot.gps_dop))
+            .collect();
+        let measured_positions = measured_positions(&measured, enu_origin, &mut warnings);
+        let rigs = Rigs::new(raw.rig_cameras, raw.rig_instances);
         let mut photos = Vec::with_capacity(raw.shots.0.len());
         let mut without_translation = 0;
         for (name, shot) in raw.shots.0 {
@@ -101,8 +122,14 @@ impl OpenSfm {
                     "export it again",
                 ));
             };
-            without_translation += usize::from(shot.translation.is_none());
-            let pose = shot.pose(&name)?;
+            let pose = match shot.rotation {
+                Some(rotation) => {
+                    without_translation += usize::from(shot.translation.is_none());
+                    pose_from(rotation, shot.translation.unwrap_or_default())
+                }
+                None => rigs.pose_of(&name)?,
+            };
+            let pose = checked(pose, &name)?;
             photos.push(PosedPhoto { name, camera, pose });
         }
         if without_translation > 0 {
@@ -114,6 +141,8 @@ impl OpenSfm {
         Ok(Self {
             reconstruction: Reconstruction {
                 package: "opensfm",
+                enu_origin,
+                measured_positions,
                 cameras,
                 photos,
                 cloud,
@@ -122,7 +151,25 @@ impl OpenSfm {
                 ..Reconstruction::default()
             },
             point_indices,
+            measured,
         })
+    }
+
+    /// Takes the origin of a `reference_lla.json` that lies beside, where the file states none itself.
+    ///
+    /// # Errors
+    /// Where it is no JSON of that shape.
+    fn add_reference(&mut self, json: &[u8]) -> Result<(), Fault> {
+        let reference: RawReference = parse(json)?;
+        if let Some(origin) = enu_origin(reference)
+            && self.reconstruction.enu_origin.is_none()
+        {
+            self.reconstruction.enu_origin = Some(origin);
+            let warnings = &mut self.reconstruction.warnings;
+            let positions = measured_positions(&self.measured, Some(origin), warnings);
+            self.reconstruction.measured_positions = positions;
+        }
+        Ok(())
     }
 
     /// Adds the image points of a `tracks.csv`. Those of photos and points that the reconstruction
@@ -153,13 +200,20 @@ struct RawReconstruction {
     points: Object<RawPoint>,
     #[serde(default)]
     pano_shots: Object<IgnoredAny>,
+    reference_lla: Option<RawReference>,
+    #[serde(default)]
+    rig_cameras: Object<RawRigCamera>,
+    #[serde(default)]
+    rig_instances: Object<RawRigInstance>,
 }
 
 #[derive(Deserialize)]
 struct RawShot {
     camera: String,
-    rotation: [f64; 3],
+    rotation: Option<[f64; 3]>,
     translation: Option<[f64; 3]>,
+    gps_position: Option<[f64; 3]>,
+    gps_dop: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -168,13 +222,40 @@ struct RawPoint {
     color: Option<[f64; 3]>,
 }
 
-impl RawShot {
-    fn pose(&self, name: &str) -> Result<Pose, Fault> {
-        let rotation = DVec3::from(self.rotation);
-        let mut pose = Pose::from_rotation_vector_of_camera_from_world(DVec3::ZERO, rotation);
-        pose.center = -(pose.rotation * DVec3::from(self.translation.unwrap_or_default()));
-        checked(pose, name)
+/// The pose of a rotation vector and a translation of `camera_from_world`.
+fn pose_from(rotation: [f64; 3], translation: [f64; 3]) -> Pose {
+    let rotation = DVec3::from(rotation);
+    let mut pose = Pose::from_rotation_vector_of_camera_from_world(DVec3::ZERO, rotation);
+    pose.center = -(pose.rotation * DVec3::from(translation));
+    pose
+}
+
+/// Leaves out the shots of cameras that fragscale has no lens for, unless there are no others.
+fn leave_out_unsupported(
+    raw: &mut RawReconstruction,
+    warnings: &mut Vec<String>,
+) -> Result<(), Fault> {
+    let unsupported: Vec<(String, Fault)> = raw
+        .cameras
+        .0
+        .iter()
+        .filter_map(|(id, model)| Some((id.clone(), model.unsupported(id)?)))
+        .collect();
+    for (id, fault) in unsupported {
+        let all = raw.shots.0.len();
+        let shots = raw.shots.0.iter();
+        let kept = shots.filter(|(_, shot)| shot.camera != id).count();
+        if kept == 0 {
+            return Err(fault);
+        }
+        raw.shots.0.retain(|(_, shot)| shot.camera != id);
+        raw.cameras.0.retain(|(name, _)| *name != id);
+        warnings.push(match all - kept {
+            0 => format!("{}; no photo uses it, it is left out", fault.what),
+            count => format!("{}; its {count} photos are left out", fault.what),
+        });
     }
+    Ok(())
 }
 
 /// Refuses a pose whose numbers ran over.
@@ -209,19 +290,12 @@ fn points(raw: Object<RawPoint>) -> Result<(Cloud, HashMap<String, u32>), Fault>
     Ok((cloud, indices))
 }
 
-/// The first reconstruction, and of the others only how many there are.
+/// The reconstruction with most shots, of equals the first, and of the others only how many there are.
 #[derive(Default)]
 struct List {
-    first: Option<RawReconstruction>,
+    largest: Option<RawReconstruction>,
     others: usize,
     other_shots: usize,
-}
-
-/// Of the reconstructions after the first.
-#[derive(Deserialize)]
-struct Other {
-    #[serde(default)]
-    shots: Object<IgnoredAny>,
 }
 
 impl<'de> Deserialize<'de> for List {
@@ -240,13 +314,17 @@ impl<'de> Visitor<'de> for ListVisitor {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<List, A::Error> {
-        let mut list = List {
-            first: seq.next_element()?,
-            ..List::default()
-        };
-        while let Some(other) = seq.next_element::<Other>()? {
+        let mut list = List::default();
+        while let Some(mut next) = seq.next_element::<RawReconstruction>()? {
+            let Some(largest) = &mut list.largest else {
+                list.largest = Some(next);
+                continue;
+            };
+            if next.shots.0.len() > largest.shots.0.len() {
+                std::mem::swap(largest, &mut next);
+            }
             list.others += 1;
-            list.other_shots += other.shots.0.len();
+            list.other_shots += next.shots.0.len();
         }
         Ok(list)
     }
@@ -269,7 +347,7 @@ mod tests {
             "7": {"coordinates": [-1, 2, -7], "color": [255.0, 300, -1]},
             "3": {"coordinates": [-1, 0, 1], "color": [1.6, 2, 3]}},
          "rig_cameras": {}, "reference_lla": {"latitude": 1}},
-        {"shots": {"b.jpg": {}, "c.jpg": {}}, "cameras": {"bad": {"projection_type": "dual"}}}
+        {"shots": {"b.jpg": {"camera": "bad"}}, "cameras": {"bad": {"projection_type": "dual"}}}
     ]"#;
 
     #[test]
@@ -292,7 +370,7 @@ mod tests {
             "{:?}",
             reconstruction.warnings
         );
-        assert!(reconstruction.warnings[0].contains("1 more reconstructions with 2 photos"));
+        assert!(reconstruction.warnings[0].contains("1 more reconstructions with 1 photos"));
     }
 
     #[test]
