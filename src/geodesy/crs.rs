@@ -63,7 +63,11 @@ impl Crs {
     /// Where it is not understood, or how it relates to WGS 84 is not known, with the reason.
     pub fn understand(text: &str) -> Result<Self, Fault> {
         let definition = Definition::of(text)?;
-        let name = match (definition.code, definition.heights.code) {
+        // A name has to be understood again; a WKT may hold more than the table knows of its code.
+        let is_in_table =
+            |code: &u32| Definition::of_code(*code).is_ok_and(|known| known.proj.has_known_datum());
+        let code = definition.code.filter(is_in_table);
+        let name = match (code, definition.heights.code) {
             (Some(code), Some(heights)) => format!("EPSG:{code}+{heights}"),
             (Some(code), None) => format!("EPSG:{code}"),
             (None, _) => text.trim_start_matches('\u{feff}').trim().to_owned(),
@@ -665,6 +669,12 @@ mod tests {
             assert_eq!((crs.name(), crs.kind()), (name, kind), "{text}");
             assert!(Crs::understand(crs.name()).unwrap().same_as(&crs));
         }
+        // A code that only its WKT explains.
+        let wkt = crs_definitions::from_code(32_617).unwrap().wkt;
+        let unknown = wkt.replace("32617", "65001").replace("500000", "500100");
+        let crs = Crs::understand(&unknown).unwrap();
+        assert_eq!(crs.name(), unknown);
+        assert!(!crs.same_as(&utm17));
     }
 
     #[test]
