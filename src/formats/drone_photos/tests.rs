@@ -8,7 +8,7 @@ use crate::formats::detect;
 use crate::formats::photo_metadata::test_jpeg::{gps, jpeg, packet, short, text};
 use crate::formats::position_list::positions_of_photos;
 use crate::formats::test_data::shared_data;
-use crate::formats::{Kind, Package};
+use crate::formats::{Kind, OpenOptions, Package, info, open_flight};
 
 fn exif() -> Vec<Field> {
     let camera = [
@@ -198,4 +198,43 @@ fn brighton_photos_against_opendronemaps_solution() {
     let focal = photos.cameras[0].fx / (0.555_544_371_882_769_7 * 4000.0) - 1.0;
     println!("focal length {:.1} % off", focal * 100.0);
     assert!(focal.abs() < 0.1, "{focal}");
+}
+
+/// With a cloud, photos alone are a flight: their scales against those of OpenDroneMap's own poses.
+#[test]
+fn brighton_photos_with_the_cloud_are_a_flight() {
+    let Some(folder) = shared_data("odm-brighton-0") else {
+        return;
+    };
+    let progress = Progress::default();
+    let scales_of = |path: &Path, photos: Option<PathBuf>| {
+        let options = OpenOptions {
+            surface: Some(folder.join("model_full_pierotofy.laz")),
+            photos,
+            ..OpenOptions::default()
+        };
+        let opened = open_flight(path, &options, &progress).unwrap();
+        for warning in &opened.warnings {
+            println!("{warning}");
+        }
+        println!("{:?}", opened.crs);
+        let outcomes = opened.flight.scales(&progress).unwrap();
+        let photos = opened.flight.parts().photos.iter();
+        let photo = photos
+            .zip(outcomes)
+            .find(|(photo, _)| photo.name == "DJI_0030.JPG");
+        let scale = photo.unwrap().1;
+        scale.scale().unwrap().scale
+    };
+    let alone = scales_of(&folder.join("images"), None);
+    let solved = scales_of(&folder, Some(folder.join("images")));
+    for (alone, solved) in [(alone.top, solved.top), (alone.left, solved.left)] {
+        let (alone, solved) = (alone.unwrap(), solved.unwrap());
+        println!("{alone:.2} px/m by EXIF and XMP, {solved:.2} px/m by OpenDroneMap");
+        // The 35 mm equivalent promises 10 %.
+        assert!((alone / solved - 1.0).abs() < 0.1, "{alone} {solved}");
+    }
+    let told = info(&folder.join("images"), &progress).unwrap();
+    println!("{}", serde_json::to_string_pretty(&told).unwrap());
+    assert_eq!(told["package"], "photos");
 }
