@@ -169,11 +169,6 @@ fn brighton_photos_against_opendronemaps_solution() {
             .rotation
             .x_axis
             .angle_between(solved_pose.rotation.x_axis);
-        println!(
-            "{name}: {metres:.2} m, view {:.2}, turn {:.2} degrees",
-            forward.to_degrees(),
-            turned.to_degrees()
-        );
         assert!(
             metres.truncate().length() < 5.0 && metres.z.abs() < 5.0,
             "{metres}"
@@ -196,7 +191,6 @@ fn brighton_photos_against_opendronemaps_solution() {
     );
     // OpenDroneMap's focal length, normalised by the width of 4000 px.
     let focal = photos.cameras[0].fx / (0.555_544_371_882_769_7 * 4000.0) - 1.0;
-    println!("focal length {:.1} % off", focal * 100.0);
     assert!(focal.abs() < 0.1, "{focal}");
 }
 
@@ -214,10 +208,11 @@ fn brighton_photos_with_the_cloud_are_a_flight() {
             ..OpenOptions::default()
         };
         let opened = open_flight(path, &options, &progress).unwrap();
-        for warning in &opened.warnings {
-            println!("{warning}");
-        }
-        println!("{:?}", opened.crs);
+        assert_eq!(opened.crs.as_deref(), Some("EPSG:32615"));
+        // The take-off was from the beach, below most of what the cameras see.
+        let said =
+            |warning: &String| warning.contains("their photos say 40.1 m above the take-off");
+        assert!(opened.warnings.iter().any(said), "{:#?}", opened.warnings);
         let outcomes = opened.flight.scales(&progress).unwrap();
         let photos = opened.flight.parts().photos.iter();
         let photo = photos
@@ -230,11 +225,9 @@ fn brighton_photos_with_the_cloud_are_a_flight() {
     let solved = scales_of(&folder, Some(folder.join("images")));
     for (alone, solved) in [(alone.top, solved.top), (alone.left, solved.left)] {
         let (alone, solved) = (alone.unwrap(), solved.unwrap());
-        println!("{alone:.2} px/m by EXIF and XMP, {solved:.2} px/m by OpenDroneMap");
-        // The 35 mm equivalent promises 10 %.
+        // The 35 mm equivalent promises 10 %; measured 63.64 and 62.05 px/m at the top.
         assert!((alone / solved - 1.0).abs() < 0.1, "{alone} {solved}");
     }
     let told = info(&folder.join("images"), &progress).unwrap();
-    println!("{}", serde_json::to_string_pretty(&told).unwrap());
     assert_eq!(told["package"], "photos");
 }
