@@ -51,21 +51,19 @@ pub(super) fn correct(
             }
             let number = number_of_photo(photo);
             let event = events.events.iter().find(|e| Some(e.number) == number);
-            match (event, &mut metadata.place) {
-                (Some(event), Some(place)) => {
-                    let measured = geographic(event);
-                    if metres_across(place.place, measured) > SAME_PLACE {
-                        apart += 1;
-                        continue;
-                    }
-                    place.place = measured;
-                    place.height = Some(HeightReference::Ellipsoid);
-                    place.fix = event.quality.map(Fix::of_dji).or(place.fix);
-                    place.deviation = event.deviation.or(place.deviation);
-                    taken += 1;
-                }
-                _ => {}
+            let (Some(event), Some(place)) = (event, &mut metadata.place) else {
+                continue;
+            };
+            let measured = geographic(event);
+            if metres_across(place.place, measured) > SAME_PLACE {
+                apart += 1;
+                continue;
             }
+            place.place = measured;
+            place.height = Some(HeightReference::Ellipsoid);
+            place.fix = event.quality.map(Fix::of_dji).or(place.fix);
+            place.deviation = event.deviation.or(place.deviation);
+            taken += 1;
         }
         if taken > 0 {
             warnings.push(format!(

@@ -1,3 +1,5 @@
+use proptest::prelude::*;
+
 use super::*;
 use crate::formats::test_data::shared_data;
 
@@ -160,6 +162,18 @@ fn truncated_lists_end_in_words() {
                 let _ = control_points_from_text(part);
             }
         }
+    }
+}
+
+proptest! {
+    #[test]
+    fn no_text_panics(
+        first in "(EPSG:4326|name[,;\t]lat,lon|1 2.5 \\[7\\]|.{0,20})",
+        rest in "([-0-9.,;\t\" a-zé#\n]{0,80})",
+    ) {
+        let text = format!("{first}\n{rest}");
+        let _ = positions_from_text(&text);
+        let _ = control_points_from_text(&text);
     }
 }
 
