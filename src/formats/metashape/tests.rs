@@ -179,7 +179,7 @@ fn what_is_left_out_is_counted() {
     for part in [
         "2 photos are disabled",
         "1 photos were not aligned",
-        "1 photos are left out: the sensor of 'p5' is not there",
+        "1 photos are left out: their sensor is not there",
         "1 photos are compensated for their rolling shutter",
     ] {
         assert!(warnings.contains(part), "{warnings}");
