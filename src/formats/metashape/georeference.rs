@@ -32,7 +32,7 @@ pub(super) enum Reference {
     Local,
     /// One on the Earth; `understood` is that, or why it is not.
     Earth {
-        understood: Result<Crs, Fault>,
+        understood: Result<Box<Crs>, Fault>,
         /// The ellipsoid of another datum than WGS 84, to which "ECEF" belongs.
         other_ellipsoid: Option<String>,
     },
@@ -50,7 +50,7 @@ impl Reference {
             return Self::Local;
         }
         Self::Earth {
-            understood: Crs::understand(wkt),
+            understood: Crs::understand(wkt).map(Box::new),
             other_ellipsoid: other_ellipsoid(wkt),
         }
     }
@@ -64,7 +64,7 @@ impl Reference {
     /// The coordinate system, where there is one and it is understood.
     pub(super) fn understood(&self) -> Option<&Crs> {
         match self {
-            Self::Earth { understood, .. } => understood.as_ref().ok(),
+            Self::Earth { understood, .. } => understood.as_deref().ok(),
             Self::Local => None,
         }
     }
@@ -133,10 +133,10 @@ impl<'a> Placing<'a> {
             1 => placing.components.values_mut().next(),
             _ => placing.active.and_then(|id| placing.components.get_mut(id)),
         };
-        if let Some(active) = active
-            && active.is_none()
-        {
-            *active = placing.chunk;
+        match active {
+            Some(active) if active.is_none() => *active = placing.chunk,
+            Some(active) => placing.chunk = placing.chunk.or(*active),
+            None => {}
         }
         Ok(placing)
     }

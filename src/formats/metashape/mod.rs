@@ -32,7 +32,7 @@ mod project;
 mod tests;
 mod xml;
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use roxmltree::Node;
 
@@ -199,34 +199,26 @@ fn leave_out_unusable(
     sensors: &[Sensor],
     warnings: &mut Vec<String>,
 ) -> Result<(), Fault> {
-    let fault_of = |photo: &Photo<'_>| {
-        let sensor = photo.sensor.and_then(|index| sensors.get(index));
-        match sensor.map(|sensor| &sensor.camera) {
-            Some(Ok(_)) => None,
-            Some(Err(fault)) => Some(fault.clone()),
-            None => {
-                let what = format!("the sensor of '{}' is not there", photo.name);
-                Some(Fault::new(what, xml::EXPORT))
-            }
-        }
+    let camera_of = |sensor: Option<usize>| sensors.get(sensor?).map(|sensor| &sensor.camera);
+    let fault_of = |sensor: Option<usize>| match camera_of(sensor) {
+        Some(camera) => camera.as_ref().err().cloned(),
+        None => Some(Fault::new("their sensor is not there", xml::EXPORT)),
     };
-    let mut unusable: Vec<(Fault, usize)> = Vec::new();
+    let mut dropped: BTreeMap<Option<usize>, usize> = BTreeMap::new();
     photos.retain(|photo| {
-        let Some(fault) = fault_of(photo) else {
-            return true;
-        };
-        match unusable.iter_mut().find(|(known, _)| *known == fault) {
-            Some((_, count)) => *count += 1,
-            None => unusable.push((fault, 1)),
+        let is_usable = camera_of(photo.sensor).is_some_and(Result::is_ok);
+        if !is_usable {
+            *dropped.entry(photo.sensor).or_default() += 1;
         }
-        false
+        is_usable
     });
-    if photos.is_empty()
-        && let Some((fault, _)) = unusable.first()
-    {
-        return Err(fault.clone());
-    }
-    for (fault, count) in unusable {
+    for (sensor, count) in dropped {
+        let Some(fault) = fault_of(sensor) else {
+            continue;
+        };
+        if photos.is_empty() {
+            return Err(fault);
+        }
         let at = fault
             .line
             .map_or_else(String::new, |line| format!(" (line {line})"));

@@ -2,6 +2,9 @@
 
 use std::collections::HashMap;
 
+/// How many parts a name gets: no drone makes deeper folders.
+const MOST_PARTS: usize = 16;
+
 /// What a camera may be called.
 pub(super) struct Named<'a> {
     /// Its id.
@@ -24,9 +27,8 @@ pub(super) fn distinct_names<'a, T>(
         let start = item.parts.len().saturating_sub(length);
         item.parts.get(start..).unwrap_or_default().join("/")
     };
-    let longest = items.iter().map(|item| item.parts.len()).max();
     let mut names = Vec::new();
-    for _ in 0..longest.unwrap_or(0).max(1) {
+    for _ in 0..MOST_PARTS {
         let parts = items.iter().zip(&lengths);
         names = parts
             .map(|(item, &length)| name(item, length))

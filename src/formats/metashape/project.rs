@@ -12,6 +12,7 @@
 //! frame.zip, or to the .psz. Of several frames (moments of a moving scene) the first is read. Zip
 //! files are inflated up to a limit, so a zip bomb is refused.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Component, Path, PathBuf};
@@ -176,16 +177,12 @@ fn below(file: &Path, named: &str) -> Result<PathBuf, FileError> {
 /// The folder in which most of the photos lie, where it is there; their paths are relative to the
 /// folder of `file`.
 fn folder_of<'a>(file: &Path, paths: impl Iterator<Item = &'a str>) -> Option<PathBuf> {
-    let mut folders: Vec<(PathBuf, usize)> = Vec::new();
+    let mut folders: BTreeMap<PathBuf, usize> = BTreeMap::new();
     for path in paths {
         let path = path.replace('\\', "/");
         let folder = Path::new(path.strip_prefix("file://").unwrap_or(&path)).parent();
-        let Some(folder) = folder.map(Path::to_owned) else {
-            continue;
-        };
-        match folders.iter_mut().find(|(known, _)| *known == folder) {
-            Some((_, count)) => *count += 1,
-            None => folders.push((folder, 1)),
+        if let Some(folder) = folder {
+            *folders.entry(folder.to_owned()).or_default() += 1;
         }
     }
     let (folder, _) = folders.into_iter().max_by_key(|(_, count)| *count)?;

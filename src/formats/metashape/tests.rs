@@ -179,7 +179,7 @@ fn what_is_left_out_is_counted() {
     for part in [
         "2 photos are disabled",
         "1 photos were not aligned",
-        "1 photos are left out: the sensor of 'p5' is not there",
+        "1 photos are left out: their sensor is not there",
         "1 photos are compensated for their rolling shutter",
     ] {
         assert!(warnings.contains(part), "{warnings}");
@@ -289,6 +289,11 @@ fn components_have_their_own_transforms() {
     assert!(near(found.photos[1].pose.rotation.x_axis, DVec3::Y));
     assert!(found.warnings[0].contains("1 photos are left out: they belong to components"));
     assert_eq!(found.crs, None);
+    // A camera that names none is in the active one.
+    let cameras = camera(0, 1.0, "component_id=\"1\"") + &camera(1, 1.0, "");
+    let components = COMPONENTS.replace('A', "").replace('B', twice);
+    let found = read_xml(&document("<f>200</f>", &cameras, &components)).unwrap();
+    assert_eq!(found.photos[1].pose, found.photos[0].pose);
 }
 
 #[test]

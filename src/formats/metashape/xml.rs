@@ -110,11 +110,17 @@ pub(super) fn is_off(node: Node<'_, '_>, attribute: &str) -> bool {
 
 /// The N numbers that an element consists of.
 pub(super) fn numbers<const N: usize>(node: Node<'_, '_>) -> Result<[f64; N], Fault> {
+    // The line is looked for from the beginning of the text, so only where it is needed.
+    numbers_at(node, 0).or_else(|_| numbers_at(node, line(node)))
+}
+
+fn numbers_at<const N: usize>(node: Node<'_, '_>, line: u64) -> Result<[f64; N], Fault> {
     let name = node.tag_name().name();
-    let mut fields = Fields::new(line(node), text(node), EXPORT);
+    let what = format!("a number of <{name}>");
+    let mut fields = Fields::new(line, text(node), EXPORT);
     let mut all = [0.0; N];
     for number in &mut all {
-        *number = fields.number(&format!("a number of <{name}>"))?;
+        *number = fields.number(&what)?;
     }
     if fields.rest().is_empty() {
         return Ok(all);
