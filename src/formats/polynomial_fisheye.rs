@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn even_powers_are_fitted_and_the_error_is_told() {
         let polynomial = [0.0, 1.0, 0.015_264_6, -0.161_096];
-        let affine = [1676.296_432, 0.0, 0.0, 1676.296_432];
+        let affine = [1_676.296_432, 0.0, 0.0, 1_676.296_432];
         let (lens, off) = with_lens(camera(), affine, &polynomial).unwrap();
         let off = off.unwrap();
         assert!(off > 0.0 && off < 0.2, "{off}");

@@ -33,8 +33,8 @@ fn the_shared_block() {
         "{}",
         camera.fx
     );
-    assert_eq!(camera.cx, 2406.862_292_709_1);
-    assert_eq!(camera.cy, 1856.921_664_639_31);
+    assert_eq!(camera.cx, 2_406.862_292_709_1);
+    assert_eq!(camera.cy, 1_856.921_664_639_31);
     // The README: the view goes 27.3 degrees below the horizon; x and y of the centre are where the
     // receiver was, 1.1 m and 0.1 m off.
     let forward = photo.pose.rotation.z_axis;

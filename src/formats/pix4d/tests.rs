@@ -61,7 +61,7 @@ fn the_shared_project() {
     assert_eq!((camera.width, camera.height), (5472, 3648));
     assert_eq!(
         (camera.fx, camera.cx),
-        (4470.897_102_766_255, 2806.803_999_853_511)
+        (4_470.897_102_766_255, 2_806.803_999_853_511)
     );
     let Distortion::Brown(brown) = camera.distortion else {
         panic!("{:?}", camera.distortion);
