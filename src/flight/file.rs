@@ -131,7 +131,7 @@ impl<'de> Deserialize<'de> for GroundEntry {
 /// Where the posed photos come from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PhotoSource<'a> {
-    /// A poses.csv, relative to flight.toml.
+    /// A poses.csv, or poses over time (a trajectory, a recording), relative to flight.toml.
     Poses(&'a str),
     /// A reconstruction, and the row-major 4x4 from its frame to the world.
     Reconstruction(&'a str, Option<[f64; 16]>),

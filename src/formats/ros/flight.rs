@@ -67,7 +67,7 @@ impl Recording {
             let world = world_frame.get_or_insert_with(|| source.way.root.clone());
             if *world != source.way.root {
                 let what = format!(
-                    "the cameras' poses are in two world_frame, '{world}' and '{}'",
+                    "the cameras' poses are in two worlds, '{world}' and '{}'",
                     source.way.root
                 );
                 return Err(Fault::new(
