@@ -185,6 +185,75 @@ fn pictures_and_bare_rasters_are_refused() {
     assert!(refused(written::<Gray32Float>(3, &CELLS, &flat)).contains("no size"));
 }
 
+/// 20 x 18 cells in tiles of 16 x 16, big-endian, not compressed; the second tile is not stored. The
+/// value of a cell is 100 row + column.
+fn tiled() -> Vec<u8> {
+    let (mut data, mut offsets, mut lengths) = (vec![0; 8], Vec::new(), Vec::new());
+    for (down, across) in [(0, 0), (0, 16), (16, 0), (16, 16)] {
+        let stored = (down, across) != (0, 16);
+        offsets.push(if stored { data.len() as u32 } else { 0 });
+        lengths.push(if stored { 1024 } else { 0 });
+        for cell in (0..256_u16).filter(|_| stored) {
+            let value = 100 * (down + cell / 16) + across + cell % 16;
+            data.extend(f32::from(value).to_be_bytes());
+        }
+    }
+    let directory = data.len() as u32;
+    data[..4].copy_from_slice(b"MM\0*");
+    data[4..8].copy_from_slice(&directory.to_be_bytes());
+    let longs = |values: &[u32]| {
+        values
+            .iter()
+            .flat_map(|v| v.to_be_bytes())
+            .collect::<Vec<u8>>()
+    };
+    let doubles = |values: &[f64]| values.iter().flat_map(|v| v.to_be_bytes()).collect();
+    let entries: [(u16, u16, u32, Vec<u8>); 13] = [
+        (256, 4, 1, longs(&[20])),
+        (257, 4, 1, longs(&[18])),
+        (258, 4, 1, longs(&[32])),
+        (259, 4, 1, longs(&[1])),
+        (262, 4, 1, longs(&[1])),
+        (277, 4, 1, longs(&[1])),
+        (322, 4, 1, longs(&[16])),
+        (323, 4, 1, longs(&[16])),
+        (324, 4, 4, longs(&offsets)),
+        (325, 4, 4, longs(&lengths)),
+        (339, 4, 1, longs(&[3])),
+        (33550, 12, 3, doubles(&[1.0, 1.0, 0.0])),
+        (33922, 12, 6, doubles(&[0.0, 0.0, 0.0, -0.5, 0.5, 0.0])),
+    ];
+    data.extend((entries.len() as u16).to_be_bytes());
+    let mut behind = directory + 2 + 12 * entries.len() as u32 + 4;
+    let mut values = Vec::new();
+    for (tag, kind, count, bytes) in entries {
+        data.extend(tag.to_be_bytes());
+        data.extend(kind.to_be_bytes());
+        data.extend(count.to_be_bytes());
+        if bytes.len() > 4 {
+            data.extend(behind.to_be_bytes());
+            behind += bytes.len() as u32;
+            values.extend(bytes);
+        } else {
+            data.extend(bytes);
+        }
+    }
+    data.extend([0; 4]);
+    data.extend(values);
+    data
+}
+
+#[test]
+fn tiles_reach_beyond_the_edge_and_may_be_missing() {
+    let file = read_bytes(&tiled()).unwrap();
+    // The missing tile has 4 x 16 cells within the raster.
+    assert_eq!(file.cloud.points.len(), 20 * 18 - 64);
+    for point in &file.cloud.points {
+        assert_eq!(point.z, -100.0 * point.y + point.x, "{point}");
+    }
+    assert_eq!(file.warnings, ["64 of 360 cells have no elevation"]);
+}
+
 #[test]
 fn large_rasters_are_thinned() {
     assert_eq!(step_for(5000, 5000), 1);
