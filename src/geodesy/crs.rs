@@ -41,7 +41,7 @@ pub struct Crs {
     kind: CrsKind,
     unit_metres: f64,
     /// From it to longitude and latitude; geocentric systems need none.
-    projections: Option<Projections>,
+    projections: Option<Box<Projections>>,
     /// Degrees of a geographic system's prime meridian east of Greenwich.
     prime_meridian: f64,
 }
@@ -87,7 +87,7 @@ impl Crs {
             kind: CrsKind::Projected,
             unit_metres: 1.0,
             // Never `None`: the text is ours, and a test goes through all zones.
-            projections: Projections::of(&definition.proj).ok(),
+            projections: Projections::of(&definition.proj).ok().map(Box::new),
             prime_meridian: 0.0,
             definition,
         }
@@ -127,7 +127,7 @@ impl Crs {
             name,
             kind,
             unit_metres,
-            projections: (kind != CrsKind::Geocentric).then_some(projections),
+            projections: (kind != CrsKind::Geocentric).then(|| Box::new(projections)),
             prime_meridian,
             definition,
         })
