@@ -41,7 +41,7 @@ pub struct Crs {
     kind: CrsKind,
     unit_metres: f64,
     /// From it to longitude and latitude; geocentric systems need none.
-    projections: Option<Projections>,
+    projections: Option<Box<Projections>>,
     /// Degrees of a geographic system's prime meridian east of Greenwich.
     prime_meridian: f64,
 }
@@ -87,7 +87,7 @@ impl Crs {
             kind: CrsKind::Projected,
             unit_metres: 1.0,
             // Never `None`: the text is ours, and a test goes through all zones.
-            projections: Projections::of(&definition.proj).ok(),
+            projections: Projections::of(&definition.proj).ok().map(Box::new),
             prime_meridian: 0.0,
             definition,
         }
@@ -127,7 +127,7 @@ impl Crs {
             name,
             kind,
             unit_metres,
-            projections: (kind != CrsKind::Geocentric).then_some(projections),
+            projections: (kind != CrsKind::Geocentric).then(|| Box::new(projections)),
             prime_meridian,
             definition,
         })
@@ -225,10 +225,10 @@ impl Crs {
         let projections = self.projections.as_ref()?;
         let point = match self.kind {
             CrsKind::Geographic => {
-                let (x, y) = projections.from_wgs84(longitude, latitude)?;
+                let (x, y) = projections.of_wgs84(longitude, latitude)?;
                 (x.to_degrees() - self.prime_meridian, y.to_degrees())
             }
-            _ => projections.from_wgs84(longitude, latitude)?,
+            _ => projections.of_wgs84(longitude, latitude)?,
         };
         let z = height / self.vertical_unit_metres();
         let point = DVec3::new(point.0, point.1, z);
@@ -356,7 +356,7 @@ impl Projections {
         Some((point.0.to_degrees(), point.1.to_degrees()))
     }
 
-    fn from_wgs84(&self, longitude: f64, latitude: f64) -> Option<(f64, f64)> {
+    fn of_wgs84(&self, longitude: f64, latitude: f64) -> Option<(f64, f64)> {
         let start = (longitude.to_radians(), latitude.to_radians());
         let mut point = (start.0, start.1, 0.0);
         transform(&self.wgs84, &self.own, &mut point).ok()?;

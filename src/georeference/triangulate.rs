@@ -57,7 +57,8 @@ pub fn triangulate(
     let widest = (directions.iter())
         .flat_map(|a| directions.iter().map(move |b| opening(a, b)))
         .fold(0.0, f64::max);
-    if !(widest >= LEAST_ANGLE) {
+    // Largest of numbers that are not NaN.
+    if widest < LEAST_ANGLE {
         return Err(Fault::new(
             format!("its rays open by {:.2} degrees only", widest.to_degrees()),
             "mark it in photos from farther apart",

@@ -27,7 +27,7 @@ pub fn similarity_of(pairs: &[(DVec3, DVec3, f64)]) -> Option<Similarity> {
     let (source, target) = (mean(|pair| pair.0), mean(|pair| pair.1));
     let (mut cross, mut spread) = (Matrix3::zeros(), 0.0);
     for &(from, to, weight) in pairs {
-        if !(weight > 0.0) {
+        if weight.is_nan() || weight <= 0.0 {
             return None;
         }
         let (p, q) = (from - source, to - target);
@@ -42,7 +42,7 @@ pub fn similarity_of(pairs: &[(DVec3, DVec3, f64)]) -> Option<Similarity> {
     let svd = cross.try_svd(true, true, f64::EPSILON, 1000)?;
     let (u, v_t) = (svd.u?, svd.v_t?);
     let values = svd.singular_values;
-    if !(values[1] > THINNEST * values[0]) {
+    if values[1].is_nan() || values[1] <= THINNEST * values[0] {
         return None;
     }
     let sign = if u.determinant() * v_t.determinant() < 0.0 {
