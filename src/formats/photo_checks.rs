@@ -5,7 +5,8 @@
 //! - The camera: photos of two devices under one calibration, a calibration named after another
 //!   model, a focal length over 5 % (or what the metadata's own error allows) from the metadata's.
 //! - The height: cameras above the surface below them against RelativeAltitude, which counts from the
-//!   take-off; over 5 % means a wrong scale, or a take-off from another level.
+//!   take-off. A deviation over 5 % is said where the take-off would lie outside the levels of the
+//!   surface: a drone that rises from a quarry's floor is less high above the pile.
 //! - The distance: to the surface in the middle of the photo against the drone's laser.
 //!
 //! Only the headers of the files are read, of [`MOST_PHOTOS`] photos at most.
@@ -24,6 +25,9 @@ const MOST_PHOTOS: usize = 200;
 
 /// The deviation from which a sentence is due.
 const WORTH_SAYING: f64 = 0.05;
+
+/// How many of the surface's vertices are looked at for its levels.
+const MOST_VERTICES: usize = 10_000;
 
 /// The lowest flight, in metres, whose heights are compared: below it the barometer's own error is
 /// beyond 5 %.
@@ -125,13 +129,14 @@ fn check_distances(flight: &Flight, described: &[(&Photo, PhotoMetadata)]) -> Ve
             .cast(&Ray { origin, direction })
             .map(|hit| hit.t * metres)
     };
-    let (mut above, mut ahead) = (Vec::new(), Vec::new());
+    let (mut above, mut ahead, mut take_offs) = (Vec::new(), Vec::new(), Vec::new());
     for (photo, metadata) in described {
         let pose = &photo.pose;
         if let Some(stated) = metadata.relative_altitude.filter(|&h| h >= LOWEST)
             && let Some(height) = distance(pose.center, DVec3::NEG_Z)
         {
             above.push((height, stated));
+            take_offs.push(pose.center.z - stated / metres);
         }
         if let Some(stated) = metadata.laser_range {
             let camera = flight.camera(photo);
@@ -142,7 +147,9 @@ fn check_distances(flight: &Flight, described: &[(&Photo, PhotoMetadata)]) -> Ve
             }
         }
     }
-    if let Some((is, stated, part)) = deviation(&above) {
+    if let Some((is, stated, part)) = deviation(&above)
+        && !has_level(flight, &take_offs, WORTH_SAYING * stated / metres)
+    {
         warnings.push(format!(
             "the cameras are {is:.1} m above the surface below them, but their photos say {stated:.1} m above the take-off ({:+.1} %): the scale, the unit or the heights are wrong, unless the take-off was {:.1} m {} the surface",
             part * 100.0,
@@ -157,6 +164,22 @@ fn check_distances(flight: &Flight, described: &[(&Photo, PhotoMetadata)]) -> Ve
         ));
     }
     warnings
+}
+
+/// Whether the surface has the median of these levels, give or take `slack`; all in world units. The
+/// lowest and the highest hundredth of the surface are most often noise.
+fn has_level(flight: &Flight, levels: &[f64], slack: f64) -> bool {
+    let vertices = flight.parts().surface.vertices();
+    let step = vertices.len().div_ceil(MOST_VERTICES).max(1);
+    let mut heights: Vec<f64> = vertices.step_by(step).map(|vertex| vertex.z).collect();
+    heights.sort_by(f64::total_cmp);
+    let hundredth = heights.len() / 100;
+    let low = heights.get(hundredth);
+    let high = heights.get(heights.len().saturating_sub(hundredth + 1));
+    match (median(&mut levels.to_vec()), low, high) {
+        (Some(level), Some(low), Some(high)) => (low - slack..=high + slack).contains(&level),
+        _ => false,
+    }
 }
 
 /// The medians of what is and of what is stated, and the median part by which they deviate; `None`
@@ -311,6 +334,25 @@ mod tests {
             assert_eq!(warnings.len(), 1, "{warnings:?}");
             assert!(warnings[0].contains(words), "{words}: {warnings:?}");
         }
+        // The pile under the cameras is 10 m high, and the drone rose from its foot: 40 m above the
+        // surface, 50 m above the take-off.
+        let on_pile = {
+            let mut points: Vec<DVec3> = good.parts().surface.vertices().collect();
+            for x in -9..=9 {
+                points.push(DVec3::new(f64::from(x), 0.0, 10.0));
+                points.push(DVec3::new(f64::from(x), 4.0, 10.0));
+            }
+            let cloud = Cloud {
+                points,
+                ..Cloud::default()
+            };
+            let parts = FlightParts {
+                surface: Arc::new(Surface::new(cloud).unwrap()),
+                ..good.parts().clone()
+            };
+            Flight::new(parts).unwrap()
+        };
+        assert_eq!(check(&on_pile, ["FC1"; 2], 50.0, 40.0), [""; 0]);
         // Files that are not there are not spoken of here.
         assert_eq!(
             photo_checks(&good, &[PhotoFile::default(), PhotoFile::default()]),
