@@ -443,3 +443,36 @@ fn read_poses(path: &Path) -> Result<PosesFile, FileError> {
     }
     Ok(poses)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clouds_are_told_by_their_first_bytes_or_their_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let cases: [(&str, &[u8], CloudFormat); 10] = [
+            ("a.ply", b"ply\nformat", CloudFormat::Ply),
+            ("scan.e57.part", b"ASTM-E57\x01", CloudFormat::E57),
+            ("a.PCD", b"VERSION .7", CloudFormat::Pcd),
+            ("a.pts", b"1\n1 2 3", CloudFormat::Pts),
+            ("a.ptx", b"1\n1\n", CloudFormat::Ptx),
+            ("a.stl", b"solid", CloudFormat::Stl),
+            ("a.gltf", b"{\"asset\": {}}", CloudFormat::Gltf),
+            ("model", b"glTF\x02", CloudFormat::Gltf),
+            ("dsm", b"MM\0+", CloudFormat::GeoTiff),
+            ("dsm.tif", b"II*\0", CloudFormat::GeoTiff),
+        ];
+        for (name, start, format) in cases {
+            let path = folder.path().join(name);
+            fs::write(&path, start).unwrap();
+            assert_eq!(detect(&path), Ok(Kind::Cloud(format)), "{name}");
+            // As a file it is cut off, and said to be so in one line.
+            let error = read_cloud(&path, &Progress::default());
+            match format {
+                CloudFormat::Pts => assert_eq!(error.unwrap().cloud.points.len(), 1),
+                _ => assert!(!error.unwrap_err().to_string().contains('\n')),
+            }
+        }
+    }
+}
