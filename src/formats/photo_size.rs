@@ -2,7 +2,8 @@
 
 use std::io::{BufRead, Seek};
 
-use image::ImageReader;
+use image::{ImageFormat, ImageReader};
+use tiff::decoder::Decoder;
 
 use crate::fault::Fault;
 
@@ -18,20 +19,26 @@ pub(super) fn read(input: impl BufRead + Seek) -> Result<(u32, u32), Fault> {
             "give a JPEG, PNG or TIFF",
         )
     };
-    ImageReader::new(input)
+    let reader = ImageReader::new(input)
         .with_guessed_format()
-        .map_err(|e| unreadable(&e))?
-        .into_dimensions()
-        .map_err(|e| unreadable(&e))
+        .map_err(|e| unreadable(&e))?;
+    if reader.format() == Some(ImageFormat::Tiff) {
+        // Aerial photos have colours (YCbCr) that `image` cannot show, but a size all the same.
+        return Decoder::new(reader.into_inner())
+            .and_then(|mut decoder| decoder.dimensions())
+            .map_err(|e| unreadable(&e));
+    }
+    reader.into_dimensions().map_err(|e| unreadable(&e))
 }
 
 #[cfg(test)]
 mod tests {
     use std::io::Cursor;
 
-    use image::{ImageFormat, RgbImage};
+    use image::RgbImage;
 
     use super::*;
+    use crate::formats::test_data::shared_data;
 
     #[test]
     fn jpeg_png_and_tiff() {
@@ -46,5 +53,14 @@ mod tests {
         }
         assert!(read(Cursor::new(b"no image")).is_err());
         assert!(read(Cursor::new(b"")).is_err());
+    }
+
+    #[test]
+    fn colours_that_cannot_be_shown_have_a_size() {
+        let Some(path) = shared_data("orthority-ngi-opk/3324c_2015_1004_05_0182_RGB.tif") else {
+            return;
+        };
+        let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
+        assert_eq!(read(file), Ok((640, 1152)));
     }
 }

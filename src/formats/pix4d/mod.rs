@@ -206,7 +206,7 @@ impl Params {
             .filter(move |(name, _)| name.ends_with(end))
     }
 
-    /// The file whose name ends so: the project's, or the only one.
+    /// The project's file whose name ends so, or the only one where a name does not tell whose it is.
     fn find<'a>(&'a self, end: &'a str) -> Option<&'a Path> {
         let own = |(name, _): &&(String, PathBuf)| prefix_of(name) == self.prefix;
         // Of the two .cam files Pix4D's own form comes last.
@@ -214,8 +214,10 @@ impl Params {
             return Some(path);
         }
         let mut ending = self.ending(end);
-        let (_, first) = ending.next()?;
-        ending.next().is_none().then_some(first.as_path())
+        let (name, path) = ending.next()?;
+        let tells = |prefix: Option<String>| prefix.is_some_and(|prefix| !prefix.is_empty());
+        let others = tells(prefix_of(name)) && tells(self.prefix.clone());
+        (ending.next().is_none() && !others).then_some(path.as_path())
     }
 
     fn text<'a>(&'a self, end: &'a str) -> Result<Option<(&'a Path, String)>, FileError> {

@@ -190,6 +190,33 @@ fn without_an_offset_coordinates_are_relative() {
 }
 
 #[test]
+fn another_projects_files_are_not_taken() {
+    let files = folder(&[
+        ("a_calibrated_camera_parameters.txt", &record()),
+        ("b_offset.xyz", "1 2 3"),
+        ("b_calibrated_external_camera_parameters_wgs84.txt", "x"),
+    ]);
+    let found = read(files.path()).unwrap().reconstruction;
+    assert!(found.warnings[0].contains("coordinates are relative"));
+    let other = "b_calibrated_external_camera_parameters_wgs84.txt";
+    let error = read(&files.path().join(other)).unwrap_err();
+    assert!(
+        error
+            .fault
+            .what
+            .contains("without *_calibrated_camera_parameters.txt")
+    );
+    // A name without a project's may be anyone's.
+    fs::rename(
+        files.path().join("b_offset.xyz"),
+        files.path().join("offset.xyz"),
+    )
+    .unwrap();
+    let found = read(files.path()).unwrap().reconstruction;
+    assert!((found.photos[0].pose.center.x - 115.126).abs() < 1e-6);
+}
+
+#[test]
 fn fisheyes_and_namesakes_are_counted() {
     let fisheye = "A B.tif 1280 960\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n";
     let text = format!(
