@@ -120,7 +120,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text);
         write("poses.csv", text).unwrap();
-        write("pile.xyz", "0 0 0\n1 0 0\n0 1 0\n").unwrap();
+        // Wide, and far below: where the photos stand is not the matter here.
+        let pile = "-9e5 -9e5 -9e5\n9e5 -9e5 -9e5\n0 9e5 -9e5\n";
+        write("pile.xyz", pile).unwrap();
         let camera = |name: &str| {
             format!(
                 "[[camera]]\nname = \"{name}\"\nwidth = 4\nheight = 3\nfx = 5\nfy = 5\n\
