@@ -43,6 +43,13 @@ impl LengthUnit {
         }
     }
 
+    /// The unit of this length in metres, if it is one of these.
+    pub fn of_metres(metres: f64) -> Option<Self> {
+        // A US survey foot and a foot differ by 2 parts in a million.
+        let is_unit = |unit: &Self| (unit.metres() / metres - 1.0).abs() < 1e-7;
+        Self::ALL.into_iter().find(is_unit)
+    }
+
     /// How many of `other` are one of `self`; exactly 1 for the same unit.
     pub fn in_units_of(self, other: Self) -> f64 {
         if self == other {

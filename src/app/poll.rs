@@ -49,7 +49,8 @@ impl State {
                 Ok(loaded) => self.take_flight(loaded),
                 Err(NotOpened { why, tried }) => {
                     self.say(Severity::Error, &why);
-                    self.tried = tried;
+                    // A wrong surface does not make forget the flight that it was for.
+                    self.tried = tried.or_else(|| self.tried.take());
                     self.take_back_settings();
                 }
             },

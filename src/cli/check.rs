@@ -29,6 +29,10 @@ pub(super) fn check(arguments: &CheckArguments, progress: &Progress) -> Result<A
     let parts = flight.parts();
     let mut warnings = opened.warnings;
     let mut text = String::from("colours of photo and surface (r is 1 where they match)\n");
+    if parts.surface.colors().is_empty() {
+        text.push_str("the surface has no colours\n");
+        return Ok(Answer { text, warnings });
+    }
     progress.stage("comparing colours");
     for (index, (photo, file)) in parts.photos.iter().zip(&opened.photo_files).enumerate() {
         let at = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();

@@ -74,6 +74,14 @@ pub(super) fn georeference(
     let result =
         formats::georeference(path, &request, progress).map_err(|error| error.to_string())?;
     if let Some(target) = &arguments.output {
+        if target
+            .extension()
+            .is_none_or(|extension| extension != "toml")
+        {
+            // Anything else could be one of the files that were read.
+            let fault = Fault::new("a flight file ends in .toml", "give it such a name");
+            return Err(FileError::new(target, fault).to_string());
+        }
         let text = result
             .flight_text(target, path, arguments.photos.as_deref())
             .map_err(|error| error.to_string())?;

@@ -13,7 +13,7 @@ pub struct CloudFile {
     pub cloud: Cloud,
     /// The coordinate system that the file states: "EPSG:n" or WKT.
     pub crs: Option<String>,
-    /// Whether the file says that x and y are degrees: no surface can be made of them.
+    /// Whether the file says that x and y are degrees: they are brought to a map before a surface is made of them.
     pub geographic: bool,
     /// What the reader had to assume, one sentence each.
     pub warnings: Vec<String>,
@@ -56,8 +56,7 @@ impl CloudFile {
     pub(super) fn set_geographic(&mut self, geographic: bool) {
         self.geographic = geographic;
         if geographic {
-            self.warnings
-                .push("its coordinates are degrees, not lengths".to_owned());
+            self.warnings.push("its coordinates are degrees".to_owned());
         }
     }
 

@@ -6,6 +6,9 @@ use super::input::FileError;
 use super::{Kind, OpenOptions, Package, detect};
 use crate::fault::Fault;
 
+/// How several of them are called.
+const PHOTOS: &str = "folders of photos";
+
 /// What several paths are to each other.
 #[derive(Debug, Clone, Default)]
 pub struct Dropped {
@@ -26,13 +29,20 @@ impl Dropped {
         for path in paths {
             let (part, name) = match detect(path)? {
                 Kind::Cloud(_) => (&mut dropped.options.surface, "surfaces"),
-                Kind::Reconstruction(Package::Photos, _) => (&mut photos, "folders of photos"),
+                Kind::Reconstruction(Package::Photos, _) => (&mut photos, PHOTOS),
                 Kind::Flight(_) | Kind::Reconstruction(..) => (&mut dropped.flight, "flights"),
                 kind @ (Kind::Camera | Kind::Poses | Kind::Trajectory(_)) => {
                     return Err(no_part(path, &kind));
                 }
             };
-            if let Some(first) = part.replace(path.clone()) {
+            // One photo stands for the folder that it is in.
+            let path = match path.parent() {
+                Some(folder) if name == PHOTOS && path.is_file() => folder,
+                _ => path.as_path(),
+            };
+            if let Some(first) = part.replace(path.to_owned())
+                && (first != path || name != PHOTOS)
+            {
                 return Err(FileError::new(
                     path,
                     Fault::new(

@@ -271,6 +271,18 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
             ),
         ));
     }
+    let several = package::in_folder(path);
+    if !several.is_empty() {
+        let names = several.iter().filter_map(|(_, path)| path.file_name());
+        let names: Vec<_> = names.map(|name| name.to_string_lossy()).take(5).collect();
+        return Err(FileError::new(
+            path,
+            Fault::new(
+                format!("a folder with {} reconstructions in it", several.len()),
+                format!("open one of them: {}", names.join(", ")),
+            ),
+        ));
+    }
     let what = match fs::read_dir(path) {
         Ok(_) => "a folder with no flight.toml and no reconstruction in it".to_owned(),
         Err(e) => format!("a folder that cannot be read ({e})"),

@@ -113,6 +113,10 @@ struct Source {
     surface: Option<PathBuf>,
     /// The axis of that file that points up.
     surface_up: UpAxis,
+    /// Whether `surface` is what the package left, not what somebody named.
+    surface_is_packages: bool,
+    /// The way of the package's frame to the world, where flight.toml says it.
+    package_surface_to_world: Option<Similarity>,
     reconstruction_cloud: CloudFile,
     photo_folder: Option<PathBuf>,
     cameras: Vec<Camera>,
@@ -134,6 +138,8 @@ impl Source {
             inputs: Vec::new(),
             surface: options.surface.clone(),
             surface_up: UpAxis::Z,
+            surface_is_packages: false,
+            package_surface_to_world: None,
             reconstruction_cloud: CloudFile::default(),
             photo_folder: options.photos.clone(),
             cameras: Vec::new(),
@@ -187,7 +193,9 @@ impl Source {
                     reconstruction.transform(&similarity);
                     // Now it is in the world, whatever that is called.
                     reconstruction.crs = None;
+                    reconstruction.preferred_crs = None;
                     reconstruction.enu_origin = None;
+                    source.package_surface_to_world = Some(similarity);
                 }
                 source
                     .take_reconstruction(&path, reconstruction, &file.cameras)
@@ -225,8 +233,11 @@ impl Source {
             ));
         }
         if source.photo_folder.is_none() && !reconstruction.sizes_known {
-            // Packages name photos relative to their own file.
-            source.photo_folder = path.parent().map(Path::to_owned);
+            // Packages name photos relative to their own file; a folder has them in it.
+            source.photo_folder = match path.is_dir() {
+                true => Some(path.to_owned()),
+                false => path.parent().map(Path::to_owned),
+            };
         }
         source.take_reconstruction(path, reconstruction, &[])?;
         Ok(source)
@@ -240,7 +251,10 @@ impl Source {
         progress.stage(format!("reading {}", path.display()));
         self.inputs.push(path.to_owned());
         let project = read_project(path, progress)?;
-        self.surface = self.surface.take().or(project.surface);
+        if self.surface.is_none() {
+            self.surface_is_packages = project.surface.is_some();
+            self.surface = project.surface;
+        }
         self.photo_folder = self.photo_folder.take().or(project.photos);
         Ok(project.reconstruction)
     }
@@ -257,6 +271,9 @@ impl Source {
         let mut said = Vec::new();
         self.poses_frame = Frame::of_poses(crs, origin, &mut said).map_err(at)?;
         self.warn(path, &said);
+        let preferred = reconstruction.preferred_crs.as_deref();
+        // One that is not understood cannot be a target; nothing else depends on it.
+        self.preferred_crs = preferred.and_then(|crs| Crs::understand(crs).ok());
         let sizes = sizes_of_entries(entries).map_err(at)?;
         let given = |name: &str| {
             sizes
@@ -436,6 +453,16 @@ impl Source {
                 for point in &mut file.cloud.points {
                     *point = self.surface_up.to_z_up(*point);
                 }
+                // The package's own cloud is in the frame of its poses, unless it says otherwise.
+                if let Some(similarity) = &self.package_surface_to_world
+                    && self.surface_is_packages
+                    && file.crs.is_none()
+                    && !file.geographic
+                {
+                    for point in &mut file.cloud.points {
+                        *point = similarity.apply(*point);
+                    }
+                }
                 if let Some((axis, along_axis, along_z)) = doubtful_up(&file.cloud) {
                     let (along_axis, along_z) = (100.0 * along_axis, 100.0 * along_z);
                     let axis = axis.name();
@@ -544,32 +571,38 @@ impl Source {
         of_points
             .points(&mut cloud.cloud.points)
             .map_err(at_surface)?;
+        let middle = cloud.cloud.points.first().copied();
+        let doubt = middle.map(|point| world.check_lengths(point)).transpose();
+        let doubt = doubt.map_err(at_surface)?.flatten();
         let poses_moved = of_poses.in_words("the poses");
         let points_moved = of_points.in_words("the points");
+        self.warn(surface_file, doubt.as_slice());
         self.warn(&path, poses_moved.as_slice());
-        if surface.is_some() {
-            self.warn(surface_file, points_moved.as_slice());
+        match surface {
+            Some(Frame::AsIs(_)) if poses_moved.is_some() => {
+                let world = world.in_words();
+                let said = format!("it states no coordinate system and is taken to be in {world}");
+                self.warn(surface_file, &[said]);
+            }
+            Some(_) => self.warn(surface_file, points_moved.as_slice()),
+            None => {}
         }
-        if let Some(unit) = world.unit()
-            && unit != self.settings.unit
-        {
-            let name = world.crs().unwrap_or_default();
-            if !self.unit_is_stated {
-                self.settings.unit = unit;
-            } else if poses_moved.is_some() {
-                let what = format!(
-                    "the world is {name}, which counts in {unit}, not {}",
-                    self.settings.unit
-                );
+        let Some(unit) = world.unit().map_err(at_poses)? else {
+            return Ok((cloud, world));
+        };
+        let stated = self.settings.unit;
+        if !self.unit_is_stated {
+            self.settings.unit = unit;
+        } else if unit != stated {
+            let what = format!(
+                "the world is {}, which counts in {unit}, not {stated}",
+                world.in_words()
+            );
+            if poses_moved.is_some() || !self.poses_frame.is_as_it_is() {
                 let remedy = format!("write world.unit = \"{unit}\"");
                 return Err(at_poses(Fault::new(what, remedy)));
-            } else {
-                let warning = format!(
-                    "the surface is in {name}, which counts in {unit}, but the flight's unit is {}",
-                    self.settings.unit
-                );
-                self.warn(surface_file, &[warning]);
             }
+            self.warn(surface_file, &[what]);
         }
         Ok((cloud, world))
     }

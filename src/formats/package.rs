@@ -4,15 +4,19 @@
 //! bytes, a folder by what lies in it.
 
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::input::{FileError, read_bytes, read_text};
 use super::reconstruction::Project;
 use super::{
-    blocks_exchange, bundler, colmap, drone_photos, json_packages, meshroom, metashape, middlebury,
-    nerfstudio, nvm, odm, open3d, opensfm, opf, pix4d, realitycapture, ros,
+    DETECTED_BY, blocks_exchange, bundler, colmap, drone_photos, json_packages, meshroom,
+    metashape, middlebury, nerfstudio, nvm, odm, open3d, opensfm, opf, pix4d, realitycapture, ros,
 };
 use crate::jobs::Progress;
+
+/// How many files of a folder are looked into.
+const LOOKED_AT: usize = 200;
 
 /// What wrote a reconstruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -180,12 +184,37 @@ pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
     if let Some(found) = files.into_iter().find_map(found) {
         return Some(found);
     }
+    match in_folder(path).as_slice() {
+        [] => {}
+        [only] => return Some(only.clone()),
+        // Which one is meant must be said.
+        _ => return None,
+    }
     // Last, because beside a .p4d there may lie what another package made of the same photos, and
     // beside what a package made there are often its photos.
     if pix4d::is_bare_project(path) {
         return Some((Package::Pix4d, path.to_owned()));
     }
     drone_photos::has_photos(path).then(|| (Package::Photos, path.to_owned()))
+}
+
+/// The reconstructions that lie as files in a folder that is none itself.
+pub(super) fn in_folder(folder: &Path) -> Vec<(Package, PathBuf)> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut found: Vec<(Package, PathBuf)> = entries
+        .map(|entry| entry.path())
+        .filter(|path| path.is_file() && !drone_photos::is_photo(path))
+        .take(LOOKED_AT)
+        .filter_map(|path| {
+            let mut start = Vec::new();
+            let file = fs::File::open(&path).ok()?;
+            file.take(DETECTED_BY as u64).read_to_end(&mut start).ok()?;
+            of_file(&path, &start)
+        })
+        .collect();
+    found.sort_by(|(_, a), (_, b)| a.cmp(b));
+    found.dedup();
+    found
 }
 
 /// The file of a folder whose name ends so, where there is only one.
@@ -264,6 +293,15 @@ mod tests {
         }
         let dir = tempfile::tempdir().unwrap();
         assert_eq!(of_folder(dir.path()), None);
+        // Under another name it is still the only one in the folder; of two neither is meant.
+        let model = dir.path().join("model.nvm");
+        fs::write(&model, "NVM_V3").unwrap();
+        fs::write(dir.path().join("notes.txt"), "1 2 3").unwrap();
+        assert_eq!(of_folder(dir.path()), Some((Package::VisualSfm, model)));
+        fs::write(dir.path().join("other.nvm"), "NVM_V3").unwrap();
+        assert_eq!(of_folder(dir.path()), None);
+        assert_eq!(in_folder(dir.path()).len(), 2);
+        let dir = tempfile::tempdir().unwrap();
         for name in ["a_par.txt", "b_par.txt"] {
             fs::write(dir.path().join(name), "").unwrap();
         }

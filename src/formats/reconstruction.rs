@@ -104,6 +104,32 @@ pub struct Reconstruction {
 }
 
 impl Reconstruction {
+    /// One of its cameras as one of photos of this size, where the package writes none.
+    pub(super) fn sized(&self, camera: &Camera, width: u32, height: u32) -> Camera {
+        let mut camera = Camera {
+            width,
+            height,
+            ..camera.clone()
+        };
+        if self.intrinsics_in_longer_sides {
+            let longer = f64::from(width.max(height));
+            for value in [
+                &mut camera.fx,
+                &mut camera.fy,
+                &mut camera.cx,
+                &mut camera.cy,
+                &mut camera.skew,
+            ] {
+                *value *= longer;
+            }
+        }
+        if !self.principal_points_from_corner {
+            camera.cx += f64::from(width) / 2.0;
+            camera.cy += f64::from(height) / 2.0;
+        }
+        camera
+    }
+
     /// Gives the cameras of a package that writes no image sizes theirs. `size_of` tells the width
     /// and height of a camera by its index.
     ///
@@ -113,25 +139,9 @@ impl Reconstruction {
         &mut self,
         size_of: impl Fn(usize) -> Result<(u32, u32), Fault>,
     ) -> Result<(), Fault> {
-        for (index, camera) in self.cameras.iter_mut().enumerate() {
+        for index in 0..self.cameras.len() {
             let (width, height) = size_of(index)?;
-            (camera.width, camera.height) = (width, height);
-            if self.intrinsics_in_longer_sides {
-                let longer = f64::from(width.max(height));
-                for value in [
-                    &mut camera.fx,
-                    &mut camera.fy,
-                    &mut camera.cx,
-                    &mut camera.cy,
-                    &mut camera.skew,
-                ] {
-                    *value *= longer;
-                }
-            }
-            if !self.principal_points_from_corner {
-                camera.cx += f64::from(width) / 2.0;
-                camera.cy += f64::from(height) / 2.0;
-            }
+            self.cameras[index] = self.sized(&self.cameras[index], width, height);
         }
         self.sizes_known = true;
         self.intrinsics_in_longer_sides = false;

@@ -86,21 +86,54 @@ impl Frame {
         }
     }
 
+    /// What heights are multiplied by to count in the unit of x and y: some systems have them in
+    /// another one.
+    fn heights_factor(&self) -> f64 {
+        match self {
+            Self::Named(crs) if crs.kind() == CrsKind::Projected => {
+                crs.vertical_unit_metres() / crs.unit_metres()
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// Whether lengths in it are lengths on the ground, around a point.
+    ///
+    /// # Errors
+    /// Where they are not.
+    pub(super) fn check_lengths(&self, point: DVec3) -> Result<Option<String>, Fault> {
+        match (self, self.place(point)) {
+            (Self::Named(crs), Some(place)) => crs.check_lengths(place),
+            _ => Ok(None),
+        }
+    }
+
     /// The way from here to another frame.
     pub(super) fn to<'a>(&'a self, to: &'a Self) -> Move<'a> {
         Move { from: self, to }
     }
 
-    /// The unit of its lengths, where it is a map's.
-    pub(super) fn unit(&self) -> Option<LengthUnit> {
+    /// The unit of its lengths; `None` where nobody says it.
+    ///
+    /// # Errors
+    /// Where it is a unit that no flight can have: kilometres, links.
+    pub(super) fn unit(&self) -> Result<Option<LengthUnit>, Fault> {
         match self {
-            Self::AsIs(_) => None,
-            Self::Enu(_) => Some(LengthUnit::Metre),
-            // A US survey foot and a foot differ by 2 parts in a million.
-            Self::Named(crs) => LengthUnit::ALL
-                .into_iter()
-                .find(|unit| (crs.unit_metres() / unit.metres() - 1.0).abs() < 1e-7),
+            Self::AsIs(_) => Ok(None),
+            Self::Enu(_) => Ok(Some(LengthUnit::Metre)),
+            Self::Named(crs) => match LengthUnit::of_metres(crs.unit_metres()) {
+                Some(unit) => Ok(Some(unit)),
+                None => Err(Fault::new(
+                    format!("the unit of {} is {} m long", crs.name(), crs.unit_metres()),
+                    "name a system in metres or feet as world.crs in a flight.toml",
+                )),
+            },
         }
+    }
+
+    /// Whether nobody says what its coordinates are.
+    pub(super) fn is_as_it_is(&self) -> bool {
+        matches!(self, Self::AsIs(_))
     }
 
     /// The name of its system, if it has one.
@@ -132,7 +165,7 @@ impl Frame {
     }
 
     /// For people.
-    fn in_words(&self) -> String {
+    pub(super) fn in_words(&self) -> String {
         match self {
             Self::AsIs(_) => "a frame of its own".to_owned(),
             Self::Enu(place) => format!(
@@ -143,6 +176,16 @@ impl Frame {
                 "positions from the Earth's centre (ECEF)".to_owned()
             }
             Self::Named(crs) => crs.name().to_owned(),
+        }
+    }
+
+    /// What heights count from, in words.
+    fn heights(&self) -> &str {
+        match self {
+            Self::AsIs(_) => "not said",
+            Self::Enu(_) => "the ellipsoid at its origin",
+            Self::Named(crs) if crs.kind() == CrsKind::Geocentric => "the ellipsoid",
+            Self::Named(crs) => crs.heights(),
         }
     }
 
@@ -165,7 +208,10 @@ impl Frame {
                 let from_origin = ecef_from_geographic(place) - ecef_from_geographic(*origin);
                 Some(enu_axes(*origin).transpose() * from_origin)
             }
-            Self::Named(crs) => crs.from_geographic(place),
+            Self::Named(crs) => {
+                let point = crs.from_geographic(place)?;
+                Some(point.with_z(point.z * self.heights_factor()))
+            }
         }
     }
 
@@ -250,7 +296,7 @@ impl Known {
                 })
         };
         if let Some(frame) = &surface
-            && frame.is(CrsKind::Geographic)
+            && (frame.is(CrsKind::Geographic) || frame.is(CrsKind::Geocentric))
         {
             return zone();
         }
@@ -276,7 +322,14 @@ pub(super) struct Move<'a> {
 impl Move<'_> {
     /// Whether it leaves everything where it is, to the last bit.
     pub(super) fn is_none(&self) -> bool {
-        self.from.same_as(self.to)
+        self.only_heights() == Some(1.0)
+    }
+
+    /// Where nothing has to be moved but the unit of heights: their factor.
+    fn only_heights(&self) -> Option<f64> {
+        self.from
+            .same_as(self.to)
+            .then(|| self.from.heights_factor())
     }
 
     /// A pose there.
@@ -292,6 +345,10 @@ impl Move<'_> {
     }
 
     fn moved_pose(&self, pose: &Pose) -> Option<Pose> {
+        if let Some(factor) = self.only_heights() {
+            let center = pose.center.with_z(pose.center.z * factor);
+            return Some(Pose { center, ..*pose });
+        }
         let place = self.from.place(pose.center)?;
         let center = self.to.point(place).filter(|center| center.is_finite())?;
         let turn = self.to.axes_in_enu(place)?.transpose() * self.from.axes_in_enu(place)?;
@@ -309,6 +366,10 @@ impl Move<'_> {
         if self.is_none() {
             return Ok(());
         }
+        if let Some(factor) = self.only_heights() {
+            points.iter_mut().for_each(|point| point.z *= factor);
+            return Ok(());
+        }
         points.par_iter_mut().try_for_each(|point| {
             let place = self.from.place(*point);
             let moved = place.and_then(|place| self.to.point(place));
@@ -319,10 +380,19 @@ impl Move<'_> {
         })
     }
 
-    /// What it did, for people: "WHAT, in A, is brought to B".
+    /// What it did, for people: "WHAT, in A, are brought to B".
     pub(super) fn in_words(&self, what: &str) -> Option<String> {
         let (from, to) = (self.from.in_words(), self.to.in_words());
-        (!self.is_none()).then(|| format!("{what}, in {from}, are brought to {to}"))
+        match self.only_heights() {
+            Some(1.0) => None,
+            Some(factor) => Some(format!(
+                "the heights of {what} are in another unit than x and y ({from}): they are multiplied by {factor:.7}"
+            )),
+            None => Some(format!(
+                "{what}, in {from}, are brought to {to}; heights count from what they counted from ({})",
+                self.from.heights()
+            )),
+        }
     }
 
     fn outside(&self, what: &str) -> Fault {
@@ -334,12 +404,12 @@ impl Move<'_> {
     }
 }
 
-/// Whether a WKT that is not understood is one of degrees.
+/// Whether a WKT that is not understood is one of degrees: no map projection of them.
 fn is_geographic_wkt(text: &str) -> bool {
-    let text = text.trim_start().to_ascii_uppercase();
-    ["GEOGCS", "GEOGCRS", "GEODCRS", "GEOGRAPHICCRS"]
-        .iter()
-        .any(|start| text.starts_with(start))
+    let text = text.to_ascii_uppercase();
+    let has = |words: &[&str]| words.iter().any(|word| text.contains(word));
+    has(&["GEOGCS[", "GEOGCRS[", "GEOGRAPHICCRS["])
+        && !has(&["PROJCS[", "PROJCRS[", "PROJECTEDCRS["])
 }
 
 #[cfg(test)]
@@ -438,6 +508,37 @@ mod tests {
             assert_eq!(way.pose("a", &pose), Ok(pose));
             assert_eq!(way.in_words("x"), None);
         }
+    }
+
+    /// A US survey foot is 1200/3937 m, the unit of EPSG:2263's x and y.
+    #[test]
+    fn heights_in_another_unit_are_brought_to_that_of_x_and_y() {
+        let name = r#"COMPD_CS["NAD83 / New York Long Island (ftUS) + NAVD88 height",PROJCS["NAD83 / New York Long Island (ftUS)",GEOGCS["NAD83",DATUM["North_American_Datum_1983",SPHEROID["GRS 1980",6378137,298.257222101,AUTHORITY["EPSG","7019"]],AUTHORITY["EPSG","6269"]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4269"]],PROJECTION["Lambert_Conformal_Conic_2SP"],PARAMETER["standard_parallel_1",41.03333333333333],PARAMETER["standard_parallel_2",40.66666666666666],PARAMETER["latitude_of_origin",40.16666666666666],PARAMETER["central_meridian",-74],PARAMETER["false_easting",984250],PARAMETER["false_northing",0],UNIT["US survey foot",0.3048006096012192],AUTHORITY["EPSG","2263"]],VERT_CS["NAVD88 height",VERT_DATUM["North American Vertical Datum 1988",2005],UNIT["metre",1]]]"#;
+        let (frame, world) = (named(name), named("EPSG:2263"));
+        let way = frame.to(&world);
+        let mut points = [DVec3::new(1_000_000.0, 200_000.0, 12.0)];
+        way.points(&mut points).unwrap();
+        assert!(
+            (points[0].z - 12.0 * 3937.0 / 1200.0).abs() < 1e-9,
+            "{}",
+            points[0]
+        );
+        assert_eq!((points[0].x, points[0].y), (1_000_000.0, 200_000.0));
+        assert!(way.in_words("the points").unwrap().contains("3.2808333"));
+    }
+
+    #[test]
+    fn a_map_that_is_made_for_looking_is_refused() {
+        // Mercator stretches by 1 / cos(latitude): 60 degrees north is at y = 8 399 737.89.
+        let refused = named("EPSG:3857").check_lengths(DVec3::new(0.0, 8_399_737.89, 0.0));
+        let what = refused.unwrap_err().what;
+        assert!(
+            what.starts_with("a metre of EPSG:3857 is 0.49")
+                || what.starts_with("a metre of EPSG:3857 is 0.50"),
+            "{what}"
+        );
+        let utm = named("EPSG:32633").check_lengths(DVec3::new(500_000.0, 5e6, 0.0));
+        assert_eq!(utm, Ok(None));
     }
 
     #[test]

@@ -29,6 +29,12 @@ pub enum CrsKind {
     Geocentric,
 }
 
+/// How far lengths on a grid may be off: no map zone made for measuring is off by half of that.
+const WRONG_GRID: f64 = 0.005;
+
+/// Beyond the edge of a UTM zone, where it is said.
+const POOR_GRID: f64 = 0.001;
+
 /// A coordinate system that is understood.
 ///
 /// Its axes are always (east, north, up), whatever order its definition writes; only systems that
@@ -251,6 +257,30 @@ impl Crs {
                     .then(|| DMat3::from_cols(across, north.extend(0.0), DVec3::Z))
             }
         }
+    }
+
+    /// Whether a metre of the grid is one on the ground at a place: in Web Mercator, made for looking,
+    /// it is not. Returns a sentence where it is doubtful.
+    ///
+    /// # Errors
+    /// Where lengths on the grid are wrong by more than a scale may be.
+    pub fn check_lengths(&self, place: Geographic) -> Result<Option<String>, Fault> {
+        let Some(scale) = self.grid_scale(place) else {
+            return Ok(None);
+        };
+        let sentence = format!(
+            "a metre of {} is {:.4} m on the ground there",
+            self.name(),
+            1.0 / scale
+        );
+        let off = (scale - 1.0).abs();
+        if off > WRONG_GRID {
+            return Err(Fault::new(
+                sentence,
+                "give a coordinate system that keeps lengths there, such as its zone of UTM",
+            ));
+        }
+        Ok((off > POOR_GRID).then_some(sentence))
     }
 
     /// How many metres of the grid are one on the ellipsoid at a place, towards the north: 0.9996 in

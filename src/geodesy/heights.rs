@@ -21,18 +21,18 @@ impl Heights {
         }
     }
 
-    /// The vertical system of an EPSG code; one that is not in the table is taken to be in metres,
-    /// as nearly all are.
+    /// The vertical system of an EPSG code; of one that is not in the table the unit is taken to be
+    /// that of x and y.
     pub(super) fn of_code(code: u32) -> Self {
         let known = TABLE.iter().find(|(known, ..)| *known == code);
         let (name, unit) = match known {
-            Some((_, name, unit)) => ((*name).to_owned(), *unit),
-            None => (format!("EPSG:{code}"), 1.0),
+            Some((_, name, unit)) => ((*name).to_owned(), Some(*unit)),
+            None => (format!("EPSG:{code}"), None),
         };
         Self {
             name: Some(name),
             code: Some(code),
-            unit_metres: Some(unit),
+            unit_metres: unit,
         }
     }
 }
@@ -41,12 +41,13 @@ const FOOT: f64 = 0.3048;
 const US_FOOT: f64 = 1200.0 / 3937.0;
 
 /// Code, name, unit in metres (EPSG dataset v11).
-const TABLE: [(u32, &str, f64); 30] = [
+const TABLE: [(u32, &str, f64); 31] = [
     (3855, "the geoid EGM2008", 1.0),
     (5773, "the geoid EGM96", 1.0),
     (5798, "the geoid EGM84", 1.0),
     (5714, "mean sea level", 1.0),
-    (8052, "mean sea level", FOOT),
+    (8050, "mean sea level", FOOT),
+    (8052, "mean sea level", US_FOOT),
     (5703, "NAVD88", 1.0),
     (8228, "NAVD88", FOOT),
     (6360, "NAVD88", US_FOOT),

@@ -7,11 +7,6 @@ use crate::geodesy::{Crs, CrsKind, Geographic};
 use crate::geometry::median;
 use crate::units::LengthUnit;
 
-/// By how much a metre of the grid may differ from one on the ground.
-const WRONG_GRID: f64 = 0.005;
-/// From where on that is said.
-const POOR_GRID: f64 = 0.001;
-
 /// The world, and the coordinate system of a list.
 #[derive(Debug, Clone)]
 pub(super) struct World {
@@ -59,14 +54,12 @@ impl World {
                     "give a projected one such as EPSG:32633, or none for UTM",
                 ));
             }
-            let is_unit =
-                |unit: &LengthUnit| (unit.metres() / crs.unit_metres() - 1.0).abs() < 1e-7;
-            unit = LengthUnit::ALL.into_iter().find(is_unit).ok_or_else(|| {
+            unit = LengthUnit::of_metres(crs.unit_metres()).ok_or_else(|| {
                 let what = format!("the unit of {} is {} m long", crs.name(), crs.unit_metres());
                 Fault::new(what, "give a system in metres or feet")
             })?;
-            if let Some(scale) = middle.and_then(|middle| crs.grid_scale(middle)) {
-                warnings.extend(check_grid(crs, scale)?);
+            if let Some(middle) = middle {
+                warnings.extend(crs.check_lengths(middle)?);
             }
             if let Some(list) = &list
                 && list.heights() != crs.heights()
@@ -147,22 +140,6 @@ impl World {
 
 /// As [`Crs::heights`] says it.
 const NOT_SAID: &str = "not said";
-
-/// A metre of the grid has to be one on the ground: in Web Mercator, made for looking, it is not.
-fn check_grid(crs: &Crs, scale: f64) -> Result<Option<String>, Fault> {
-    let sentence = format!(
-        "a metre of {} is {:.4} m on the ground there",
-        crs.name(),
-        1.0 / scale
-    );
-    if (scale - 1.0).abs() > WRONG_GRID {
-        return Err(Fault::new(
-            sentence,
-            "give a coordinate system that keeps lengths there, such as its zone of UTM",
-        ));
-    }
-    Ok(((scale - 1.0).abs() > POOR_GRID).then_some(sentence))
-}
 
 /// The middle of a list's positions on the Earth.
 fn middle_of(list: &Crs, positions: &[DVec3]) -> Result<Geographic, Fault> {

@@ -114,11 +114,7 @@ fn camera_of(
     folder: &PhotoFolder<'_>,
 ) -> Result<Camera, Fault> {
     let missing = || Fault::new(format!("photo '{photo}' has no camera"), "export it again");
-    let mut camera = reconstruction
-        .cameras
-        .get(camera)
-        .cloned()
-        .ok_or_else(missing)?;
+    let camera = reconstruction.cameras.get(camera).ok_or_else(missing)?;
     let size = folder.size_of(photo).and_then(Result::ok);
     match (reconstruction.sizes_known, size) {
         (true, Some((width, height))) if (width, height) != (camera.width, camera.height) => {
@@ -129,15 +125,8 @@ fn camera_of(
                 )
             })
         }
-        (true, _) => Ok(camera),
-        (false, Some((width, height))) => {
-            (camera.width, camera.height) = (width, height);
-            if !reconstruction.principal_points_from_corner {
-                camera.cx += f64::from(width) / 2.0;
-                camera.cy += f64::from(height) / 2.0;
-            }
-            Ok(camera)
-        }
+        (true, _) => Ok(camera.clone()),
+        (false, Some((width, height))) => Ok(reconstruction.sized(camera, width, height)),
         (false, None) => Err(Fault::new(
             format!("the image size of '{photo}' is not known, so its marks cannot be placed"),
             "give the folder of the photos with --photos",

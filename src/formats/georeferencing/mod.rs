@@ -201,7 +201,7 @@ fn georeferenced(
     from_photos: bool,
     request: &GeoreferenceRequest,
 ) -> Result<Georeferenced, FileError> {
-    let mut warnings = Vec::new();
+    let mut warnings = reconstruction.warnings.clone();
     let points = match &request.control_points {
         Some(list) => Some(read_control_points(list)?),
         None => None,

@@ -69,8 +69,7 @@ fn decode(
     };
     file.geographic = is_geographic(file.crs.as_deref(), reader.header());
     if file.geographic {
-        file.warnings
-            .push("its coordinates are degrees, not lengths".to_owned());
+        file.warnings.push("its coordinates are degrees".to_owned());
     }
     let mut portion = PointDataBuilder::new().for_header(reader.header()).build();
     let portion_size = PORTION.min(PORTION_BYTES / portion.record_len().max(1) as u64);

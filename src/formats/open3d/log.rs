@@ -20,22 +20,29 @@ use crate::formats::rounded_rotation::{from_row_major, rounded_rotation};
 
 const WRITE: &str = "write the trajectory again with Open3D";
 
-/// Whether a text that begins so is a trajectory: whole numbers, then a line of four numbers.
+/// Whether a text that begins so is a trajectory: whole numbers, then the four lines of a 4x4, of which
+/// the last is 0 0 0 1. (A cloud may begin with the count of its points as well.)
 pub(in crate::formats) fn is_log(start: &str) -> bool {
     let mut lines = start.lines().filter(|line| !line.trim().is_empty());
-    let numbers = |line: &str| {
+    let numbers = |line: &str| -> Option<Vec<f64>> {
         line.split_whitespace()
-            .all(|word| word.parse::<f64>().is_ok())
-    };
-    let count = |line: &str| line.split_whitespace().count();
-    let (Some(head), Some(row)) = (lines.next(), lines.next()) else {
-        return false;
+            .map(|word| word.parse().ok())
+            .collect()
     };
     let is_id = |word: &str| word.parse::<i64>().is_ok();
-    matches!(count(head), 1 | 3)
-        && head.split_whitespace().all(is_id)
-        && count(row) == 4
-        && numbers(row)
+    let is_head = |head: &str| {
+        matches!(head.split_whitespace().count(), 1 | 3) && head.split_whitespace().all(is_id)
+    };
+    if !lines.next().is_some_and(is_head) {
+        return false;
+    }
+    let rows: Vec<_> = lines.take(4).map(numbers).collect();
+    match rows.as_slice() {
+        [Some(a), Some(b), Some(c), Some(last)] => {
+            [a, b, c].iter().all(|row| row.len() == 4) && last == &[0.0, 0.0, 0.0, 1.0]
+        }
+        _ => false,
+    }
 }
 
 /// Reads the poses.

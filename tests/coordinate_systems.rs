@@ -1,0 +1,147 @@
+//! Poses from the Earth's centre over a surface on a map: the flight is brought to one system, and its
+//! scales are those of a closed form.
+
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "in a test a panic is the report"
+)]
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use fragscale::formats::{OpenOptions, Opened, open_flight};
+use fragscale::geodesy::{Crs, Geographic, ecef_from_geographic, enu_axes};
+use fragscale::jobs::Progress;
+use glam::{DMat3, DVec3};
+
+/// In UTM zone 33 north, 2 degrees west of its central meridian.
+const PLACE: Geographic = Geographic {
+    longitude: 13.0,
+    latitude: 48.0,
+    height: 400.0,
+};
+
+/// A Metashape cameras.xml with one photo straight down from 100 m, its top to true north, f = 1000 px.
+/// The chunk's own frame is the Earth's.
+fn cameras_xml() -> String {
+    let up = Geographic {
+        height: PLACE.height + 100.0,
+        ..PLACE
+    };
+    let (center, enu) = (ecef_from_geographic(up), enu_axes(PLACE));
+    // Columns: the image's right is east, its down is south, its forward is down.
+    let rotation = enu * DMat3::from_cols(DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z);
+    let (r, c) = (rotation.transpose(), center);
+    let row = |axis: usize| {
+        // Row `axis` of the 4x4 from the camera to the Earth.
+        let row = rotation.row(axis);
+        format!("{:.17} {:.17} {:.17} {:.9}", row.x, row.y, row.z, c[axis])
+    };
+    let matrix = format!("{} {} {} 0 0 0 1", row(0), row(1), row(2));
+    assert!(
+        (r * rotation - DMat3::IDENTITY)
+            .to_cols_array()
+            .iter()
+            .all(|d| d.abs() < 1e-12)
+    );
+    format!(
+        r#"<?xml version="1.0" encoding="UTF-8"?>
+<document version="2.0.0"><chunk label="Chunk 1" enabled="true">
+<sensors next_id="1"><sensor id="0" label="cam" type="frame"><resolution width="400" height="300"/>
+<calibration type="frame" class="adjusted"><resolution width="400" height="300"/><f>1000</f><cx>0</cx><cy>0</cy></calibration></sensor></sensors>
+<cameras next_id="1"><camera id="0" sensor_id="0" label="a.jpg"><transform>{matrix}</transform></camera></cameras>
+<reference>GEOGCS["WGS 84",DATUM["World Geodetic System 1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.01745329251994328],AUTHORITY["EPSG","4326"]]</reference>
+<transform><rotation locked="false">1 0 0 0 1 0 0 0 1</rotation><translation locked="false">0 0 0</translation><scale locked="false">1</scale></transform>
+</chunk></document>
+"#
+    )
+}
+
+/// Level ground 50 m around the place on the map of `crs`, as text without any system.
+fn ground(crs: &str) -> String {
+    let center = Crs::understand(crs)
+        .unwrap()
+        .from_geographic(PLACE)
+        .unwrap();
+    let mut text = String::new();
+    for (x, y) in [(-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0)] {
+        let _ = writeln!(text, "{} {} {}", center.x + x, center.y + y, PLACE.height);
+    }
+    text
+}
+
+fn open(folder: &Path, world: &str) -> Opened {
+    let text = format!(
+        "format = 1\n[world]\n{world}\n[surface]\nfile = \"ground.xyz\"\n[photos]\nreconstruction = \"cameras.xml\"\n"
+    );
+    fs::write(folder.join("flight.toml"), text).unwrap();
+    open_flight(folder, &OpenOptions::default(), &Progress::default()).unwrap()
+}
+
+#[test]
+fn poses_from_the_earths_centre_meet_a_surface_on_a_map() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("cameras.xml"), cameras_xml()).unwrap();
+    fs::write(folder.join("ground.xyz"), ground("EPSG:32633")).unwrap();
+    for world in ["unit = \"m\"\ncrs = \"EPSG:32633\"", "unit = \"m\""] {
+        let opened = open(folder, world);
+        assert_eq!(
+            opened.crs.as_deref(),
+            Some("EPSG:32633"),
+            "the photos' zone"
+        );
+        let outcomes = opened.flight.scales(&Progress::default()).unwrap();
+        let scale = outcomes[0].scale().unwrap();
+        assert_eq!(scale.corners_on_surface(), 4);
+        // Metres of the map are 0.9996 (1 + x^2 / 2 R^2) / (1 + h / R) of those on the ground, but the
+        // flying height, which is no length on the map, stays 100 m.
+        let top = scale.scale.top.unwrap();
+        assert!((top / 10.0 - 1.0).abs() < 1e-5, "{top}");
+        // The image's top is true north: on the map it is turned by the convergence, about
+        // -2 degrees times sin 48, clockwise.
+        let [left, right] = [0, 1].map(|corner| scale.corners[corner].point().unwrap());
+        let turn = (right.y - left.y).atan2(right.x - left.x).to_degrees();
+        let convergence = (-2.0_f64).to_radians().tan() * 48.0_f64.to_radians().sin();
+        assert!(
+            (turn - convergence.atan().to_degrees()).abs() < 2e-3,
+            "{turn}"
+        );
+        let said = opened.warnings.join("\n");
+        assert!(said.contains("are brought to EPSG:32633"), "{said}");
+    }
+}
+
+#[test]
+fn without_a_surface_on_a_map_lengths_stay_true_around_the_photos() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("cameras.xml"), cameras_xml()).unwrap();
+    let error = open_flight(
+        &folder.join("cameras.xml"),
+        &OpenOptions::default(),
+        &Progress::default(),
+    );
+    let error = error.unwrap_err().to_string();
+    assert!(
+        error.contains("it has no 3D points to make a surface of"),
+        "{error}"
+    );
+}
+
+#[test]
+fn the_map_must_count_in_the_flights_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("cameras.xml"), cameras_xml()).unwrap();
+    fs::write(folder.join("ground.xyz"), ground("EPSG:32633")).unwrap();
+    let text = "format = 1\n[world]\nunit = \"ft\"\ncrs = \"EPSG:32633\"\n[surface]\nfile = \"ground.xyz\"\n[photos]\nreconstruction = \"cameras.xml\"\n";
+    fs::write(folder.join("flight.toml"), text).unwrap();
+    let error = open_flight(folder, &OpenOptions::default(), &Progress::default());
+    let error = error.unwrap_err().to_string();
+    assert!(error.contains("which counts in m, not ft"), "{error}");
+}
