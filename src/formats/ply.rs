@@ -553,7 +553,7 @@ mod tests {
             read_bytes(&loose).unwrap().cloud,
             read_bytes(ASCII.as_bytes()).unwrap().cloud
         );
-        let wrong = ASCII.replace("property float y", "property real y");
+        let wrong = ASCII.replace("property int y", "property real y");
         let fault = read_bytes(wrong.as_bytes()).unwrap_err();
         assert!(fault.what.ends_with("at 'property real y'"), "{fault}");
         let line = wrong.lines().position(|line| line == "property real y");
