@@ -3,7 +3,7 @@
 //!
 //! PTS: blocks of a number of points, alone on its line, and as many lines `x y z`,
 //! `x y z intensity`, `x y z r g b` or `x y z intensity r g b`, in the world. Some programs leave
-//! the number out.
+//! the number out. Points behind the promised ones are left out, with a warning.
 //!
 //! PTX: scans, each a grid:
 //! - columns and rows, one number a line;
@@ -38,8 +38,9 @@ pub(super) fn read_pts(
 ) -> Result<CloudFile, Fault> {
     let mut lines = TextLines::new(input);
     let mut file = CloudFile::default();
-    // How many points the block still has, where it says so.
+    // How many points the block still has, where it says so, and how many follow those.
     let mut rest: Option<u64> = None;
+    let mut more = 0_u64;
     loop {
         if lines.line().is_multiple_of(65_536) {
             progress.advance(lines.bytes(), size)?;
@@ -58,11 +59,12 @@ pub(super) fn read_pts(
                 rest = Some(fields.whole("the number of points")?);
             }
             columns => {
+                let (point, color) = point(&mut fields, columns)?;
                 if rest == Some(0) {
-                    return Err(fields.fault("it goes on behind the points that it promises"));
+                    more += 1;
+                    continue;
                 }
                 rest = rest.map(|rest| rest - 1);
-                let (point, color) = point(&mut fields, columns)?;
                 file.push(point, color);
             }
         }
@@ -70,6 +72,11 @@ pub(super) fn read_pts(
     if let Some(missing @ 1..) = rest {
         let what = format!("it ends {missing} points before what it promises");
         return Err(lines.fault(what, REMEDY));
+    }
+    if more > 0 {
+        file.warnings.push(format!(
+            "{more} points follow those that it promises; they are left out"
+        ));
     }
     file.expect_points()?;
     Ok(file)
@@ -220,11 +227,19 @@ mod tests {
         }
     }
 
+    /// As PDAL reads such files.
+    #[test]
+    fn points_behind_the_promised_ones_are_left_out() {
+        let file = pts("1\n1 2 3\n4 5 6\n7 8 9\n").unwrap();
+        assert_eq!(file.cloud.points, [DVec3::new(1.0, 2.0, 3.0)]);
+        assert!(file.warnings.concat().starts_with("2 points follow"));
+    }
+
     #[test]
     fn pts_that_do_not_keep_their_promise() {
         for (text, line) in [
             ("3\n1 2 3\n", 3),
-            ("1\n1 2 3\n4 5 6\n", 3),
+            ("1\n1 2 3\n4 5\n", 3),
             ("2\n1 2 3\n1\n4 5 6\n", 3),
             ("1\n1 2\n", 2),
             ("1\n1 2 x\n", 2),

@@ -12,7 +12,7 @@
 //! Header and elements are parsed by ply-rs-bw, one element at a time, so that a header that claims
 //! too much costs nothing.
 
-use std::io::BufRead;
+use std::io::{BufRead, Read};
 
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -22,8 +22,12 @@ use ply_rs_bw::ply::{
 };
 
 use super::cloud_file::{CloudFile, first_not_finite};
+use super::fields::shown;
 use crate::fault::Fault;
 use crate::jobs::Progress;
+
+/// More bytes than any header has.
+const LONGEST_HEADER: u64 = 1 << 20;
 
 /// Reads a PLY file.
 ///
@@ -73,7 +77,7 @@ pub(super) fn read(input: impl BufRead, progress: &Progress) -> Result<CloudFile
             _ => input.read_all(element, progress, |_: Skipped| Ok(()))?,
         }
     }
-    input.expect_end()?;
+    file.warnings.extend(input.left_out()?);
     if !has_vertices {
         return Err(Fault::new("it has no vertex element", "export points"));
     }
@@ -108,11 +112,11 @@ pub(super) fn read_vertices<E: PropertyAccess>(
     Ok(())
 }
 
-fn read_header<R: BufRead>(input: R) -> Result<(Header, Elements<R>), Fault> {
-    let mut reader = Reader::new(input);
+fn read_header<R: BufRead>(mut input: R) -> Result<(Header, Elements<R>), Fault> {
+    let (header, lines) = plain_header(&mut input)?;
     let header = Parser::<Skipped>::new()
-        .read_header(&mut reader)
-        .map_err(|e| parse_fault(&e, e.line().unwrap_or(0) as u64))?;
+        .read_header(&mut Reader::new(header.as_bytes()))
+        .map_err(|error| header_fault(&error, &header))?;
     if (header.version.major, header.version.minor) != (1, 0) {
         let (major, minor) = (header.version.major, header.version.minor);
         return Err(Fault::new(
@@ -122,9 +126,8 @@ fn read_header<R: BufRead>(input: R) -> Result<(Header, Elements<R>), Fault> {
     }
     let elements = Elements {
         encoding: header.encoding,
-        // The reader already counts the line after the header.
-        line: (reader.line() as u64).saturating_sub(1),
-        input: reader.into_inner(),
+        line: lines,
+        input,
         text: String::new(),
     };
     Ok((header, elements))
@@ -190,21 +193,23 @@ impl<R: BufRead> Elements<R> {
         Ok(())
     }
 
-    /// What follows the elements shows that the header does not belong to them.
-    fn expect_end(&mut self) -> Result<(), Fault> {
+    /// What follows the elements shows that a binary header does not belong to them. Behind text it
+    /// is left out, with a warning.
+    fn left_out(&mut self) -> Result<Option<String>, Fault> {
         let rest = self.input.fill_buf().map_err(|e| {
             Fault::new(
                 format!("it cannot be read to its end ({e})"),
                 "check the disk",
             )
         })?;
-        if rest.iter().any(|byte| !byte.is_ascii_whitespace()) {
-            return Err(Fault::new(
-                "it goes on behind the elements that its header promises",
-                "export the file again",
-            ));
+        if rest.iter().all(u8::is_ascii_whitespace) {
+            return Ok(None);
         }
-        Ok(())
+        let what = "it goes on behind the elements that its header promises";
+        match self.encoding {
+            Encoding::Ascii => Ok(Some(format!("{what}; what follows is left out"))),
+            _ => Err(Fault::new(what, "export the file again")),
+        }
     }
 
     fn next_text_line(&mut self, element: &ElementDef, index: usize) -> Result<(), Fault> {
@@ -238,12 +243,44 @@ fn cut_off(element: &ElementDef, index: usize) -> Fault {
     )
 }
 
-fn parse_fault(error: &ParseError, line: u64) -> Fault {
-    Fault::at(
-        line.max(1),
-        error.to_string(),
-        "check that it is a PLY file, and export it again",
-    )
+/// Reads the header's lines, each with single spaces between its words, and their number. Comments
+/// lose their words, which may be of any encoding.
+fn plain_header(input: &mut impl BufRead) -> Result<(String, u64), Fault> {
+    let mut bounded = input.by_ref().take(LONGEST_HEADER);
+    let mut plain = String::new();
+    let mut line = Vec::new();
+    for lines in 0.. {
+        line.clear();
+        let read = bounded.read_until(b'\n', &mut line).map_err(|e| {
+            Fault::new(format!("its header cannot be read ({e})"), "check the disk")
+        })?;
+        if read == 0 {
+            return Ok((plain, lines));
+        }
+        let text = String::from_utf8_lossy(&line);
+        let words: Vec<&str> = text.split_ascii_whitespace().collect();
+        match words.first() {
+            Some(&"comment" | &"obj_info") => plain.push_str("comment -"),
+            _ => plain.push_str(&words.join(" ")),
+        }
+        plain.push('\n');
+        if words == ["end_header"] {
+            return Ok((plain, lines + 1));
+        }
+    }
+    Ok((plain, 0))
+}
+
+fn header_fault(error: &ParseError, header: &str) -> Fault {
+    let remedy = "check that it is a PLY file, and export it again";
+    let number = error.line().unwrap_or(1).max(1);
+    match header.lines().nth(number - 1) {
+        Some(line) => {
+            let what = format!("its header does not go on as PLY at '{}'", shown(line));
+            Fault::at(number as u64, what, remedy)
+        }
+        None => Fault::at(number as u64, "its header ends before end_header", remedy),
+    }
 }
 
 /// What the properties of `vertex` say.
@@ -482,15 +519,45 @@ mod tests {
     }
 
     #[test]
-    fn a_header_that_promises_too_little_is_an_error() {
+    fn a_header_that_promises_too_little() {
         let fewer = ASCII.replace("element face 1", "element face 0");
-        assert!(
-            read_bytes(fewer.as_bytes())
-                .unwrap_err()
-                .what
-                .contains("goes on")
+        let file = read_bytes(fewer.as_bytes()).unwrap();
+        assert_eq!(
+            (file.cloud.points.len(), file.cloud.triangles.len()),
+            (4, 0)
         );
-        assert!(read_bytes(format!("{ASCII}\r\n\n").as_bytes()).is_ok());
+        assert!(
+            file.warnings.concat().contains("goes on"),
+            "{:?}",
+            file.warnings
+        );
+        let whole = read_bytes(format!("{ASCII}\r\n\n").as_bytes()).unwrap();
+        assert_eq!(whole, read_bytes(ASCII.as_bytes()).unwrap());
+        for big in [false, true] {
+            let more = [binary(big), vec![1]].concat();
+            assert!(read_bytes(&more).unwrap_err().what.contains("goes on"));
+        }
+    }
+
+    /// As other programs write headers: spaces around the words, comments in Latin-1 or without words.
+    #[test]
+    fn loose_headers_are_read() {
+        let (header, rest) = ASCII.split_once("end_header").unwrap();
+        let mut loose = Vec::new();
+        for line in header.trim_end().lines() {
+            loose.extend_from_slice(format!(" {} \n", line.trim().replace(' ', " \t")).as_bytes());
+        }
+        loose.extend_from_slice(b"comment\ncomment Cr\xe9\xe9\nobj_info\n end_header");
+        loose.extend_from_slice(rest.as_bytes());
+        assert_eq!(
+            read_bytes(&loose).unwrap().cloud,
+            read_bytes(ASCII.as_bytes()).unwrap().cloud
+        );
+        let wrong = ASCII.replace("property int y", "property real y");
+        let fault = read_bytes(wrong.as_bytes()).unwrap_err();
+        assert!(fault.what.ends_with("at 'property real y'"), "{fault}");
+        let line = wrong.lines().position(|line| line == "property real y");
+        assert_eq!(fault.line, line.map(|line| line as u64 + 1));
     }
 
     #[test]

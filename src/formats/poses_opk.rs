@@ -4,11 +4,13 @@
 //! - A table with a header: `filename,x,y,z,omega,phi,kappa[,camera]` in any order; `easting`,
 //!   `northing` and `altitude`, `height` or `alt` stand for x, y, z. Other columns are passed over.
 //! - A table without: `name x y z omega phi kappa [camera]` on every line.
+//! - RealityCapture's `#name,X/Lon,Y/Lat,Z/Alt,` and then `omega,phi,kappa` or `yaw,pitch,roll`, whose
+//!   angles are its own (see `realitycapture`).
 //! - GeoJSON whose features have the properties `filename`, `camera`, `xyz`, `opk` (radians here), and
 //!   whose member `world_crs` states the system.
 //!
 //! Fields stand between commas, semicolons, tabs or white space, and may be quoted. Lines that begin
-//! with # are comments, but for the header. Angles are degrees; Rx(omega) Ry(phi) Rz(kappa) takes
+//! with # are comments, but for the header; one that names a yaw or heading in another form is refused. Angles are degrees; Rx(omega) Ry(phi) Rz(kappa) takes
 //! photogrammetric camera axes (x right, y up, z back) to the world, as in poses.csv. The coordinate
 //! system stands in a .prj beside the table.
 
@@ -21,18 +23,30 @@ use super::fields::shown;
 use super::input::text_from_bytes;
 use super::json;
 use super::poses_csv::{PoseLine, PosesFile};
+use super::realitycapture;
 use crate::camera::Pose;
 use crate::fault::Fault;
 
 /// What the columns may be called: the photo, x, y, z, omega, phi, kappa.
 const COLUMNS: [&[&str]; 7] = [
-    &["filename", "imagename", "image", "name", "file"],
-    &["x", "easting"],
-    &["y", "northing"],
-    &["z", "altitude", "height", "alt"],
+    &["filename", "imagename", "image", "name", "file", "label"],
+    &["x", "easting", "x/lon"],
+    &["y", "northing", "y/lat"],
+    &["z", "altitude", "height", "alt", "z/alt"],
     &["omega"],
     &["phi"],
     &["kappa"],
+];
+
+/// The columns of RealityCapture's other form.
+const REALITYCAPTURE: [&[&str]; 7] = [
+    &["name"],
+    &["x/lon"],
+    &["y/lat"],
+    &["z/alt"],
+    &["yaw"],
+    &["pitch"],
+    &["roll"],
 ];
 
 /// Whether the first lines are such a table's.
@@ -74,19 +88,45 @@ fn fields(line: &str) -> Vec<&str> {
         .collect()
 }
 
-/// Where the columns stand, and the camera's, if a line names them all.
-fn header(fields: &[&str]) -> Option<([usize; 7], Option<usize>)> {
-    let find = |names: &[&str]| {
-        fields.iter().position(|field| {
-            let field = field.trim_start_matches('#').trim().to_ascii_lowercase();
-            names.contains(&field.as_str())
+/// Where the columns stand.
+#[derive(Debug, Clone, Copy)]
+struct Header {
+    places: [usize; 7],
+    camera: Option<usize>,
+    names: [&'static [&'static str]; 7],
+    pose: fn(DVec3, [f64; 3]) -> Pose,
+}
+
+/// Of a table that does not say it.
+const SILENT: Header = Header {
+    places: [0, 1, 2, 3, 4, 5, 6],
+    camera: Some(7),
+    names: COLUMNS,
+    pose: Pose::from_omega_phi_kappa,
+};
+
+/// Where the columns stand, if a line names them all.
+fn header(fields: &[&str]) -> Option<Header> {
+    let of = |names: [&'static [&'static str]; 7], pose: fn(DVec3, [f64; 3]) -> Pose| {
+        let mut places = [0; 7];
+        for (place, names) in places.iter_mut().zip(names) {
+            *place = find(fields, names)?;
+        }
+        Some(Header {
+            places,
+            camera: find(fields, &["camera"]),
+            names,
+            pose,
         })
     };
-    let mut places = [0; 7];
-    for (place, names) in places.iter_mut().zip(COLUMNS) {
-        *place = find(names)?;
-    }
-    Some((places, find(&["camera"])))
+    of(COLUMNS, Pose::from_omega_phi_kappa).or_else(|| of(REALITYCAPTURE, realitycapture::pose))
+}
+
+fn find(fields: &[&str], names: &[&str]) -> Option<usize> {
+    fields.iter().position(|field| {
+        let field = field.trim_start_matches('#').trim().to_ascii_lowercase();
+        names.contains(&field.as_str())
+    })
 }
 
 /// Whether the fields are those of a line without header.
@@ -115,16 +155,25 @@ pub(super) fn read_table(bytes: &[u8]) -> Result<PosesFile, Fault> {
             }
         }
         if text.trim_start().starts_with('#') {
+            if places.is_none() && find(&fields, &["yaw", "heading"]).is_some() {
+                let what = "its angles are not omega, phi and kappa";
+                return Err(Fault::at(line, what, "write them as a poses.csv"));
+            }
             continue;
         }
-        let (places, camera) = *places.get_or_insert(([0, 1, 2, 3, 4, 5, 6], Some(7)));
+        let Header {
+            places,
+            camera,
+            names,
+            pose,
+        } = *places.get_or_insert(SILENT);
         let field = |index: usize| {
             fields
                 .get(places[index])
                 .copied()
                 .filter(|field| !field.is_empty())
                 .ok_or_else(|| {
-                    let what = format!("the line has no {}", COLUMNS[index][0]);
+                    let what = format!("the line has no {}", names[index][0]);
                     Fault::at(line, what, "complete the line")
                 })
         };
@@ -134,7 +183,7 @@ pub(super) fn read_table(bytes: &[u8]) -> Result<PosesFile, Fault> {
                 .ok()
                 .filter(|n| n.is_finite())
                 .ok_or_else(|| {
-                    let name = COLUMNS[index][0];
+                    let name = names[index][0];
                     let what = format!("{name} is '{}', not a finite number", shown(text));
                     Fault::at(line, what, "write a number with a decimal point")
                 })
@@ -147,7 +196,7 @@ pub(super) fn read_table(bytes: &[u8]) -> Result<PosesFile, Fault> {
             camera: camera
                 .filter(|name| !name.is_empty())
                 .map(|&name| name.to_owned()),
-            pose: Pose::from_omega_phi_kappa(center, angles),
+            pose: pose(center, angles),
             line,
         })?;
     }
@@ -227,6 +276,30 @@ mod tests {
 
     use super::*;
     use crate::formats::test_data::shared_data;
+
+    /// RealityScan's documentation: with yaw, pitch and roll 0 the camera looks down and its right is
+    /// east; a yaw of 90 turns it clockwise, a pitch of 90 looks to the horizon.
+    #[test]
+    fn realitycaptures_angles_are_its_own() {
+        let of = |angles: &str| {
+            let text = format!("#cameras 1\n#name,X/Lon,Y/Lat,Z/Alt,{angles}\n");
+            assert!(is_table(text.as_bytes()));
+            read_table(text.as_bytes()).unwrap().lines[0].pose
+        };
+        let down = of("yaw,pitch,roll\na.jpg,1,2,3,0,0,0");
+        assert_eq!(down.center, DVec3::new(1.0, 2.0, 3.0));
+        let near = |a: DVec3, b: DVec3| (a - b).length() < 1e-12;
+        assert!(near(down.rotation.z_axis, DVec3::NEG_Z) && near(down.rotation.x_axis, DVec3::X));
+        assert_eq!(of("omega,phi,kappa\na.jpg,1,2,3,0,0,0"), down);
+        let east = of("yaw,pitch,roll\na.jpg,1,2,3,90,90,0");
+        assert!(near(east.rotation.z_axis, DVec3::X), "{east:?}");
+        let other = "# name, x, y, z, yaw, pitch, roll\na.jpg 1 2 3 4 5 6\n";
+        let fault = read_table(other.as_bytes()).unwrap_err();
+        assert!(fault.what.contains("not omega"), "{fault}");
+        assert_eq!(fault.line, Some(1));
+        let label = "Label,X,Y,Z,Omega,Phi,Kappa\na.jpg,1,2,3,0,0,0\n";
+        assert_eq!(read_table(label.as_bytes()).unwrap().lines[0].pose, down);
+    }
 
     #[test]
     fn the_three_shared_forms_agree() {

@@ -7,8 +7,9 @@
 //!   semicolons the decimal sign may be a comma.
 //! - Without names the columns are x y z, and where six or more stand and the next three are whole
 //!   numbers from 0 to 255, red green blue. With names they are found by name: x, y, z (also
-//!   easting, northing, elevation, height, altitude), red, green, blue (also r, g, b). CloudCompare's
-//!   Rf, Gf, Bf are colours from 0 to 1.
+//!   easting, northing, elevation, height, altitude, or shorter; a unit may follow in brackets), red, green,
+//!   blue (also r, g, b). CloudCompare's Rf, Gf, Bf are colours from 0 to 1. Other named columns may
+//!   hold anything, or nothing.
 //! - A line with a single whole number right behind the names, or first of all, is a count and is
 //!   passed over.
 
@@ -17,6 +18,7 @@ use std::io::BufRead;
 use glam::DVec3;
 
 use super::cloud_file::CloudFile;
+use super::fields::shown;
 use super::text_lines::TextLines;
 use crate::fault::Fault;
 use crate::jobs::Progress;
@@ -56,13 +58,17 @@ pub(super) fn read(
             Some(known) => known,
             None => {
                 let separator = Separator::of(text);
-                if separator.numbers(text, &mut fields).is_err() {
+                let wrong = separator.wrong_number(text, &mut fields, named.as_ref());
+                if let Some(word) = wrong {
                     // Names, or a comment in words.
                     let columns = Columns::of_names(&separator.split(text));
                     if columns.is_none() && !is_comment {
-                        return Err(unknown_columns(line_number, text));
+                        return Err(match named {
+                            Some(_) => not_a_number(line_number, word),
+                            None => unknown_columns(line_number, text),
+                        });
                     }
-                    named = columns;
+                    named = columns.or(named);
                     continue;
                 }
                 // A comment of numbers, or a count.
@@ -74,10 +80,9 @@ pub(super) fn read(
                 (separator, columns)
             }
         };
-        separator.numbers(text, &mut fields).map_err(|word| {
-            let what = format!("'{word}' is not a number");
-            Fault::at(line_number, what, "correct or remove the line")
-        })?;
+        if let Some(word) = separator.wrong_number(text, &mut fields, named.as_ref()) {
+            return Err(not_a_number(line_number, word));
+        }
         let Some((position, color)) = columns.pick(&fields) else {
             let what = format!("it has {} columns, too few", fields.len());
             return Err(Fault::at(
@@ -102,10 +107,15 @@ pub(super) fn read(
     Ok(file)
 }
 
+fn not_a_number(line: u64, word: &str) -> Fault {
+    let what = format!("'{}' is not a number", shown(word));
+    Fault::at(line, what, "correct or remove the line")
+}
+
 fn unknown_columns(line: u64, text: &str) -> Fault {
     Fault::at(
         line,
-        format!("the columns '{text}' do not name x, y and z"),
+        format!("the columns '{}' do not name x, y and z", shown(text)),
         "name the columns x, y, z, or remove the line",
     )
 }
@@ -141,27 +151,45 @@ impl Separator {
         }
     }
 
-    /// The numbers of a line; a word that is none as the error.
-    fn numbers(self, line: &str, numbers: &mut Vec<f64>) -> Result<(), String> {
+    /// The numbers of a line, NaN for the words that are none, and the first of those that matters:
+    /// where the columns are named, only the columns that are read do.
+    fn wrong_number<'a>(
+        self,
+        line: &'a str,
+        numbers: &mut Vec<f64>,
+        named: Option<&Columns>,
+    ) -> Option<&'a str> {
         numbers.clear();
-        let mut push = |word: &str| {
-            let number = if self == Self::Semicolon && word.contains(',') {
-                word.replace(',', ".").parse()
+        let mut wrong = None;
+        let mut push = |word: &'a str| {
+            let bare = word.trim_matches('"');
+            let number = if self == Self::Semicolon && bare.contains(',') {
+                bare.replace(',', ".").parse()
             } else {
-                word.parse()
+                bare.parse()
             };
-            numbers.push(number.map_err(|_| word.to_owned())?);
-            Ok(())
+            let matters = named.is_none_or(|columns| columns.reads(numbers.len()));
+            if number.is_err() && matters && wrong.is_none() {
+                wrong = Some(word);
+            }
+            numbers.push(number.unwrap_or(f64::NAN));
         };
         match self {
             Self::Comma | Self::Semicolon => {
                 let sign = if self == Self::Comma { ',' } else { ';' };
                 let line = line.strip_suffix(sign).unwrap_or(line);
-                line.split(sign).map(str::trim).try_for_each(&mut push)
+                line.split(sign).map(str::trim).for_each(&mut push);
             }
-            Self::Tab | Self::Spaces => line.split_ascii_whitespace().try_for_each(&mut push),
+            Self::Tab | Self::Spaces => line.split_ascii_whitespace().for_each(&mut push),
         }
+        wrong
     }
+}
+
+/// A column's name without quotes, and without the unit of "X [m]" and "x(m)".
+fn plain_name(name: &str) -> &str {
+    let name = name.trim_matches(['"', '\'']);
+    name.split(['[', '(']).next().unwrap_or_default().trim()
 }
 
 /// Where on a line the coordinates and colours stand.
@@ -171,20 +199,26 @@ struct Columns {
     color: Option<[usize; 3]>,
     /// Colours from 0 to 1.
     fractions: bool,
+    /// The angles of a camera: where they are named, words are photos' names, and this is no cloud.
+    angles: bool,
 }
 
 impl Columns {
     fn of_names(names: &[&str]) -> Option<Self> {
+        let names: Vec<&str> = names.iter().map(|name| plain_name(name)).collect();
+        // The first alias that stands there: "x" before "e" of a line that has both.
         let find = |aliases: &[&str]| {
-            names.iter().position(|name| {
-                let name = name.trim_matches(|c: char| c == '"' || c == '\'');
-                aliases.iter().any(|alias| name.eq_ignore_ascii_case(alias))
-            })
+            let place = |alias: &&str| {
+                names
+                    .iter()
+                    .position(|name| name.eq_ignore_ascii_case(alias))
+            };
+            aliases.iter().find_map(place)
         };
         let position = [
-            find(&["x", "easting", "east"])?,
-            find(&["y", "northing", "north"])?,
-            find(&["z", "elevation", "height", "altitude"])?,
+            find(&["x", "easting", "east", "e"])?,
+            find(&["y", "northing", "north", "n"])?,
+            find(&["z", "elevation", "height", "altitude", "elev", "alt", "h"])?,
         ];
         let color = |aliases: [&[&str]; 3]| {
             let [red, green, blue] = aliases.map(find);
@@ -196,6 +230,7 @@ impl Columns {
             position,
             color: fractions.or(whole),
             fractions: fractions.is_some(),
+            angles: find(&["omega", "yaw", "heading", "pitch"]).is_some(),
         })
     }
 
@@ -208,7 +243,15 @@ impl Columns {
             position: [0, 1, 2],
             color: colors.then_some([3, 4, 5]),
             fractions: false,
+            angles: false,
         }
+    }
+
+    fn reads(&self, column: usize) -> bool {
+        let angles = self.angles;
+        angles
+            || self.position.contains(&column)
+            || self.color.is_some_and(|three| three.contains(&column))
     }
 
     fn pick(&self, fields: &[f64]) -> Option<(DVec3, Option<[u8; 3]>)> {
@@ -263,6 +306,32 @@ mod tests {
             "500000.123456,2.5,-3,\n4,5,6e-3,\n",
         ] {
             assert_eq!(points(text), expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn other_named_columns_hold_anything() {
+        let expected = [DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0)];
+        for text in [
+            "label,x,y,z,class\nP1,1,2,3,rock\nP2,4,5,6,\n",
+            "E,N,H\n1,2,3\n4,5,6\n",
+            "n,e,h,z,y,x\n0,0,0,3,2,1\n0,0,0,6,5,4\n",
+            "X [m];Y [m];Z (m);time\n1,0;2,0;3,0;2024-05-01 10:00\n4;5;6;\n",
+            "\"x\",\"y\",\"z\"\n\"1\",\"2\",\"3\"\n\"4\",\"5\",\"6\"\n",
+            "//X Y Z R G B Scalar_field\n2\n1 2 3 4 5 6 nan\n4 5 6 7 8 9 nan\n",
+        ] {
+            assert_eq!(points(text), expected, "{text:?}");
+        }
+        let fault = |text: &str| read_text(text).unwrap_err();
+        for (text, line, word) in [
+            ("label,x,y,z\nP1,one,2,3\n", 2, "'one'"),
+            ("label,x,y,z\n1,1,2,3\n1,one,2,3\n", 3, "'one'"),
+            ("1 2 3 a\n", 1, "do not name"),
+            ("label,x,y,z,yaw\na.jpg,1,2,3,4\n", 2, "'a.jpg'"),
+        ] {
+            let fault = fault(text);
+            assert_eq!(fault.line, Some(line), "{fault}");
+            assert!(fault.what.contains(word), "{fault}");
         }
     }
 

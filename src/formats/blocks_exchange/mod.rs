@@ -4,8 +4,8 @@
 //! ```text
 //! BlocksExchange/SpatialReferenceSystems/SRS: Id, Name, Definition
 //! BlocksExchange/Block: SRSId, Photogroups/Photogroup, TiePoints, ControlPoints
-//! Photogroup: ImageDimensions, CameraModelType, FocalLength + SensorSize | FocalLengthPixels,
-//!             CameraOrientation, PrincipalPoint, Distortion, AspectRatio, Skew, Photo...
+//! Photogroup: ImageDimensions, CameraModelType, FocalLengthPixels | FocalLength + (SensorSize |
+//!             PixelSize), CameraOrientation, PrincipalPoint, Distortion, AspectRatio, Skew, Photo...
 //! Photo: Id, ImagePath, Component, Pose/Rotation, Pose/Center, ExifData/GPS
 //! TiePoint: Position, Color, Measurement: PhotoId, x, y
 //! ```
@@ -18,7 +18,8 @@
 //! - Center is the camera centre in the SRS of the Photogroup, or of its Block.
 //! - Pixels count from the CENTRE of the top-left pixel, x right and y down: +0.5 here. Without a
 //!   PrincipalPoint it is the middle of the image.
-//! - SensorSize is the longer side's, in mm as FocalLength.
+//! - SensorSize is the longer side's, in mm as FocalLength; PixelSize may stand in its place. A
+//!   PrincipalPoint may be told as xmm, ymm from the sensor's middle, along CameraOrientation's axes.
 //! - Distortion: `u (1 + K1 r2 + K2 r4 + K3 r6) + 2 P2 u v + P1 (r2 + 2 u2)` and alike for v: P1 and
 //!   P2 are OpenCV's p2 and p1.
 //! - AspectRatio is taken as fy / fx, Skew as pixels; a warning says so where they are not 1 and 0.

@@ -40,9 +40,28 @@ pub(super) fn camera(
         skew: 0.0,
         distortion: Distortion::None,
     };
+    let longer = f64::from(width.max(height));
+    let pixel_size = match (
+        optional(group, "PixelSize")?,
+        optional(group, "SensorSize")?,
+    ) {
+        (Some(size), _) => Some(size),
+        (None, Some(sensor)) => Some(sensor / longer),
+        (None, None) => None,
+    };
     if let Some(point) = child(group, "PrincipalPoint") {
-        camera.cx = number(point, "x")? + 0.5;
-        camera.cy = number(point, "y")? + 0.5;
+        let offset = (optional(point, "xmm")?, optional(point, "ymm")?);
+        if let (Some(x), Some(y)) = offset {
+            let Some(pixel_size) = pixel_size else {
+                return Ok(Err("the size of a pixel is not said".to_owned()));
+            };
+            let offset = axes(group)? * DVec3::new(x, y, 0.0) / pixel_size;
+            camera.cx += offset.x;
+            camera.cy += offset.y;
+        } else {
+            camera.cx = number(point, "x")? + 0.5;
+            camera.cy = number(point, "y")? + 0.5;
+        }
     }
     match text_of(group, "CameraModelType").unwrap_or("Perspective") {
         "Perspective" => {}
@@ -54,15 +73,11 @@ pub(super) fn camera(
             )));
         }
     }
-    let longer = f64::from(width.max(height));
     let pixels = optional(group, "FocalLengthPixels")?;
-    let film = (
-        optional(group, "FocalLength")?,
-        optional(group, "SensorSize")?,
-    );
+    let film = (optional(group, "FocalLength")?, pixel_size);
     camera.fx = match (pixels, film) {
         (Some(pixels), _) => pixels,
-        (None, (Some(focal), Some(sensor))) => focal / sensor * longer,
+        (None, (Some(focal), Some(pixel_size))) => focal / pixel_size,
         (None, _) => return Ok(Err("the focal length is not said".to_owned())),
     };
     let aspect = optional(group, "AspectRatio")?.unwrap_or(1.0);

@@ -40,8 +40,12 @@ pub(super) fn read(pose: Node<'_, '_>, axes: DMat3) -> Result<Option<(Pose, bool
         pose.rotation = pose.rotation * photogrammetric * axes.transpose();
         return Ok(Some((pose, false)));
     }
-    if text_of(rotation, "Yaw").is_some() {
-        let [yaw, pitch, roll] = ["Yaw", "Pitch", "Roll"].map(|name| number(rotation, name));
+    // The later versions' name, and the earlier ones'.
+    let yaw = ["Yaw", "Heading"]
+        .into_iter()
+        .find(|name| text_of(rotation, name).is_some());
+    if let Some(yaw) = yaw {
+        let [yaw, pitch, roll] = [yaw, "Pitch", "Roll"].map(|name| number(rotation, name));
         let pose = Pose::from_yaw_pitch_roll(center, [yaw?, pitch?, roll?]);
         return Ok(Some((pose, true)));
     }

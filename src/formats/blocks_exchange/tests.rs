@@ -153,6 +153,67 @@ fn angles_are_the_matrix() {
     );
 }
 
+/// The commented sample of the format's description (Paris, a camera of 9420 x 14430 pixels) tells
+/// the lens and the rotation in several ways "for this dataset".
+#[test]
+fn the_descriptions_ways_are_the_same_photo() {
+    let of = |lens: &str, rotation: &str| {
+        let text = block("", rotation, lens, "")
+            .replace("<FocalLengthPixels>800</FocalLengthPixels>", "")
+            .replace("<Width>1000", "<Width>9420")
+            .replace("<Height>500", "<Height>14430");
+        let found = read(&text).unwrap();
+        (found.cameras[0].clone(), found.photos[0].pose)
+    };
+    let film = "<FocalLength>100.735601903992</FocalLength>";
+    let (sensor, pose) = of(
+        &format!(
+            "<SensorSize>103.896</SensorSize>{film}<PrincipalPoint><x>4683.755692</x>\
+             <y>7223.0141002</y></PrincipalPoint>"
+        ),
+        "<M_00>-0.9999982912233401</M_00><M_01>-0.001636319085375301</M_01>\
+         <M_02>-0.0008602425863163225</M_02><M_10>-0.001631068695467463</M_10>\
+         <M_11>0.9999802528616577</M_11><M_12>-0.00606906089589293</M_12>\
+         <M_20>0.0008701565192966738</M_20><M_21>-0.006067647409696231</M_21>\
+         <M_22>-0.9999812130648239</M_22>",
+    );
+    let (pixel, turned) = of(
+        &format!(
+            "<PixelSize>0.0072</PixelSize>{film}<PrincipalPoint><xmm>-0.1853590176</xmm>\
+             <ymm>0.06130152144</ymm></PrincipalPoint>"
+        ),
+        "<Omega>179.6523471469934</Omega><Phi>0.04985630236313049</Phi>\
+         <Kappa>179.9065465708369</Kappa>",
+    );
+    for camera in [&sensor, &pixel] {
+        assert!((camera.fx - 13_991.055_82).abs() < 1e-5, "{}", camera.fx);
+        assert!((camera.cx - 4_684.255_692).abs() < 1e-6, "{}", camera.cx);
+        assert!((camera.cy - 7_223.514_100_2).abs() < 1e-6, "{}", camera.cy);
+    }
+    let off = pose.rotation.transpose() * turned.rotation - DMat3::IDENTITY;
+    assert!(off.to_cols_array().iter().all(|x| x.abs() < 1e-9), "{off}");
+    // The photo of Paris looks down.
+    assert!(pose.rotation.z_axis.z < -0.9999);
+    // Along other axes the millimetres count the other way.
+    let up = "<CameraOrientation>XRightYUp</CameraOrientation>";
+    let (camera, _) = of(
+        &format!(
+            "{up}<PixelSize>0.0072</PixelSize>{film}<PrincipalPoint><xmm>-0.1853590176</xmm>\
+             <ymm>-0.06130152144</ymm></PrincipalPoint>"
+        ),
+        DOWN,
+    );
+    assert!((camera.cy - 7_223.514_100_2).abs() < 1e-6, "{}", camera.cy);
+}
+
+#[test]
+fn a_heading_is_a_yaw() {
+    let yaw = "<Yaw>30</Yaw><Pitch>-80</Pitch><Roll>2</Roll>";
+    let heading = yaw.replace("Yaw", "Heading");
+    let of = |rotation| read(&block("", rotation, "", "")).unwrap();
+    assert_eq!(of(yaw), of(&heading));
+}
+
 #[test]
 fn tangential_coefficients_change_places() {
     let lens =

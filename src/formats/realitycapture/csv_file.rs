@@ -1,19 +1,25 @@
-//! The CSV.
+//! The CSVs: the program's own columns, and its "OpenCV-compliant" ones.
 
 use std::collections::HashSet;
 
 use glam::{DMat3, DVec3};
 
-use crate::camera::Pose;
+use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
 use crate::formats::fields::shown;
 use crate::formats::reconstruction::Reconstruction;
 
-use super::{Lens, add, say_refused};
+use super::{FILM, Lens, add, say_refused};
 
 const EXPORT: &str = "export \"Internal/External camera parameters\" from RealityCapture again";
 
-/// Whether a line names the columns of a photo's position and RealityCapture's angles.
+/// The columns of the "OpenCV-compliant" CSV that have to be there.
+const OPENCV: [&str; 13] = [
+    "name", "tx", "ty", "tz", "r00", "r01", "r02", "r10", "r11", "r12", "r20", "r21", "r22",
+];
+
+/// Whether a line names the columns of a photo's position and RealityCapture's angles, or of its
+/// "OpenCV-compliant" pose.
 pub(in crate::formats) fn is_header(line: &str) -> bool {
     let columns = columns(line);
     let has = |names: &[&str]| {
@@ -21,17 +27,18 @@ pub(in crate::formats) fn is_header(line: &str) -> bool {
             .iter()
             .any(|column| names.contains(&column.as_str()))
     };
-    line.trim_start().starts_with('#')
-        && ["name", "x", "y", "pitch", "roll"]
-            .iter()
-            .all(|name| has(&[name]))
+    let own = ["name", "x", "y", "pitch", "roll"]
+        .iter()
+        .all(|name| has(&[name]))
         && has(&["heading", "yaw"])
-        && has(&["alt", "z"])
+        && has(&["alt", "z"]);
+    line.trim_start().starts_with('#') && (own || OPENCV.iter().all(|name| has(&[name])))
 }
 
-/// The columns' names, in lower case.
+/// The columns' names, in lower case, without the words in brackets that may follow the last one.
 fn columns(line: &str) -> Vec<String> {
     let line = line.trim().trim_start_matches('#');
+    let line = line.split('(').next().unwrap_or_default();
     let clean = |name: &str| name.trim().trim_matches('"').to_ascii_lowercase();
     line.split(delimiter(line)).map(clean).collect()
 }
@@ -43,7 +50,56 @@ fn delimiter(line: &str) -> char {
         .unwrap_or(',')
 }
 
-/// Reads the CSV; the cameras have no sizes yet.
+/// Where a column stands, and its name.
+type Column = (usize, &'static str);
+
+/// The named columns.
+struct Header {
+    line: u64,
+    names: Vec<String>,
+    delimiter: char,
+}
+
+impl Header {
+    /// A column under one of its known names.
+    fn optional(&self, known: &[&'static str]) -> Option<Column> {
+        let place = |name: &String| known.contains(&name.as_str());
+        Some((self.names.iter().position(place)?, known[0]))
+    }
+
+    fn needed(&self, known: &[&'static str]) -> Result<Column, Fault> {
+        self.optional(known).ok_or_else(|| {
+            let what = format!("there is no column {}", known[0]);
+            Fault::at(self.line, what, EXPORT)
+        })
+    }
+}
+
+/// One line of the table.
+struct Row<'a> {
+    line: u64,
+    fields: Vec<&'a str>,
+}
+
+impl Row<'_> {
+    fn number(&self, (column, name): Column) -> Result<f64, Fault> {
+        let text = self.fields.get(column).copied().unwrap_or_default();
+        text.parse::<f64>()
+            .ok()
+            .filter(|n| n.is_finite())
+            .ok_or_else(|| {
+                let what = format!("column {name}: '{}' is not a finite number", shown(text));
+                Fault::at(self.line, what, "write decimal points, and export it again")
+            })
+    }
+
+    /// 0 where the template leaves the column out.
+    fn or_zero(&self, column: Option<Column>) -> Result<f64, Fault> {
+        column.map_or(Ok(0.0), |column| self.number(column))
+    }
+}
+
+/// Reads a CSV; the cameras have no sizes yet.
 ///
 /// # Errors
 /// With the line: a missing column, a number that is not finite, a photo named twice; no photo.
@@ -51,44 +107,27 @@ pub(in crate::formats) fn read_csv(text: &str) -> Result<Reconstruction, Fault> 
     let mut lines = (1..)
         .zip(text.lines())
         .filter(|(_, line)| !line.trim().is_empty());
-    let (header_line, header) = lines
+    let (line, titles) = lines
         .by_ref()
         .find(|(_, line)| is_header(line))
         .ok_or_else(|| Fault::new("no line names its columns", EXPORT))?;
-    let names = columns(header);
-    let find = |known: &[&str]| names.iter().position(|name| known.contains(&name.as_str()));
-    let needed = |known: &[&'static str]| {
-        find(known).map(|column| (column, known[0])).ok_or_else(|| {
-            Fault::at(
-                header_line,
-                format!("there is no column {}", known[0]),
-                EXPORT,
-            )
-        })
+    let header = Header {
+        line,
+        names: columns(titles),
+        delimiter: delimiter(titles),
     };
-    let name = needed(&["name"])?;
-    let position = [needed(&["x"])?, needed(&["y"])?, needed(&["alt", "z"])?];
-    let angles = [
-        needed(&["heading", "yaw"])?,
-        needed(&["pitch"])?,
-        needed(&["roll"])?,
-    ];
-    let focal = needed(&["f", "f_35mm", "f_35", "focal"])?;
-    // The template of the columns may be shortened.
-    let optional: [Option<(usize, &str)>; 8] = [
-        find(&["px", "px_norm"]).map(|column| (column, "px")),
-        find(&["py", "py_norm"]).map(|column| (column, "py")),
-        find(&["k1"]).map(|column| (column, "k1")),
-        find(&["k2"]).map(|column| (column, "k2")),
-        find(&["k3"]).map(|column| (column, "k3")),
-        find(&["k4"]).map(|column| (column, "k4")),
-        find(&["t1"]).map(|column| (column, "t1")),
-        find(&["t2"]).map(|column| (column, "t2")),
-    ];
+    let is_opencv = header.optional(&["r00"]).is_some();
     let mut found = Reconstruction {
         package: "realitycapture",
-        intrinsics_in_longer_sides: true,
+        intrinsics_in_longer_sides: !is_opencv,
+        principal_points_from_corner: is_opencv,
         ..Reconstruction::default()
+    };
+    let name = header.needed(&["name"])?;
+    let template: Box<dyn Fn(&Row<'_>) -> Result<Read, Fault>> = if is_opencv {
+        opencv(&header)?
+    } else {
+        own(&header)?
     };
     let mut refused = Vec::new();
     let mut seen = HashSet::new();
@@ -96,43 +135,25 @@ pub(in crate::formats) fn read_csv(text: &str) -> Result<Reconstruction, Fault> 
         if text.trim_start().starts_with('#') {
             continue;
         }
-        let fields: Vec<&str> = text
-            .split(delimiter(header))
+        let fields = text
+            .split(header.delimiter)
             .map(|field| field.trim().trim_matches('"'))
             .collect();
-        let number = |(column, name): (usize, &str)| {
-            let text = fields.get(column).copied().unwrap_or_default();
-            text.parse::<f64>()
-                .ok()
-                .filter(|n| n.is_finite())
-                .ok_or_else(|| {
-                    let what = format!("column {name}: '{}' is not a finite number", shown(text));
-                    Fault::at(line, what, "write decimal points, and export it again")
-                })
-        };
-        let photo = fields.get(name.0).copied().unwrap_or_default();
+        let row = Row { line, fields };
+        let photo = row.fields.get(name.0).copied().unwrap_or_default();
         if photo.is_empty() {
             return Err(Fault::at(line, "a photo without name", EXPORT));
         }
-        if !seen.insert(photo) {
+        if !seen.insert(photo.to_owned()) {
             let what = format!("the photo '{}' is there twice", shown(photo));
             return Err(Fault::at(line, what, EXPORT));
         }
-        let [x, y, z] = position.map(number);
-        let [heading, pitch, roll] = angles.map(number);
-        let mut values = [0.0; 8];
-        for (value, column) in values.iter_mut().zip(optional) {
-            *value = column.map_or(Ok(0.0), number)?;
-        }
-        let [px, py, k1, k2, k3, k4, t1, t2] = values;
-        let lens = Lens {
-            focal: number(focal)?,
-            principal: [px, py],
-            coefficients: [k1, k2, k3, k4, t1, t2],
-        };
-        let pose = pose(DVec3::new(x?, y?, z?), [heading?, pitch?, roll?]);
-        match lens.camera(photo) {
-            Ok(camera) => add(&mut found, photo.to_owned(), camera, pose),
+        let (pose, camera) = template(&row)?;
+        match camera {
+            Ok(camera) => {
+                let name = photo.to_owned();
+                add(&mut found, name.clone(), Camera { name, ..camera }, pose);
+            }
             Err(why) => refused.push((photo.to_owned(), why)),
         }
     }
@@ -145,8 +166,93 @@ pub(in crate::formats) fn read_csv(text: &str) -> Result<Reconstruction, Fault> 
     Ok(found)
 }
 
+/// A row's pose and its camera, or, in words, why that cannot be one.
+type Read = (Pose, Result<Camera, String>);
+
+/// The coefficients' columns; the template may leave some out.
+fn coefficients(header: &Header) -> [Option<Column>; 6] {
+    [
+        header.optional(&["k1"]),
+        header.optional(&["k2"]),
+        header.optional(&["k3"]),
+        header.optional(&["k4"]),
+        header.optional(&["t1"]),
+        header.optional(&["t2"]),
+    ]
+}
+
+/// The program's own columns: centre, angles, the lens on film.
+fn own(header: &Header) -> Result<Box<dyn Fn(&Row<'_>) -> Result<Read, Fault>>, Fault> {
+    let position = [
+        header.needed(&["x"])?,
+        header.needed(&["y"])?,
+        header.needed(&["alt", "z"])?,
+    ];
+    let angles = [
+        header.needed(&["heading", "yaw"])?,
+        header.needed(&["pitch"])?,
+        header.needed(&["roll"])?,
+    ];
+    let focal = header.needed(&["f", "f_35mm", "f_35", "focal"])?;
+    let principal = [
+        header.optional(&["px", "px_norm"]),
+        header.optional(&["py", "py_norm"]),
+    ];
+    let coefficients = coefficients(header);
+    Ok(Box::new(move |row| {
+        let [x, y, z] = position.map(|column| row.number(column));
+        let [heading, pitch, roll] = angles.map(|column| row.number(column));
+        let [px, py] = principal.map(|column| row.or_zero(column));
+        let lens = Lens {
+            focal: row.number(focal)? / FILM,
+            principal: [px?, py?],
+            coefficients: all(coefficients.map(|column| row.or_zero(column)))?,
+        };
+        let pose = pose(DVec3::new(x?, y?, z?), [heading?, pitch?, roll?]);
+        Ok((pose, lens.camera("")))
+    }))
+}
+
+/// The "OpenCV-compliant" columns: camera_from_world, the lens in pixels from the image's corner.
+fn opencv(header: &Header) -> Result<Box<dyn Fn(&Row<'_>) -> Result<Read, Fault>>, Fault> {
+    let [_, pose @ ..] = OPENCV;
+    let mut places = [(0, ""); 12];
+    for (place, name) in places.iter_mut().zip(pose) {
+        *place = header.needed(&[name])?;
+    }
+    let focal = header.needed(&["f_pix", "f"])?;
+    let principal = [
+        header.needed(&["px_pix", "px"])?,
+        header.needed(&["py_pix", "py"])?,
+    ];
+    let coefficients = coefficients(header);
+    Ok(Box::new(move |row| {
+        let [tx, ty, tz, turn @ ..] = all(places.map(|column| row.number(column)))?;
+        let [a, b, c, d, e, f, g, h, i] = turn;
+        // The transpose: from the camera to the world.
+        let pose = Pose::from_row_major(DVec3::ZERO, [a, d, g, b, e, h, c, f, i])
+            .map_err(|error| Fault::at(row.line, format!("R00 to R22: {error}"), EXPORT))?;
+        let center = -(pose.rotation * DVec3::new(tx, ty, tz));
+        let [px, py] = principal.map(|column| row.number(column));
+        let lens = Lens {
+            focal: row.number(focal)?,
+            principal: [px?, py?],
+            coefficients: all(coefficients.map(|column| row.or_zero(column)))?,
+        };
+        Ok((Pose { center, ..pose }, lens.camera("")))
+    }))
+}
+
+fn all<const N: usize>(numbers: [Result<f64, Fault>; N]) -> Result<[f64; N], Fault> {
+    let mut all = [0.0; N];
+    for (place, number) in all.iter_mut().zip(numbers) {
+        *place = number?;
+    }
+    Ok(all)
+}
+
 /// The pose by heading, pitch and roll in degrees.
-pub(super) fn pose(center: DVec3, [heading, pitch, roll]: [f64; 3]) -> Pose {
+pub(in crate::formats) fn pose(center: DVec3, [heading, pitch, roll]: [f64; 3]) -> Pose {
     let world_from_upright = DMat3::from_rotation_z(-heading.to_radians())
         * DMat3::from_rotation_x(pitch.to_radians())
         * DMat3::from_rotation_y(roll.to_radians());

@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use roxmltree::Node;
 
-use crate::camera::{Camera, Pose};
+use crate::camera::{Brown, Camera, Distortion, Pose};
 use crate::fault::Fault;
 use crate::formats::fields::Fields;
 use crate::formats::input::{FileError, open_file, read_text};
 use crate::formats::reconstruction::{Project, Reconstruction};
 use crate::formats::xml_document::{line_of, parse};
 
-use super::{Lens, add, say_refused};
+use super::{FILM, Lens, add, say_refused};
 
 const NAMESPACE: &str = "capturingreality.com/ns/xcr";
 const EXPORT: &str = "export the XMP metadata from RealityCapture again";
@@ -176,7 +176,7 @@ impl Sidecar {
                 *place = value;
             }
             lens = Some(Lens {
-                focal,
+                focal: focal / FILM,
                 principal: [
                     number("PrincipalPointU")?.unwrap_or(0.0),
                     number("PrincipalPointV")?.unwrap_or(0.0),
@@ -186,7 +186,7 @@ impl Sidecar {
         }
         Ok(Self {
             pose,
-            is_absolute: term(node, "Coordinates") == Some("absolute"),
+            is_absolute: term(node, "Coordinates").is_none_or(|said| said == "absolute"),
             lens,
             model: term(node, "DistortionModel")
                 .unwrap_or("perspective")
@@ -208,16 +208,24 @@ impl Sidecar {
                 aspect + 1.0
             ));
         }
-        let is_plain = lens.coefficients == [0.0; 6];
-        match self.model.as_str() {
-            "perspective" => Lens {
-                coefficients: [0.0; 6],
-                ..lens
+        let without = Lens {
+            coefficients: [0.0; 6],
+            ..lens
+        };
+        match (self.model.as_str(), lens.coefficients) {
+            ("perspective" | "none", _) | (_, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]) => {
+                without.camera(name)
             }
-            .camera(name),
-            "brown3" | "brown4" | "brown3t2" | "brown4t2" => lens.camera(name),
-            _ if is_plain => lens.camera(name),
-            model => Err(format!(
+            ("brown3" | "brown4" | "brown3t2" | "brown4t2", _) => lens.camera(name),
+            ("division", [k1, 0.0, 0.0, 0.0, 0.0, 0.0]) => {
+                let rational = Brown::new([0.0, 0.0, 0.0, 0.0, 0.0, k1, 0.0, 0.0]);
+                Ok(Camera {
+                    distortion: Distortion::Brown(rational),
+                    ..without.camera(name)?
+                })
+            }
+            ("division", _) => Err("a division model of more than k1".to_owned()),
+            (model, _) => Err(format!(
                 "the distortion model '{model}', which cannot be read"
             )),
         }
