@@ -266,9 +266,11 @@ impl<'a, 'input> Reader<'a, 'input> {
             let number = text_of(gps?, name)?.parse::<f64>().ok()?;
             number.is_finite().then_some(number)
         };
-        if let (Some(latitude), Some(longitude), Some(path)) = (
+        // Without a height it is no place: 0 would be one that nobody measured.
+        if let (Some(latitude), Some(longitude), Some(height), Some(path)) = (
             number("Latitude"),
             number("Longitude"),
+            number("Altitude"),
             text_of(photo, "ImagePath"),
         ) {
             self.found.measured_positions.push(MeasuredPosition {
@@ -276,7 +278,7 @@ impl<'a, 'input> Reader<'a, 'input> {
                 position: Geographic {
                     longitude,
                     latitude,
-                    height: number("Altitude").unwrap_or(0.0),
+                    height,
                 },
             });
         }
