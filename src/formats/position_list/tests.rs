@@ -112,7 +112,11 @@ fn opendronemap_geo_file() {
         "1 of 2 positions have no height and are left out"
     );
     let fault = positions_from_text("WGS84 UTM 16N\na.jpg 400000 5000000\n").unwrap_err();
-    assert!(fault.to_string().contains("none of its 1 positions has a height"));
+    assert!(
+        fault
+            .to_string()
+            .contains("none of its 1 positions has a height")
+    );
     assert!(at(2, positions_from_text("EPSG:4326\na.jpg 1 b 3\n")).contains("y is 'b'"));
 }
 
