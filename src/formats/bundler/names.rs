@@ -4,6 +4,8 @@
 //! |---|---|
 //! | the file itself | v0.4 |
 //! | `X.list.txt`, `X_list.txt` beside `X.out` or `X.bundle.out` (COLMAP and others) | that file |
+//! | `X.out.list.txt` beside `X.out` (COLMAP's window) | that file |
+//! | `list.rd.txt` beside `X.rd.out` (Bundler's undistorted photos) | that file |
 //! | `list.txt` beside, or in the folder above (Bundler's own `bundle/` folder) | any |
 //! | `prepare/list.txt` beside or in the folder above (`RunBundler.sh` copies it from there) | any |
 //! | the image files beside, sorted by name | where there are as many as cameras, with a warning |
@@ -110,7 +112,11 @@ fn list_file(path: &Path) -> Option<PathBuf> {
         ["list.txt", ".list.txt", "_list.txt"]
             .map(|end| path.with_file_name(format!("{stem}{end}")))
     });
+    let of_name = path.with_file_name(format!("{name}.list.txt"));
+    let own = own.chain([of_name]);
     let folder = path.parent().unwrap_or(Path::new(""));
+    let undistorted = name.ends_with(".rd.out");
+    let own = own.chain(undistorted.then(|| folder.join("list.rd.txt")));
     let any = [
         "list.txt",
         "../list.txt",
@@ -205,6 +211,12 @@ mod tests {
         assert_eq!(made.folder, Some(at("bundle/..")));
         fs::write(at("list.txt"), "up.jpg").unwrap();
         assert_eq!(Names::beside(&bundle, 1).unwrap().name(0), "up.jpg");
+        fs::write(at("bundle/list.rd.txt"), "flat.jpg").unwrap();
+        assert_eq!(Names::beside(&bundle, 1).unwrap().name(0), "up.jpg");
+        let undistorted = at("bundle/bundle.rd.out");
+        assert_eq!(Names::beside(&undistorted, 1).unwrap().name(0), "flat.jpg");
+        fs::write(at("bundle/x.bundle.out.list.txt"), "named.jpg").unwrap();
+        assert_eq!(Names::beside(&bundle, 1).unwrap().name(0), "named.jpg");
         fs::write(at("bundle/x.list.txt"), "own.jpg").unwrap();
         let names = Names::beside(&bundle, 1).unwrap();
         assert_eq!(
