@@ -233,7 +233,6 @@ fn control_points_of_the_shared_lists() {
         ("boruszyn_gcp_list.txt", "EPSG:2180", 7, 18),
         ("copr_gcp_list.txt", "EPSG:32611", 10, 27),
         ("copr_gcp_list_noimg.txt", "EPSG:4326", 10, 0),
-        ("copr_GPS_average.txt", "EPSG:4326", 10, 0),
         ("helenenschacht_latlon.csv", "EPSG:4326", 5, 0),
     ] {
         let list = read_control_points(&folder.join(file)).unwrap();
@@ -246,6 +245,13 @@ fn control_points_of_the_shared_lists() {
             list.warnings
         );
     }
+    // Latitude and longitude alone.
+    let flat = read_control_points(&folder.join("copr_GPS_average.txt")).unwrap_err();
+    let said = flat.to_string();
+    assert!(
+        said.contains("none of its 10 positions has a height"),
+        "{said}"
+    );
     let list = read_positions(&folder.join("helenenschacht_latlon.csv")).unwrap();
     let expected = DVec3::new(16.47592207, 47.64350399, 463.662);
     assert_eq!(list.positions[0].position, expected);
