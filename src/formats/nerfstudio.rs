@@ -25,7 +25,7 @@
 //!   reconstruction's was changed into it. ply_file_path is a cloud in the file's frame.
 //! - file_path is relative to the file; without an extension it stands for a .png.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -129,14 +129,22 @@ fn read(
         );
     }
     let count = raw.frames.len();
-    let mut names = HashSet::new();
+    let mut matrices = HashMap::new();
+    let mut again = 0;
     let mut kinds: Vec<RawIntrinsics> = Vec::new();
     let (mut without_pose, mut unusable) = (0, Vec::new());
     for frame in raw.frames {
         let name = photo_name(&frame.file_path, &size_of);
-        if !names.insert(name.clone()) {
-            let what = format!("two frames have the photo \"{name}\"");
-            return Err(Fault::new(what, "remove one of them"));
+        match matrices.insert(name.clone(), frame.transform_matrix.clone()) {
+            None => {}
+            Some(matrix) if matrix == frame.transform_matrix => {
+                again += 1;
+                continue;
+            }
+            Some(_) => {
+                let what = format!("two frames with different poses have the photo \"{name}\"");
+                return Err(Fault::new(what, "remove one of them"));
+            }
         }
         let Some(matrix) = frame.transform_matrix else {
             without_pose += 1;
@@ -175,6 +183,7 @@ fn read(
                         "correct the number",
                     )
                 })?;
+                found.warnings.extend(intrinsics.contradiction(&camera));
                 found.cameras.push(camera);
                 kinds.push(intrinsics);
                 kinds.len() - 1
@@ -200,6 +209,11 @@ fn read(
             )
         };
         return Err(Fault::new(what, remedy));
+    }
+    if again > 0 {
+        found.warnings.push(format!(
+            "{again} of {count} frames stand there a second time with the same pose and are left out"
+        ));
     }
     if without_pose > 0 {
         found.warnings.push(format!(
@@ -307,6 +321,23 @@ impl RawIntrinsics {
             Some(_) => None,
             None => self.camera_model.clone(),
         }
+    }
+
+    /// What to say where the focal length and the angle beside it, which is only for information, are
+    /// of different lenses: often a focal length in millimetres or of another image size.
+    fn contradiction(&self, camera: &Camera) -> Option<String> {
+        let angle = self.camera_angle_x.filter(|_| self.fl_x.is_some())?;
+        let own = 2.0 * (f64::from(camera.width) / 2.0 / camera.fx).atan();
+        let apart = (own - angle).abs() > 0.05 * own;
+        apart.then(|| {
+            format!(
+                "camera '{}': fl_x {} px is a field of view of {:.1} degrees, but camera_angle_x says {:.1}; fl_x is taken",
+                camera.name,
+                camera.fx,
+                own.to_degrees(),
+                angle.to_degrees()
+            )
+        })
     }
 
     fn camera(&self, name: String) -> Result<Camera, String> {
@@ -466,6 +497,32 @@ mod tests {
             assert!(warning.contains(named), "{warning}");
         }
         assert_eq!(found.warnings.len(), 3);
+    }
+
+    #[test]
+    fn what_stands_twice_or_contradicts_itself_is_said() {
+        // 400 px of a width of 800 are a right angle.
+        let frame = format!(r#"{{"file_path": "a.jpg", "transform_matrix": {MATRIX}}}"#);
+        let file = |angle: f64, second: &str| {
+            let json = format!(
+                r#"{{"fl_x": 400, "w": 800, "h": 600, "camera_angle_x": {angle}, "frames": [{frame}, {second}]}}"#
+            );
+            read(json.as_bytes(), |_| None)
+        };
+        let (found, _) = file(PI / 2.0, &frame).unwrap();
+        assert_eq!(found.photos.len(), 1);
+        assert!(found.warnings[0].starts_with("1 of 2 frames stand there a second time"));
+        assert_eq!(found.warnings.len(), 1);
+        let fault = file(PI / 2.0, &frame.replace("5]", "6]")).unwrap_err();
+        assert!(fault.what.contains("different poses"), "{fault}");
+        let (found, _) = file(PI / 3.0, &frame.replace("a.jpg", "b.jpg")).unwrap();
+        let [warning] = &found.warnings[..] else {
+            panic!("{:?}", found.warnings);
+        };
+        assert!(
+            warning.contains("90.0 degrees, but camera_angle_x says 60.0"),
+            "{warning}"
+        );
     }
 
     #[test]

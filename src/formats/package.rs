@@ -275,6 +275,7 @@ mod tests {
         for (file, package) in [
             ("opensfm/reconstruction.json", Package::OpenSfm),
             ("reconstruction.json", Package::OpenSfm),
+            ("reconstruction_example.json", Package::OpenSfm),
             ("bundle/bundle.out", Package::Bundler),
             ("transforms.json", Package::Nerfstudio),
             ("cameras.sfm", Package::Meshroom),

@@ -267,6 +267,7 @@ impl<'a, 'input> Reader<'a, 'input> {
             let number = text_of(gps?, name)?.parse::<f64>().ok()?;
             number.is_finite().then_some(number)
         };
+        // Without a height it is no place: 0 would be one that nobody measured.
         if let (Some(latitude), Some(longitude), Some(height), Some(path)) = (
             number("Latitude"),
             number("Longitude"),

@@ -51,9 +51,10 @@ pub(super) fn is_bundle(start: &[u8], name: &str) -> bool {
         || (name.starts_with("bundle") && name.ends_with(".out"))
 }
 
-/// The `bundle.out` of a folder, or of the folder `bundle` in it, where Bundler writes it.
+/// The `bundle.out` of a folder, or of the folder `bundle` in it, where Bundler writes it; else the
+/// `bundle.rd.out` that it and VisualSFM write beside undistorted photos.
 pub(super) fn bundle_of_folder(folder: &Path) -> Option<PathBuf> {
-    ["bundle.out", "bundle/bundle.out"]
+    ["bundle.out", "bundle/bundle.out", "bundle.rd.out"]
         .map(|name| folder.join(name))
         .into_iter()
         .find(|file| file.is_file())

@@ -4,7 +4,10 @@
 //! |---|---|
 //! | the file itself | v0.4 |
 //! | `X.list.txt`, `X_list.txt` beside `X.out` or `X.bundle.out` (COLMAP and others) | that file |
+//! | `X.out.list.txt` beside `X.out` (COLMAP's window) | that file |
+//! | `list.rd.txt` beside `X.rd.out` (Bundler's undistorted photos) | that file |
 //! | `list.txt` beside, or in the folder above (Bundler's own `bundle/` folder) | any |
+//! | `prepare/list.txt` beside or in the folder above (`RunBundler.sh` copies it from there) | any |
 //! | the image files beside, sorted by name | where there are as many as cameras, with a warning |
 //! | the cameras' numbers from 0 | else, with a warning |
 //!
@@ -16,6 +19,9 @@ use std::path::{Path, PathBuf};
 
 use crate::fault::Fault;
 use crate::formats::input::{FileError, read_text};
+
+/// Where Bundler's script makes the list, of photos in the folder above.
+const PREPARE: &str = "prepare";
 
 /// The names, or how to make them.
 pub(super) struct Names {
@@ -55,7 +61,11 @@ impl Names {
                     "put the list of the same reconstruction beside it, or remove the list";
                 return Err(FileError::new(&list, Fault::new(what, remedy)));
             }
-            let folder = list.parent().map(Path::to_owned);
+            let mut folder = list.parent();
+            if folder.is_some_and(|folder| folder.ends_with(PREPARE)) {
+                folder = folder.and_then(Path::parent);
+            }
+            let folder = folder.map(Path::to_owned);
             return Ok(Self {
                 names,
                 folder,
@@ -102,8 +112,18 @@ fn list_file(path: &Path) -> Option<PathBuf> {
         ["list.txt", ".list.txt", "_list.txt"]
             .map(|end| path.with_file_name(format!("{stem}{end}")))
     });
+    let of_name = path.with_file_name(format!("{name}.list.txt"));
+    let own = own.chain([of_name]);
     let folder = path.parent().unwrap_or(Path::new(""));
-    let any = [folder.join("list.txt"), folder.join("../list.txt")];
+    let undistorted = name.ends_with(".rd.out");
+    let own = own.chain(undistorted.then(|| folder.join("list.rd.txt")));
+    let any = [
+        "list.txt",
+        "../list.txt",
+        "prepare/list.txt",
+        "../prepare/list.txt",
+    ]
+    .map(|name| folder.join(name));
     own.chain(any).find(|file| file.is_file())
 }
 
@@ -184,8 +204,19 @@ mod tests {
         fs::create_dir(at("bundle")).unwrap();
         let bundle = at("bundle/x.bundle.out");
         assert_eq!(list_file(&bundle), None);
+        fs::create_dir(at("prepare")).unwrap();
+        fs::write(at("prepare/list.txt"), "./made.jpg 0 2587.05416").unwrap();
+        let made = Names::beside(&bundle, 1).unwrap();
+        assert_eq!(made.name(0), "made.jpg");
+        assert_eq!(made.folder, Some(at("bundle/..")));
         fs::write(at("list.txt"), "up.jpg").unwrap();
         assert_eq!(Names::beside(&bundle, 1).unwrap().name(0), "up.jpg");
+        fs::write(at("bundle/list.rd.txt"), "flat.jpg").unwrap();
+        assert_eq!(Names::beside(&bundle, 1).unwrap().name(0), "up.jpg");
+        let undistorted = at("bundle/bundle.rd.out");
+        assert_eq!(Names::beside(&undistorted, 1).unwrap().name(0), "flat.jpg");
+        fs::write(at("bundle/x.bundle.out.list.txt"), "named.jpg").unwrap();
+        assert_eq!(Names::beside(&bundle, 1).unwrap().name(0), "named.jpg");
         fs::write(at("bundle/x.list.txt"), "own.jpg").unwrap();
         let names = Names::beside(&bundle, 1).unwrap();
         assert_eq!(

@@ -9,7 +9,7 @@
 //!   cols: 4
 //!   rows: 4
 //!   data: [16 numbers by rows]
-//! resolution: [752, 480]
+//! resolution: [752, 480]      or {width: 752, height: 480}
 //! camera_model: pinhole       others are refused
 //! intrinsics: [fu, fv, cu, cv]
 //! distortion_model: radial-tangential
@@ -44,7 +44,12 @@ pub(super) fn from_tree(tree: &Node) -> Result<Camera, Fault> {
         }
     }
     let resolution = required(tree, "resolution")?;
-    let pixels = resolution.node.numbers("resolution")?;
+    let pixels = match (resolution.node.get("width"), resolution.node.get("height")) {
+        (Some(width), Some(height)) => {
+            vec![width.node.number("width")?, height.node.number("height")?]
+        }
+        _ => resolution.node.numbers("resolution")?,
+    };
     let size = |value: f64| {
         let whole = value.fract() == 0.0 && (1.0..=f64::from(u32::MAX)).contains(&value);
         // Whole and in range: the cast is exact.
@@ -97,7 +102,7 @@ fn lens(tree: &Node) -> Result<Distortion, Fault> {
     }
     let coefficients = Matrix::read(required(tree, "distortion_coefficients")?)?;
     match name.to_ascii_lowercase().as_str() {
-        "radial-tangential" | "radtan" => coefficients.brown(name, &[4]),
+        "radial-tangential" | "radial_tangential" | "radtan" => coefficients.brown(name, &[4]),
         "equidistant" => coefficients.fisheye(name),
         _ => Err(Fault::at(
             model.line,
@@ -200,6 +205,20 @@ mod tests {
                 .distortion,
             Distortion::Fisheye(Fisheye::new(four))
         );
+    }
+
+    #[test]
+    fn other_programs_spellings_are_the_same_camera() {
+        let expected = camera(CAM0).unwrap();
+        for (from, to) in [
+            ("#Default", "%YAML:1.0\n#Default"),
+            ("[752, 480]", "\n  width: 752\n  height: 480"),
+            ("radial-tangential", "radial_tangential"),
+        ] {
+            let text = CAM0.replacen(from, to, 1);
+            let found = crate::formats::camera_file::read(&text);
+            assert_eq!(found.as_ref(), Ok(&expected), "{to}");
+        }
     }
 
     #[test]

@@ -2,9 +2,11 @@
 //!
 //! - XML whose root is `<calibration>`: Agisoft's.
 //! - Other XML, beginning with `<`: an OpenCV FileStorage.
-//! - YAML that begins with `%YAML:`, or YAML or JSON with an `opencv-matrix` in it: the same.
+//! - YAML or JSON with an `opencv-matrix` in it: the same.
+//! - Other YAML (and JSON, which is YAML) with `intrinsics` and `resolution`: EuRoC's sensor.yaml, which
+//!   programs that read it with OpenCV (Kimera-VIO) begin with `%YAML:`.
+//! - Other YAML that begins with `%YAML:`: an OpenCV FileStorage.
 //! - YAML with `focal_len`: Orthority.
-//! - Other YAML (and JSON, which is YAML) with `intrinsics` and `resolution`: EuRoC's sensor.yaml.
 //! - Other YAML (and JSON): ROS.
 
 mod euroc_camera;
@@ -35,12 +37,14 @@ pub(super) fn read(text: &str) -> Result<Camera, Fault> {
         return opencv_storage::read_xml(text);
     }
     let tree = yaml_tree::first_document(text)?;
-    if yaml_tree::has_opencv_directive(text) || opencv_storage::has_matrix(&tree) {
+    if opencv_storage::has_matrix(&tree) {
+        opencv_storage::from_tree(&tree)
+    } else if euroc_camera::is_sensor(&tree) {
+        euroc_camera::from_tree(&tree)
+    } else if yaml_tree::has_opencv_directive(text) {
         opencv_storage::from_tree(&tree)
     } else if let Some(cameras) = orthority_camera::cameras(&tree) {
         orthority_camera::from_tree(&cameras)
-    } else if euroc_camera::is_sensor(&tree) {
-        euroc_camera::from_tree(&tree)
     } else {
         ros_camera::from_tree(&tree)
     }

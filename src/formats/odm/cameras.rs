@@ -13,7 +13,7 @@ use super::georeference::optional;
 use super::shots::Shot;
 use crate::camera::Camera;
 use crate::fault::Fault;
-use crate::formats::input::{FileError, open_file};
+use crate::formats::input::FileError;
 use crate::formats::json::{Object, parse};
 use crate::formats::opensfm::camera::{CameraModel, usable_cameras};
 use crate::formats::reconstruction::{PosedPhoto, Reconstruction};
@@ -51,7 +51,11 @@ pub(super) fn with_cameras(
             .map_err(|fault| FileError::new(&file, fault))?
         }
         (None, Some(sparse)) => sparse.cameras.clone(),
-        (None, None) => return Err(open_file(&file).err().unwrap_or_else(|| no_cameras(&file))),
+        (None, None) => {
+            let what = "there is no such file, and it has the project's lenses";
+            let remedy = "copy cameras.json of the same project as well";
+            return Err(FileError::new(&file, Fault::new(what, remedy)));
+        }
     };
     if cameras.is_empty() {
         return Err(no_cameras(&file));

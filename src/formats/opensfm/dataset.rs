@@ -11,6 +11,7 @@
 //! | `reconstruction.topocentric.json`, `exported_geocoords.txt` | OpenDroneMap has put projected coordinates less an offset into `reconstruction.json` |
 
 use std::collections::HashSet;
+use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -19,8 +20,8 @@ use crate::formats::input::{FileError, open_file, read_bytes, text_from_bytes};
 use crate::formats::photo_files::folder_of_photos;
 use crate::formats::reconstruction::{Project, Reconstruction};
 
-/// The `reconstruction.json` of a data set's folder, or of the `opensfm` folder in it. Its report has
-/// the same name, but is no list.
+/// The `reconstruction.json` of a data set's folder, or of the `opensfm` folder in it; else the only
+/// `reconstruction_X.json` of the folder. Its report has the same name, but is no list.
 pub(in crate::formats) fn dataset_file(folder: &Path) -> Option<PathBuf> {
     let begins_a_list = |file: &PathBuf| {
         let mut start = Vec::new();
@@ -31,6 +32,16 @@ pub(in crate::formats) fn dataset_file(folder: &Path) -> Option<PathBuf> {
         .map(|name| folder.join(name))
         .into_iter()
         .find(begins_a_list)
+        .or_else(|| {
+            let entries = fs::read_dir(folder).ok()?.flatten();
+            let mut others = entries.map(|entry| entry.path()).filter(|file| {
+                let name = file.file_name().unwrap_or_default().to_string_lossy();
+                name.starts_with("reconstruction_")
+                    && name.ends_with(".json")
+                    && begins_a_list(file)
+            });
+            others.next().filter(|_| others.next().is_none())
+        })
 }
 
 /// Reads a `reconstruction.json` and what lies beside it.

@@ -71,7 +71,7 @@ pub(super) fn measured_positions(
         return Vec::new();
     };
     let (center, axes) = (ecef_from_geographic(origin), enu_axes(origin));
-    let found: Vec<MeasuredPosition> = measured
+    let mut found: Vec<MeasuredPosition> = measured
         .iter()
         .filter_map(|one| {
             Some(MeasuredPosition {
@@ -80,11 +80,13 @@ pub(super) fn measured_positions(
             })
         })
         .collect();
-    let not_used = |one: &MeasuredPosition| (one.position.height - NO_HEIGHT).abs() < 1e-3;
-    if !found.is_empty() && found.iter().all(not_used) {
-        warnings.push(
-            "the photos' measured heights are all 2 m: OpenSfM did not use their altitudes".into(),
-        );
+    let all = found.len();
+    found.retain(|one| (one.position.height - NO_HEIGHT).abs() >= 1e-3);
+    if found.len() < all {
+        warnings.push(format!(
+            "{} of {all} measured positions are left out: their height is the 2 m that OpenSfM writes where it does not use the altitude",
+            all - found.len()
+        ));
     }
     found
 }
@@ -136,7 +138,12 @@ mod tests {
         assert!(without.reconstruction.measured_positions.is_empty());
         let shot = r#""gps_position": [0, 0, 2], "gps_dop": 15"#;
         let flat = file(shot, at).reconstruction;
-        assert!(flat.warnings[0].contains("all 2 m"), "{:?}", flat.warnings);
+        assert!(flat.measured_positions.is_empty());
+        assert!(
+            flat.warnings[0].starts_with("1 of 1 measured positions are left out"),
+            "{:?}",
+            flat.warnings
+        );
         for nowhere in [
             "",
             r#", "reference_lla": {"latitude": 0, "longitude": 0, "altitude": 0}"#,

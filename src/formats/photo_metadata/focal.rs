@@ -18,6 +18,10 @@
 //!    the diagonal, 5 % by the width. Photos wider than 3:2 are mostly cut from a 4:3 sensor, whose
 //!    diagonal counts then: 10 %.
 //!
+//! A centre far from the middle says that a calibration is of another image size (Skydio's X2 writes its
+//! colour camera's into its thermal photos), and a sensor's resolution that contradicts the 35 mm
+//! equivalent that the photo was reduced by a program that left it: neither is used.
+//!
 //! Pixels of 1 to 3 belong to the size that the camera wrote (EXIF's PixelXDimension); where the file
 //! has been reduced since, they are scaled.
 
@@ -95,18 +99,15 @@ pub(super) fn candidates(
         focal_plane(exif, &frame),
         film_equivalent(exif, &frame),
     ];
-    let (width, _) = frame.written;
+    let film = all[all.len() - 1];
     let mut candidates = Vec::new();
     for candidate in all.into_iter().flatten() {
-        // From a fisheye's to a long telephoto's.
-        if (0.2..=100.0).contains(&(candidate.fx / width)) && candidate.fy > 0.0 {
-            candidates.push(frame.in_file(candidate));
-        } else {
-            warnings.push(format!(
-                "{} gives a focal length of {:.1} px for a width of {width} px; it is not used",
-                candidate.source.in_words(),
-                candidate.fx
-            ));
+        match frame.objection(&candidate, film.as_ref()) {
+            None => candidates.push(frame.in_file(candidate)),
+            Some(why) => warnings.push(format!(
+                "{} {why}; it is not used",
+                candidate.source.in_words()
+            )),
         }
     }
     candidates
@@ -146,6 +147,35 @@ impl Frame {
 
     fn middle(&self) -> (f64, f64) {
         (self.written.0 / 2.0, self.written.1 / 2.0)
+    }
+
+    /// Why what the metadata state cannot be of this image. `film` is the 35 mm equivalent, which
+    /// counts no pixels and so outlives a program that reduced the photo.
+    fn objection(&self, found: &FocalCandidate, film: Option<&FocalCandidate>) -> Option<String> {
+        let (width, height) = self.written;
+        // From a fisheye's to a long telephoto's.
+        if !(0.2..=100.0).contains(&(found.fx / width)) || found.fy <= 0.0 {
+            return Some(format!(
+                "gives a focal length of {:.1} px for a width of {width} px",
+                found.fx
+            ));
+        }
+        let (middle_x, middle_y) = self.middle();
+        if (found.cx / middle_x - 1.0).abs() > 0.1 || (found.cy / middle_y - 1.0).abs() > 0.1 {
+            return Some(format!(
+                "has its centre at {:.0}, {:.0}, far from the middle of {width} x {height}: it is of another image size",
+                found.cx, found.cy
+            ));
+        }
+        let of_sensor = [FocalSource::FocalPlane, FocalSource::Pix4dTags].contains(&found.source);
+        let ratio = film.filter(|_| of_sensor).map(|film| found.fx / film.fx);
+        ratio
+            .filter(|ratio| !(1.0 / 1.5..=1.5).contains(ratio))
+            .map(|ratio| {
+                format!(
+                    "gives {ratio:.2} times the focal length of EXIF's 35 mm equivalent: the photo was reduced, and its sensor's resolution left"
+                )
+            })
     }
 
     fn in_file(&self, candidate: FocalCandidate) -> FocalCandidate {
@@ -268,11 +298,6 @@ fn designed(xmp: &Xmp, frame: &Frame) -> Option<FocalCandidate> {
             let x = number("CalibratedOpticalCenterX");
             let y = number("CalibratedOpticalCenterY");
             if let (Some(x), Some(y)) = (x, y) {
-                let (middle_x, middle_y) = frame.middle();
-                // A centre far from the middle belongs to another image size, and so does the length.
-                if (x / middle_x - 1.0).abs() > 0.1 || (y / middle_y - 1.0).abs() > 0.1 {
-                    return None;
-                }
                 (candidate.cx, candidate.cy) = (x, y);
             }
             Some(candidate)

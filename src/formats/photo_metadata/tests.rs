@@ -224,6 +224,24 @@ fn skydio_place_and_calibration() {
 }
 
 #[test]
+fn a_calibration_of_another_image_size_is_not_used() {
+    // A thermal photo of a Skydio X2 (S1008521.JPG of Theta-Limited/OpenAthenaIOS) is 640 x 512.
+    let photo = photo(jpeg(
+        (640, 512),
+        &[],
+        &[&packet(
+            r#"<rdf:Description><drone-skydio:CalibratedFocalLength drone-skydio:X="4892.025463" drone-skydio:Y="4870.411816"/><drone-skydio:CalibratedOpticalCenter drone-skydio:X="1989.282132" drone-skydio:Y="1443.797021"/></rdf:Description>"#,
+        )],
+    ));
+    assert!(photo.focal.is_empty());
+    let said = photo
+        .warnings
+        .iter()
+        .any(|w| w.contains("another image size"));
+    assert!(said, "{:?}", photo.warnings);
+}
+
+#[test]
 fn dewarp_data_of_a_phantom_4_rtk() {
     // As quoted in a question on DewarpData (thinbug.com/q/53511464), photos of 5472 x 3648.
     let packet = |flag: u8| {
@@ -288,14 +306,14 @@ fn dewarp_data_of_a_phantom_4_rtk() {
 
 #[test]
 fn focal_length_by_the_sensor_and_by_film() {
-    // 10 mm, 100 pixels per mm both ways: 1000 px; 50 mm on 43.27 mm film at a diagonal of 5000.
+    // 10 mm, 100 pixels per mm both ways: 1000 px; 10 mm on 43.27 mm film at a diagonal of 5000.
     let fields = |unit, resolution| {
         vec![
             rationals(Tag::FocalLength, &[(100, 10)]),
             rationals(Tag::FocalPlaneXResolution, &[resolution]),
             rationals(Tag::FocalPlaneYResolution, &[resolution]),
             short(Tag::FocalPlaneResolutionUnit, unit),
-            short(Tag::FocalLengthIn35mmFilm, 50),
+            short(Tag::FocalLengthIn35mmFilm, 10),
         ]
     };
     for (unit, resolution) in [(2, (2540, 1)), (3, (1000, 1)), (4, (100, 1)), (5, (1, 10))] {
@@ -308,12 +326,31 @@ fn focal_length_by_the_sensor_and_by_film() {
         // 2 % and half of a tenth of 10 mm.
         assert!((plane.relative_error - 0.025).abs() < 1e-12);
         // 36 x 24 mm: sqrt(1872) = 43.2666 mm.
-        assert!((film.fx - 50.0 * 5000.0 / 1872.0_f64.sqrt()).abs() < 1e-9);
-        assert!((film.relative_error - 0.04).abs() < 1e-12);
+        assert!((film.fx - 10.0 * 5000.0 / 1872.0_f64.sqrt()).abs() < 1e-9);
+        assert!((film.relative_error - 0.08).abs() < 1e-12);
     }
     // Nothing known of the sensor: a denominator of 0.
     let unknown = photo(jpeg((4000, 3000), &fields(2, (0, 0)), &[]));
     assert_eq!(unknown.focal.len(), 1);
+    // sensefly.jpg of cdcseacave/TinyEXIF: reduced from 5472 x 3648 with its EXIF's 4167 pixels per cm.
+    let fields = [
+        rationals(Tag::FocalLength, &[(102, 10)]),
+        rationals(Tag::FocalPlaneXResolution, &[(4167, 1)]),
+        rationals(Tag::FocalPlaneYResolution, &[(4167, 1)]),
+        short(Tag::FocalPlaneResolutionUnit, 3),
+        short(Tag::FocalLengthIn35mmFilm, 28),
+    ];
+    let reduced = photo(jpeg((1368, 912), &fields, &[]));
+    let [film] = reduced.focal.as_slice() else {
+        panic!("{:?}", reduced.focal);
+    };
+    assert_eq!(film.source, FocalSource::FilmEquivalent);
+    assert!((film.fx - 1064.0).abs() < 0.1, "{}", film.fx);
+    assert!(
+        reduced.warnings[0].contains("3.99 times"),
+        "{:?}",
+        reduced.warnings
+    );
 }
 
 #[test]

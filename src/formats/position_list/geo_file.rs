@@ -31,12 +31,11 @@ pub(super) fn read(text: &str, crs: Option<String>) -> Result<PositionList, Faul
         );
         let name = fields.word("the image's name")?;
         let (x, y) = (fields.number("x")?, fields.number("y")?);
-        let z = if fields.rest().is_empty() {
+        if fields.rest().is_empty() {
             without_height += 1;
-            0.0
-        } else {
-            fields.number("z")?
-        };
+            continue;
+        }
+        let z = fields.number("z")?;
         let position = DVec3::new(x, y, z);
         if geographic {
             check_degrees(number, position)?;
@@ -57,10 +56,7 @@ pub(super) fn read(text: &str, crs: Option<String>) -> Result<PositionList, Faul
             accuracy,
         });
     }
-    if without_height > 0 {
-        list.warnings
-            .push(no_height(without_height, list.positions.len()));
-    }
+    leave_out_without_height(&mut list, without_height)?;
     list.crs = crs;
     Ok(list)
 }
@@ -75,9 +71,23 @@ pub(super) fn content(text: &str) -> impl Iterator<Item = (&str, u64)> {
     lines.skip(1)
 }
 
-/// What to say of positions without a height.
-pub(super) fn no_height(without: usize, all: usize) -> String {
-    format!(
-        "{without} of {all} positions have no height; 0 is taken, which is wrong unless the ground is at 0"
-    )
+/// Says how many positions were left out because they have no height: a place in the world has three
+/// coordinates, and a height of 0 in place of an unknown one would tilt and scale what is fitted to it.
+pub(super) fn leave_out_without_height(
+    list: &mut PositionList,
+    without: usize,
+) -> Result<(), Fault> {
+    let all = list.positions.len() + without;
+    if without > 0 && list.positions.is_empty() {
+        return Err(Fault::new(
+            format!("none of its {all} positions has a height"),
+            "add the heights",
+        ));
+    }
+    if without > 0 {
+        list.warnings.push(format!(
+            "{without} of {all} positions have no height and are left out"
+        ));
+    }
+    Ok(())
 }

@@ -20,7 +20,7 @@
 
 use glam::DVec3;
 
-use super::geo_file::no_height;
+use super::geo_file::leave_out_without_height;
 use super::{NamedPosition, PositionList, check_degrees, crs_from_text, is_crs, is_geographic};
 use crate::fault::Fault;
 
@@ -56,20 +56,19 @@ pub(super) fn read(text: &str) -> Result<PositionList, Fault> {
         if comment.is_some() {
             continue;
         }
-        let (position, has_height) = layout.line(line, number)?;
+        let Some(position) = layout.line(line, number)? else {
+            without_height += 1;
+            continue;
+        };
         if is_geographic(list.crs.as_deref()) {
             check_degrees(number, position.position)?;
         }
-        without_height += usize::from(!has_height);
         list.positions.push(position);
     }
     if layout.is_none() {
         return Err(no_header(1, text.lines().next().unwrap_or_default()));
     }
-    if without_height > 0 {
-        let all = list.positions.len();
-        list.warnings.push(no_height(without_height, all));
-    }
+    leave_out_without_height(&mut list, without_height)?;
     Ok(list)
 }
 
@@ -247,8 +246,8 @@ impl Layout {
         fields.iter().map(|field| field.trim().to_owned()).collect()
     }
 
-    /// The place on one line, and whether it has a height.
-    fn line(&self, text: &str, line: u64) -> Result<(NamedPosition, bool), Fault> {
+    /// The place on one line; `None` where it has no height.
+    fn line(&self, text: &str, line: u64) -> Result<Option<NamedPosition>, Fault> {
         let fields = self.split(text);
         let field = |column: Column| {
             let field = fields.get(self.place(column)?)?;
@@ -309,11 +308,10 @@ impl Layout {
             (Some(east), Some(north), Some(up)) => Some(DVec3::new(east, north, up)),
             _ => None,
         };
-        let position = NamedPosition {
+        Ok(height.map(|height| NamedPosition {
             name: name.to_owned(),
-            position: DVec3::new(x, y, height.unwrap_or(0.0)),
+            position: DVec3::new(x, y, height),
             accuracy,
-        };
-        Ok((position, height.is_some()))
+        }))
     }
 }

@@ -69,24 +69,15 @@ fn what_is_no_table_is_refused_with_its_line() {
     assert!(at(1, positions_from_text("DJI_1.JPG,47.1,16.2,300\n")).contains("no header"));
     let header = "photo,lon,lat,height\n";
     for (line, what) in [
-        ("a.jpg,16,47", None),
-        ("a.jpg,16,north,4", Some("Latitude is 'north'")),
-        ("a.jpg,16,NaN,4", Some("not a finite")),
-        ("a.jpg,16,1e999,4", Some("not a finite")),
-        (",16,47,4", Some("no name")),
-        ("a.jpg,,47,4", Some("no Longitude")),
-        ("a.jpg,47,516,4", Some("beyond 180 or 90")),
+        ("a.jpg,16,north,4", "Latitude is 'north'"),
+        ("a.jpg,16,NaN,4", "not a finite"),
+        ("a.jpg,16,1e999,4", "not a finite"),
+        (",16,47,4", "no name"),
+        ("a.jpg,,47,4", "no Longitude"),
+        ("a.jpg,47,516,4", "beyond 180 or 90"),
     ] {
         let list = positions_from_text(&format!("{header}{line}\n"));
-        match what {
-            None => assert!(
-                list.unwrap()
-                    .warnings
-                    .iter()
-                    .any(|w| w.contains("no height"))
-            ),
-            Some(what) => assert!(at(2, list).contains(what), "{line}"),
-        }
+        assert!(at(2, list).contains(what), "{line}");
     }
     let twice = format!("{header}a.jpg,1,2,3\nb.jpg,1,2,3\na.jpg,1,2,3\n");
     let fault = positions_from_text(&twice).unwrap_err().to_string();
@@ -111,9 +102,21 @@ fn opendronemap_geo_file() {
     assert_eq!(list.positions[0].accuracy, None);
     let accuracy = Some(DVec3::new(0.03, 0.03, 0.05));
     assert_eq!(list.positions[1].accuracy, accuracy);
-    let utm = positions("WGS84 UTM 16N\na.jpg 400000 5000000\n");
+    let utm = positions("WGS84 UTM 16N\na.jpg 400000 5000000\nb.jpg 400000 5000000 7\n");
     assert_eq!(utm.crs.as_deref(), Some("EPSG:32616"));
-    assert!(utm.warnings[0].contains("no height"));
+    // A height of 0 that nobody measured would tilt what is fitted to it.
+    assert_eq!(utm.positions.len(), 1);
+    assert_eq!(utm.positions[0].name, "b.jpg");
+    assert_eq!(
+        utm.warnings[0],
+        "1 of 2 positions have no height and are left out"
+    );
+    let fault = positions_from_text("WGS84 UTM 16N\na.jpg 400000 5000000\n").unwrap_err();
+    assert!(
+        fault
+            .to_string()
+            .contains("none of its 1 positions has a height")
+    );
     assert!(at(2, positions_from_text("EPSG:4326\na.jpg 1 b 3\n")).contains("y is 'b'"));
 }
 
@@ -230,7 +233,6 @@ fn control_points_of_the_shared_lists() {
         ("boruszyn_gcp_list.txt", "EPSG:2180", 7, 18),
         ("copr_gcp_list.txt", "EPSG:32611", 10, 27),
         ("copr_gcp_list_noimg.txt", "EPSG:4326", 10, 0),
-        ("copr_GPS_average.txt", "EPSG:4326", 10, 0),
         ("helenenschacht_latlon.csv", "EPSG:4326", 5, 0),
     ] {
         let list = read_control_points(&folder.join(file)).unwrap();
@@ -243,6 +245,13 @@ fn control_points_of_the_shared_lists() {
             list.warnings
         );
     }
+    // Latitude and longitude alone.
+    let flat = read_control_points(&folder.join("copr_GPS_average.txt")).unwrap_err();
+    let said = flat.to_string();
+    assert!(
+        said.contains("none of its 10 positions has a height"),
+        "{said}"
+    );
     let list = read_positions(&folder.join("helenenschacht_latlon.csv")).unwrap();
     let expected = DVec3::new(16.47592207, 47.64350399, 463.662);
     assert_eq!(list.positions[0].position, expected);
