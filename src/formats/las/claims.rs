@@ -36,6 +36,9 @@ pub(super) fn check(input: &mut (impl Read + Seek)) -> Result<u64, Fault> {
             .max(header.number_of_point_records.into()),
         None => header.number_of_point_records.into(),
     };
+    if let Some(extended) = &header.evlr {
+        check_extended(input, extended.start_of_first_evlr, length)?;
+    }
     let record = u64::from(header.point_data_record_length);
     let begin = u64::from(header.offset_to_point_data);
     if record == 0 || begin > length {
@@ -58,6 +61,30 @@ pub(super) fn check(input: &mut (impl Read + Seek)) -> Result<u64, Fault> {
     }
     input.rewind().map_err(|e| unreadable(&e))?;
     Ok(records)
+}
+
+/// The first extended variable length record, which begins at `start`: las takes the memory that it
+/// claims, and reads no other.
+fn check_extended(input: &mut (impl Read + Seek), start: u64, length: u64) -> Result<(), Fault> {
+    let beyond = || {
+        Fault::new(
+            "its extended variable length records reach beyond its end",
+            REMEDY,
+        )
+    };
+    // Two bytes, a user of 16, a number of two; the length; 32 bytes in words.
+    if start.saturating_add(60) > length {
+        return Err(beyond());
+    }
+    let mut bytes = [0; 8];
+    input
+        .seek(SeekFrom::Start(start + 20))
+        .and_then(|_| input.read_exact(&mut bytes))
+        .map_err(|_| beyond())?;
+    if u64::from_le_bytes(bytes) > length - start - 60 {
+        return Err(beyond());
+    }
+    Ok(())
 }
 
 fn check_chunks(

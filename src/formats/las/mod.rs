@@ -254,6 +254,31 @@ mod tests {
         }
     }
 
+    /// Found by the fuzzer: the las crate asked for 585 472 246 525 460 480 bytes, and the program was
+    /// ended.
+    #[test]
+    fn extended_records_that_claim_more_than_the_file_are_refused() {
+        for compressed in [false, true] {
+            let mut bytes = sample(6, 4, compressed);
+            let start = bytes.len() as u64;
+            // Of header 1.4: where the first one begins, and how many there are.
+            bytes[235..243].copy_from_slice(&start.to_le_bytes());
+            bytes[243..247].copy_from_slice(&1_u32.to_le_bytes());
+            let with_record = |claimed: u64| {
+                let mut record = [0; 60];
+                record[20..28].copy_from_slice(&claimed.to_le_bytes());
+                [&bytes[..], &record, b"abcde"].concat()
+            };
+            assert_eq!(read_bytes(with_record(5)).unwrap().cloud.points.len(), 100);
+            for claimed in [6, 585_472_246_525_460_480, u64::MAX] {
+                let fault = read_bytes(with_record(claimed)).unwrap_err();
+                assert!(fault.what.contains("extended variable length"), "{fault}");
+            }
+            bytes[235..243].copy_from_slice(&u64::MAX.to_le_bytes());
+            assert!(read_bytes(bytes).is_err());
+        }
+    }
+
     #[test]
     fn scales_that_are_no_numbers_are_refused() {
         let mut bytes = sample(0, 2, false);
