@@ -56,7 +56,8 @@ pub(super) fn check(input: &mut (impl Read + Seek)) -> Result<u64, Fault> {
                 REMEDY,
             ));
         }
-    } else if records > 0 {
+    } else {
+        // Also without a point: the decompressor reads the table all the same.
         check_chunks(input, &header, record, length)?;
     }
     input.rewind().map_err(|e| unreadable(&e))?;

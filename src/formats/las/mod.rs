@@ -279,6 +279,18 @@ mod tests {
         }
     }
 
+    /// Found by the fuzzer: 57 664 316 192 bytes were asked for, for the chunks of no point.
+    #[test]
+    fn a_lying_chunk_table_is_refused_without_points_too() {
+        let mut bytes = sample(3, 2, true);
+        bytes[107..111].fill(0);
+        let begin = u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
+        let place = u64::from_le_bytes(bytes[begin..begin + 8].try_into().unwrap()) as usize;
+        bytes[place + 4..place + 8].copy_from_slice(&u32::MAX.to_le_bytes());
+        let fault = read_bytes(bytes).unwrap_err();
+        assert!(fault.what.contains("4294967295 chunks"), "{fault}");
+    }
+
     #[test]
     fn scales_that_are_no_numbers_are_refused() {
         let mut bytes = sample(0, 2, false);
