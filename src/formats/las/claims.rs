@@ -36,6 +36,9 @@ pub(super) fn check(input: &mut (impl Read + Seek)) -> Result<u64, Fault> {
             .max(header.number_of_point_records.into()),
         None => header.number_of_point_records.into(),
     };
+    if let Some(extended) = &header.evlr {
+        check_extended(input, extended.start_of_first_evlr, length)?;
+    }
     let record = u64::from(header.point_data_record_length);
     let begin = u64::from(header.offset_to_point_data);
     if record == 0 || begin > length {
@@ -53,11 +56,36 @@ pub(super) fn check(input: &mut (impl Read + Seek)) -> Result<u64, Fault> {
                 REMEDY,
             ));
         }
-    } else if records > 0 {
+    } else {
+        // Also without a point: the decompressor reads the table all the same.
         check_chunks(input, &header, record, length)?;
     }
     input.rewind().map_err(|e| unreadable(&e))?;
     Ok(records)
+}
+
+/// The first extended variable length record, which begins at `start`: las takes the memory that it
+/// claims, and reads no other.
+fn check_extended(input: &mut (impl Read + Seek), start: u64, length: u64) -> Result<(), Fault> {
+    let beyond = || {
+        Fault::new(
+            "its extended variable length records reach beyond its end",
+            REMEDY,
+        )
+    };
+    // Two bytes, a user of 16, a number of two; the length; 32 bytes in words.
+    if start.saturating_add(60) > length {
+        return Err(beyond());
+    }
+    let mut bytes = [0; 8];
+    input
+        .seek(SeekFrom::Start(start + 20))
+        .and_then(|_| input.read_exact(&mut bytes))
+        .map_err(|_| beyond())?;
+    if u64::from_le_bytes(bytes) > length - start - 60 {
+        return Err(beyond());
+    }
+    Ok(())
 }
 
 fn check_chunks(

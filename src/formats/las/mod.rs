@@ -253,6 +253,43 @@ mod tests {
         }
     }
 
+    /// Found by the fuzzer: the las crate asked for 585 472 246 525 460 480 bytes, and the program was
+    /// ended.
+    #[test]
+    fn extended_records_that_claim_more_than_the_file_are_refused() {
+        for compressed in [false, true] {
+            let mut bytes = sample(6, 4, compressed);
+            let start = bytes.len() as u64;
+            // Of header 1.4: where the first one begins, and how many there are.
+            bytes[235..243].copy_from_slice(&start.to_le_bytes());
+            bytes[243..247].copy_from_slice(&1_u32.to_le_bytes());
+            let with_record = |claimed: u64| {
+                let mut record = [0; 60];
+                record[20..28].copy_from_slice(&claimed.to_le_bytes());
+                [&bytes[..], &record, b"abcde"].concat()
+            };
+            assert_eq!(read_bytes(with_record(5)).unwrap().cloud.points.len(), 100);
+            for claimed in [6, 585_472_246_525_460_480, u64::MAX] {
+                let fault = read_bytes(with_record(claimed)).unwrap_err();
+                assert!(fault.what.contains("extended variable length"), "{fault}");
+            }
+            bytes[235..243].copy_from_slice(&u64::MAX.to_le_bytes());
+            assert!(read_bytes(bytes).is_err());
+        }
+    }
+
+    /// Found by the fuzzer: 57 664 316 192 bytes were asked for, for the chunks of no point.
+    #[test]
+    fn a_lying_chunk_table_is_refused_without_points_too() {
+        let mut bytes = sample(3, 2, true);
+        bytes[107..111].fill(0);
+        let begin = u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
+        let place = u64::from_le_bytes(bytes[begin..begin + 8].try_into().unwrap()) as usize;
+        bytes[place + 4..place + 8].copy_from_slice(&u32::MAX.to_le_bytes());
+        let fault = read_bytes(bytes).unwrap_err();
+        assert!(fault.what.contains("4294967295 chunks"), "{fault}");
+    }
+
     #[test]
     fn scales_that_are_no_numbers_are_refused() {
         let mut bytes = sample(0, 2, false);

@@ -10,11 +10,14 @@
 //!
 //! TIFF files keep both anywhere between their pixels; they are not looked into.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, BufRead, Read, Seek, SeekFrom};
 
 /// The longest PNG chunk and the longest extended XMP that are read, in bytes. Cameras write 64 kB.
 const LONGEST: u64 = 8 << 20;
+
+/// Letters in the name of an extended XMP.
+const NAME: usize = 32;
 
 /// The blocks that were found.
 #[derive(Debug, Default, PartialEq)]
@@ -122,7 +125,7 @@ fn jpeg(input: &mut (impl BufRead + Seek), blocks: &mut Blocks) -> io::Result<()
             blocks.xmp.push(packet.to_vec());
         } else if let Some(part) = segment.strip_prefix(b"http://ns.adobe.com/xmp/extension/\0")
             && let (Some(name), Some(&[a, b, c, d]), Some(part)) =
-                (part.get(..32), part.get(36..40), part.get(40..))
+                (part.get(..NAME), part.get(36..40), part.get(40..))
         {
             extended_length += part.len() as u64;
             if extended_length <= LONGEST {
@@ -137,10 +140,10 @@ fn jpeg(input: &mut (impl BufRead + Seek), blocks: &mut Blocks) -> io::Result<()
 
 /// Adds the extended packet that the standard one names.
 fn join_extended(parts: BTreeMap<(Vec<u8>, u32), Vec<u8>>, blocks: &mut Blocks) {
-    let Some(((name, _), _)) = parts.iter().find(|((name, _), _)| {
-        let is_named = |packet: &Vec<u8>| packet.windows(name.len()).any(|part| part == name);
-        blocks.xmp.iter().any(is_named)
-    }) else {
+    let names: BTreeSet<&[u8]> = parts.keys().map(|(name, _)| name.as_slice()).collect();
+    // A file may hold any number of names: each place of a packet is looked at once.
+    let mut places = blocks.xmp.iter().flat_map(|packet| packet.windows(NAME));
+    let Some(&name) = places.find_map(|place| names.get(place)) else {
         return;
     };
     let mut packet: Vec<u8> = Vec::new();

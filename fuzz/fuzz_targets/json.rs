@@ -1,0 +1,4 @@
+#![no_main]
+//! The packages that write JSON, and cameras.
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fragscale_fuzz::read("a.json", bytes));
