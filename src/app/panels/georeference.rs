@@ -217,7 +217,7 @@ fn fit(state: &State, form: &GeoreferenceForm, ui: &mut egui::Ui, commands: &mut
     }
     let request = request(form);
     ui.horizontal(|ui| {
-        let button = ui.add_enabled(request.is_ok(), egui::Button::new("Fit"));
+        let button = ui.add_enabled(request.is_ok(), egui::Button::new("Fit to what is known"));
         let button = button.on_hover_text("Find the way from the reconstruction to the world");
         match request {
             Ok(request) if button.clicked() => commands.push(Command::Georeference(request)),

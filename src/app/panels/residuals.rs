@@ -107,7 +107,8 @@ pub(super) fn residuals(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mu
 /// Name, east, north, up, length, used.
 fn cells(position: &PositionResidual) -> [String; 6] {
     let [east, north, up] = position.residual.to_array();
-    let number = |number: f64| format!("{number:.4}");
+    // Plus zero: a residual of nothing has no sign.
+    let number = |number: f64| format!("{:.4}", (number * 1e4).round() / 1e4 + 0.0);
     let used = if position.used { "used" } else { "outlier" };
     let used = match position.marks_px {
         Some(px) => format!("{used}, marks {px:.2} px"),
