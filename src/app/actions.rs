@@ -66,6 +66,17 @@ pub const ADD: Action = Action {
     },
 };
 /// See its `hover`.
+pub const GEOREFERENCE: Action = Action {
+    label: "Georeference…",
+    hover: "Bring a reconstruction in a frame of its own to the world, or to its true scale, by what \
+            is known of it",
+    shortcut: None,
+    command: |state| {
+        state.open.as_ref()?.reconstruction.as_ref()?;
+        Some(Command::Ask(Some(Asking::Georeference)))
+    },
+};
+/// See its `hover`.
 pub const OPEN_SAMPLE: Action = Action {
     label: "Open the sample flight",
     hover: "Nine photos of the paper's lab, simulated, with known answers",
@@ -271,6 +282,7 @@ pub const MENUS: [(&str, &[Option<Action>]); 5] = [
             Some(OPEN_FILE),
             Some(OPEN_FOLDER),
             Some(ADD),
+            Some(GEOREFERENCE),
             Some(OPEN_SAMPLE),
             None,
             Some(SAVE),

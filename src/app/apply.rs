@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::command::{Asking, Command};
+use super::open_flight::OpenFlight;
 use super::state::{HeldBack, PictureRequest, Severity, State, sample_flight};
 use super::work::Task;
 use crate::flight::FlightSettings;
@@ -36,6 +37,11 @@ impl State {
             Command::SaveAs(path) => self.save_as(path),
             Command::Export(folder) => self.export(folder),
             Command::Picture(request) => self.ask_picture(request),
+            Command::FillGeoreference(form) => self.fill_georeference(form),
+            Command::Georeference(request) => self.start_georeference(request),
+            Command::SaveGeoreferenced { path, keep_surface } => {
+                self.save_georeferenced(path, keep_surface);
+            }
             Command::Ask(asking) => self.ask(asking),
             Command::Browse(what, folder) => self.browse(what, folder),
             Command::Cancel(task) => {
@@ -157,6 +163,9 @@ impl State {
             HeldBack::Replace(command) => match *command {
                 Command::SaveAs(path) => self.start_saving(path),
                 Command::Picture(request) => self.picture = Some(request),
+                Command::SaveGeoreferenced { path, keep_surface } => {
+                    self.start_saving_georeferenced(path, keep_surface);
+                }
                 _ => {}
             },
         }
@@ -174,6 +183,14 @@ impl State {
             Some(Asking::Export | Asking::SaveAs | Asking::Picture)
         );
         if needs_flight && self.open.is_none() {
+            return;
+        }
+        let georeferences = matches!(
+            asking,
+            Some(Asking::Georeference | Asking::SaveGeoreferenced)
+        );
+        let of_reconstruction = |open: &OpenFlight| open.reconstruction.is_some();
+        if georeferences && !self.open.as_deref().is_some_and(of_reconstruction) {
             return;
         }
         if asking == Some(Asking::Add) && self.open.is_none() && self.tried.is_none() {
@@ -315,7 +332,7 @@ impl State {
     }
 
     /// Whether a task of this kind still writes; then says so.
-    fn is_busy(&mut self, task: Task) -> bool {
+    pub(super) fn is_busy(&mut self, task: Task) -> bool {
         let busy = self.work.is_running(task);
         if busy {
             let text = format!(

@@ -5,12 +5,14 @@ use std::path::PathBuf;
 
 use glam::{DVec2, DVec3};
 
+use super::georeferencing::GeoreferenceForm;
 use super::layers::Layers;
 use super::preferences::Theme;
 use super::state::PictureRequest;
 use super::table::Column;
 use super::work::{DialogFor, Task};
 use crate::flight::{FlightSettings, Limits, Verdict};
+use crate::formats::GeoreferenceRequest;
 use crate::geometry::Ray;
 use crate::units::LengthUnit;
 
@@ -36,6 +38,10 @@ pub enum Asking {
     Add,
     /// Where the export goes.
     Export,
+    /// What is known of the reconstruction's place in the world.
+    Georeference,
+    /// Where the georeferenced flight goes.
+    SaveGeoreferenced,
     /// Where flight.toml goes.
     SaveAs,
     /// Where a picture goes, and how large it is.
@@ -116,6 +122,17 @@ pub enum Command {
     Export(PathBuf),
     /// Writes a picture of the viewport.
     Picture(PictureRequest),
+    /// Types into the small window for georeferencing.
+    FillGeoreference(GeoreferenceForm),
+    /// Fits the reconstruction on the screen to the world.
+    Georeference(GeoreferenceRequest),
+    /// Writes what was fitted as a flight.toml, and opens it.
+    SaveGeoreferenced {
+        /// Where to.
+        path: PathBuf,
+        /// Whether the surface's file is in the world already.
+        keep_surface: bool,
+    },
     /// Opens a small window that asks for a place, or closes it.
     Ask(Option<Asking>),
     /// Opens the desktop's own dialog; for opening, `true` asks for a folder.

@@ -17,6 +17,7 @@ pub mod apply;
 pub mod apply_to_flight;
 pub mod command;
 pub mod frame_times;
+pub mod georeferencing;
 pub mod history;
 pub mod layers;
 pub mod open_flight;

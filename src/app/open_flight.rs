@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use super::georeferencing::Georeferencing;
 use super::history::History;
 use super::picker::Picker;
 use super::state::sample_flight;
 use super::table::{Row, TableOrder};
 use super::work::{Geometry, Loaded, PreviewPicture};
 use crate::flight::{Doubt, Flight, FlightSettings, Limits, Outcome, Verdict, judge_all};
-use crate::formats::{FlightOrigin, OpenOptions, PhotoFile};
+use crate::formats::{FlightOrigin, FlightReconstruction, OpenOptions, PhotoFile};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::render::{Orbit, PhotoImage};
 use crate::scale::{PhotoScale, ViewFacts};
@@ -95,6 +96,10 @@ pub struct OpenFlight {
     pub warnings: Vec<String>,
     /// Where it came from, and where it is saved.
     pub origin: FlightOrigin,
+    /// The reconstruction that it was made of, if any.
+    pub reconstruction: Option<FlightReconstruction>,
+    /// Bringing that to the world.
+    pub georeferencing: Georeferencing,
     /// Whether it is the flight that comes with the program, which stays as it came.
     pub bundled: bool,
     /// The settings in that file.
@@ -175,6 +180,8 @@ impl OpenFlight {
             inputs: opened.inputs,
             warnings: opened.warnings,
             bundled: is_bundled(&opened.origin.suggested_file()),
+            georeferencing: Georeferencing::new(opened.origin.photo_folder()),
+            reconstruction: opened.reconstruction,
             origin: opened.origin,
             saved,
             computed: opened.settings,

@@ -34,7 +34,12 @@ const PROJECTED: u32 = 2048;
 const PREVIEW: u32 = 4096;
 
 impl State {
-    fn start(&mut self, task: Task, work: impl FnOnce(&Progress) -> Done + Send + 'static) {
+    /// Starts a task, or says why it cannot be started.
+    pub(super) fn start(
+        &mut self,
+        task: Task,
+        work: impl FnOnce(&Progress) -> Done + Send + 'static,
+    ) {
         if let Err(fault) = self.work.start(task, work) {
             self.say(Severity::Error, &fault.to_string());
         }
@@ -289,6 +294,13 @@ impl State {
                     DialogFor::SaveAs => {
                         let dialog = dialog.set_title("Save flight").set_file_name("flight.toml");
                         dialog.save_file().await
+                    }
+                    DialogFor::Georeference(_) if folder => {
+                        let dialog = dialog.set_title("Folder of the flight's photos");
+                        dialog.pick_folder().await
+                    }
+                    DialogFor::Georeference(_) => {
+                        dialog.set_title("List of positions").pick_file().await
                     }
                     DialogFor::Picture => {
                         let dialog = dialog.set_title("Save picture").set_file_name("figure.png");

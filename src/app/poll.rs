@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::command::Command;
 use super::open_flight::{Measure, OpenFlight, Preview};
 use super::picker::{Picked, Picker, Purpose};
 use super::state::{Severity, State};
@@ -151,8 +152,25 @@ impl State {
                     None => {}
                 }
             }
+            Done::Georeferenced(photos, result) => {
+                if let Some(open) = &mut self.open {
+                    open.georeferencing.outcome = Some((photos, *result));
+                }
+            }
+            Done::SavedGeoreferenced(Ok(path)) => {
+                self.say(Severity::Note, &format!("{}: saved", path.display()));
+                self.apply(Command::Open(path));
+            }
+            Done::SavedGeoreferenced(Err(message)) => self.say(Severity::Error, &message),
             Done::Dialog(what, Some(path)) => match what {
-                DialogFor::Open => self.apply(super::command::Command::Open(path)),
+                DialogFor::Georeference(field) => {
+                    if let Some(open) = &self.open {
+                        let mut form = open.georeferencing.form.clone();
+                        *form.path(field) = path.display().to_string();
+                        self.fill_georeference(form);
+                    }
+                }
+                DialogFor::Open => self.apply(Command::Open(path)),
                 DialogFor::Add | DialogFor::Export | DialogFor::SaveAs | DialogFor::Picture => {
                     self.answered = Some(path);
                 }
@@ -306,6 +324,7 @@ impl OpenFlight {
         self.origin = before.origin.clone();
         self.bundled = before.bundled;
         self.measure = before.measure;
+        std::mem::swap(&mut self.georeferencing, &mut before.georeferencing);
         std::mem::swap(&mut self.history, &mut before.history);
         self.proposed = before.proposed;
         self.selected = before.selected;

@@ -9,9 +9,10 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use egui::ColorImage;
 
+use super::georeferencing::PathField;
 use crate::fault::Fault;
 use crate::flight::{Flight, FlightSettings, Outcome};
-use crate::formats::{FlightOrigin, OpenOptions, Opened};
+use crate::formats::{FlightOrigin, Georeferenced, OpenOptions, Opened};
 use crate::geometry::Bounds;
 use crate::jobs::{Job, Progress};
 use crate::render::{CloudBuffers, LargePhoto, MeshBuffers, PhotoImage};
@@ -38,6 +39,8 @@ pub enum Task {
     Save,
     /// Writing a picture of the viewport.
     Picture,
+    /// Fitting a reconstruction to the world.
+    Georeference,
     /// Waiting for the desktop's own dialog.
     Dialog,
 }
@@ -55,6 +58,7 @@ impl Task {
             Self::Export => "Export",
             Self::Save => "Saving",
             Self::Picture => "Picture",
+            Self::Georeference => "Georeferencing",
             Self::Dialog => "Dialog",
         }
     }
@@ -79,6 +83,8 @@ pub enum DialogFor {
     SaveAs,
     /// Where a picture goes.
     Picture,
+    /// What georeferencing reads: this field's file or folder.
+    Georeference(PathField),
 }
 
 /// A flight with its scales.
@@ -144,6 +150,11 @@ pub enum Done {
     Exported(Result<(String, Vec<String>), String>),
     /// The flight.toml that was written, with the settings in it.
     Saved(Result<(FlightOrigin, FlightSettings), String>),
+    /// The reconstruction fitted to the world, or why not in a line; with the folder of photos that
+    /// was named for it.
+    Georeferenced(Option<PathBuf>, Box<Result<Georeferenced, String>>),
+    /// Where the georeferenced flight was written.
+    SavedGeoreferenced(Result<PathBuf, String>),
     /// Where the picture was written.
     Picture(Result<PathBuf, String>),
     /// What the person chose; `None` where she did not, or where the desktop has no dialog.
@@ -245,6 +256,7 @@ impl Work {
             Task::Geometry,
             Task::Thumbnails,
             Task::Preview,
+            Task::Georeference,
         ] {
             self.cancel(task);
         }

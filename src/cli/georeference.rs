@@ -83,7 +83,7 @@ pub(super) fn georeference(
             return Err(FileError::new(target, fault).to_string());
         }
         let text = result
-            .flight_text(target, path, arguments.photos.as_deref())
+            .flight_text(target, path, arguments.photos.as_deref(), None)
             .map_err(|error| error.to_string())?;
         exports::write_whole(target, text.as_bytes()).map_err(|error| {
             let what = format!("it cannot be written ({error})");

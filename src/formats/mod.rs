@@ -74,7 +74,7 @@ pub use georeferencing::{
 };
 pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
-pub use open::{OpenOptions, Opened, PhotoFile, open_flight};
+pub use open::{FlightReconstruction, OpenOptions, Opened, PhotoFile, open_flight};
 pub use origin::FlightOrigin;
 pub use package::Package;
 pub use photo_checks::photo_checks;

@@ -45,6 +45,15 @@ pub struct PhotoFile {
     pub state: PhotoFileState,
 }
 
+/// The reconstruction that a flight's poses are from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FlightReconstruction {
+    /// The file or folder.
+    pub path: PathBuf,
+    /// Who says that it is in the world already, in words; `None` in a frame of its own.
+    pub in_world: Option<String>,
+}
+
 /// A flight with what was noticed on the way.
 #[derive(Debug)]
 pub struct Opened {
@@ -62,6 +71,8 @@ pub struct Opened {
     pub file: Option<(PathBuf, FlightFile)>,
     /// Where the flight came from, and how to save it.
     pub origin: FlightOrigin,
+    /// The reconstruction that it was made of; `None` where its poses are in a file of their own.
+    pub reconstruction: Option<FlightReconstruction>,
     /// Every file that was read except the photos, in the order of reading.
     pub inputs: Vec<PathBuf>,
 }
@@ -104,6 +115,8 @@ struct Source {
     flight_file: Option<FlightFile>,
     /// The system of the world that flight.toml names.
     named_crs: Option<Crs>,
+    /// Where the poses are from, if from a reconstruction.
+    reconstruction: Option<FlightReconstruction>,
     /// The frame of the poses and of the reconstruction's points.
     poses_frame: Frame,
     /// The system that the reconstruction's package works in, where its poses are in another.
@@ -133,6 +146,7 @@ impl Source {
             unit_is_stated: true,
             flight_file: None,
             named_crs: None,
+            reconstruction: None,
             poses_frame: Frame::AsIs(None),
             preferred_crs: None,
             inputs: Vec::new(),
@@ -183,6 +197,12 @@ impl Source {
             PhotoSource::Reconstruction(name, transform) => {
                 let path = folder.join(name);
                 let mut reconstruction = source.read_reconstruction(&path, progress)?;
+                let moved = transform.map(|_| "a transform in its flight.toml".to_owned());
+                let named = || Some(format!("{} in its flight.toml", file.crs()?));
+                source.reconstruction = Some(FlightReconstruction {
+                    path: path.clone(),
+                    in_world: moved.or_else(named).or(reconstruction.crs.clone()),
+                });
                 if let Some(matrix) = transform {
                     let similarity = Similarity::from_row_major(&matrix).map_err(|error| {
                         at_file(Fault::new(
@@ -226,6 +246,10 @@ impl Source {
         let mut source = Self::new(path, settings, options);
         source.unit_is_stated = false;
         let reconstruction = source.read_reconstruction(path, progress)?;
+        source.reconstruction = Some(FlightReconstruction {
+            path: path.to_owned(),
+            in_world: reconstruction.crs.clone(),
+        });
         if reconstruction.crs.is_none() && reconstruction.enu_origin.is_none() {
             let path = path.display();
             source.warnings.push(format!(
@@ -527,6 +551,7 @@ impl Source {
             settings,
             file: self.flight_file.map(|file| (self.file, file)),
             origin,
+            reconstruction: self.reconstruction,
             inputs: self.inputs,
         })
     }

@@ -36,6 +36,16 @@ impl FlightOrigin {
         self.is_flight_file && self.is_changed
     }
 
+    /// The folder of the image files, if any.
+    pub fn photo_folder(&self) -> Option<&Path> {
+        self.photo_folder.as_deref()
+    }
+
+    /// The surface's file; `None` for the reconstruction's own points.
+    pub fn surface(&self) -> Option<&Path> {
+        self.surface.as_deref()
+    }
+
     /// Where to save it, if nobody says otherwise: in the flight.toml that it came from, or beside the
     /// reconstruction as NAME.toml.
     pub fn suggested_file(&self) -> PathBuf {

@@ -1,15 +1,15 @@
 //! What cannot be opened is told with the reader's own sentence, and the flight on the screen stays.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::Path;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use fragscale::app::Command;
 
-use crate::common::{fragscale, shared_data};
+use crate::common::fragscale;
 use crate::desk::{Desk, copy, flight};
+use crate::dropping::drop_on;
 
 /// What the command says of a path that it cannot open.
 fn sentence(path: &Path) -> String {
@@ -68,7 +68,7 @@ fn a_truncated_cloud_is_told() {
     let bytes = fs::read(&cloud).expect("the cloud");
     fs::write(&cloud, &bytes[..bytes.len() / 2]).expect("written");
     let mut desk = Desk::new(Some(&flight("tests/windrow")));
-    drop_on(&mut desk, folder.path());
+    drop_on(&mut desk, &[folder.path()]);
     assert_told_and_usable(&mut desk, folder.path());
 }
 
@@ -78,7 +78,7 @@ fn on_the_start_page_it_is_told_too() {
     let mut desk = Desk::new(Some(&nowhere));
     assert!(desk.says(&sentence(&nowhere)));
     // And the sample can still be opened.
-    drop_on(&mut desk, &flight("tests/windrow"));
+    drop_on(&mut desk, &[&flight("tests/windrow")]);
     assert_eq!(desk.rows().len(), 9);
     assert!(!desk.says(&sentence(&nowhere)));
 }

@@ -136,6 +136,11 @@ impl Desk {
 
     /// The photos in the rows of the table, from above, with the texts of their cells.
     pub fn rows(&self) -> Vec<(String, Vec<String>)> {
+        self.rows_of("Photo")
+    }
+
+    /// The same of the table whose rows are called like this.
+    pub fn rows_of(&self, kind: &str) -> Vec<(String, Vec<String>)> {
         let rows = self.harness.query_all_by_role(Role::Row);
         let mut rows: Vec<(String, Rect)> = rows
             .map(|node| (node.accesskit_node().label().expect("a name"), node.rect()))
@@ -150,12 +155,11 @@ impl Desk {
             cells.sort_by(|a, b| a.1.left().total_cmp(&b.1.left()));
             cells.into_iter().map(|(text, _)| text.clone()).collect()
         };
-        rows.into_iter()
-            .map(|(name, place)| {
-                let photo = name.strip_prefix("Photo ").expect("the row of a photo");
-                (photo.to_owned(), cells(place))
-            })
-            .collect()
+        let cells_of = |(name, place): (String, Rect)| {
+            let photo = name.strip_prefix(kind)?.trim_start();
+            Some((photo.to_owned(), cells(place)))
+        };
+        rows.into_iter().filter_map(cells_of).collect()
     }
 
     /// The names of the photos in the table, from above.

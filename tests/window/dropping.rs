@@ -24,7 +24,7 @@ impl egui::DroppedFile for Dropped {
 }
 
 /// Lets files or folders go over the window.
-fn drop_on(desk: &mut Desk, paths: &[&Path]) {
+pub fn drop_on(desk: &mut Desk, paths: &[&Path]) {
     for path in paths {
         let file = Arc::new(Dropped(path.to_path_buf()));
         desk.harness.input_mut().dropped_files.push(file);
@@ -95,7 +95,7 @@ fn level_flight(folder: &Path) -> PathBuf {
 }
 
 fn act(desk: &mut Desk, command: Command) {
-    desk.harness.state_mut().state.apply(command);
+    desk.harness.state_mut().apply(command);
     desk.settle();
 }
 
@@ -153,7 +153,7 @@ fn a_flight_without_a_surface_waits_for_it() {
     drop_on(&mut desk, &[&other]);
     assert!(desk.logged("higher.ply: a surface without photos; drop it together"));
     drop_on(&mut desk, &[&path]);
-    assert!(desk.harness.state().state.open.is_none());
+    assert!(desk.harness.state().state().open.is_none());
     assert!(desk.logged("level.ply: there is no such file"));
     act(&mut desk, Command::Ask(Some(Asking::Add)));
     assert!(desk.says("a cloud or mesh to be its surface"));

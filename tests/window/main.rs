@@ -16,11 +16,14 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/own_frame.rs"]
+mod own_frame;
 
 mod broken;
 mod desk;
 mod dropping;
 mod export;
+mod georeference;
 mod looks;
 mod photos;
 mod random;

@@ -3,6 +3,7 @@
 
 use std::path::PathBuf;
 
+use super::georeference::{georeference, save_georeferenced};
 use crate::app::actions;
 use crate::app::command::{Asking, Command};
 use crate::app::open_flight::OpenFlight;
@@ -16,6 +17,8 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::Open => "Open a flight",
             Asking::Add => "Add surface or photos",
             Asking::Export => "Export for Split-Desktop",
+            Asking::Georeference => "Georeference",
+            Asking::SaveGeoreferenced => "Save georeferenced flight",
             Asking::SaveAs => "Save flight",
             Asking::Picture => "Save picture",
             Asking::Keys => "Keys and mouse",
@@ -29,11 +32,14 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             .pivot(egui::Align2::CENTER_CENTER)
             .default_pos(context.content_rect().center())
             .show(context, |ui| {
-                ui.set_max_width(460.0);
+                let wide = asking == Asking::Georeference;
+                ui.set_max_width(if wide { 540.0 } else { 460.0 });
                 match asking {
                     Asking::Open => open(state, ui, commands),
                     Asking::Add => add(state, ui, commands),
                     Asking::Export => export(state, ui, commands),
+                    Asking::Georeference => georeference(state, ui, commands),
+                    Asking::SaveGeoreferenced => save_georeferenced(state, ui, commands),
                     Asking::SaveAs => save_as(state, ui, commands),
                     Asking::Picture => picture(state, ui, commands),
                     Asking::Keys => keys(ui),
@@ -103,7 +109,9 @@ fn writing(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 fn replace(command: &Command, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.heading("Replace the file?");
     let path = match command {
-        Command::SaveAs(path) => path.display().to_string(),
+        Command::SaveAs(path) | Command::SaveGeoreferenced { path, .. } => {
+            path.display().to_string()
+        }
         Command::Picture(request) => request.path.display().to_string(),
         _ => String::new(),
     };
@@ -121,7 +129,7 @@ fn replace(command: &Command, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 
 /// A path that is typed, or chosen in the desktop's dialog. Returns the text of now, and whether
 /// Enter was pressed in it.
-fn path_field(
+pub(super) fn path_field(
     state: &State,
     ui: &mut egui::Ui,
     start: &str,
@@ -181,7 +189,7 @@ fn proposed(open: &OpenFlight, name: Option<&str>) -> PathBuf {
 }
 
 /// A path as typed, where it is one: without the quotes that file managers put around.
-fn typed(path: &str) -> Option<PathBuf> {
+pub(super) fn typed(path: &str) -> Option<PathBuf> {
     let path = path.trim().trim_matches(['"', '\'']);
     let path = path.strip_prefix("file://").unwrap_or(path);
     (!path.is_empty()).then(|| PathBuf::from(path))

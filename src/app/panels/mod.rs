@@ -3,12 +3,14 @@
 mod ask;
 mod field;
 mod flight_settings;
+mod georeference;
 mod inspector;
 mod layers_panel;
 mod limits_page;
 mod log_panel;
 mod menu_bar;
 mod photos_table;
+mod residuals;
 mod start_page;
 mod status_bar;
 mod tool_bar;

@@ -28,7 +28,7 @@ pub(super) fn by_distances(
         found.map(|point| point.found.point).ok_or_else(|| {
             Fault::new(
                 format!("there is no triangulated control point '{name}' for a known distance"),
-                "give its marks in two photos with --gcp, or the point as x,y,z",
+                "give its marks in two photos (--gcp), or the point as x,y,z",
             )
         })
     };
@@ -56,7 +56,7 @@ pub(super) fn by_distances(
         if request.level {
             "the scale is known, not the place: up is across the plane of the reconstruction's points, and north is not known"
         } else {
-            "the scale is known, not the place: the axes stay as the package left them, and z may not be up; see --level"
+            "the scale is known, not the place: the axes stay as the package left them, and z may not be up (--level turns it up)"
         }
         .to_owned(),
     );
@@ -87,7 +87,7 @@ fn levelled(reconstruction: &Reconstruction) -> Result<DMat3, Fault> {
     let too_few = || {
         Fault::new(
             "the reconstruction has no plane of points to level by",
-            "leave --level out, or give positions",
+            "leave the axes as they are (no --level), or give positions",
         )
     };
     let mut points: Vec<DVec3> = reconstruction.cloud.points.clone();

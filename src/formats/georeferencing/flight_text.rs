@@ -13,7 +13,8 @@ use crate::surface::SurfaceOptions;
 
 impl Georeferenced {
     /// The text of a flight.toml at `target` with the reconstruction in `reconstruction`, its paths
-    /// relative to `target`. The sixteen numbers of the transform read back to the bit.
+    /// relative to `target`. The sixteen numbers of the transform read back to the bit. A `surface`
+    /// is taken as it is: it has to be in the world already.
     ///
     /// Write it with `exports::write_whole`.
     ///
@@ -25,6 +26,7 @@ impl Georeferenced {
         target: &Path,
         reconstruction: &Path,
         photos: Option<&Path>,
+        surface: Option<&Path>,
     ) -> Result<String, FileError> {
         let at = |fault| FileError::new(target, fault);
         let folder = fs::canonicalize(folder_of(target)).map_err(|e| {
@@ -44,16 +46,15 @@ impl Georeferenced {
         let name = name
             .file_stem()
             .map(|stem| stem.to_string_lossy().into_owned());
-        let photos = photos
-            .map(|path| path_from(&folder, path))
-            .transpose()
-            .map_err(at)?;
+        let named = |path: Option<&Path>| path.map(|path| path_from(&folder, path)).transpose();
+        let photos = named(photos).map_err(at)?;
+        let surface = named(surface).map_err(at)?;
         let flight = ReconstructionFlight {
             name: name.as_deref().unwrap_or("flight"),
             reconstruction: &path_from(&folder, reconstruction).map_err(at)?,
             transform: Some(self.similarity.to_row_major()),
             folder: photos.as_deref(),
-            surface: None,
+            surface: surface.as_deref(),
             crs: self.crs.as_deref(),
         };
         let settings = FlightSettings {

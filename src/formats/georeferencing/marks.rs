@@ -129,7 +129,7 @@ fn camera_of(
         (false, Some((width, height))) => Ok(reconstruction.sized(camera, width, height)),
         (false, None) => Err(Fault::new(
             format!("the image size of '{photo}' is not known, so its marks cannot be placed"),
-            "give the folder of the photos with --photos",
+            "give the folder of the photos (--photos)",
         )),
     }
 }
@@ -140,6 +140,6 @@ fn outside(point: &str, photo: &str, pixel: DVec2, camera: &Camera) -> Fault {
             "the mark of '{point}' at {}, {} lies outside photo '{photo}' of {} x {}",
             pixel.x, pixel.y, camera.width, camera.height
         ),
-        "give the folder of the photos that it was marked in with --photos",
+        "give the folder of the photos that it was marked in (--photos)",
     )
 }

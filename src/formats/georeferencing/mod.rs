@@ -30,7 +30,7 @@ use crate::jobs::Progress;
 use crate::units::LengthUnit;
 
 /// What is known about a reconstruction's place in the world.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct GeoreferenceRequest {
     /// The folder of the photos: their own positions, where nothing else is given, and their sizes.
     pub photos: Option<PathBuf>,
@@ -243,7 +243,7 @@ fn georeferenced(
             path,
             Fault::new(
                 "nothing is known of its place in the world",
-                "give --photos with positions in them, --positions, --gcp or --distance",
+                "give photos with positions in them (--photos), a list of positions (--positions), control points (--gcp) or a known distance (--distance)",
             ),
         ));
     }

@@ -360,7 +360,7 @@ fn the_flight_reads_back() {
     })
     .unwrap();
     let target = folder.path().join("flight.toml");
-    let text = found.flight_text(&target, &model, None).unwrap();
+    let text = found.flight_text(&target, &model, None, None).unwrap();
     let file = FlightFile::parse(&text).unwrap();
     assert_eq!(file.crs(), Some("EPSG:32632"));
     let crate::flight::PhotoSource::Reconstruction(path, Some(numbers)) = file.photo_source()
@@ -372,7 +372,9 @@ fn the_flight_reads_back() {
         numbers.map(f64::to_bits),
         found.similarity.to_row_major().map(f64::to_bits)
     );
-    let inside = found.flight_text(&target, folder.path(), None).unwrap_err();
+    let inside = found
+        .flight_text(&target, folder.path(), None, None)
+        .unwrap_err();
     assert!(inside.fault.what.contains("in its stead"));
 }
 
