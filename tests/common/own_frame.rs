@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// Camera centres in the model's frame, where all cameras look along +z, 10 units above a plane.
-pub const CENTERS: [[f64; 3]; 5] = [
+pub(crate) const CENTERS: [[f64; 3]; 5] = [
     [0.0, 0.0, 0.0],
     [4.0, 0.0, 0.0],
     [4.0, 3.0, 0.0],
@@ -14,7 +14,7 @@ pub const CENTERS: [[f64; 3]; 5] = [
 ];
 
 /// A COLMAP model with a focal length of 1000 px.
-pub fn model(folder: &Path) {
+pub(crate) fn model(folder: &Path) {
     fs::write(
         folder.join("cameras.txt"),
         "1 PINHOLE 800 600 1000 1000 400 300\n",
@@ -34,7 +34,7 @@ pub fn model(folder: &Path) {
 }
 
 /// Where the cameras stand in the world: 3 m to a unit, turned about x so that z is up.
-pub fn positions() -> String {
+pub(crate) fn positions() -> String {
     let mut list = "photo,x,y,z\n".to_owned();
     for (i, [x, y, z]) in CENTERS.iter().enumerate() {
         let (x, y, z) = (5e5 + 3.0 * x, 5e6 - 3.0 * y, 150.0 - 3.0 * z);

@@ -124,7 +124,7 @@ pub(in crate::formats) fn read_csv(text: &str) -> Result<Reconstruction, Fault> 
         ..Reconstruction::default()
     };
     let name = header.needed(&["name"])?;
-    let template: Box<dyn Fn(&Row<'_>) -> Result<Read, Fault>> = if is_opencv {
+    let template: Template = if is_opencv {
         opencv(&header)?
     } else {
         own(&header)?
@@ -181,8 +181,11 @@ fn coefficients(header: &Header) -> [Option<Column>; 6] {
     ]
 }
 
+/// How a row of one template is read.
+type Template = Box<dyn Fn(&Row<'_>) -> Result<Read, Fault>>;
+
 /// The program's own columns: centre, angles, the lens on film.
-fn own(header: &Header) -> Result<Box<dyn Fn(&Row<'_>) -> Result<Read, Fault>>, Fault> {
+fn own(header: &Header) -> Result<Template, Fault> {
     let position = [
         header.needed(&["x"])?,
         header.needed(&["y"])?,
@@ -214,7 +217,7 @@ fn own(header: &Header) -> Result<Box<dyn Fn(&Row<'_>) -> Result<Read, Fault>>, 
 }
 
 /// The "OpenCV-compliant" columns: camera_from_world, the lens in pixels from the image's corner.
-fn opencv(header: &Header) -> Result<Box<dyn Fn(&Row<'_>) -> Result<Read, Fault>>, Fault> {
+fn opencv(header: &Header) -> Result<Template, Fault> {
     let [_, pose @ ..] = OPENCV;
     let mut places = [(0, ""); 12];
     for (place, name) in places.iter_mut().zip(pose) {
