@@ -180,7 +180,7 @@ fn positions_on_a_line_are_refused_in_a_sentence() {
     fit(&mut desk, folder.path());
     assert!(desk.says("list.csv: "));
     assert!(desk.says("lie on a line"));
-    assert!(desk.says("known distances for the scale alone"));
+    assert!(desk.says("add positions beside it, such as ground control points"));
     assert!(!desk.shows(Role::Button, "Save and open…"));
     assert!(desk.rows_of("Residual of").is_empty());
 }

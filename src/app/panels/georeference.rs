@@ -26,9 +26,10 @@ pub(super) fn georeference(state: &State, ui: &mut egui::Ui, commands: &mut Vec<
         ui.weak("To georeference a reconstruction anew, open its own file, not the flight.toml.");
         return;
     }
-    let most = ui.ctx().content_rect().height() - 90.0;
+    let most = (ui.ctx().content_rect().height() - 90.0).max(200.0);
     egui::ScrollArea::vertical()
-        .max_height(most.max(200.0))
+        .max_height(most)
+        .min_scrolled_height(most)
         .show(ui, |ui| {
             ui.label(format!(
                 "{path} is in a frame of its own. What is known of its place in the world?"
@@ -40,7 +41,8 @@ pub(super) fn georeference(state: &State, ui: &mut egui::Ui, commands: &mut Vec<
                 commands.push(Command::FillGeoreference(form.clone()));
             }
             ui.separator();
-            fit(state, &form, ui, commands);
+            let is_fitted = open.georeferencing.fitted().is_some();
+            fit(state, &form, is_fitted, ui, commands);
             match &open.georeferencing.outcome {
                 None => {}
                 Some((_, Err(error))) => {
@@ -201,8 +203,14 @@ fn distances(open: &OpenFlight, form: &mut GeoreferenceForm, ui: &mut egui::Ui) 
     });
 }
 
-/// The button that fits, or how far the fit is.
-fn fit(state: &State, form: &GeoreferenceForm, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+/// The buttons that fit and save, or how far the fit is.
+fn fit(
+    state: &State,
+    form: &GeoreferenceForm,
+    is_fitted: bool,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
     let running = |&(task, _): &(Task, _)| task == Task::Georeference;
     if let Some((_, (sentence, _))) = state.work.running().find(running) {
         ui.horizontal(|ui| {
@@ -224,6 +232,13 @@ fn fit(state: &State, form: &GeoreferenceForm, ui: &mut egui::Ui, commands: &mut
             Ok(_) => {}
             Err(why) => {
                 ui.weak(why);
+            }
+        }
+        if is_fitted {
+            let save = ui.button("Save and open…");
+            let hover = "Write a flight.toml with the way to the world in it, and open it";
+            if save.on_hover_text(hover).clicked() {
+                commands.push(Command::Ask(Some(Asking::SaveGeoreferenced)));
             }
         }
     });
@@ -316,12 +331,6 @@ fn result(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mut Vec<Command>
     if !fitted.positions.is_empty() {
         ui.add_space(4.0);
         residuals(fitted, ui, commands);
-    }
-    ui.add_space(4.0);
-    let save = ui.button("Save and open…");
-    let hover = "Write a flight.toml with the way to the world in it, and open it";
-    if save.on_hover_text(hover).clicked() {
-        commands.push(Command::Ask(Some(Asking::SaveGeoreferenced)));
     }
 }
 

@@ -31,7 +31,7 @@ pub(super) fn residuals(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mu
         )
         .columns(number(), 4)
         .column(Width::remainder().clip(true))
-        .min_scrolled_height(60.0)
+        .min_scrolled_height(150.0)
         .max_scroll_height(150.0)
         .header(20.0, |mut header| {
             for (name, hover) in [
