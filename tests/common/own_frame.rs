@@ -1,5 +1,7 @@
 //! A reconstruction in a frame of its own whose place in the world is known.
 
+#![allow(unreachable_pub, reason = "each test binary is a crate of its own")]
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
