@@ -71,8 +71,9 @@ fn the_chessboards_rows_have_the_measured_scale() {
     let surface = surface.expect("a surface");
     let mut caster = surface.caster().expect("a caster");
     let board_from_world = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
-    let mut worst: f64 = 0.0;
-    for (of_photo, pose) in rows.iter().zip(poses.chunks(6)) {
+    let pose_errors = matrix(&yaml, "per_view_reprojection_errors");
+    for ((of_photo, pose), pose_error) in rows.iter().zip(poses.chunks(6)).zip(pose_errors) {
+        let mut worst: f64 = 0.0;
         let rotation = DQuat::from_scaled_axis(DVec3::from_slice(&pose[..3]));
         let camera_from_world = DMat3::from_quat(rotation) * board_from_world;
         let pose = Pose {
@@ -105,7 +106,13 @@ fn the_chessboards_rows_have_the_measured_scale() {
             let in_metres: f64 = points.windows(2).map(|p| (p[1] - p[0]).length()).sum();
             worst = worst.max((in_pixels / in_metres / measured - 1.0).abs());
         }
+        // Of one photo the calibration itself says that its pose is 1.18 px off (the others 0.16 to 0.38):
+        // over a row of some 280 px that is up to 0.8 %.
+        let limit = if pose_error < 0.5 { 0.005 } else { 0.008 };
+        println!(
+            "the chessboard's rows, pose {pose_error:.2} px: {:.2} %",
+            100.0 * worst
+        );
+        assert!(worst < limit, "{worst}");
     }
-    println!("the chessboard's rows: {:.2} % at worst", 100.0 * worst);
-    assert!(worst < 0.005, "{worst}");
 }

@@ -319,8 +319,8 @@ fn named(
     paths: &[PathBuf],
     base: Option<(PathBuf, OpenOptions)>,
     added: bool,
-) -> Result<(PathBuf, OpenOptions), NotOpened> {
-    let not_opened = |why| NotOpened { why, tried: None };
+) -> Result<(PathBuf, OpenOptions), Box<NotOpened>> {
+    let not_opened = |why| Box::new(NotOpened { why, tried: None });
     let dropped = Dropped::sort(paths).map_err(|error| not_opened(error.to_string()))?;
     let OpenOptions {
         surface,
@@ -363,11 +363,13 @@ fn open(
     mut options: OpenOptions,
     again: Option<(u64, FlightSettings)>,
     progress: &Progress,
-) -> Result<Loaded, NotOpened> {
+) -> Result<Loaded, Box<NotOpened>> {
     options.settings = again.map(|(_, settings)| settings);
-    let not_opened = |error: FileError| NotOpened {
-        why: error.to_string(),
-        tried: Some((path.clone(), options.clone())),
+    let not_opened = |error: FileError| {
+        Box::new(NotOpened {
+            why: error.to_string(),
+            tried: Some((path.clone(), options.clone())),
+        })
     };
     let opened = formats::open_flight(&path, &options, progress).map_err(not_opened)?;
     let at_path = |fault: Fault| not_opened(FileError::new(&path, fault));

@@ -48,7 +48,8 @@ impl State {
         match done {
             Done::Opened(result) => match *result {
                 Ok(loaded) => self.take_flight(loaded),
-                Err(NotOpened { why, tried }) => {
+                Err(not_opened) => {
+                    let NotOpened { why, tried } = *not_opened;
                     self.say(Severity::Error, &why);
                     // A wrong surface does not make forget the flight that it was for.
                     self.tried = tried.or_else(|| self.tried.take());

@@ -128,7 +128,7 @@ pub struct Geometry {
 #[derive(Debug)]
 pub enum Done {
     /// A flight, or why it cannot be opened.
-    Opened(Box<Result<Loaded, NotOpened>>),
+    Opened(Box<Result<Loaded, Box<NotOpened>>>),
     /// Scales after a setting changed, with the settings.
     Scales(Result<(Arc<Flight>, Vec<Outcome>, FlightSettings), Fault>),
     /// How the photos look at the surface.

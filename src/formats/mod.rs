@@ -333,7 +333,29 @@ pub fn read_cloud(path: &Path, progress: &Progress) -> Result<CloudFile, FileErr
     let input = BufReader::with_capacity(1 << 18, file);
     let beside = |name: &str| gltf::read_beside(path, name);
     read_cloud_as(format, input, size, &beside, progress)
-        .map_err(|fault| FileError::new(path, fault))
+        .map_err(|fault| FileError::new(path, known_places(path, format).unwrap_or(fault)))
+}
+
+/// What to do with a text that is no cloud because it lists places for georeferencing.
+fn known_places(path: &Path, format: CloudFormat) -> Option<Fault> {
+    if format != CloudFormat::Xyz {
+        return None;
+    }
+    let (what, option) = match (read_control_points(path), read_positions(path)) {
+        (Ok(list), _) => (
+            format!("{} ground control points", list.points.len()),
+            "gcp",
+        ),
+        (_, Ok(list)) => (
+            format!("the positions of {} photos", list.positions.len()),
+            "positions",
+        ),
+        _ => return None,
+    };
+    Some(Fault::new(
+        format!("it holds {what}, not a surface"),
+        format!("give it to 'fragscale georeference' as --{option}"),
+    ))
 }
 
 /// Reads a cloud or mesh that is in memory, as a file of that format. A glTF's buffers in files of
@@ -459,6 +481,23 @@ fn read_poses(path: &Path) -> Result<PosesFile, FileError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_list_of_control_points_says_what_it_is_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("gcp_list.txt");
+        let text = "EPSG:32633\n500000 5000000 100 320 240 a.jpg\n500010 5000000 101 10 20 a.jpg\n";
+        fs::write(&path, text).unwrap();
+        let error = read_cloud(&path, &Progress::default()).unwrap_err();
+        assert!(
+            error
+                .fault
+                .what
+                .contains("ground control points, not a surface"),
+            "{error}"
+        );
+        assert!(error.fault.remedy.contains("--gcp"), "{error}");
+    }
 
     #[test]
     fn clouds_are_told_by_their_first_bytes_or_their_name() {
