@@ -186,7 +186,7 @@ impl Separator {
     }
 }
 
-/// A column's name without quotes, and without the unit of "X [m]" and "x(m)".
+/// A column's name without quotes, and without the unit of `X [m]` and `x(m)`.
 fn plain_name(name: &str) -> &str {
     let name = name.trim_matches(['"', '\'']);
     name.split(['[', '(']).next().unwrap_or_default().trim()

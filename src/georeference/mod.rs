@@ -3,7 +3,7 @@
 //!
 //! Pairs of positions, one in the reconstruction's frame and one in the world, give a similarity
 //! (rotation, one scale, translation): by least squares ([`similarity_of`], Umeyama 1991) inside a
-//! search that does not mind wrong pairs ([`fit`]). A world of Earth coordinates is no obstacle:
+//! search that does not mind wrong pairs ([`fit()`]). A world of Earth coordinates is no obstacle:
 //! everything is counted from the middle of the points.
 
 mod fit;

@@ -1,8 +1,8 @@
 //! Where an image file keeps its EXIF and XMP. Only headers are read, the pixels are jumped over.
 //!
 //! - JPEG (ITU-T T.81, annex B; XMP part 3, 1.1.3): segments up to the start of the scan. APP1 that
-//!   begins with "Exif\0\0" holds a TIFF; with "http://ns.adobe.com/xap/1.0/\0" an XMP packet; with
-//!   "http://ns.adobe.com/xmp/extension/\0" a part of an extended one: 32 letters of a name, its
+//!   begins with "Exif\0\0" holds a TIFF; with `http://ns.adobe.com/xap/1.0/\0` an XMP packet; with
+//!   `http://ns.adobe.com/xmp/extension/\0` a part of an extended one: 32 letters of a name, its
 //!   whole length and the part's place (4 bytes each, big-endian), the part. A segment has 65 533
 //!   bytes at most. The start of a frame (SOF0 to SOF15) holds the image's size.
 //! - PNG (W3C PNG 3, 11.3): chunk eXIf holds a TIFF; iTXt "XML:com.adobe.xmp" an XMP packet, which

@@ -2,7 +2,7 @@
 //! of the focal length to be expected. A scale (pixels per metre) is off by the same part.
 //!
 //! 1. DJI's DewarpData (DewarpDataK6), where DewarpFlag is not 1 (then the photo is rectified
-//!    already): "YYYY-MM-DD;fx,fy,cx,cy,k1,k2,p1,p2,k3[,k4,k5,k6]", the date optional, pixels, cx and
+//!    already): `YYYY-MM-DD;fx,fy,cx,cy,k1,k2,p1,p2,k3[,k4,k5,k6]`, the date optional, pixels, cx and
 //!    cy from the middle of the photo, OpenCV's distortion (DJI, Matrice 4 Series User Manual, pages
 //!    90 and 91). Calibrated for this very camera: 0.3 %, because focus and temperature move it.
 //! 2. Pix4D's tags (support.pix4d.com, "Specifications of XMP Camera Tags"): PerspectiveFocalLength

@@ -21,19 +21,19 @@ const MOST_NODES: u32 = 100_000;
 /// Whose field a value is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Vocabulary {
-    /// http://www.dji.com/drone-dji/1.0/
+    /// <http://www.dji.com/drone-dji/1.0/>
     Dji,
     /// Autel's, which has the names of DJI's fields and the prefix "drone".
     Autel,
-    /// http://pix4d.com/camera/1.0/, which many makers write.
+    /// <http://pix4d.com/camera/1.0/>, which many makers write.
     Pix4dCamera,
-    /// http://ns.sensefly.com/Camera/1.0/
+    /// <http://ns.sensefly.com/Camera/1.0/>
     SenseFlyCamera,
-    /// http://www.parrot.com/drone-parrot/1.0/
+    /// <http://www.parrot.com/drone-parrot/1.0/>
     Parrot,
     /// Skydio's.
     Skydio,
-    /// http://ns.adobe.com/tiff/1.0/
+    /// <http://ns.adobe.com/tiff/1.0/>
     Tiff,
 }
 
