@@ -506,7 +506,7 @@ impl Source {
         if cloud.cloud.points.is_empty() {
             return Err(at_surface(Fault::new(
                 "it has no 3D points to make a surface of",
-                "name a cloud or mesh as [surface] file in a flight.toml, or with --surface",
+                "add its cloud or mesh: drop it on the window, or name it with --surface or as [surface] file in a flight.toml",
             )));
         }
         let settings = options.settings.unwrap_or(self.settings);

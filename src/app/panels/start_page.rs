@@ -30,8 +30,13 @@ pub fn start_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
                 commands.push(Command::Ask(Some(Asking::Open)));
             }
             ui.add_space(14.0);
-            ui.weak("or drop a file or folder anywhere in this window:");
-            ui.weak("flight.toml · COLMAP folder · OpenDroneMap folder · VisualSFM .nvm");
+            ui.weak(
+                "or drop it on this window, with its cloud and photos where they lie elsewhere:",
+            );
+            ui.weak(
+                "flight.toml · Metashape · Pix4D · RealityCapture · ContextCapture · OpenDroneMap",
+            );
+            ui.weak("COLMAP · VisualSFM · Bundler · Meshroom · ROS · a folder of drone photos");
             if state.is_opening() {
                 ui.add_space(14.0);
                 ui.spinner();

@@ -198,10 +198,11 @@ impl Cells {
                 0 => None,
                 _ => Some(decoder.read_chunk(index).map_err(broken)?),
             };
-            // The first of the raster's every step-th that lies in the chunk.
-            let rows = first.1.next_multiple_of(step)..first.1 + height;
+            // The first of the raster's every step-th that lies in the chunk, if one does.
+            let from = |first: u32| first.checked_next_multiple_of(step).unwrap_or(u32::MAX);
+            let rows = from(first.1)..first.1 + height;
             for row in rows.step_by(step as usize) {
-                let columns = first.0.next_multiple_of(step)..first.0 + width;
+                let columns = from(first.0)..first.0 + width;
                 for column in columns.step_by(step as usize) {
                     let place =
                         (row - first.1) as usize * width as usize + (column - first.0) as usize;
