@@ -145,3 +145,45 @@ fn the_map_must_count_in_the_flights_unit() {
     let error = error.unwrap_err().to_string();
     assert!(error.contains("which counts in m, not ft"), "{error}");
 }
+
+/// A cloud that the package names is in the frame of its poses, so `photos.transform` is for both.
+#[test]
+fn a_packages_own_cloud_goes_to_the_world_with_its_poses() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // Straight down from 11 on a plane at 1, f = 1000 px: 100 px a unit.
+    let frame =
+        r#"{"file_path": "a.jpg", "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,11],[0,0,0,1]]}"#;
+    let json = format!(
+        r#"{{"fl_x": 1000, "fl_y": 1000, "cx": 200, "cy": 150, "w": 400, "h": 300, "ply_file_path": "cloud.ply", "frames": [{frame}]}}"#
+    );
+    fs::write(folder.join("transforms.json"), json).unwrap();
+    let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nend_header\n-50 -50 1\n50 -50 1\n50 50 1\n-50 50 1\n";
+    fs::write(folder.join("cloud.ply"), ply).unwrap();
+    // Doubled: at a plane left at 1 it would be 1000 / 21.
+    let text = "format = 1\n[world]\nunit = \"m\"\n[photos]\nreconstruction = \"transforms.json\"\ntransform = [2,0,0,0, 0,2,0,0, 0,0,2,0, 0,0,0,1]\n";
+    fs::write(folder.join("flight.toml"), text).unwrap();
+    let opened = open_flight(folder, &OpenOptions::default(), &Progress::default()).unwrap();
+    let outcomes = opened.flight.scales(&Progress::default()).unwrap();
+    let top = outcomes[0].scale().unwrap().scale.top.unwrap();
+    assert!((top - 50.0).abs() < 1e-9, "{top}");
+}
+
+/// The map that the engineer chose in Metashape, although the frame is the Earth's.
+#[test]
+fn a_projects_own_map_comes_before_the_zone() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // ETRS89 / UTM zone 32N: the next zone, so the photos' own would be another one.
+    let map = r#"PROJCS["ETRS89 / UTM zone 32N",GEOGCS["ETRS89",DATUM["European_Terrestrial_Reference_System_1989",SPHEROID["GRS 1980",6378137,298.257222101]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1],AUTHORITY["EPSG","25832"]]"#;
+    let xml = cameras_xml();
+    let (before, rest) = xml.split_once("<reference>").unwrap();
+    let (_, after) = rest.split_once("</reference>").unwrap();
+    let xml = format!("{before}<reference>{map}</reference>{after}");
+    fs::write(folder.join("cameras.xml"), xml).unwrap();
+    fs::write(folder.join("ground.xyz"), ground("EPSG:25832")).unwrap();
+    let opened = open(folder, "unit = \"m\"");
+    assert_eq!(opened.crs.as_deref(), Some("EPSG:25832"));
+    let outcomes = opened.flight.scales(&Progress::default()).unwrap();
+    assert_eq!(outcomes[0].scale().unwrap().corners_on_surface(), 4);
+}

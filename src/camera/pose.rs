@@ -122,6 +122,16 @@ impl Pose {
         Self::from_yaw_pitch_roll(center, [pan, -tilt, 0.0])
     }
 
+    /// What sits at `inner` on something that is at this pose: `world_from_body` after
+    /// `body_from_camera`.
+    #[must_use]
+    pub fn carrying(&self, inner: &Self) -> Self {
+        Self {
+            rotation: self.rotation * inner.rotation,
+            center: self.rotation * inner.center + self.center,
+        }
+    }
+
     /// A world point in camera axes.
     pub fn camera_from_world(&self, point: DVec3) -> DVec3 {
         self.rotation.transpose() * (point - self.center)

@@ -8,7 +8,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::input::FileError;
-use super::trajectory::{PosedFiles, chained};
+use super::photo_files::is_image;
+use super::trajectory::PosedFiles;
 use super::{
     Kind, Package, PoseLine, PosesFile, detect, read_camera_mount, read_poses, read_trajectory, ros,
 };
@@ -16,9 +17,6 @@ use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::flight::{CameraEntry, CameraSource};
 use crate::jobs::Progress;
-
-/// The endings of image files, in lower case.
-const IMAGES: [&str; 5] = ["jpg", "jpeg", "png", "tif", "tiff"];
 
 /// What poses over time are for.
 pub(super) struct PhotosToPose<'a> {
@@ -49,7 +47,7 @@ pub(super) fn read(
             if format.is_of_body() {
                 let mount = photos.mount(path)?;
                 for (_, pose) in &mut posed.photos {
-                    *pose = chained(pose, &mount);
+                    *pose = pose.carrying(&mount);
                 }
             } else {
                 warnings.push(format.caveat().to_owned());
@@ -109,11 +107,7 @@ impl PhotosToPose<'_> {
         let names = entries
             .flatten()
             .filter_map(|entry| entry.file_name().into_string().ok());
-        let is_image = |name: &String| {
-            let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
-            IMAGES.contains(&ending.to_ascii_lowercase().as_str())
-        };
-        let mut names: Vec<String> = names.filter(is_image).collect();
+        let mut names: Vec<String> = names.filter(|name| is_image(name)).collect();
         names.sort_unstable();
         Ok(names)
     }

@@ -15,6 +15,14 @@ use crate::flight::{Photo, PhotoFileState};
 /// How many missing files a warning names.
 const NAMED: usize = 3;
 
+/// Whether a file is called as an image is.
+pub(super) fn is_image(name: &str) -> bool {
+    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+    ["jpg", "jpeg", "png", "tif", "tiff"]
+        .iter()
+        .any(|known| ending.eq_ignore_ascii_case(known))
+}
+
 /// The folder of a flight's image files, if it has one.
 pub(super) struct PhotoFolder<'a> {
     folder: Option<&'a Path>,

@@ -89,7 +89,7 @@ fn guard(text: &str) -> Result<(), Fault> {
 }
 
 /// The offset behind the `>` of a tag, quoted ones left out.
-fn end_of_tag(tag: &str) -> Option<usize> {
+pub(super) fn end_of_tag(tag: &str) -> Option<usize> {
     let mut quote = None;
     for (at, byte) in tag.bytes().enumerate() {
         match (quote, byte) {

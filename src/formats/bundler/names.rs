@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 
 use crate::fault::Fault;
 use crate::formats::input::{FileError, read_text};
+use crate::formats::photo_files::is_image;
 
 /// Where Bundler's script makes the list, of photos in the folder above.
 const PREPARE: &str = "prepare";
@@ -167,14 +168,7 @@ fn images_in(folder: &Path) -> Vec<String> {
     };
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    names
-        .filter(|name| {
-            let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
-            ["jpg", "jpeg", "png", "tif", "tiff"]
-                .iter()
-                .any(|known| extension.eq_ignore_ascii_case(known))
-        })
-        .collect()
+    names.filter(|name| is_image(name)).collect()
 }
 
 #[cfg(test)]

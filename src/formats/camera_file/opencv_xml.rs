@@ -15,6 +15,7 @@ use std::collections::HashSet;
 use roxmltree::{Document, ParsingOptions};
 
 use crate::fault::Fault;
+use crate::formats::xml_document::end_of_tag;
 
 use super::yaml_tree::{Entry, MAX_DEPTH, MAX_NODES, Node, Value, quoted, too_deep, twice};
 
@@ -174,20 +175,6 @@ fn refuse_foreign(text: &str) -> Result<(), Fault> {
         rest = after;
     }
     Ok(())
-}
-
-/// The offset behind the `>` of a tag, quoted ones left out.
-fn end_of_tag(tag: &str) -> Option<usize> {
-    let mut quote = None;
-    for (at, byte) in tag.bytes().enumerate() {
-        match (quote, byte) {
-            (None, b'>') => return Some(at + 1),
-            (None, b'"' | b'\'') => quote = Some(byte),
-            (Some(open), _) if open == byte => quote = None,
-            _ => {}
-        }
-    }
-    None
 }
 
 #[cfg(test)]

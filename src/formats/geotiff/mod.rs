@@ -18,6 +18,7 @@ use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
 use super::cloud_file::CloudFile;
+use super::xml_document;
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use georeference::Georeference;
@@ -238,7 +239,7 @@ fn value(values: &DecodingResult, place: usize) -> Option<f64> {
 
 /// `<GDALMetadata><Item name="SCALE" sample="0" role="scale">0.01</Item> ...`
 fn scale_and_offset(metadata: &str) -> (f64, f64) {
-    let document = roxmltree::Document::parse(metadata.trim_end_matches('\0'));
+    let document = xml_document::parse(metadata.trim_end_matches('\0'));
     let role = |role: &str| {
         let document = document.as_ref().ok()?;
         let item = document.descendants().find(|node| {

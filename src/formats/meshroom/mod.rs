@@ -393,10 +393,7 @@ impl RawScene {
             return Ok(None);
         };
         let in_rig = sub_pose.pose.pose("sub-pose of rig", &rig_id.0)?;
-        Ok(Some(Pose {
-            rotation: pose.rotation * in_rig.rotation,
-            center: pose.center + pose.rotation * in_rig.center,
-        }))
+        Ok(Some(pose.carrying(&in_rig)))
     }
 
     /// What the views' photos are called.

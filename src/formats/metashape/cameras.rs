@@ -265,10 +265,7 @@ pub(super) fn photos<'a>(
 
 /// The pose of a slave, given its master's and its offset.
 fn after(master: &Pose, offset: Option<Pose>) -> Pose {
-    offset.map_or(*master, |offset| Pose {
-        rotation: master.rotation * offset.rotation,
-        center: master.rotation * offset.center + master.center,
-    })
+    offset.map_or(*master, |offset| master.carrying(&offset))
 }
 
 fn measured(reference: Node<'_, '_>) -> Option<DVec3> {

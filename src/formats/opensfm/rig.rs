@@ -73,10 +73,7 @@ impl Rigs {
                 "export it again, or leave the shot out",
             ));
         };
-        Ok(Pose {
-            rotation: rig.rotation * camera.rotation,
-            center: rig.center + rig.rotation * camera.center,
-        })
+        Ok(rig.carrying(camera))
     }
 }
 

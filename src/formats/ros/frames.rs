@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::formats::trajectory::{NoPose, Stamp, Track, chained};
+use crate::formats::trajectory::{NoPose, Stamp, Track};
 
 /// All frames by their names.
 #[derive(Debug, Default)]
@@ -58,7 +58,7 @@ impl Way {
         let mut place = Pose::from_quaternion(glam::DVec3::ZERO, [0.0, 0.0, 0.0, 1.0])
             .map_err(|_| NoPose::Empty)?;
         for (_, link) in &self.links {
-            place = chained(&place, &link.at(stamp)?);
+            place = place.carrying(&link.at(stamp)?);
         }
         Ok(place)
     }

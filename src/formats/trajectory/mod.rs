@@ -27,7 +27,7 @@ use std::io::BufRead;
 
 pub(in crate::formats) use photos::{PosedFiles, pose_photos};
 pub(in crate::formats) use stamp::Stamp;
-pub(in crate::formats) use track::{NoPose, Track, chained};
+pub(in crate::formats) use track::{NoPose, Track};
 
 use super::text_lines::TextLines;
 use crate::camera::Pose;

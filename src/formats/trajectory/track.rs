@@ -111,14 +111,6 @@ fn between(a: &Pose, b: &Pose, share: f64) -> Pose {
     }
 }
 
-/// The pose of `inner`'s frame in `outer`'s parent: `parent_from_outer` times `outer_from_inner`.
-pub(in crate::formats) fn chained(outer: &Pose, inner: &Pose) -> Pose {
-    Pose {
-        rotation: outer.rotation * inner.rotation,
-        center: outer.rotation * inner.center + outer.center,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
@@ -204,7 +196,7 @@ mod tests {
             rotation: DMat3::from_rotation_x(90_f64.to_radians()),
             center: DVec3::new(10.0, 0.0, 1.0),
         };
-        let both = chained(&outer, &inner);
+        let both = outer.carrying(&inner);
         // The inner frame's origin lies 10 along the outer's x, which is the parent's y.
         assert!((both.center - DVec3::new(1.0, 12.0, 4.0)).length() < 1e-12);
         // Its y is the outer's z, its x the parent's y.
