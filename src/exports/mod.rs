@@ -6,6 +6,7 @@ mod scale_report;
 mod scales_csv;
 mod scales_json;
 mod scales_table;
+mod size_distributions;
 mod split_desktop;
 
 pub use atomic::{make_folder_whole, remove_unfinished, write_whole};

@@ -1,5 +1,30 @@
-//! Size distributions of broken rock.
+//! Size distributions of broken rock: curves, their fits, and whether they can be trusted.
+//!
+//! ```text
+//! distribution    points (size, percent passing) as a sieve or Split-Desktop gave them
+//! distribution_set  many of them, each with its method, trial and photo, in one unit
+//! sieve_series    the openings of ASTM E11, ISO 565 R20/3, EN 933-2
+//! merging         photos to one distribution, weighted as chosen
+//! model, swebrec, swebrec5, rosin_rammler, gates_gaudin_schuhmann
+//!                 the functions that are fitted
+//! fit             least squares, covariance, percentiles with confidence bands
+//! comparison      methods against the reference: residuals, norms, envelopes, shifts
+//! anova           one-way analysis of variance
+//! effort          time that each step took
+//! ```
+//!
+//! Percent passing is 0 to 100, of the mass, everywhere but inside the functions' own formulas
+//! (`Swebrec` and its like), which take and give shares 0 to 1. Sizes are in the unit of the set; no
+//! formula here knows a unit.
 
+mod distribution;
+mod distribution_set;
+mod fit;
+mod model;
 mod swebrec;
 
+pub use distribution::SizeDistribution;
+pub use distribution_set::{DistributionSet, LabelledDistribution, Labels};
+pub use fit::{Fit, FitOptions, FittedParameter, Percentile, fit};
+pub use model::{Curve, Model};
 pub use swebrec::{Swebrec, SwebrecError};

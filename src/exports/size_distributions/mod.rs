@@ -1,0 +1,2 @@
+//! What is learnt from size distributions, going out: tables for people, JSON for programs, CSV, the
+//! figure as SVG and PNG, and the report.

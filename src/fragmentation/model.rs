@@ -1,0 +1,80 @@
+//! The functions that size distributions are fitted with.
+
+use super::Swebrec;
+
+/// A family of functions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Model {
+    /// Three parameters: xmax, x50, b.
+    #[default]
+    Swebrec,
+    /// Its extension with five: xmax, x50, b, a, c.
+    Swebrec5,
+    /// x50, n.
+    RosinRammler,
+    /// xmax, m.
+    GatesGaudinSchuhmann,
+}
+
+impl Model {
+    /// All, in the order in which people are offered them.
+    pub const ALL: [Self; 4] = [
+        Self::Swebrec,
+        Self::Swebrec5,
+        Self::RosinRammler,
+        Self::GatesGaudinSchuhmann,
+    ];
+
+    /// Its name on the command line and in JSON.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Swebrec => "swebrec",
+            Self::Swebrec5 => "swebrec5",
+            Self::RosinRammler => "rosin-rammler",
+            Self::GatesGaudinSchuhmann => "ggs",
+        }
+    }
+
+    /// Its name for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Swebrec => "Swebrec",
+            Self::Swebrec5 => "extended Swebrec (5 parameters)",
+            Self::RosinRammler => "Rosin-Rammler",
+            Self::GatesGaudinSchuhmann => "Gates-Gaudin-Schuhmann",
+        }
+    }
+
+    /// The names of its parameters, in the order of `Fit::parameters`.
+    pub fn parameter_names(self) -> &'static [&'static str] {
+        match self {
+            Self::Swebrec => &["xmax", "x50", "b"],
+            Self::Swebrec5 => &["xmax", "x50", "b", "a", "c"],
+            Self::RosinRammler => &["x50", "n"],
+            Self::GatesGaudinSchuhmann => &["xmax", "m"],
+        }
+    }
+}
+
+/// One function of a family.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Curve {
+    /// See [`Swebrec`].
+    Swebrec(Swebrec),
+}
+
+impl Curve {
+    /// Percent passing a sieve of opening `size`, 0 to 100.
+    pub fn percent_passing(&self, size: f64) -> f64 {
+        match self {
+            Self::Swebrec(curve) => 100.0 * curve.passing(size),
+        }
+    }
+
+    /// The size that a percent passes.
+    pub fn size_at(&self, percent: f64) -> f64 {
+        match self {
+            Self::Swebrec(curve) => curve.size_at(percent / 100.0),
+        }
+    }
+}
