@@ -7,11 +7,13 @@ use serde_json::{Value, json};
 use super::ros::Recording;
 use super::trajectory::Trajectory;
 use super::{
-    CloudFile, FileError, Kind, OpenOptions, Package, PosesFile, Reconstruction, detect,
-    open_flight, read_camera, read_cloud, read_poses, read_project, read_trajectory, ros,
+    CloudFile, DistributionColumns, FileError, Kind, OpenOptions, Package, PosesFile,
+    Reconstruction, detect, open_flight, read_camera, read_cloud, read_poses, read_project,
+    read_size_distributions, read_trajectory, ros,
 };
 use crate::camera::{Camera, Pose};
 use crate::flight::Flight;
+use crate::fragmentation::DistributionSet;
 use crate::geometry::Bounds;
 use crate::jobs::Progress;
 use crate::scale::ImageKind;
@@ -27,6 +29,10 @@ pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
         Kind::Camera => camera_info(&read_camera(path)?),
         Kind::Poses => poses_info(&read_poses(path)?),
         Kind::Trajectory(format) => trajectory_info(&read_trajectory(path, format, progress)?),
+        Kind::SizeDistributions => {
+            let (set, warnings) = read_size_distributions(path, &DistributionColumns::default())?;
+            distributions_info(&set, &warnings)
+        }
         Kind::Reconstruction(Package::Ros, path) => recording_info(&ros::read(&path, progress)?),
         Kind::Reconstruction(..) => {
             reconstruction_info(&read_project(path, progress)?.reconstruction)
@@ -93,6 +99,37 @@ fn reconstruction_info(reconstruction: &Reconstruction) -> Value {
         "warnings": reconstruction.warnings,
         "cameras": cameras,
         "photos": photos.collect::<Vec<_>>(),
+    })
+}
+
+/// Size distributions, sizes in the file's unit.
+fn distributions_info(set: &DistributionSet, warnings: &[String]) -> Value {
+    let sizes = || {
+        let points = set
+            .curves
+            .iter()
+            .flat_map(|curve| curve.distribution.points());
+        points.map(|point| point[0])
+    };
+    let curves = set.curves.iter().map(|curve| {
+        let points = curve.distribution.points();
+        json!({
+            "method": curve.labels.method,
+            "trial": curve.labels.trial,
+            "photo": curve.labels.photo,
+            "weight": curve.weight,
+            "points": points.len(),
+            "smallest": points.first(),
+            "largest": points.last(),
+        })
+    });
+    json!({
+        "kind": "size-distributions",
+        "unit": set.unit.symbol(),
+        "curves": curves.collect::<Vec<_>>(),
+        "smallest_size": sizes().min_by(f64::total_cmp),
+        "largest_size": sizes().max_by(f64::total_cmp),
+        "warnings": warnings,
     })
 }
 
@@ -202,4 +239,46 @@ fn photo_value(name: &str, camera: Option<&str>, pose: &Pose) -> Value {
         "center": pose.center.to_array(),
         "rotation": pose.rotation.transpose().to_cols_array(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::formats::Dropped;
+
+    #[test]
+    fn size_distributions_are_told_from_lists_of_points_and_poses() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            fs::write(&path, text).unwrap();
+            path
+        };
+        let long = file(
+            "long.csv",
+            "photo,size_cm,passing\na,1,20\na,2,40\nb,3,30\nb,4,50\n",
+        );
+        assert_eq!(detect(&long), Ok(Kind::SizeDistributions));
+        let said = info(&long, &Progress::default()).unwrap();
+        assert_eq!(said["kind"], "size-distributions");
+        assert_eq!(
+            (&said["unit"], &said["smallest_size"]),
+            (&json!("cm"), &json!(1.0))
+        );
+        assert_eq!(said["curves"][1]["photo"], "b");
+        assert_eq!(said["curves"][1]["largest"], json!([4.0, 50.0]));
+        let error = Dropped::sort(std::slice::from_ref(&long)).unwrap_err();
+        assert!(error.to_string().contains("fragscale psd"), "{error}");
+        let pasted = file(
+            "pasted.tsv",
+            "Size (in)\tsieve\tpoint cloud\n1\t2\t3\n2\t3\t4\n",
+        );
+        assert_eq!(detect(&pasted), Ok(Kind::SizeDistributions));
+        let poses = file("poses.csv", "photo,x,y,z,tilt,pan\na,1,2,3,90,0\n");
+        assert_eq!(detect(&poses), Ok(Kind::Poses));
+        let points = file("points.csv", "x,y,z,size\n1,2,3,4\n");
+        assert!(matches!(detect(&points), Ok(Kind::Cloud(_))));
+    }
 }

@@ -53,7 +53,9 @@ mod realitycapture;
 mod reconstruction;
 mod ros;
 mod rounded_rotation;
+mod size_distributions;
 mod stl;
+mod table;
 #[cfg(test)]
 mod test_data;
 mod text_lines;
@@ -84,6 +86,8 @@ pub use position_list::{
     read_control_points, read_positions,
 };
 pub use reconstruction::{MeasuredPosition, Observation, PosedPhoto, Project, Reconstruction};
+pub use size_distributions::{DistributionColumns, read_size_distributions, size_distributions};
+pub use table::{NumberRepairs, Row, Table};
 pub use trajectory::TrajectoryFormat;
 
 use crate::camera::{Camera, Pose};
@@ -103,6 +107,8 @@ pub enum Kind {
     Poses,
     /// Poses over time.
     Trajectory(TrajectoryFormat),
+    /// A table of size distributions; see [`read_size_distributions`].
+    SizeDistributions,
     /// Cameras and posed photos as this package wrote them, in this file or folder.
     Reconstruction(Package, PathBuf),
 }
@@ -143,13 +149,14 @@ impl Kind {
             Self::Camera => "a camera calibration",
             Self::Poses => "poses",
             Self::Trajectory(_) => "a trajectory",
+            Self::SizeDistributions => "size distributions",
             Self::Reconstruction(package, _) => package.in_words(),
         }
     }
 }
 
 /// Everything that can be opened, for messages.
-const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos";
+const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos; a CSV of size distributions";
 
 /// How many bytes of a file are looked at to tell its kind.
 const DETECTED_BY: usize = 4096;
@@ -213,6 +220,12 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         let text = String::from_utf8_lossy(text);
         if let Some(format) = trajectory::recognise(&text, whole, &name) {
             return Ok(Kind::Trajectory(format));
+        }
+    }
+    if matches!(extension, "csv" | "txt" | "tsv") {
+        let whole = start.len() < DETECTED_BY;
+        if size_distributions::is_table(&String::from_utf8_lossy(text), whole) {
+            return Ok(Kind::SizeDistributions);
         }
     }
     Ok(match extension {

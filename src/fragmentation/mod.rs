@@ -20,11 +20,15 @@
 mod distribution;
 mod distribution_set;
 mod fit;
+mod merging;
 mod model;
+mod sieve_series;
 mod swebrec;
 
 pub use distribution::SizeDistribution;
 pub use distribution_set::{DistributionSet, LabelledDistribution, Labels};
 pub use fit::{Fit, FitOptions, FittedParameter, Percentile, fit};
+pub use merging::{Merged, Weighting, merge};
 pub use model::{Curve, Model};
+pub use sieve_series::{Resampled, Sieve, SieveSeries, resample};
 pub use swebrec::{Swebrec, SwebrecError};
