@@ -20,11 +20,17 @@
 mod distribution;
 mod distribution_set;
 mod fit;
+mod gates_gaudin_schuhmann;
 mod model;
+mod rosin_rammler;
 mod swebrec;
+mod swebrec5;
 
 pub use distribution::SizeDistribution;
 pub use distribution_set::{DistributionSet, LabelledDistribution, Labels};
 pub use fit::{Fit, FitOptions, FittedParameter, Percentile, fit};
+pub use gates_gaudin_schuhmann::{GatesGaudinSchuhmann, GatesGaudinSchuhmannError};
 pub use model::{Curve, Model};
+pub use rosin_rammler::{RosinRammler, RosinRammlerError};
 pub use swebrec::{Swebrec, SwebrecError};
+pub use swebrec5::{Swebrec5, Swebrec5Error};
