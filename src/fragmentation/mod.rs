@@ -28,7 +28,7 @@ mod swebrec5;
 
 pub use distribution::SizeDistribution;
 pub use distribution_set::{DistributionSet, LabelledDistribution, Labels};
-pub use fit::{Fit, FitOptions, FittedParameter, Percentile, fit};
+pub use fit::{Fit, FitOptions, FittedParameter, Percentile, TOPSIZE_PERCENT, fit};
 pub use gates_gaudin_schuhmann::{GatesGaudinSchuhmann, GatesGaudinSchuhmannError};
 pub use model::{Curve, Model};
 pub use rosin_rammler::{RosinRammler, RosinRammlerError};
