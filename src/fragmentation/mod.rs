@@ -17,14 +17,23 @@
 //! (`Swebrec` and its like), which take and give shares 0 to 1. Sizes are in the unit of the set; no
 //! formula here knows a unit.
 
+mod anova;
+mod comparison;
 mod distribution;
 mod distribution_set;
+mod effort;
 mod fit;
 mod model;
 mod swebrec;
 
+pub use anova::{Anova, Repeatability, Variation, repeatability};
+pub use comparison::{
+    Comparison, ComparisonOptions, CurveNorm, Improvement, MeanPoint, MethodComparison,
+    MethodCurve, PERCENT_ERROR, PercentError, PercentileShift, SCALE_WARNING, Shift, Span, compare,
+};
 pub use distribution::SizeDistribution;
 pub use distribution_set::{DistributionSet, LabelledDistribution, Labels};
+pub use effort::{Effort, TimeSum};
 pub use fit::{Fit, FitOptions, FittedParameter, Percentile, fit};
 pub use model::{Curve, Model};
 pub use swebrec::{Swebrec, SwebrecError};
