@@ -1,2 +1,9 @@
 //! What is learnt from size distributions, going out: tables for people, JSON for programs, CSV, the
 //! figure as SVG and PNG, and the report.
+
+mod anova;
+mod effort;
+mod text_table;
+
+pub use anova::{AnovaReport, anova_csv, anova_json, anova_table};
+pub use effort::{effort_csv, effort_json, effort_text};
