@@ -2,8 +2,10 @@
 //! figure as SVG and PNG, and the report.
 
 mod anova;
+mod comparison;
 mod effort;
 mod text_table;
 
 pub use anova::{AnovaReport, anova_csv, anova_json, anova_table};
+pub use comparison::{comparison_csv, comparison_json, comparison_text};
 pub use effort::{effort_csv, effort_json, effort_text};
