@@ -12,11 +12,13 @@ mod colmap;
 mod drone_photos;
 mod dropped;
 mod e57;
+mod effort_table;
 mod fields;
 mod flight_poses;
 mod georeferencing;
 mod geotiff;
 mod gltf;
+mod grouped_values;
 mod info;
 mod input;
 mod json;
@@ -53,7 +55,9 @@ mod realitycapture;
 mod reconstruction;
 mod ros;
 mod rounded_rotation;
+mod size_distributions;
 mod stl;
+mod table;
 #[cfg(test)]
 mod test_data;
 mod text_lines;
@@ -68,10 +72,12 @@ use std::path::{Path, PathBuf};
 
 pub use cloud_file::CloudFile;
 pub use dropped::Dropped;
+pub use effort_table::{effort_table, read_effort_table};
 pub use georeferencing::{
     GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind, LengthResidual,
     PositionResidual, georeference,
 };
+pub use grouped_values::{GroupedValues, Groups, grouped_values, read_grouped_values};
 pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{FlightReconstruction, OpenOptions, Opened, PhotoFile, open_flight};
@@ -84,6 +90,8 @@ pub use position_list::{
     read_control_points, read_positions,
 };
 pub use reconstruction::{MeasuredPosition, Observation, PosedPhoto, Project, Reconstruction};
+pub use size_distributions::{DistributionColumns, read_size_distributions, size_distributions};
+pub use table::{NumberRepairs, Row, Table};
 pub use trajectory::TrajectoryFormat;
 
 use crate::camera::{Camera, Pose};
@@ -103,6 +111,8 @@ pub enum Kind {
     Poses,
     /// Poses over time.
     Trajectory(TrajectoryFormat),
+    /// A table of size distributions; see [`read_size_distributions`].
+    SizeDistributions,
     /// Cameras and posed photos as this package wrote them, in this file or folder.
     Reconstruction(Package, PathBuf),
 }
@@ -143,13 +153,14 @@ impl Kind {
             Self::Camera => "a camera calibration",
             Self::Poses => "poses",
             Self::Trajectory(_) => "a trajectory",
+            Self::SizeDistributions => "size distributions",
             Self::Reconstruction(package, _) => package.in_words(),
         }
     }
 }
 
 /// Everything that can be opened, for messages.
-const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos";
+const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos; a CSV of size distributions";
 
 /// How many bytes of a file are looked at to tell its kind.
 const DETECTED_BY: usize = 4096;
@@ -213,6 +224,12 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         let text = String::from_utf8_lossy(text);
         if let Some(format) = trajectory::recognise(&text, whole, &name) {
             return Ok(Kind::Trajectory(format));
+        }
+    }
+    if matches!(extension, "csv" | "txt" | "tsv") {
+        let whole = start.len() < DETECTED_BY;
+        if size_distributions::is_table(&String::from_utf8_lossy(text), whole) {
+            return Ok(Kind::SizeDistributions);
         }
     }
     Ok(match extension {
