@@ -7,10 +7,14 @@
 //!
 //! With the environment variable FRAGSCALE_BACKTRACE set, a panic prints its place as usual.
 
+mod anova;
 mod check;
+mod effort;
 mod export;
 mod flight_arguments;
 mod georeference;
+mod psd;
+mod psd_fit;
 #[cfg(feature = "render")]
 mod render;
 
@@ -63,6 +67,13 @@ enum Command {
     Check(check::CheckArguments),
     /// Bring a reconstruction in a frame of its own to the world by known positions or distances.
     Georeference(georeference::GeoreferenceArguments),
+    /// Analyse the variance of values in groups: does a measurement repeat?
+    Anova(anova::AnovaArguments),
+    /// Sum up the time that each step of each method or trial took.
+    Effort(effort::EffortArguments),
+    /// Fit and compare size distributions.
+    #[command(subcommand)]
+    Psd(psd::PsdCommand),
     /// Say what a file or folder holds.
     Info(InfoArguments),
     /// Make a simulated flight whose every answer is known.
@@ -253,6 +264,18 @@ pub fn run() -> ExitCode {
         Command::Georeference(arguments) => (
             None,
             Box::new(move |progress| georeference::georeference(&arguments, progress)),
+        ),
+        Command::Anova(arguments) => (
+            arguments.output.clone(),
+            Box::new(move |_| anova::anova(&arguments)),
+        ),
+        Command::Effort(arguments) => (
+            arguments.output.clone(),
+            Box::new(move |_| effort::effort(&arguments)),
+        ),
+        Command::Psd(command) => (
+            command.output(),
+            Box::new(move |progress| psd::psd(&command, progress)),
         ),
         Command::Info(arguments) => (None, Box::new(move |progress| info(&arguments, progress))),
         Command::Sample(arguments) => {

@@ -17,18 +17,33 @@
 //! (`Swebrec` and its like), which take and give shares 0 to 1. Sizes are in the unit of the set; no
 //! formula here knows a unit.
 
+mod anova;
+mod comparison;
 mod distribution;
 mod distribution_set;
+mod effort;
 mod fit;
+mod gates_gaudin_schuhmann;
 mod merging;
 mod model;
+mod rosin_rammler;
 mod sieve_series;
 mod swebrec;
+mod swebrec5;
 
+pub use anova::{Anova, Repeatability, Variation, repeatability};
+pub use comparison::{
+    Comparison, ComparisonOptions, CurveNorm, Improvement, MeanPoint, MethodComparison,
+    MethodCurve, PERCENT_ERROR, PercentError, PercentileShift, SCALE_WARNING, Shift, Span, compare,
+};
 pub use distribution::SizeDistribution;
 pub use distribution_set::{DistributionSet, LabelledDistribution, Labels};
-pub use fit::{Fit, FitOptions, FittedParameter, Percentile, fit};
+pub use effort::{Effort, TimeSum};
+pub use fit::{Fit, FitOptions, FittedParameter, Percentile, TOPSIZE_PERCENT, fit};
+pub use gates_gaudin_schuhmann::{GatesGaudinSchuhmann, GatesGaudinSchuhmannError};
 pub use merging::{Merged, Weighting, merge};
 pub use model::{Curve, Model};
+pub use rosin_rammler::{RosinRammler, RosinRammlerError};
 pub use sieve_series::{Resampled, Sieve, SieveSeries, resample};
 pub use swebrec::{Swebrec, SwebrecError};
+pub use swebrec5::{Swebrec5, Swebrec5Error};
