@@ -230,9 +230,14 @@ fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {
     if values.clone().all(|value| value == first) {
         return first;
     }
-    // As a sum of shares it does not overflow where the mean does not.
     let count = values.clone().count() as f64;
-    compensated_sum(values.map(|value| value / count))
+    let mean = compensated_sum(values.clone()) / count;
+    if mean.is_finite() {
+        mean
+    } else {
+        // As a sum of shares it does not overflow where the mean does not.
+        compensated_sum(values.map(|value| value / count))
+    }
 }
 
 /// The sum of squared differences from the mean, corrected for the rounding of the mean.
