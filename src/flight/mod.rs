@@ -20,7 +20,7 @@ pub use camera_entry::{CameraEntry, CameraSource};
 pub use doubt::Doubt;
 pub use file::{FlightFile, PhotoSource, ReconstructionFlight};
 pub use name_order::compare_names;
-pub use scale_object::ScaleObject;
+pub use scale_object::{ComparedObject, ScaleObject};
 pub use verdict::{Limits, PhotoFileState, Verdict, judge, judge_all};
 
 use crate::camera::{Camera, Pose};

@@ -3,7 +3,9 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::scale::ScaleObjectKind;
+use super::{Flight, Outcome, unusable};
+use crate::fault::Fault;
+use crate::scale::{PlaceScale, ScaleObjectKind, Traced};
 
 /// An object of known size that somebody traced on a photo.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +20,97 @@ pub struct ScaleObject {
     pub outline: Vec<DVec2>,
     /// Whether it is painted over in the exported photo, so that it is not taken for rock.
     pub mask: bool,
+}
+
+/// A scale object beside what the point cloud says where it is. Scales are in pixels per world unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComparedObject {
+    /// Where it is, or why that cannot be told.
+    pub traced: Result<Traced, Fault>,
+    /// The one scale of the photo that follows from it.
+    pub scale: Option<f64>,
+    /// What the point cloud says there.
+    pub place: PlaceScale,
+}
+
+impl ComparedObject {
+    /// How much larger the object's scale is than that between the photo's edges, as a share of the
+    /// latter: where it is positive, fragments come out too small with the object's.
+    pub fn beyond_edges(&self) -> Option<f64> {
+        Some(self.scale? / self.place.between_edges? - 1.0)
+    }
+
+    /// The same against the surface under the object.
+    pub fn beyond_surface(&self) -> Option<f64> {
+        Some(self.scale? / self.place.on_surface? - 1.0)
+    }
+
+    /// How much longer a bar is on the surface than it is known to be, as a share of its length.
+    pub fn beyond_length(&self) -> Option<f64> {
+        match self.traced {
+            Ok(Traced::Bar(bar)) => Some(self.place.length_on_surface? / bar.length - 1.0),
+            _ => None,
+        }
+    }
+}
+
+impl Flight {
+    /// Compares scale objects with the point cloud, in their order. `outcomes` are those of
+    /// [`Flight::scales`].
+    ///
+    /// # Errors
+    /// Where the surface cannot be met.
+    pub fn compare_objects(
+        &self,
+        objects: &[ScaleObject],
+        outcomes: &[Outcome],
+    ) -> Result<Vec<ComparedObject>, Fault> {
+        if objects.is_empty() {
+            // A caster may have to triangulate first.
+            return Ok(Vec::new());
+        }
+        let parts = self.parts();
+        let mut caster = parts.surface.caster().map_err(unusable)?;
+        let compared = objects.iter().map(|object| {
+            let mut photos = parts.photos.iter().zip(outcomes);
+            let Some((photo, outcome)) = photos.find(|(photo, _)| photo.name == object.photo)
+            else {
+                return ComparedObject {
+                    traced: Err(no_photo(object)),
+                    scale: None,
+                    place: PlaceScale::default(),
+                };
+            };
+            let (camera, image) = (self.camera(photo), parts.image);
+            let traced = Traced::new(camera, object.kind, object.size, &object.outline);
+            let place = traced.as_ref().map(|traced| {
+                traced.place(camera, &photo.pose, image, outcome.scale(), &mut caster)
+            });
+            ComparedObject {
+                scale: traced.as_ref().ok().and_then(|t| t.scale(camera, image)),
+                place: place.unwrap_or_default(),
+                traced,
+            }
+        });
+        Ok(compared.collect())
+    }
+
+    /// A sentence for each scale object on a photo that the flight does not have.
+    pub fn objects_without_photo(&self, objects: &[ScaleObject]) -> Vec<String> {
+        let has = |name: &str| self.parts().photos.iter().any(|photo| photo.name == name);
+        let missing = objects.iter().filter(|object| !has(&object.photo));
+        missing.map(|object| no_photo(object).to_string()).collect()
+    }
+}
+
+fn no_photo(object: &ScaleObject) -> Fault {
+    Fault::new(
+        format!(
+            "a scale object is on photo '{}', which the flight does not have",
+            object.photo
+        ),
+        "correct its photo, or remove it",
+    )
 }
 
 /// As it stands in the file.
