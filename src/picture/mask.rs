@@ -108,7 +108,11 @@ mod tests {
     #[test]
     fn nonsense_masks_nothing() {
         let nowhere = vec![DVec2::NAN, DVec2::INFINITY, DVec2::NEG_INFINITY];
-        let far = vec![DVec2::splat(1e300), DVec2::splat(2e300), DVec2::new(3e300, 1e300)];
+        let far = vec![
+            DVec2::splat(1e300),
+            DVec2::splat(2e300),
+            DVec2::new(3e300, 1e300),
+        ];
         let mask = mask_of_regions(9, 9, &[Vec::new(), vec![DVec2::ONE], nowhere, far]);
         assert_eq!(black(&mask), 0);
         paint_regions(&mut RgbImage::new(0, 0), &[vec![DVec2::ZERO; 4]]);

@@ -148,7 +148,8 @@ pub fn export_for_split_desktop(
     planned.extend(of_photos.flat_map(PhotoNames::all));
     let folder = ExportFolder::open(dir, &planned, progress)?;
 
-    let (mut folder, done) = make_pictures(folder, request, &chosen, &pictures, &objects, progress)?;
+    let (mut folder, done) =
+        make_pictures(folder, request, &chosen, &pictures, &objects, progress)?;
     let mut summary = ExportSummary {
         photos: chosen.len(),
         ..ExportSummary::default()

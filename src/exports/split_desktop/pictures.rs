@@ -59,8 +59,7 @@ impl PictureSource<'_> {
             .map(|corner| corner.point().is_some())
             .collect();
         let edges = self.scale.scale;
-        let left_out =
-            |region: &Vec<DVec2>| region.iter().map(DVec2::to_array).collect::<Vec<_>>();
+        let left_out = |region: &Vec<DVec2>| region.iter().map(DVec2::to_array).collect::<Vec<_>>();
         let text = json!([
             PICTURES_VERSION,
             checksum::of_bytes(bytes),

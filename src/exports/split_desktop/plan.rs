@@ -1,8 +1,8 @@
 //! What an export consists of: its files, before any of them is made.
 
 use super::ExportRequest;
-use super::objects::PhotoObject;
 use super::names::file_names;
+use super::objects::PhotoObject;
 use crate::flight::Outcome;
 
 /// The fixed files.
