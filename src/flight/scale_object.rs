@@ -40,6 +40,11 @@ impl ComparedObject {
         Some(self.scale? / self.place.between_edges? - 1.0)
     }
 
+    /// The same against the surface around the object.
+    pub fn beyond_surroundings(&self) -> Option<f64> {
+        Some(self.scale? / self.place.around? - 1.0)
+    }
+
     /// The same against the surface under the object.
     pub fn beyond_surface(&self) -> Option<f64> {
         Some(self.scale? / self.place.on_surface? - 1.0)

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use super::{ImageKind, PhotoScale, Sphere};
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
-use crate::geometry::Ray;
+use crate::geometry::{Ray, median};
 use crate::surface::Caster;
 
 /// Points of a drawn or masked outline.
@@ -16,6 +16,9 @@ const OUTLINE_POINTS: u32 = 96;
 
 /// Half the width of a bar's region as a share of its length in pixels: only its ends are known.
 const BAR_HALF_WIDTH: f64 = 0.06;
+
+/// How much larger than an object the ring around it is on which its surroundings are looked at.
+const RING: f64 = 1.5;
 
 /// The distance, as a share of the depth, over which the image's scale is taken.
 const STEP: f64 = 1e-5;
@@ -86,6 +89,8 @@ pub struct PlaceScale {
     /// Of the surface under the object's middle. Where the cloud shows the object, that is its near
     /// side.
     pub on_surface: Option<f64>,
+    /// Of the surface around the object: the median over a ring half as large again.
+    pub around: Option<f64>,
     /// The distance of the points where the rays of a bar's ends meet the surface, world units.
     pub length_on_surface: Option<f64>,
 }
@@ -209,7 +214,16 @@ impl Traced {
                 _ => None,
             },
         };
+        let mut scale_at = |direction: DVec3| scale_along_rows(camera, image, met(direction)?);
+        let ring = self.region(camera, image, 0.0).into_iter();
+        let mut ring: Vec<f64> = ring
+            .filter_map(|pixel| {
+                let pixel = middle + (pixel - middle) * RING;
+                scale_at(image.direction(camera, pixel).ok()?)
+            })
+            .collect();
         PlaceScale {
+            around: median(&mut ring),
             between_edges: scale.and_then(|scale| scale.on_row(camera, middle.y)),
             on_surface: under.and_then(|point| scale_along_rows(camera, image, point)),
             length_on_surface,

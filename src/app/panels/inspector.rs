@@ -173,7 +173,8 @@ impl Inspector {
                 }
             }
         }
-        if let Some(scale) = open.scale(photo) {
+        // Nothing else lies over what is traced.
+        if let Some(scale) = open.scale(photo).filter(|_| !is_traced) {
             let unit = state.preferences.unit();
             let world = open.flight.parts().unit;
             let to_screen = |pixel: DVec2| shown.to_screen(pixel);

@@ -7,7 +7,7 @@ use crate::app::actions;
 use crate::app::command::Command;
 use crate::app::open_flight::OpenFlight;
 use crate::app::state::State;
-use crate::app::tracing::Trace;
+use crate::app::tracing::{Trace, Tracing};
 use crate::flight::{ComparedObject, ScaleObject, Verdict};
 use crate::picture::significant_digits;
 use crate::scale::{ScaleObjectKind, Traced};
@@ -88,7 +88,11 @@ fn begin(
 
 /// What can be done while the outline grows.
 fn being_traced(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    ui.label("Zoom in with the wheel; drag a point to move it.");
+    let Some(tracing) = state.open.as_ref().and_then(|open| open.tracing.as_ref()) else {
+        return;
+    };
+    ui.strong(next_step(tracing));
+    ui.weak("The wheel zooms, dragging moves the photo or a point.");
     ui.horizontal_wrapped(|ui| {
         for (action, text) in [
             (actions::FINISH_TRACING, "Done"),
@@ -104,6 +108,19 @@ fn being_traced(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             }
         }
     });
+}
+
+/// What to do next.
+fn next_step(tracing: &Tracing) -> String {
+    match (tracing.kind, tracing.outline.len()) {
+        (ScaleObjectKind::Sphere, 0) => "Click points on the sphere's edge, all around".to_owned(),
+        (ScaleObjectKind::Sphere, count) if tracing.is_complete() => {
+            format!("{count} points; Enter when they go all around")
+        }
+        (ScaleObjectKind::Sphere, count) => format!("{count} of at least 3 points, better 8"),
+        (ScaleObjectKind::Bar, 0) => "Click one end of the bar".to_owned(),
+        (ScaleObjectKind::Bar, _) => "Click its other end".to_owned(),
+    }
 }
 
 /// A scale object with its numbers.
@@ -128,15 +145,6 @@ fn card(
             if let Some(size) = typed.filter(|&size| size > 0.0) {
                 commands.extend(changed(open, place, |object| object.size = size));
             }
-            let delete = ui.button("Delete");
-            delete.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Delete {title}"))
-            });
-            if delete.clicked() {
-                let mut settings = open.settings();
-                settings.scale_objects.remove(place);
-                commands.push(Command::Set(settings));
-            }
         });
         match open.compared(object) {
             None => {
@@ -149,17 +157,28 @@ fn card(
             }
             Some(compared) => numbers(state, open, compared, &title, ui, commands),
         }
-        let mut mask = object.mask;
-        let label = "Mask in export";
-        let check = ui.checkbox(&mut mask, label);
-        check.widget_info(|| {
-            let label = format!("Mask {title} in export");
-            egui::WidgetInfo::selected(egui::Role::CheckBox, true, object.mask, label)
+        ui.horizontal(|ui| {
+            let mut mask = object.mask;
+            let label = "Mask in export";
+            let check = ui.checkbox(&mut mask, label);
+            check.widget_info(|| {
+                let label = format!("Mask {title} in export");
+                egui::WidgetInfo::selected(egui::Role::CheckBox, true, object.mask, label)
+            });
+            let hover = "Paint it blue in the exported photo, so that it is not taken for rock";
+            if check.on_hover_text(hover).changed() {
+                commands.extend(changed(open, place, |object| object.mask = mask));
+            }
+            let delete = ui.button("Delete");
+            delete.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Delete {title}"))
+            });
+            if delete.clicked() {
+                let mut settings = open.settings();
+                settings.scale_objects.remove(place);
+                commands.push(Command::Set(settings));
+            }
         });
-        let hover = "Paint it blue in the exported photo, so that it is not taken for rock";
-        if check.on_hover_text(hover).changed() {
-            commands.extend(changed(open, place, |object| object.mask = mask));
-        }
     });
 }
 
@@ -220,6 +239,17 @@ fn numbers(
              scale. {sign}"
         );
         row(ui, "Point cloud, on its row", &hover, found(place.between_edges), edges);
+        let around = off(compared.beyond_surroundings());
+        let hover = format!(
+            "Of the surface on a ring around it, half as large again: the median. {sign}"
+        );
+        row(
+            ui,
+            "Point cloud, around it",
+            &hover,
+            found(place.around),
+            around,
+        );
         let under = off(compared.beyond_surface());
         let hover = format!(
             "Of the surface under its middle. Where the cloud shows the object itself, that is its \

@@ -1,7 +1,7 @@
 //! Scale objects on the inspector's photo: their outlines, and points that are set and moved with the
 //! mouse.
 
-use egui::{Color32, Pos2, Rect, Stroke, pos2, vec2};
+use egui::{Color32, Pos2, Rect, Stroke, vec2};
 use glam::DVec2;
 
 use crate::app::command::Command;
@@ -190,7 +190,7 @@ fn drop_point(open: &OpenFlight, moved: Dragged) -> Option<Command> {
     Some(Command::Set(settings))
 }
 
-/// Draws the outlines with their points, and what to do while something is traced.
+/// Draws the outlines with their points.
 pub(super) fn draw(
     open: &OpenFlight,
     photo: usize,
@@ -242,24 +242,6 @@ pub(super) fn draw(
                 text,
             );
         }
-    }
-    if let Some(tracing) = &open.tracing {
-        let frame = painter.clip_rect();
-        let at = pos2(frame.center().x, frame.top() + 6.0);
-        label(painter, at, egui::Align2::CENTER_TOP, hint(tracing));
-    }
-}
-
-/// What to do next.
-fn hint(tracing: &Tracing) -> String {
-    match (tracing.kind, tracing.outline.len()) {
-        (ScaleObjectKind::Sphere, 0) => "Click points on the sphere's edge, all around".to_owned(),
-        (ScaleObjectKind::Sphere, count) if tracing.is_complete() => {
-            format!("{count} points; Enter when done")
-        }
-        (ScaleObjectKind::Sphere, count) => format!("{count} of at least 3 points, better 8"),
-        (ScaleObjectKind::Bar, 0) => "Click one end of the bar".to_owned(),
-        (ScaleObjectKind::Bar, _) => "Click its other end".to_owned(),
     }
 }
 

@@ -114,8 +114,8 @@ impl PhotoObject<'_> {
                     text += &format!("; the point cloud has {} on its row", scale(edges));
                     text += &format!(" (the object {})", percent(off));
                 }
-                if let (Some(under), Some(off)) = (place.on_surface, compared.beyond_surface()) {
-                    text += &format!("; on the surface under it {}", scale(under));
+                if let (Some(around), Some(off)) = (place.around, compared.beyond_surroundings()) {
+                    text += &format!(", {} on the surface around it", scale(around));
                     text += &format!(" (the object {})", percent(off));
                 }
                 if let Some(off) = compared.beyond_length() {

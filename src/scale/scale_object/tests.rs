@@ -52,6 +52,7 @@ fn a_bar_on_level_ground() {
     assert!((place.length_on_surface.unwrap() - 5.0).abs() < 1e-9);
     assert!((place.between_edges.unwrap() - 100.0).abs() < 1e-9);
     assert!((place.on_surface.unwrap() - 100.0).abs() < 1e-9);
+    assert!((place.around.unwrap() - 100.0).abs() < 1e-9);
     let region = bar.region(&camera, ImageKind::Undistorted, 5.0);
     assert_eq!(region.len(), 4);
     // 510 px long and 2 * (30 + 5) px wide.
@@ -100,6 +101,7 @@ fn a_sphere_beside_the_ground_under_it() {
     assert!((middle - DVec2::new(600.0 + 2000.0 / 9.0, 400.0 - 1000.0 / 9.0)).length() < 1e-9);
     let place = compare(&traced, &plane(0.0), &camera);
     assert!((place.on_surface.unwrap() - 100.0).abs() < 1e-9);
+    assert!((place.around.unwrap() - 100.0).abs() < 1e-9);
     assert_eq!(place.length_on_surface, None);
 }
 
