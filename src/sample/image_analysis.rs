@@ -109,10 +109,11 @@ pub(super) struct Analysis<'a> {
 }
 
 /// The text of distributions.csv. `reference` are the sieve's openings in mm and the percent that
-/// passes; the analyses are given at its openings from `smallest` mm on, below which all is fines.
+/// passes. The analyses are given at `openings` in mm, ascending, up to the first that all passes; they
+/// lie above the fines, of which the share 0 to 1 is given.
 pub(super) fn distributions_csv(
     reference: &[(f64, f64)],
-    smallest: f64,
+    openings: &[f64],
     fines: f64,
     width: f64,
     analyses: &[Analysis<'_>],
@@ -134,7 +135,7 @@ pub(super) fn distributions_csv(
         if total <= 0.0 {
             continue;
         }
-        for (size, _) in reference.iter().filter(|(size, _)| *size >= smallest) {
+        for size in openings {
             let passed = diameters.iter().filter(|d| **d * 1000.0 <= *size);
             let share = passed.map(|d| d.powi(3)).sum::<f64>() / total;
             let percent = 100.0 * (fines + (1.0 - fines) * share);
