@@ -15,7 +15,8 @@ pub use scales_csv::scales_csv;
 pub use scales_json::scales_json;
 pub use scales_table::scales_table;
 pub use size_distributions::{
-    AnovaReport, anova_csv, anova_json, anova_table, comparison_csv, comparison_json,
-    comparison_text, effort_csv, effort_json, effort_text,
+    AnovaReport, FitReport, FittedCurve, anova_csv, anova_json, anova_table, comparison_csv,
+    comparison_json, comparison_text, effort_csv, effort_json, effort_text, fit_csv, fit_json,
+    fit_table,
 };
 pub use split_desktop::{ExportError, ExportRequest, ExportSummary, export_for_split_desktop};

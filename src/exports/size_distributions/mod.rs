@@ -4,8 +4,10 @@
 mod anova;
 mod comparison;
 mod effort;
+mod fit;
 mod text_table;
 
 pub use anova::{AnovaReport, anova_csv, anova_json, anova_table};
 pub use comparison::{comparison_csv, comparison_json, comparison_text};
 pub use effort::{effort_csv, effort_json, effort_text};
+pub use fit::{FitReport, FittedCurve, fit_csv, fit_json, fit_table};
