@@ -16,7 +16,8 @@ pub use scales_csv::scales_csv;
 pub use scales_json::scales_json;
 pub use scales_table::scales_table;
 pub use size_distributions::{
-    Band, Dash, FigureContents, FittedDistribution, Look, Marker, Panel, Series, SizeAxis,
-    SizeTick, figure_of_comparison, figure_of_fits, figure_png, figure_svg,
+    Band, ComparisonReport, Dash, FigureContents, FittedDistribution, Look, Marker, Panel, Series,
+    SizeAxis, SizeTick, comparison_report, figure_of_comparison, figure_of_fits, figure_png,
+    figure_svg,
 };
 pub use split_desktop::{ExportError, ExportRequest, ExportSummary, export_for_split_desktop};

@@ -2,11 +2,13 @@
 //! figure as SVG and PNG, and the report.
 
 mod figure;
+mod report;
 
 pub use figure::{
     Band, Dash, FigureContents, FittedDistribution, Look, Marker, Panel, Series, SizeAxis,
     SizeTick, figure_of_comparison, figure_of_fits, figure_png, figure_svg,
 };
+pub use report::{ComparisonReport, comparison_report};
 
 /// A method's name for people.
 fn method_name(method: &str) -> &str {
