@@ -9,7 +9,7 @@ pub use json::comparison_json;
 pub use text::comparison_text;
 
 #[cfg(test)]
-mod test_comparison {
+pub(super) mod test_comparison {
     //! A comparison with round numbers.
 
     use crate::fragmentation::{
@@ -54,7 +54,7 @@ mod test_comparison {
         }
     }
 
-    pub(super) fn comparison() -> Comparison {
+    pub(in crate::exports::size_distributions) fn comparison() -> Comparison {
         let residual =
             |size, reference, passing: Option<f64>, percent_error: Option<f64>| PercentError {
                 size,

@@ -2,6 +2,13 @@
 
 mod repeatability;
 mod table;
+#[cfg(test)]
+#[allow(
+    clippy::expect_used,
+    clippy::panic,
+    reason = "in a test a panic is the report"
+)]
+mod tests;
 
 use table::{
     Cell, NONE, heading, inside, measured, names, notes, number, paragraph, percent, signed, table,

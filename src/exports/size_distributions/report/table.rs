@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::exports::markup::escaped;
-use crate::picture::significant_digits;
+use crate::exports::size_distributions::text_table::{significant, trimmed};
 
 /// A cell that says nothing.
 pub(super) const NONE: &str = "\u{2013}";
@@ -72,16 +72,14 @@ pub(super) fn names(names: &[&str]) -> Vec<String> {
 
 /// A size as it was measured, without the noise of its conversion.
 pub(super) fn measured(size: f64) -> String {
-    let short: f64 = format!("{size:.6e}").parse().unwrap_or(size);
-    short.to_string()
+    trimmed(size, 6)
 }
 
-/// With four significant digits or more.
+/// With four significant digits.
 pub(super) fn number(value: f64) -> String {
-    match value {
-        0.0 => "0".to_owned(),
-        v if v.is_finite() => significant_digits(v, 4).replace('-', "\u{2212}"),
-        _ => NONE.to_owned(),
+    match value.is_finite() {
+        true => significant(value, 4).replace('-', "\u{2212}"),
+        false => NONE.to_owned(),
     }
 }
 
