@@ -9,10 +9,13 @@
 
 mod anova;
 mod check;
+mod distribution_arguments;
 mod effort;
 mod export;
 mod flight_arguments;
 mod georeference;
+mod psd;
+mod psd_compare;
 #[cfg(feature = "render")]
 mod render;
 
@@ -69,6 +72,9 @@ enum Command {
     Anova(anova::AnovaArguments),
     /// Sum up the time that each step of each method or trial took.
     Effort(effort::EffortArguments),
+    /// Fit and compare size distributions.
+    #[command(subcommand)]
+    Psd(psd::PsdCommand),
     /// Say what a file or folder holds.
     Info(InfoArguments),
     /// Make a simulated flight whose every answer is known.
@@ -268,6 +274,10 @@ pub fn run() -> ExitCode {
             arguments.output.clone(),
             Box::new(move |_| effort::effort(&arguments)),
         ),
+        Command::Psd(command) => (
+            command.output(),
+            Box::new(move |progress| psd::psd(&command, progress)),
+        ),
         Command::Info(arguments) => (None, Box::new(move |progress| info(&arguments, progress))),
         Command::Sample(arguments) => {
             (None, Box::new(move |progress| sample(&arguments, progress)))
@@ -287,15 +297,20 @@ pub fn run() -> ExitCode {
     }
     match output {
         None => print(&answer.text),
-        Some(path) => match exports::write_whole(&path, answer.text.as_bytes()) {
+        Some(path) => match write(&path, answer.text.as_bytes()) {
             Ok(()) => ExitCode::SUCCESS,
-            Err(error) => {
-                let what = format!("it cannot be written ({error})");
-                let fault = Fault::new(what, "choose a folder that may be written to");
-                fail(&FileError::new(&path, fault).to_string())
-            }
+            Err(message) => fail(&message),
         },
     }
+}
+
+/// Writes a file whole or not at all.
+fn write(path: &Path, contents: &[u8]) -> Result<(), String> {
+    exports::write_whole(path, contents).map_err(|error| {
+        let what = format!("it cannot be written ({error})");
+        let fault = Fault::new(what, "choose a folder that may be written to");
+        FileError::new(path, fault).to_string()
+    })
 }
 
 /// Opens the window, with a flight where one is named.

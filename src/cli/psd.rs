@@ -1,0 +1,30 @@
+//! `fragscale psd`: what is done with size distributions.
+
+use std::path::PathBuf;
+
+use clap::Subcommand;
+
+use super::Answer;
+use super::psd_compare::{self, CompareArguments};
+use crate::jobs::Progress;
+
+#[derive(Debug, Subcommand)]
+pub(super) enum PsdCommand {
+    /// Hold methods against a reference: percent errors, norms, shifts, the figure and the report.
+    Compare(CompareArguments),
+}
+
+impl PsdCommand {
+    /// Where the answer goes.
+    pub(super) fn output(&self) -> Option<PathBuf> {
+        match self {
+            Self::Compare(arguments) => arguments.output.clone(),
+        }
+    }
+}
+
+pub(super) fn psd(command: &PsdCommand, progress: &Progress) -> Result<Answer, String> {
+    match command {
+        PsdCommand::Compare(arguments) => psd_compare::compare(arguments, progress),
+    }
+}
