@@ -73,7 +73,10 @@ fn error_of(arguments: &[&str]) -> String {
     let stderr = String::from_utf8(output.stderr).expect("UTF-8");
     assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
     assert!(output.stdout.is_empty(), "{arguments:?}");
-    let errors: Vec<&str> = stderr.lines().filter(|line| line.starts_with("error: ")).collect();
+    let errors: Vec<&str> = stderr
+        .lines()
+        .filter(|line| line.starts_with("error: "))
+        .collect();
     assert_eq!(errors.len(), 1, "{stderr}");
     errors[0].to_owned()
 }
@@ -87,8 +90,9 @@ fn one_command_gives_the_figure_the_report_and_the_numbers() {
     assert_eq!(found["unit"], "mm");
     assert_eq!(found["reference"]["method"], "sieve");
     let methods = found["methods"].as_array().expect("methods");
-    for (method, (name, shift, spread)) in
-        methods.iter().zip([("point cloud", 4.0, 1.0), ("scale object", 10.0, 2.0)])
+    for (method, (name, shift, spread)) in methods
+        .iter()
+        .zip([("point cloud", 4.0, 1.0), ("scale object", 10.0, 2.0)])
     {
         assert_eq!(method["method"], name);
         // Sizes that are all too large by a factor have a fit with the same factor.
@@ -102,7 +106,12 @@ fn one_command_gives_the_figure_the_report_and_the_numbers() {
             assert!((found - spread).abs() < 1e-9, "{name}: {point}");
         }
     }
-    assert!(found["improvements"][0]["percent"].as_f64().expect("a percentage") > 0.0);
+    assert!(
+        found["improvements"][0]["percent"]
+            .as_f64()
+            .expect("a percentage")
+            > 0.0
+    );
 
     let svg = fs::read_to_string(&svg).expect("a figure");
     let document = roxmltree::Document::parse(&svg).expect("XML");
@@ -111,15 +120,29 @@ fn one_command_gives_the_figure_the_report_and_the_numbers() {
         .filter(|node| node.tag_name().name() == "text")
         .filter_map(|node| node.text().map(str::trim))
         .collect();
-    for words in ["Size, mm", "Passing, % of mass", "point cloud, scale object against sieve"] {
+    for words in [
+        "Size, mm",
+        "Passing, % of mass",
+        "point cloud, scale object against sieve",
+    ] {
         assert!(texts.contains(&words), "{words} is not in {texts:?}");
     }
-    assert!(texts.iter().any(|text| text.starts_with("point cloud, 3 trials: Swebrec fit, P50 ")));
+    assert!(
+        texts
+            .iter()
+            .any(|text| text.starts_with("point cloud, 3 trials: Swebrec fit, P50 "))
+    );
     let png = image::open(&png).expect("a PNG");
     assert_eq!(png.width(), 1800);
 
     let html = fs::read_to_string(&html).expect("a report");
-    for words in ["<svg ", "Repeatability", "Fitted functions", "look at the shift", "check the scale"] {
+    for words in [
+        "<svg ",
+        "Repeatability",
+        "Fitted functions",
+        "look at the shift",
+        "check the scale",
+    ] {
         assert!(html.contains(words), "{words}");
     }
 }
@@ -127,8 +150,14 @@ fn one_command_gives_the_figure_the_report_and_the_numbers() {
 /// A sieve in inches, a cloud in mm, each in a file of its own that says nothing of methods.
 #[test]
 fn files_are_joined_in_the_unit_of_the_first() {
-    let sieve: String = SIEVE.iter().map(|[size, p]| format!("{},{p}\n", size / 25.4)).collect();
-    let cloud: String = SIEVE.iter().map(|[size, p]| format!("{},{p}\n", size * 1.04)).collect();
+    let sieve: String = SIEVE
+        .iter()
+        .map(|[size, p]| format!("{},{p}\n", size / 25.4))
+        .collect();
+    let cloud: String = SIEVE
+        .iter()
+        .map(|[size, p]| format!("{},{p}\n", size * 1.04))
+        .collect();
     let folder = folder(&[
         ("sieve.csv", &format!("size_in,percent_passing\n{sieve}")),
         ("cloud.csv", &format!("size_mm,percent_passing\n{cloud}")),
@@ -150,13 +179,20 @@ fn photos_are_merged_as_chosen_and_that_is_said() {
         text += &format!("sieve,,,{size},{percent}\n");
     }
     for (photo, area, percent) in [("a", 2, 10), ("b", 1, 20), ("c", 1, 60)] {
-        text += &format!("cloud,{photo},{area},8,{percent}\ncloud,{photo},{area},63,70\ncloud,{photo},{area},250,99\n");
+        text += &format!(
+            "cloud,{photo},{area},8,{percent}\ncloud,{photo},{area},63,70\ncloud,{photo},{area},250,99\n"
+        );
     }
     let folder = folder(&[("all.csv", &text)]);
     let [csv, html] = ["all.csv", "out.html"].map(|name| path(&folder, name));
-    for (merge, mean, words) in [("area", 25.0, "by the area"), ("equal", 30.0, "equal weights")] {
+    for (merge, mean, words) in [
+        ("area", 25.0, "by the area"),
+        ("equal", 30.0, "equal weights"),
+    ] {
         let found = json(&[&csv, "--merge", merge, "--report", &html]);
-        let at_eight = found["methods"][0]["points"][0]["mean"].as_f64().expect("a mean");
+        let at_eight = found["methods"][0]["points"][0]["mean"]
+            .as_f64()
+            .expect("a mean");
         assert!((at_eight - mean).abs() < 1e-9, "{merge}: {at_eight}");
         assert!(fs::read_to_string(&html).expect("a report").contains(words));
     }
@@ -169,8 +205,11 @@ fn resampling_takes_the_series_sieves() {
     for (series, sizes) in [("iso", [11.2, 16.0]), ("astm", [8.0, 9.5])] {
         let found = json(&[&csv, "--resample", series]);
         let points = found["reference"]["points"].as_array().expect("points");
-        let first: Vec<f64> =
-            points.iter().take(2).filter_map(|point| point["size"].as_f64()).collect();
+        let first: Vec<f64> = points
+            .iter()
+            .take(2)
+            .filter_map(|point| point["size"].as_f64())
+            .collect();
         assert_eq!(first, sizes, "{series}");
     }
 }
@@ -182,13 +221,31 @@ fn what_cannot_be_written_is_said_before_anything_is() {
     let [gif, bare, svg, txt] =
         ["out.gif", "out", "out.svg", "out.txt"].map(|name| path(&folder, name));
     for (arguments, words) in [
-        (vec!["none.csv", "--figure", gif.as_str()], "out.gif: a figure is written as SVG or PNG"),
-        (vec![&csv, "--figure", &bare], "let its name end in .svg or .png"),
-        (vec![&csv, "--figure", &svg, "--report", &txt], "let its name end in .html"),
-        (vec![&csv, "--figure", &svg, "--reference", "sive"], "no method is called 'sive'"),
-        (vec![&csv, "--figure", &svg, "--envelope", "300"], "an envelope of 300 %"),
+        (
+            vec!["none.csv", "--figure", gif.as_str()],
+            "out.gif: a figure is written as SVG or PNG",
+        ),
+        (
+            vec![&csv, "--figure", &bare],
+            "let its name end in .svg or .png",
+        ),
+        (
+            vec![&csv, "--figure", &svg, "--report", &txt],
+            "let its name end in .html",
+        ),
+        (
+            vec![&csv, "--figure", &svg, "--reference", "sive"],
+            "no method is called 'sive'",
+        ),
+        (
+            vec![&csv, "--figure", &svg, "--envelope", "300"],
+            "an envelope of 300 %",
+        ),
         (vec![&csv, &csv, "--figure", &svg], "is there already"),
-        (vec![&csv, "--figure", "no/such/folder/out.svg"], "cannot be written"),
+        (
+            vec![&csv, "--figure", "no/such/folder/out.svg"],
+            "cannot be written",
+        ),
     ] {
         let error = error_of(&arguments);
         assert!(error.contains(words), "{error}");

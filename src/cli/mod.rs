@@ -16,8 +16,10 @@ mod flight_arguments;
 mod georeference;
 mod psd;
 mod psd_compare;
+mod psd_fit;
 #[cfg(feature = "render")]
 mod render;
+mod written_beside;
 
 use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write};

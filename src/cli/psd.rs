@@ -6,10 +6,13 @@ use clap::Subcommand;
 
 use super::Answer;
 use super::psd_compare::{self, CompareArguments};
+use super::psd_fit::{self, FitArguments};
 use crate::jobs::Progress;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum PsdCommand {
+    /// Fit a function to each curve: parameters with standard errors, percentiles with bands.
+    Fit(FitArguments),
     /// Hold methods against a reference: percent errors, norms, shifts, the figure and the report.
     Compare(CompareArguments),
 }
@@ -18,6 +21,7 @@ impl PsdCommand {
     /// Where the answer goes.
     pub(super) fn output(&self) -> Option<PathBuf> {
         match self {
+            Self::Fit(arguments) => arguments.output.clone(),
             Self::Compare(arguments) => arguments.output.clone(),
         }
     }
@@ -25,6 +29,7 @@ impl PsdCommand {
 
 pub(super) fn psd(command: &PsdCommand, progress: &Progress) -> Result<Answer, String> {
     match command {
+        PsdCommand::Fit(arguments) => psd_fit::fit(arguments),
         PsdCommand::Compare(arguments) => psd_compare::compare(arguments, progress),
     }
 }

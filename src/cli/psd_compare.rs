@@ -1,14 +1,15 @@
 //! `fragscale psd compare`: methods held against a reference, with the figure and the report.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::distribution_arguments::DistributionArguments;
+use super::psd_fit::models;
+use super::written_beside::{check_report_name, drawn_figures, figure_formats, write_all};
 use super::{Answer, ScalesFormat};
-use crate::exports::{self, ComparisonReport, FigureFormat};
-use crate::fault::Fault;
+use crate::exports::{self, ComparisonReport};
 use crate::formats::FileError;
 use crate::fragmentation::{
     self, Comparison, ComparisonOptions, DistributionSet, Model, Repeatability, SieveSeries,
@@ -61,16 +62,6 @@ pub(super) struct CompareArguments {
     report: Option<PathBuf>,
 }
 
-fn models() -> impl TypedValueParser<Value = Model> {
-    let keys = PossibleValuesParser::new(Model::ALL.map(Model::key));
-    keys.map(|key| {
-        Model::ALL
-            .into_iter()
-            .find(|model| model.key() == key)
-            .unwrap_or_default()
-    })
-}
-
 fn weightings() -> impl TypedValueParser<Value = Weighting> {
     let keys = PossibleValuesParser::new(Weighting::ALL.map(Weighting::key));
     let find = |key: String| {
@@ -102,9 +93,6 @@ fn series() -> impl TypedValueParser<Value = SieveSeries> {
     })
 }
 
-/// A file beside the answer, its bytes not written yet.
-type Pending<'a> = (&'a Path, Vec<u8>);
-
 /// Reads, merges, resamples, compares, draws; writes when all of it went well.
 pub(super) fn compare(arguments: &CompareArguments, progress: &Progress) -> Result<Answer, String> {
     let formats = figure_formats(&arguments.figure)?;
@@ -124,15 +112,8 @@ pub(super) fn compare(arguments: &CompareArguments, progress: &Progress) -> Resu
     let comparison =
         fragmentation::compare(&prepared.trials, &options).map_err(|e| e.to_string())?;
     progress.stage("drawing");
-    let mut pending: Vec<Pending<'_>> = Vec::new();
     let figure = exports::figure_of_comparison(&comparison);
-    for (path, format) in formats {
-        let bytes = format.bytes(&figure);
-        pending.push((
-            path,
-            bytes.map_err(|fault| FileError::new(path, fault).to_string())?,
-        ));
-    }
+    let mut pending = drawn_figures(&figure, formats)?;
     if let Some(path) = &arguments.report {
         let repeatability = prepared.repeatability(&comparison, &mut warnings);
         let page = exports::comparison_report(&ComparisonReport {
@@ -150,30 +131,8 @@ pub(super) fn compare(arguments: &CompareArguments, progress: &Progress) -> Resu
         ScalesFormat::Csv => exports::comparison_csv(&comparison).map_err(|e| e.to_string())?,
         ScalesFormat::Json => exports::comparison_json(&comparison).map_err(|e| e.to_string())?,
     };
-    for (path, bytes) in pending {
-        super::write(path, &bytes)?;
-    }
+    write_all(pending)?;
     Ok(Answer { text, warnings })
-}
-
-/// The files of figures with their formats.
-pub(super) fn figure_formats(figures: &[PathBuf]) -> Result<Vec<(&Path, FigureFormat)>, String> {
-    let formats = figures.iter().map(|path| match FigureFormat::of(path) {
-        Ok(format) => Ok((path.as_path(), format)),
-        Err(fault) => Err(FileError::new(path, fault).to_string()),
-    });
-    formats.collect()
-}
-
-fn check_report_name(path: &Path) -> Result<(), String> {
-    let ending = path
-        .extension()
-        .map(|ending| ending.to_string_lossy().to_lowercase());
-    if matches!(ending.as_deref(), Some("html" | "htm")) {
-        return Ok(());
-    }
-    let fault = Fault::new("a report is written as HTML", "let its name end in .html");
-    Err(FileError::new(path, fault).to_string())
 }
 
 /// What is compared, and how it came from what was read.
