@@ -50,6 +50,16 @@ impl Row {
     pub fn cell(&self, column: usize) -> &str {
         self.cells.get(column).unwrap_or_default()
     }
+
+    /// How many of the columns the line has, from the first on.
+    pub fn len(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Whether it has none.
+    pub fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
 }
 
 /// What was mended in numbers, to be said.
@@ -253,7 +263,7 @@ impl Table {
                 return fault(ambiguous, plain);
             }
             (0, 0 | 1) => number.parse::<f64>(),
-            (1, 0) if may_be_thousands(number) && !(self.decimal_comma && !self.decimal_point) => {
+            (1, 0) if may_be_thousands(number) && (self.decimal_point || !self.decimal_comma) => {
                 return fault(ambiguous, plain);
             }
             (1, 0) => {
