@@ -10,6 +10,7 @@ use super::layers::Layers;
 use super::preferences::Theme;
 use super::state::PictureRequest;
 use super::table::Column;
+use super::tracing::Trace;
 use super::work::{DialogFor, Task};
 use crate::flight::{FlightSettings, Limits, Verdict};
 use crate::formats::GeoreferenceRequest;
@@ -199,6 +200,8 @@ pub enum Command {
     Look(Look),
     /// Begins or ends measuring.
     ToggleMeasure,
+    /// A step of tracing a scale object on the selected photo.
+    Trace(Trace),
     /// Copies what Split-Desktop's dialog asks for: the selected photo's top and bottom scale.
     CopyScales,
     /// Copies a text.

@@ -224,7 +224,7 @@ impl State {
             return;
         };
         let views = open.views.clone();
-        let Some(views) = views.filter(|_| open.settings() == open.computed) else {
+        let Some(views) = views.filter(|_| open.is_computed()) else {
             self.say(
                 Severity::Error,
                 "scales and footprints are still being computed; export when they are there",
@@ -364,6 +364,7 @@ fn open(
     again: Option<(u64, FlightSettings)>,
     progress: &Progress,
 ) -> Result<Loaded, Box<NotOpened>> {
+    let again_for = again.as_ref().map(|(number, _)| *number);
     options.settings = again.map(|(_, settings)| settings);
     let not_opened = |error: FileError| {
         Box::new(NotOpened {
@@ -381,7 +382,7 @@ fn open(
         opened,
         outcomes,
         surface_bounds,
-        again_for: again.map(|(number, _)| number),
+        again_for,
     })
 }
 

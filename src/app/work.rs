@@ -11,7 +11,7 @@ use egui::ColorImage;
 
 use super::georeferencing::PathField;
 use crate::fault::Fault;
-use crate::flight::{Flight, FlightSettings, Outcome};
+use crate::flight::{ComparedObject, Flight, FlightSettings, Outcome, ScaleObject};
 use crate::formats::{FlightOrigin, Georeferenced, OpenOptions, Opened};
 use crate::geometry::Bounds;
 use crate::jobs::{Job, Progress};
@@ -25,6 +25,8 @@ pub enum Task {
     Open,
     /// Computing scales anew after a setting changed.
     Scales,
+    /// Holding scale objects against the surface.
+    ScaleObjects,
     /// Draping footprints.
     Views,
     /// Triangles and points for the viewport.
@@ -51,6 +53,7 @@ impl Task {
         match self {
             Self::Open => "Opening",
             Self::Scales => "Scales",
+            Self::ScaleObjects => "Scale objects",
             Self::Views => "Footprints",
             Self::Geometry => "Surface",
             Self::Thumbnails => "Thumbnails",
@@ -66,7 +69,7 @@ impl Task {
     /// Whether it can be cancelled: without footprints and triangles the flight on the screen would
     /// stay half-finished.
     pub fn can_be_cancelled(self) -> bool {
-        !matches!(self, Self::Views | Self::Geometry)
+        !matches!(self, Self::Views | Self::Geometry | Self::ScaleObjects)
     }
 }
 
@@ -131,6 +134,8 @@ pub enum Done {
     Opened(Box<Result<Loaded, Box<NotOpened>>>),
     /// Scales after a setting changed, with the settings.
     Scales(Result<(Arc<Flight>, Vec<Outcome>, FlightSettings), Fault>),
+    /// The scale objects with what the point cloud says beside them.
+    Compared(Result<Vec<(ScaleObject, ComparedObject)>, Fault>),
     /// How the photos look at the surface.
     Views(Result<Vec<Option<ViewFacts>>, Fault>),
     /// For the viewport.
@@ -253,6 +258,7 @@ impl Work {
         for task in [
             Task::Scales,
             Task::Views,
+            Task::ScaleObjects,
             Task::Geometry,
             Task::Thumbnails,
             Task::Preview,

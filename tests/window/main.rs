@@ -27,5 +27,6 @@ mod georeference;
 mod looks;
 mod photos;
 mod random;
+mod scale_object;
 mod settings;
 mod viewport;

@@ -11,9 +11,11 @@ mod log_panel;
 mod menu_bar;
 mod photos_table;
 mod residuals;
+mod scale_objects;
 mod start_page;
 mod status_bar;
 mod tool_bar;
+mod traced_photo;
 mod view_buttons;
 
 pub use ask::ask;
