@@ -37,6 +37,11 @@ impl FittedCurve {
             fit,
         }
     }
+
+    /// The fit itself.
+    pub fn fit(&self) -> &Fit {
+        &self.fit
+    }
 }
 
 impl FitReport {

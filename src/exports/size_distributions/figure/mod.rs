@@ -1,0 +1,95 @@
+//! The figure of size distributions: percent passing against size, and the residuals below it.
+//!
+//! ```text
+//! look        colours, markers and dashes that are told apart in print and by the colour-blind
+//! size_axis   where the logarithmic axis begins and ends, its lines and labels
+//! of_comparison, of_fits  what is shown of them
+//! panels      what the panels of both have in common
+//! layout      where everything is
+//! pen         strokes, areas, markers and words by plotters
+//! draw        the contents with a pen, the same on paper (SVG) and in pixels (PNG)
+//! picture     the bytes of both
+//! ```
+//!
+//! `FigureContents` knows nothing of who draws it: the window draws the same.
+
+mod draw;
+mod layout;
+mod look;
+mod of_comparison;
+mod of_fits;
+mod panels;
+mod pen;
+mod picture;
+mod size_axis;
+#[cfg(test)]
+#[allow(
+    clippy::expect_used,
+    clippy::panic,
+    reason = "in a test a panic is the report"
+)]
+mod tests;
+
+pub use look::{Dash, Look, Marker};
+pub use of_comparison::figure_of_comparison;
+pub use of_fits::{FittedDistribution, figure_of_fits};
+pub use picture::{FigureFormat, figure_png, figure_svg};
+pub use size_axis::{SizeAxis, SizeTick};
+
+/// What a figure shows. All sizes are in the unit of the size axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FigureContents {
+    /// Above the figure; may be empty.
+    pub title: String,
+    /// Of both panels.
+    pub sizes: SizeAxis,
+    /// Percent passing, 0 to 100. The legend is of this panel.
+    pub passing: Panel,
+    /// What is left between measured and reference or fitted, the looks being those of `passing`.
+    pub residuals: Option<Panel>,
+}
+
+/// Values against sizes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Panel {
+    /// What the values are, with their unit.
+    pub axis_title: String,
+    /// The lowest and the highest value of the axis.
+    pub range: [f64; 2],
+    /// From the lowest to the highest value, where lines and labels are.
+    pub ticks: Vec<f64>,
+    /// Values with a line of their own across the panel, such as limits.
+    pub levels: Vec<f64>,
+    /// Behind the series, the first at the back.
+    pub bands: Vec<Band>,
+    /// The first at the back.
+    pub series: Vec<Series>,
+}
+
+/// An area between two curves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Band {
+    /// For the legend.
+    pub name: String,
+    /// Whose it is.
+    pub look: Look,
+    /// Whether its edges are dashed lines, or it is a shade only.
+    pub outlined: bool,
+    /// The two edges, points [size, value], sizes ascending in each.
+    pub edges: [Vec<[f64; 2]>; 2],
+}
+
+/// A measured distribution with its fitted curve, or the errors of one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// For the legend.
+    pub name: String,
+    /// Its colour, marker and dash.
+    pub look: Look,
+    /// Drawn as markers, [size, value], sizes ascending.
+    pub points: Vec<[f64; 2]>,
+    /// Drawn as a line, [size, value], sizes ascending; empty without one.
+    pub line: Vec<[f64; 2]>,
+    /// [size, value] on the line from which one reads the size, as the P50.
+    pub marks: Vec<[f64; 2]>,
+}
