@@ -9,6 +9,8 @@
     reason = "in a test or a benchmark a panic is the report"
 )]
 
+mod common;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -196,4 +198,49 @@ fn the_scale_is_that_of_the_image_asked_for() {
             "{scale} for {measured}"
         );
     }
+}
+
+/// The command says the same of a flight.toml with a scale object, in the unit that is asked for.
+#[test]
+fn the_command_has_scale_objects_beside_the_scales() {
+    let (flight, _, centers) = flight();
+    let photo = &flight.parts().photos[1];
+    let camera = flight.camera(photo);
+    let center = sphere_of(photo, camera, &centers);
+    let outline: Vec<[f64; 2]> = true_outline(camera, center, 9)
+        .iter()
+        .map(DVec2::to_array)
+        .collect();
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["flight.toml", "pile.ply", "ost.yaml", "poses.csv"] {
+        fs::copy(sample().join(name), folder.path().join(name)).expect("a copy");
+    }
+    let toml = folder.path().join("flight.toml");
+    let plain = common::scales_json(folder.path(), &["--unit", "in"]);
+    let text = fs::read_to_string(&toml).expect("the flight");
+    let object = format!(
+        "\n[[scale_object]]\nphoto = \"{}\"\nkind = \"sphere\"\nsize = {DIAMETER}\noutline = {outline:?}\n",
+        photo.name
+    );
+    fs::write(&toml, text + &object).expect("written");
+    let mut with = common::scales_json(folder.path(), &["--unit", "in"]);
+    let found = with["photos"][1]["scale_objects"][0].take();
+    let scale = found["scale"].as_f64().expect("a scale");
+    // 0.0254 m are an inch.
+    assert!((scale * center.z / camera.fx / 0.0254 - 1.0).abs() < 1e-9);
+    assert_eq!(found["kind"], "sphere");
+    assert!(found["rms_px"].as_f64().expect("a number") < 1e-6);
+    let edge = |name: &str| plain["photos"][1]["scale"][name].as_f64().expect("a scale");
+    let share = camera.pixel_undistorted(center).expect("seen").y / 720.0;
+    let on_row = edge("top") + (edge("bottom") - edge("top")) * share;
+    let found_on_row = found["point_cloud"]["on_row"].as_f64().expect("a scale");
+    assert!((found_on_row / on_row - 1.0).abs() < 1e-9);
+    // Nothing else is another than without it.
+    for photo in with["photos"].as_array_mut().expect("photos") {
+        photo
+            .as_object_mut()
+            .expect("a photo")
+            .remove("scale_objects");
+    }
+    assert_eq!(with, plain);
 }

@@ -2,6 +2,7 @@
 //! files that are there whole or not at all.
 
 mod atomic;
+mod report_object;
 mod scale_report;
 mod scales_csv;
 mod scales_json;
@@ -10,6 +11,7 @@ mod size_distributions;
 mod split_desktop;
 
 pub use atomic::{make_folder_whole, remove_unfinished, write_whole};
+pub use report_object::{PointCloudScale, ReportObject};
 pub use scale_report::{ReportLine, ScaleReport};
 pub use scales_csv::scales_csv;
 pub use scales_json::scales_json;
