@@ -90,7 +90,7 @@ fn compared(
     compared.into_iter().next().expect("one")
 }
 
-/// Focal length over the true depth, to 1e-9; and on which side the point cloud's scales lie.
+/// Focal length over the true depth, to 1e-9; and on which side of it the point cloud's scales lie.
 #[test]
 fn a_traced_sphere_gives_the_true_scale_at_its_place() {
     let (flight, outcomes, centers) = flight();
@@ -114,17 +114,17 @@ fn a_traced_sphere_gives_the_true_scale_at_its_place() {
             "{}: {under} for {near}",
             photo.name
         );
-        // Around it lies rock, some higher and some lower than its centre.
+        // The spheres lie on the pile, so the rock around them and at its edges is further away than
+        // their centres: with their scale fragments would come out too small in every photo.
         let around = compared.beyond_surroundings().expect("a scale");
-        assert!(around.abs() < 0.15, "{}: {around}", photo.name);
-        // The pile is not flat and the sphere lies on it: the two methods differ by a few percent.
+        assert!((0.0..0.2).contains(&around), "{}: {around}", photo.name);
         let off = compared.beyond_edges().expect("a scale");
-        assert!(off.abs() < 0.15, "{}: {off}", photo.name);
+        assert!((0.0..0.3).contains(&off), "{}: {off}", photo.name);
         println!(
             "{}: object {scale:.1} px/m, row {:+.2} %, around it {:+.2} %, under it {:+.2} %",
             photo.name,
             off * 100.0,
-            compared.beyond_surroundings().expect("a scale") * 100.0,
+            around * 100.0,
             compared.beyond_surface().expect("a scale") * 100.0
         );
     }
