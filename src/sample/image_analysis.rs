@@ -123,7 +123,8 @@ pub(super) fn distributions_csv(
          # with the scale of each row (point cloud) or of the sphere in the photo (scale object).\n\
          # size: diameter of the circle of as many pixels; mass: its cube; the share of fines is the true\n\
          # one. area: what the photo shows, m2. Nothing corrects for hidden parts, shape or depth: it is\n\
-         # no result of Split-Desktop. sieve: as in reference.csv.\n\
+         # no result of Split-Desktop. sieve: as in reference.csv. The diameters come out larger than a sieve's\n\
+         # sizes, so a smaller scale error may lie farther from the sieve: compare the methods' sizes.\n\
          method,photo,size_mm,percent_passing,area\n",
     );
     for (size, percent) in reference {
@@ -192,7 +193,7 @@ mod tests {
             (4.0, 99.0),
             (8.0, 100.0),
         ];
-        let text = distributions_csv(&reference, 1.0, 0.1, 8.0, &[analysis]);
+        let text = distributions_csv(&reference, &[1.0, 2.0, 4.0, 8.0], 0.1, 8.0, &[analysis]);
         let lines: Vec<&str> = text
             .lines()
             .filter(|line| line.starts_with("point"))
