@@ -172,6 +172,13 @@ impl Body {
         }
     }
 
+    /// The area of its surface, in units of its sieve size squared.
+    pub fn surface(&self) -> f64 {
+        self.corners()
+            .map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length())
+            .sum()
+    }
+
     /// The triangles as corner points.
     fn corners(&self) -> impl Iterator<Item = [DVec3; 3]> {
         let at = |index: u32| self.vertices.get(index as usize).copied();

@@ -49,7 +49,7 @@ use files::flight::FlightText;
 use files::photo::{DjiGimbal, PhotoMetadata};
 use files::poses::{Orientation, PoseRow};
 use files::reference::SieveSeries;
-use image_analysis::{Analysis, Outlined, Scale};
+use image_analysis::{Analysis, Outlined, PixelPlaces, Scale};
 use light::Light;
 use material::Material;
 use photo::Look;
@@ -357,19 +357,26 @@ fn analysed(
 ) -> String {
     let camera = &recipe.camera;
     let rows = f64::from(camera.height);
-    let by_rows = photos.iter().enumerate().filter_map(|(index, photo)| {
+    let columns = recipe.flight.count[0].max(1) as usize;
+    // `zip`: the photos of a ring belong to no row.
+    let flown = shots.iter().take(columns * recipe.flight.count[1] as usize);
+    let flown: Vec<_> = (1..).zip(flown.zip(photos)).collect();
+    // Few photos: it fits.
+    let trial = |number: usize| (1 + (number - 1) / columns) as u32;
+    let by_rows = flown.iter().filter_map(|&(number, (_, photo))| {
         let edge = |edge: &str| {
-            let place = format!("/photos/{index}/as_shot/scale/{edge}");
+            let place = format!("/photos/{}/undistorted/scale/{edge}", number - 1);
             truth.pointer(&place).and_then(Value::as_f64)
         };
         let (top, bottom) = (edge("top")?, edge("bottom")?);
         Some(Analysis {
             method: "point cloud",
+            trial: trial(number),
             photo,
             scale: Scale { top, bottom, rows },
         })
     });
-    let by_spheres = photos.iter().zip(shots).filter_map(|(photo, shot)| {
+    let by_spheres = flown.iter().filter_map(|&(number, (shot, photo))| {
         let pose = shot.pose();
         // Its own sphere is the one nearest its middle.
         let off_axis = |sphere: &&Sphere| {
@@ -383,6 +390,7 @@ fn analysed(
         let scale = image_analysis::sphere_scale(camera, &pose, sphere)?;
         Some(Analysis {
             method: "scale object",
+            trial: trial(number),
             photo,
             scale: Scale {
                 top: scale,
@@ -393,12 +401,16 @@ fn analysed(
     });
     let analyses: Vec<Analysis<'_>> = by_rows.chain(by_spheres).collect();
     let smallest = recipe.pile.smallest;
-    let fines = recipe.pile.sizes.passing(smallest);
     // A fragment's image may be wider than any sieve that it needs.
     let largest = recipe.pile.sizes.size_at(1.0) * 4.0;
-    let openings = SieveSeries::Iso565.openings_mm(smallest * 1000.0, largest * 1000.0);
-    let width = f64::from(camera.width);
-    image_analysis::distributions_csv(sieved, &openings, fines, width, &analyses)
+    let material = image_analysis::Material {
+        reference: sieved,
+        openings: &SieveSeries::Iso565.openings_mm(smallest * 1000.0, largest * 1000.0),
+        fines: recipe.pile.sizes.passing(smallest),
+        shape_factor: image_analysis::shape_factor(&scene.pile().bodies),
+        width: f64::from(camera.width),
+    };
+    image_analysis::distributions_csv(&material, &analyses)
 }
 
 /// Takes the photos, writes them, and gives back what an image analysis would outline on each.
@@ -420,6 +432,7 @@ fn take_photos(
     }
     progress.stage("taking photos");
     let camera = &recipe.camera;
+    let pixels = PixelPlaces::new(camera);
     let mut outlined = Vec::with_capacity(shots.len());
     for (index, shot) in shots.iter().enumerate() {
         progress.advance(index as u64, shots.len() as u64)?;
@@ -432,8 +445,7 @@ fn take_photos(
             let name = shot.name.replace(".jpg", ".png");
             write(&labels.join(name), &label.map_err(report)?)?;
         }
-        let (width, height) = (camera.width, camera.height);
-        outlined.push(Outlined::new(&shot.name, &photo.labels, width, height));
+        outlined.push(Outlined::new(&shot.name, &photo.labels, &pixels));
     }
     Ok(outlined)
 }

@@ -246,10 +246,10 @@ fn the_distributions_are_the_reference_and_two_of_each_photo() {
         names,
         [
             "sieve",
-            "point cloud / IMG_0001.jpg",
-            "point cloud / IMG_0002.jpg",
-            "scale object / IMG_0001.jpg",
-            "scale object / IMG_0002.jpg",
+            "point cloud / 1 / IMG_0001.jpg",
+            "point cloud / 2 / IMG_0002.jpg",
+            "scale object / 1 / IMG_0001.jpg",
+            "scale object / 2 / IMG_0002.jpg",
         ]
     );
     assert_eq!(curves[0].distribution, reference[0].distribution);
