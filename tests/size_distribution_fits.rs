@@ -18,7 +18,7 @@ mod common;
 use std::path::Path;
 
 use common::{shared_data, stdout_of};
-use fragscale::fragmentation::{Fit, FitOptions, Model, SizeDistribution, fit};
+use fragscale::fragmentation::{FitOptions, Model, SizeDistribution, fit};
 use serde_json::Value;
 
 fn near(a: f64, b: f64, relative: f64) -> bool {
