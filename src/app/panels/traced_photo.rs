@@ -234,10 +234,20 @@ pub(super) fn draw(
             Some(Traced::Bar(_)) | None => line(painter, egui::Shape::line, &on_screen),
         }
         let is_traced = outline.object.is_none();
-        let radius = if is_traced { 5.0 } else { 3.5 };
+        // Small on a small outline, so that they do not hide what it is around.
+        let size = Rect::from_points(&on_screen).size().max_elem();
+        let radius = match is_traced {
+            true => 5.0,
+            false => (size / 20.0).clamp(1.2, 3.5),
+        };
         for at in &on_screen {
-            painter.circle(*at, radius, Color32::WHITE, Stroke::new(2.0, SHADE));
-            painter.circle_filled(*at, 1.5, Color32::from_rgb(190, 0, 90));
+            painter.circle(
+                *at,
+                radius,
+                Color32::WHITE,
+                Stroke::new(radius * 0.5, SHADE),
+            );
+            painter.circle_filled(*at, radius * 0.35, Color32::from_rgb(190, 0, 90));
         }
         if !is_traced && let Some(top) = on_screen.iter().min_by(|a, b| a.y.total_cmp(&b.y)) {
             let text = number.to_string();
