@@ -38,7 +38,7 @@ impl PhotoPlace<'_> {
     }
 
     /// Of a pixel of the photo as shot, where the image that is shown has it.
-    fn from_shot(&self, pixel: DVec2) -> Option<Pos2> {
+    fn screen_of_shot(&self, pixel: DVec2) -> Option<Pos2> {
         let shown = match self.image {
             ImageKind::AsShot => pixel,
             ImageKind::Undistorted => {
@@ -50,7 +50,7 @@ impl PhotoPlace<'_> {
     }
 
     /// The pixel of the photo as shot under a place of the screen.
-    fn to_shot(&self, at: Pos2) -> Option<DVec2> {
+    fn shot_under(&self, at: Pos2) -> Option<DVec2> {
         let share = (at - self.rect.min) / self.rect.size();
         let shown = DVec2::new(
             f64::from(share.x) * f64::from(self.camera.width),
@@ -121,7 +121,7 @@ pub(super) fn mouse(
             points.map(move |(point, pixel)| (object, point, *pixel))
         });
         let near = points.filter_map(|(object, point, pixel)| {
-            let grip = place.from_shot(pixel)? - at;
+            let grip = place.screen_of_shot(pixel)? - at;
             let to = pixel;
             (grip.length() <= REACH).then_some(Dragged {
                 object,
@@ -139,7 +139,7 @@ pub(super) fn mouse(
     }
     let at = response.interact_pointer_pos();
     if let (Some(moved), Some(at)) = (dragged.as_mut(), at)
-        && let Some(pixel) = place.to_shot(at + moved.grip)
+        && let Some(pixel) = place.shot_under(at + moved.grip)
     {
         moved.to = pixel;
     }
@@ -157,7 +157,7 @@ pub(super) fn mouse(
     {
         // Beside the photo there is nothing to mark.
         let pixel = place
-            .to_shot(at)
+            .shot_under(at)
             .filter(|&pixel| place.camera.contains(pixel));
         commands.extend(click(tracing, point_at(at), pixel));
     }
@@ -214,7 +214,10 @@ pub(super) fn draw(
         let traced = outline
             .size
             .and_then(|size| Traced::new(place.camera, outline.kind, size, &points).ok());
-        let on_screen: Vec<Pos2> = points.iter().filter_map(|p| place.from_shot(*p)).collect();
+        let on_screen: Vec<Pos2> = points
+            .iter()
+            .filter_map(|p| place.screen_of_shot(*p))
+            .collect();
         match traced {
             Some(Traced::Sphere(sphere)) => {
                 let round = sphere.outline(place.camera, place.image, 0.0, 96);
