@@ -172,7 +172,7 @@ fn red_edge(image: &RgbImage, middle: DVec2) -> Vec<DVec2> {
         .map(|i| {
             let way = DVec2::from_angle(f64::from(i) / 24.0 * std::f64::consts::TAU);
             let steps = (0..1000).map(|step| f64::from(step) * 0.1);
-            let last = steps.filter(|&far| is_red(middle + way * far)).last();
+            let last = steps.rev().find(|&far| is_red(middle + way * far));
             let far = last.expect("red") + 0.05;
             (far, middle + way * far)
         })

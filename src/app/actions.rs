@@ -255,8 +255,8 @@ pub const MEASURE: Action = Action {
 };
 fn begin_tracing(state: &State, kind: ScaleObjectKind) -> Option<Command> {
     let open = state.open.as_ref()?;
-    (open.selected?, open.trace_size(kind)?);
-    Some(Command::Trace(Trace::Begin(kind)))
+    let possible = open.selected.is_some() && open.trace_size(kind).is_some();
+    possible.then_some(Command::Trace(Trace::Begin(kind)))
 }
 
 /// See its `hover`.

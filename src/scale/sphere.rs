@@ -214,7 +214,8 @@ impl Cone {
         // Half the sum and half the difference of the scatter's two eigenvalues.
         let (half_sum, half_difference) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
         let (least, most) = (half_sum - half_difference, half_sum + half_difference);
-        if !(least > FLATTEST * FLATTEST * most) {
+        // One place only has no scatter at all.
+        if most == 0.0 || least <= FLATTEST * FLATTEST * most {
             return Err(Fault::new(
                 "the points lie on a line",
                 "mark points all around the edge",

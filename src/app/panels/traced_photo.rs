@@ -38,7 +38,7 @@ impl PhotoPlace<'_> {
     }
 
     /// Of a pixel of the photo as shot, where the image that is shown has it.
-    fn from_shot(&self, pixel: DVec2) -> Option<Pos2> {
+    fn screen_of_shot(&self, pixel: DVec2) -> Option<Pos2> {
         let shown = match self.image {
             ImageKind::AsShot => pixel,
             ImageKind::Undistorted => {
@@ -50,7 +50,7 @@ impl PhotoPlace<'_> {
     }
 
     /// The pixel of the photo as shot under a place of the screen.
-    fn to_shot(&self, at: Pos2) -> Option<DVec2> {
+    fn shot_under(&self, at: Pos2) -> Option<DVec2> {
         let share = (at - self.rect.min) / self.rect.size();
         let shown = DVec2::new(
             f64::from(share.x) * f64::from(self.camera.width),
@@ -121,7 +121,7 @@ pub(super) fn mouse(
             points.map(move |(point, pixel)| (object, point, *pixel))
         });
         let near = points.filter_map(|(object, point, pixel)| {
-            let grip = place.from_shot(pixel)? - at;
+            let grip = place.screen_of_shot(pixel)? - at;
             let to = pixel;
             (grip.length() <= REACH).then_some(Dragged {
                 object,
@@ -139,7 +139,7 @@ pub(super) fn mouse(
     }
     let at = response.interact_pointer_pos();
     if let (Some(moved), Some(at)) = (dragged.as_mut(), at)
-        && let Some(pixel) = place.to_shot(at + moved.grip)
+        && let Some(pixel) = place.shot_under(at + moved.grip)
     {
         moved.to = pixel;
     }
@@ -157,7 +157,7 @@ pub(super) fn mouse(
     {
         // Beside the photo there is nothing to mark.
         let pixel = place
-            .to_shot(at)
+            .shot_under(at)
             .filter(|&pixel| place.camera.contains(pixel));
         commands.extend(click(tracing, point_at(at), pixel));
     }
@@ -214,7 +214,10 @@ pub(super) fn draw(
         let traced = outline
             .size
             .and_then(|size| Traced::new(place.camera, outline.kind, size, &points).ok());
-        let on_screen: Vec<Pos2> = points.iter().filter_map(|p| place.from_shot(*p)).collect();
+        let on_screen: Vec<Pos2> = points
+            .iter()
+            .filter_map(|p| place.screen_of_shot(*p))
+            .collect();
         match traced {
             Some(Traced::Sphere(sphere)) => {
                 let round = sphere.outline(place.camera, place.image, 0.0, 96);
@@ -234,10 +237,20 @@ pub(super) fn draw(
             Some(Traced::Bar(_)) | None => line(painter, egui::Shape::line, &on_screen),
         }
         let is_traced = outline.object.is_none();
-        let radius = if is_traced { 5.0 } else { 3.5 };
+        // Small on a small outline, so that they do not hide what it is around.
+        let size = Rect::from_points(&on_screen).size().max_elem();
+        let radius = match is_traced {
+            true => 5.0,
+            false => (size / 20.0).clamp(1.2, 3.5),
+        };
         for at in &on_screen {
-            painter.circle(*at, radius, Color32::WHITE, Stroke::new(2.0, SHADE));
-            painter.circle_filled(*at, 1.5, Color32::from_rgb(190, 0, 90));
+            painter.circle(
+                *at,
+                radius,
+                Color32::WHITE,
+                Stroke::new(radius * 0.5, SHADE),
+            );
+            painter.circle_filled(*at, radius * 0.35, Color32::from_rgb(190, 0, 90));
         }
         if !is_traced && let Some(top) = on_screen.iter().min_by(|a, b| a.y.total_cmp(&b.y)) {
             let text = number.to_string();
