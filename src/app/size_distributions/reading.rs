@@ -1,0 +1,137 @@
+//! Reading files and pasted tables of size distributions: the work of a job.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::source::Source;
+use super::{Page, PasteForm};
+use crate::app::command::Command;
+use crate::app::state::{Severity, State};
+use crate::app::work::{Done, Task};
+use crate::formats::{self, FileError};
+
+/// What was read, file by file, or why not in a line; or what is no size distribution at all.
+#[derive(Debug)]
+pub enum Read {
+    /// Of each file.
+    Sources(Vec<Result<Source, String>>),
+    /// The table of the small window.
+    Pasted(Result<Source, String>),
+    /// Dropped on the pile, and not size distributions: something of a flight.
+    OfFlight(Vec<PathBuf>),
+}
+
+/// Whether a file may hold a table by its name.
+fn is_table(path: &Path) -> bool {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    matches!(extension.as_deref(), Some("csv" | "tsv" | "txt"))
+}
+
+/// Whether the head of a file names sizes or percent passing: a cloud or a list of poses does not.
+fn names_passing(path: &Path) -> bool {
+    use std::io::Read;
+    let Ok(file) = formats::open_file(path) else {
+        return false;
+    };
+    let mut start = Vec::new();
+    if file.take(4096).read_to_end(&mut start).is_err() {
+        return false;
+    }
+    let text = String::from_utf8_lossy(&start).to_lowercase();
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+    lines.next().is_some_and(|head| {
+        let head = head.trim_start_matches(['\u{feff}', '"', ' ']);
+        head.contains("pass") || head.starts_with("size") || head.starts_with("sieve")
+    })
+}
+
+fn source(path: &Path) -> Result<Source, String> {
+    let read = formats::read_size_distributions(path, &formats::ColumnOptions::default());
+    let (set, warnings) = read.map_err(|error: FileError| error.to_string())?;
+    Ok(Source::of_file(path, set, warnings))
+}
+
+impl State {
+    /// Whether what was dropped may be size distributions, so that they are looked at first.
+    pub(in crate::app) fn may_be_distributions(&self, paths: &[PathBuf]) -> bool {
+        !paths.is_empty() && paths.iter().all(|path| is_table(path))
+    }
+
+    /// Reads what was dropped; on the pile only if the files name sizes or passing.
+    pub(in crate::app) fn read_dropped(&mut self, paths: Vec<PathBuf>) {
+        let on_pile = self.page == Page::Pile;
+        self.start(Task::ReadDistributions, move |progress| {
+            progress.stage("reading size distributions");
+            if on_pile && !paths.iter().all(|path| names_passing(path)) {
+                return Done::ReadDistributions(Read::OfFlight(paths));
+            }
+            let sources = paths.iter().map(|path| source(path)).collect();
+            Done::ReadDistributions(Read::Sources(sources))
+        });
+    }
+
+    /// Reads files.
+    pub(super) fn read_distributions(&mut self, paths: Vec<PathBuf>) {
+        self.asking = None;
+        self.start(Task::ReadDistributions, move |progress| {
+            progress.stage("reading size distributions");
+            let sources = paths.iter().map(|path| source(path)).collect();
+            Done::ReadDistributions(Read::Sources(sources))
+        });
+    }
+
+    /// Takes what was read.
+    pub(in crate::app) fn take_distributions(&mut self, read: Read) {
+        match read {
+            Read::OfFlight(paths) => self.apply(Command::DropFlight(paths)),
+            Read::Sources(sources) => {
+                self.page = Page::SizeDistributions;
+                for source in sources {
+                    match source {
+                        Ok(source) => {
+                            self.add_source(source);
+                        }
+                        Err(why) => self.say(Severity::Error, &why),
+                    }
+                }
+            }
+            Read::Pasted(Err(why)) => {
+                self.distributions.paste.refused = Some(why.clone());
+                self.say(Severity::Error, &why);
+            }
+            Read::Pasted(Ok(source)) => {
+                if self.add_source(source) {
+                    self.asking = None;
+                    let unit = self.distributions.paste.unit;
+                    self.distributions.pasted += 1;
+                    self.distributions.paste = PasteForm {
+                        unit,
+                        ..PasteForm::default()
+                    };
+                }
+            }
+        }
+    }
+
+    /// Adds curves; false where their labels are there already.
+    fn add_source(&mut self, mut source: Source) -> bool {
+        let mut edit = self.distributions.history.now().clone();
+        let name = source.name.clone();
+        if let Err(fault) = source.set_apart(&edit.sources) {
+            self.say(Severity::Error, &format!("{name}: {fault}"));
+            return false;
+        }
+        for warning in &source.warnings {
+            self.say(Severity::Warning, &format!("{name}: {warning}"));
+        }
+        let count = source.set.curves.len();
+        if edit.sources.is_empty() {
+            edit.settings.unit = source.set.unit;
+        }
+        edit.sources.push(Arc::new(source));
+        self.edit_distributions(edit);
+        let curves = if count == 1 { "curve" } else { "curves" };
+        self.say(Severity::Note, &format!("{name}: {count} {curves}"));
+        true
+    }
+}
