@@ -53,7 +53,9 @@ mod realitycapture;
 mod reconstruction;
 mod ros;
 mod rounded_rotation;
+mod size_distributions;
 mod stl;
+mod table;
 #[cfg(test)]
 mod test_data;
 mod text_lines;
@@ -84,6 +86,8 @@ pub use position_list::{
     read_control_points, read_positions,
 };
 pub use reconstruction::{MeasuredPosition, Observation, PosedPhoto, Project, Reconstruction};
+pub use size_distributions::{DistributionColumns, read_size_distributions, size_distributions};
+pub use table::{NumberRepairs, Row, Table};
 pub use trajectory::TrajectoryFormat;
 
 use crate::camera::{Camera, Pose};

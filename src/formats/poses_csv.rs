@@ -10,6 +10,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::input::text_from_bytes;
+use super::table::{line_of, without_spaced_quotes};
 use crate::camera::Pose;
 use crate::fault::Fault;
 
@@ -110,37 +111,6 @@ pub(super) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
         return Err(Fault::new("it has no photos", "give a line for each photo"));
     }
     Ok(file)
-}
-
-/// Quotes count for the csv crate only right behind a comma, but people put spaces there.
-fn without_spaced_quotes(record: csv::StringRecord) -> csv::StringRecord {
-    if !record.iter().any(|field| field.starts_with('"')) {
-        return record;
-    }
-    let position = record.position().cloned();
-    let bare = |field: &str| {
-        let inner = field
-            .strip_prefix('"')
-            .and_then(|field| field.strip_suffix('"'));
-        inner.map_or_else(|| field.to_owned(), |inner| inner.replace("\"\"", "\""))
-    };
-    let mut record: csv::StringRecord = record.iter().map(bare).collect();
-    record.set_position(position);
-    record
-}
-
-/// The line, from 1, on which a record begins. The csv crate places it where its search began: in
-/// front of the comments and empty lines that it skipped.
-fn line_of(text: &str, record: &csv::StringRecord) -> u64 {
-    let Some(position) = record.position() else {
-        return 1;
-    };
-    let begin = usize::try_from(position.byte()).unwrap_or(usize::MAX);
-    let rest = text.get(begin..).unwrap_or_default();
-    let skipped = rest
-        .lines()
-        .take_while(|line| line.is_empty() || line.starts_with('#'));
-    position.line() + skipped.count() as u64
 }
 
 struct Columns {
