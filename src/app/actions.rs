@@ -3,6 +3,7 @@
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::command::{Asking, Choice, Command, Look};
+use super::size_distributions::{DistributionCommand, Page};
 use super::state::State;
 use super::work::DialogFor;
 
@@ -27,6 +28,11 @@ const SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 fn with_flight(state: &State, command: Command) -> Option<Command> {
     state.open.is_some().then_some(command)
+}
+
+fn with_distributions(state: &State, asking: Asking) -> Option<Command> {
+    let computed = state.distributions.computed.is_some();
+    computed.then_some(Command::Ask(Some(asking)))
 }
 
 fn with_photo(state: &State, command: Command) -> Option<Command> {
@@ -128,9 +134,14 @@ pub const QUIT: Action = Action {
 /// See its `hover`.
 pub const UNDO: Action = Action {
     label: "Undo",
-    hover: "Undo the last change of the flight's settings or of the photos to export",
+    hover: "Undo the last change: of the flight's settings and photos to export, or of the size \
+            distributions on their page",
     shortcut: keys(Modifiers::COMMAND, Key::Z),
     command: |state| {
+        if state.page == Page::SizeDistributions {
+            let can = state.distributions.history.can_undo();
+            return can.then_some(Command::Undo);
+        }
         let open = state.open.as_ref()?;
         open.history.can_undo().then_some(Command::Undo)
     },
@@ -141,6 +152,10 @@ pub const REDO: Action = Action {
     hover: "Take the last undo back",
     shortcut: keys(SHIFT, Key::Z),
     command: |state| {
+        if state.page == Page::SizeDistributions {
+            let can = state.distributions.history.can_redo();
+            return can.then_some(Command::Redo);
+        }
         let open = state.open.as_ref()?;
         open.history.can_redo().then_some(Command::Redo)
     },
@@ -252,6 +267,68 @@ pub const MEASURE: Action = Action {
     command: |state| with_flight(state, Command::ToggleMeasure),
 };
 /// See its `hover`.
+pub const ADD_DISTRIBUTIONS: Action = Action {
+    label: "Add size distributions…",
+    hover: "Add tables of cumulative percent passing by size: what Split-Desktop or a sieve gave",
+    shortcut: keys(Modifiers::COMMAND, Key::D),
+    command: |_| Some(Command::Ask(Some(Asking::AddDistributions))),
+};
+/// See its `hover`.
+pub const PASTE_TABLE: Action = Action {
+    label: "Paste table…",
+    hover: "Add a table of size distributions that was copied from a spreadsheet or a text",
+    shortcut: keys(SHIFT, Key::D),
+    command: |_| Some(Command::Ask(Some(Asking::PasteTable))),
+};
+/// See its `hover`.
+pub const ADD_KNOWN: Action = Action {
+    label: "Add the flight's known fragments",
+    hover: "Add reference.csv beside the flight on the screen: the sieve curve of its fragments",
+    shortcut: None,
+    command: |state| {
+        state.known_fragments()?;
+        Some(Command::Distributions(DistributionCommand::AddKnown))
+    },
+};
+/// See its `hover`.
+pub const REMOVE_ALL: Action = Action {
+    label: "Remove all size distributions",
+    hover: "Take every file and table from the page of size distributions; undo brings them back",
+    shortcut: None,
+    command: |state| {
+        let some = !state.distributions.sources().is_empty();
+        some.then_some(Command::Distributions(DistributionCommand::RemoveAll))
+    },
+};
+/// See its `hover`.
+pub const SAVE_FIGURE: Action = Action {
+    label: "Save figure…",
+    hover: "Write the figure of the size distributions as an SVG or PNG",
+    shortcut: None,
+    command: |state| with_distributions(state, Asking::SaveFigure),
+};
+/// See its `hover`.
+pub const SAVE_REPORT: Action = Action {
+    label: "Save report…",
+    hover: "Write the figure and all tables of the size distributions as an HTML page",
+    shortcut: None,
+    command: |state| with_distributions(state, Asking::SaveReport),
+};
+/// See its `hover`.
+pub const PILE: Action = Action {
+    label: "Pile",
+    hover: "Show the flight over the pile",
+    shortcut: keys(Modifiers::COMMAND, Key::Num1),
+    command: |_| Some(Command::Page(Page::Pile)),
+};
+/// See its `hover`.
+pub const SIZE_DISTRIBUTIONS: Action = Action {
+    label: "Size distributions",
+    hover: "Show size distributions: fits, the reference, repeatability",
+    shortcut: keys(Modifiers::COMMAND, Key::Num2),
+    command: |_| Some(Command::Page(Page::SizeDistributions)),
+};
+/// See its `hover`.
 pub const LOG: Action = Action {
     label: "Log",
     hover: "Show or hide everything that was said",
@@ -285,6 +362,12 @@ pub const MENUS: [(&str, &[Option<Action>]); 5] = [
             Some(GEOREFERENCE),
             Some(OPEN_SAMPLE),
             None,
+            Some(ADD_DISTRIBUTIONS),
+            Some(PASTE_TABLE),
+            Some(ADD_KNOWN),
+            Some(SAVE_FIGURE),
+            Some(SAVE_REPORT),
+            None,
             Some(SAVE),
             Some(SAVE_AS),
             None,
@@ -307,11 +390,16 @@ pub const MENUS: [(&str, &[Option<Action>]); 5] = [
             Some(CHOOSE_TRUSTED),
             Some(CHOOSE_ALL),
             Some(CHOOSE_NONE),
+            None,
+            Some(REMOVE_ALL),
         ],
     ),
     (
         "View",
         &[
+            Some(PILE),
+            Some(SIZE_DISTRIBUTIONS),
+            None,
             Some(TOP),
             Some(FRONT),
             Some(SIDE),

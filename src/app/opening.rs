@@ -302,6 +302,24 @@ impl State {
                     DialogFor::Georeference(_) => {
                         dialog.set_title("List of positions").pick_file().await
                     }
+                    DialogFor::Distributions => {
+                        let dialog = dialog.set_title("Size distributions");
+                        dialog.pick_file().await
+                    }
+                    DialogFor::Figure => {
+                        let dialog = dialog.set_title("Save figure");
+                        dialog
+                            .set_file_name("size-distributions.svg")
+                            .save_file()
+                            .await
+                    }
+                    DialogFor::Report => {
+                        let dialog = dialog.set_title("Save report");
+                        dialog
+                            .set_file_name("size-distributions.html")
+                            .save_file()
+                            .await
+                    }
                     DialogFor::Picture => {
                         let dialog = dialog.set_title("Save picture").set_file_name("figure.png");
                         dialog.save_file().await

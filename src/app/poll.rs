@@ -162,6 +162,12 @@ impl State {
                 self.say(Severity::Note, &format!("{}: saved", path.display()));
                 self.apply(Command::Open(path));
             }
+            Done::ReadDistributions(read) => self.take_distributions(read),
+            Done::Fitted(result) => self.take_fitted(result),
+            Done::SavedDistributions(Ok(path)) => {
+                self.say(Severity::Note, &format!("{}: written", path.display()));
+            }
+            Done::SavedDistributions(Err(message)) => self.say(Severity::Error, &message),
             Done::SavedGeoreferenced(Err(message)) => self.say(Severity::Error, &message),
             Done::Dialog(what, Some(path)) => match what {
                 DialogFor::Georeference(field) => {
@@ -172,7 +178,13 @@ impl State {
                     }
                 }
                 DialogFor::Open => self.apply(Command::Open(path)),
-                DialogFor::Add | DialogFor::Export | DialogFor::SaveAs | DialogFor::Picture => {
+                DialogFor::Add
+                | DialogFor::Export
+                | DialogFor::SaveAs
+                | DialogFor::Picture
+                | DialogFor::Distributions
+                | DialogFor::Figure
+                | DialogFor::Report => {
                     self.answered = Some(path);
                 }
             },

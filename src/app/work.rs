@@ -10,6 +10,8 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use egui::ColorImage;
 
 use super::georeferencing::PathField;
+use super::size_distributions::Computed;
+use super::size_distributions::reading::Read;
 use crate::fault::Fault;
 use crate::flight::{Flight, FlightSettings, Outcome};
 use crate::formats::{FlightOrigin, Georeferenced, OpenOptions, Opened};
@@ -41,6 +43,12 @@ pub enum Task {
     Picture,
     /// Fitting a reconstruction to the world.
     Georeference,
+    /// Reading size distributions.
+    ReadDistributions,
+    /// Fitting and comparing them.
+    Fits,
+    /// Writing their figure or report.
+    SaveDistributions,
     /// Waiting for the desktop's own dialog.
     Dialog,
 }
@@ -59,6 +67,9 @@ impl Task {
             Self::Save => "Saving",
             Self::Picture => "Picture",
             Self::Georeference => "Georeferencing",
+            Self::ReadDistributions => "Reading",
+            Self::Fits => "Fitting",
+            Self::SaveDistributions => "Writing",
             Self::Dialog => "Dialog",
         }
     }
@@ -83,6 +94,12 @@ pub enum DialogFor {
     SaveAs,
     /// Where a picture goes.
     Picture,
+    /// Files of size distributions.
+    Distributions,
+    /// Where the figure of the size distributions goes.
+    Figure,
+    /// Where the report on them goes.
+    Report,
     /// What georeferencing reads: this field's file or folder.
     Georeference(PathField),
 }
@@ -155,6 +172,12 @@ pub enum Done {
     Georeferenced(Option<PathBuf>, Box<Result<Georeferenced, String>>),
     /// Where the georeferenced flight was written.
     SavedGeoreferenced(Result<PathBuf, String>),
+    /// Size distributions, or why they cannot be read.
+    ReadDistributions(Read),
+    /// Fits and comparisons.
+    Fitted(Result<Arc<Computed>, Fault>),
+    /// Where a figure or report was written.
+    SavedDistributions(Result<PathBuf, String>),
     /// Where the picture was written.
     Picture(Result<PathBuf, String>),
     /// What the person chose; `None` where she did not, or where the desktop has no dialog.
@@ -264,7 +287,12 @@ impl Work {
 
     /// Whether a file is being written.
     pub fn is_writing(&self) -> bool {
-        let tasks = [Task::Export, Task::Save, Task::Picture];
+        let tasks = [
+            Task::Export,
+            Task::Save,
+            Task::Picture,
+            Task::SaveDistributions,
+        ];
         tasks.into_iter().any(|task| self.is_running(task))
     }
 

@@ -4,6 +4,7 @@
 use std::path::PathBuf;
 
 use super::georeference::{georeference, save_georeferenced};
+use super::size_distributions::{add_distributions, paste, save_figure, save_report};
 use crate::app::actions;
 use crate::app::command::{Asking, Command};
 use crate::app::open_flight::OpenFlight;
@@ -21,6 +22,10 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::SaveGeoreferenced => "Save georeferenced flight",
             Asking::SaveAs => "Save flight",
             Asking::Picture => "Save picture",
+            Asking::AddDistributions => "Add size distributions",
+            Asking::PasteTable => "Paste table",
+            Asking::SaveFigure => "Save figure",
+            Asking::SaveReport => "Save report",
             Asking::Keys => "Keys and mouse",
             Asking::About => "About fragscale",
         };
@@ -42,6 +47,10 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::SaveGeoreferenced => save_georeferenced(state, ui, commands),
                     Asking::SaveAs => save_as(state, ui, commands),
                     Asking::Picture => picture(state, ui, commands),
+                    Asking::AddDistributions => add_distributions(state, ui, commands),
+                    Asking::PasteTable => paste(state, ui, commands),
+                    Asking::SaveFigure => save_figure(state, ui, commands),
+                    Asking::SaveReport => save_report(state, ui, commands),
                     Asking::Keys => keys(ui),
                     Asking::About => about(ui),
                 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::Edit;
 use super::source::joined;
-use crate::app::state::State;
+use crate::app::state::{Severity, State};
 use crate::app::work::{Done, Task};
 use crate::fault::Fault;
 use crate::fragmentation::{
@@ -56,6 +56,17 @@ impl State {
         self.start(Task::Fits, move |progress| {
             Done::Fitted(compute(edition, edit, progress).map(Arc::new))
         });
+    }
+
+    /// Takes what was computed; a result that is outdated was cancelled before.
+    pub(in crate::app) fn take_fitted(&mut self, result: Result<Arc<Computed>, Fault>) {
+        match result {
+            Ok(computed) => self.distributions.computed = Some(computed),
+            Err(fault) => {
+                self.distributions.problem = Some(fault.to_string());
+                self.say(Severity::Error, &fault.to_string());
+            }
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 //! reading     files and pasted tables, as a job
 //! source      what came from one file, and all of them in one unit
 //! computing   fits and comparisons, as a job, whenever data or settings change
+//! saving      the figure and the report
 //! measured    how long the program's own steps took
 //! ```
 
@@ -14,6 +15,7 @@ pub mod command;
 pub mod computing;
 pub mod measured;
 pub mod reading;
+pub mod saving;
 pub mod source;
 
 use std::collections::BTreeSet;

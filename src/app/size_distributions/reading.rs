@@ -8,7 +8,7 @@ use super::{Page, PasteForm};
 use crate::app::command::Command;
 use crate::app::state::{Severity, State};
 use crate::app::work::{Done, Task};
-use crate::formats::{self, FileError};
+use crate::formats::{self, DistributionColumns};
 
 /// What was read, file by file, or why not in a line; or what is no size distribution at all.
 #[derive(Debug)]
@@ -46,9 +46,40 @@ fn names_passing(path: &Path) -> bool {
 }
 
 fn source(path: &Path) -> Result<Source, String> {
-    let read = formats::read_size_distributions(path, &formats::ColumnOptions::default());
-    let (set, warnings) = read.map_err(|error: FileError| error.to_string())?;
+    let read = formats::read_size_distributions(path, &DistributionColumns::default());
+    let (set, warnings) = read.map_err(|error| error.to_string())?;
     Ok(Source::of_file(path, set, warnings))
+}
+
+fn pasted(form: &PasteForm, number: usize) -> Result<Source, String> {
+    let columns = DistributionColumns {
+        unit: Some(form.unit),
+        ..DistributionColumns::default()
+    };
+    let name = format!("Pasted table {number}");
+    let read = formats::size_distributions(&form.table, &columns);
+    let (set, warnings) = read.map_err(|fault| match fault.line {
+        Some(line) => format!("{name}, line {line}: {fault}"),
+        None => format!("{name}: {fault}"),
+    })?;
+    let mut source = Source {
+        name,
+        path: None,
+        set,
+        warnings,
+    };
+    let typed = |text: &str, other: &str| match text.trim() {
+        "" => other.to_owned(),
+        text => text.to_owned(),
+    };
+    source.name_methods(&typed(&form.method, &format!("pasted {number}")));
+    let trial = typed(&form.trial, "");
+    for curve in &mut source.set.curves {
+        if curve.labels.trial.is_empty() {
+            curve.labels.trial.clone_from(&trial);
+        }
+    }
+    Ok(source)
 }
 
 impl State {
@@ -59,6 +90,9 @@ impl State {
 
     /// Reads what was dropped; on the pile only if the files name sizes or passing.
     pub(in crate::app) fn read_dropped(&mut self, paths: Vec<PathBuf>) {
+        if self.is_busy(Task::ReadDistributions) {
+            return;
+        }
         let on_pile = self.page == Page::Pile;
         self.start(Task::ReadDistributions, move |progress| {
             progress.stage("reading size distributions");
@@ -72,12 +106,34 @@ impl State {
 
     /// Reads files.
     pub(super) fn read_distributions(&mut self, paths: Vec<PathBuf>) {
+        if self.is_busy(Task::ReadDistributions) {
+            return;
+        }
         self.asking = None;
         self.start(Task::ReadDistributions, move |progress| {
             progress.stage("reading size distributions");
             let sources = paths.iter().map(|path| source(path)).collect();
             Done::ReadDistributions(Read::Sources(sources))
         });
+    }
+
+    /// Reads the table in the small window.
+    pub(super) fn read_pasted(&mut self) {
+        if self.is_busy(Task::ReadDistributions) {
+            return;
+        }
+        let form = self.distributions.paste.clone();
+        let number = self.distributions.pasted + 1;
+        self.start(Task::ReadDistributions, move |_| {
+            Done::ReadDistributions(Read::Pasted(pasted(&form, number)))
+        });
+    }
+
+    /// The sieve curve that lies beside the flight on the screen.
+    pub fn known_fragments(&self) -> Option<PathBuf> {
+        let open = self.open.as_ref()?;
+        let folder = open.origin.flight_file()?.parent()?;
+        Some(folder.join("reference.csv"))
     }
 
     /// Takes what was read.

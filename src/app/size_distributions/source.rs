@@ -95,7 +95,9 @@ pub fn joined(sources: &[Arc<Source>], unit: LengthUnit) -> Result<DistributionS
         let factor = source.set.unit.in_units_of(unit);
         for curve in &source.set.curves {
             let points = curve.distribution.points();
-            let points = points.iter().map(|[size, percent]| [size * factor, *percent]);
+            let points = points
+                .iter()
+                .map(|[size, percent]| [size * factor, *percent]);
             curves.push(LabelledDistribution {
                 labels: curve.labels.clone(),
                 weight: curve.weight,
