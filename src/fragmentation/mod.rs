@@ -23,7 +23,9 @@ mod distribution;
 mod distribution_set;
 mod effort;
 mod fit;
+mod merging;
 mod model;
+mod sieve_series;
 mod swebrec;
 
 pub use anova::{Anova, Repeatability, Variation, repeatability};
@@ -35,5 +37,7 @@ pub use distribution::SizeDistribution;
 pub use distribution_set::{DistributionSet, LabelledDistribution, Labels};
 pub use effort::{Effort, TimeSum};
 pub use fit::{Fit, FitOptions, FittedParameter, Percentile, fit};
+pub use merging::{Merged, Weighting, merge};
 pub use model::{Curve, Model};
+pub use sieve_series::{Resampled, Sieve, SieveSeries, resample};
 pub use swebrec::{Swebrec, SwebrecError};

@@ -1,0 +1,240 @@
+//! Merging the distributions of several photos or trials to one.
+//!
+//! ```text
+//! P(x) = sum(w_i P_i(x)) / sum(w_i)
+//! ```
+//!
+//! at every size x at which all P_i are known. With equal weights it is the mean of the curves; with
+//! masses, the distribution of all the material together; with areas, the same where each photo's mass
+//! grows with the area that it shows.
+
+use super::sieve_series::keep_nearest_certain;
+use super::{DistributionSet, LabelledDistribution, Labels, SizeDistribution};
+use crate::fault::Fault;
+
+/// What each distribution counts by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Weighting {
+    /// All the same.
+    #[default]
+    Equal,
+    /// By the area that it shows; `LabelledDistribution::weight`.
+    Area,
+    /// By the mass that it stands for; `LabelledDistribution::weight`.
+    Mass,
+}
+
+impl Weighting {
+    /// All, in the order in which people are offered them.
+    pub const ALL: [Self; 3] = [Self::Equal, Self::Area, Self::Mass];
+
+    /// Its name on the command line and in JSON.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Equal => "equal",
+            Self::Area => "area",
+            Self::Mass => "mass",
+        }
+    }
+
+    /// How it merges, to be said beside every merged curve.
+    pub fn sentence(self) -> &'static str {
+        match self {
+            Self::Equal => "merged with equal weights: the mean of the curves",
+            Self::Area => "merged weighted by the area that each curve stands for",
+            Self::Mass => "merged weighted by the mass that each curve stands for",
+        }
+    }
+}
+
+/// Several distributions as one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Merged {
+    /// The weighted mean.
+    pub distribution: SizeDistribution,
+    /// The sum of the weights; `None` where they are equal.
+    pub weight: Option<f64>,
+    /// The sizes at which not every curve is known, which are left out.
+    pub unknown: Vec<f64>,
+}
+
+/// Merges distributions at the union of their sizes, or at `sizes`, of which those are kept that
+/// [`resample`](super::resample) keeps.
+///
+/// A curve of weight 0 stands for nothing and does not count.
+///
+/// # Errors
+/// No curve; a weight that is missing, not finite or negative, or all 0; fewer than two sizes at which
+/// every curve is known.
+pub fn merge(
+    curves: &[&LabelledDistribution],
+    weighting: Weighting,
+    sizes: Option<&[f64]>,
+) -> Result<Merged, Fault> {
+    let weighted: Vec<(f64, &SizeDistribution)> = (curves.iter())
+        .map(|curve| Ok((weight(curve, weighting)?, &curve.distribution)))
+        .collect::<Result<_, Fault>>()?;
+    let total: f64 = weighted.iter().map(|(weight, _)| weight).sum();
+    if weighted.is_empty() {
+        return Err(Fault::new("there is no curve to merge", "name some"));
+    }
+    if !(total.is_finite() && total > 0.0) {
+        let what = format!("the weights of the {} curves sum to {total}", curves.len());
+        let remedy = "give areas or masses above 0, or merge with equal weights";
+        return Err(Fault::new(what, remedy));
+    }
+    let counting: Vec<_> = weighted
+        .iter()
+        .filter(|(weight, _)| *weight > 0.0)
+        .collect();
+    let chosen = sizes.is_some();
+    let mut sizes: Vec<f64> = match sizes {
+        Some(sizes) => sizes.to_vec(),
+        None => {
+            let points = counting.iter().flat_map(|(_, d)| d.points());
+            points.map(|point| point[0]).collect()
+        }
+    };
+    sizes.sort_by(f64::total_cmp);
+    sizes.dedup();
+    let mut unknown = Vec::new();
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for size in sizes {
+        let sum = counting
+            .iter()
+            .try_fold(0.0, |sum, (weight, distribution)| {
+                Some(sum + weight / total * distribution.percent_passing(size)?)
+            });
+        match sum {
+            Some(percent) => {
+                // A mean of curves that never fall does not fall, but for its rounding.
+                let before = points.last().map_or(0.0, |point| point[1]);
+                points.push([size, percent.clamp(before, 100.0)]);
+            }
+            None => unknown.push(size),
+        }
+    }
+    if chosen {
+        keep_nearest_certain(&mut points);
+    }
+    if points.len() < 2 {
+        let what = format!(
+            "the {} curves share fewer than two sizes at which all are known",
+            curves.len()
+        );
+        return Err(Fault::new(what, "merge curves that cover the same sizes"));
+    }
+    Ok(Merged {
+        distribution: SizeDistribution::new(points)?,
+        weight: (weighting != Weighting::Equal).then_some(total),
+        unknown,
+    })
+}
+
+/// What a curve counts.
+fn weight(curve: &LabelledDistribution, weighting: Weighting) -> Result<f64, Fault> {
+    if weighting == Weighting::Equal {
+        return Ok(1.0);
+    }
+    let name = weighting.key();
+    let (what, remedy) = match curve.weight {
+        Some(weight) if weight.is_finite() && weight >= 0.0 => return Ok(weight),
+        Some(weight) => (
+            format!("its {name} is {weight}"),
+            "give one that is not negative",
+        ),
+        None => (
+            format!("it has no {name}"),
+            "give each curve one in a column, or merge with equal weights",
+        ),
+    };
+    Err(Fault::new(format!("{}: {what}", curve.labels), remedy))
+}
+
+impl DistributionSet {
+    /// The photos of each method's each trial as one curve, without a photo's name.
+    ///
+    /// # Errors
+    /// As [`merge`], with the name of the group.
+    pub fn photos_merged(
+        &self,
+        weighting: Weighting,
+        sizes: Option<&[f64]>,
+    ) -> Result<(Self, Vec<String>), Fault> {
+        let without_photo = |labels: &Labels| Labels {
+            photo: String::new(),
+            ..labels.clone()
+        };
+        self.merged(without_photo, weighting, sizes)
+    }
+
+    /// The trials of each method as one curve, and with them their photos.
+    ///
+    /// # Errors
+    /// As [`merge`], with the name of the group.
+    pub fn trials_merged(
+        &self,
+        weighting: Weighting,
+        sizes: Option<&[f64]>,
+    ) -> Result<(Self, Vec<String>), Fault> {
+        let method_alone = |labels: &Labels| Labels {
+            method: labels.method.clone(),
+            ..Labels::default()
+        };
+        self.merged(method_alone, weighting, sizes)
+    }
+
+    /// The curves that have the same labels once `labels_of` took some off, as one each, in the order of
+    /// the first of each; with a sentence for each group of several on what was left out. A curve alone
+    /// stays as it is, at its own sizes or at `sizes`, and needs no weight.
+    fn merged(
+        &self,
+        labels_of: impl Fn(&Labels) -> Labels,
+        weighting: Weighting,
+        sizes: Option<&[f64]>,
+    ) -> Result<(Self, Vec<String>), Fault> {
+        let mut groups: Vec<(Labels, Vec<&LabelledDistribution>)> = Vec::new();
+        for curve in &self.curves {
+            let labels = labels_of(&curve.labels);
+            match groups.iter_mut().find(|(known, _)| *known == labels) {
+                Some((_, curves)) => curves.push(curve),
+                None => groups.push((labels, vec![curve])),
+            }
+        }
+        let mut set = Self {
+            unit: self.unit,
+            curves: Vec::new(),
+        };
+        let mut warnings = Vec::new();
+        for (labels, curves) in groups {
+            let found = match curves[..] {
+                [curve] => merge(&[curve], Weighting::Equal, sizes).map(|merged| Merged {
+                    weight: curve.weight,
+                    ..merged
+                }),
+                _ => merge(&curves, weighting, sizes),
+            };
+            let name = match labels.to_string() {
+                name if name.is_empty() => name,
+                name => format!("{name}: "),
+            };
+            let found =
+                found.map_err(|fault| Fault::new(format!("{name}{}", fault.what), fault.remedy))?;
+            if !found.unknown.is_empty() {
+                warnings.push(format!(
+                    "{name}{} of {} sizes are left out, because not every one of its {} curves is \
+                     known there",
+                    found.unknown.len(),
+                    found.unknown.len() + found.distribution.points().len(),
+                    curves.len()
+                ));
+            }
+            set.curves.push(LabelledDistribution {
+                labels,
+                weight: found.weight,
+                distribution: found.distribution,
+            });
+        }
+        Ok((set, warnings))
+    }
+}

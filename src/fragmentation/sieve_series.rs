@@ -1,0 +1,276 @@
+//! Standard series of test sieves, and what a distribution reads at their openings.
+//!
+//! - ASTM E11, table 1: 125 mm to 20 um in steps of the fourth root of 2, with the sieves in between
+//!   that the table adds because they are in common use; with their alternative designations.
+//! - ISO 565:1990 and ISO 3310-1, principal series R20/3: 125 mm to 45 um, every third of ISO 3's
+//!   preferred numbers R20.
+//! - EN 933-2, the sieves of aggregates: the basic set (31.5 mm for 32 apart, a doubling from 63 um
+//!   to 125 mm), and with it set 1 (of R20) or set 2 (of R10, and 14 mm) that EN 12620 and EN 13043
+//!   name sizes of aggregates by.
+//!
+//! None has a sieve above 125 mm, and none is invented here: coarser rock keeps the sizes that it was
+//! measured at.
+
+use super::{DistributionSet, LabelledDistribution, SizeDistribution};
+use crate::fault::Fault;
+use crate::units::LengthUnit;
+
+/// A test sieve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sieve {
+    /// The nominal opening, the side of its square, mm.
+    pub opening_mm: f64,
+    /// What the standard calls it beside its opening ("No. 4", "1/2 in."); empty where it does not.
+    pub designation: &'static str,
+}
+
+/// A standard series of test sieves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SieveSeries {
+    /// ASTM E11, all of table 1.
+    AstmE11,
+    /// ISO 565 and ISO 3310-1, principal series R20/3.
+    Iso565,
+    /// EN 933-2, basic set.
+    En933Basic,
+    /// EN 933-2, basic set plus set 1.
+    En933Set1,
+    /// EN 933-2, basic set plus set 2.
+    En933Set2,
+}
+
+impl SieveSeries {
+    /// All, in the order in which people are offered them.
+    pub const ALL: [Self; 5] = [
+        Self::AstmE11,
+        Self::Iso565,
+        Self::En933Basic,
+        Self::En933Set1,
+        Self::En933Set2,
+    ];
+
+    /// Its name on the command line and in JSON.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::AstmE11 => "astm-e11",
+            Self::Iso565 => "iso-565",
+            Self::En933Basic => "en-933-2",
+            Self::En933Set1 => "en-933-2-set1",
+            Self::En933Set2 => "en-933-2-set2",
+        }
+    }
+
+    /// Its name for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::AstmE11 => "ASTM E11",
+            Self::Iso565 => "ISO 565 R20/3",
+            Self::En933Basic => "EN 933-2 basic set",
+            Self::En933Set1 => "EN 933-2 basic set plus set 1",
+            Self::En933Set2 => "EN 933-2 basic set plus set 2",
+        }
+    }
+
+    /// Its sieves, the smallest first.
+    pub fn sieves(self) -> Vec<Sieve> {
+        let plain = |openings: &[f64]| {
+            let sieve = |&opening_mm| Sieve {
+                opening_mm,
+                designation: "",
+            };
+            openings.iter().map(sieve).collect()
+        };
+        let with_basic = |more: &[f64]| {
+            let mut openings = [EN_933_2_BASIC, more].concat();
+            openings.sort_by(f64::total_cmp);
+            plain(&openings)
+        };
+        match self {
+            Self::AstmE11 => (ASTM_E11.iter())
+                .map(|&(opening_mm, designation)| Sieve {
+                    opening_mm,
+                    designation,
+                })
+                .collect(),
+            Self::Iso565 => plain(ISO_565_R20_3),
+            Self::En933Basic => plain(EN_933_2_BASIC),
+            Self::En933Set1 => with_basic(EN_933_2_SET_1),
+            Self::En933Set2 => with_basic(EN_933_2_SET_2),
+        }
+    }
+
+    /// The openings of its sieves in a unit, the smallest first.
+    pub fn openings(self, unit: LengthUnit) -> Vec<f64> {
+        let of_mm = LengthUnit::Millimetre.in_units_of(unit);
+        let sieves = self.sieves();
+        sieves.iter().map(|s| s.opening_mm * of_mm).collect()
+    }
+}
+
+/// Opening in mm and alternative designation.
+const ASTM_E11: &[(f64, &str)] = &[
+    (0.02, "No. 635"),
+    (0.025, "No. 500"),
+    (0.032, "No. 450"),
+    (0.038, "No. 400"),
+    (0.045, "No. 325"),
+    (0.053, "No. 270"),
+    (0.063, "No. 230"),
+    (0.075, "No. 200"),
+    (0.09, "No. 170"),
+    (0.106, "No. 140"),
+    (0.125, "No. 120"),
+    (0.15, "No. 100"),
+    (0.18, "No. 80"),
+    (0.212, "No. 70"),
+    (0.25, "No. 60"),
+    (0.3, "No. 50"),
+    (0.355, "No. 45"),
+    (0.425, "No. 40"),
+    (0.5, "No. 35"),
+    (0.6, "No. 30"),
+    (0.71, "No. 25"),
+    (0.85, "No. 20"),
+    (1.0, "No. 18"),
+    (1.18, "No. 16"),
+    (1.4, "No. 14"),
+    (1.7, "No. 12"),
+    (2.0, "No. 10"),
+    (2.36, "No. 8"),
+    (2.8, "No. 7"),
+    (3.35, "No. 6"),
+    (4.0, "No. 5"),
+    (4.75, "No. 4"),
+    (5.6, "No. 3 1/2"),
+    (6.3, "1/4 in."),
+    (6.7, "0.265 in."),
+    (8.0, "5/16 in."),
+    (9.5, "3/8 in."),
+    (11.2, "7/16 in."),
+    (12.5, "1/2 in."),
+    (13.2, "0.530 in."),
+    (16.0, "5/8 in."),
+    (19.0, "3/4 in."),
+    (22.4, "7/8 in."),
+    (25.0, "1 in."),
+    (26.5, "1.06 in."),
+    (31.5, "1 1/4 in."),
+    (37.5, "1 1/2 in."),
+    (45.0, "1 3/4 in."),
+    (50.0, "2 in."),
+    (53.0, "2.12 in."),
+    (63.0, "2 1/2 in."),
+    (75.0, "3 in."),
+    (90.0, "3 1/2 in."),
+    (100.0, "4 in."),
+    (106.0, "4.24 in."),
+    (125.0, "5 in."),
+];
+
+const ISO_565_R20_3: &[f64] = &[
+    0.045, 0.063, 0.09, 0.125, 0.18, 0.25, 0.355, 0.5, 0.71, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0,
+    11.2, 16.0, 22.4, 31.5, 45.0, 63.0, 90.0, 125.0,
+];
+
+const EN_933_2_BASIC: &[f64] = &[
+    0.063, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 31.5, 63.0, 125.0,
+];
+
+const EN_933_2_SET_1: &[f64] = &[5.6, 11.2, 22.4, 45.0];
+
+const EN_933_2_SET_2: &[f64] = &[6.3, 10.0, 12.5, 14.0, 20.0, 40.0];
+
+/// A distribution at other sizes than it was measured at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resampled {
+    /// Interpolated as `SizeDistribution::percent_passing` does.
+    pub distribution: SizeDistribution,
+    /// The sizes at which the percent passing is not known, because they lie outside of what was
+    /// measured.
+    pub unknown: Vec<f64>,
+}
+
+/// The percent passing at other sizes, in any order, above 0 and in the distribution's unit.
+///
+/// Nothing is invented outside of what was measured: such a size is left out. Of the sizes above one
+/// that everything passes, and below one that nothing passes, only the nearest is kept: more of them
+/// would say the same and weigh in a fit.
+///
+/// # Errors
+/// Where fewer than two sizes are left.
+pub fn resample(distribution: &SizeDistribution, sizes: &[f64]) -> Result<Resampled, Fault> {
+    let mut sizes = sizes.to_vec();
+    sizes.sort_by(f64::total_cmp);
+    sizes.dedup();
+    let mut unknown = Vec::new();
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for size in sizes {
+        match distribution.percent_passing(size) {
+            Some(percent) => points.push([size, percent]),
+            None => unknown.push(size),
+        }
+    }
+    keep_nearest_certain(&mut points);
+    if points.len() < 2 {
+        let measured = distribution.points();
+        let (first, last) = (measured.first(), measured.last());
+        let range = first
+            .zip(last)
+            .map(|(a, b)| format!("{} to {}", a[0], b[0]));
+        let what = format!(
+            "fewer than two of the sizes lie where the distribution was measured, {}",
+            range.unwrap_or_default()
+        );
+        return Err(Fault::new(what, "choose a series with sieves there"));
+    }
+    let distribution = SizeDistribution::new(points)?;
+    Ok(Resampled {
+        distribution,
+        unknown,
+    })
+}
+
+/// Of ascending points [size, percent] drops those of 0 % but the last, and those of 100 % but the first.
+pub(super) fn keep_nearest_certain(points: &mut Vec<[f64; 2]>) {
+    let nothing_passes = points.partition_point(|point| point[1] <= 0.0);
+    points.drain(..nothing_passes.saturating_sub(1));
+    let not_all_pass = points.partition_point(|point| point[1] < 100.0);
+    points.truncate(not_all_pass + 1);
+}
+
+impl DistributionSet {
+    /// Every curve at the sieves of a series, with what is not known there, one sentence a curve.
+    ///
+    /// # Errors
+    /// Where a curve has fewer than two of them where it was measured.
+    pub fn resampled(&self, series: SieveSeries) -> Result<(Self, Vec<String>), Fault> {
+        let openings = series.openings(self.unit);
+        let mut set = Self {
+            unit: self.unit,
+            curves: Vec::new(),
+        };
+        let mut warnings = Vec::new();
+        for curve in &self.curves {
+            let named = |fault: Fault| {
+                Fault::new(format!("{}: {}", curve.labels, fault.what), fault.remedy)
+            };
+            let found = resample(&curve.distribution, &openings).map_err(named)?;
+            if let (Some(least), Some(most)) = (found.unknown.first(), found.unknown.last()) {
+                warnings.push(format!(
+                    "{}: {} of the {} sieves of {} ({least} to {most} {}) lie outside of what was \
+                     measured and are left out",
+                    curve.labels,
+                    found.unknown.len(),
+                    openings.len(),
+                    series.name(),
+                    self.unit
+                ));
+            }
+            set.curves.push(LabelledDistribution {
+                distribution: found.distribution,
+                ..curve.clone()
+            });
+        }
+        Ok((set, warnings))
+    }
+}
