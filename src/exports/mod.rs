@@ -14,4 +14,7 @@ pub use scale_report::{ReportLine, ScaleReport};
 pub use scales_csv::scales_csv;
 pub use scales_json::scales_json;
 pub use scales_table::scales_table;
+pub use size_distributions::{
+    Band, Dash, FigureContents, Look, Marker, Panel, Series, SizeAxis, SizeTick,
+};
 pub use split_desktop::{ExportError, ExportRequest, ExportSummary, export_for_split_desktop};

@@ -1,0 +1,133 @@
+//! How a curve looks: never by its colour alone.
+
+/// Colour, marker and dash of a series.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Look {
+    /// sRGB, on white.
+    pub colour: [u8; 3],
+    /// Of its points.
+    pub marker: Marker,
+    /// Of its line.
+    pub dash: Dash,
+}
+
+/// The shape of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Marker {
+    /// A disc.
+    Circle,
+    /// A square on its side.
+    Square,
+    /// A triangle on its side.
+    Triangle,
+    /// A square on its corner.
+    Diamond,
+    /// A triangle on its corner.
+    TriangleDown,
+    /// Two strokes from corner to corner.
+    Cross,
+}
+
+/// The pattern of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dash {
+    /// Without gaps.
+    Solid,
+    /// Long strokes.
+    Long,
+    /// Short strokes.
+    Short,
+    /// A long and a short stroke in turn.
+    DashDot,
+}
+
+/// Okabe and Ito, "Color Universal Design" (2008), without the yellow, which is too light on white,
+/// and with the black for the reference; neighbours differ in lightness too, for a grey print.
+const COLOURS: [[u8; 3]; 7] = [
+    [0, 0, 0],
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [86, 180, 233],
+    [230, 159, 0],
+];
+
+const MARKERS: [Marker; 6] = [
+    Marker::Circle,
+    Marker::Square,
+    Marker::Triangle,
+    Marker::Diamond,
+    Marker::TriangleDown,
+    Marker::Cross,
+];
+
+const DASHES: [Dash; 4] = [Dash::Solid, Dash::Long, Dash::Short, Dash::DashDot];
+
+impl Look {
+    /// The look of the reference: black, which a window on a dark ground shows in its text's colour.
+    pub const REFERENCE: Self = Self {
+        colour: COLOURS[0],
+        marker: MARKERS[0],
+        dash: DASHES[0],
+    };
+
+    /// The look of the series with this number; 0 is the reference. The first 84 are all different.
+    pub fn of(number: usize) -> Self {
+        // The three come round together after 84, the least common multiple of 7, 6 and 4.
+        let of = |count: usize| number % count;
+        Self {
+            colour: COLOURS.get(of(COLOURS.len())).copied().unwrap_or([0; 3]),
+            marker: MARKERS
+                .get(of(MARKERS.len()))
+                .copied()
+                .unwrap_or(Marker::Circle),
+            dash: DASHES.get(of(DASHES.len())).copied().unwrap_or(Dash::Solid),
+        }
+    }
+}
+
+impl Dash {
+    /// Lengths of stroke and gap in turn, in widths of the line; empty without gaps.
+    pub fn pattern(self) -> &'static [f64] {
+        match self {
+            Self::Solid => &[],
+            Self::Long => &[6.0, 3.0],
+            Self::Short => &[2.5, 2.5],
+            Self::DashDot => &[6.0, 2.5, 1.5, 2.5],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_look_alike() {
+        let looks: Vec<Look> = (0..84).map(Look::of).collect();
+        for (index, look) in looks.iter().enumerate() {
+            assert!(!looks[..index].contains(look), "{index}");
+        }
+        assert_eq!(Look::of(0), Look::REFERENCE);
+        let white = |c: [u8; 3]| {
+            // Relative luminance and contrast on white (WCAG 2.1).
+            let linear = |v: u8| {
+                let v = f64::from(v) / 255.0;
+                if v <= 0.04045 {
+                    v / 12.92
+                } else {
+                    ((v + 0.055) / 1.055).powf(2.4)
+                }
+            };
+            1.05 / (0.2126 * linear(c[0]) + 0.7152 * linear(c[1]) + 0.0722 * linear(c[2]) + 0.05)
+        };
+        for colour in COLOURS {
+            assert!(
+                white(colour) > 2.0,
+                "{colour:?} on white: {}",
+                white(colour)
+            );
+        }
+    }
+}
