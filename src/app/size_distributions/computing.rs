@@ -4,13 +4,14 @@
 use std::sync::Arc;
 
 use super::Edit;
+use super::drawing::Drawing;
 use super::source::joined;
 use crate::app::state::{Severity, State};
 use crate::app::work::{Done, Task};
 use crate::fault::Fault;
 use crate::fragmentation::{
-    Comparison, ComparisonOptions, DistributionSet, Fit, FitOptions, Labels, Repeatability,
-    compare, fit, repeatability,
+    Comparison, ComparisonOptions, DistributionSet, Fit, FitOptions, Labels, Percentile,
+    Repeatability, compare, fit, repeatability,
 };
 use crate::jobs::Progress;
 
@@ -35,12 +36,28 @@ pub struct Computed {
     /// The method that the others are held against.
     pub reference: Option<String>,
     /// The function fitted to each curve of `trials`, in their order.
-    pub fits: Vec<(Labels, Result<Fit, Fault>)>,
+    pub fits: Vec<FittedCurve>,
     /// Every method against the reference; `None` without one.
     pub comparison: Option<Result<Comparison, Fault>>,
     /// Of each method with more than one trial.
     pub repeatability: Vec<(String, Result<Repeatability, Fault>)>,
+    /// What the plot draws.
+    pub drawing: Drawing,
 }
+
+/// The function fitted to a curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FittedCurve {
+    /// What the curve is of.
+    pub labels: Labels,
+    /// The fit, or why there is none.
+    pub fit: Result<Fit, Fault>,
+    /// Of `PERCENTILES`, with their bands; empty without a fit.
+    pub percentiles: Vec<Percentile>,
+}
+
+/// The percents passing whose sizes are told.
+pub const PERCENTILES: [f64; 5] = [10.0, 20.0, 50.0, 80.0, 90.0];
 
 impl State {
     /// Computes anew what depends on the data and settings of now.
@@ -94,17 +111,35 @@ fn reference(methods: &[String], chosen: Option<&String>) -> Option<String> {
 
 fn compute(edition: u64, edit: Edit, progress: &Progress) -> Result<Computed, Fault> {
     let settings = &edit.settings;
-    let set = joined(&edit.sources, settings.unit)?;
-    let trials = set.clone();
-    let notes = Vec::new();
+    let mut set = joined(&edit.sources, settings.unit)?;
+    let mut notes = Vec::new();
+    if let Some(series) = settings.sieves {
+        let (resampled, left_out) = set.resampled(series)?;
+        set = resampled;
+        notes.push(format!("at the sieves of {}", series.name()));
+        notes.extend(left_out);
+    }
+    let sieves = settings.sieves.map(|series| series.openings(settings.unit));
+    let (trials, left_out) = set.photos_merged(settings.merging, sieves.as_deref())?;
+    if trials.curves.len() < set.curves.len() {
+        notes.push(format!("photos {}", settings.merging.sentence()));
+    }
+    notes.extend(left_out);
     progress.stage("fitting");
     let options = FitOptions::default();
     let total = trials.curves.len() as u64;
     let mut fits = Vec::new();
     for (done, curve) in trials.curves.iter().enumerate() {
         progress.advance(done as u64, total)?;
-        let fitted = fit(&curve.distribution, settings.model, &options);
-        fits.push((curve.labels.clone(), fitted));
+        let fit = fit(&curve.distribution, settings.model, &options);
+        let percentiles = fit.iter().flat_map(|fit| {
+            PERCENTILES.map(|percent| fit.percentile(percent, 1.0 - settings.level))
+        });
+        fits.push(FittedCurve {
+            labels: curve.labels.clone(),
+            percentiles: percentiles.collect(),
+            fit,
+        });
     }
     progress.stage("comparing");
     let methods = methods(&set);
@@ -114,16 +149,14 @@ fn compute(edition: u64, edit: Edit, progress: &Progress) -> Result<Computed, Fa
         let options = ComparisonOptions {
             model: settings.model,
             envelope_percent: settings.envelope_percent,
+            percentiles: PERCENTILES.to_vec(),
             ..ComparisonOptions::new(reference)
         };
         compare(&trials, &options)
     });
     let trials_of = |method: &str| {
-        let of_method = |curve: &&_| {
-            let curve: &crate::fragmentation::LabelledDistribution = curve;
-            curve.labels.method == method
-        };
-        trials.curves.iter().filter(of_method).count()
+        let labels = trials.curves.iter().map(|curve| &curve.labels);
+        labels.filter(|labels| labels.method == method).count()
     };
     let mut repeated = Vec::new();
     for (done, method) in methods.iter().enumerate() {
@@ -133,7 +166,7 @@ fn compute(edition: u64, edit: Edit, progress: &Progress) -> Result<Computed, Fa
             repeated.push((method.clone(), table));
         }
     }
-    Ok(Computed {
+    let mut computed = Computed {
         edition,
         set,
         trials,
@@ -143,6 +176,9 @@ fn compute(edition: u64, edit: Edit, progress: &Progress) -> Result<Computed, Fa
         fits,
         comparison,
         repeatability: repeated,
+        drawing: Drawing::default(),
         edit,
-    })
+    };
+    computed.drawing = Drawing::of(&computed);
+    Ok(computed)
 }

@@ -7,12 +7,14 @@
 //! source      what came from one file, and all of them in one unit
 //! computing   fits and comparisons, as a job, whenever data or settings change
 //! saving      the figure and the report
+//! drawing     what the plot draws of it
 //! measured    how long the program's own steps took
 //! ```
 
 pub mod applying;
 pub mod command;
 pub mod computing;
+pub mod drawing;
 pub mod measured;
 pub mod reading;
 pub mod saving;
@@ -26,7 +28,7 @@ pub use computing::Computed;
 pub use source::Source;
 
 use super::history::History;
-use crate::fragmentation::{Labels, Model};
+use crate::fragmentation::{Labels, Model, SieveSeries, Weighting};
 use crate::units::LengthUnit;
 
 /// Which page the window shows.
@@ -68,6 +70,10 @@ pub enum PlotOf {
 pub struct Settings {
     /// The function that is fitted.
     pub model: Model,
+    /// What the photos of a trial count by where they are merged.
+    pub merging: Weighting,
+    /// The sieves that every curve is brought to; `None` leaves it as measured.
+    pub sieves: Option<SieveSeries>,
     /// The method that the others are held against; `None` is the one that is called so.
     pub reference: Option<String>,
     /// The unit that sizes are shown in.
@@ -82,6 +88,8 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             model: Model::Swebrec,
+            merging: Weighting::Equal,
+            sieves: None,
             reference: None,
             unit: LengthUnit::Millimetre,
             envelope_percent: 30.0,
