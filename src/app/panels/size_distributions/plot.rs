@@ -70,7 +70,7 @@ fn over_size<'a>(
         .follow_insertion_order(true)
         .grouping(LegendGrouping::ById)
         .background_alpha(0.85);
-    let grid = ui.visuals().text_color();
+    let grid = ui.visuals().text_color().gamma_multiply(0.45);
     Plot::new(name.to_owned())
         .legend(legend)
         .grid_color(grid)
@@ -145,7 +145,7 @@ fn passing(state: &State, computed: &Computed, reset: bool, ui: &mut egui::Ui) {
                     ..
                 } = method;
                 // The legend's entry; the curves of the method share its id, each under its name.
-                plot.points(
+                plot.add(
                     Points::new(method.clone(), Vec::<[f64; 2]>::new())
                         .id(method)
                         .color(paint(*look, 1.0)),

@@ -1,30 +1,48 @@
-//! A table of results: drawn as a grid whose texts can be selected, copied whole for a spreadsheet.
+//! A table of results: its texts can be selected, and it is copied whole for a spreadsheet. Only the
+//! rows in sight are drawn.
+
+use egui_extras::{Column, TableBuilder};
 
 use crate::app::command::Command;
+use crate::picture::significant_digits;
+
+/// The height of a row.
+const ROW: f32 = 18.0;
+
+/// The height of a table that is longer.
+const TALLEST: f32 = 330.0;
 
 /// Texts in rows under a head.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Table {
     /// What it is of.
-    pub name: String,
+    name: String,
     /// The columns' names, each with what it means.
-    pub head: Vec<(String, String)>,
+    head: Vec<(String, String)>,
     /// As many texts a row as the head has.
-    pub rows: Vec<Vec<String>>,
+    rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// A table without rows. The head's entries are (name, what it means).
-    pub(super) fn new(name: impl Into<String>, head: &[(&str, &str)]) -> Self {
-        let owned = |(name, hover): &(&str, &str)| ((*name).to_owned(), (*hover).to_owned());
+    /// A table without rows.
+    pub(super) fn new(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
-            head: head.iter().map(owned).collect(),
-            rows: Vec::new(),
+            ..Self::default()
         }
     }
 
-    /// Its name, the button that copies it, and the grid.
+    /// A column more: its name and what it means.
+    pub(super) fn column(&mut self, name: impl Into<String>, hover: impl Into<String>) {
+        self.head.push((name.into(), hover.into()));
+    }
+
+    /// A row more, with a text for each column.
+    pub(super) fn row(&mut self, cells: Vec<String>) {
+        self.rows.push(cells);
+    }
+
+    /// Its name, the button that copies it, head and rows.
     pub(super) fn show(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         ui.horizontal(|ui| {
             ui.strong(&self.name);
@@ -36,46 +54,89 @@ impl Table {
                 commands.push(Command::Copy(self.text()));
             }
         });
-        egui::ScrollArea::horizontal()
-            .id_salt(&self.name)
-            .show(ui, |ui| {
-                egui::Grid::new(&self.name)
-                    .striped(true)
-                    .spacing([12.0, 3.0])
-                    .min_col_width(20.0)
-                    .show(ui, |ui| {
-                        for (name, hover) in &self.head {
-                            let name = egui::Label::new(egui::RichText::new(name).strong());
-                            let name = ui.add(name.extend());
-                            if !hover.is_empty() {
-                                name.on_hover_text(hover);
-                            }
-                        }
-                        ui.end_row();
-                        for row in &self.rows {
-                            for text in row {
-                                ui.add(egui::Label::new(text).extend());
-                            }
-                            ui.end_row();
+        ui.push_id(&self.name, |ui| {
+            egui::ScrollArea::horizontal().show(ui, |ui| self.grid(ui));
+        });
+        ui.add_space(8.0);
+    }
+
+    fn grid(&self, ui: &mut egui::Ui) {
+        ui.spacing_mut().item_spacing.x = 12.0;
+        TableBuilder::new(ui)
+            .striped(true)
+            .auto_shrink([true, true])
+            .max_scroll_height(TALLEST)
+            .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
+            .columns(Column::auto().at_least(24.0), self.head.len())
+            .header(20.0, |mut header| {
+                for (name, hover) in &self.head {
+                    header.col(|ui| {
+                        let name = egui::RichText::new(name).strong();
+                        let name = ui.add(egui::Label::new(name).extend());
+                        if !hover.is_empty() {
+                            name.on_hover_text(hover);
                         }
                     });
+                }
+            })
+            .body(|body| {
+                body.rows(ROW, self.rows.len(), |mut row| {
+                    let Some(cells) = self.rows.get(row.index()) else {
+                        return;
+                    };
+                    for text in cells {
+                        row.col(|ui| {
+                            ui.add(egui::Label::new(text).extend());
+                        });
+                    }
+                    row.response().widget_info(|| {
+                        let first = cells.first().map_or("", String::as_str);
+                        let label = format!("{}: {first}", self.name);
+                        egui::WidgetInfo::labeled(egui::Role::Row, true, label)
+                    });
+                });
             });
     }
 
     /// The whole table, cells separated by tabs.
-    pub(super) fn text(&self) -> String {
+    fn text(&self) -> String {
         let head: Vec<&str> = self.head.iter().map(|(name, _)| name.as_str()).collect();
         let mut text = head.join("\t");
         text.push('\n');
         for row in &self.rows {
             // A cell of several lines would be several rows.
-            let cells: Vec<String> = row
-                .iter()
-                .map(|cell| cell.replace(['\t', '\n'], " "))
-                .collect();
+            let cells: Vec<String> = row.iter().map(|c| c.replace(['\t', '\n'], " ")).collect();
             text.push_str(&cells.join("\t"));
             text.push('\n');
         }
         text
+    }
+}
+
+/// A number with this many significant digits; a dash where there is none.
+pub(super) fn number(value: impl Into<Option<f64>>, digits: u8) -> String {
+    match value.into() {
+        Some(0.0) => "0".to_owned(),
+        Some(value) if value.is_finite() && !(1e-6..1e9).contains(&value.abs()) => {
+            format!("{value:.*e}", usize::from(digits.max(1)) - 1)
+        }
+        Some(value) if value.is_finite() => significant_digits(value, digits),
+        _ => "–".to_owned(),
+    }
+}
+
+/// A number with a sign and so many decimals.
+pub(super) fn signed(value: impl Into<Option<f64>>, decimals: usize) -> String {
+    match value.into() {
+        Some(value) if value.is_finite() => format!("{value:+.decimals$}"),
+        _ => "–".to_owned(),
+    }
+}
+
+/// A number with so many decimals.
+pub(super) fn fixed(value: impl Into<Option<f64>>, decimals: usize) -> String {
+    match value.into() {
+        Some(value) if value.is_finite() => format!("{value:.decimals$}"),
+        _ => "–".to_owned(),
     }
 }
