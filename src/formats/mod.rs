@@ -12,11 +12,13 @@ mod colmap;
 mod drone_photos;
 mod dropped;
 mod e57;
+mod effort_table;
 mod fields;
 mod flight_poses;
 mod georeferencing;
 mod geotiff;
 mod gltf;
+mod grouped_values;
 mod info;
 mod input;
 mod json;
@@ -70,10 +72,12 @@ use std::path::{Path, PathBuf};
 
 pub use cloud_file::CloudFile;
 pub use dropped::Dropped;
+pub use effort_table::{effort_table, read_effort_table};
 pub use georeferencing::{
     GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind, LengthResidual,
     PositionResidual, georeference,
 };
+pub use grouped_values::{GroupedValues, Groups, grouped_values, read_grouped_values};
 pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use open::{FlightReconstruction, OpenOptions, Opened, PhotoFile, open_flight};

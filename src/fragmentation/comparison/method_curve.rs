@@ -1,6 +1,10 @@
 //! The mean of a method's trials, its spread, and the function fitted to it.
 
-use crate::fragmentation::Fit;
+use crate::fault::Fault;
+use crate::fragmentation::{Fit, FitOptions, Model, SizeDistribution, fit};
+
+/// Sizes nearer to each other than this share are one: units that were converted differ by roundings.
+const SAME_SIZE: f64 = 1e-9;
 
 /// Percent passing one size, over a method's trials.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,8 +26,140 @@ pub struct MethodCurve {
     pub method: String,
     /// `Labels::trial` of each, in the order of the set.
     pub trials: Vec<String>,
-    /// At every size that some trial was measured at, ascending.
+    /// At every size that some trial was measured at and some is known at, ascending.
     pub points: Vec<MeanPoint>,
     /// The function fitted to the means of those sizes at which every trial is known.
     pub fit: Fit,
+}
+
+impl MethodCurve {
+    /// The mean of a method's trials (their names and distributions, one or more) with its fit.
+    ///
+    /// # Errors
+    ///
+    /// Too few sizes at which every trial is known, or what [`fit`] says.
+    pub(super) fn new(
+        method: &str,
+        trials: &[(&str, &SizeDistribution)],
+        model: Model,
+    ) -> Result<Self, Fault> {
+        let distributions: Vec<&SizeDistribution> = trials.iter().map(|(_, d)| *d).collect();
+        let points = mean_points(&distributions);
+        let named = |fault: Fault| {
+            let what = format!("the method '{method}': {}", fault.what);
+            Fault::new(what, fault.remedy)
+        };
+        let whole = whole_mean(&points, trials.len()).map_err(named)?;
+        Ok(Self {
+            method: method.to_owned(),
+            trials: trials.iter().map(|(name, _)| (*name).to_owned()).collect(),
+            points,
+            fit: fit(&whole, model, &FitOptions::default()).map_err(named)?,
+        })
+    }
+
+    /// The smallest and the largest measured size.
+    pub(super) fn range(&self) -> Option<[f64; 2]> {
+        Some([self.points.first()?.size, self.points.last()?.size])
+    }
+
+    /// The sizes that not every trial knows.
+    pub(super) fn partly_known(&self) -> impl Iterator<Item = f64> {
+        let partly = |point: &&MeanPoint| point.trials < self.trials.len();
+        self.points.iter().filter(partly).map(|point| point.size)
+    }
+}
+
+/// The mean over those trials that are known at a size; `None` where none is.
+pub(super) fn mean_at(trials: &[&SizeDistribution], size: f64) -> Option<MeanPoint> {
+    let percents: Vec<f64> = trials
+        .iter()
+        .filter_map(|trial| trial.percent_passing(size))
+        .collect();
+    if percents.is_empty() {
+        return None;
+    }
+    let count = percents.len() as f64;
+    let mean = percents.iter().sum::<f64>() / count;
+    let squares: f64 = percents.iter().map(|p| (p - mean) * (p - mean)).sum();
+    Some(MeanPoint {
+        size,
+        mean,
+        standard_deviation: (percents.len() > 1).then(|| (squares / (count - 1.0)).sqrt()),
+        trials: percents.len(),
+    })
+}
+
+/// The mean at every measured size.
+fn mean_points(trials: &[&SizeDistribution]) -> Vec<MeanPoint> {
+    let mut sizes: Vec<f64> = trials
+        .iter()
+        .flat_map(|trial| trial.points())
+        .map(|point| point[0])
+        .collect();
+    sizes.sort_by(f64::total_cmp);
+    sizes.dedup_by(|next, size| *next - *size <= SAME_SIZE * *size);
+    let known = sizes.into_iter().filter_map(|size| mean_at(trials, size));
+    known.collect()
+}
+
+/// The mean as a distribution: where trials begin or end on the way, a mean of those left may jump, so
+/// only the sizes that all know.
+fn whole_mean(points: &[MeanPoint], trials: usize) -> Result<SizeDistribution, Fault> {
+    let mut whole: Vec<[f64; 2]> = Vec::new();
+    for point in points.iter().filter(|point| point.trials == trials) {
+        // A mean of curves that never fall does not fall, but for its rounding.
+        let before = whole.last().map_or(0.0, |point| point[1]);
+        whole.push([point.size, point.mean.clamp(before, 100.0)]);
+    }
+    if whole.len() < 2 {
+        let what = "its trials share fewer than two sizes at which all are known";
+        return Err(Fault::new(
+            what,
+            "give trials of the same sieves, or one trial",
+        ));
+    }
+    SizeDistribution::new(whole)
+}
+
+#[cfg(test)]
+#[allow(clippy::expect_used, reason = "in a test a panic is the report")]
+mod tests {
+    use super::*;
+
+    fn distribution(points: &[[f64; 2]]) -> SizeDistribution {
+        SizeDistribution::new(points.to_vec()).expect("a distribution")
+    }
+
+    /// At 10: 20, 30, 40, deviation 10. At 30 the third is between 10 and 90 halfway in the logarithm:
+    /// 60. At 90 only the third is known, at 5 only the second, at 4 none but the second.
+    #[test]
+    fn mean_and_deviation_of_the_trials_that_are_known() {
+        let trials = [
+            distribution(&[[10.0, 20.0], [30.0, 50.0]]),
+            distribution(&[[5.0, 1.0], [10.0 * (1.0 + 1e-12), 30.0], [30.0, 70.0]]),
+            distribution(&[[10.0, 40.0], [90.0, 80.0]]),
+        ];
+        let trials: Vec<&SizeDistribution> = trials.iter().collect();
+        let points = mean_points(&trials);
+        let sizes: Vec<f64> = points.iter().map(|point| point.size).collect();
+        assert_eq!(
+            sizes,
+            [5.0, 10.0, 30.0, 90.0],
+            "10 and its rounding are one"
+        );
+        let counts: Vec<usize> = points.iter().map(|point| point.trials).collect();
+        assert_eq!(counts, [1, 3, 3, 1]);
+        assert!((points[1].mean - 30.0).abs() < 1e-9);
+        assert!((points[1].standard_deviation.expect("three") - 10.0).abs() < 1e-9);
+        assert!((points[2].mean - 60.0).abs() < 1e-12);
+        assert!((points[2].standard_deviation.expect("three") - 10.0).abs() < 1e-12);
+        assert_eq!(points[3].standard_deviation, None);
+        let whole = whole_mean(&points, 3).expect("two sizes");
+        assert_eq!(whole.points().len(), 2);
+        assert_eq!(mean_at(&trials, 4.0), None);
+        let apart = mean_points(&[trials[0], &distribution(&[[40.0, 1.0], [50.0, 2.0]])]);
+        let fault = whole_mean(&apart, 2).expect_err("no common size");
+        assert!(fault.what.contains("fewer than two sizes"), "{fault}");
+    }
 }

@@ -17,7 +17,7 @@ pub use method_curve::{MeanPoint, MethodCurve};
 pub use percentiles::{PercentileShift, SCALE_WARNING, Shift};
 pub use residuals::{PERCENT_ERROR, PercentError};
 
-use super::{DistributionSet, Model};
+use super::{DistributionSet, Model, SizeDistribution};
 use crate::fault::Fault;
 use crate::units::LengthUnit;
 
@@ -46,6 +46,22 @@ impl ComparisonOptions {
             percentiles: vec![10.0, 20.0, 50.0, 80.0, 90.0],
         }
     }
+
+    fn check(&self) -> Result<(), Fault> {
+        let inside = |percent: &f64| *percent > 0.0 && *percent < 100.0;
+        if !inside(&self.envelope_percent) {
+            let what = format!("an envelope of {} %", self.envelope_percent);
+            return Err(Fault::new(what, "give one between 0 and 100 %, such as 30"));
+        }
+        if let Some(bad) = self.percentiles.iter().find(|percent| !inside(percent)) {
+            let what = format!("a percentile of {bad} %");
+            return Err(Fault::new(what, "give percentiles between 0 and 100 %"));
+        }
+        if self.percentiles.is_empty() {
+            return Err(Fault::new("no percentile is named", "give one or more"));
+        }
+        Ok(())
+    }
 }
 
 /// Methods held against one of them.
@@ -64,6 +80,8 @@ pub struct Comparison {
     /// How much nearer to the reference one method is than another: every ordered pair of methods,
     /// empty with fewer than two.
     pub improvements: Vec<Improvement>,
+    /// What to know of the reference before trusting the comparison, one sentence each.
+    pub notes: Vec<String>,
 }
 
 /// One method held against the reference.
@@ -86,8 +104,7 @@ impl Comparison {
     /// function there, times 1 - 0.3 and 1 + 0.3 (`envelope_percent`).
     pub fn envelope_at(&self, percent: f64) -> [f64; 2] {
         let size = self.reference.fit.curve.size_at(percent);
-        let share = self.options.envelope_percent / 100.0;
-        [size * (1.0 - share), size * (1.0 + share)]
+        percentiles::envelope(size, self.options.envelope_percent)
     }
 }
 
@@ -98,7 +115,290 @@ impl Comparison {
 ///
 /// No such reference, no other method, a trial of many photos, a method that shares no size with the
 /// reference or that no function can be fitted to, an envelope or percentiles outside of 0 to 100 %.
-pub fn compare(trials: &DistributionSet, options: &ComparisonOptions) -> Result<Comparison, Fault> {
-    let _ = (trials, options);
-    Err(Fault::new("nothing is compared yet", "wait"))
+pub fn compare(set: &DistributionSet, options: &ComparisonOptions) -> Result<Comparison, Fault> {
+    options.check()?;
+    let (reference, others) = methods_of(set, &options.reference)?;
+    let reference = MethodCurve::new(&options.reference, &reference, options.model)?;
+    let span = Span::of(&reference.fit.curve)?;
+    let methods = others
+        .iter()
+        .map(|(method, trials)| against(&reference, span, (method, trials), options))
+        .collect::<Result<Vec<_>, Fault>>()?;
+    let mut improvements = Vec::new();
+    for (at, this) in methods.iter().enumerate() {
+        for (_, other) in methods.iter().enumerate().filter(|(i, _)| *i != at) {
+            improvements.push(Improvement::of(
+                (&this.curve.method, this.norm),
+                (&other.curve.method, other.norm),
+            ));
+        }
+    }
+    Ok(Comparison {
+        unit: set.unit,
+        options: options.clone(),
+        notes: notes_of_reference(&reference, span),
+        reference,
+        span,
+        methods,
+        improvements,
+    })
+}
+
+/// A method's trials, by name.
+type Trials<'a> = Vec<(&'a str, &'a SizeDistribution)>;
+
+/// The trials of the reference, and of the other methods, which are one or more, with their names.
+fn methods_of<'a>(
+    set: &'a DistributionSet,
+    reference: &str,
+) -> Result<(Trials<'a>, Vec<(&'a str, Trials<'a>)>), Fault> {
+    let mut methods: Vec<(&str, Trials<'_>)> = Vec::new();
+    for curve in &set.curves {
+        let (method, trial) = (curve.labels.method.as_str(), curve.labels.trial.as_str());
+        let at = methods.iter().position(|(known, _)| *known == method);
+        let Some((_, trials)) = at.and_then(|at| methods.get_mut(at)) else {
+            methods.push((method, vec![(trial, &curve.distribution)]));
+            continue;
+        };
+        if trials.iter().any(|(known, _)| *known == trial) {
+            let what = format!("the method '{method}' has several photos of the trial '{trial}'");
+            return Err(Fault::new(what, "merge the photos of each trial first"));
+        }
+        trials.push((trial, &curve.distribution));
+    }
+    let names: Vec<String> = methods
+        .iter()
+        .filter(|(name, _)| !name.is_empty())
+        .map(|(name, _)| format!("'{name}'"))
+        .collect();
+    if names.is_empty() {
+        let what = "the distributions have no method";
+        return Err(Fault::new(what, "say in a column how each was measured"));
+    }
+    let names = names.join(", ");
+    let Some(at) = methods.iter().position(|(name, _)| *name == reference) else {
+        let what = format!("no method is called '{reference}'");
+        return Err(Fault::new(
+            what,
+            format!("as reference name one of {names}"),
+        ));
+    };
+    if methods.len() < 2 {
+        let what = format!("{names} is the only method");
+        return Err(Fault::new(what, "give another one to compare with it"));
+    }
+    let (_, trials) = methods.remove(at);
+    Ok((trials, methods))
+}
+
+/// A method (its name and trials) held against the reference.
+fn against(
+    reference: &MethodCurve,
+    span: Span,
+    (method, trials): (&str, &Trials<'_>),
+    options: &ComparisonOptions,
+) -> Result<MethodComparison, Fault> {
+    let curve = MethodCurve::new(method, trials, options.model)?;
+    if let (Some([from, to]), Some([reference_from, reference_to])) =
+        (curve.range(), reference.range())
+        && (to < reference_from || from > reference_to)
+    {
+        let what = format!(
+            "the sizes of '{method}' ({from} to {to}) and of the reference '{}' ({reference_from} to \
+             {reference_to}) do not overlap",
+            reference.method
+        );
+        return Err(Fault::new(what, "check the units of the sizes"));
+    }
+    let shift = Shift::new(
+        &curve.fit.curve,
+        &reference.fit.curve,
+        &options.percentiles,
+        options.envelope_percent,
+    )?;
+    let mut notes = Vec::new();
+    notes.extend(partly_known(&curve));
+    if shift.looks_like_scale {
+        notes.push(format!(
+            "'{method}': all percentiles are shifted by about {:+.1} % (spread {:.1} %), as an image \
+             scale does that is off by as much; check the scale",
+            shift.mean_percent,
+            shift.spread_percent.unwrap_or_default()
+        ));
+    }
+    let distributions: Vec<&SizeDistribution> = trials.iter().map(|(_, d)| *d).collect();
+    let residual = |point| PercentError::new(point, &distributions, options.envelope_percent);
+    Ok(MethodComparison {
+        residuals: reference.points.iter().map(residual).collect(),
+        norm: CurveNorm::between(&curve.fit.curve, &reference.fit.curve, span),
+        shift,
+        notes,
+        curve,
+    })
+}
+
+/// What was left out of a method's fit.
+fn partly_known(curve: &MethodCurve) -> Option<String> {
+    let sizes: Vec<String> = curve.partly_known().map(|size| size.to_string()).collect();
+    (!sizes.is_empty()).then(|| {
+        format!(
+            "'{}': not every trial is known at the sizes {}; they do not count in its fit",
+            curve.method,
+            sizes.join(", ")
+        )
+    })
+}
+
+fn notes_of_reference(reference: &MethodCurve, span: Span) -> Vec<String> {
+    let mut notes: Vec<String> = partly_known(reference).into_iter().collect();
+    if let Some([from, to]) = reference.range()
+        && (span.from < from || span.to > to)
+    {
+        notes.push(format!(
+            "the norms go from {} to {}, beyond the sizes {from} to {to} that '{}' was measured at: \
+             there the fitted functions are compared where nothing was measured",
+            rounded(span.from),
+            rounded(span.to),
+            reference.method
+        ));
+    }
+    notes
+}
+
+/// A size as a sentence says it: three digits.
+fn rounded(size: f64) -> String {
+    let digits = (2.0 - size.log10().floor()).clamp(0.0, 9.0);
+    format!("{size:.*}", digits as usize)
+}
+
+#[cfg(test)]
+#[allow(clippy::expect_used, reason = "in a test a panic is the report")]
+mod tests {
+    use super::*;
+    use crate::fragmentation::{LabelledDistribution, Labels, Swebrec};
+
+    /// Points of a Swebrec at sieves from 2 to 90 % of its topsize.
+    fn curve(method: &str, trial: &str, [x50, xmax, b]: [f64; 3]) -> LabelledDistribution {
+        let swebrec = Swebrec::new(x50, xmax, b).expect("a Swebrec");
+        let sizes = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9].map(|share| share * xmax);
+        let points = sizes.map(|size| [size, 100.0 * swebrec.passing(size)]);
+        LabelledDistribution {
+            labels: Labels {
+                method: method.to_owned(),
+                trial: trial.to_owned(),
+                photo: String::new(),
+            },
+            weight: None,
+            distribution: SizeDistribution::new(points.to_vec()).expect("a distribution"),
+        }
+    }
+
+    fn set(curves: Vec<LabelledDistribution>) -> DistributionSet {
+        DistributionSet {
+            unit: LengthUnit::Millimetre,
+            curves,
+        }
+    }
+
+    const SIEVE: [f64; 3] = [40.0, 150.0, 2.2];
+
+    /// The scale of the cloud is 4 % off, that of the object 8 %: known before anything is fitted.
+    #[test]
+    fn scale_errors_come_back() {
+        let scaled = |by: f64| [SIEVE[0] * by, SIEVE[1] * by, SIEVE[2]];
+        let set = set(vec![
+            curve("cloud", "1", scaled(1.04)),
+            curve("sieve", "", SIEVE),
+            curve("object", "1", scaled(1.08)),
+            curve("cloud", "2", scaled(1.04)),
+        ]);
+        let found = compare(&set, &ComparisonOptions::new("sieve")).expect("a comparison");
+        assert_eq!(found.reference.method, "sieve");
+        let names: Vec<&str> = found
+            .methods
+            .iter()
+            .map(|m| m.curve.method.as_str())
+            .collect();
+        assert_eq!(names, ["cloud", "object"]);
+        assert_eq!(found.methods[0].curve.trials, ["1", "2"]);
+        for (method, shift) in found.methods.iter().zip([4.0, 8.0]) {
+            for percentile in &method.shift.percentiles {
+                assert!(
+                    (percentile.shift_percent - shift).abs() < 1e-4,
+                    "{percentile:?}"
+                );
+                assert!(percentile.inside);
+            }
+            assert!(method.shift.looks_like_scale);
+            assert!(
+                method
+                    .notes
+                    .iter()
+                    .any(|note| note.contains("check the scale"))
+            );
+            // Coarser: less passes everywhere.
+            assert!(
+                method
+                    .residuals
+                    .iter()
+                    .all(|r| r.percent_error.is_none_or(|e| e < 0.0))
+            );
+        }
+        // The norm of 8 % from scipy (see curve_norm).
+        let norm = found.methods[1].norm;
+        assert!((norm.relative_percent - 4.251_163_990_930_406).abs() < 1e-4);
+        let [low, high] = found.envelope_at(50.0);
+        assert!((low - 28.0).abs() < 1e-4 && (high - 52.0).abs() < 1e-4);
+        let improvement = &found.improvements[0];
+        assert_eq!(
+            (improvement.method.as_str(), improvement.over.as_str()),
+            ("cloud", "object")
+        );
+        let gained = 1.0 - found.methods[0].norm.rms_difference / norm.rms_difference;
+        assert!((improvement.percent.expect("a percentage") - 100.0 * gained).abs() < 1e-9);
+        assert_eq!(found.improvements.len(), 2);
+        assert!(
+            found.notes[0].contains("beyond the sizes 3 to 135"),
+            "{:?}",
+            found.notes
+        );
+    }
+
+    #[test]
+    fn refuses_in_a_sentence() {
+        let both = set(vec![curve("sieve", "", SIEVE), curve("cloud", "1", SIEVE)]);
+        let one = set(vec![curve("sieve", "", SIEVE)]);
+        let nameless = set(vec![curve("", "1", SIEVE), curve("", "2", SIEVE)]);
+        let mut photos = both.clone();
+        photos.curves.push(curve("cloud", "1", SIEVE));
+        let far = set(vec![
+            curve("sieve", "", SIEVE),
+            curve("cloud", "1", [4e4, 15e4, 2.2]),
+        ]);
+        let sieve = ComparisonOptions::new("sieve");
+        let wide = ComparisonOptions {
+            envelope_percent: 130.0,
+            ..sieve.clone()
+        };
+        let none = ComparisonOptions {
+            percentiles: vec![50.0, 100.0],
+            ..sieve.clone()
+        };
+        for (set, options, sentence) in [
+            (
+                &both,
+                &ComparisonOptions::new("sive"),
+                "one of 'sieve', 'cloud'",
+            ),
+            (&one, &sieve, "'sieve' is the only method"),
+            (&nameless, &sieve, "have no method"),
+            (&photos, &sieve, "several photos of the trial '1'; merge"),
+            (&far, &sieve, "do not overlap"),
+            (&both, &wide, "an envelope of 130 %"),
+            (&both, &none, "a percentile of 100 %"),
+        ] {
+            let fault = compare(set, options).expect_err(sentence).to_string();
+            assert!(fault.contains(sentence), "{fault}");
+        }
+    }
 }

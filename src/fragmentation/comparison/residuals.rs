@@ -1,5 +1,8 @@
 //! Percent error of the passing at each size.
 
+use super::method_curve::{MeanPoint, mean_at};
+use crate::fragmentation::SizeDistribution;
+
 /// What a percent error is, for headers and notes of outputs.
 pub const PERCENT_ERROR: &str = "percent error = 100 (P - P reference) / P reference of the percent passing; above 0 \
      the method says that more passes (finer) than the reference; undefined where the reference is 0";
@@ -20,4 +23,58 @@ pub struct PercentError {
     pub percent_error: Option<f64>,
     /// Whether the percent error is within the envelope's percent (30), either side.
     pub within: Option<bool>,
+}
+
+impl PercentError {
+    /// Of a method's trials at a point of the reference.
+    pub(super) fn new(
+        reference: &MeanPoint,
+        trials: &[&SizeDistribution],
+        envelope_percent: f64,
+    ) -> Self {
+        let passing = mean_at(trials, reference.size).map(|point| point.mean);
+        let difference = passing.map(|passing| passing - reference.mean);
+        let percent_error = difference
+            .filter(|_| reference.mean > 0.0)
+            .map(|difference| 100.0 * difference / reference.mean);
+        Self {
+            size: reference.size,
+            reference: reference.mean,
+            passing,
+            difference,
+            percent_error,
+            within: percent_error.map(|error| error.abs() <= envelope_percent),
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::expect_used, reason = "in a test a panic is the report")]
+mod tests {
+    use super::*;
+
+    /// 15 for 10 is 50 % more; 36 for 40, 10 % less; of 0 there is no percentage.
+    #[test]
+    fn finer_is_above_zero() {
+        let method = [[1.0, 2.0], [10.0, 15.0], [100.0, 36.0]];
+        let method = SizeDistribution::new(method.to_vec()).expect("a distribution");
+        let at = |size, mean| {
+            let reference = MeanPoint {
+                size,
+                mean,
+                standard_deviation: None,
+                trials: 1,
+            };
+            PercentError::new(&reference, &[&method], 30.0)
+        };
+        assert_eq!(at(10.0, 10.0).percent_error, Some(50.0));
+        assert_eq!(at(10.0, 10.0).within, Some(false));
+        assert_eq!(at(100.0, 40.0).percent_error, Some(-10.0));
+        assert_eq!(at(100.0, 40.0).within, Some(true));
+        let none = at(1.0, 0.0);
+        assert_eq!((none.difference, none.percent_error), (Some(2.0), None));
+        assert_eq!(none.within, None);
+        assert_eq!(at(200.0, 50.0).passing, None);
+        assert_eq!(at(200.0, 50.0).percent_error, None);
+    }
 }
