@@ -2,6 +2,7 @@
 //! files that are there whole or not at all.
 
 mod atomic;
+mod markup;
 mod scale_report;
 mod scales_csv;
 mod scales_json;
@@ -15,6 +16,7 @@ pub use scales_csv::scales_csv;
 pub use scales_json::scales_json;
 pub use scales_table::scales_table;
 pub use size_distributions::{
-    Band, Dash, FigureContents, Look, Marker, Panel, Series, SizeAxis, SizeTick,
+    Band, Dash, FigureContents, FittedDistribution, Look, Marker, Panel, Series, SizeAxis,
+    SizeTick, figure_of_comparison, figure_of_fits, figure_png, figure_svg,
 };
 pub use split_desktop::{ExportError, ExportRequest, ExportSummary, export_for_split_desktop};

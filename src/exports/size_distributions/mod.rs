@@ -3,4 +3,16 @@
 
 mod figure;
 
-pub use figure::{Band, Dash, FigureContents, Look, Marker, Panel, Series, SizeAxis, SizeTick};
+pub use figure::{
+    Band, Dash, FigureContents, FittedDistribution, Look, Marker, Panel, Series, SizeAxis,
+    SizeTick, figure_of_comparison, figure_of_fits, figure_png, figure_svg,
+};
+
+/// A method's name for people.
+fn method_name(method: &str) -> &str {
+    if method.is_empty() {
+        "measured"
+    } else {
+        method
+    }
+}

@@ -4,8 +4,8 @@
 use std::fmt::Write;
 
 use super::footprints::PhotoFootprint;
-use super::sheet::escaped;
 use crate::exports::ScaleReport;
+use crate::exports::markup::escaped;
 use crate::flight::Verdict;
 
 /// A placemark a photo, coloured by its verdict.

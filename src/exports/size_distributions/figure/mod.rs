@@ -1,19 +1,38 @@
-//! The figure of size distributions: percent passing against size, and the percent errors below it.
+//! The figure of size distributions: percent passing against size, and the residuals below it.
 //!
 //! ```text
 //! look        colours, markers and dashes that are told apart in print and by the colour-blind
 //! size_axis   where the logarithmic axis begins and ends, its lines and labels
-//! contents    what is shown, from fits or a comparison
-//! draw        the contents by plotters, the same on paper (SVG) and in pixels (PNG)
+//! of_comparison, of_fits  what is shown of them
+//! layout      where everything is
+//! pen         strokes, areas, markers and words by plotters
+//! draw        the contents with a pen, the same on paper (SVG) and in pixels (PNG)
 //! picture     the bytes of both
 //! ```
 //!
 //! `FigureContents` knows nothing of who draws it: the window draws the same.
 
+mod draw;
+mod layout;
 mod look;
+mod of_comparison;
+mod of_fits;
+mod panels;
+mod pen;
+mod picture;
 mod size_axis;
+#[cfg(test)]
+#[allow(
+    clippy::expect_used,
+    clippy::panic,
+    reason = "in a test a panic is the report"
+)]
+mod tests;
 
 pub use look::{Dash, Look, Marker};
+pub use of_comparison::figure_of_comparison;
+pub use of_fits::{FittedDistribution, figure_of_fits};
+pub use picture::{figure_png, figure_svg};
 pub use size_axis::{SizeAxis, SizeTick};
 
 /// What a figure shows. All sizes are in the unit of the size axis; nothing in it is drawn twice.
@@ -25,8 +44,8 @@ pub struct FigureContents {
     pub sizes: SizeAxis,
     /// Percent passing, 0 to 100. The legend is of this panel.
     pub passing: Panel,
-    /// Percent errors against the reference, where there is one. Its looks are those of `passing`.
-    pub errors: Option<Panel>,
+    /// What is left between measured and reference or fitted, the looks being those of `passing`.
+    pub residuals: Option<Panel>,
 }
 
 /// Values against sizes.

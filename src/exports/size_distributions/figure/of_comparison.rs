@@ -1,0 +1,136 @@
+//! What a figure shows of methods held against a reference: the paper's figure of distributions.
+
+use super::panels;
+use super::{Band, FigureContents, Look, Series, SizeAxis};
+use crate::exports::size_distributions::method_name;
+use crate::fragmentation::{Comparison, MethodCurve};
+
+/// Measured means with the fitted functions, their spread over the trials, the envelope about the
+/// reference; below them the percent errors with their limits.
+pub fn figure_of_comparison(comparison: &Comparison) -> FigureContents {
+    let envelope = comparison.options.envelope_percent;
+    let reference = &comparison.reference;
+    let others = comparison.methods.iter().map(|method| &method.curve);
+    // The reference first: its look and its place in the legend. It is drawn below the others.
+    let curves: Vec<(Look, &MethodCurve)> = std::iter::once(reference)
+        .chain(others)
+        .enumerate()
+        .map(|(number, curve)| (Look::of(number), curve))
+        .collect();
+    let measured = curves
+        .iter()
+        .flat_map(|(_, c)| c.points.iter().map(|p| p.size));
+    let sizes = SizeAxis::covering(panels::size_title(comparison.unit), measured);
+    let mut bands = vec![envelope_band(comparison)];
+    bands.extend(
+        curves
+            .iter()
+            .filter_map(|(look, curve)| spread_band(*look, curve)),
+    );
+    let series = curves.iter().map(|(look, curve)| Series {
+        name: format!(
+            "{}: {}",
+            described(curve),
+            panels::fit_words(&curve.fit, comparison.unit)
+        ),
+        look: *look,
+        points: curve.points.iter().map(|p| [p.size, p.mean]).collect(),
+        line: panels::fitted_line(&curve.fit, &sizes),
+        marks: panels::marks(&curve.fit),
+    });
+    let passing = panels::passing_panel(bands, series.collect());
+    let mut errors = vec![Series {
+        name: String::new(),
+        look: Look::REFERENCE,
+        points: Vec::new(),
+        line: vec![[sizes.low, 0.0], [sizes.high, 0.0]],
+        marks: Vec::new(),
+    }];
+    for (method, (look, _)) in comparison.methods.iter().zip(curves.iter().skip(1)) {
+        let known = method.residuals.iter();
+        let points: Vec<[f64; 2]> = known
+            .filter_map(|r| Some([r.size, r.percent_error?]))
+            .collect();
+        errors.push(Series {
+            name: method.curve.method.clone(),
+            look: *look,
+            line: points.clone(),
+            points,
+            marks: Vec::new(),
+        });
+    }
+    let names: Vec<&str> = comparison
+        .methods
+        .iter()
+        .map(|m| method_name(&m.curve.method))
+        .collect();
+    FigureContents {
+        title: format!(
+            "{} against {}",
+            names.join(", "),
+            method_name(&reference.method)
+        ),
+        sizes,
+        passing,
+        residuals: Some(panels::residual_panel(
+            "Percent error of passing, %".to_owned(),
+            1.5 * envelope,
+            vec![-envelope, envelope],
+            errors,
+        )),
+    }
+}
+
+/// The envelope of the sizes about the fitted reference.
+fn envelope_band(comparison: &Comparison) -> Band {
+    let percents = || (0..=200).map(|half| f64::from(half) / 2.0);
+    let edge = |side: usize| {
+        let edge = percents().filter_map(|percent| {
+            let size = comparison.envelope_at(percent).get(side).copied()?;
+            (size.is_finite() && size > 0.0).then_some([size, percent])
+        });
+        edge.collect()
+    };
+    Band {
+        name: format!(
+            "\u{b1}{} % of the size, {} fit",
+            comparison.options.envelope_percent,
+            method_name(&comparison.reference.method)
+        ),
+        look: Look::REFERENCE,
+        outlined: true,
+        edges: [edge(0), edge(1)],
+    }
+}
+
+/// Mean less and plus the standard deviation, where there are trials to have one.
+fn spread_band(look: Look, curve: &MethodCurve) -> Option<Band> {
+    let edge = |sign: f64| -> Vec<[f64; 2]> {
+        let known = curve.points.iter();
+        known
+            .filter_map(|p| {
+                Some([
+                    p.size,
+                    (p.mean + sign * p.standard_deviation?).clamp(0.0, 100.0),
+                ])
+            })
+            .collect()
+    };
+    let edges = [edge(-1.0), edge(1.0)];
+    let name = format!("{}: \u{b1} standard deviation", method_name(&curve.method));
+    (edges[0].len() > 1).then_some(Band {
+        name,
+        look,
+        outlined: false,
+        edges,
+    })
+}
+
+/// The method, and of how many trials its points are the mean.
+fn described(curve: &MethodCurve) -> String {
+    let name = method_name(&curve.method);
+    match curve.trials.len() {
+        0 | 1 => name.to_owned(),
+        trials => format!("{name}, {trials} trials"),
+    }
+}

@@ -1,0 +1,103 @@
+//! What a figure shows of distributions and the functions fitted to them.
+
+use super::panels;
+use super::{Band, FigureContents, Look, Series, SizeAxis};
+use crate::fragmentation::{Fit, SizeDistribution};
+use crate::units::LengthUnit;
+
+/// Confidence of the bands.
+const LEVEL: f64 = 0.95;
+/// Sizes at which a band is drawn.
+const SAMPLES: u32 = 121;
+
+/// A measured distribution with the function fitted to it.
+#[derive(Debug, Clone, Copy)]
+pub struct FittedDistribution<'a> {
+    /// What it is of.
+    pub name: &'a str,
+    /// As measured; sizes in the figure's unit.
+    pub distribution: &'a SizeDistribution,
+    /// Of this distribution.
+    pub fit: &'a Fit,
+}
+
+/// Measured points, fitted functions with their confidence bands (95 %); below them what is left.
+pub fn figure_of_fits(
+    title: impl Into<String>,
+    unit: LengthUnit,
+    fitted: &[FittedDistribution<'_>],
+) -> FigureContents {
+    let measured = fitted
+        .iter()
+        .flat_map(|f| f.distribution.points())
+        .map(|point| point[0]);
+    let sizes = SizeAxis::covering(panels::size_title(unit), measured);
+    let mut bands = Vec::new();
+    let mut passing = Vec::new();
+    let mut left_over = Vec::new();
+    for (number, of) in fitted.iter().enumerate() {
+        let look = Look::of(number);
+        let words = panels::fit_words(of.fit, unit);
+        let name = match of.name {
+            "" => words,
+            name => format!("{name}: {words}"),
+        };
+        bands.extend(confidence_band(look, of, &sizes));
+        let points = of.distribution.points();
+        passing.push(Series {
+            name,
+            look,
+            points: points.to_vec(),
+            line: panels::fitted_line(of.fit, &sizes),
+            marks: panels::marks(of.fit),
+        });
+        let left: Vec<[f64; 2]> = points
+            .iter()
+            .zip(&of.fit.residuals)
+            .map(|(point, left)| [point[0], *left])
+            .collect();
+        left_over.push(Series {
+            name: of.name.to_owned(),
+            look,
+            line: left.clone(),
+            points: left,
+            marks: Vec::new(),
+        });
+    }
+    FigureContents {
+        title: title.into(),
+        sizes,
+        passing: panels::passing_panel(bands, passing),
+        residuals: Some(panels::residual_panel(
+            "Measured less fitted, points".to_owned(),
+            1.0,
+            vec![0.0],
+            left_over,
+        )),
+    }
+}
+
+fn confidence_band(look: Look, of: &FittedDistribution<'_>, sizes: &SizeAxis) -> Option<Band> {
+    let known: Vec<(f64, [f64; 2])> = sizes
+        .sizes(SAMPLES)
+        .filter_map(|size| Some((size, of.fit.band_at(size, LEVEL)?)))
+        .collect();
+    let edge = |side: fn([f64; 2]) -> f64| -> Vec<[f64; 2]> {
+        known
+            .iter()
+            .map(|(size, band)| [*size, side(*band).clamp(0.0, 100.0)])
+            .collect()
+    };
+    let edges = [edge(|[low, _]| low), edge(|[_, high]| high)];
+    let percent = 100.0 * LEVEL;
+    let name = match of.name {
+        "" => format!("confidence band of the fit, {percent} %"),
+        name => format!("{name}: confidence band of the fit, {percent} %"),
+    };
+    (known.len() > 1).then_some(Band {
+        name,
+        look,
+        outlined: false,
+        edges,
+    })
+}
