@@ -51,6 +51,8 @@ pub enum Asking {
     AddDistributions,
     /// A table of size distributions.
     PasteTable,
+    /// Which file has the times of steps.
+    AddEffort,
     /// Where the figure of the size distributions goes.
     SaveFigure,
     /// Where the report on them goes.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Instant;
 
 use image::RgbImage;
 use image::buffer::ConvertBuffer;
@@ -306,6 +307,7 @@ impl State {
                         let dialog = dialog.set_title("Size distributions");
                         dialog.pick_file().await
                     }
+                    DialogFor::Effort => dialog.set_title("Times of steps").pick_file().await,
                     DialogFor::Figure => {
                         let dialog = dialog.set_title("Save figure");
                         dialog
@@ -389,7 +391,9 @@ fn open(
             tried: Some((path.clone(), options.clone())),
         })
     };
+    let begun = Instant::now();
     let opened = formats::open_flight(&path, &options, progress).map_err(not_opened)?;
+    let read = begun.elapsed();
     let at_path = |fault: Fault| not_opened(FileError::new(&path, fault));
     let outcomes = opened.flight.scales(progress).map_err(at_path)?;
     let surface_bounds = opened.flight.parts().surface.bounds();
@@ -399,6 +403,7 @@ fn open(
         opened,
         outcomes,
         surface_bounds,
+        took: [read, begun.elapsed().saturating_sub(read)],
         again_for: again.map(|(number, _)| number),
     })
 }

@@ -18,7 +18,10 @@ impl State {
     pub fn poll(&mut self) {
         while let Some(done) = self.work.finished() {
             match done {
-                Ok(done) => self.take(done),
+                Ok((done, took)) => {
+                    self.measure(&done, took);
+                    self.take(done);
+                }
                 Err(fault) => self.say(Severity::Error, &fault.to_string()),
             }
         }
@@ -162,6 +165,7 @@ impl State {
                 self.say(Severity::Note, &format!("{}: saved", path.display()));
                 self.apply(Command::Open(path));
             }
+            Done::ReadEffort(path, read) => self.take_effort(&path, read),
             Done::ReadDistributions(read) => self.take_distributions(read),
             Done::Fitted(result) => self.take_fitted(result),
             Done::SavedDistributions(Ok(path)) => {
@@ -183,6 +187,7 @@ impl State {
                 | DialogFor::SaveAs
                 | DialogFor::Picture
                 | DialogFor::Distributions
+                | DialogFor::Effort
                 | DialogFor::Figure
                 | DialogFor::Report => {
                     self.answered = Some(path);

@@ -6,6 +6,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::time::{Duration, Instant};
 
 use egui::ColorImage;
 
@@ -15,6 +16,7 @@ use super::size_distributions::reading::Read;
 use crate::fault::Fault;
 use crate::flight::{Flight, FlightSettings, Outcome};
 use crate::formats::{FlightOrigin, Georeferenced, OpenOptions, Opened};
+use crate::fragmentation::Effort;
 use crate::geometry::Bounds;
 use crate::jobs::{Job, Progress};
 use crate::render::{CloudBuffers, LargePhoto, MeshBuffers, PhotoImage};
@@ -45,6 +47,8 @@ pub enum Task {
     Georeference,
     /// Reading size distributions.
     ReadDistributions,
+    /// Reading times of steps.
+    ReadEffort,
     /// Fitting and comparing them.
     Fits,
     /// Writing their figure or report.
@@ -68,6 +72,7 @@ impl Task {
             Self::Picture => "Picture",
             Self::Georeference => "Georeferencing",
             Self::ReadDistributions => "Reading",
+            Self::ReadEffort => "Reading times",
             Self::Fits => "Fitting",
             Self::SaveDistributions => "Writing",
             Self::Dialog => "Dialog",
@@ -96,6 +101,8 @@ pub enum DialogFor {
     Picture,
     /// Files of size distributions.
     Distributions,
+    /// A table of times.
+    Effort,
     /// Where the figure of the size distributions goes.
     Figure,
     /// Where the report on them goes.
@@ -117,6 +124,8 @@ pub struct Loaded {
     pub outcomes: Vec<Outcome>,
     /// Around the surface.
     pub surface_bounds: Bounds,
+    /// How long reading took, and computing the scales.
+    pub took: [Duration; 2],
     /// The number of the open flight that was read again with other surface options.
     pub again_for: Option<u64>,
 }
@@ -172,6 +181,8 @@ pub enum Done {
     Georeferenced(Option<PathBuf>, Box<Result<Georeferenced, String>>),
     /// Where the georeferenced flight was written.
     SavedGeoreferenced(Result<PathBuf, String>),
+    /// Times of steps from this file, with what was noticed, or why there are none in a line.
+    ReadEffort(PathBuf, Result<(Effort, Vec<String>), String>),
     /// Size distributions, or why they cannot be read.
     ReadDistributions(Read),
     /// Fits and comparisons.
@@ -211,7 +222,7 @@ pub struct PreviewPicture {
 /// The jobs under way.
 #[derive(Debug)]
 pub struct Work {
-    running: Vec<(Task, Job<Done>)>,
+    running: Vec<(Task, Job<(Done, Duration)>)>,
     context: egui::Context,
     /// Small pictures arrive one by one, not at the end.
     thumbnails: Receiver<Thumbnail>,
@@ -243,9 +254,10 @@ impl Work {
         self.cancel(task);
         let context = self.context.clone();
         let job = Job::start(task.in_words(), move |progress| {
+            let begun = Instant::now();
             let done = work(progress);
             context.request_repaint();
-            done
+            (done, begun.elapsed())
         })?;
         self.running.push((task, job));
         Ok(())
@@ -320,9 +332,9 @@ impl Work {
         self.running.is_empty()
     }
 
-    /// Takes the first that is done: one at a time, because taking it may cancel others that are done
+    /// Takes the first that is done, with how long it took: one at a time, because taking it may cancel others that are done
     /// as well. A job that panicked is a fault of ours, told like any other.
-    pub fn finished(&mut self) -> Option<Result<Done, Fault>> {
+    pub fn finished(&mut self) -> Option<Result<(Done, Duration), Fault>> {
         let place = self.running.iter().position(|(_, job)| job.is_finished())?;
         let (_, job) = self.running.remove(place);
         Some(job.finish())

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use super::georeference::{georeference, save_georeferenced};
-use super::size_distributions::{add_distributions, paste, save_figure, save_report};
+use super::size_distributions::{add_distributions, add_effort, paste, save_figure, save_report};
 use crate::app::actions;
 use crate::app::command::{Asking, Command};
 use crate::app::open_flight::OpenFlight;
@@ -24,6 +24,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::Picture => "Save picture",
             Asking::AddDistributions => "Add size distributions",
             Asking::PasteTable => "Paste table",
+            Asking::AddEffort => "Add times of steps",
             Asking::SaveFigure => "Save figure",
             Asking::SaveReport => "Save report",
             Asking::Keys => "Keys and mouse",
@@ -49,6 +50,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::Picture => picture(state, ui, commands),
                     Asking::AddDistributions => add_distributions(state, ui, commands),
                     Asking::PasteTable => paste(state, ui, commands),
+                    Asking::AddEffort => add_effort(state, ui, commands),
                     Asking::SaveFigure => save_figure(state, ui, commands),
                     Asking::SaveReport => save_report(state, ui, commands),
                     Asking::Keys => keys(ui),

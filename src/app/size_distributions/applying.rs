@@ -49,6 +49,8 @@ impl State {
             }
             DistributionCommand::Plot(plot) => self.distributions.plot = plot,
             DistributionCommand::Tab(tab) => self.distributions.tab = tab,
+            DistributionCommand::AddEffort(path) => self.read_effort(path),
+            DistributionCommand::RemoveEffort => self.distributions.effort = None,
             DistributionCommand::SaveFigure(path) => self.save_figure(path),
             DistributionCommand::SaveReport(path) => self.save_report(path),
         }

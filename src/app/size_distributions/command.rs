@@ -28,6 +28,10 @@ pub enum DistributionCommand {
     Plot(PlotOf),
     /// Shows other results.
     Tab(ResultTab),
+    /// Reads times of steps from this file.
+    AddEffort(PathBuf),
+    /// Takes those times away.
+    RemoveEffort,
     /// Writes the figure: .svg or .png.
     SaveFigure(PathBuf),
     /// Writes the report.

@@ -25,6 +25,7 @@ use std::sync::Arc;
 
 pub use command::DistributionCommand;
 pub use computing::Computed;
+pub use measured::{EffortFile, MeasuredStep};
 pub use source::Source;
 
 use super::history::History;
@@ -155,6 +156,10 @@ pub struct SizeDistributions {
     pub paste: PasteForm,
     /// How many tables were pasted.
     pub pasted: usize,
+    /// The times of a file.
+    pub effort: Option<EffortFile>,
+    /// How long the program's own steps took.
+    pub measured: Vec<MeasuredStep>,
 }
 
 impl Default for SizeDistributions {
@@ -169,6 +174,8 @@ impl Default for SizeDistributions {
             tab: ResultTab::default(),
             paste: PasteForm::default(),
             pasted: 0,
+            effort: None,
+            measured: Vec::new(),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::source::Source;
-use super::{Page, PasteForm};
+use super::{Page, PasteForm, ResultTab};
 use crate::app::command::Command;
 use crate::app::state::{Severity, State};
 use crate::app::work::{Done, Task};
@@ -90,6 +90,14 @@ impl State {
 
     /// Reads what was dropped; on the pile only if the files name sizes or passing.
     pub(in crate::app) fn read_dropped(&mut self, paths: Vec<PathBuf>) {
+        let effort = self.distributions.tab == ResultTab::Effort;
+        if let [path] = paths.as_slice()
+            && self.page == Page::SizeDistributions
+            && effort
+        {
+            self.read_effort(path.clone());
+            return;
+        }
         if self.is_busy(Task::ReadDistributions) {
             return;
         }

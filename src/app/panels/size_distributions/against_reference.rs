@@ -32,6 +32,9 @@ fn tables(comparison: &Comparison, ui: &mut egui::Ui, commands: &mut Vec<Command
             warning(&format!("{}: {note}", method.curve.method), ui);
         }
     }
+    for note in &comparison.notes {
+        warning(note, ui);
+    }
     sentence(&first_upper(SCALE_WARNING), ui);
     ui.add_space(8.0);
     norms(comparison, ui, commands);
@@ -42,7 +45,10 @@ fn tables(comparison: &Comparison, ui: &mut egui::Ui, commands: &mut Vec<Command
         let name = &method.curve.method;
         table.column(name.as_str(), "Mean percent passing of its trials");
         table.column("Error %", PERCENT_ERROR);
-        let hover = format!("Whether the error is within ± {} %", comparison.options.envelope_percent);
+        let hover = format!(
+            "Whether the error is within ± {} %",
+            comparison.options.envelope_percent
+        );
         table.column("Within", hover);
     }
     let sizes = comparison.methods.first().map_or(0, |m| m.residuals.len());
@@ -75,7 +81,10 @@ fn shifts(comparison: &Comparison, ui: &mut egui::Ui, commands: &mut Vec<Command
     table.column("Envelope", format!("The reference's size ± {envelope} %"));
     for method in &comparison.methods {
         table.column(method.curve.method.as_str(), "The method's size");
-        table.column("Shift %", "Of the reference's size; above 0 the method says coarser");
+        table.column(
+            "Shift %",
+            "Of the reference's size; above 0 the method says coarser",
+        );
         table.column("Inside", "Whether the method's size is in the envelope");
     }
     for (place, percent) in comparison.options.percentiles.iter().enumerate() {
@@ -99,7 +108,10 @@ fn shifts(comparison: &Comparison, ui: &mut egui::Ui, commands: &mut Vec<Command
     for method in &comparison.methods {
         row.push(String::new());
         let spread = fixed(method.shift.spread_percent, 1);
-        row.push(format!("{} ± {spread}", signed(method.shift.mean_percent, 1)));
+        row.push(format!(
+            "{} ± {spread}",
+            signed(method.shift.mean_percent, 1)
+        ));
         row.push(String::new());
     }
     table.row(row);
@@ -111,7 +123,8 @@ fn norms(comparison: &Comparison, ui: &mut egui::Ui, commands: &mut Vec<Command>
     let (from, to) = (comparison.span.from, comparison.span.to);
     let unit = comparison.unit;
     table.column("Method", "");
-    let hover = "2-norm of the difference over the reference's curve, in percent of the reference's";
+    let hover =
+        "2-norm of the difference over the reference's curve, in percent of the reference's";
     table.column("Norm %", hover);
     table.column("RMS difference", "Percentage points of the passing");
     for method in &comparison.methods {
@@ -156,6 +169,8 @@ fn yes_no(value: Option<bool>) -> String {
 /// As a sentence of its own.
 fn first_upper(text: &str) -> String {
     let mut letters = text.chars();
-    let first = letters.next().map(|letter| letter.to_uppercase().to_string());
+    let first = letters
+        .next()
+        .map(|letter| letter.to_uppercase().to_string());
     format!("{}{}.", first.unwrap_or_default(), letters.as_str())
 }

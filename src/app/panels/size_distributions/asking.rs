@@ -24,6 +24,22 @@ pub(in crate::app::panels) fn add_distributions(
     }
 }
 
+/// Which file has the times of steps.
+pub(in crate::app::panels) fn add_effort(
+    state: &State,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    ui.label(
+        "A table of the time that each step took: step, time and perhaps method and trial; or a column \
+         of times for each trial. Minutes, where it says nothing else.",
+    );
+    let browse = [("Browse…", DialogFor::Effort, false)];
+    if let Some(path) = path(state, "", &browse, "Add times", ui, commands) {
+        commands.push(Command::Distributions(DistributionCommand::AddEffort(path)));
+    }
+}
+
 /// Where the figure goes.
 pub(in crate::app::panels) fn save_figure(
     state: &State,

@@ -66,7 +66,14 @@ fn trials(
             trial => trial,
         };
         ui.horizontal(|ui| {
-            check(state, &format!("{method} / {text}"), text, &photos, ui, commands);
+            check(
+                state,
+                &format!("{method} / {text}"),
+                text,
+                &photos,
+                ui,
+                commands,
+            );
             weights(&photos, ui);
         });
         let named = photos.iter().any(|photo| !photo.labels.photo.is_empty());

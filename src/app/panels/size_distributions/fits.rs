@@ -12,29 +12,47 @@ pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Co
     let settings = &computed.edit.settings;
     let unit = computed.set.unit;
     sentence(
-        &format!("{} by least squares, every point alike.", settings.model.name()),
+        &format!(
+            "{} by least squares, every point alike.",
+            settings.model.name()
+        ),
         ui,
     );
     let mut parameters = Table::new("Parameters");
     parameters.column("Curve", "Method, trial; the photos of a trial are merged");
     for name in settings.model.parameter_names() {
         let is_size = name.starts_with('x');
-        let name = if is_size { format!("{name} {unit}") } else { (*name).to_owned() };
+        let name = if is_size {
+            format!("{name} {unit}")
+        } else {
+            (*name).to_owned()
+        };
         parameters.column(name, "Least-squares estimate");
         parameters.column("±", "Standard error of the estimate before it");
     }
-    parameters.column("RMSE", "Root of the mean squared residual, percentage points");
+    parameters.column(
+        "RMSE",
+        "Root of the mean squared residual, percentage points",
+    );
     parameters.column("R²", "Share of the variation that the function explains");
     parameters.column("Points", "How many points it is fitted to");
     let mut percentiles = Table::new(format!("Percentiles, {unit}"));
     percentiles.column("Curve", "Method, trial");
     for percent in PERCENTILES {
-        percentiles.column(format!("P{percent}"), format!("{percent} % of the mass passes it"));
+        percentiles.column(
+            format!("P{percent}"),
+            format!("{percent} % of the mass passes it"),
+        );
         let band = 100.0 * (1.0 - settings.level);
         let hover = format!("Confidence band of {} %", number(band, 3));
         percentiles.column(format!("P{percent} band"), hover);
     }
-    for FittedCurve { labels, fit, percentiles: sizes } in &computed.fits {
+    for FittedCurve {
+        labels,
+        fit,
+        percentiles: sizes,
+    } in &computed.fits
+    {
         let Ok(fit) = fit else {
             continue;
         };

@@ -10,16 +10,22 @@
 //! paste       the small window for a table
 //! ```
 
+mod against_reference;
 mod asking;
 mod curves;
+mod effort;
 mod files;
+mod fits;
 mod log_axis;
 mod paste;
 mod plot;
+mod repeatability;
+mod results;
+mod settings;
 mod table;
 mod welcome;
 
-pub(super) use asking::{add_distributions, save_figure, save_report};
+pub(super) use asking::{add_distributions, add_effort, save_figure, save_report};
 pub(super) use paste::paste;
 
 use crate::app::command::Command;
@@ -44,9 +50,17 @@ pub fn size_distributions(state: &State, ui: &mut egui::Ui, commands: &mut Vec<C
             egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
                 files::files(state, ui, commands);
                 ui.separator();
+                settings::settings(state, ui, commands);
+                ui.separator();
                 curves::curves(state, ui, commands);
             });
         });
+    egui::Panel::right("distribution results")
+        .resizable(true)
+        .default_size(400.0)
+        .min_size(220.0)
+        .max_size((width * 0.5).max(220.0))
+        .show(ui, |ui| results::results(state, ui, commands));
     egui::CentralPanel::default_margins().show(ui, |ui| {
         super::notice(state, ui, commands);
         plot::plot(state, ui, commands);

@@ -9,7 +9,11 @@ use crate::app::state::State;
 pub(super) fn results(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         for (tab, name, hover) in [
-            (ResultTab::Fits, "Fits", "The fitted functions and what they say"),
+            (
+                ResultTab::Fits,
+                "Fits",
+                "The fitted functions and what they say",
+            ),
             (
                 ResultTab::Reference,
                 "Against the reference",
