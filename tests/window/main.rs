@@ -28,4 +28,5 @@ mod looks;
 mod photos;
 mod random;
 mod settings;
+mod size_distributions;
 mod viewport;
