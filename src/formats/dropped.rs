@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::input::FileError;
+use super::size_distributions::no_flight_but_sizes;
 use super::{Kind, OpenOptions, Package, detect};
 use crate::fault::Fault;
 
@@ -31,6 +32,9 @@ impl Dropped {
                 Kind::Cloud(_) => (&mut dropped.options.surface, "surfaces"),
                 Kind::Reconstruction(Package::Photos, _) => (&mut photos, PHOTOS),
                 Kind::Flight(_) | Kind::Reconstruction(..) => (&mut dropped.flight, "flights"),
+                Kind::SizeDistributions => {
+                    return Err(FileError::new(path, no_flight_but_sizes()));
+                }
                 kind @ (Kind::Camera | Kind::Poses | Kind::Trajectory(_)) => {
                     return Err(no_part(path, &kind));
                 }

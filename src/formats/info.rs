@@ -7,11 +7,13 @@ use serde_json::{Value, json};
 use super::ros::Recording;
 use super::trajectory::Trajectory;
 use super::{
-    CloudFile, FileError, Kind, OpenOptions, Package, PosesFile, Reconstruction, detect,
-    open_flight, read_camera, read_cloud, read_poses, read_project, read_trajectory, ros,
+    CloudFile, DistributionColumns, FileError, Kind, OpenOptions, Package, PosesFile,
+    Reconstruction, detect, open_flight, read_camera, read_cloud, read_poses, read_project,
+    read_size_distributions, read_trajectory, ros,
 };
 use crate::camera::{Camera, Pose};
 use crate::flight::Flight;
+use crate::fragmentation::DistributionSet;
 use crate::geometry::Bounds;
 use crate::jobs::Progress;
 use crate::scale::ImageKind;
@@ -27,6 +29,10 @@ pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
         Kind::Camera => camera_info(&read_camera(path)?),
         Kind::Poses => poses_info(&read_poses(path)?),
         Kind::Trajectory(format) => trajectory_info(&read_trajectory(path, format, progress)?),
+        Kind::SizeDistributions => {
+            let (set, warnings) = read_size_distributions(path, &DistributionColumns::default())?;
+            distributions_info(&set, &warnings)
+        }
         Kind::Reconstruction(Package::Ros, path) => recording_info(&ros::read(&path, progress)?),
         Kind::Reconstruction(..) => {
             reconstruction_info(&read_project(path, progress)?.reconstruction)
@@ -93,6 +99,37 @@ fn reconstruction_info(reconstruction: &Reconstruction) -> Value {
         "warnings": reconstruction.warnings,
         "cameras": cameras,
         "photos": photos.collect::<Vec<_>>(),
+    })
+}
+
+/// Size distributions, sizes in the file's unit.
+fn distributions_info(set: &DistributionSet, warnings: &[String]) -> Value {
+    let sizes = || {
+        let points = set
+            .curves
+            .iter()
+            .flat_map(|curve| curve.distribution.points());
+        points.map(|point| point[0])
+    };
+    let curves = set.curves.iter().map(|curve| {
+        let points = curve.distribution.points();
+        json!({
+            "method": curve.labels.method,
+            "trial": curve.labels.trial,
+            "photo": curve.labels.photo,
+            "weight": curve.weight,
+            "points": points.len(),
+            "smallest": points.first(),
+            "largest": points.last(),
+        })
+    });
+    json!({
+        "kind": "size-distributions",
+        "unit": set.unit.symbol(),
+        "curves": curves.collect::<Vec<_>>(),
+        "smallest_size": sizes().min_by(f64::total_cmp),
+        "largest_size": sizes().max_by(f64::total_cmp),
+        "warnings": warnings,
     })
 }
 

@@ -111,6 +111,8 @@ pub enum Kind {
     Poses,
     /// Poses over time.
     Trajectory(TrajectoryFormat),
+    /// A table of size distributions; see [`read_size_distributions`].
+    SizeDistributions,
     /// Cameras and posed photos as this package wrote them, in this file or folder.
     Reconstruction(Package, PathBuf),
 }
@@ -151,13 +153,14 @@ impl Kind {
             Self::Camera => "a camera calibration",
             Self::Poses => "poses",
             Self::Trajectory(_) => "a trajectory",
+            Self::SizeDistributions => "size distributions",
             Self::Reconstruction(package, _) => package.in_words(),
         }
     }
 }
 
 /// Everything that can be opened, for messages.
-const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos";
+const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos; a CSV of size distributions";
 
 /// How many bytes of a file are looked at to tell its kind.
 const DETECTED_BY: usize = 4096;
@@ -221,6 +224,12 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         let text = String::from_utf8_lossy(text);
         if let Some(format) = trajectory::recognise(&text, whole, &name) {
             return Ok(Kind::Trajectory(format));
+        }
+    }
+    if matches!(extension, "csv" | "txt" | "tsv") {
+        let whole = start.len() < DETECTED_BY;
+        if size_distributions::is_table(&String::from_utf8_lossy(text), whole) {
+            return Ok(Kind::SizeDistributions);
         }
     }
     Ok(match extension {

@@ -10,6 +10,7 @@ use super::input::{FileError, read_text};
 use super::origin::FlightOrigin;
 use super::photo_checks::photo_checks;
 use super::photo_files::{PhotoFolder, fit_cameras_to_files};
+use super::size_distributions::no_flight_but_sizes;
 use super::world_frame::{Frame, Known};
 use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, read_project};
 use crate::camera::Camera;
@@ -90,6 +91,9 @@ pub fn open_flight(
     let source = match &kind {
         Kind::Flight(file) => Source::of_file(file, options, progress)?,
         Kind::Reconstruction(..) => Source::of_reconstruction(path, options, progress)?,
+        Kind::SizeDistributions => {
+            return Err(FileError::new(path, no_flight_but_sizes()));
+        }
         Kind::Cloud(_) | Kind::Camera | Kind::Poses | Kind::Trajectory(_) => {
             return Err(FileError::new(
                 path,

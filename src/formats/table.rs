@@ -2,7 +2,8 @@
 //!
 //! - The separator is a tab, a semicolon or a comma: the first of these that both the header and the
 //!   line behind it hold. Runs of blanks only where there is none. Fields may be quoted.
-//! - A byte order mark, empty lines and lines that begin with # are passed over.
+//! - A byte order mark, empty lines and lines that begin with # are passed over (but not "#4": a digit
+//!   right behind it makes it a sieve's name).
 //! - A line may end early: what is missing is empty. What stands beyond the header's columns is a
 //!   fault, because a decimal comma may have shifted it there.
 //! - Numbers may have a decimal comma where the table shows that it is one and not a thousands
@@ -64,7 +65,8 @@ impl NumberRepairs {
         match self.decimal_commas {
             0 => Vec::new(),
             count => vec![format!(
-                "decimal commas are read as decimal points (in {count} numbers, the first on line {})",
+                "decimal commas are read as decimal points ({count} {}, first on line {})",
+                if count == 1 { "number" } else { "numbers" },
                 self.first_line
             )],
         }
@@ -94,9 +96,10 @@ impl Table {
             let what = "there is a byte 0: it is no text, or text in UTF-16";
             return Err(Fault::at(line, what, "save it as CSV in UTF-8"));
         }
-        let mut records = match separator(text) {
-            Some(separator) => separated_records(text, separator)?,
-            None => blank_records(text)?,
+        let text = without_comments(text);
+        let mut records = match separator(&text) {
+            Some(separator) => separated_records(&text, separator)?,
+            None => blank_records(&text)?,
         }
         .into_iter();
         let Some(header) = records.next() else {
@@ -330,9 +333,19 @@ fn too_large() -> Fault {
     Fault::new(what, "give the table alone")
 }
 
-/// Whether a line holds data or names: not empty, no comment.
+/// Whether a line holds data or names: not empty, no comment. "#4" is a sieve's name.
 fn counts(line: &&str) -> bool {
-    !line.trim().is_empty() && !line.starts_with('#')
+    let comment = line.strip_prefix('#');
+    let comment = comment.is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()));
+    !line.trim().is_empty() && !comment
+}
+
+/// The text with empty lines in place of those that do not count, so that lines keep their numbers.
+fn without_comments(text: &str) -> String {
+    let lines = text
+        .lines()
+        .flat_map(|line| [if counts(&line) { line } else { "" }, "\n"]);
+    lines.collect()
 }
 
 /// The separator of the header and the line behind it; `None` for blanks.
@@ -340,9 +353,11 @@ fn separator(text: &str) -> Option<char> {
     let mut lines = text.lines().filter(counts);
     let (header, next) = (lines.next()?, lines.next());
     let holds = |line: &str, separator: char| {
-        let mut quoted = false;
+        // A quotation mark counts at the beginning of a field; elsewhere it is inches.
+        let (mut quoted, mut begins) = (false, true);
         line.chars().any(|c| {
-            quoted ^= c == '"';
+            quoted = if quoted { c != '"' } else { begins && c == '"' };
+            begins = !quoted && (c == separator || begins && c == ' ');
             !quoted && c == separator
         })
     };
@@ -356,7 +371,6 @@ fn separator(text: &str) -> Option<char> {
 fn separated_records(text: &str, separator: char) -> Result<Vec<Row>, Fault> {
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(separator as u8)
-        .comment(Some(b'#'))
         .flexible(true)
         .trim(csv::Trim::All)
         .has_headers(false)
@@ -464,7 +478,7 @@ pub(super) fn line_of(text: &str, record: &StringRecord) -> u64 {
 }
 
 /// A cell's number, with all its points and commas, and what follows it.
-fn split_number(cell: &str) -> (&str, &str) {
+pub(super) fn split_number(cell: &str) -> (&str, &str) {
     let bytes = cell.as_bytes();
     let run = |from: usize, is: &dyn Fn(u8) -> bool| {
         let rest = bytes.get(from..).unwrap_or_default();
@@ -496,4 +510,130 @@ fn may_be_thousands(number: &str) -> bool {
         && digits(whole)
         && rest.len() == 3
         && digits(rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(text: &str) -> Result<(Vec<Option<f64>>, Vec<String>), Fault> {
+        let table = Table::read(text)?;
+        let mut repairs = NumberRepairs::default();
+        let numbers = table
+            .rows()
+            .iter()
+            .map(|row| table.number(row, 0, &mut repairs))
+            .collect::<Result<_, Fault>>()?;
+        Ok((numbers, repairs.warnings()))
+    }
+
+    #[test]
+    fn separators_comments_quotes_and_lines() {
+        for text in [
+            "\u{feff}# c\r\n\r\na,\"b, \"\"c\"\"\"\r\n# c\r\n1,\"2, x\"\r\n",
+            "\n\n\na;\"b, \"\"c\"\"\"\n\n1;\"2, x\"\n",
+            "\n\na\tb, \"c\"\n\n1\t2, x",
+        ] {
+            let table = Table::read(text).unwrap();
+            assert_eq!(table.header(), ["a", "b, \"c\""], "{text:?}");
+            assert_eq!(
+                (table.rows().len(), table.rows()[0].line),
+                (1, table.header_line() + 2)
+            );
+            assert_eq!(table.rows()[0].cell(1).replace(", ", ","), "2,x");
+            assert_eq!(table.rows()[0].cell(7), "");
+        }
+        let table = Table::read("a b  c (d)\n1   2\n").unwrap();
+        assert_eq!(
+            (table.header(), table.rows()[0].cell(1)),
+            (&["a b".into(), "c (d)".into()][..], "2")
+        );
+        let table = Table::read("a c (d)\n1\t2\n").unwrap();
+        assert_eq!(table.header(), ["a", "c (d)"]);
+        // Semicolons in a name, commas in every line; inches; a sieve's name is no comment.
+        let table = Table::read("a (b; c),d (\")\n1,2\n#4,5\n#no data\n").unwrap();
+        assert_eq!(table.header(), ["a (b; c)", "d (\")"]);
+        assert_eq!((table.rows()[1].cell(0), table.rows()[1].line), ("#4", 3));
+        assert_eq!(table.rows().len(), 2);
+    }
+
+    #[test]
+    fn columns_are_found_as_people_write_them() {
+        let table = Table::read("Step Time (s),who,Who,\n1,2,3\n").unwrap();
+        assert_eq!(table.column("step_time_s"), Ok(0));
+        assert_eq!(table.column("Who"), Ok(2));
+        let fault = table.column("WHO").unwrap_err();
+        assert_eq!(fault.what, "2 columns are called 'WHO'");
+        let fault = table.column("when").unwrap_err();
+        assert_eq!(
+            fault.to_string(),
+            "there is no column 'when'; name one of 'Step Time (s)', 'who', 'Who', ''"
+        );
+        assert_eq!(table.name(3), "number 4");
+        assert!(table.column("").is_ok());
+    }
+
+    #[test]
+    fn numbers_are_what_they_can_only_be() {
+        let (found, said) = numbers("a;b\n1;\n-2.5e-3;\n;x\n+.5;\n1.000;\n").unwrap();
+        assert_eq!(
+            found,
+            [Some(1.0), Some(-0.0025), None, Some(0.5), Some(1.0)]
+        );
+        assert!(said.is_empty(), "{said:?}");
+        let (found, said) = numbers("a;b\n0,125;\n1,5e1;\n1,000;\n").unwrap();
+        assert_eq!(found, [Some(0.125), Some(15.0), Some(1.0)]);
+        assert_eq!(
+            said,
+            ["decimal commas are read as decimal points (3 numbers, first on line 2)"]
+        );
+        for bad in [
+            "1,000",
+            "1,000,000",
+            "1.000,5",
+            "1.2.3",
+            "1 000",
+            "1'000",
+            "x",
+            "1x",
+            "-",
+            "1e",
+            "nan",
+            "inf",
+            "1e999",
+            ".",
+            ",",
+            "--1",
+            "1/2",
+        ] {
+            let fault = numbers(&format!("a;b\n2;\n{bad};\n")).unwrap_err();
+            assert_eq!(fault.line, Some(3), "{bad}");
+            assert!(
+                fault.what.starts_with(&format!("column a: '{bad}' ")),
+                "{fault}"
+            );
+        }
+        // A comma and a point that both can only be decimal: neither says what 1,000 is.
+        assert!(numbers("a;b\n1,5;2.5\n1,000;3\n").is_err());
+        assert!(numbers("a;b\n1,5;2\n1.000;3\n").is_err());
+    }
+
+    #[test]
+    fn what_stands_too_much_is_refused() {
+        let fault = Table::read("a,b\n1,2,\n1,2,3\n").unwrap_err();
+        assert_eq!(fault.line, Some(3));
+        assert!(
+            fault
+                .what
+                .contains("3 fields for 2 columns ('3' is too many)"),
+            "{fault}"
+        );
+        let wide = format!("{}\n1\n", "a,".repeat(10_001));
+        assert!(
+            Table::read(&wide)
+                .unwrap_err()
+                .what
+                .contains("over 10000 columns")
+        );
+    }
 }

@@ -16,6 +16,16 @@ pub struct Labels {
     pub photo: String,
 }
 
+impl Labels {
+    /// As the beginning of a sentence about the distribution: "sieve / 1: ", or nothing.
+    pub(super) fn in_front(&self) -> String {
+        match self.to_string() {
+            name if name.is_empty() => name,
+            name => format!("{name}: "),
+        }
+    }
+}
+
 impl fmt::Display for Labels {
     /// Those that are known, separated by " / ".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

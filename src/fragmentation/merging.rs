@@ -148,7 +148,10 @@ fn weight(curve: &LabelledDistribution, weighting: Weighting) -> Result<f64, Fau
             "give each curve one in a column, or merge with equal weights",
         ),
     };
-    Err(Fault::new(format!("{}: {what}", curve.labels), remedy))
+    Err(Fault::new(
+        format!("{}{what}", curve.labels.in_front()),
+        remedy,
+    ))
 }
 
 impl DistributionSet {
@@ -214,10 +217,7 @@ impl DistributionSet {
                 }),
                 _ => merge(&curves, weighting, sizes),
             };
-            let name = match labels.to_string() {
-                name if name.is_empty() => name,
-                name => format!("{name}: "),
-            };
+            let name = labels.in_front();
             let found =
                 found.map_err(|fault| Fault::new(format!("{name}{}", fault.what), fault.remedy))?;
             if !found.unknown.is_empty() {
@@ -236,5 +236,160 @@ impl DistributionSet {
             });
         }
         Ok((set, warnings))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::expect_used, reason = "in a test a panic is the report")]
+mod tests {
+    use super::*;
+    use crate::units::LengthUnit;
+
+    fn curve(name: [&str; 3], weight: Option<f64>, points: &[[f64; 2]]) -> LabelledDistribution {
+        let [method, trial, photo] = name.map(str::to_owned);
+        LabelledDistribution {
+            labels: Labels {
+                method,
+                trial,
+                photo,
+            },
+            weight,
+            distribution: SizeDistribution::new(points.to_vec()).expect("a distribution"),
+        }
+    }
+
+    fn set(curves: Vec<LabelledDistribution>) -> DistributionSet {
+        DistributionSet {
+            unit: LengthUnit::Millimetre,
+            curves,
+        }
+    }
+
+    fn assert_points(found: &SizeDistribution, wanted: &[[f64; 2]]) {
+        assert_eq!(found.points().len(), wanted.len(), "{found:?}");
+        for (point, wanted) in found.points().iter().zip(wanted) {
+            assert_eq!(point[0], wanted[0]);
+            assert!((point[1] - wanted[1]).abs() < 1e-12, "{point:?} {wanted:?}");
+        }
+    }
+
+    /// By hand: at 10 (20 + 40) / 2 = 30; at 100 the first is 50 (the middle of 20 and 80 on a
+    /// logarithmic axis) and the second 80. With weights 1 and 3: (20 + 120) / 4 = 35, and so on.
+    #[test]
+    fn two_curves_by_hand() {
+        let first = curve(
+            ["a", "", ""],
+            Some(1.0),
+            &[[1.0, 5.0], [10.0, 20.0], [1000.0, 80.0]],
+        );
+        let second = curve(
+            ["b", "", ""],
+            Some(3.0),
+            &[[10.0, 40.0], [100.0, 80.0], [1000.0, 100.0]],
+        );
+        let merged = merge(&[&first, &second], Weighting::Equal, None).expect("merged");
+        assert_points(
+            &merged.distribution,
+            &[[10.0, 30.0], [100.0, 65.0], [1000.0, 90.0]],
+        );
+        assert_eq!((merged.weight, merged.unknown), (None, vec![1.0]));
+        for weighting in [Weighting::Area, Weighting::Mass] {
+            let merged = merge(&[&first, &second], weighting, None).expect("merged");
+            assert_points(
+                &merged.distribution,
+                &[[10.0, 35.0], [100.0, 72.5], [1000.0, 95.0]],
+            );
+            assert_eq!(merged.weight, Some(4.0));
+        }
+        let at = [100.0, 1000.0, 5000.0];
+        let merged = merge(&[&first, &second], Weighting::Equal, Some(&at)).expect("merged");
+        assert_points(&merged.distribution, &[[100.0, 65.0], [1000.0, 90.0]]);
+        assert_eq!(merged.unknown, [5000.0]);
+    }
+
+    /// Masses: 1 t of which 30 % pass 10 mm and 3 t of which 50 % do are 4 t of which 1.8 t pass.
+    #[test]
+    fn a_curve_of_weight_0_does_not_count() {
+        let one = curve(["a", "", ""], Some(1.0), &[[10.0, 30.0], [20.0, 60.0]]);
+        let three = curve(["b", "", ""], Some(3.0), &[[10.0, 50.0], [20.0, 80.0]]);
+        let none = curve(["c", "", ""], Some(0.0), &[[15.0, 0.0], [16.0, 1.0]]);
+        let merged = merge(&[&one, &three, &none], Weighting::Mass, None).expect("merged");
+        assert_points(&merged.distribution, &[[10.0, 45.0], [20.0, 75.0]]);
+    }
+
+    #[test]
+    fn photos_then_trials() {
+        let photo = |trial: &str, photo: &str, area: f64, first: f64| {
+            curve(
+                ["point cloud", trial, photo],
+                Some(area),
+                &[[10.0, first], [20.0, 100.0]],
+            )
+        };
+        let all = set(vec![
+            photo("1", "a", 1.0, 10.0),
+            curve(["sieve", "", ""], None, &[[10.0, 50.0], [30.0, 100.0]]),
+            photo("2", "a", 1.0, 30.0),
+            photo("1", "b", 3.0, 30.0),
+        ]);
+        let (photos, said) = all.photos_merged(Weighting::Area, None).expect("merged");
+        assert!(said.is_empty(), "{said:?}");
+        let names: Vec<String> = photos.curves.iter().map(|c| c.labels.to_string()).collect();
+        assert_eq!(names, ["point cloud / 1", "sieve", "point cloud / 2"]);
+        assert_points(
+            &photos.curves[0].distribution,
+            &[[10.0, 25.0], [20.0, 100.0]],
+        );
+        assert_eq!(photos.curves[0].weight, Some(4.0));
+        assert_eq!(photos.curves[1].distribution, all.curves[1].distribution);
+        let (methods, _) = photos
+            .trials_merged(Weighting::Equal, None)
+            .expect("merged");
+        assert_eq!(methods.curves.len(), 2);
+        assert_points(
+            &methods.curves[0].distribution,
+            &[[10.0, 27.5], [20.0, 100.0]],
+        );
+    }
+
+    #[test]
+    fn weights_that_cannot_be() {
+        let with = |weight| curve(["m", "1", "a.jpg"], weight, &[[10.0, 30.0], [20.0, 60.0]]);
+        let good = curve(
+            ["m", "1", "b.jpg"],
+            Some(1.0),
+            &[[10.0, 30.0], [20.0, 60.0]],
+        );
+        for (weight, wanted) in [
+            (
+                None,
+                "m / 1 / a.jpg: it has no area; give each curve one in a column, or merge with equal weights",
+            ),
+            (
+                Some(-1.0),
+                "m / 1 / a.jpg: its area is -1; give one that is not negative",
+            ),
+            (
+                Some(f64::NAN),
+                "m / 1 / a.jpg: its area is NaN; give one that is not negative",
+            ),
+        ] {
+            let fault =
+                merge(&[&good, &with(weight)], Weighting::Area, None).expect_err("no weight");
+            assert_eq!(fault.to_string(), wanted);
+            assert!(merge(&[&good, &with(weight)], Weighting::Equal, None).is_ok());
+        }
+        let zero = with(Some(0.0));
+        let fault = merge(&[&zero, &zero], Weighting::Mass, None).expect_err("weights of 0");
+        assert!(fault.what.contains("sum to 0"), "{fault}");
+        assert!(merge(&[], Weighting::Equal, None).is_err());
+        let fine = curve(["m", "1", "c"], None, &[[1.0, 30.0], [2.0, 60.0]]);
+        let fault = set(vec![good, fine])
+            .photos_merged(Weighting::Equal, None)
+            .expect_err("apart");
+        assert!(
+            fault.what.starts_with("m / 1: the 2 curves share fewer"),
+            "{fault}"
+        );
     }
 }

@@ -252,14 +252,17 @@ impl DistributionSet {
         let mut warnings = Vec::new();
         for curve in &self.curves {
             let named = |fault: Fault| {
-                Fault::new(format!("{}: {}", curve.labels, fault.what), fault.remedy)
+                Fault::new(
+                    format!("{}{}", curve.labels.in_front(), fault.what),
+                    fault.remedy,
+                )
             };
             let found = resample(&curve.distribution, &openings).map_err(named)?;
             if let (Some(least), Some(most)) = (found.unknown.first(), found.unknown.last()) {
                 warnings.push(format!(
-                    "{}: {} of the {} sieves of {} ({least} to {most} {}) lie outside of what was \
+                    "{}{} of the {} sieves of {} ({least} to {most} {}) lie outside of what was \
                      measured and are left out",
-                    curve.labels,
+                    curve.labels.in_front(),
                     found.unknown.len(),
                     openings.len(),
                     series.name(),
@@ -272,5 +275,167 @@ impl DistributionSet {
             });
         }
         Ok((set, warnings))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::expect_used, reason = "in a test a panic is the report")]
+mod tests {
+    use super::*;
+    use crate::fragmentation::Labels;
+
+    /// ASTM E11, table 1: the sieves without those in common use in between are powers of the fourth root
+    /// of 2 in mm, rounded, from 2^7 down; every third of R20 is 10^(3 k / 20), rounded; EN 933-2's basic
+    /// set doubles, with 31.5 for 32.
+    #[test]
+    fn series_follow_their_ratios() {
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 0.035;
+        let in_between = [6.3, 12.5, 25.0, 50.0, 100.0];
+        let e11 = SieveSeries::AstmE11.sieves();
+        let steps: Vec<f64> = (e11.iter().rev())
+            .map(|sieve| sieve.opening_mm)
+            .filter(|opening| !in_between.contains(opening))
+            .collect();
+        // From 38 um on every second step only.
+        for (step, opening) in steps.iter().enumerate().take(47) {
+            let exact = 2_f64.powf(7.0 - step as f64 / 4.0);
+            assert!(near(*opening, exact), "{opening} {exact}");
+        }
+        assert_eq!((e11.len(), steps.len()), (56, 51));
+        let iso = SieveSeries::Iso565.sieves();
+        assert_eq!(iso.len(), 24);
+        for (step, sieve) in iso.iter().enumerate() {
+            let exact = 0.045 * 10_f64.powf(3.0 * step as f64 / 20.0);
+            assert!(near(sieve.opening_mm, exact), "{sieve:?} {exact}");
+        }
+        let basic = SieveSeries::En933Basic.sieves();
+        for (step, sieve) in basic.iter().enumerate() {
+            assert!(
+                near(sieve.opening_mm, 0.0625 * 2_f64.powf(step as f64)),
+                "{sieve:?}"
+            );
+        }
+        assert_eq!(basic.len(), 12);
+    }
+
+    /// Single values that labs know by heart, from ASTM E11-01, table 1, as printed there.
+    #[test]
+    fn designations() {
+        let sieves = SieveSeries::AstmE11.sieves();
+        for (designation, opening) in [
+            ("3 in.", 75.0),
+            ("1 1/2 in.", 37.5),
+            ("3/4 in.", 19.0),
+            ("1/2 in.", 12.5),
+            ("3/8 in.", 9.5),
+            ("1/4 in.", 6.3),
+            ("No. 3 1/2", 5.6),
+            ("No. 4", 4.75),
+            ("No. 8", 2.36),
+            ("No. 10", 2.0),
+            ("No. 16", 1.18),
+            ("No. 40", 0.425),
+            ("No. 100", 0.15),
+            ("No. 200", 0.075),
+            ("No. 325", 0.045),
+            ("No. 635", 0.02),
+        ] {
+            let sieve = sieves.iter().find(|sieve| sieve.designation == designation);
+            assert_eq!(
+                sieve.map(|sieve| sieve.opening_mm),
+                Some(opening),
+                "{designation}"
+            );
+        }
+    }
+
+    /// EN 12620 names aggregates by these: set 1 is R20/3 with the basic set from 4 mm on, set 2 has 6.3,
+    /// 10, 12.5, 14, 20 and 40 mm.
+    #[test]
+    fn sets_of_aggregates() {
+        let from_1_to_63 = |series: SieveSeries| {
+            let openings = series.openings(LengthUnit::Millimetre).into_iter();
+            openings
+                .filter(|opening| (1.0..=63.0).contains(opening))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(
+            from_1_to_63(SieveSeries::En933Set1),
+            [1.0, 2.0, 4.0, 5.6, 8.0, 11.2, 16.0, 22.4, 31.5, 45.0, 63.0]
+        );
+        assert_eq!(
+            from_1_to_63(SieveSeries::En933Set2),
+            [
+                1.0, 2.0, 4.0, 6.3, 8.0, 10.0, 12.5, 14.0, 16.0, 20.0, 31.5, 40.0, 63.0
+            ]
+        );
+        for series in SieveSeries::ALL {
+            let openings = series.openings(LengthUnit::Millimetre);
+            assert!(openings.is_sorted_by(|a, b| a < b), "{}", series.name());
+            assert_eq!(openings.last(), Some(&125.0));
+        }
+        assert_eq!(
+            SieveSeries::En933Basic.openings(LengthUnit::Metre)[11],
+            0.125
+        );
+    }
+
+    /// Between 10 and 1000 the middle on a logarithmic axis is 100.
+    #[test]
+    fn resampling_interpolates_and_invents_nothing() {
+        let open =
+            SizeDistribution::new(vec![[10.0, 20.0], [1000.0, 80.0]]).expect("a distribution");
+        let found = resample(&open, &[1000.0, 1.0, 100.0, 2000.0]).expect("two inside");
+        assert_eq!(found.unknown, [1.0, 2000.0]);
+        let points = found.distribution.points();
+        assert_eq!(points.len(), 2);
+        assert!((points[0][1] - 50.0).abs() < 1e-12 && points[1] == [1000.0, 80.0]);
+        // Where everything or nothing passes that is known, and said once.
+        let closed =
+            SizeDistribution::new(vec![[10.0, 0.0], [1000.0, 100.0]]).expect("a distribution");
+        let found = resample(&closed, &[1.0, 5.0, 100.0, 2000.0, 3000.0]).expect("three known");
+        let wanted = [[5.0, 0.0], [100.0, 50.0], [2000.0, 100.0]];
+        for (point, wanted) in found.distribution.points().iter().zip(wanted) {
+            assert!(
+                point[0] == wanted[0] && (point[1] - wanted[1]).abs() < 1e-12,
+                "{point:?}"
+            );
+        }
+        assert!(found.unknown.is_empty() && found.distribution.points().len() == 3);
+        let fault = resample(&open, &[1.0, 100.0]).expect_err("one inside");
+        assert!(fault.what.contains("10 to 1000"), "{fault}");
+        assert!(resample(&closed, &[1.0, 2.0]).is_err());
+        assert!(resample(&closed, &[]).is_err());
+    }
+
+    #[test]
+    fn a_set_in_inches_at_sieves_in_millimetres() {
+        let distribution =
+            SizeDistribution::new(vec![[1.0, 10.0], [4.0, 90.0]]).expect("a distribution");
+        let set = DistributionSet {
+            unit: LengthUnit::Inch,
+            curves: vec![LabelledDistribution {
+                labels: Labels::default(),
+                weight: Some(2.0),
+                distribution,
+            }],
+        };
+        let (found, said) = set.resampled(SieveSeries::En933Basic).expect("two inside");
+        let sizes: Vec<f64> = found.curves[0]
+            .distribution
+            .points()
+            .iter()
+            .map(|p| p[0] * 25.4)
+            .collect();
+        assert!(
+            (sizes[0] - 31.5).abs() < 1e-12 && (sizes[1] - 63.0).abs() < 1e-12,
+            "{sizes:?}"
+        );
+        assert_eq!((sizes.len(), found.curves[0].weight), (2, Some(2.0)));
+        assert_eq!(said.len(), 1);
+        assert!(
+            said[0].contains("10 of the 12 sieves of EN 933-2 basic set"),
+            "{said:?}"
+        );
     }
 }
