@@ -23,10 +23,13 @@ mod distribution;
 mod distribution_set;
 mod effort;
 mod fit;
+mod gates_gaudin_schuhmann;
 mod merging;
 mod model;
+mod rosin_rammler;
 mod sieve_series;
 mod swebrec;
+mod swebrec5;
 
 pub use anova::{Anova, Repeatability, Variation, repeatability};
 pub use comparison::{
@@ -37,7 +40,10 @@ pub use distribution::SizeDistribution;
 pub use distribution_set::{DistributionSet, LabelledDistribution, Labels};
 pub use effort::{Effort, TimeSum};
 pub use fit::{Fit, FitOptions, FittedParameter, Percentile, fit};
+pub use gates_gaudin_schuhmann::{GatesGaudinSchuhmann, GatesGaudinSchuhmannError};
 pub use merging::{Merged, Weighting, merge};
 pub use model::{Curve, Model};
+pub use rosin_rammler::{RosinRammler, RosinRammlerError};
 pub use sieve_series::{Resampled, Sieve, SieveSeries, resample};
 pub use swebrec::{Swebrec, SwebrecError};
+pub use swebrec5::{Swebrec5, Swebrec5Error};

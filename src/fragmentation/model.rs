@@ -1,6 +1,6 @@
 //! The functions that size distributions are fitted with.
 
-use super::Swebrec;
+use super::{GatesGaudinSchuhmann, RosinRammler, Swebrec, Swebrec5};
 
 /// A family of functions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -61,20 +61,57 @@ impl Model {
 pub enum Curve {
     /// See [`Swebrec`].
     Swebrec(Swebrec),
+    /// See [`Swebrec5`].
+    Swebrec5(Swebrec5),
+    /// See [`RosinRammler`].
+    RosinRammler(RosinRammler),
+    /// See [`GatesGaudinSchuhmann`].
+    GatesGaudinSchuhmann(GatesGaudinSchuhmann),
 }
 
 impl Curve {
-    /// Percent passing a sieve of opening `size`, 0 to 100.
-    pub fn percent_passing(&self, size: f64) -> f64 {
+    /// The family that it is of.
+    pub fn model(&self) -> Model {
         match self {
-            Self::Swebrec(curve) => 100.0 * curve.passing(size),
+            Self::Swebrec(_) => Model::Swebrec,
+            Self::Swebrec5(_) => Model::Swebrec5,
+            Self::RosinRammler(_) => Model::RosinRammler,
+            Self::GatesGaudinSchuhmann(_) => Model::GatesGaudinSchuhmann,
         }
     }
 
-    /// The size that a percent passes.
-    pub fn size_at(&self, percent: f64) -> f64 {
+    /// Its parameters, in the order of `Model::parameter_names`.
+    pub fn parameters(&self) -> Vec<f64> {
         match self {
-            Self::Swebrec(curve) => curve.size_at(percent / 100.0),
+            Self::Swebrec(curve) => vec![curve.xmax(), curve.x50(), curve.b()],
+            Self::Swebrec5(curve) => {
+                vec![curve.xmax(), curve.x50(), curve.b(), curve.a(), curve.c()]
+            }
+            Self::RosinRammler(curve) => vec![curve.x50(), curve.n()],
+            Self::GatesGaudinSchuhmann(curve) => vec![curve.xmax(), curve.m()],
+        }
+    }
+
+    /// Percent passing a sieve of opening `size`, 0 to 100.
+    pub fn percent_passing(&self, size: f64) -> f64 {
+        let share = match self {
+            Self::Swebrec(curve) => curve.passing(size),
+            Self::Swebrec5(curve) => curve.passing(size),
+            Self::RosinRammler(curve) => curve.passing(size),
+            Self::GatesGaudinSchuhmann(curve) => curve.passing(size),
+        };
+        100.0 * share
+    }
+
+    /// The size that a percent passes. 100 % passes the largest size, which Rosin-Rammler puts at
+    /// infinity.
+    pub fn size_at(&self, percent: f64) -> f64 {
+        let share = percent / 100.0;
+        match self {
+            Self::Swebrec(curve) => curve.size_at(share),
+            Self::Swebrec5(curve) => curve.size_at(share),
+            Self::RosinRammler(curve) => curve.size_at(share),
+            Self::GatesGaudinSchuhmann(curve) => curve.size_at(share),
         }
     }
 }

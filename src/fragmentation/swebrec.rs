@@ -49,13 +49,7 @@ impl Swebrec {
         if !(x50.is_finite() && x50 > 0.0) {
             return Err(SwebrecError::Median(x50));
         }
-        // As a difference of logarithms no ratio overflows; ln_1p keeps neighbours apart.
-        let ratio = xmax / x50;
-        let spread = if ratio < 2.0 {
-            ((xmax - x50) / x50).ln_1p()
-        } else {
-            xmax.ln() - x50.ln()
-        };
+        let spread = logarithm_of_ratio(xmax, x50);
         if !(xmax.is_finite() && xmax > x50 && spread > 0.0) {
             return Err(SwebrecError::Largest { x50, xmax });
         }
@@ -133,12 +127,16 @@ impl Swebrec {
 
     /// f(x) = ln(xmax / x) / ln(xmax / x50), for 0 < x < xmax.
     fn reduced(&self, x: f64) -> f64 {
-        let logarithm = if x > 0.5 * self.xmax {
-            ((self.xmax - x) / x).ln_1p()
-        } else {
-            self.xmax.ln() - x.ln()
-        };
-        logarithm / self.spread
+        logarithm_of_ratio(self.xmax, x) / self.spread
+    }
+}
+
+/// ln(large / small). As a difference of logarithms no ratio overflows; ln_1p keeps neighbours apart.
+pub(super) fn logarithm_of_ratio(large: f64, small: f64) -> f64 {
+    if large < 2.0 * small {
+        ((large - small) / small).ln_1p()
+    } else {
+        large.ln() - small.ln()
     }
 }
 
