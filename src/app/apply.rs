@@ -171,6 +171,7 @@ impl State {
             HeldBack::Replace(command) => match *command {
                 Command::SaveAs(path) => self.start_saving(path),
                 Command::Picture(request) => self.picture = Some(request),
+                Command::Distributions(command) => self.replace_distributions(command),
                 Command::SaveGeoreferenced { path, keep_surface } => {
                     self.start_saving_georeferenced(path, keep_surface);
                 }

@@ -1,6 +1,7 @@
 //! The page of size distributions: tables dropped, pasted and taken away, fits, the reference,
 //! repeatability, time effort.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -8,12 +9,14 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use fragscale::app::Command;
 use fragscale::app::size_distributions::{Computed, DistributionCommand, Page, Settings};
-use fragscale::fragmentation::{FitOptions, Model, fit};
+use fragscale::app::work::Task;
+use fragscale::fragmentation::{FitOptions, Model, Weighting, fit};
 use fragscale::units::LengthUnit;
 use tempfile::TempDir;
 
 use crate::desk::{Desk, flight};
 use crate::dropping::drop_on;
+use crate::random::Dice;
 
 /// A sieve and a method of three trials with two photos each.
 const TRIALS: &str = "\
@@ -409,4 +412,88 @@ fn a_change_while_it_is_computed_counts() {
         computed(&desk).edit.settings.model,
         Model::GatesGaudinSchuhmann
     );
+}
+
+/// Whatever is added, set, taken away, undone and cancelled, in an order that nobody would choose.
+#[test]
+fn the_results_are_always_those_of_the_data_and_settings_of_now() {
+    let (folder, mut desk) = desk(&[("trials.csv", TRIALS)]);
+    let mut paths = vec![folder.path().join("trials.csv"), folder.path().join("none.csv")];
+    for name in ["belt", "bucket"] {
+        let path = folder.path().join(format!("{name}.csv"));
+        let text = "size_mm,percent_passing\n5,2\n10,5\n20,30\n40,80\n80,99\n";
+        fs::write(&path, text).expect("written");
+        paths.push(path);
+    }
+    let mut dice = Dice(19_380_704);
+    for step in 0..400 {
+        let mut settings = settings(&desk);
+        let command = match dice.below(12) {
+            0..=3 => {
+                let paths: Vec<&PathBuf> = paths.iter().collect();
+                let path = dice.one_of(&paths).clone();
+                Command::Distributions(DistributionCommand::Add(vec![path]))
+            }
+            4 => Command::Distributions(DistributionCommand::Remove(dice.below(4))),
+            5 if dice.below(4) == 0 => Command::Distributions(DistributionCommand::RemoveAll),
+            6 => {
+                settings.unit = dice.one_of(&LengthUnit::ALL);
+                Command::Distributions(DistributionCommand::Set(settings))
+            }
+            7 => {
+                settings.model = dice.one_of(&Model::ALL);
+                settings.merging = dice.one_of(&Weighting::ALL);
+                Command::Distributions(DistributionCommand::Set(settings))
+            }
+            8 => {
+                let methods = ["belt", "point cloud", "gone"];
+                settings.reference = Some(dice.one_of(&methods).to_owned());
+                Command::Distributions(DistributionCommand::Set(settings))
+            }
+            9 => Command::Redo,
+            10 => Command::Cancel(dice.one_of(&[Task::Fits, Task::ReadDistributions])),
+            _ => Command::Undo,
+        };
+        println!("{step}: {command:?}");
+        desk.harness.state_mut().apply(command);
+        desk.harness.state_mut().poll();
+        if step % 20 == 0 {
+            desk.harness.run_ok();
+        }
+        if step % 40 == 39 {
+            // What was cancelled is computed with the next change.
+            let mut settings = self::settings(&desk);
+            settings.level = 1.0 / f64::from(step);
+            let command = DistributionCommand::Set(settings);
+            desk.harness.state_mut().apply(Command::Distributions(command));
+            desk.settle();
+            check(&desk);
+        }
+    }
+    let app = desk.harness.state_mut();
+    while app.state().distributions.history.can_undo() {
+        app.apply(Command::Undo);
+    }
+    desk.settle();
+    assert!(desk.harness.state().state().distributions.computed.is_none());
+}
+
+fn check(desk: &Desk) {
+    let page = &desk.harness.state().state().distributions;
+    let count: usize = page.sources().iter().map(|s| s.set.curves.len()).sum();
+    // Weighted by areas that nobody gave, photos cannot be merged, and that is told.
+    if let Some(problem) = &page.problem {
+        assert!(problem.contains("it has no "), "{problem}");
+        return;
+    }
+    assert!(page.is_current());
+    let Some(computed) = &page.computed else {
+        assert_eq!(count, 0);
+        return;
+    };
+    assert_eq!(computed.edit, *page.history.now());
+    assert_eq!(computed.set.curves.len(), count);
+    let labels: BTreeSet<_> = computed.set.curves.iter().map(|c| c.labels.clone()).collect();
+    assert_eq!(labels.len(), count, "two curves with the same labels");
+    assert_eq!(computed.fits.len(), computed.trials.curves.len());
 }

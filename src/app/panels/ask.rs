@@ -8,6 +8,7 @@ use super::size_distributions::{add_distributions, add_effort, paste, save_figur
 use crate::app::actions;
 use crate::app::command::{Asking, Command};
 use crate::app::open_flight::OpenFlight;
+use crate::app::size_distributions::DistributionCommand;
 use crate::app::state::{HeldBack, PictureRequest, State};
 use crate::app::work::DialogFor;
 
@@ -124,6 +125,9 @@ fn replace(command: &Command, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             path.display().to_string()
         }
         Command::Picture(request) => request.path.display().to_string(),
+        Command::Distributions(
+            DistributionCommand::SaveFigure(path) | DistributionCommand::SaveReport(path),
+        ) => path.display().to_string(),
         _ => String::new(),
     };
     ui.label(format!("There is a file already: {path}"));

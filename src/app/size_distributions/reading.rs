@@ -8,7 +8,7 @@ use super::{Page, PasteForm, ResultTab};
 use crate::app::command::Command;
 use crate::app::state::{Severity, State};
 use crate::app::work::{Done, Task};
-use crate::formats::{self, DistributionColumns};
+use crate::formats::{self, DistributionColumns, Kind};
 
 /// What was read, file by file, or why not in a line; or what is no size distribution at all.
 #[derive(Debug)]
@@ -25,24 +25,6 @@ pub enum Read {
 fn is_table(path: &Path) -> bool {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     matches!(extension.as_deref(), Some("csv" | "tsv" | "txt"))
-}
-
-/// Whether the head of a file names sizes or percent passing: a cloud or a list of poses does not.
-fn names_passing(path: &Path) -> bool {
-    use std::io::Read;
-    let Ok(file) = formats::open_file(path) else {
-        return false;
-    };
-    let mut start = Vec::new();
-    if file.take(4096).read_to_end(&mut start).is_err() {
-        return false;
-    }
-    let text = String::from_utf8_lossy(&start).to_lowercase();
-    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
-    lines.next().is_some_and(|head| {
-        let head = head.trim_start_matches(['\u{feff}', '"', ' ']);
-        head.contains("pass") || head.starts_with("size") || head.starts_with("sieve")
-    })
 }
 
 fn source(path: &Path) -> Result<Source, String> {
@@ -88,7 +70,7 @@ impl State {
         !paths.is_empty() && paths.iter().all(|path| is_table(path))
     }
 
-    /// Reads what was dropped; on the pile only if the files name sizes or passing.
+    /// Reads what was dropped; on the pile only if the files hold size distributions.
     pub(in crate::app) fn read_dropped(&mut self, paths: Vec<PathBuf>) {
         let effort = self.distributions.tab == ResultTab::Effort;
         if let [path] = paths.as_slice()
@@ -104,7 +86,8 @@ impl State {
         let on_pile = self.page == Page::Pile;
         self.start(Task::ReadDistributions, move |progress| {
             progress.stage("reading size distributions");
-            if on_pile && !paths.iter().all(|path| names_passing(path)) {
+            let holds = |path: &PathBuf| matches!(formats::detect(path), Ok(Kind::SizeDistributions));
+            if on_pile && !paths.iter().all(holds) {
                 return Done::ReadDistributions(Read::OfFlight(paths));
             }
             let sources = paths.iter().map(|path| source(path)).collect();
