@@ -39,7 +39,7 @@ pub use comparison::{
 pub use distribution::SizeDistribution;
 pub use distribution_set::{DistributionSet, LabelledDistribution, Labels};
 pub use effort::{Effort, TimeSum};
-pub use fit::{Fit, FitOptions, FittedParameter, Percentile, fit};
+pub use fit::{Fit, FitOptions, FittedParameter, Percentile, TOPSIZE_PERCENT, fit};
 pub use gates_gaudin_schuhmann::{GatesGaudinSchuhmann, GatesGaudinSchuhmannError};
 pub use merging::{Merged, Weighting, merge};
 pub use model::{Curve, Model};

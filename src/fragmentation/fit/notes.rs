@@ -1,0 +1,178 @@
+//! What to know before trusting a fit, a sentence each.
+
+use super::coordinates::{Coordinates, Family};
+use super::points::Points;
+use super::search::Optimum;
+use super::{FitOptions, FittedParameter};
+use crate::fragmentation::Curve;
+
+/// Other optima with a sum of at most this many times the least are told.
+const NEARLY: f64 = 1.01;
+
+/// What the notes are made of.
+pub(super) struct Told<'a> {
+    pub(super) family: &'a Family,
+    pub(super) best: &'a Optimum,
+    pub(super) points: &'a Points,
+    pub(super) options: &'a FitOptions,
+    pub(super) parameters: &'a [FittedParameter],
+    /// Sum and function of the other places where the search came to rest.
+    pub(super) others: &'a [(f64, Curve)],
+    pub(super) degrees_of_freedom: usize,
+    /// Whether there are standard errors.
+    pub(super) known: bool,
+}
+
+/// Which coordinates a small change is learnt from: neither fixed nor at a bound, and with a meaning.
+pub(super) fn free(family: &Family, best: &Optimum) -> Vec<usize> {
+    let bounds = family.bounds();
+    let extended = bounds[3] == [0.0, 1.0];
+    (0..bounds.len())
+        .filter(|&index| {
+            let at = best.at[index];
+            let [low, high] = bounds[index];
+            let inside = low < high && !near(at, low, high) && !near(at, high, low);
+            let means_nothing =
+                extended && (index == 2 && best.at[3] == 0.0 || index == 4 && best.at[3] == 1.0);
+            inside && !means_nothing
+        })
+        .collect()
+}
+
+/// Whether a coordinate lies at a bound, as far as can be told.
+fn near(at: f64, bound: f64, other: f64) -> bool {
+    (at - bound).abs() <= 1e-9 * (other - bound).abs()
+}
+
+pub(super) fn notes(told: &Told) -> Vec<String> {
+    let mut notes = Vec::new();
+    if told.degrees_of_freedom == 0 {
+        notes.push(
+            "as many parameters as points: the function goes through all of them as well as it can, \
+             and nothing is left over to say how far it can be trusted"
+                .to_owned(),
+        );
+    }
+    let coordinates = &told.best.at;
+    match told.family {
+        Family::Swebrec(_) => swebrec(told, coordinates, &mut notes),
+        Family::RosinRammler(_) => {}
+        Family::GatesGaudinSchuhmann(_) => gates_gaudin_schuhmann(told, coordinates, &mut notes),
+    }
+    exponents(told, coordinates, &mut notes);
+    if told.degrees_of_freedom > 0 && !told.known {
+        notes.push(
+            "the points cannot tell the parameters apart: there are no standard errors".to_owned(),
+        );
+    }
+    another_optimum(told, &mut notes);
+    notes
+}
+
+fn swebrec(told: &Told, at: &Coordinates, notes: &mut Vec<String>) {
+    let bounds = told.family.bounds();
+    let [low, high] = bounds[0];
+    if told.options.xmax.is_none() && near(at[0], low, high) {
+        notes.push(
+            "the data do not say a largest size: xmax ran to its bound, its value means nothing, nor \
+             does that of b, which grows with it; give the largest size if it is known"
+                .to_owned(),
+        );
+    } else if told.options.xmax.is_none() && near(at[0], high, low) {
+        notes.push(format!(
+            "xmax ended at the largest size that not everything passed, {}: the data ask for a smaller \
+             one, which cannot be",
+            told.points.retained
+        ));
+    }
+    if bounds[3] == [0.0, 1.0] && at[3] == 0.0 {
+        notes.push(
+            "a ended at 0: only the term of the fines is left, and b means nothing".to_owned(),
+        );
+    }
+    if bounds[3] == [0.0, 1.0] && at[3] == 1.0 {
+        notes.push("a ended at 1: it is the Swebrec function, and c means nothing".to_owned());
+    }
+}
+
+fn gates_gaudin_schuhmann(told: &Told, at: &Coordinates, notes: &mut Vec<String>) {
+    let [low, high] = told.family.bounds()[0];
+    if told.options.xmax.is_some() {
+        return;
+    }
+    if near(at[0], high, low) {
+        notes.push(
+            "the data do not say a largest size: xmax ran to its bound, its value means nothing"
+                .to_owned(),
+        );
+    } else if at[0] < 0.0 {
+        notes.push(format!(
+            "xmax lies below {}, which not everything passed: it is where the straight line reaches \
+             100 %, not the largest fragment",
+            told.points.retained
+        ));
+    }
+}
+
+/// Exponents at their bounds.
+fn exponents(told: &Told, at: &Coordinates, notes: &mut Vec<String>) {
+    let bounds = told.family.bounds();
+    for (index, parameter) in told.parameters.iter().enumerate() {
+        let [low, high] = bounds[index];
+        let exponent = ["b", "c", "n", "m"].contains(&parameter.name);
+        let meant = free_of_meaning(told.family, at, index);
+        if exponent
+            && meant
+            && low < high
+            && (near(at[index], low, high) || near(at[index], high, low))
+        {
+            notes.push(format!(
+                "{} ran to its bound: the data ask for a curve that is {} than any of use",
+                parameter.name,
+                if near(at[index], low, high) {
+                    "flatter"
+                } else {
+                    "steeper"
+                }
+            ));
+        }
+    }
+}
+
+fn free_of_meaning(family: &Family, at: &Coordinates, index: usize) -> bool {
+    let extended = family.bounds()[3] == [0.0, 1.0];
+    !(extended && (index == 2 && at[3] == 0.0 || index == 4 && at[3] == 1.0))
+}
+
+/// Another place with nearly the same sum and other parameters.
+fn another_optimum(told: &Told, notes: &mut Vec<String>) {
+    let best = told.best.sum;
+    // Where all residuals are rounding, their ratio means nothing.
+    if best < 1e-12 {
+        return;
+    }
+    for (sum, curve) in told.others {
+        if *sum > NEARLY * best {
+            break;
+        }
+        let parameters = curve.parameters();
+        let differ = told
+            .parameters
+            .iter()
+            .zip(&parameters)
+            .any(|(a, b)| (a.value - b).abs() > 0.05 * a.value.abs().max(b.abs()));
+        if differ {
+            let names = told.parameters.iter().map(|parameter| parameter.name);
+            let values: Vec<String> = names
+                .zip(&parameters)
+                .map(|(name, value)| format!("{name} {value:.4}"))
+                .collect();
+            notes.push(format!(
+                "other parameters fit nearly as well ({}; residual sum {:.2} % above)",
+                values.join(", "),
+                100.0 * (sum / best - 1.0)
+            ));
+            return;
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! Swebrec and its extension in coordinates u, d, ln k, a, ln c.
+//!
+//! With t = ln(x / r) for a size r amid the points, that stays where it is:
+//!
+//! ```text
+//! u = 1 / ln(xmax / r)
+//! f(x)^b = exp(k (ln(1 - u t) / u - d)),    k = b u,    d = ln(1 - u t50) / u,    t50 = ln(x50 / r)
+//! ```
+//!
+//! For u -> 0, xmax without end, this becomes exp(-k (t - t50)), the log-logistic curve. So what is
+//! a valley without end in xmax and b is a short way in u at almost the same k, and the bounds of
+//! xmax are bounds of u alone. Swebrec itself is the extension with a = 1.
+
+use super::coordinates::{
+    Bounds, Coordinates, EXPONENT, FARTHEST, MOST, Share, geometric, sum_of_squares,
+};
+use super::points::Points;
+use crate::fragmentation::swebrec5::ln_exp_m1;
+use crate::fragmentation::{Curve, Swebrec, Swebrec5};
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SwebrecCoordinates {
+    /// ln r.
+    ln_middle: f64,
+    /// Lowest and highest u; equal where xmax is given.
+    u: [f64; 2],
+    /// The xmax that belongs to the highest u.
+    smallest_xmax: f64,
+    extended: bool,
+}
+
+impl SwebrecCoordinates {
+    pub(super) fn new(points: &Points, xmax: Option<f64>, extended: bool) -> Self {
+        let smallest_xmax = xmax.unwrap_or(points.retained);
+        let apart = 0.25 * points.range.max(0.1);
+        let ln_middle = points.ln_median.min(smallest_xmax.ln() - apart);
+        let highest = 1.0 / (smallest_xmax.ln() - ln_middle);
+        Self {
+            ln_middle,
+            u: match xmax {
+                Some(_) => [highest; 2],
+                None => [1.0 / (FARTHEST + 1.0 / highest), highest],
+            },
+            smallest_xmax,
+            extended,
+        }
+    }
+
+    pub(super) fn bounds(&self) -> Bounds {
+        // Beyond, x50 leaves what an f64 can hold.
+        let d = (300.0 / self.u[1]).min(FARTHEST);
+        if self.extended {
+            return [self.u, [-d, d], EXPONENT, [0.0, 1.0], EXPONENT];
+        }
+        [self.u, [-d, d], EXPONENT, [1.0; 2], [0.0; 2]]
+    }
+
+    pub(super) fn share(&self, at: &Coordinates, ln_size: f64) -> Share {
+        let &[u, d, ln_k, a, ln_c] = at;
+        let t = ln_size - self.ln_middle;
+        // ln(xmax / x); of a size at xmax only rounding is left.
+        let below = 1.0 / u - t;
+        if below < 1e-13 * (1.0 + ln_size.abs()) {
+            return Share {
+                share: 1.0,
+                gradient: [0.0; MOST],
+                slope: 0.0,
+            };
+        }
+        let k = ln_k.exp();
+        let bent = if u * t < 0.5 {
+            (-u * t).ln_1p() / u
+        } else {
+            (u * below).ln() / u
+        };
+        let bent_by_u = (-t / (1.0 - u * t) - bent) / u;
+        // Beyond e^300 nothing passes, and its square is still a number.
+        let coarse = a * (k * (bent - d)).min(300.0).exp();
+        let mut by_u = coarse * k * bent_by_u;
+        let mut by_d = -coarse * k;
+        let mut by_size = -coarse * k / (1.0 - u * t);
+        let (mut fines, mut by_a, mut by_c) = (0.0, 0.0, 0.0);
+        if self.extended {
+            let c = ln_c.exp();
+            // ln(xmax / x50).
+            let spread = (u * d).exp() / u;
+            let steep = |y: f64| -1.0 / (-y).exp_m1();
+            let log = ln_exp_m1(below) - ln_exp_m1(spread);
+            let full = (c * log).min(300.0).exp();
+            fines = (1.0 - a) * full;
+            by_u += fines * c * (-steep(below) / (u * u) - steep(spread) * spread * (d - 1.0 / u));
+            by_d -= fines * c * steep(spread) * u * spread;
+            by_size -= fines * c * steep(below);
+            by_c = fines * c * log;
+            by_a = (k * (bent - d)).min(300.0).exp() - full;
+        }
+        let share = 1.0 / (1.0 + coarse + fines);
+        // dP = -P^2 d(1 / P).
+        let change = -share * share;
+        Share {
+            share,
+            gradient: [
+                change * by_u,
+                change * by_d,
+                change * coarse * k * (bent - d),
+                change * by_a,
+                change * by_c,
+            ],
+            slope: change * by_size,
+        }
+    }
+
+    /// For every u of a grid (and a), the exponents with the least sum at the median of the points.
+    pub(super) fn starts(&self, points: &Points) -> Vec<(Coordinates, Bounds)> {
+        let range = points.range.max(0.1);
+        let to_smallest = 1.0 / self.u[1];
+        let above = geometric(0.01, 30.0, 12).map(|above| 1.0 / (to_smallest + above * range));
+        let mut us: Vec<f64> = vec![self.u[1]];
+        if self.u[0] < self.u[1] {
+            us.extend(above.filter(|u| *u > self.u[0]));
+            us.push(self.u[0]);
+        }
+        let shares: &[f64] = if self.extended {
+            &[0.0, 0.02, 0.2, 0.5, 0.8, 0.98, 1.0]
+        } else {
+            &[1.0]
+        };
+        let mut starts = Vec::new();
+        for u in us {
+            for best in self.best_exponents(points, u, shares, range) {
+                let mut bounds = self.bounds();
+                // At a bound the search runs along it.
+                if u == self.u[0] || u == self.u[1] {
+                    bounds[0] = [u; 2];
+                }
+                if best.1[3] == 0.0 || best.1[3] == 1.0 {
+                    bounds[3] = [best.1[3]; 2];
+                }
+                starts.push((best.0, best.1, bounds));
+            }
+        }
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        starts
+            .into_iter()
+            .map(|(_, at, bounds)| (at, bounds))
+            .collect()
+    }
+
+    /// At one u, for each share a, the sum and the coordinates of the best k and c of a grid.
+    fn best_exponents(
+        &self,
+        points: &Points,
+        u: f64,
+        shares: &[f64],
+        range: f64,
+    ) -> Vec<(f64, Coordinates)> {
+        let t50 = (points.ln_median - self.ln_middle).min(0.999 / u);
+        let d = (-u * t50).ln_1p() / u;
+        let spread = (u * d).exp() / u;
+        let within = |exponent: f64| exponent.clamp(1.1e-3, 0.9e3);
+        let ks: Vec<f64> = geometric(0.3, 100.0, 15)
+            .map(|k| within(k / range))
+            .collect();
+        let cs: Vec<f64> = if self.extended {
+            geometric(0.2, 100.0, 15)
+                .map(|c| within(c / range))
+                .collect()
+        } else {
+            vec![1.0]
+        };
+        // The two terms at every point, before they are weighed.
+        let terms = |exponents: &[f64], log: &dyn Fn(f64) -> f64| -> Vec<Vec<f64>> {
+            let of = |exponent: f64| {
+                let sizes = points.points.iter();
+                let below = sizes.map(|point| 1.0 / u - (point.ln_size - self.ln_middle));
+                below
+                    .map(|y| {
+                        if y > 1e-12 {
+                            (exponent * log(y)).min(300.0).exp()
+                        } else {
+                            0.0
+                        }
+                    })
+                    .collect()
+            };
+            exponents.iter().map(|exponent| of(*exponent)).collect()
+        };
+        let coarse = terms(&ks, &|y| (y / spread).ln() / u);
+        let fines = terms(&cs, &|y| ln_exp_m1(y) - ln_exp_m1(spread));
+        let mut best = Vec::new();
+        for &a in shares {
+            let mut least = (f64::INFINITY, [u, d, 0.0, a, 0.0]);
+            for (k, coarse) in ks.iter().zip(&coarse) {
+                for (c, fines) in cs.iter().zip(&fines) {
+                    let share = |index: usize, _| {
+                        1.0 / (1.0 + a * coarse[index] + (1.0 - a) * fines[index])
+                    };
+                    let sum = sum_of_squares(points, share);
+                    if sum < least.0 {
+                        let ln_c = if self.extended { c.ln() } else { 0.0 };
+                        least = (sum, [u, d, k.ln(), a, ln_c]);
+                    }
+                }
+            }
+            best.push(least);
+        }
+        best
+    }
+
+    pub(super) fn curve(&self, at: &Coordinates) -> Option<Curve> {
+        let &[u, d, ln_k, a, ln_c] = at;
+        let xmax = if u == self.u[1] {
+            self.smallest_xmax
+        } else {
+            (self.ln_middle + 1.0 / u).exp()
+        };
+        let x50 = (self.ln_middle - (u * d).exp_m1() / u).exp();
+        let b = ln_k.exp() / u;
+        if self.extended {
+            return Swebrec5::new(x50, xmax, b, a, ln_c.exp())
+                .ok()
+                .map(Curve::Swebrec5);
+        }
+        Swebrec::new(x50, xmax, b).ok().map(Curve::Swebrec)
+    }
+
+    pub(super) fn parameter_gradients(&self, at: &Coordinates) -> [Coordinates; MOST] {
+        let &[u, d, ln_k, _, ln_c] = at;
+        let mut gradients = [[0.0; MOST]; MOST];
+        gradients[0][0] = -(self.ln_middle + 1.0 / u).exp() / (u * u);
+        let t50 = -(u * d).exp_m1() / u;
+        let x50 = (self.ln_middle + t50).exp();
+        gradients[1][0] = x50 * (-d * (u * d).exp() - t50) / u;
+        gradients[1][1] = -x50 * (u * d).exp();
+        let b = ln_k.exp() / u;
+        gradients[2][0] = -b / u;
+        gradients[2][2] = b;
+        gradients[3][3] = 1.0;
+        gradients[4][4] = ln_c.exp();
+        gradients
+    }
+}
