@@ -35,8 +35,14 @@ fn with_distributions(state: &State, asking: Asking) -> Option<Command> {
     computed.then_some(Command::Ask(Some(asking)))
 }
 
+/// What is done in sight of the pile.
+fn on_pile(state: &State, command: Command) -> Option<Command> {
+    let in_sight = state.page == Page::Pile;
+    in_sight.then(|| with_flight(state, command)).flatten()
+}
+
 fn with_photo(state: &State, command: Command) -> Option<Command> {
-    let open = state.open.as_ref()?;
+    let open = state.open.as_ref().filter(|_| state.page == Page::Pile)?;
     open.selected.map(|_| command)
 }
 
@@ -115,7 +121,7 @@ pub const PICTURE: Action = Action {
     label: "Save picture…",
     hover: "Write the viewport, or the corner-ray figure, as a PNG of any size",
     shortcut: keys(Modifiers::COMMAND, Key::P),
-    command: |state| with_flight(state, Command::Ask(Some(Asking::Picture))),
+    command: |state| on_pile(state, Command::Ask(Some(Asking::Picture))),
 };
 /// See its `hover`.
 pub const CLOSE: Action = Action {
@@ -196,14 +202,14 @@ pub const NEXT: Action = Action {
     label: "Next photo",
     hover: "Select the next photo of the table",
     shortcut: keys(Modifiers::NONE, Key::ArrowDown),
-    command: |state| with_flight(state, Command::SelectBy(1)),
+    command: |state| on_pile(state, Command::SelectBy(1)),
 };
 /// See its `hover`.
 pub const PREVIOUS: Action = Action {
     label: "Previous photo",
     hover: "Select the photo above in the table",
     shortcut: keys(Modifiers::NONE, Key::ArrowUp),
-    command: |state| with_flight(state, Command::SelectBy(-1)),
+    command: |state| on_pile(state, Command::SelectBy(-1)),
 };
 /// See its `hover`.
 pub const CHOOSE: Action = Action {
@@ -214,7 +220,7 @@ pub const CHOOSE: Action = Action {
         let open = state.open.as_ref()?;
         let photo = open.selected?;
         let chosen = *open.history.now().chosen.get(photo)?;
-        Some(Command::Choose(photo, !chosen))
+        on_pile(state, Command::Choose(photo, !chosen))
     },
 };
 /// See its `hover`.
@@ -222,28 +228,28 @@ pub const TOP: Action = Action {
     label: "From above",
     hover: "Look straight down, north up",
     shortcut: keys(Modifiers::NONE, Key::T),
-    command: |state| with_flight(state, Command::Look(Look::Top)),
+    command: |state| on_pile(state, Command::Look(Look::Top)),
 };
 /// See its `hover`.
 pub const FRONT: Action = Action {
     label: "From the front",
     hover: "Look to the north, level",
     shortcut: keys(Modifiers::NONE, Key::F),
-    command: |state| with_flight(state, Command::Look(Look::Front)),
+    command: |state| on_pile(state, Command::Look(Look::Front)),
 };
 /// See its `hover`.
 pub const SIDE: Action = Action {
     label: "From the side",
     hover: "Look to the west, level",
     shortcut: keys(Modifiers::NONE, Key::S),
-    command: |state| with_flight(state, Command::Look(Look::Side)),
+    command: |state| on_pile(state, Command::Look(Look::Side)),
 };
 /// See its `hover`.
 pub const FIT: Action = Action {
     label: "Show everything",
     hover: "Bring the whole flight into sight",
     shortcut: keys(Modifiers::NONE, Key::Home),
-    command: |state| with_flight(state, Command::Look(Look::Fit)),
+    command: |state| on_pile(state, Command::Look(Look::Fit)),
 };
 /// See its `hover`.
 pub const FIT_SELECTED: Action = Action {
@@ -264,7 +270,7 @@ pub const MEASURE: Action = Action {
     label: "Measure a distance",
     hover: "Click two points on the surface",
     shortcut: keys(Modifiers::NONE, Key::M),
-    command: |state| with_flight(state, Command::ToggleMeasure),
+    command: |state| on_pile(state, Command::ToggleMeasure),
 };
 /// See its `hover`.
 pub const ADD_DISTRIBUTIONS: Action = Action {

@@ -138,6 +138,9 @@ impl State {
     fn go(&mut self, command: Command) {
         self.asking = None;
         self.after_saving = None;
+        if command != Command::Quit && command != Command::Close {
+            self.page = Page::Pile;
+        }
         match command {
             Command::Open(path) => self.start_opening(vec![path], false),
             Command::DropFlight(paths) => self.start_opening(paths, false),

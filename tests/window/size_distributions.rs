@@ -418,7 +418,10 @@ fn a_change_while_it_is_computed_counts() {
 #[test]
 fn the_results_are_always_those_of_the_data_and_settings_of_now() {
     let (folder, mut desk) = desk(&[("trials.csv", TRIALS)]);
-    let mut paths = vec![folder.path().join("trials.csv"), folder.path().join("none.csv")];
+    let mut paths = vec![
+        folder.path().join("trials.csv"),
+        folder.path().join("none.csv"),
+    ];
     for name in ["belt", "bucket"] {
         let path = folder.path().join(format!("{name}.csv"));
         let text = "size_mm,percent_passing\n5,2\n10,5\n20,30\n40,80\n80,99\n";
@@ -465,7 +468,9 @@ fn the_results_are_always_those_of_the_data_and_settings_of_now() {
             let mut settings = self::settings(&desk);
             settings.level = 1.0 / f64::from(step);
             let command = DistributionCommand::Set(settings);
-            desk.harness.state_mut().apply(Command::Distributions(command));
+            desk.harness
+                .state_mut()
+                .apply(Command::Distributions(command));
             desk.settle();
             check(&desk);
         }
@@ -475,7 +480,14 @@ fn the_results_are_always_those_of_the_data_and_settings_of_now() {
         app.apply(Command::Undo);
     }
     desk.settle();
-    assert!(desk.harness.state().state().distributions.computed.is_none());
+    assert!(
+        desk.harness
+            .state()
+            .state()
+            .distributions
+            .computed
+            .is_none()
+    );
 }
 
 fn check(desk: &Desk) {
@@ -493,7 +505,12 @@ fn check(desk: &Desk) {
     };
     assert_eq!(computed.edit, *page.history.now());
     assert_eq!(computed.set.curves.len(), count);
-    let labels: BTreeSet<_> = computed.set.curves.iter().map(|c| c.labels.clone()).collect();
+    let labels: BTreeSet<_> = computed
+        .set
+        .curves
+        .iter()
+        .map(|c| c.labels.clone())
+        .collect();
     assert_eq!(labels.len(), count, "two curves with the same labels");
     assert_eq!(computed.fits.len(), computed.trials.curves.len());
 }

@@ -38,6 +38,7 @@ impl State {
                 edit.settings = settings;
                 self.edit_distributions(edit);
             }
+            DistributionCommand::Compute => self.start_computing(),
             DistributionCommand::Show(curves, shown) => {
                 for labels in curves {
                     if shown {

@@ -22,6 +22,8 @@ pub enum DistributionCommand {
     RemoveAll,
     /// Looks at them in another way.
     Set(Settings),
+    /// Computes once more what was cancelled.
+    Compute,
     /// Draws these curves, or not.
     Show(Vec<Labels>, bool),
     /// Plots something else.

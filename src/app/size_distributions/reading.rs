@@ -86,7 +86,8 @@ impl State {
         let on_pile = self.page == Page::Pile;
         self.start(Task::ReadDistributions, move |progress| {
             progress.stage("reading size distributions");
-            let holds = |path: &PathBuf| matches!(formats::detect(path), Ok(Kind::SizeDistributions));
+            let holds =
+                |path: &PathBuf| matches!(formats::detect(path), Ok(Kind::SizeDistributions));
             if on_pile && !paths.iter().all(holds) {
                 return Done::ReadDistributions(Read::OfFlight(paths));
             }

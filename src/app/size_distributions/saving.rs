@@ -107,7 +107,12 @@ fn contents(computed: &Computed) -> FigureContents {
         return exports::figure_of_comparison(comparison);
     }
     let names: Vec<String> = computed.fits.iter().map(|f| f.labels.to_string()).collect();
-    let curves = computed.trials.curves.iter().zip(&computed.fits).zip(&names);
+    let curves = computed
+        .trials
+        .curves
+        .iter()
+        .zip(&computed.fits)
+        .zip(&names);
     let fitted = curves.filter_map(|((curve, fitted), name)| {
         Some(FittedDistribution {
             name,

@@ -11,6 +11,7 @@ use crate::app::command::Command;
 use crate::app::size_distributions::drawing::{Area, Drawing, MethodDrawing};
 use crate::app::size_distributions::{Computed, DistributionCommand, PlotOf};
 use crate::app::state::State;
+use crate::app::work::Task;
 use crate::exports::{Dash, Look, Marker};
 
 /// Draws what is above the plot, and the plot.
@@ -40,6 +41,14 @@ pub(super) fn plot(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>
             match &state.distributions.problem {
                 Some(problem) => {
                     ui.colored_label(ui.visuals().error_fg_color, problem);
+                }
+                None if !state.work.is_running(Task::Fits) => {
+                    ui.weak("Cancelled; what is shown is the result before");
+                    let again = ui.button("Compute");
+                    if again.on_hover_text("Fit and compare the curves of now").clicked() {
+                        let command = DistributionCommand::Compute;
+                        commands.push(Command::Distributions(command));
+                    }
                 }
                 None => {
                     ui.spinner();
