@@ -122,7 +122,7 @@ fn the_page_opens_without_a_flight_and_with_one() {
     desk.click(Role::Tab, "Time effort");
     let steps = table(&desk, "Measured by this program, s");
     let names: Vec<&str> = steps.iter().map(|row| row[0].as_str()).collect();
-    assert_eq!(names, ["Opening the flight", "Computing scales", "Total"]);
+    assert_eq!(names, ["Opening the flight", "Computing scales", "Total", "Average"]);
     desk.click(Role::Tab, "Pile");
     assert_eq!(desk.rows().len(), 9, "the flight is still there");
 }
@@ -384,7 +384,8 @@ fn times_of_steps_are_read_from_a_file() {
     let rows = table(&desk, "Time effort: effort.csv, min");
     assert_eq!(rows[0], ["Fly", "4.00", "6.00", "10.0", "5.00"]);
     assert_eq!(rows[1], ["Delineate", "20.0", "30.0", "50.0", "25.0"]);
-    assert_eq!(rows[2], ["Total", "24.0", "36.0", "60.0", "15.0"]);
+    assert_eq!(rows[2], ["Total", "24.0", "36.0", "60.0", "30.0"]);
+    assert_eq!(rows[3], ["Average", "12.0", "18.0", "30.0", "15.0"]);
 }
 
 #[test]

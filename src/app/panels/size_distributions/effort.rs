@@ -66,22 +66,27 @@ fn table(name: &str, effort: &Effort) -> Table {
     }
     table.column("Total", "Of the times that are known");
     table.column("Average", "Of the times that are known");
-    let row = |name: &str, times: Vec<Option<f64>>, sum: TimeSum| {
-        let mut row = vec![name.to_owned()];
-        row.extend(times.into_iter().map(time));
-        row.push(time((sum.known > 0).then_some(sum.total)));
-        row.push(time(sum.average()));
-        row
-    };
-    let columns = effort.columns().len();
+    let columns = 0..effort.columns().len();
     for (place, step) in effort.steps().iter().enumerate() {
-        let times = (0..columns).map(|column| effort.seconds(place, column));
-        table.row(row(step, times.collect(), effort.of_step(place)));
+        let sum = effort.of_step(place);
+        let mut row = vec![step.clone()];
+        let times = columns.clone().map(|column| effort.seconds(place, column));
+        row.extend(times.chain([sum.known_total(), sum.average()]).map(time));
+        table.row(row);
     }
-    let totals = (0..columns).map(|column| {
-        let sum = effort.of_column(column);
-        (sum.known > 0).then_some(sum.total)
-    });
-    table.row(row("Total", totals.collect(), effort.of_all()));
+    // Where both meet: the average total of a column, that of a step, the average time.
+    let all = effort.of_all();
+    let of_columns = |of: fn(&TimeSum) -> Option<f64>| {
+        let sums = columns.clone().map(|column| effort.of_column(column));
+        sums.map(move |sum| of(&sum))
+    };
+    let mut row = vec!["Total".to_owned()];
+    row.extend(of_columns(TimeSum::known_total).map(time));
+    row.extend([all.known_total(), effort.of_column_totals().average()].map(time));
+    table.row(row);
+    let mut row = vec!["Average".to_owned()];
+    row.extend(of_columns(TimeSum::average).map(time));
+    row.extend([effort.of_step_totals().average(), all.average()].map(time));
+    table.row(row);
     table
 }
