@@ -7,7 +7,9 @@
 //!
 //! With the environment variable FRAGSCALE_BACKTRACE set, a panic prints its place as usual.
 
+mod anova;
 mod check;
+mod effort;
 mod export;
 mod flight_arguments;
 mod georeference;
@@ -63,6 +65,10 @@ enum Command {
     Check(check::CheckArguments),
     /// Bring a reconstruction in a frame of its own to the world by known positions or distances.
     Georeference(georeference::GeoreferenceArguments),
+    /// Analyse the variance of values in groups: does a measurement repeat?
+    Anova(anova::AnovaArguments),
+    /// Sum up the time that each step of each method or trial took.
+    Effort(effort::EffortArguments),
     /// Say what a file or folder holds.
     Info(InfoArguments),
     /// Make a simulated flight whose every answer is known.
@@ -253,6 +259,14 @@ pub fn run() -> ExitCode {
         Command::Georeference(arguments) => (
             None,
             Box::new(move |progress| georeference::georeference(&arguments, progress)),
+        ),
+        Command::Anova(arguments) => (
+            arguments.output.clone(),
+            Box::new(move |_| anova::anova(&arguments)),
+        ),
+        Command::Effort(arguments) => (
+            arguments.output.clone(),
+            Box::new(move |_| effort::effort(&arguments)),
         ),
         Command::Info(arguments) => (None, Box::new(move |progress| info(&arguments, progress))),
         Command::Sample(arguments) => {

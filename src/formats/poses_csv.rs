@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::input::text_from_bytes;
-use super::table::{line_of, without_spaced_quotes};
+use super::table::{self, without_spaced_quotes};
 use crate::camera::Pose;
 use crate::fault::Fault;
 
@@ -111,6 +111,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
         return Err(Fault::new("it has no photos", "give a line for each photo"));
     }
     Ok(file)
+}
+
+/// The line, from 1, on which a record begins.
+fn line_of(text: &str, record: &csv::StringRecord) -> u64 {
+    table::line_of(text, record, |line| {
+        line.is_empty() || line.starts_with('#')
+    })
 }
 
 struct Columns {

@@ -385,7 +385,7 @@ fn separated_records(text: &str, separator: char) -> Result<Vec<Row>, Fault> {
         if record.iter().all(str::is_empty) {
             continue;
         }
-        let line = line_of(text, &record);
+        let line = line_of(text, &record, str::is_empty);
         let cells = without_spaced_quotes(record);
         push(&mut rows, Row { line, cells })?;
     }
@@ -464,16 +464,14 @@ pub(super) fn without_spaced_quotes(record: StringRecord) -> StringRecord {
 }
 
 /// The line, from 1, on which a record begins. The csv crate places it where its search began: in
-/// front of the comments and empty lines that it skipped.
-pub(super) fn line_of(text: &str, record: &StringRecord) -> u64 {
+/// front of the lines that it `skips`.
+pub(super) fn line_of(text: &str, record: &StringRecord, skips: impl Fn(&str) -> bool) -> u64 {
     let Some(position) = record.position() else {
         return 1;
     };
     let begin = usize::try_from(position.byte()).unwrap_or(usize::MAX);
     let rest = text.get(begin..).unwrap_or_default();
-    let skipped = rest
-        .lines()
-        .take_while(|line| line.is_empty() || line.starts_with('#'));
+    let skipped = rest.lines().take_while(|line| skips(line));
     position.line() + skipped.count() as u64
 }
 

@@ -1,18 +1,26 @@
 //! What is learnt from size distributions, going out: tables for people, JSON for programs, CSV, the
 //! figure as SVG and PNG, and the report.
 
+mod anova;
+mod comparison;
+mod effort;
 mod figure;
+mod report;
+mod text_table;
 
+pub use anova::{AnovaReport, anova_csv, anova_json, anova_table};
+pub use comparison::{comparison_csv, comparison_json, comparison_text};
+pub use effort::{effort_csv, effort_json, effort_text};
 pub use figure::{
     Band, Dash, FigureContents, FittedDistribution, Look, Marker, Panel, Series, SizeAxis,
     SizeTick, figure_of_comparison, figure_of_fits, figure_png, figure_svg,
 };
+pub use report::{ComparisonReport, comparison_report};
 
 /// A method's name for people.
 fn method_name(method: &str) -> &str {
-    if method.is_empty() {
-        "measured"
-    } else {
-        method
+    match method {
+        "" => "measured",
+        name => name,
     }
 }

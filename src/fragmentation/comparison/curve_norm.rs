@@ -140,7 +140,7 @@ fn integral(function: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
 #[allow(clippy::expect_used, reason = "in a test a panic is the report")]
 mod tests {
     use super::*;
-    use crate::fragmentation::Swebrec;
+    use crate::fragmentation::{GatesGaudinSchuhmann, RosinRammler, Swebrec};
 
     fn near(found: f64, expected: f64, relative: f64) {
         assert!(
@@ -208,6 +208,42 @@ mod tests {
         }
         let same = CurveNorm::between(&reference, &reference, span);
         assert_eq!((same.rms_difference, same.relative_percent), (0.0, 0.0));
+    }
+
+    /// Gates-Gaudin-Schuhmann is a power of the size up to its topsize, where it has a kink: with
+    /// u = ln(size / 100), e^(m u) from ln(0.01) on, and 1 - e^u from ln(0.5) on for the one that ends
+    /// at 50.
+    #[test]
+    fn gates_gaudin_schuhmann_in_closed_form() {
+        let power = |xmax, m| {
+            let curve = GatesGaudinSchuhmann::new(xmax, m).expect("a curve");
+            Curve::GatesGaudinSchuhmann(curve)
+        };
+        let span = Span::of(&power(100.0, 1.0)).expect("a span");
+        near(span.from, 1.0, 1e-12);
+        assert_eq!((span.to, span.to_percent), (100.0, 100.0));
+        let norm = CurveNorm::between(&power(50.0, 1.0), &power(100.0, 1.0), span);
+        // Below 50 the one is twice the other.
+        let below = (0.25 - 1e-4) / 2.0;
+        let above = 2.0_f64.ln() - 2.0 * 0.5 + (1.0 - 0.25) / 2.0;
+        let whole = (1.0 - 1e-4) / 2.0;
+        near(
+            norm.relative_percent,
+            100.0 * ((below + above) / whole).sqrt(),
+            1e-10,
+        );
+        let mean_square = (below + above) / 100.0_f64.ln();
+        near(norm.rms_difference, 100.0 * mean_square.sqrt(), 1e-10);
+    }
+
+    /// Rosin-Rammler has no topsize: the span ends at its P99.
+    #[test]
+    fn without_a_topsize_the_span_ends_at_p99() {
+        let curve = RosinRammler::new(40.0, 1.0).expect("a curve");
+        let span = Span::of(&Curve::RosinRammler(curve)).expect("a span");
+        // 2^-(x / 40) = 0.01.
+        near(span.to, 40.0 * 100.0_f64.log2(), 1e-12);
+        assert_eq!(span.to_percent, 99.0);
     }
 
     /// Many evenly spaced sizes come to the same, which is what the integral stands for.

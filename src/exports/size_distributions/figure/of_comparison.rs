@@ -3,7 +3,7 @@
 use super::panels;
 use super::{Band, FigureContents, Look, Series, SizeAxis};
 use crate::exports::size_distributions::method_name;
-use crate::fragmentation::{Comparison, MethodCurve};
+use crate::fragmentation::{Comparison, MeanPoint, MethodCurve};
 
 /// Measured means with the fitted functions, their spread over the trials, the envelope about the
 /// reference; below them the percent errors with their limits.
@@ -34,7 +34,7 @@ pub fn figure_of_comparison(comparison: &Comparison) -> FigureContents {
             panels::fit_words(&curve.fit, comparison.unit)
         ),
         look: *look,
-        points: curve.points.iter().map(|p| [p.size, p.mean]).collect(),
+        points: known_to_all(curve).map(|p| [p.size, p.mean]).collect(),
         line: panels::fitted_line(&curve.fit, &sizes),
         marks: panels::marks(&curve.fit),
     });
@@ -106,8 +106,7 @@ fn envelope_band(comparison: &Comparison) -> Band {
 /// Mean less and plus the standard deviation, where there are trials to have one.
 fn spread_band(look: Look, curve: &MethodCurve) -> Option<Band> {
     let edge = |sign: f64| -> Vec<[f64; 2]> {
-        let known = curve.points.iter();
-        known
+        known_to_all(curve)
             .filter_map(|p| {
                 Some([
                     p.size,
@@ -133,4 +132,11 @@ fn described(curve: &MethodCurve) -> String {
         0 | 1 => name.to_owned(),
         trials => format!("{name}, {trials} trials"),
     }
+}
+
+/// The points of which every trial says something: where trials begin or end on the way, the mean of
+/// those left may jump.
+fn known_to_all(curve: &MethodCurve) -> impl Iterator<Item = &MeanPoint> {
+    let known = |point: &&MeanPoint| point.trials == curve.trials.len();
+    curve.points.iter().filter(known)
 }

@@ -302,6 +302,7 @@ fn a_comparison_shows_what_it_found() {
             notes: Vec::new(),
         }],
         improvements: Vec::new(),
+        notes: Vec::new(),
     };
     let contents = figure_of_comparison(&comparison);
     let [sieve, cloud] = &contents.passing.series[..] else {

@@ -1,0 +1,33 @@
+//! `fragscale effort`: the time that steps took, with totals and averages.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Answer, ScalesFormat};
+use crate::exports;
+use crate::formats::read_effort_table;
+
+#[derive(Debug, Args)]
+pub(super) struct EffortArguments {
+    /// A table as CSV: columns step, method or trial, and time; or the steps first and a column of
+    /// times for each method or trial. Times are in minutes (others as "90 s", "0:01:30" or by the
+    /// column's name, "time_s").
+    file: PathBuf,
+    /// How to write it.
+    #[arg(long, value_enum, default_value = "table")]
+    format: ScalesFormat,
+    /// Write to this file instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+}
+
+pub(super) fn effort(arguments: &EffortArguments) -> Result<Answer, String> {
+    let (effort, warnings) = read_effort_table(&arguments.file).map_err(|e| e.to_string())?;
+    let text = match arguments.format {
+        ScalesFormat::Table => exports::effort_text(&effort),
+        ScalesFormat::Csv => exports::effort_csv(&effort).map_err(|e| e.to_string())?,
+        ScalesFormat::Json => exports::effort_json(&effort).map_err(|e| e.to_string())?,
+    };
+    Ok(Answer { text, warnings })
+}
