@@ -316,9 +316,12 @@ pub const SAVE_FIGURE: Action = Action {
 /// See its `hover`.
 pub const SAVE_REPORT: Action = Action {
     label: "Save report…",
-    hover: "Write the figure and all tables of the size distributions as an HTML page",
+    hover: "Write the figure and all tables of methods held against the reference as an HTML page",
     shortcut: None,
-    command: |state| with_distributions(state, Asking::SaveReport),
+    command: |state| {
+        let compared = state.distributions.computed.as_ref()?.comparison.is_some();
+        compared.then_some(Command::Ask(Some(Asking::SaveReport)))
+    },
 };
 /// See its `hover`.
 pub const PILE: Action = Action {

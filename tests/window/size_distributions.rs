@@ -122,7 +122,10 @@ fn the_page_opens_without_a_flight_and_with_one() {
     desk.click(Role::Tab, "Time effort");
     let steps = table(&desk, "Measured by this program, s");
     let names: Vec<&str> = steps.iter().map(|row| row[0].as_str()).collect();
-    assert_eq!(names, ["Opening the flight", "Computing scales", "Total", "Average"]);
+    assert_eq!(
+        names,
+        ["Opening the flight", "Computing scales", "Total", "Average"]
+    );
     desk.click(Role::Tab, "Pile");
     assert_eq!(desk.rows().len(), 9, "the flight is still there");
 }
@@ -235,8 +238,8 @@ fn repeatability_has_the_numbers_of_scipy() {
     desk.click(Role::Tab, "Repeatability");
     let rows = table(&desk, "point cloud, all sizes pooled");
     assert_eq!(rows[0], ["Trial", "2", "205.400", "102.700", "0.08474"]);
-    assert_eq!(rows[1], ["Residual", "27", "32721.3", "1211.90"]);
-    assert_eq!(rows[2], ["Total", "29", "32926.7"]);
+    assert_eq!(rows[1], ["Residual", "27", "32721.3", "1211.90", ""]);
+    assert_eq!(rows[2], ["Total", "29", "32926.7", "", ""]);
     assert!(desk.says("F(2, 27; 0.05) = 3.35, p = 0.919"));
     assert!(desk.says("3 trials: trials do not differ at the 5 % level."));
     let rows = table(&desk, "point cloud, size by size");
@@ -320,7 +323,7 @@ fn what_is_taken_away_comes_back() {
     assert_eq!(curves(&desk), 1);
     desk.press(Modifiers::COMMAND, Key::Z);
     assert_eq!(curves(&desk), 8);
-    desk.click(Role::Button, "Remove all size distributions");
+    desk.click(Role::Button, "Remove all");
     assert!(
         desk.harness
             .state()
@@ -514,4 +517,34 @@ fn check(desk: &Desk) {
         .collect();
     assert_eq!(labels.len(), count, "two curves with the same labels");
     assert_eq!(computed.fits.len(), computed.trials.curves.len());
+}
+
+#[test]
+fn the_figure_and_the_report_are_written() {
+    let (folder, mut desk) = desk(&[("trials.csv", TRIALS)]);
+    for (save, name, write, begins) in [
+        ("Save figure…", "a.svg", "Write figure", &b"<"[..]),
+        ("Save figure…", "a.png", "Write figure", b"\x89PNG"),
+        ("Save report…", "a.html", "Write report", b"<!DOCTYPE html>"),
+    ] {
+        let path = folder.path().join(name);
+        desk.click(Role::Button, save);
+        desk.type_path(&path);
+        desk.click(Role::Button, write);
+        let bytes = fs::read(&path).expect("written");
+        assert!(bytes.starts_with(begins), "{name}");
+        assert!(desk.logged(&format!("{}: written", path.display())));
+        // A second time it asks first.
+        fs::write(&path, "mine").expect("written");
+        desk.click(Role::Button, save);
+        desk.type_path(&path);
+        desk.click(Role::Button, write);
+        assert!(desk.says("There is a file already"));
+        desk.click(Role::Button, "Keep the file");
+        assert_eq!(fs::read(&path).expect("there"), b"mine");
+    }
+    desk.click(Role::Button, "Save figure…");
+    desk.type_path(&folder.path().join("a.bmp"));
+    desk.click(Role::Button, "Write figure");
+    assert!(desk.logged("let its name end in .svg or .png"));
 }

@@ -25,7 +25,8 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         if state.page == Page::SizeDistributions {
             for (action, text) in [
                 (actions::ADD_DISTRIBUTIONS, "Add…"),
-                (actions::PASTE_TABLE, "Paste table…"),
+                (actions::PASTE_TABLE, "Paste…"),
+                (actions::ADD_KNOWN, "Known fragments"),
                 (actions::UNDO, "⟲"),
                 (actions::REDO, "⟳"),
                 (actions::SAVE_FIGURE, "Save figure…"),

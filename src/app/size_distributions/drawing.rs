@@ -32,6 +32,8 @@ pub struct MethodDrawing {
     pub curves: Vec<(Labels, Vec<PlotPoint>)>,
     /// The function fitted to each trial.
     pub fits: Vec<(Labels, Vec<PlotPoint>)>,
+    /// The function fitted to the mean of several trials; empty with one.
+    pub mean: Vec<PlotPoint>,
     /// Mean of the trials, plus and less a standard deviation.
     pub spread: Area,
     /// Points that are told by name: P50, P80.
@@ -83,7 +85,7 @@ impl Drawing {
                 let fit = fitted.fit.as_ref().ok()?;
                 Some((fitted.labels.clone(), line(&fit.curve, low, high)))
             });
-            let marks = fitted.flat_map(|fitted| {
+            let of_trials = fitted.flat_map(|fitted| {
                 let told = fitted.percentiles.iter();
                 let told = told.filter(|p| [50.0, 80.0].contains(&p.percent));
                 let labels = &fitted.labels;
@@ -95,6 +97,17 @@ impl Drawing {
             });
             let mean = comparison.filter(|_| is_reference).map(|c| &c.reference);
             let mean = compared.map(|c| &c.curve).or(mean);
+            // With several trials it is their mean that counts.
+            let several = mean.filter(|mean| mean.trials.len() > 1);
+            let marks = match several {
+                None => of_trials.collect(),
+                Some(mean) => [50.0, 80.0]
+                    .map(|percent| {
+                        let name = format!("P{percent} of {method}, mean");
+                        (name, at(mean.fit.curve.size_at(percent), percent))
+                    })
+                    .to_vec(),
+            };
             let errors = compared.iter().flat_map(|compared| &compared.residuals);
             let errors = errors.filter_map(|e| Some(at(e.size, e.percent_error?)));
             MethodDrawing {
@@ -103,7 +116,10 @@ impl Drawing {
                 curves: curves.collect(),
                 fits: fits.collect(),
                 spread: mean.map(spread).unwrap_or_default(),
-                marks: marks.collect(),
+                mean: several
+                    .map(|mean| line(&mean.fit.curve, low, high))
+                    .unwrap_or_default(),
+                marks,
                 errors: errors.collect(),
             }
         });

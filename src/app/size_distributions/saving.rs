@@ -8,7 +8,7 @@ use super::computing::Computed;
 use crate::app::command::Command;
 use crate::app::state::{HeldBack, Severity, State};
 use crate::app::work::{Done, Task};
-use crate::exports::{self, FigureContents, FittedDistribution};
+use crate::exports::{self, ComparisonReport, FigureContents, FittedDistribution};
 use crate::fault::Fault;
 use crate::formats::FileError;
 
@@ -126,6 +126,22 @@ fn contents(computed: &Computed) -> FigureContents {
 }
 
 fn report(computed: &Computed) -> Result<String, Fault> {
-    let _ = computed;
-    Err(Fault::new("not yet", "wait"))
+    let Some(comparison) = &computed.comparison else {
+        let what = "there is one method only, and a report compares";
+        return Err(Fault::new(what, "add another method"));
+    };
+    let sources = &computed.edit.sources;
+    let warnings = sources.iter().flat_map(|source| {
+        let named = |warning| format!("{}: {warning}", source.name);
+        source.warnings.iter().map(named)
+    });
+    let repeatability = computed.repeatability.iter();
+    let repeatability = repeatability.filter_map(|(_, found)| found.clone().ok());
+    exports::comparison_report(&ComparisonReport {
+        sources: &sources.iter().map(|s| s.name.clone()).collect::<Vec<_>>(),
+        comparison: comparison.as_ref().map_err(Clone::clone)?,
+        repeatability: &repeatability.collect::<Vec<_>>(),
+        preparation: &computed.notes,
+        warnings: &warnings.collect::<Vec<_>>(),
+    })
 }

@@ -23,13 +23,8 @@ fn tables(comparison: &Comparison, ui: &mut egui::Ui, commands: &mut Vec<Command
     sentence(&format!("Reference: {reference}."), ui);
     shifts(comparison, ui, commands);
     for method in &comparison.methods {
-        if method.shift.looks_like_scale {
-            let mean = signed(method.shift.mean_percent, 1);
-            let text = "all sizes are off by nearly the same percentage, as with a wrong scale";
-            warning(&format!("{}: {text} ({mean} %)", method.curve.method), ui);
-        }
         for note in &method.notes {
-            warning(&format!("{}: {note}", method.curve.method), ui);
+            warning(note, ui);
         }
     }
     for note in &comparison.notes {

@@ -29,14 +29,7 @@ pub(super) fn files(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
             ui.add(egui::Label::new(text).wrap());
         }
     }
-    ui.horizontal_wrapped(|ui| {
-        for (action, text) in [
-            (actions::ADD_DISTRIBUTIONS, "Add…"),
-            (actions::PASTE_TABLE, "Paste table…"),
-            (actions::ADD_KNOWN, "Known fragments"),
-            (actions::REMOVE_ALL, "Remove all"),
-        ] {
-            action_button(state, action, text, ui, commands);
-        }
-    });
+    if state.distributions.sources().len() > 1 {
+        action_button(state, actions::REMOVE_ALL, "Remove all", ui, commands);
+    }
 }

@@ -5,7 +5,7 @@ use super::table::{Table, fixed, number};
 use crate::app::command::Command;
 use crate::app::size_distributions::Computed;
 use crate::app::size_distributions::computing::{FittedCurve, PERCENTILES};
-use crate::fragmentation::Labels;
+use crate::fragmentation::{Labels, Percentile};
 
 /// Draws the tables.
 pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -38,14 +38,18 @@ pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Co
     parameters.column("Points", "How many points it is fitted to");
     let mut percentiles = Table::new(format!("Percentiles, {unit}"));
     percentiles.column("Curve", "Method, trial");
+    let confidence = number(100.0 * (1.0 - settings.level), 3);
+    let mut bands = Table::new(format!("Confidence bands of {confidence} %, {unit}"));
+    bands.column("Curve", "Method, trial");
     for percent in PERCENTILES {
         percentiles.column(
             format!("P{percent}"),
             format!("{percent} % of the mass passes it"),
         );
-        let band = 100.0 * (1.0 - settings.level);
-        let hover = format!("Confidence band of {} %", number(band, 3));
-        percentiles.column(format!("P{percent} band"), hover);
+        for end in ["from", "to"] {
+            let hover = format!("Of the confidence band of P{percent}");
+            bands.column(format!("P{percent} {end}"), hover);
+        }
     }
     for FittedCurve {
         labels,
@@ -65,18 +69,18 @@ pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Co
         row.push(fixed(fit.r_squared, 4));
         row.push(fit.residuals.len().to_string());
         parameters.row(row);
-        let mut row = vec![labels.to_string()];
-        for size in sizes {
-            row.push(number(size.size, 4));
-            row.push(size.band.map_or_else(
-                || "–".to_owned(),
-                |[low, high]| format!("{} to {}", number(low, 4), number(high, 4)),
-            ));
-        }
-        percentiles.row(row);
+        let cells = sizes.iter().map(|size| number(size.size, 4));
+        percentiles.row([labels.to_string()].into_iter().chain(cells).collect());
+        let ends = |size: &Percentile| match size.band {
+            Some(band) => band.map(|end| number(end, 4)),
+            None => [number(None, 4), number(None, 4)],
+        };
+        let cells = sizes.iter().flat_map(ends);
+        bands.row([labels.to_string()].into_iter().chain(cells).collect());
     }
     parameters.show(ui, commands);
     percentiles.show(ui, commands);
+    bands.show(ui, commands);
     for (labels, text) in notes(computed) {
         warning(&format!("{labels}: {text}"), ui);
     }

@@ -1,9 +1,11 @@
 //! Percent passing, or percent error, over the size.
 
+use std::collections::BTreeSet;
+
 use egui::Color32;
 use egui_plot::{
-    Corner, FilledArea, HLine, HoverPosition, Legend, LegendGrouping, Line, LineStyle, MarkerShape,
-    Plot, PlotPoint, PlotPoints, PlotUi, Points,
+    AxisHints, ColorConflictHandling, Corner, FilledArea, HLine, HoverPosition, Legend,
+    LegendGrouping, Line, LineStyle, MarkerShape, Plot, PlotPoint, PlotPoints, PlotUi, Points,
 };
 
 use super::log_axis;
@@ -13,6 +15,7 @@ use crate::app::size_distributions::{Computed, DistributionCommand, PlotOf};
 use crate::app::state::State;
 use crate::app::work::Task;
 use crate::exports::{Dash, Look, Marker};
+use crate::fragmentation::Labels;
 
 /// Draws what is above the plot, and the plot.
 pub(super) fn plot(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -66,11 +69,19 @@ pub(super) fn plot(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>
     }
 }
 
+/// From where to where labels of sizes appear, points to the next line of the same kind: 1, 2 and 5 are
+/// the third of a decade apart.
+const LABEL_SPACING: egui::Rangef = egui::Rangef {
+    min: 22.0,
+    max: 32.0,
+};
+
 /// A plot over the logarithm of the size, with the read-out under the mouse.
 fn over_size<'a>(
     name: &str,
-    computed: &'a Computed,
+    title: &str,
     value: &'static str,
+    computed: &'a Computed,
     ui: &egui::Ui,
 ) -> Plot<'a> {
     let unit = computed.set.unit;
@@ -78,14 +89,21 @@ fn over_size<'a>(
         .position(Corner::LeftTop)
         .follow_insertion_order(true)
         .grouping(LegendGrouping::ById)
+        .color_conflict_handling(ColorConflictHandling::PickFirst)
         .background_alpha(0.85);
     let grid = ui.visuals().text_color().gamma_multiply(0.45);
     Plot::new(name.to_owned())
         .legend(legend)
         .grid_color(grid)
-        .x_axis_label(format!("Size [{unit}]"))
+        .custom_x_axes(vec![
+            AxisHints::new_x()
+                .label(format!("Size [{unit}]"))
+                .formatter(log_axis::label)
+                .label_spacing(LABEL_SPACING)
+                .min_thickness(36.0),
+        ])
+        .custom_y_axes(vec![AxisHints::new_y().label(title).min_thickness(46.0)])
         .x_grid_spacer(|input| log_axis::marks(&input))
-        .x_axis_formatter(log_axis::label)
         // The wheel comes closer, as it does over the pile.
         .allow_scroll(false)
         .label_formatter(move |position| {
@@ -127,87 +145,106 @@ fn passing(state: &State, computed: &Computed, reset: bool, ui: &mut egui::Ui) {
     } else {
         0.4
     };
-    let response = over_size("percent passing", computed, "% passing", ui)
-        .y_axis_label("Percent passing [%]")
-        .include_y(0.0)
-        .include_y(100.0)
-        .show(ui, |plot| {
-            let paint = |look: Look, alpha: f32| color(look, dark).gamma_multiply(alpha * fade);
-            area(
-                plot,
-                &format!("Envelope ± {percent} % of the reference's size"),
-                envelope,
-                paint(Look::REFERENCE, 0.10),
-            );
-            for method in methods {
-                let MethodDrawing { look, .. } = method;
-                let name = format!("{}: mean ± standard deviation", method.method);
-                area(plot, &name, &method.spread, paint(*look, 0.22));
-            }
-            for method in methods {
-                let MethodDrawing {
-                    method,
-                    look,
-                    curves,
-                    fits,
-                    marks,
-                    ..
-                } = method;
-                // The legend's entry; the curves of the method share its id, each under its name.
-                plot.add(
-                    Points::new(method.clone(), Vec::<[f64; 2]>::new())
-                        .id(method)
-                        .color(paint(*look, 1.0)),
-                );
-                let shown = |labels: &&(crate::fragmentation::Labels, Vec<PlotPoint>)| {
-                    !hidden.contains(&labels.0)
-                };
-                // Of many curves each is fainter.
-                let alpha = if fits.len() > 4 { 0.6 } else { 1.0 };
-                for (labels, points) in fits {
-                    let of_trial = |other: &crate::fragmentation::Labels| {
-                        other.method == labels.method && other.trial == labels.trial
-                    };
-                    if !curves
-                        .iter()
-                        .filter(shown)
-                        .any(|(other, _)| of_trial(other))
-                    {
-                        continue;
-                    }
-                    plot.line(
-                        Line::new(format!("{labels}, fitted"), PlotPoints::Borrowed(points))
-                            .id(method)
-                            .style(style(look.dash))
-                            .width(1.6)
-                            .color(paint(*look, alpha)),
-                    );
-                }
-                for (labels, points) in curves.iter().filter(shown) {
-                    plot.points(
-                        Points::new(labels.to_string(), PlotPoints::Borrowed(points))
-                            .id(method)
-                            .shape(shape(look.marker))
-                            .filled(fits.len() <= 4)
-                            .radius(if curves.len() > 12 { 2.5 } else { 4.0 })
-                            .color(paint(*look, if curves.len() > 12 { 0.6 } else { 1.0 })),
-                    );
-                }
-                if fits.len() <= 4 {
-                    for (name, point) in marks {
-                        plot.points(
-                            Points::new(name.clone(), vec![[point.x, point.y]])
-                                .id(method)
-                                .filled(false)
-                                .radius(7.0)
-                                .color(paint(*look, 1.0)),
-                        );
-                    }
-                }
-            }
-            finish(plot, reset);
-        });
+    let response = over_size(
+        "percent passing",
+        "Percent passing [%]",
+        "% passing",
+        computed,
+        ui,
+    )
+    .include_y(0.0)
+    .include_y(100.0)
+    .show(ui, |plot| {
+        let paint = |look: Look, alpha: f32| color(look, dark).gamma_multiply(alpha * fade);
+        let grey = paint(Look::REFERENCE, 0.12);
+        area(plot, &format!("Envelope ± {percent} %"), envelope, grey);
+        for method in methods {
+            let name = format!("{}, mean ± s.d.", method.method);
+            area(plot, &name, &method.spread, paint(method.look, 0.25));
+        }
+        for method in methods {
+            curves(plot, method, hidden, |alpha| paint(method.look, alpha));
+        }
+        finish(plot, reset);
+    });
     said(&response.response, "Plot of percent passing");
+}
+
+/// The curves of a method, under one entry of the legend.
+fn curves<'a>(
+    plot: &mut PlotUi<'a>,
+    drawing: &'a MethodDrawing,
+    hidden: &BTreeSet<Labels>,
+    paint: impl Fn(f32) -> Color32,
+) {
+    let MethodDrawing {
+        method,
+        look,
+        curves,
+        fits,
+        mean,
+        marks,
+        ..
+    } = drawing;
+    // The first of the same id names the entry; each curve has its own name for the read-out.
+    plot.add(
+        Points::new(method.clone(), Vec::<[f64; 2]>::new())
+            .id(method)
+            .color(paint(1.0)),
+    );
+    let shown: Vec<&(Labels, Vec<PlotPoint>)> = curves
+        .iter()
+        .filter(|(labels, _)| !hidden.contains(labels))
+        .collect();
+    // Of several trials each is faint, and their mean stands out.
+    let several = !mean.is_empty();
+    for (trial, points) in fits {
+        let is_of = |labels: &Labels| labels.method == trial.method && labels.trial == trial.trial;
+        if shown.iter().any(|(labels, _)| is_of(labels)) {
+            let line =
+                Line::new(format!("{trial}, fitted"), PlotPoints::Borrowed(points)).id(method);
+            plot.line(match several {
+                true => line.width(1.0).color(paint(0.45)),
+                false => line.width(1.8).style(style(look.dash)).color(paint(1.0)),
+            });
+        }
+    }
+    for (labels, points) in &shown {
+        let many = curves.len() > 12;
+        plot.points(
+            Points::new(labels.to_string(), PlotPoints::Borrowed(points))
+                .id(method)
+                .shape(shape(look.marker))
+                .radius(if several { 3.0 } else { 4.0 })
+                .color(paint(if many { 0.5 } else { 0.9 })),
+        );
+    }
+    if shown.is_empty() {
+        return;
+    }
+    if several {
+        plot.line(
+            Line::new(
+                format!("{method}, mean, fitted"),
+                PlotPoints::Borrowed(mean),
+            )
+            .id(method)
+            .width(2.2)
+            .style(style(look.dash))
+            .color(paint(1.0)),
+        );
+    }
+    if several || fits.len() == 1 {
+        for (name, point) in marks {
+            plot.points(
+                Points::new(name.clone(), vec![[point.x, point.y]])
+                    .id(method)
+                    .filled(false)
+                    .radius(7.0)
+                    .color(paint(1.0)),
+            );
+        }
+    }
 }
 
 fn errors(computed: &Computed, reset: bool, ui: &mut egui::Ui) {
@@ -223,8 +260,8 @@ fn errors(computed: &Computed, reset: bool, ui: &mut egui::Ui) {
         ui.weak("Percent errors need a reference and another method that share sizes.");
         return;
     }
-    let response = over_size("percent error", computed, "% error", ui)
-        .y_axis_label("Percent error of the passing [%]")
+    let title = "Percent error of the passing [%]";
+    let response = over_size("percent error", title, "% error", computed, ui)
         .include_y(-limit * 1.2)
         .include_y(limit * 1.2)
         .show(ui, |plot| {
@@ -272,6 +309,11 @@ fn area(plot: &mut PlotUi<'_>, name: &str, area: &Area, fill: Color32) {
     if !area.sizes.is_empty() {
         let drawn = FilledArea::new(name, &area.sizes, &area.low, &area.high);
         plot.add(drawn.fill_color(fill));
+        for edge in [&area.low, &area.high] {
+            let points = area.sizes.iter().zip(edge).map(|(&x, &y)| [x, y]);
+            let line = Line::new(name, points.collect::<PlotPoints<'_>>()).allow_hover(false);
+            plot.line(line.width(1.0).color(fill.gamma_multiply(2.5)));
+        }
     }
 }
 

@@ -55,6 +55,8 @@ impl Table {
             }
         });
         ui.push_id(&self.name, |ui| {
+            // A bar that is always there says that there are more columns.
+            ui.spacing_mut().scroll = egui::style::ScrollStyle::thin();
             egui::ScrollArea::horizontal().show(ui, |ui| self.grid(ui));
         });
         ui.add_space(8.0);
