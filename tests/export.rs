@@ -340,6 +340,121 @@ fn another_photo_or_setting_is_made_anew() {
     }
 }
 
+/// A circle of 60 px radius around a pixel, as an outline in flight.toml.
+fn circle(x: f64, y: f64) -> String {
+    let points: Vec<String> = (0..12)
+        .map(|i| {
+            let turn = f64::from(i) / 12.0 * std::f64::consts::TAU;
+            format!("[{}, {}]", x + 60.0 * turn.cos(), y + 60.0 * turn.sin())
+        })
+        .collect();
+    format!("[{}]", points.join(", "))
+}
+
+/// A scale object is painted blue, lens and all, and nothing else of the photo changes.
+#[test]
+fn scale_objects_are_painted_over() {
+    let flight = copy_of_sample();
+    let to = tempfile::tempdir().expect("a folder");
+    let toml = flight.path().join("flight.toml");
+    let plain = fs::read_to_string(&toml).expect("the flight");
+    let export = |objects: &str, image: &str| {
+        fs::write(&toml, plain.clone() + objects + image).expect("written");
+        Computed::new(flight.path())
+            .export(to.path(), &FIRST_TWO, &Progress::default())
+            .expect("exports")
+    };
+    let object = format!(
+        "\n[[scale_object]]\nphoto = \"IMG_0002.jpg\"\nkind = \"sphere\"\nsize = 0.06\noutline = {}\n",
+        circle(300.0, 200.0)
+    );
+    export("", "");
+    let before = contents(to.path());
+    assert!(!before.contains_key("masks/IMG_0002.png"));
+    assert_eq!(export(&object, "").made, 1);
+    let after = contents(to.path());
+    for name in ["photos/IMG_0001.jpg", "overlays/IMG_0001.jpg", "scales.csv"] {
+        assert_eq!(after[name], before[name], "{name}");
+    }
+    assert!(!after.contains_key("masks/IMG_0001.png"));
+    let picture = |bytes: &[u8]| image::load_from_memory(bytes).expect("an image").to_rgb8();
+    let mask = picture(&after["masks/IMG_0002.png"]);
+    let name = "photos/IMG_0002.jpg";
+    let (was, is) = (picture(&before[name]), picture(&after[name]));
+    assert_eq!(mask.dimensions(), is.dimensions());
+    let computed = Computed::new(flight.path());
+    let camera = &computed.opened.flight.parts().cameras[0];
+    let centre = glam::DVec2::new(300.0, 200.0);
+    let (mut masked, mut blue) = (0.0, 0.0);
+    for (x, y, pixel) in mask.enumerate_pixels() {
+        let here = glam::DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let shot = camera
+            .pixel_as_shot(camera.direction_undistorted(here))
+            .expect("seen");
+        // 60 px as shot and 4 px of margin; a sphere's outline is no circle there, by 3 %.
+        let far = (shot - centre).length();
+        assert!(pixel.0 == [0; 3] || far > 61.0, "{here} is not masked");
+        assert!(pixel.0 == [255; 3] || far < 67.0, "{here} is masked");
+        let [r, g, b] = is.get_pixel(x, y).0;
+        if pixel.0 == [0; 3] {
+            masked += 1.0;
+            blue += f64::from(u8::from(r < 60 && g < 60 && b > 190));
+        } else if far > 64.0 + 24.0 {
+            // Beyond the blocks of JPEG that the edge lies in.
+            assert_eq!([r, g, b], was.get_pixel(x, y).0, "{here}");
+        }
+    }
+    assert!(
+        masked > std::f64::consts::PI * 3600.0 && blue / masked > 0.97,
+        "{blue} of {masked}"
+    );
+    let sheet = text(&after, "scales.html");
+    assert!(
+        sheet.contains("scale object: sphere, diameter 0.06 m: <b>"),
+        "{sheet}"
+    );
+    assert!(sheet.contains("painted blue in the photo"));
+
+    // Nothing new, nothing made; as shot the file is no copy any more, but keeps its EXIF.
+    assert_eq!(export(&object, "").made, 0);
+    assert_eq!(export(&object, "\n[scale]\nimage = \"as-shot\"\n").made, 2);
+    let as_shot = contents(to.path());
+    let shot = fs::read(sample().join("photos/IMG_0002.jpg")).expect("the photo");
+    assert_ne!(as_shot["photos/IMG_0002.jpg"], shot);
+    assert_eq!(exif(&as_shot["photos/IMG_0002.jpg"]), exif(&shot));
+    let original = fs::read(sample().join("photos/IMG_0001.jpg")).expect("the photo");
+    assert_eq!(as_shot["photos/IMG_0001.jpg"], original);
+
+    // Kept, but not painted over.
+    let unmasked = object.clone() + "mask = false\n";
+    assert_eq!(export(&unmasked, "").made, 2);
+    let files = contents(to.path());
+    assert!(!files.contains_key("masks/IMG_0002.png"));
+    assert_eq!(files["photos/IMG_0002.jpg"], before["photos/IMG_0002.jpg"]);
+    let sheet = text(&files, "scales.html");
+    assert!(sheet.contains("scale object: sphere") && !sheet.contains("painted"));
+
+    // What cannot be fitted is said, and leaves the photo as it is.
+    let line = "[[1, 1], [2, 2], [3, 3], [400, 400]]";
+    let summary = export(&object.replace(&circle(300.0, 200.0), line), "");
+    let warned =
+        "IMG_0002.jpg: its scale object, a sphere, is not masked: the points lie on a line";
+    assert!(
+        summary.warnings[0].starts_with(warned),
+        "{:?}",
+        summary.warnings
+    );
+    // And one on a photo that is not there, when the flight is opened.
+    fs::write(&toml, plain.clone() + &object.replace("0002", "0099")).expect("written");
+    let warnings = Computed::new(flight.path()).opened.warnings;
+    assert!(
+        warnings
+            .iter()
+            .any(|w| w.contains("on photo 'IMG_0099.jpg'")),
+        "{warnings:?}"
+    );
+}
+
 /// An export that was cancelled after its first photo and before its last; `None` where the watcher
 /// came too late on a busy machine.
 fn cancelled_midway(computed: &Computed, to: &Path) -> Option<ExportError> {

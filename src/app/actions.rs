@@ -5,7 +5,9 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use super::command::{Asking, Choice, Command, Look};
 use super::size_distributions::{DistributionCommand, Page};
 use super::state::State;
+use super::tracing::Trace;
 use super::work::DialogFor;
+use crate::scale::ScaleObjectKind;
 
 /// What an entry of the menu does.
 #[derive(Debug, Clone, Copy)]
@@ -337,6 +339,58 @@ pub const SIZE_DISTRIBUTIONS: Action = Action {
     shortcut: keys(Modifiers::COMMAND, Key::Num2),
     command: |_| Some(Command::Page(Page::SizeDistributions)),
 };
+fn begin_tracing(state: &State, kind: ScaleObjectKind) -> Option<Command> {
+    let open = state.open.as_ref()?;
+    (open.selected?, open.trace_size(kind)?);
+    Some(Command::Trace(Trace::Begin(kind)))
+}
+
+/// See its `hover`.
+pub const TRACE_SPHERE: Action = Action {
+    label: "Trace sphere",
+    hover: "Mark the outline of a sphere of known size on the photo, to compare its scale",
+    shortcut: None,
+    command: |state| begin_tracing(state, ScaleObjectKind::Sphere),
+};
+/// See its `hover`.
+pub const TRACE_BAR: Action = Action {
+    label: "Trace bar",
+    hover: "Mark the two ends of a bar of known length on the photo, to compare its scale",
+    shortcut: None,
+    command: |state| begin_tracing(state, ScaleObjectKind::Bar),
+};
+/// See its `hover`.
+pub const FINISH_TRACING: Action = Action {
+    label: "Finish the outline",
+    hover: "Make a scale object of the points; a click on the first one does the same",
+    shortcut: keys(Modifiers::NONE, Key::Enter),
+    command: |state| {
+        let tracing = state.open.as_ref()?.tracing.as_ref()?;
+        let is_complete = tracing.is_complete();
+        is_complete.then_some(Command::Trace(Trace::Finish))
+    },
+};
+/// See its `hover`.
+pub const REMOVE_POINT: Action = Action {
+    label: "Remove the last point",
+    hover: "Take the last point of the outline back",
+    shortcut: keys(Modifiers::NONE, Key::Backspace),
+    command: |state| {
+        let tracing = state.open.as_ref()?.tracing.as_ref()?;
+        let has_points = !tracing.outline.is_empty();
+        has_points.then_some(Command::Trace(Trace::RemoveLast))
+    },
+};
+/// See its `hover`.
+pub const GIVE_UP_TRACING: Action = Action {
+    label: "Give up tracing",
+    hover: "Forget the points of the outline",
+    shortcut: keys(Modifiers::NONE, Key::Escape),
+    command: |state| {
+        state.open.as_ref()?.tracing.as_ref()?;
+        Some(Command::Trace(Trace::GiveUp))
+    },
+};
 /// See its `hover`.
 pub const LOG: Action = Action {
     label: "Log",
@@ -419,7 +473,21 @@ pub const MENUS: [(&str, &[Option<Action>]); 5] = [
             Some(LOG),
         ],
     ),
-    ("Photo", &[Some(NEXT), Some(PREVIOUS), None, Some(MEASURE)]),
+    (
+        "Photo",
+        &[
+            Some(NEXT),
+            Some(PREVIOUS),
+            None,
+            Some(MEASURE),
+            None,
+            Some(TRACE_SPHERE),
+            Some(TRACE_BAR),
+            Some(FINISH_TRACING),
+            Some(REMOVE_POINT),
+            Some(GIVE_UP_TRACING),
+        ],
+    ),
     ("Help", &[Some(KEYS), Some(ABOUT)]),
 ];
 

@@ -7,7 +7,6 @@ use super::open_flight::OpenFlight;
 use super::size_distributions::Page;
 use super::state::{HeldBack, PictureRequest, Severity, State, sample_flight};
 use super::work::Task;
-use crate::flight::FlightSettings;
 use crate::render::MOST_PIXELS;
 
 impl State {
@@ -87,6 +86,7 @@ impl State {
                 self.undo_distributions(&command);
             }
             Command::Set(_) | Command::Undo | Command::Redo => self.edit_settings(&command),
+            Command::Trace(step) => self.trace(step),
             Command::Select(_) | Command::SelectBy(_) => {
                 if let Some(open) = &mut self.open {
                     let before = open.selected;
@@ -217,7 +217,7 @@ impl State {
     }
 
     /// Undo, redo, and what they go over.
-    fn edit_settings(&mut self, command: &Command) {
+    pub(super) fn edit_settings(&mut self, command: &Command) {
         if self.is_opening() && self.reads_other {
             // What is changed now would go with this flight, or its reading would stop the other's.
             let text = "another flight is being opened; change settings when it is there";
@@ -231,7 +231,7 @@ impl State {
         match command {
             Command::Set(settings) => {
                 let mut edit = open.history.now().clone();
-                edit.settings = *settings;
+                edit.settings = settings.clone();
                 open.history.set(edit);
             }
             Command::Undo => {
@@ -244,16 +244,21 @@ impl State {
         }
         open.arrange();
         let now = open.settings();
-        if now != before {
-            self.settings_changed(now);
+        let objects_changed = now.scale_objects != before.scale_objects;
+        if !now.gives_the_scales_of(&before) {
+            self.settings_changed();
+        }
+        if objects_changed {
+            self.start_comparing();
         }
     }
 
     /// Computes anew what depends on the settings.
-    pub fn settings_changed(&mut self, now: FlightSettings) {
+    pub fn settings_changed(&mut self) {
         let Some(open) = &self.open else {
             return;
         };
+        let now = open.settings();
         if open.computed.surface.thinning == now.surface.thinning {
             self.start_scales();
         } else {
@@ -267,7 +272,7 @@ impl State {
     /// `None` while scales for the settings of now are being computed.
     pub fn scales_to_copy(&self) -> Option<String> {
         let open = self.open.as_ref()?;
-        if open.settings() != open.computed {
+        if !open.is_computed() {
             return None;
         }
         let scale = open.scale(open.selected?)?;

@@ -84,7 +84,12 @@ impl OpenFlight {
     }
 
     pub(super) fn select(&mut self, photo: Option<usize>) {
+        let before = self.selected;
         self.selected = photo.filter(|&photo| photo < self.outcomes.len());
+        if self.selected != before {
+            // The points were on the other photo.
+            self.tracing = None;
+        }
         // Looking through a camera goes on through the next one.
         if self.looking.through.is_some() {
             self.looking.through = self.selected;

@@ -11,6 +11,7 @@ use super::preferences::Theme;
 use super::size_distributions::{DistributionCommand, Page};
 use super::state::PictureRequest;
 use super::table::Column;
+use super::tracing::Trace;
 use super::work::{DialogFor, Task};
 use crate::flight::{FlightSettings, Limits, Verdict};
 use crate::formats::GeoreferenceRequest;
@@ -216,6 +217,8 @@ pub enum Command {
     Look(Look),
     /// Begins or ends measuring.
     ToggleMeasure,
+    /// A step of tracing a scale object on the selected photo.
+    Trace(Trace),
     /// Copies what Split-Desktop's dialog asks for: the selected photo's top and bottom scale.
     CopyScales,
     /// Copies a text.

@@ -5,6 +5,7 @@
 //! panels/, viewport   read the State, send Commands
 //! actions             menu entry, shortcut and tooltip in one
 //! apply               the one function that applies a Command; apply_to_flight its second half
+//! tracing             outlines of scale objects, point by point
 //! opening -> work     long work as jobs; poll takes their results
 //! picker              rays of the mouse on a thread of their own
 //! ```
@@ -29,6 +30,7 @@ pub mod preferences;
 pub mod size_distributions;
 pub mod state;
 pub mod table;
+pub mod tracing;
 pub mod viewport;
 pub mod work;
 

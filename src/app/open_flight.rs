@@ -10,8 +10,11 @@ use super::history::History;
 use super::picker::Picker;
 use super::state::sample_flight;
 use super::table::{Row, TableOrder};
+use super::tracing::Tracing;
 use super::work::{Geometry, Loaded, PreviewPicture};
-use crate::flight::{Doubt, Flight, FlightSettings, Limits, Outcome, Verdict, judge_all};
+use crate::flight::{
+    ComparedObject, Doubt, Flight, FlightSettings, Limits, Outcome, ScaleObject, Verdict, judge_all,
+};
 use crate::formats::{FlightOrigin, FlightReconstruction, OpenOptions, PhotoFile};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::render::{Orbit, PhotoImage};
@@ -105,7 +108,7 @@ pub struct OpenFlight {
     /// The settings in that file.
     pub saved: FlightSettings,
     /// The settings that the flight and its outcomes were computed with: those of now, but for the
-    /// moment until a change is computed.
+    /// moment until a change is computed. Its scale objects count for nothing.
     pub computed: FlightSettings,
     /// The settings and choices of now, with those before.
     pub history: History<Edit>,
@@ -147,6 +150,12 @@ pub struct OpenFlight {
     pub measure: Measure,
     /// Rays of the mouse.
     pub picker: Option<Picker>,
+    /// The scale object that is being traced on the selected photo.
+    pub tracing: Option<Tracing>,
+    /// How large the next scale objects are, as typed: a sphere, a bar.
+    pub trace_sizes: [Option<f64>; 2],
+    /// The scale objects with what the point cloud says beside them, once known.
+    pub compared: Vec<(ScaleObject, ComparedObject)>,
 }
 
 impl OpenFlight {
@@ -165,7 +174,7 @@ impl OpenFlight {
         let saved = opened
             .file
             .as_ref()
-            .map_or(opened.settings, |(_, file)| file.settings());
+            .map_or_else(|| opened.settings.clone(), |(_, file)| file.settings());
         let mut bounds = surface_bounds;
         for photo in &opened.flight.parts().photos {
             bounds.min = bounds.min.min(photo.pose.center);
@@ -185,7 +194,7 @@ impl OpenFlight {
             reconstruction: opened.reconstruction,
             origin: opened.origin,
             saved,
-            computed: opened.settings,
+            computed: opened.settings.clone(),
             history: History::new(Edit {
                 settings: opened.settings,
                 chosen: vec![false; count],
@@ -215,6 +224,9 @@ impl OpenFlight {
             hovered_photo: None,
             measure: Measure::Off,
             picker: None,
+            tracing: None,
+            trace_sizes: [None; 2],
+            compared: Vec::new(),
         };
         open.judge(limits);
         open
@@ -230,7 +242,13 @@ impl OpenFlight {
 
     /// The settings of now.
     pub fn settings(&self) -> FlightSettings {
-        self.history.now().settings
+        self.history.now().settings.clone()
+    }
+
+    /// Whether the scales on the screen are those of the settings of now.
+    pub fn is_computed(&self) -> bool {
+        let now = &self.history.now().settings;
+        now.gives_the_scales_of(&self.computed)
     }
 
     /// Whether something would be lost if it were closed.
@@ -241,9 +259,12 @@ impl OpenFlight {
     /// Takes a change of the settings back that will not be computed: what is on the screen must be
     /// what the settings say.
     pub fn take_back_settings(&mut self) {
-        if self.settings() != self.computed {
+        if !self.is_computed() {
             let mut edit = self.history.now().clone();
-            edit.settings = self.computed;
+            edit.settings = FlightSettings {
+                scale_objects: edit.settings.scale_objects,
+                ..self.computed.clone()
+            };
             self.history.replace(edit);
             self.arrange();
         }

@@ -225,7 +225,7 @@ impl State {
             return;
         };
         let views = open.views.clone();
-        let Some(views) = views.filter(|_| open.settings() == open.computed) else {
+        let Some(views) = views.filter(|_| open.is_computed()) else {
             self.say(
                 Severity::Error,
                 "scales and footprints are still being computed; export when they are there",
@@ -384,6 +384,7 @@ fn open(
     again: Option<(u64, FlightSettings)>,
     progress: &Progress,
 ) -> Result<Loaded, Box<NotOpened>> {
+    let again_for = again.as_ref().map(|(number, _)| *number);
     options.settings = again.map(|(_, settings)| settings);
     let not_opened = |error: FileError| {
         Box::new(NotOpened {
@@ -404,7 +405,7 @@ fn open(
         outcomes,
         surface_bounds,
         took: [read, begun.elapsed().saturating_sub(read)],
-        again_for: again.map(|(number, _)| number),
+        again_for,
     })
 }
 

@@ -73,6 +73,7 @@ impl State {
                 open.computed = settings;
                 open.outcomes = Arc::new(outcomes);
                 open.views = None;
+                open.compared.clear();
                 open.judge(&limits);
                 if other_surface {
                     self.start_geometry();
@@ -83,7 +84,9 @@ impl State {
                     self.start_thumbnails();
                 }
                 self.start_views();
+                self.start_comparing();
             }
+            Done::Compared(compared) => self.take_compared(compared),
             Done::Views(Ok(views)) => {
                 let limits = self.preferences.limits;
                 if let Some(open) = &mut self.open {
@@ -248,7 +251,7 @@ impl State {
         }
         self.opened += 1;
         self.tried = None;
-        let read_with = loaded.opened.settings;
+        let read_with = loaded.opened.settings.clone();
         let limits = self.preferences.limits;
         let mut open = Box::new(OpenFlight::new(self.opened, loaded, &limits));
         if let Some(before) = again {
@@ -258,16 +261,16 @@ impl State {
         self.open = Some(open);
         self.start_picker();
         self.start_views();
+        self.start_comparing();
         self.start_geometry();
         self.load_preview();
         self.start_thumbnails();
         let Some(open) = &self.open else {
             return;
         };
-        let now = open.settings();
-        if now != read_with {
+        if !open.settings().gives_the_scales_of(&read_with) {
             // Changed again while the file was read.
-            self.settings_changed(now);
+            self.settings_changed();
             return;
         }
         let sentence = format!(
@@ -335,13 +338,15 @@ impl State {
 impl OpenFlight {
     /// Takes over what the engineer did from the flight before it was read again.
     fn keep_from(&mut self, mut before: Box<Self>) {
-        self.saved = before.saved;
+        self.saved = before.saved.clone();
         // Saved elsewhere while the file was read.
         self.path.clone_from(&before.path);
         self.options.clone_from(&before.options);
         self.origin = before.origin.clone();
         self.bundled = before.bundled;
         self.measure = before.measure;
+        self.tracing = before.tracing.take();
+        self.trace_sizes = before.trace_sizes;
         std::mem::swap(&mut self.georeferencing, &mut before.georeferencing);
         std::mem::swap(&mut self.history, &mut before.history);
         self.proposed = before.proposed;

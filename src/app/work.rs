@@ -14,7 +14,7 @@ use super::georeferencing::PathField;
 use super::size_distributions::Computed;
 use super::size_distributions::reading::Read;
 use crate::fault::Fault;
-use crate::flight::{Flight, FlightSettings, Outcome};
+use crate::flight::{ComparedObject, Flight, FlightSettings, Outcome, ScaleObject};
 use crate::formats::{FlightOrigin, Georeferenced, OpenOptions, Opened};
 use crate::fragmentation::Effort;
 use crate::geometry::Bounds;
@@ -29,6 +29,8 @@ pub enum Task {
     Open,
     /// Computing scales anew after a setting changed.
     Scales,
+    /// Holding scale objects against the surface.
+    ScaleObjects,
     /// Draping footprints.
     Views,
     /// Triangles and points for the viewport.
@@ -63,6 +65,7 @@ impl Task {
         match self {
             Self::Open => "Opening",
             Self::Scales => "Scales",
+            Self::ScaleObjects => "Scale objects",
             Self::Views => "Footprints",
             Self::Geometry => "Surface",
             Self::Thumbnails => "Thumbnails",
@@ -82,7 +85,7 @@ impl Task {
     /// Whether it can be cancelled: without footprints and triangles the flight on the screen would
     /// stay half-finished.
     pub fn can_be_cancelled(self) -> bool {
-        !matches!(self, Self::Views | Self::Geometry)
+        !matches!(self, Self::Views | Self::Geometry | Self::ScaleObjects)
     }
 }
 
@@ -157,6 +160,8 @@ pub enum Done {
     Opened(Box<Result<Loaded, Box<NotOpened>>>),
     /// Scales after a setting changed, with the settings.
     Scales(Result<(Arc<Flight>, Vec<Outcome>, FlightSettings), Fault>),
+    /// The scale objects with what the point cloud says beside them.
+    Compared(Result<Vec<(ScaleObject, ComparedObject)>, Fault>),
     /// How the photos look at the surface.
     Views(Result<Vec<Option<ViewFacts>>, Fault>),
     /// For the viewport.
@@ -288,6 +293,7 @@ impl Work {
         for task in [
             Task::Scales,
             Task::Views,
+            Task::ScaleObjects,
             Task::Geometry,
             Task::Thumbnails,
             Task::Preview,

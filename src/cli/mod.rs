@@ -13,6 +13,8 @@ mod effort;
 mod export;
 mod flight_arguments;
 mod georeference;
+mod psd;
+mod psd_fit;
 #[cfg(feature = "render")]
 mod render;
 
@@ -69,6 +71,9 @@ enum Command {
     Anova(anova::AnovaArguments),
     /// Sum up the time that each step of each method or trial took.
     Effort(effort::EffortArguments),
+    /// Fit and compare size distributions.
+    #[command(subcommand)]
+    Psd(psd::PsdCommand),
     /// Say what a file or folder holds.
     Info(InfoArguments),
     /// Make a simulated flight whose every answer is known.
@@ -267,6 +272,10 @@ pub fn run() -> ExitCode {
         Command::Effort(arguments) => (
             arguments.output.clone(),
             Box::new(move |_| effort::effort(&arguments)),
+        ),
+        Command::Psd(command) => (
+            command.output(),
+            Box::new(move |progress| psd::psd(&command, progress)),
         ),
         Command::Info(arguments) => (None, Box::new(move |progress| info(&arguments, progress))),
         Command::Sample(arguments) => {

@@ -7,7 +7,8 @@ use toml::de::DeTable;
 
 use super::FlightSettings;
 use super::camera_entry::CameraEntry;
-use super::known_keys::{key_line, line_of, refuse_unknown_keys};
+use super::known_keys::{key_line, line_of, nth_key_line, refuse_unknown_keys};
+use super::scale_object::{ScaleObject, ScaleObjectEntry};
 use crate::fault::Fault;
 use crate::scale::{Ground, ImageKind};
 use crate::surface::{SurfaceOptions, UpAxis};
@@ -30,6 +31,12 @@ pub struct FlightFile {
     pub(super) photos: PhotosEntry,
     #[serde(default, skip_serializing_if = "ScaleEntry::is_default")]
     scale: ScaleEntry,
+    #[serde(
+        default,
+        rename = "scale_object",
+        skip_serializing_if = "Vec::is_empty"
+    )]
+    pub(super) scale_objects: Vec<ScaleObjectEntry>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -173,6 +180,12 @@ impl FlightFile {
         refuse_unknown_keys(text, "", table.get_ref())?;
         let file: Self = toml::from_str(text).map_err(fault)?;
         file.check(|table, key| key_line(text, table, key))?;
+        for (number, entry) in file.scale_objects.iter().enumerate() {
+            if let Some((key, what)) = ScaleObject::from(entry).trouble() {
+                let line = nth_key_line(text, "scale_object", number, key);
+                return Err(Fault::at(line, what, "correct or remove it"));
+            }
+        }
         Ok(file)
     }
 
@@ -210,6 +223,7 @@ impl FlightFile {
                     ImageKind::AsShot => ImageEntry::AsShot,
                 },
             },
+            scale_objects: settings.scale_objects.iter().map(Into::into).collect(),
         }
     }
 
@@ -274,6 +288,7 @@ impl FlightFile {
             ground: self.ground(),
             image: self.image(),
             surface: self.surface_options(),
+            scale_objects: self.scale_objects.iter().map(ScaleObject::from).collect(),
         }
     }
 
@@ -431,6 +446,47 @@ image = "as-shot"
         );
         let fault = refuse("folder =", "weather_report =");
         assert!(fault.remedy.starts_with("known keys are poses"), "{fault}");
+    }
+
+    #[test]
+    fn scale_objects_are_read_and_their_mistakes_placed() {
+        let object = "\n[[scale_object]]\nphoto = \"a.jpg\"\nkind = \"bar\"\nsize = 2\n\
+            outline = [[1, 2], [3, 4.5]]\nmask = false\n";
+        let text = WHOLE.to_owned() + object + object;
+        let file = FlightFile::parse(&text).unwrap();
+        let expected = ScaleObject {
+            photo: "a.jpg".to_owned(),
+            kind: crate::scale::ScaleObjectKind::Bar,
+            size: 2.0,
+            outline: vec![(1.0, 2.0).into(), (3.0, 4.5).into()],
+            mask: false,
+        };
+        assert_eq!(file.settings().scale_objects, [expected.clone(), expected]);
+        let lines = WHOLE.lines().count() as u64;
+        // In the second of them.
+        let refused = |from: &str, to: &str| {
+            let text = WHOLE.to_owned() + object + &object.replace(from, to);
+            FlightFile::parse(&text).unwrap_err()
+        };
+        for (from, to, line, what) in [
+            ("size = 2", "size = 0", 5, "size is 0, no positive length"),
+            ("size = 2", "size = nan", 5, "size is NaN"),
+            ("[1, 2], ", "", 6, "of the bar has 1 points, not 2"),
+            ("\"bar\"", "\"sphere\"", 6, "has 2 points, not at least 3"),
+            ("4.5", "inf", 6, "not finite"),
+            ("\"a.jpg\"", "\"\"", 3, "photo is empty"),
+            ("\"bar\"", "\"ball\"", 4, "unknown variant"),
+            (
+                "mask",
+                "masked",
+                7,
+                "unknown key 'masked' in [scale_object]",
+            ),
+        ] {
+            let fault = refused(from, to);
+            assert!(fault.what.contains(what), "{fault}");
+            assert_eq!(fault.line, Some(lines + 7 + line), "{fault}");
+        }
     }
 
     #[test]

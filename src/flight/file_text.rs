@@ -1,8 +1,8 @@
 //! Changing the text of a flight.toml, so that its comments and its layout stay.
 
-use toml_edit::{DocumentMut, Item, TableLike, Value};
+use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, Value};
 
-use super::{FlightFile, FlightSettings};
+use super::{FlightFile, FlightSettings, ScaleObject};
 use crate::fault::Fault;
 use crate::scale::{Ground, ImageKind};
 
@@ -54,6 +54,9 @@ impl FlightFile {
                 ImageKind::AsShot => "as-shot",
             };
             set(&mut document, "scale", "image", image)?;
+        }
+        if settings.scale_objects != old.scale_objects {
+            set_scale_objects(&mut document, &old.scale_objects, &settings.scale_objects)?;
         }
         let text = with_line_ends_of(text, document.to_string());
         // What is read next time must be what was meant.
@@ -179,6 +182,66 @@ fn set(
     Ok(())
 }
 
+/// Replaces the scale objects. Those that stay keep their tables as they are written; one that is
+/// changed in its place keeps what was not changed.
+fn set_scale_objects(
+    document: &mut DocumentMut,
+    old: &[ScaleObject],
+    new: &[ScaleObject],
+) -> Result<(), Fault> {
+    let written = match document.remove("scale_object") {
+        None => ArrayOfTables::new(),
+        Some(item) => item.into_array_of_tables().map_err(|_| {
+            Fault::new(
+                "scale_object is no list of tables",
+                "write [[scale_object]]",
+            )
+        })?,
+    };
+    let mut tables = ArrayOfTables::new();
+    for (place, object) in new.iter().enumerate() {
+        let same = old.iter().position(|before| before == object);
+        let before = same.or_else(|| {
+            let before = old.get(place)?;
+            (!new.contains(before)).then_some(place)
+        });
+        let mut table = before
+            .and_then(|before| written.get(before))
+            .cloned()
+            .unwrap_or_else(Table::new);
+        let before = before.and_then(|before| old.get(before));
+        let changed = |is_other: &dyn Fn(&ScaleObject) -> bool| before.is_none_or(is_other);
+        if changed(&|before| before.photo != object.photo) {
+            put_in(&mut table, "photo", object.photo.as_str());
+        }
+        if changed(&|before| before.kind != object.kind) {
+            put_in(&mut table, "kind", object.kind.as_str());
+        }
+        if changed(&|before| before.size != object.size) {
+            put_in(&mut table, "size", object.size);
+        }
+        if changed(&|before| before.outline != object.outline) {
+            let points = object.outline.iter().map(|point| {
+                let point: Array = point.to_array().into_iter().collect();
+                Value::from(point)
+            });
+            put_in(&mut table, "outline", points.collect::<Array>());
+        }
+        if changed(&|before| before.mask != object.mask) {
+            put_in(&mut table, "mask", object.mask);
+        }
+        tables.push(table);
+    }
+    if !tables.is_empty() {
+        document.insert("scale_object", Item::ArrayOfTables(tables));
+    }
+    Ok(())
+}
+
+fn put_in(table: &mut Table, key: &str, value: impl Into<Value>) {
+    put(table.entry(key).or_insert(Item::None), value.into());
+}
+
 /// Puts a value where another one is; the space and the comment around it stay.
 fn put(item: &mut Item, mut value: Value) {
     if let Some(old) = item.as_value() {
@@ -193,8 +256,10 @@ mod tests {
 
     use super::*;
     use crate::flight::ReconstructionFlight;
+    use crate::scale::ScaleObjectKind;
     use crate::surface::SurfaceOptions;
     use crate::units::LengthUnit;
+    use glam::DVec2;
 
     const COMMENTED: &str = r#"# The east bench, shot 12.
 format = 1
@@ -298,19 +363,90 @@ folder = "photos"
             (-100..100_i32).prop_map(|z| Ground::At(f64::from(z))),
         ];
         let image = prop_oneof![Just(ImageKind::Undistorted), Just(ImageKind::AsShot)];
-        (0..LengthUnit::ALL.len(), ground, image, length(), length()).prop_map(
-            |(unit, ground, image, max_edge, thinning)| FlightSettings {
+        let objects = prop::collection::vec(any_object(), 0..4);
+        let settings = (0..LengthUnit::ALL.len(), ground, image, length(), length());
+        (settings, objects).prop_map(
+            |((unit, ground, image, max_edge, thinning), scale_objects)| FlightSettings {
                 unit: LengthUnit::ALL[unit],
                 ground,
                 image,
                 surface: SurfaceOptions { max_edge, thinning },
+                scale_objects,
             },
         )
     }
 
+    /// Few photos and sizes, so that some objects are the same.
+    fn any_object() -> impl Strategy<Value = ScaleObject> {
+        let photo = prop::sample::select(vec!["a.jpg", "ä \"1\".jpg"]);
+        let points = prop::collection::vec((-9.0..4e3_f64, 0..3000_i32), 3..6);
+        (photo, any::<bool>(), 1..4_i32, points, any::<bool>()).prop_map(
+            |(photo, is_bar, size, points, mask)| {
+                let points = points.into_iter().map(|(x, y)| DVec2::new(x, f64::from(y)));
+                ScaleObject {
+                    photo: photo.to_owned(),
+                    kind: match is_bar {
+                        true => ScaleObjectKind::Bar,
+                        false => ScaleObjectKind::Sphere,
+                    },
+                    size: f64::from(size) / 4.0,
+                    outline: points.take(if is_bar { 2 } else { 9 }).collect(),
+                    mask,
+                }
+            },
+        )
+    }
+
+    const OBJECTS: &str = r#"
+# The red ball at the toe.
+[[scale_object]]
+photo = "a.jpg"
+kind = "sphere"
+size = 0.25          # by calliper
+outline = [[1, 2], [3, 4.5], [5, 6]]
+
+# The board.
+[[scale_object]]
+photo = "b.jpg"
+kind = "bar"
+size = 2
+outline = [[10.0, 20.0], [30.0, 40.0]]
+mask = false
+"#;
+
+    #[test]
+    fn scale_objects_keep_what_is_not_changed() {
+        let text = COMMENTED.to_owned() + OBJECTS;
+        let mut settings = FlightFile::parse(&text).unwrap().settings();
+        let changed = |settings: &FlightSettings| FlightFile::text_with_settings(&text, settings);
+        assert_eq!(changed(&settings).unwrap(), text);
+        assert!(settings.scale_objects[0].mask && !settings.scale_objects[1].mask);
+        settings.scale_objects[0].size = 0.3;
+        settings.scale_objects[1].outline[0].x = 11.5;
+        let expected = text
+            .replace("size = 0.25 ", "size = 0.3 ")
+            .replace("[10.0, 20.0]", "[11.5, 20.0]");
+        assert_eq!(changed(&settings).unwrap(), expected);
+        // Without the first the second stays with its comment.
+        let mut settings = FlightFile::parse(&text).unwrap().settings();
+        let first = settings.scale_objects.remove(0);
+        let (before, board) = text.split_once("\n# The red").unwrap();
+        let board = &board[board.find("\n# The board").unwrap()..];
+        assert_eq!(changed(&settings).unwrap(), before.to_owned() + board);
+        settings.scale_objects.clear();
+        assert_eq!(changed(&settings).unwrap(), COMMENTED);
+        settings.scale_objects = vec![first];
+        let text = FlightFile::text_with_settings(COMMENTED, &settings).unwrap();
+        let added = "\n[[scale_object]]\nphoto = \"a.jpg\"\nkind = \"sphere\"\nsize = 0.25\n\
+            outline = [[1.0, 2.0], [3.0, 4.5], [5.0, 6.0]]\nmask = true\n";
+        assert_eq!(text, COMMENTED.to_owned() + added);
+    }
+
     /// The ways in which TOML writes one thing.
-    const TEXTS: [&str; 4] = [
+    const TEXTS: [&str; 6] = [
         COMMENTED,
+        "format = 1\nworld.unit = \"m\"\nphotos.reconstruction = \"a.nvm\"\nscale_object = [{ photo = \"a.jpg\", kind = \"bar\", size = 0.25, outline = [[1, 2], [3, 4]] }]\n",
+        "format = 1\n[[scale_object]]\nphoto = \"a.jpg\"\nkind = \"bar\"\nsize = 1\noutline = [[1, 2], [3, 4]]\n\n[world]\nunit = \"ft\"\n[photos]\nreconstruction = \"a.nvm\"\n",
         "format = 1\n[photos]\nreconstruction = \"sparse/0\"\n[world]\nunit = \"us-ft\"",
         "format = 1\nworld = { unit = \"mm\" }\nphotos = { reconstruction = \"a.nvm\" }\n",
         "format = 1\r\nworld.unit = \"ft\"\r\nphotos.reconstruction = \"a.nvm\"\r\nsurface.thinning = 1_0.0\r\nscale = { image = \"as-shot\", }\r\n",

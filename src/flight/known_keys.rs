@@ -7,11 +7,18 @@ use toml::de::{DeTable, DeValue};
 use crate::fault::Fault;
 
 /// Every table with the keys that it may have.
-const KNOWN_KEYS: [(&str, &[&str]); 6] = [
+const KNOWN_KEYS: [(&str, &[&str]); 7] = [
     (
         "",
         &[
-            "format", "name", "world", "surface", "camera", "photos", "scale",
+            "format",
+            "name",
+            "world",
+            "surface",
+            "camera",
+            "photos",
+            "scale",
+            "scale_object",
         ],
     ),
     ("world", &["unit", "ground", "crs"]),
@@ -38,6 +45,10 @@ const KNOWN_KEYS: [(&str, &[&str]); 6] = [
         &["poses", "folder", "reconstruction", "transform"],
     ),
     ("scale", &["image"]),
+    (
+        "scale_object",
+        &["photo", "kind", "size", "outline", "mask"],
+    ),
 ];
 
 /// Refuses keys that are not known in `table`, whose name is empty for the whole file.
@@ -101,22 +112,36 @@ pub(super) fn line_of(text: &str, byte: usize) -> u64 {
 
 /// The line of a key, or of its table, or 1.
 pub(super) fn key_line(text: &str, table: &str, key: &str) -> u64 {
-    let Ok(root) = DeTable::parse(text) else {
-        return 1;
+    let line = |root: &DeTable<'_>| {
+        if table.is_empty() {
+            return line_in(text, root, key);
+        }
+        let lines = tables_called(root, table).into_iter();
+        let inner = lines.filter_map(|table| line_in(text, table, key)).next();
+        inner.or_else(|| line_in(text, root, table))
     };
-    let find = |table: &DeTable<'_>, key: &str| {
-        table
-            .iter()
-            .find(|(name, _)| name.get_ref() as &str == key)
-            .map(|(name, _)| line_of(text, name.span().start))
-    };
-    let root = root.get_ref();
-    if table.is_empty() {
-        return find(root, key).unwrap_or(1);
-    }
-    let inner = root
+    let root = DeTable::parse(text).ok();
+    root.and_then(|root| line(root.get_ref())).unwrap_or(1)
+}
+
+/// The same of one of several tables of that name, counted from 0.
+pub(super) fn nth_key_line(text: &str, table: &str, number: usize, key: &str) -> u64 {
+    let line = |root: &DeTable<'_>| line_in(text, tables_called(root, table).get(number)?, key);
+    let root = DeTable::parse(text).ok();
+    let line = root.and_then(|root| line(root.get_ref()));
+    line.unwrap_or_else(|| key_line(text, "", table))
+}
+
+/// The tables of this name.
+fn tables_called<'a>(root: &'a DeTable<'a>, name: &str) -> Vec<&'a DeTable<'a>> {
+    let named = root.iter().filter(|(key, _)| key.get_ref() as &str == name);
+    named.flat_map(|(_, value)| tables_in(value)).collect()
+}
+
+/// The line of a key of this table.
+fn line_in(text: &str, table: &DeTable<'_>, key: &str) -> Option<u64> {
+    table
         .iter()
-        .find(|(name, _)| name.get_ref() as &str == table)
-        .and_then(|(_, value)| tables_in(value).into_iter().find_map(|t| find(t, key)));
-    inner.or_else(|| find(root, table)).unwrap_or(1)
+        .find(|(name, _)| name.get_ref() as &str == key)
+        .map(|(name, _)| line_of(text, name.span().start))
 }

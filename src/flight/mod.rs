@@ -8,6 +8,7 @@ mod file_text;
 mod known_keys;
 mod name_order;
 mod placement;
+mod scale_object;
 #[cfg(test)]
 mod tests;
 mod verdict;
@@ -19,6 +20,7 @@ pub use camera_entry::{CameraEntry, CameraSource};
 pub use doubt::Doubt;
 pub use file::{FlightFile, PhotoSource, ReconstructionFlight};
 pub use name_order::compare_names;
+pub use scale_object::{ComparedObject, ScaleObject};
 pub use verdict::{Limits, PhotoFileState, Verdict, judge, judge_all};
 
 use crate::camera::{Camera, Pose};
@@ -42,7 +44,7 @@ pub struct Photo {
 }
 
 /// What the engineer can set of a flight while she looks at it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct FlightSettings {
     /// The unit of all world coordinates.
     pub unit: LengthUnit,
@@ -52,6 +54,22 @@ pub struct FlightSettings {
     pub image: ImageKind,
     /// What is left out of the surface.
     pub surface: SurfaceOptions,
+    /// Traced on photos, to compare with: no scale of the flight depends on them.
+    pub scale_objects: Vec<ScaleObject>,
+}
+
+impl FlightSettings {
+    /// Whether the same scales follow from both.
+    pub fn gives_the_scales_of(&self, other: &Self) -> bool {
+        let Self {
+            unit,
+            ground,
+            image,
+            surface,
+            scale_objects: _,
+        } = self;
+        (*unit, *ground, *image, *surface) == (other.unit, other.ground, other.image, other.surface)
+    }
 }
 
 /// What a flight is made of.

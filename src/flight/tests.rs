@@ -54,6 +54,7 @@ fn settings() -> FlightSettings {
         ground: Ground::Auto,
         image: ImageKind::Undistorted,
         surface: SurfaceOptions::default(),
+        scale_objects: Vec::new(),
     }
 }
 

@@ -240,3 +240,45 @@ fn photo_value(name: &str, camera: Option<&str>, pose: &Pose) -> Value {
         "rotation": pose.rotation.transpose().to_cols_array(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::formats::Dropped;
+
+    #[test]
+    fn size_distributions_are_told_from_lists_of_points_and_poses() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            fs::write(&path, text).unwrap();
+            path
+        };
+        let long = file(
+            "long.csv",
+            "photo,size_cm,passing\na,1,20\na,2,40\nb,3,30\nb,4,50\n",
+        );
+        assert_eq!(detect(&long), Ok(Kind::SizeDistributions));
+        let said = info(&long, &Progress::default()).unwrap();
+        assert_eq!(said["kind"], "size-distributions");
+        assert_eq!(
+            (&said["unit"], &said["smallest_size"]),
+            (&json!("cm"), &json!(1.0))
+        );
+        assert_eq!(said["curves"][1]["photo"], "b");
+        assert_eq!(said["curves"][1]["largest"], json!([4.0, 50.0]));
+        let error = Dropped::sort(std::slice::from_ref(&long)).unwrap_err();
+        assert!(error.to_string().contains("fragscale psd"), "{error}");
+        let pasted = file(
+            "pasted.tsv",
+            "Size (in)\tsieve\tpoint cloud\n1\t2\t3\n2\t3\t4\n",
+        );
+        assert_eq!(detect(&pasted), Ok(Kind::SizeDistributions));
+        let poses = file("poses.csv", "photo,x,y,z,tilt,pan\na,1,2,3,90,0\n");
+        assert_eq!(detect(&poses), Ok(Kind::Poses));
+        let points = file("points.csv", "x,y,z,size\n1,2,3,4\n");
+        assert!(matches!(detect(&points), Ok(Kind::Cloud(_))));
+    }
+}

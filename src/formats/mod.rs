@@ -90,7 +90,10 @@ pub use position_list::{
     read_control_points, read_positions,
 };
 pub use reconstruction::{MeasuredPosition, Observation, PosedPhoto, Project, Reconstruction};
-pub use size_distributions::{DistributionColumns, read_size_distributions, size_distributions};
+pub use size_distributions::{
+    DistributionColumns, PointWeights, read_point_weights, read_size_distributions,
+    size_distributions,
+};
 pub use table::{NumberRepairs, Row, Table};
 pub use trajectory::TrajectoryFormat;
 

@@ -246,6 +246,7 @@ impl Source {
             ground: Ground::Auto,
             image: ImageKind::Undistorted,
             surface: SurfaceOptions::default(),
+            scale_objects: Vec::new(),
         };
         let mut source = Self::new(path, settings, options);
         source.unit_is_stated = false;
@@ -513,7 +514,7 @@ impl Source {
                 "add its cloud or mesh: drop it on the window, or name it with --surface or as [surface] file in a flight.toml",
             )));
         }
-        let settings = options.settings.unwrap_or(self.settings);
+        let settings = options.settings.clone().unwrap_or(self.settings);
         if settings.surface.thinning.is_some() && !cloud.cloud.triangles.is_empty() {
             let file = surface_file.display();
             self.warnings.push(format!(
@@ -541,10 +542,12 @@ impl Source {
         let file = self.file.display();
         let misplaced = flight.placement_warnings();
         let contradicting = photo_checks(&flight, &photo_files);
+        let without_photo = flight.objects_without_photo(&settings.scale_objects);
         self.warnings.extend(
             misplaced
                 .into_iter()
                 .chain(contradicting)
+                .chain(without_photo)
                 .map(|warning| format!("{file}: {warning}")),
         );
         Ok(Opened {

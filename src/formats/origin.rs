@@ -250,7 +250,7 @@ mod tests {
         assert_eq!(opened.origin.flight_file(), Some(sample.as_path()));
         let there = tempfile::tempdir().unwrap();
         let target = there.path().join("copy.toml");
-        let mut settings = opened.settings;
+        let mut settings = opened.settings.clone();
         settings.ground = Ground::At(0.125);
         let text = opened.origin.text_at(&target, &settings).unwrap();
         fs::write(&target, text).unwrap();

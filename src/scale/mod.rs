@@ -8,6 +8,8 @@
 
 mod footprint;
 mod ground;
+mod scale_object;
+mod sphere;
 mod view;
 
 use std::fmt;
@@ -16,6 +18,8 @@ use glam::{DVec2, DVec3};
 
 pub use footprint::{Footprint, FootprintDetail, FootprintPoint};
 pub use ground::{Ground, GroundFinder};
+pub use scale_object::{Bar, PlaceScale, ScaleObjectKind, Traced};
+pub use sphere::Sphere;
 pub use view::ViewFacts;
 
 use crate::camera::{Camera, NotInvertible, Pose};
@@ -30,6 +34,28 @@ pub enum ImageKind {
     Undistorted,
     /// The photo as shot: corner rays go through the inverse of the distortion.
     AsShot,
+}
+
+impl ImageKind {
+    /// The direction (camera axes, not normalised) of a pixel of this image.
+    ///
+    /// # Errors
+    /// Where the lens shows nothing at that pixel.
+    pub fn direction(self, camera: &Camera, pixel: DVec2) -> Result<DVec3, NotInvertible> {
+        match self {
+            Self::Undistorted => Ok(camera.direction_undistorted(pixel)),
+            Self::AsShot => camera.direction_as_shot(pixel),
+        }
+    }
+
+    /// The pixel in this image (also outside its edges) of a point in camera axes, or `None` where
+    /// the lens does not see it.
+    pub fn pixel(self, camera: &Camera, point: DVec3) -> Option<DVec2> {
+        match self {
+            Self::Undistorted => camera.pixel_undistorted(point),
+            Self::AsShot => camera.pixel_as_shot(point),
+        }
+    }
 }
 
 /// An image corner, in the order of the contract: clockwise from the top left.
@@ -247,6 +273,13 @@ impl PhotoScale {
         self.corners.iter().filter(on_surface).count()
     }
 
+    /// Pixels per world unit on a row of the image (`row` pixels below its top edge), linear between
+    /// the top and the bottom scale, as Split-Desktop takes it.
+    pub fn on_row(&self, camera: &Camera, row: f64) -> Option<f64> {
+        let (top, bottom) = (self.scale.top?, self.scale.bottom?);
+        Some(top + (bottom - top) * (row / f64::from(camera.height)))
+    }
+
     /// What fell back or failed, in words; empty where all is well. `unit` is the world's.
     pub fn notes(&self, unit: &str) -> Vec<String> {
         let named = |wanted: fn(&CornerOutcome) -> bool| {
@@ -287,10 +320,7 @@ fn world_direction(
     image: ImageKind,
     pixel: DVec2,
 ) -> Result<DVec3, NotInvertible> {
-    let in_camera = match image {
-        ImageKind::Undistorted => camera.direction_undistorted(pixel),
-        ImageKind::AsShot => camera.direction_as_shot(pixel)?,
-    };
+    let in_camera = image.direction(camera, pixel)?;
     Ok((pose.rotation * in_camera).normalize())
 }
 

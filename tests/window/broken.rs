@@ -111,7 +111,7 @@ fn a_cancelled_change_is_taken_back() {
         (fragscale::app::work::Task::Open, Some(0.3)),
     ] {
         let app = desk.harness.state_mut();
-        let mut settings = before;
+        let mut settings = before.clone();
         settings.image = fragscale::scale::ImageKind::AsShot;
         settings.surface.thinning = thinning;
         app.apply(Command::Set(settings));

@@ -27,6 +27,7 @@ mod georeference;
 mod looks;
 mod photos;
 mod random;
+mod scale_object;
 mod settings;
 mod size_distributions;
 mod viewport;

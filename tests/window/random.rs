@@ -9,12 +9,13 @@ use fragscale::app::open_flight::{Measure, OpenFlight};
 use fragscale::app::preferences::Theme;
 use fragscale::app::state::PictureRequest;
 use fragscale::app::table::Column;
+use fragscale::app::tracing::Trace;
 use fragscale::app::work::Task;
 use fragscale::app::{Command, State};
 use fragscale::flight::{FlightSettings, Limits, Outcome, Verdict};
 use fragscale::geometry::Ray;
 use fragscale::render::{ColorBy, Scope};
-use fragscale::scale::{Ground, ImageKind};
+use fragscale::scale::{Ground, ImageKind, ScaleObjectKind};
 use fragscale::units::LengthUnit;
 use glam::{DVec2, DVec3};
 
@@ -81,6 +82,21 @@ fn settings(dice: &mut Dice, now: FlightSettings) -> FlightSettings {
         _ => next.surface.thinning = dice.coin().then(|| dice.between(0.05, 0.5)),
     }
     next
+}
+
+/// Bars more than spheres: they are done after two points.
+fn trace(dice: &mut Dice) -> Trace {
+    let kind = dice.one_of(&[ScaleObjectKind::Sphere, ScaleObjectKind::Bar]);
+    let pixel =
+        |dice: &mut Dice| DVec2::new(dice.between(-50.0, 1300.0), dice.between(-50.0, 800.0));
+    match dice.below(12) {
+        0 | 1 => Trace::Size(kind, dice.one_of(&[0.06, 1.0, 0.0, -1.0, f64::NAN])),
+        2 | 3 => Trace::Begin(kind),
+        4..=8 => Trace::Add(pixel(dice)),
+        9 => Trace::Move(dice.below(5), pixel(dice)),
+        10 => Trace::RemoveLast,
+        _ => dice.one_of(&[Trace::Finish, Trace::GiveUp]),
+    }
 }
 
 fn look(dice: &mut Dice) -> Look {
@@ -223,7 +239,8 @@ fn command(dice: &mut Dice, state: &State, places: &Places) -> Command {
         78..=80 => Command::Tab(dice.one_of(&[Tab::Photo, Tab::Flight, Tab::Limits])),
         81 => Command::ToggleLog,
         82 | 83 => Command::DismissNotice,
-        84..=94 => Command::Look(look(dice)),
+        84..=91 => Command::Look(look(dice)),
+        92..=94 => Command::Trace(trace(dice)),
         95 | 96 => Command::ToggleMeasure,
         97 => Command::CopyScales,
         98 => Command::Copy("text".to_owned()),
@@ -292,7 +309,13 @@ fn check_at_rest(state: &State) {
         return;
     };
     let (parts, settings) = (open.flight.parts(), open.settings());
-    assert_eq!(open.computed, settings);
+    assert!(
+        open.computed.gives_the_scales_of(&settings),
+        "{:?}",
+        open.computed
+    );
+    let compared = open.compared.iter().map(|(object, _)| object);
+    assert!(compared.eq(&settings.scale_objects));
     assert_eq!(parts.unit, settings.unit);
     assert_eq!(parts.ground, settings.ground);
     assert_eq!(parts.image, settings.image);

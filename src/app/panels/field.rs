@@ -37,6 +37,7 @@ pub(super) fn text_field(
     let field = ui.add(
         egui::TextEdit::singleline(&mut typed)
             .id(id)
+            .hint_text("…")
             .desired_width(width),
     );
     field.widget_info(|| {

@@ -38,7 +38,10 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
                     .selectable_label(now.unit == unit, unit.symbol())
                     .clicked()
                 {
-                    set(FlightSettings { unit, ..now });
+                    set(FlightSettings {
+                        unit,
+                        ..now.clone()
+                    });
                 }
             }
         })
@@ -58,7 +61,7 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
     {
         set(FlightSettings {
             ground: Ground::Auto,
-            ..now
+            ..now.clone()
         });
     }
     let z = match now.ground {
@@ -70,7 +73,7 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
         if ui.radio(!auto, "Elevation").clicked() && auto {
             set(FlightSettings {
                 ground: Ground::At(z),
-                ..now
+                ..now.clone()
             });
         }
         ui.add_enabled_ui(!auto, |ui| {
@@ -78,7 +81,7 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
             if let Some(z) = number_field(ui, "Ground elevation", hover, z, now.unit.symbol()) {
                 set(FlightSettings {
                     ground: Ground::At(z),
-                    ..now
+                    ..now.clone()
                 });
             }
         });
@@ -100,7 +103,10 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
     ] {
         let chosen = now.image == image;
         if ui.radio(chosen, name).on_hover_text(hover).clicked() && !chosen {
-            set(FlightSettings { image, ..now });
+            set(FlightSettings {
+                image,
+                ..now.clone()
+            });
         }
     }
     ui.add_space(8.0);
@@ -146,7 +152,10 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
         });
     }
     if changed {
-        set(FlightSettings { surface, ..now });
+        set(FlightSettings {
+            surface,
+            ..now.clone()
+        });
     }
     ui.add_space(12.0);
     ui.horizontal(|ui| {

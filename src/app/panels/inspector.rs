@@ -4,6 +4,8 @@
 use egui::{Color32, Pos2, Rect, Sense, Stroke, Vec2, pos2, vec2};
 use glam::DVec2;
 
+use super::scale_objects::scale_objects;
+use super::traced_photo::{self, Dragged, PhotoPlace};
 use super::{or_dash, verdict_color, verdict_sign};
 use crate::app::actions;
 use crate::app::command::Command;
@@ -23,6 +25,8 @@ pub struct Inspector {
     zoom: f32,
     /// The place of the photo (0 to 1 each way) in the middle of its frame.
     middle: Vec2,
+    /// The point of a scale object that the mouse moves.
+    dragged: Option<Dragged>,
 }
 
 impl Inspector {
@@ -42,12 +46,12 @@ impl Inspector {
                 let text = format!("{} {verdict}", verdict_sign(verdict));
                 ui.colored_label(verdict_color(verdict, ui.visuals()), text);
             }
-            if open.settings() != open.computed {
+            if !open.is_computed() {
                 ui.weak("computing…");
             }
         });
         self.take_texture(open, ui);
-        self.picture(state, open, photo, ui);
+        self.picture(state, open, photo, ui, commands);
         egui::ScrollArea::vertical().show(ui, |ui| {
             if let Outcome::Scale(scale) = row.outcome {
                 scales(state, open, scale, ui, commands);
@@ -66,6 +70,7 @@ impl Inspector {
                     ui.add(egui::Label::new(egui::RichText::new(text).color(color)).wrap());
                 }
             }
+            scale_objects(state, open, photo, ui, commands);
             if let Outcome::Scale(scale) = row.outcome {
                 corners(open, scale, ui);
             }
@@ -83,6 +88,7 @@ impl Inspector {
             return;
         }
         self.shown = wanted;
+        self.dragged = None;
         self.zoom = 1.0;
         self.middle = vec2(0.5, 0.5);
         self.texture = open
@@ -98,7 +104,14 @@ impl Inspector {
     }
 
     /// The photo, zoomed, with the bars of its scale.
-    fn picture(&mut self, state: &State, open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
+    fn picture(
+        &mut self,
+        state: &State,
+        open: &OpenFlight,
+        photo: usize,
+        ui: &mut egui::Ui,
+        commands: &mut Vec<Command>,
+    ) {
         let posed = &open.flight.parts().photos[photo];
         let camera = open.flight.camera(posed);
         let aspect = camera.width as f32 / camera.height as f32;
@@ -119,11 +132,29 @@ impl Inspector {
             vec2(frame.width(), frame.width() / aspect)
         };
         let size = fitted * self.zoom;
-        self.turn_wheel(&response, ui, size, frame);
+        let image = open.flight.parts().image;
+        let on_screen = |middle: Vec2, size: Vec2| PhotoPlace {
+            rect: Rect::from_min_size(frame.center() - middle * size, size),
+            camera,
+            image,
+        };
+        let shown = on_screen(self.middle, size);
+        let taken = traced_photo::mouse(
+            open,
+            photo,
+            &shown,
+            &mut self.dragged,
+            ui,
+            &response,
+            commands,
+        );
+        let is_traced = open.tracing.is_some();
+        self.turn_wheel(&response, ui, size, frame, taken, is_traced);
         let size = fitted * self.zoom;
         let half_seen = (frame.size() / size / 2.0).min(vec2(0.5, 0.5));
         self.middle = self.middle.clamp(half_seen, Vec2::splat(1.0) - half_seen);
-        let place = Rect::from_min_size(frame.center() - self.middle * size, size);
+        let shown = on_screen(self.middle, size);
+        let place = shown.rect;
         match (&self.texture, open.preview.as_ref()) {
             (Some(texture), _) => {
                 let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
@@ -142,16 +173,11 @@ impl Inspector {
                 }
             }
         }
-        if let Some(scale) = open.scale(photo) {
+        // Nothing else lies over what is traced.
+        if let Some(scale) = open.scale(photo).filter(|_| !is_traced) {
             let unit = state.preferences.unit();
             let world = open.flight.parts().unit;
-            let to_screen = |pixel: DVec2| {
-                let share = vec2(
-                    pixel.x as f32 / camera.width as f32,
-                    pixel.y as f32 / camera.height as f32,
-                );
-                place.min + share * size
-            };
+            let to_screen = |pixel: DVec2| shown.to_screen(pixel);
             for bar in scale_bars(scale, camera.width, camera.height, unit, world) {
                 draw_bar(&painter, &bar, &to_screen);
             }
@@ -161,7 +187,12 @@ impl Inspector {
                 draw_corner(&painter, at, &corner.outcome);
             }
         }
-        let kind = match open.flight.parts().image {
+        traced_photo::draw(open, photo, &shown, self.dragged, &painter);
+        if is_traced {
+            // A tooltip would hide what is traced.
+            return;
+        }
+        let kind = match image {
             ImageKind::Undistorted => "undistorted",
             ImageKind::AsShot => "as shot",
         };
@@ -171,7 +202,17 @@ impl Inspector {
         ));
     }
 
-    fn turn_wheel(&mut self, response: &egui::Response, ui: &egui::Ui, size: Vec2, frame: Rect) {
+    /// Zooms and moves the photo, unless the mouse is `taken`; while something is traced a double
+    /// click is two points.
+    fn turn_wheel(
+        &mut self,
+        response: &egui::Response,
+        ui: &egui::Ui,
+        size: Vec2,
+        frame: Rect,
+        taken: bool,
+        is_traced: bool,
+    ) {
         if let Some(cursor) = response.hover_pos() {
             let (scroll, pinch) =
                 ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
@@ -184,10 +225,10 @@ impl Inspector {
                 self.zoom = zoom;
             }
         }
-        if response.dragged() {
+        if response.dragged() && !taken {
             self.middle -= response.drag_delta() / size;
         }
-        if response.double_clicked() {
+        if response.double_clicked() && !is_traced {
             self.zoom = 1.0;
         }
     }

@@ -11,10 +11,12 @@ mod log_panel;
 mod menu_bar;
 mod photos_table;
 mod residuals;
+mod scale_objects;
 mod size_distributions;
 mod start_page;
 mod status_bar;
 mod tool_bar;
+mod traced_photo;
 mod view_buttons;
 
 pub use ask::ask;

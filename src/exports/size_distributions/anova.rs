@@ -274,6 +274,9 @@ pub fn anova_json(report: &AnovaReport) -> serde_json::Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fragmentation::{
+        DistributionSet, LabelledDistribution, Labels, SizeDistribution, repeatability,
+    };
 
     fn report() -> AnovaReport {
         let pooled = Anova::of_sums((9, 8.6), (20, 1170.0), 0.05).unwrap();
@@ -303,6 +306,38 @@ mod tests {
         let size = lines.iter().position(|line| *line == "size 10").unwrap();
         assert_eq!(words(size + 2), "trial 1 1 1.000 - 18.51 0");
         assert!(text.contains("\nsize 20\nno table: every group has one value only"));
+    }
+
+    /// Two trials of two photos: at 10 mm [20, 22] and [30, 32], F = 50.
+    #[test]
+    fn of_trials() {
+        let photo = |trial: &str, photo: &str, percent| LabelledDistribution {
+            labels: Labels {
+                method: "cloud".to_owned(),
+                trial: trial.to_owned(),
+                photo: photo.to_owned(),
+            },
+            weight: None,
+            distribution: SizeDistribution::new(vec![[10.0, percent], [25.4, 50.0]]).unwrap(),
+        };
+        let set = DistributionSet {
+            unit: LengthUnit::Millimetre,
+            curves: vec![
+                photo("1", "a", 20.0),
+                photo("1", "b", 22.0),
+                photo("2", "a", 30.0),
+                photo("2", "b", 32.0),
+            ],
+        };
+        let trials = repeatability(&set, "cloud", &[], 0.05).unwrap();
+        let report = AnovaReport::of_trials(&trials, set.unit).unwrap();
+        let text = anova_table(&report);
+        assert!(
+            text.contains("trials do not differ at the 5 % level"),
+            "{text}"
+        );
+        assert!(text.contains("\nsize in mm 10\n") && text.contains("\nsize in mm 25.4\n"));
+        assert!(text.contains("50.00       18.51"), "{text}");
     }
 
     #[test]

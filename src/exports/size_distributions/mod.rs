@@ -5,6 +5,7 @@ mod anova;
 mod comparison;
 mod effort;
 mod figure;
+mod fit;
 mod report;
 mod text_table;
 
@@ -12,9 +13,10 @@ pub use anova::{AnovaReport, anova_csv, anova_json, anova_table};
 pub use comparison::{comparison_csv, comparison_json, comparison_text};
 pub use effort::{effort_csv, effort_json, effort_text};
 pub use figure::{
-    Band, Dash, FigureContents, FittedDistribution, Look, Marker, Panel, Series, SizeAxis,
-    SizeTick, figure_of_comparison, figure_of_fits, figure_png, figure_svg,
+    Band, Dash, FigureContents, FigureFormat, FittedDistribution, Look, Marker, Panel, Series,
+    SizeAxis, SizeTick, figure_of_comparison, figure_of_fits, figure_png, figure_svg,
 };
+pub use fit::{FitReport, FittedCurve, fit_csv, fit_json, fit_table};
 pub use report::{ComparisonReport, comparison_report};
 
 /// A method's name for people.

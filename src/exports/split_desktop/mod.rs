@@ -10,6 +10,7 @@
 //! photos/NAME          what to open in Split-Desktop, undistorted or as shot, full size
 //! overlays/NAME.jpg    the same, smaller, with the scale drawn on it
 //! thumbnails/NAME.jpg  for the sheet
+//! masks/NAME.png       white for rock, black where a scale object was painted over
 //! footprints.geojson   where each photo lies
 //! footprints.kml       the same for map programs, where the coordinate system is known
 //! export.json          what was written and from what (see `folder.rs`)
@@ -23,6 +24,7 @@ mod folder;
 mod footprints;
 mod kml;
 mod names;
+mod objects;
 mod pictures;
 mod plan;
 mod sheet;
@@ -38,6 +40,7 @@ pub use folder::ExportError;
 
 use self::folder::ExportFolder;
 use self::footprints::Footprints;
+use self::objects::PhotoObject;
 use self::pictures::PictureSource;
 use self::plan::PhotoNames;
 use crate::exports::{ScaleReport, scales_csv};
@@ -130,7 +133,8 @@ pub fn export_for_split_desktop(
             "select at least one",
         )));
     }
-    let mut pictures = plan::pictures(request);
+    let objects = objects::of_photos(request).map_err(at_dir)?;
+    let mut pictures = plan::pictures(request, &objects);
     let footprints = Footprints::new(request);
     let mut planned: Vec<String> = [plan::CSV, plan::SHEET, plan::GEOJSON]
         .map(str::to_owned)
@@ -144,7 +148,8 @@ pub fn export_for_split_desktop(
     planned.extend(of_photos.flat_map(PhotoNames::all));
     let folder = ExportFolder::open(dir, &planned, progress)?;
 
-    let (mut folder, done) = make_pictures(folder, request, &chosen, &pictures, progress)?;
+    let (mut folder, done) =
+        make_pictures(folder, request, &chosen, &pictures, &objects, progress)?;
     let mut summary = ExportSummary {
         photos: chosen.len(),
         ..ExportSummary::default()
@@ -152,6 +157,10 @@ pub fn export_for_split_desktop(
     summary
         .warnings
         .extend(footprints.warning().map(str::to_owned));
+    let of_chosen = objects.iter().flatten();
+    summary
+        .warnings
+        .extend(of_chosen.filter_map(PhotoObject::warning));
     for (&index, done) in chosen.iter().zip(done) {
         match done {
             Done::Made => summary.made += 1,
@@ -179,6 +188,7 @@ pub fn export_for_split_desktop(
         &report,
         &chosen,
         &pictures,
+        &objects,
         &inputs,
         &summary.warnings,
     );
@@ -218,6 +228,7 @@ fn make_pictures(
     request: &ExportRequest<'_>,
     chosen: &[usize],
     pictures: &[Result<PhotoNames, String>],
+    objects: &[Vec<PhotoObject<'_>>],
     progress: &Progress,
 ) -> Result<(ExportFolder, Vec<Done>), ExportError> {
     progress.stage("exporting photos");
@@ -235,7 +246,10 @@ fn make_pictures(
                 return;
             };
             let done = match &pictures[index] {
-                Ok(names) => one_photo(&work, request, index, names, progress),
+                Ok(names) => {
+                    let objects = objects.get(index).map_or(&[][..], Vec::as_slice);
+                    one_photo(&work, request, index, names, objects, progress)
+                }
                 // Said where it was planned.
                 Err(why) => Ok(Done::Not(why.clone())),
             };
@@ -287,6 +301,7 @@ fn one_photo(
     request: &ExportRequest<'_>,
     index: usize,
     names: &PhotoNames,
+    objects: &[PhotoObject<'_>],
     progress: &Progress,
 ) -> Result<Done, ExportError> {
     let parts = request.flight.parts();
@@ -305,6 +320,11 @@ fn one_photo(
         unit: request.unit,
         world_unit: parts.unit,
         names,
+        left_out: objects
+            .iter()
+            .filter(|object| object.is_masked())
+            .map(|object| object.region().clone())
+            .collect(),
     };
     let bytes = match fs::read(source.file) {
         Ok(bytes) => bytes,

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use glam::DVec2;
 use serde_json::json;
 
 use super::checksum;
@@ -26,7 +27,7 @@ const OVERLAY_SIDE: u32 = 1600;
 const THUMBNAIL_SIDE: u32 = 480;
 
 /// Raised when the same inputs are to give other pictures.
-const PICTURES_VERSION: u32 = 1;
+const PICTURES_VERSION: u32 = 2;
 
 /// What the pictures of a photo depend on.
 pub(super) struct PictureSource<'a> {
@@ -37,6 +38,8 @@ pub(super) struct PictureSource<'a> {
     pub unit: LengthUnit,
     pub world_unit: LengthUnit,
     pub names: &'a PhotoNames,
+    /// What is painted over, pixels of the image that the scale is for.
+    pub left_out: Vec<Vec<DVec2>>,
 }
 
 impl PictureSource<'_> {
@@ -56,6 +59,7 @@ impl PictureSource<'_> {
             .map(|corner| corner.point().is_some())
             .collect();
         let edges = self.scale.scale;
+        let left_out = |region: &Vec<DVec2>| region.iter().map(DVec2::to_array).collect::<Vec<_>>();
         let text = json!([
             PICTURES_VERSION,
             checksum::of_bytes(bytes),
@@ -68,12 +72,13 @@ impl PictureSource<'_> {
             on,
             points,
             [self.unit.symbol(), self.world_unit.symbol()],
+            self.left_out.iter().map(left_out).collect::<Vec<_>>(),
         ]);
         checksum::of_bytes(text.to_string().as_bytes())
     }
 
     /// The files, with their names below the exported folder. The photo as shot is the file as it
-    /// is; an undistorted one has the format, the EXIF and the colour profile of its file. (An EXIF
+    /// is, where nothing is painted over; else it has, as an undistorted one has, the format, the EXIF and the colour profile of its file. (An EXIF
     /// orientation stays what it was, as the pixels do.)
     ///
     /// # Errors
@@ -92,10 +97,10 @@ impl PictureSource<'_> {
             ));
         }
         let (image, file) = match self.image {
-            ImageKind::AsShot => (photo.image, bytes),
-            ImageKind::Undistorted => {
+            ImageKind::AsShot if self.left_out.is_empty() => (photo.image, bytes),
+            _ => {
                 drop(bytes);
-                undistorted_file(photo, camera)?
+                self.new_file(photo)?
             }
         };
         let small = picture::reduced(&image, OVERLAY_SIDE);
@@ -105,25 +110,33 @@ impl PictureSource<'_> {
             let image = picture::overlay(&image, self.scale, self.unit, self.world_unit);
             picture::encode(&image, PhotoFormat::Jpeg, OVERLAY_QUALITY, None, None)
         };
-        Ok(vec![
+        let mut files = vec![
             (self.names.photo.clone(), file),
             (self.names.overlay.clone(), drawn(OVERLAY_SIDE)?),
             (self.names.thumbnail.clone(), drawn(THUMBNAIL_SIDE)?),
-        ])
+        ];
+        if let Some(name) = &self.names.mask {
+            let mask = picture::mask_of_regions(width, height, &self.left_out);
+            let mask = picture::encode(&mask, PhotoFormat::Png, PHOTO_QUALITY, None, None)?;
+            files.push((name.clone(), mask));
+        }
+        Ok(files)
     }
-}
 
-fn undistorted_file(
-    photo: DecodedPhoto,
-    camera: &Camera,
-) -> Result<(image::RgbImage, Vec<u8>), Fault> {
-    let image = picture::undistorted(&photo.image, camera, u32::MAX);
-    let bytes = picture::encode(
-        &image,
-        photo.format,
-        PHOTO_QUALITY,
-        photo.exif.as_deref(),
-        photo.icc.as_deref(),
-    )?;
-    Ok((image, bytes))
+    /// The image that the scale is for, and its file.
+    fn new_file(&self, photo: DecodedPhoto) -> Result<(image::RgbImage, Vec<u8>), Fault> {
+        let mut image = match self.image {
+            ImageKind::AsShot => photo.image,
+            ImageKind::Undistorted => picture::undistorted(&photo.image, self.camera, u32::MAX),
+        };
+        picture::paint_regions(&mut image, &self.left_out);
+        let bytes = picture::encode(
+            &image,
+            photo.format,
+            PHOTO_QUALITY,
+            photo.exif.as_deref(),
+            photo.icc.as_deref(),
+        )?;
+        Ok((image, bytes))
+    }
 }

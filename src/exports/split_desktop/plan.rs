@@ -2,6 +2,7 @@
 
 use super::ExportRequest;
 use super::names::file_names;
+use super::objects::PhotoObject;
 use crate::flight::Outcome;
 
 /// The fixed files.
@@ -16,20 +17,23 @@ pub(super) struct PhotoNames {
     pub photo: String,
     pub overlay: String,
     pub thumbnail: String,
+    /// Where something is left out of the analysis.
+    pub mask: Option<String>,
 }
 
 impl PhotoNames {
-    pub(super) fn all(&self) -> [String; 3] {
-        [
-            self.photo.clone(),
-            self.overlay.clone(),
-            self.thumbnail.clone(),
-        ]
+    pub(super) fn all(&self) -> Vec<String> {
+        let pictures = [&self.photo, &self.overlay, &self.thumbnail].into_iter();
+        pictures.chain(&self.mask).cloned().collect()
     }
 }
 
-/// For each photo of the flight the names of its pictures, or why it has none.
-pub(super) fn pictures(request: &ExportRequest<'_>) -> Vec<Result<PhotoNames, String>> {
+/// For each photo of the flight the names of its pictures, or why it has none. `objects` are those of
+/// each photo.
+pub(super) fn pictures(
+    request: &ExportRequest<'_>,
+    objects: &[Vec<PhotoObject<'_>>],
+) -> Vec<Result<PhotoNames, String>> {
     let photos = &request.flight.parts().photos;
     let names: Vec<&str> = photos.iter().map(|photo| photo.name.as_str()).collect();
     let names = file_names(&names).into_iter();
@@ -45,6 +49,10 @@ pub(super) fn pictures(request: &ExportRequest<'_>) -> Vec<Result<PhotoNames, St
                     photo: format!("photos/{stem}{extension}"),
                     overlay: format!("overlays/{stem}.jpg"),
                     thumbnail: format!("thumbnails/{stem}.jpg"),
+                    mask: objects
+                        .get(index)
+                        .is_some_and(|objects| objects.iter().any(PhotoObject::is_masked))
+                        .then(|| format!("masks/{stem}.png")),
                 }),
             },
         )

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::objects::PhotoObject;
 use super::plan::PhotoNames;
 use super::{CheckedInput, ExportRequest};
 use crate::exports::markup::escaped;
@@ -24,13 +25,14 @@ const UNITS: [LengthUnit; 4] = [
 /// Digits of a scale: typing fewer than five would add an error, more would only add typing.
 const DIGITS: u8 = 5;
 
-/// The sheet of the `chosen` photos; `report` has a line for each of them, `pictures` an entry for
-/// each photo of the flight.
+/// The sheet of the `chosen` photos; `report` has a line for each of them, `pictures` and `objects` an
+/// entry for each photo of the flight.
 pub(super) fn html(
     request: &ExportRequest<'_>,
     report: &ScaleReport,
     chosen: &[usize],
     pictures: &[Result<PhotoNames, String>],
+    objects: &[Vec<PhotoObject<'_>>],
     inputs: &[CheckedInput],
     warnings: &[String],
 ) -> String {
@@ -49,7 +51,8 @@ pub(super) fn html(
         let picture = pictures.get(index).map_or(Err("no pictures"), |names| {
             names.as_ref().map_err(String::as_str)
         });
-        rows += &row(number, line, report, judged, picture);
+        let objects = objects.get(index).map_or(&[][..], Vec::as_slice);
+        rows += &row(number, line, report, judged, picture, objects);
     }
     let (image, where_from) = match report.image {
         ImageKind::Undistorted => (
@@ -91,6 +94,7 @@ fn row(
     report: &ScaleReport,
     judged: Option<&(Verdict, Vec<Doubt>)>,
     picture: Result<&PhotoNames, &str>,
+    objects: &[PhotoObject<'_>],
 ) -> String {
     let name = escaped(&line.photo);
     let shown = match picture {
@@ -133,10 +137,17 @@ fn row(
             format!("<ul class=\"reasons\">{items}</ul>")
         }
     };
+    let objects: String = objects
+        .iter()
+        .map(|object| {
+            let sentence = object.sentence(report.unit, report.world_unit);
+            format!("<div class=\"small\">{sentence}</div>")
+        })
+        .collect();
     format!(
         "<tr><td class=\"picture\">{shown}</td><td><div class=\"name\">{number}. {name}</div>{file}\
          <div class=\"verdict {class}\">{verdict}</div>\
-         <div class=\"small\">{} of 4 corners on the surface{ground}</div>{reasons}</td>{}{}</tr>\n",
+         <div class=\"small\">{} of 4 corners on the surface{ground}</div>{reasons}{objects}</td>{}{}</tr>\n",
         line.corners_on_surface,
         scale_cell(line.scale.top, report.unit),
         scale_cell(line.scale.bottom, report.unit),

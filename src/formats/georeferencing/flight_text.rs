@@ -62,6 +62,8 @@ impl Georeferenced {
             ground: Ground::Auto,
             image: ImageKind::Undistorted,
             surface: SurfaceOptions::default(),
+            // Their sizes were in the unit of another world.
+            scale_objects: Vec::new(),
         };
         FlightFile::for_reconstruction(&flight, &settings)
             .to_toml()

@@ -30,6 +30,7 @@
 mod curves;
 mod layout;
 mod names;
+mod point_weights;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -37,6 +38,8 @@ mod tests;
 use std::path::Path;
 
 use layout::Layout;
+
+pub use point_weights::{PointWeights, read_point_weights};
 
 use super::input::FileError;
 use super::table::{Table, read_bounded};

@@ -49,7 +49,7 @@ pub(super) fn read(
     };
     if curves.is_empty() {
         let remedy = "give sizes with their percent passing";
-        return Err(Fault::new("it has no points", remedy));
+        return Err(Fault::at(table.header_line(), "it has no points", remedy));
     }
     finish(curves, reading, reader.repairs)
 }
@@ -229,13 +229,14 @@ impl Reader<'_> {
             })
             .collect();
         for row in self.table.rows() {
-            if is_missing(row.cell(size)) && curves.iter().all(|(c, _)| is_missing(row.cell(*c))) {
+            if is_missing(row.cell(size)) && (0..row.len()).all(|c| is_missing(row.cell(c))) {
                 continue;
             }
             let Some(size) = self.size(row, size)? else {
                 continue;
             };
-            for (column, curve) in &mut curves {
+            let there = |place: &&mut (usize, RawCurve)| place.0 < row.len();
+            for (column, curve) in curves.iter_mut().take_while(there) {
                 if let Some((percent, percent_sign)) = self.percent(row, *column)? {
                     curve.points.push(RawPoint {
                         line: row.line,
@@ -287,7 +288,7 @@ impl Reader<'_> {
         let taken: Vec<usize> = sizes.iter().map(|(column, _)| *column).collect();
         self.a_line_a_curve(&taken, |reader, row| {
             let mut points = Vec::new();
-            for &(column, size) in sizes {
+            for &(column, size) in sizes.iter().take_while(|(column, _)| *column < row.len()) {
                 if let Some((percent, percent_sign)) = reader.percent(row, column)? {
                     points.push(RawPoint {
                         line: row.line,
@@ -305,7 +306,7 @@ impl Reader<'_> {
         let taken: Vec<usize> = columns.iter().map(|(column, _)| *column).collect();
         self.a_line_a_curve(&taken, |reader, row| {
             let mut points = Vec::new();
-            for &(column, percent) in columns {
+            for &(column, percent) in columns.iter().take_while(|(column, _)| *column < row.len()) {
                 if is_missing(row.cell(column)) {
                     continue;
                 }

@@ -18,7 +18,7 @@ pub use repeatability::{Repeatability, repeatability};
 
 use crate::fault::Fault;
 use compensated::compensated_sum;
-use f_distribution::{critical_value, lower_tail, upper_tail};
+use f_distribution::{MOST, critical_value, lower_tail, upper_tail};
 
 /// The probability of an F as small or smaller, below which a note is made.
 const STRANGELY_SMALL: f64 = 0.001;
@@ -76,7 +76,8 @@ impl Anova {
     /// # Errors
     ///
     /// Fewer than two groups, an empty group, a value that is not finite, no more values than groups,
-    /// values whose squares are too large for a double, a level that is not between 0 and 1.
+    /// values whose squares are too large for a double, groups or
+    /// values by the hundred thousand, a level that is not between 0 and 1.
     pub fn of_groups<G: AsRef<[f64]>>(groups: &[G], level: f64) -> Result<Self, Fault> {
         let groups: Vec<&[f64]> = groups.iter().map(AsRef::as_ref).collect();
         let remedy = "give two or more values of two or more groups";
@@ -134,7 +135,7 @@ impl Anova {
     ///
     /// # Errors
     ///
-    /// No degree of freedom, a sum of squares that is no number from 0 up, a level that is not between
+    /// No degree of freedom or too many, a sum of squares that is no number from 0 up, a level that is not between
     /// 0 and 1.
     pub fn of_sums(between: (usize, f64), within: (usize, f64), level: f64) -> Result<Self, Fault> {
         if !(level > 0.0 && level < 1.0) {
@@ -155,6 +156,10 @@ impl Anova {
             }
         }
         let degrees = [between.0, within.0];
+        if let Some(most) = (MOST.iter().zip(degrees)).find(|(most, degrees)| degrees > *most) {
+            let what = format!("{} degrees of freedom", most.1);
+            return Err(Fault::new(what, format!("give {} or fewer", most.0)));
+        }
         let total = Variation::new(between.0.saturating_add(within.0), between.1 + within.1);
         let (between, within) = (
             Variation::new(between.0, between.1),
@@ -230,9 +235,14 @@ fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {
     if values.clone().all(|value| value == first) {
         return first;
     }
-    // As a sum of shares it does not overflow where the mean does not.
     let count = values.clone().count() as f64;
-    compensated_sum(values.map(|value| value / count))
+    let mean = compensated_sum(values.clone()) / count;
+    if mean.is_finite() {
+        mean
+    } else {
+        // As a sum of shares it does not overflow where the mean does not.
+        compensated_sum(values.map(|value| value / count))
+    }
 }
 
 /// The sum of squared differences from the mean, corrected for the rounding of the mean.
@@ -355,6 +365,10 @@ mod tests {
                 "no degree of freedom between",
             ),
             (Anova::of_sums((9, 1.0), (20, -1.0), 0.05), "of -1 within"),
+            (
+                Anova::of_sums((9, 1.0), (usize::MAX, 1.0), 0.05),
+                "degrees of freedom; give 1000000 or fewer",
+            ),
         ];
         for (result, sentence) in refused {
             let fault = result.expect_err(sentence).to_string();

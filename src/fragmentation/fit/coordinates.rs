@@ -4,6 +4,7 @@
 use super::gates_gaudin_schuhmann::GatesGaudinSchuhmannCoordinates;
 use super::points::Points;
 use super::rosin_rammler::RosinRammlerCoordinates;
+use super::search::Optimum;
 use super::swebrec::SwebrecCoordinates;
 use crate::fragmentation::{Curve, Model};
 
@@ -72,8 +73,8 @@ impl Family {
         }
     }
 
-    /// Where to begin: each with the bounds to stay in, of which some may be narrowed to a point.
-    pub(super) fn starts(&self, points: &Points) -> Vec<(Coordinates, Bounds)> {
+    /// Where to begin; some with bounds narrowed to a stretch or a point.
+    pub(super) fn starts(&self, points: &Points) -> Vec<Optimum> {
         match self {
             Self::Swebrec(family) => family.starts(points),
             Self::RosinRammler(family) => family.starts(points),

@@ -8,6 +8,7 @@ use super::coordinates::{
     Bounds, Coordinates, EXPONENT, FARTHEST, MOST, Share, geometric, sum_of_squares,
 };
 use super::points::Points;
+use super::search::Optimum;
 use crate::fragmentation::{Curve, GatesGaudinSchuhmann};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,7 +62,7 @@ impl GatesGaudinSchuhmannCoordinates {
 
     /// Where xmax passes a size, that point stops to count and the sum has a kink: so it is searched
     /// between every two sizes for itself, and above them; from the best m of a grid.
-    pub(super) fn starts(&self, points: &Points) -> Vec<(Coordinates, Bounds)> {
+    pub(super) fn starts(&self, points: &Points) -> Vec<Optimum> {
         let range = points.range.max(1e-3);
         let mut ends: Vec<f64> = points
             .points
@@ -85,21 +86,21 @@ impl GatesGaudinSchuhmannCoordinates {
         }
         let mut starts = Vec::new();
         for (stretch, largest) in stretches {
-            let mut best = (f64::INFINITY, [0.0; MOST]);
+            let mut bounds = self.bounds();
+            bounds[0] = stretch;
+            let mut best: Option<Optimum> = None;
             for largest in largest {
                 for m in geometric(0.02, 100.0, 24) {
                     let mut at = [0.0; MOST];
                     at[0] = largest;
                     at[1] = (m / range).ln().clamp(EXPONENT[0], EXPONENT[1]);
                     let sum = sum_of_squares(points, |_, ln_size| self.share(&at, ln_size).share);
-                    if sum < best.0 {
-                        best = (sum, at);
+                    if best.is_none_or(|best| sum < best.sum) {
+                        best = Some(Optimum { at, bounds, sum });
                     }
                 }
             }
-            let mut bounds = self.bounds();
-            bounds[0] = stretch;
-            starts.push((best.1, bounds));
+            starts.extend(best);
         }
         starts
     }

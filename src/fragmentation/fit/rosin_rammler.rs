@@ -6,6 +6,7 @@ use super::coordinates::{
     Bounds, Coordinates, EXPONENT, FARTHEST, MOST, Share, geometric, sum_of_squares,
 };
 use super::points::Points;
+use super::search::Optimum;
 use crate::fragmentation::{Curve, RosinRammler};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,28 +45,26 @@ impl RosinRammlerCoordinates {
 
     /// For every n of a grid the median near that of the points with the least sum; the search
     /// begins at the best few of n.
-    pub(super) fn starts(&self, points: &Points) -> Vec<(Coordinates, Bounds)> {
+    pub(super) fn starts(&self, points: &Points) -> Vec<Optimum> {
         let range = points.range.max(1e-3);
         let mut starts = Vec::new();
         for n in geometric(0.05, 200.0, 25) {
-            let mut best = (f64::INFINITY, [0.0; MOST]);
+            let mut best: Option<Optimum> = None;
             for step in -10..=10 {
                 let mut at = [0.0; MOST];
                 at[0] = 0.1 * f64::from(step) * range;
                 at[1] = (n / range).ln().clamp(EXPONENT[0], EXPONENT[1]);
                 let sum = sum_of_squares(points, |_, ln_size| self.share(&at, ln_size).share);
-                if sum < best.0 {
-                    best = (sum, at);
+                if best.is_none_or(|best| sum < best.sum) {
+                    let bounds = self.bounds();
+                    best = Some(Optimum { at, bounds, sum });
                 }
             }
-            starts.push(best);
+            starts.extend(best);
         }
-        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        starts.sort_by(|a, b| a.sum.total_cmp(&b.sum));
+        starts.truncate(8);
         starts
-            .into_iter()
-            .take(8)
-            .map(|(_, at)| (at, self.bounds()))
-            .collect()
     }
 
     pub(super) fn curve(&self, at: &Coordinates) -> Option<Curve> {

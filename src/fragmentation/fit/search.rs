@@ -21,37 +21,54 @@ pub(super) struct Optimum {
     pub(super) sum: f64,
 }
 
-/// Of the starts that look best after a short search, this many are searched to the end.
-const FINALISTS: usize = 8;
+/// Evaluations a coordinate that are enough to tell good starts from bad ones.
+const SHORT: usize = 6;
+
+/// Evaluations a coordinate that bring a good start near to its rest.
+const LONG: usize = 20;
+
+/// Evaluations a coordinate in which the search comes to rest.
+const TO_THE_END: usize = 200;
+
+/// So many of the starts are searched for long, the best ones after a short search.
+const FINALISTS: usize = 10;
+
+/// Where sums after a long search differ by this share, the lesser is surely the better.
+const NEARLY: f64 = 1.02;
 
 /// The best optimum first; the others in the order of their sums.
 pub(super) fn optima(family: &Family, points: &Points) -> Vec<Optimum> {
-    let mut found: Vec<Optimum> = family
-        .starts(points)
-        .iter()
-        .map(|(at, bounds)| minimise(family, points, at, bounds, 6))
-        .collect();
-    sort(&mut found);
-    // Those that came to the same place run on as one.
-    let mut finalists: Vec<Optimum> = Vec::new();
-    for optimum in found {
-        let known = finalists.iter().any(|other| {
-            (other.sum - optimum.sum).abs() <= 1e-7 * other.sum
-                && (0..MOST).all(|i| (other.at[i] - optimum.at[i]).abs() < 1e-4)
-        });
-        if !known && finalists.len() < FINALISTS {
-            finalists.push(optimum);
-        }
-    }
-    let mut rested: Vec<Optimum> = finalists
-        .iter()
-        .map(|optimum| {
-            let free = minimise(family, points, &optimum.at, &optimum.bounds, 100);
-            along_its_bounds(family, points, free)
-        })
-        .collect();
+    let starts = family.starts(points);
+    let search = |optima: Vec<Optimum>, patience| -> Vec<Optimum> {
+        let optima = optima.iter();
+        optima
+            .map(|at| minimise(family, points, at, patience))
+            .collect()
+    };
+    let short = distinct(search(starts, SHORT), FINALISTS);
+    let mut long = distinct(search(short, LONG), FINALISTS);
+    let least = long.first().map_or(0.0, |best| best.sum);
+    long.retain(|optimum| optimum.sum <= NEARLY * least);
+    let at_bounds = long.iter().map(|at| along_its_bounds(family, points, *at));
+    let mut rested = search(at_bounds.collect(), TO_THE_END);
     sort(&mut rested);
     rested
+}
+
+/// In the order of their sums, at most `count`, each place once.
+fn distinct(mut optima: Vec<Optimum>, count: usize) -> Vec<Optimum> {
+    sort(&mut optima);
+    let mut kept: Vec<Optimum> = Vec::new();
+    for optimum in optima {
+        let known = kept.iter().any(|other| {
+            (other.sum - optimum.sum).abs() <= 1e-6 * other.sum
+                && (0..MOST).all(|i| (other.at[i] - optimum.at[i]).abs() < 1e-3)
+        });
+        if !known && kept.len() < count {
+            kept.push(optimum);
+        }
+    }
+    kept
 }
 
 fn sort(optima: &mut [Optimum]) {
@@ -62,7 +79,7 @@ fn sort(optima: &mut [Optimum]) {
 fn along_its_bounds(family: &Family, points: &Points, mut optimum: Optimum) -> Optimum {
     for index in 0..MOST {
         let [low, high] = optimum.bounds[index];
-        let near = 1e-3 * (high - low);
+        let near = 1e-2 * (high - low);
         let at = optimum.at[index];
         let bound = if low < high && at - low < near {
             low
@@ -71,10 +88,11 @@ fn along_its_bounds(family: &Family, points: &Points, mut optimum: Optimum) -> O
         } else {
             continue;
         };
-        let (mut start, mut bounds) = (optimum.at, optimum.bounds);
-        start[index] = bound;
-        bounds[index] = [bound; 2];
-        let there = minimise(family, points, &start, &bounds, 100);
+        let mut there = optimum;
+        there.at[index] = bound;
+        there.bounds[index] = [bound; 2];
+        there.sum = f64::INFINITY;
+        let there = minimise(family, points, &there, LONG);
         if there.sum <= optimum.sum * (1.0 + 1e-12) {
             optimum = there;
         }
@@ -82,14 +100,10 @@ fn along_its_bounds(family: &Family, points: &Points, mut optimum: Optimum) -> O
     optimum
 }
 
-/// From one start to where it comes to rest, with at most `patience` evaluations a coordinate.
-fn minimise(
-    family: &Family,
-    points: &Points,
-    start: &Coordinates,
-    bounds: &Bounds,
-    patience: usize,
-) -> Optimum {
+/// From one place to where the search comes to rest, with at most `patience` evaluations a
+/// coordinate.
+fn minimise(family: &Family, points: &Points, start: &Optimum, patience: usize) -> Optimum {
+    let bounds = &start.bounds;
     let mut problem = Problem {
         family,
         points,
@@ -97,27 +111,32 @@ fn minimise(
         free: (0..MOST)
             .filter(|&index| bounds[index][0] < bounds[index][1])
             .collect(),
-        at: *start,
+        at: start.at,
         angles: DVector::zeros(0),
     };
-    problem.angles = problem.angles_of(start);
     if !problem.free.is_empty() {
+        let angles = problem.angles_of(&start.at);
+        problem.angles = angles.clone();
+        problem.set_params(&angles);
         let solver = LevenbergMarquardt::new()
+            .with_ftol(1e-14)
+            .with_xtol(1e-14)
+            .with_gtol(1e-14)
             .with_patience(patience)
             .with_stepbound(1.0);
-        let angles = problem.angles.clone();
-        problem.set_params(&angles);
         // Whatever it says at the end, the place is judged by its sum.
         (problem, _) = solver.minimize(problem);
     }
-    let sum = sum_of_squares(points, |_, ln_size| {
-        family.share(&problem.at, ln_size).share
-    });
-    Optimum {
-        at: problem.at,
-        bounds: *bounds,
-        sum: if sum.is_finite() { sum } else { f64::INFINITY },
+    let share = |_, ln_size| family.share(&problem.at, ln_size).share;
+    let sum = sum_of_squares(points, share);
+    if sum < start.sum {
+        return Optimum {
+            at: problem.at,
+            sum,
+            ..*start
+        };
     }
+    *start
 }
 
 /// The residuals in angles of the free coordinates.
@@ -177,12 +196,14 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
         let points = &self.points.points;
+        let by_angle = self.free.iter().zip(self.angles.iter());
+        let by_angle: Vec<f64> = by_angle
+            .map(|(&index, angle)| self.middle_and_half(index).1 * angle.cos())
+            .collect();
         let mut jacobian = DMatrix::zeros(points.len(), self.free.len());
         for (row, point) in points.iter().enumerate() {
             let gradient = self.family.share(&self.at, point.ln_size).gradient;
-            for (column, &index) in self.free.iter().enumerate() {
-                let (_, half) = self.middle_and_half(index);
-                let by_angle = half * self.angles[column].cos();
+            for (column, (&index, by_angle)) in self.free.iter().zip(&by_angle).enumerate() {
                 jacobian[(row, column)] = 100.0 * point.weight.sqrt() * gradient[index] * by_angle;
             }
         }

@@ -15,8 +15,15 @@ use super::coordinates::{
     Bounds, Coordinates, EXPONENT, FARTHEST, MOST, Share, geometric, sum_of_squares,
 };
 use super::points::Points;
+use super::search::Optimum;
 use crate::fragmentation::swebrec5::ln_exp_m1;
 use crate::fragmentation::{Curve, Swebrec, Swebrec5};
+
+/// How many starts are searched from.
+const STARTS: usize = 80;
+
+/// How many k and c are tried for them.
+const EXPONENTS: u32 = 14;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SwebrecCoordinates {
@@ -110,101 +117,37 @@ impl SwebrecCoordinates {
         }
     }
 
-    /// For every u of a grid (and a), the exponents with the least sum at the median of the points.
-    pub(super) fn starts(&self, points: &Points) -> Vec<(Coordinates, Bounds)> {
+    /// For every u of a grid (and a) the exponents with the least sum; the best of these.
+    pub(super) fn starts(&self, points: &Points) -> Vec<Optimum> {
         let range = points.range.max(0.1);
         let to_smallest = 1.0 / self.u[1];
-        let above = geometric(0.01, 30.0, 12).map(|above| 1.0 / (to_smallest + above * range));
+        let above = geometric(0.01, 30.0, 7).map(|above| 1.0 / (to_smallest + above * range));
         let mut us: Vec<f64> = vec![self.u[1]];
         if self.u[0] < self.u[1] {
             us.extend(above.filter(|u| *u > self.u[0]));
             us.push(self.u[0]);
         }
         let shares: &[f64] = if self.extended {
-            &[0.0, 0.02, 0.2, 0.5, 0.8, 0.98, 1.0]
+            &[0.0, 0.03, 0.2, 0.5, 0.8, 0.97, 1.0]
         } else {
             &[1.0]
         };
         let mut starts = Vec::new();
         for u in us {
-            for best in self.best_exponents(points, u, shares, range) {
-                let mut bounds = self.bounds();
-                // At a bound the search runs along it.
-                if u == self.u[0] || u == self.u[1] {
-                    bounds[0] = [u; 2];
+            // The median may be a little aside of where the points cross 50 %.
+            let terms = [-0.15, 0.0, 0.15].map(|aside| Terms::new(self, points, u, aside * range));
+            for &a in shares {
+                for gentle in [true, false] {
+                    let bests = terms
+                        .iter()
+                        .map(|terms| terms.best(self, points, a, gentle));
+                    starts.extend(bests.min_by(|a, b| a.sum.total_cmp(&b.sum)));
                 }
-                if best.1[3] == 0.0 || best.1[3] == 1.0 {
-                    bounds[3] = [best.1[3]; 2];
-                }
-                starts.push((best.0, best.1, bounds));
             }
         }
-        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        starts.sort_by(|a, b| a.sum.total_cmp(&b.sum));
+        starts.truncate(STARTS);
         starts
-            .into_iter()
-            .map(|(_, at, bounds)| (at, bounds))
-            .collect()
-    }
-
-    /// At one u, for each share a, the sum and the coordinates of the best k and c of a grid.
-    fn best_exponents(
-        &self,
-        points: &Points,
-        u: f64,
-        shares: &[f64],
-        range: f64,
-    ) -> Vec<(f64, Coordinates)> {
-        let t50 = (points.ln_median - self.ln_middle).min(0.999 / u);
-        let d = (-u * t50).ln_1p() / u;
-        let spread = (u * d).exp() / u;
-        let within = |exponent: f64| exponent.clamp(1.1e-3, 0.9e3);
-        let ks: Vec<f64> = geometric(0.3, 100.0, 15)
-            .map(|k| within(k / range))
-            .collect();
-        let cs: Vec<f64> = if self.extended {
-            geometric(0.2, 100.0, 15)
-                .map(|c| within(c / range))
-                .collect()
-        } else {
-            vec![1.0]
-        };
-        // The two terms at every point, before they are weighed.
-        let terms = |exponents: &[f64], log: &dyn Fn(f64) -> f64| -> Vec<Vec<f64>> {
-            let of = |exponent: f64| {
-                let sizes = points.points.iter();
-                let below = sizes.map(|point| 1.0 / u - (point.ln_size - self.ln_middle));
-                below
-                    .map(|y| {
-                        if y > 1e-12 {
-                            (exponent * log(y)).min(300.0).exp()
-                        } else {
-                            0.0
-                        }
-                    })
-                    .collect()
-            };
-            exponents.iter().map(|exponent| of(*exponent)).collect()
-        };
-        let coarse = terms(&ks, &|y| (y / spread).ln() / u);
-        let fines = terms(&cs, &|y| ln_exp_m1(y) - ln_exp_m1(spread));
-        let mut best = Vec::new();
-        for &a in shares {
-            let mut least = (f64::INFINITY, [u, d, 0.0, a, 0.0]);
-            for (k, coarse) in ks.iter().zip(&coarse) {
-                for (c, fines) in cs.iter().zip(&fines) {
-                    let share = |index: usize, _| {
-                        1.0 / (1.0 + a * coarse[index] + (1.0 - a) * fines[index])
-                    };
-                    let sum = sum_of_squares(points, share);
-                    if sum < least.0 {
-                        let ln_c = if self.extended { c.ln() } else { 0.0 };
-                        least = (sum, [u, d, k.ln(), a, ln_c]);
-                    }
-                }
-            }
-            best.push(least);
-        }
-        best
     }
 
     pub(super) fn curve(&self, at: &Coordinates) -> Option<Curve> {
@@ -238,5 +181,84 @@ impl SwebrecCoordinates {
         gradients[3][3] = 1.0;
         gradients[4][4] = ln_c.exp();
         gradients
+    }
+}
+
+/// Both terms at every point for a grid of exponents, before they are weighed with a.
+struct Terms {
+    u: f64,
+    d: f64,
+    /// k, and the first term at every point.
+    coarse: Vec<(f64, Vec<f64>)>,
+    /// c, and the second.
+    fines: Vec<(f64, Vec<f64>)>,
+}
+
+impl Terms {
+    fn new(family: &SwebrecCoordinates, points: &Points, u: f64, aside: f64) -> Self {
+        let t50 = points.ln_median + aside - family.ln_middle;
+        let t50 = t50.min(1.0 / u - 1e-3 * points.range.max(0.1));
+        let d = (-u * t50).ln_1p() / u;
+        let spread = (u * d).exp() / u;
+        let range = points.range.max(0.1);
+        let below: Vec<f64> = points
+            .points
+            .iter()
+            .map(|point| 1.0 / u - (point.ln_size - family.ln_middle))
+            .collect();
+        let term = |log: &dyn Fn(f64) -> f64, exponent: f64| {
+            let exponent = (exponent / range).clamp(1.1e-3, 0.9e3);
+            let at = |y: &f64| {
+                if *y > 1e-12 {
+                    (exponent * log(*y)).min(300.0).exp()
+                } else {
+                    0.0
+                }
+            };
+            (exponent, below.iter().map(at).collect())
+        };
+        let coarse = |y: f64| (y / spread).ln() / u;
+        let fines = |y: f64| ln_exp_m1(y) - ln_exp_m1(spread);
+        let exponents = geometric(0.3, 100.0, EXPONENTS);
+        Self {
+            u,
+            d,
+            coarse: exponents.clone().map(|k| term(&coarse, k)).collect(),
+            fines: if family.extended {
+                exponents.map(|c| term(&fines, c)).collect()
+            } else {
+                vec![(1.0, vec![0.0; below.len()])]
+            },
+        }
+    }
+
+    /// The exponents with the least sum at one a, in the gentle or in the steep half of the k.
+    fn best(&self, family: &SwebrecCoordinates, points: &Points, a: f64, gentle: bool) -> Optimum {
+        let mut bounds = family.bounds();
+        // At a bound the search runs along it.
+        for (index, at) in [(0, self.u), (3, a)] {
+            if bounds[index].contains(&at) {
+                bounds[index] = [at; 2];
+            }
+        }
+        let mut best = Optimum {
+            at: [self.u, self.d, 0.0, a, 0.0],
+            bounds,
+            sum: f64::INFINITY,
+        };
+        let (gentler, steeper) = self.coarse.split_at(self.coarse.len() / 2);
+        for (k, coarse) in if gentle { gentler } else { steeper } {
+            for (c, fines) in &self.fines {
+                let share =
+                    |index: usize, _| 1.0 / (1.0 + a * coarse[index] + (1.0 - a) * fines[index]);
+                let sum = sum_of_squares(points, share);
+                if sum < best.sum {
+                    best.sum = sum;
+                    best.at[2] = k.ln();
+                    best.at[4] = if family.extended { c.ln() } else { 0.0 };
+                }
+            }
+        }
+        best
     }
 }

@@ -13,19 +13,13 @@ pub(super) mod test_comparison {
     //! A comparison with round numbers.
 
     use crate::fragmentation::{
-        Comparison, ComparisonOptions, Curve, CurveNorm, Fit, FittedParameter, Improvement,
+        Comparison, ComparisonOptions, CurveNorm, Fit, FitOptions, FittedParameter, Improvement,
         MeanPoint, MethodComparison, MethodCurve, Model, PercentError, PercentileShift, Shift,
-        Span, Swebrec,
+        SizeDistribution, Span, Swebrec, fit,
     };
     use crate::units::LengthUnit;
 
     fn curve(method: &str, trials: &[&str], means: [f64; 2]) -> MethodCurve {
-        let swebrec = Swebrec::new(40.0, 150.0, 2.0).unwrap();
-        let parameter = |name, value| FittedParameter {
-            name,
-            value,
-            standard_error: None,
-        };
         let point = |size, mean| MeanPoint {
             size,
             mean,
@@ -36,22 +30,30 @@ pub(super) mod test_comparison {
             method: method.to_owned(),
             trials: trials.iter().map(|trial| (*trial).to_owned()).collect(),
             points: vec![point(10.0, means[0]), point(100.0, means[1])],
-            fit: Fit {
-                model: Model::Swebrec,
-                curve: Curve::Swebrec(swebrec),
-                parameters: vec![
-                    parameter("xmax", 150.0),
-                    parameter("x50", 40.0),
-                    parameter("b", 2.0),
-                ],
-                residuals: vec![0.5, -0.5],
-                residual_sum_of_squares: 0.5,
-                rmse: 0.5,
-                r_squared: 0.999,
-                degrees_of_freedom: 0,
-                notes: Vec::new(),
-            },
+            fit: round_fit(),
         }
+    }
+
+    /// A fit to a Swebrec, told in round numbers.
+    fn round_fit() -> Fit {
+        let swebrec = Swebrec::new(40.0, 150.0, 2.0).unwrap();
+        let sizes = [5.0, 10.0, 20.0, 40.0, 80.0, 120.0];
+        let points = sizes.map(|size| [size, 100.0 * swebrec.passing(size)]);
+        let measured = SizeDistribution::new(points.to_vec()).unwrap();
+        let parameter = |name, value| FittedParameter {
+            name,
+            value,
+            standard_error: None,
+        };
+        let mut found = fit(&measured, Model::Swebrec, &FitOptions::default()).unwrap();
+        found.parameters = vec![
+            parameter("xmax", 150.0),
+            parameter("x50", 40.0),
+            parameter("b", 2.0),
+        ];
+        found.rmse = 0.5;
+        found.r_squared = 0.999;
+        found
     }
 
     pub(in crate::exports::size_distributions) fn comparison() -> Comparison {

@@ -32,7 +32,7 @@ mod tests;
 pub use look::{Dash, Look, Marker};
 pub use of_comparison::figure_of_comparison;
 pub use of_fits::{FittedDistribution, figure_of_fits};
-pub use picture::{figure_png, figure_svg};
+pub use picture::{FigureFormat, figure_png, figure_svg};
 pub use size_axis::{SizeAxis, SizeTick};
 
 /// What a figure shows. All sizes are in the unit of the size axis; nothing in it is drawn twice.

@@ -1,5 +1,7 @@
 //! A figure as a file: SVG for documents, PNG for everything else.
 
+use std::path::Path;
+
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, RgbImage};
 use plotters::drawing::IntoDrawingArea;
@@ -12,6 +14,48 @@ use super::pen::{FINE, Pen, of_plotters};
 use crate::exports::markup::escaped;
 use crate::fault::Fault;
 use crate::picture::reduced;
+
+/// What a figure is written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FigureFormat {
+    /// Lines and text, for documents.
+    Svg,
+    /// Pixels.
+    Png,
+}
+
+impl FigureFormat {
+    /// By the ending of a file's name.
+    ///
+    /// # Errors
+    ///
+    /// Another ending, or none.
+    pub fn of(path: &Path) -> Result<Self, Fault> {
+        let ending = path
+            .extension()
+            .map(|ending| ending.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
+            _ => Err(Fault::new(
+                "a figure is written as SVG or PNG",
+                "let its name end in .svg or .png",
+            )),
+        }
+    }
+
+    /// The bytes of a file in this format.
+    ///
+    /// # Errors
+    ///
+    /// As [`figure_svg`] and [`figure_png`].
+    pub fn bytes(self, contents: &FigureContents) -> Result<Vec<u8>, Fault> {
+        match self {
+            Self::Svg => figure_svg(contents).map(String::into_bytes),
+            Self::Png => figure_png(contents),
+        }
+    }
+}
 
 /// Pixels of a PNG to a unit of the figure: 1800 across, which are 300 dpi at 15 cm.
 const PIXELS: u32 = 2;

@@ -1,0 +1,133 @@
+//! `fragscale psd fit`: a function fitted to every curve of a table.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use rayon::prelude::*;
+
+use super::{Answer, OutputUnit, ScalesFormat};
+use crate::exports::{self, FitReport, FittedCurve};
+use crate::fault::Fault;
+use crate::formats::{DistributionColumns, FileError, read_point_weights, read_size_distributions};
+use crate::fragmentation::{self, FitOptions, LabelledDistribution, Model};
+
+#[derive(Debug, Args)]
+pub(super) struct FitArguments {
+    /// A table of cumulative percent passing by size, as CSV.
+    file: PathBuf,
+    /// The column of sizes, where its name does not say so.
+    #[arg(long, value_name = "COLUMN")]
+    size: Option<String>,
+    /// The column of cumulative percent passing.
+    #[arg(long, value_name = "COLUMN")]
+    passing: Option<String>,
+    /// The unit of sizes, where the table does not state it.
+    #[arg(long, value_enum)]
+    unit: Option<OutputUnit>,
+    /// The function to fit.
+    #[arg(long, value_parser = models(), default_value = "swebrec")]
+    model: Model,
+    /// The largest size, where it is known, in the unit of the table; it is not fitted then.
+    #[arg(long, value_name = "SIZE")]
+    xmax: Option<f64>,
+    /// A column with a weight for each size; without it all points count the same.
+    #[arg(long, value_name = "COLUMN", requires = "size")]
+    weights: Option<String>,
+    /// The confidence of bands.
+    #[arg(long, value_parser = level, default_value_t = 0.95)]
+    level: f64,
+    /// Percents passing whose sizes are given, beside every ten from 10 to 90.
+    #[arg(
+        long,
+        value_name = "PERCENT,...",
+        value_delimiter = ',',
+        value_parser = percent,
+        default_value = "10,20,50,80,90"
+    )]
+    percentiles: Vec<f64>,
+    /// How to write it.
+    #[arg(long, value_enum, default_value = "table")]
+    format: ScalesFormat,
+    /// Write to this file instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+}
+
+/// The models by their keys, each explained by its name.
+fn models() -> impl TypedValueParser<Value = Model> {
+    let keys = Model::ALL.map(|model| PossibleValue::new(model.key()).help(model.name()));
+    PossibleValuesParser::new(keys).map(|key| {
+        let model = Model::ALL.into_iter().find(|model| model.key() == key);
+        model.unwrap_or_default()
+    })
+}
+
+fn level(text: &str) -> Result<f64, String> {
+    let level = text.parse().map_err(|e| format!("{e}"))?;
+    if level > 0.0 && level < 1.0 {
+        return Ok(level);
+    }
+    Err("give a confidence between 0 and 1, such as 0.95".to_owned())
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let percent = text.trim().parse().map_err(|e| format!("{e}"))?;
+    if percent > 0.0 && percent < 100.0 {
+        return Ok(percent);
+    }
+    Err("give percents between 0 and 100".to_owned())
+}
+
+pub(super) fn fit(arguments: &FitArguments) -> Result<Answer, String> {
+    let path = &arguments.file;
+    let columns = DistributionColumns {
+        size: arguments.size.clone(),
+        passing: arguments.passing.clone(),
+        unit: arguments.unit.map(Into::into),
+        ..DistributionColumns::default()
+    };
+    let (set, mut warnings) =
+        read_size_distributions(path, &columns).map_err(|error| error.to_string())?;
+    let weights = match (&arguments.size, &arguments.weights) {
+        (Some(size), Some(column)) => {
+            let (weights, mended) =
+                read_point_weights(path, size, column).map_err(|error| error.to_string())?;
+            warnings.extend(mended);
+            Some(weights)
+        }
+        _ => None,
+    };
+    let one = |curve: &LabelledDistribution| -> Result<FittedCurve, Fault> {
+        let points = curve.distribution.points();
+        let weights = weights.as_ref().map(|weights| weights.of(points));
+        let options = FitOptions {
+            weights: weights.transpose()?,
+            xmax: arguments.xmax,
+        };
+        let fit = fragmentation::fit(&curve.distribution, arguments.model, &options)?;
+        Ok(FittedCurve::new(curve, fit, &options))
+    };
+    let outcomes: Vec<_> = set.curves.par_iter().map(one).collect();
+    let mut fitted = Vec::new();
+    let mut fault = None;
+    for (curve, outcome) in set.curves.iter().zip(outcomes) {
+        match outcome {
+            Ok(curve) => fitted.push(curve),
+            Err(trouble) => {
+                warnings.push(format!("{}: left out: {trouble}", curve.labels));
+                fault.get_or_insert(trouble);
+            }
+        }
+    }
+    if let (true, Some(fault)) = (fitted.is_empty(), fault) {
+        return Err(FileError::new(path, fault).to_string());
+    }
+    let report = FitReport::new(set.unit, fitted, arguments.level, &arguments.percentiles);
+    let text = match arguments.format {
+        ScalesFormat::Table => exports::fit_table(&report),
+        ScalesFormat::Csv => exports::fit_csv(&report).map_err(|e| e.to_string())?,
+        ScalesFormat::Json => exports::fit_json(&report).map_err(|e| e.to_string())?,
+    };
+    Ok(Answer { text, warnings })
+}

@@ -1,0 +1,135 @@
+//! Scale objects of the exported photos: what they say beside the point cloud, and what of the photo
+//! they cover.
+
+use glam::DVec2;
+
+use super::ExportRequest;
+use super::sheet::escaped;
+use crate::camera::Camera;
+use crate::fault::Fault;
+use crate::flight::{ComparedObject, ScaleObject};
+use crate::picture::significant_digits;
+use crate::scale::{ImageKind, Traced};
+use crate::units::LengthUnit;
+
+/// How far a mask reaches beyond its object, pixels: clicks and lenses are not exact, and a rim that
+/// is left would be taken for an edge of rock.
+const MASK_MARGIN_PX: f64 = 4.0;
+
+/// A scale object on one of the photos.
+pub(super) struct PhotoObject<'a> {
+    object: &'a ScaleObject,
+    compared: ComparedObject,
+    /// What it covers in the exported photo, pixels; empty where it is not masked.
+    region: Vec<DVec2>,
+}
+
+/// For each photo of the flight the scale objects on it, of those that are exported.
+///
+/// # Errors
+/// Where the surface cannot be met.
+pub(super) fn of_photos<'a>(
+    request: &ExportRequest<'a>,
+) -> Result<Vec<Vec<PhotoObject<'a>>>, Fault> {
+    let (flight, objects) = (request.flight, &request.settings.scale_objects);
+    let compared = flight.compare_objects(objects, request.outcomes)?;
+    let photos = &flight.parts().photos;
+    let mut of_photos: Vec<Vec<PhotoObject<'a>>> = photos.iter().map(|_| Vec::new()).collect();
+    for (object, compared) in objects.iter().zip(compared) {
+        let place = photos.iter().position(|photo| photo.name == object.photo);
+        let Some(place) = place.filter(|&place| request.selected.get(place) == Some(&true)) else {
+            continue;
+        };
+        let camera = flight.camera(&photos[place]);
+        let region = match &compared.traced {
+            Ok(traced) if object.mask => region(traced, camera, flight.parts().image),
+            _ => Vec::new(),
+        };
+        of_photos[place].push(PhotoObject {
+            object,
+            compared,
+            region,
+        });
+    }
+    Ok(of_photos)
+}
+
+fn region(traced: &Traced, camera: &Camera, image: ImageKind) -> Vec<DVec2> {
+    traced.region(camera, image, MASK_MARGIN_PX)
+}
+
+impl PhotoObject<'_> {
+    /// Whether a part of the photo is painted over for it.
+    pub(super) fn is_masked(&self) -> bool {
+        !self.region.is_empty()
+    }
+
+    /// The part of the photo that is painted over, pixels.
+    pub(super) fn region(&self) -> &Vec<DVec2> {
+        &self.region
+    }
+
+    /// That it should be masked and is not, and why.
+    pub(super) fn warning(&self) -> Option<String> {
+        let object = self.object;
+        if !object.mask || self.is_masked() {
+            return None;
+        }
+        let why = match &self.compared.traced {
+            Err(fault) => fault.to_string(),
+            Ok(_) => "the lens does not see all of it".to_owned(),
+        };
+        Some(format!(
+            "{}: its scale object, a {}, is not masked: {why}",
+            object.photo,
+            object.kind.as_str()
+        ))
+    }
+
+    /// For the sheet, as HTML: its scale in `unit` beside that of the point cloud.
+    pub(super) fn sentence(&self, unit: LengthUnit, world_unit: LengthUnit) -> String {
+        let object = self.object;
+        let factor = unit.in_units_of(world_unit);
+        let scale = |scale: f64| format!("{} px/{unit}", significant_digits(scale * factor, 4));
+        let percent = |share: f64| format!("{:+.1} %", share * 100.0);
+        let mut text = format!(
+            "scale object: {}, {} {} {world_unit}: ",
+            object.kind.as_str(),
+            object.kind.size_name(),
+            object.size
+        );
+        let compared = &self.compared;
+        match (&compared.traced, compared.scale) {
+            (Err(fault), _) => text += &fault.to_string(),
+            (Ok(_), None) => text += "no scale, the lens does not see it",
+            (Ok(traced), Some(its)) => {
+                text += &format!("<b>{}</b>", scale(its));
+                if let Traced::Sphere(sphere) = traced
+                    && let Some(error) = sphere.relative_error
+                {
+                    text += &format!(" ± {:.1} %", error * 100.0);
+                }
+                let place = compared.place;
+                if let (Some(edges), Some(off)) = (place.between_edges, compared.beyond_edges()) {
+                    text += &format!("; the point cloud has {} on its row", scale(edges));
+                    text += &format!(" (the object {})", percent(off));
+                }
+                if let (Some(around), Some(off)) = (place.around, compared.beyond_surroundings()) {
+                    text += &format!(", {} on the surface around it", scale(around));
+                    text += &format!(" (the object {})", percent(off));
+                }
+                if let Some(off) = compared.beyond_length() {
+                    text += &format!("; its length on the point cloud {}", percent(off));
+                }
+            }
+        }
+        if self.is_masked() {
+            text += "; painted blue in the photo";
+        }
+        // Numbers and words of ours but for the fault, which may quote what a file holds.
+        match compared.traced {
+            Err(_) => escaped(&text),
+            Ok(_) => text,
+        }
+    }
+}
