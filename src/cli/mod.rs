@@ -9,14 +9,17 @@
 
 mod anova;
 mod check;
+mod distribution_arguments;
 mod effort;
 mod export;
 mod flight_arguments;
 mod georeference;
 mod psd;
+mod psd_compare;
 mod psd_fit;
 #[cfg(feature = "render")]
 mod render;
+mod written_beside;
 
 use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write};
@@ -296,15 +299,20 @@ pub fn run() -> ExitCode {
     }
     match output {
         None => print(&answer.text),
-        Some(path) => match exports::write_whole(&path, answer.text.as_bytes()) {
+        Some(path) => match write(&path, answer.text.as_bytes()) {
             Ok(()) => ExitCode::SUCCESS,
-            Err(error) => {
-                let what = format!("it cannot be written ({error})");
-                let fault = Fault::new(what, "choose a folder that may be written to");
-                fail(&FileError::new(&path, fault).to_string())
-            }
+            Err(message) => fail(&message),
         },
     }
+}
+
+/// Writes a file whole or not at all.
+fn write(path: &Path, contents: &[u8]) -> Result<(), String> {
+    exports::write_whole(path, contents).map_err(|error| {
+        let what = format!("it cannot be written ({error})");
+        let fault = Fault::new(what, "choose a folder that may be written to");
+        FileError::new(path, fault).to_string()
+    })
 }
 
 /// Opens the window, with a flight where one is named.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Subcommand;
 
 use super::Answer;
+use super::psd_compare::{self, CompareArguments};
 use super::psd_fit::{self, FitArguments};
 use crate::jobs::Progress;
 
@@ -12,6 +13,8 @@ use crate::jobs::Progress;
 pub(super) enum PsdCommand {
     /// Fit a function to each curve: parameters with standard errors, percentiles with bands.
     Fit(FitArguments),
+    /// Hold methods against a reference: percent errors, norms, shifts, the figure and the report.
+    Compare(CompareArguments),
 }
 
 impl PsdCommand {
@@ -19,12 +22,14 @@ impl PsdCommand {
     pub(super) fn output(&self) -> Option<PathBuf> {
         match self {
             Self::Fit(arguments) => arguments.output.clone(),
+            Self::Compare(arguments) => arguments.output.clone(),
         }
     }
 }
 
-pub(super) fn psd(command: &PsdCommand, _progress: &Progress) -> Result<Answer, String> {
+pub(super) fn psd(command: &PsdCommand, progress: &Progress) -> Result<Answer, String> {
     match command {
         PsdCommand::Fit(arguments) => psd_fit::fit(arguments),
+        PsdCommand::Compare(arguments) => psd_compare::compare(arguments, progress),
     }
 }

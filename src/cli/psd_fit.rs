@@ -6,8 +6,9 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rayon::prelude::*;
 
+use super::written_beside::{drawn_figures, figure_formats, write_all};
 use super::{Answer, OutputUnit, ScalesFormat};
-use crate::exports::{self, FitReport, FittedCurve};
+use crate::exports::{self, FitReport, FittedCurve, FittedDistribution};
 use crate::fault::Fault;
 use crate::formats::{DistributionColumns, FileError, read_point_weights, read_size_distributions};
 use crate::fragmentation::{self, FitOptions, LabelledDistribution, Model};
@@ -52,10 +53,14 @@ pub(super) struct FitArguments {
     /// Write to this file instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
+    /// Draw points, fits and their bands (95 %) into this file, .svg or .png; may be given more than
+    /// once.
+    #[arg(long, value_name = "FILE")]
+    figure: Vec<PathBuf>,
 }
 
 /// The models by their keys, each explained by its name.
-fn models() -> impl TypedValueParser<Value = Model> {
+pub(super) fn models() -> impl TypedValueParser<Value = Model> {
     let keys = Model::ALL.map(|model| PossibleValue::new(model.key()).help(model.name()));
     PossibleValuesParser::new(keys).map(|key| {
         let model = Model::ALL.into_iter().find(|model| model.key() == key);
@@ -80,6 +85,7 @@ fn percent(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn fit(arguments: &FitArguments) -> Result<Answer, String> {
+    let formats = figure_formats(&arguments.figure)?;
     let path = &arguments.file;
     let columns = DistributionColumns {
         size: arguments.size.clone(),
@@ -110,10 +116,14 @@ pub(super) fn fit(arguments: &FitArguments) -> Result<Answer, String> {
     };
     let outcomes: Vec<_> = set.curves.par_iter().map(one).collect();
     let mut fitted = Vec::new();
+    let mut drawn = Vec::new();
     let mut fault = None;
     for (curve, outcome) in set.curves.iter().zip(outcomes) {
         match outcome {
-            Ok(curve) => fitted.push(curve),
+            Ok(found) => {
+                drawn.push((curve.labels.to_string(), curve, found.fit().clone()));
+                fitted.push(found);
+            }
             Err(trouble) => {
                 warnings.push(format!("{}: left out: {trouble}", curve.labels));
                 fault.get_or_insert(trouble);
@@ -123,11 +133,23 @@ pub(super) fn fit(arguments: &FitArguments) -> Result<Answer, String> {
     if let (true, Some(fault)) = (fitted.is_empty(), fault) {
         return Err(FileError::new(path, fault).to_string());
     }
+    let title = path.file_stem().unwrap_or_default().to_string_lossy();
+    let shown: Vec<FittedDistribution<'_>> = drawn
+        .iter()
+        .map(|(name, curve, fit)| FittedDistribution {
+            name,
+            distribution: &curve.distribution,
+            fit,
+        })
+        .collect();
+    let figure = exports::figure_of_fits(title, set.unit, &shown);
+    let figures = drawn_figures(&figure, formats)?;
     let report = FitReport::new(set.unit, fitted, arguments.level, &arguments.percentiles);
     let text = match arguments.format {
         ScalesFormat::Table => exports::fit_table(&report),
         ScalesFormat::Csv => exports::fit_csv(&report).map_err(|e| e.to_string())?,
         ScalesFormat::Json => exports::fit_json(&report).map_err(|e| e.to_string())?,
     };
+    write_all(figures)?;
     Ok(Answer { text, warnings })
 }

@@ -263,7 +263,7 @@ impl Table {
                 return fault(ambiguous, plain);
             }
             (0, 0 | 1) => number.parse::<f64>(),
-            (1, 0) if may_be_thousands(number) && !(self.decimal_comma && !self.decimal_point) => {
+            (1, 0) if may_be_thousands(number) && (self.decimal_point || !self.decimal_comma) => {
                 return fault(ambiguous, plain);
             }
             (1, 0) => {

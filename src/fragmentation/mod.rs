@@ -4,6 +4,7 @@
 //! distribution    points (size, percent passing) as a sieve or Split-Desktop gave them
 //! distribution_set  many of them, each with its method, trial and photo, in one unit
 //! sieve_series    the openings of ASTM E11, ISO 565 R20/3, EN 933-2
+//! joining         the curves of several files in one unit
 //! merging         photos to one distribution, weighted as chosen
 //! model, swebrec, swebrec5, rosin_rammler, gates_gaudin_schuhmann
 //!                 the functions that are fitted
@@ -24,6 +25,7 @@ mod distribution_set;
 mod effort;
 mod fit;
 mod gates_gaudin_schuhmann;
+mod joining;
 mod merging;
 mod model;
 mod rosin_rammler;

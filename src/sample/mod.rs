@@ -11,6 +11,7 @@
 pub mod files;
 mod flight_plan;
 mod fragment;
+mod image_analysis;
 mod light;
 mod material;
 mod noise;
@@ -30,6 +31,7 @@ use std::io;
 use std::path::Path;
 
 use glam::{DVec2, DVec3};
+use serde_json::Value;
 
 pub use flight_plan::{FlightPlan, Shot};
 pub use pile::{Fragment, Pile, PilePlan};
@@ -47,6 +49,7 @@ use files::flight::FlightText;
 use files::photo::{DjiGimbal, PhotoMetadata};
 use files::poses::{Orientation, PoseRow};
 use files::reference::SieveSeries;
+use image_analysis::{Analysis, Outlined, Scale};
 use light::Light;
 use material::Material;
 use photo::Look;
@@ -154,12 +157,14 @@ fn fill(
     write_texts(folder, name, recipe, &shots)?;
     let truth = truth::truth(&scene, &recipe.camera, &shots, recipe.origin)?;
     write(&folder.join("truth.json"), format!("{truth}\n").as_bytes())?;
-    write(
-        &folder.join("reference.csv"),
-        reference(&scene, recipe)?.as_bytes(),
-    )?;
+    let sieved = sieved(&scene, recipe);
+    let reference = files::reference::reference_csv(&sieved);
+    let reference = reference.map_err(|e| Fault::new(e, "report this"))?;
+    write(&folder.join("reference.csv"), reference.as_bytes())?;
     if options.photos {
-        take_photos(folder, &scene, recipe, &shots, &look, options, progress)?;
+        let photos = take_photos(folder, &scene, recipe, &shots, &look, options, progress)?;
+        let text = analysed(&scene, recipe, &shots, &truth, &sieved, &photos);
+        write(&folder.join("distributions.csv"), text.as_bytes())?;
     }
     Ok(())
 }
@@ -321,7 +326,7 @@ fn write_texts(folder: &Path, surface: &str, recipe: &Recipe, shots: &[Shot]) ->
 
 /// The true cumulative passing by mass on ISO 565's R20/3 sieves, fines included: below the smallest
 /// fragment it is the material's distribution, of which the fines are the part that is not bodies.
-fn reference(scene: &Scene, recipe: &Recipe) -> Result<String, Fault> {
+fn sieved(scene: &Scene, recipe: &Recipe) -> Vec<(f64, f64)> {
     let pile = scene.pile();
     let fines = recipe.pile.sizes.passing(recipe.pile.smallest);
     let total: f64 = pile.fragments.iter().map(|f| pile.volume(f)).sum();
@@ -334,13 +339,66 @@ fn reference(scene: &Scene, recipe: &Recipe) -> Result<String, Fault> {
     };
     let largest = recipe.pile.sizes.size_at(1.0) * 1000.0;
     let openings = SieveSeries::Iso565.openings_mm(largest / 100.0, largest * 1.2);
-    let rows: Vec<(f64, f64)> = openings
+    openings
         .into_iter()
         .map(|mm| (mm, 100.0 * passing(mm / 1000.0)))
-        .collect();
-    files::reference::reference_csv(&rows).map_err(|e| Fault::new(e, "report this"))
+        .collect()
 }
 
+/// The text of distributions.csv: the outlined photos with both kinds of scale, beside the sieve. A photo
+/// whose corners miss the surface, or whose sphere is cut off, has no scale of that kind.
+fn analysed(
+    scene: &Scene,
+    recipe: &Recipe,
+    shots: &[Shot],
+    truth: &Value,
+    sieved: &[(f64, f64)],
+    photos: &[Outlined],
+) -> String {
+    let camera = &recipe.camera;
+    let rows = f64::from(camera.height);
+    let by_rows = photos.iter().enumerate().filter_map(|(index, photo)| {
+        let edge = |edge: &str| {
+            let place = format!("/photos/{index}/as_shot/scale/{edge}");
+            truth.pointer(&place).and_then(Value::as_f64)
+        };
+        let (top, bottom) = (edge("top")?, edge("bottom")?);
+        Some(Analysis {
+            method: "point cloud",
+            photo,
+            scale: Scale { top, bottom, rows },
+        })
+    });
+    let by_spheres = photos.iter().zip(shots).filter_map(|(photo, shot)| {
+        let pose = shot.pose();
+        // Its own sphere is the one nearest its middle.
+        let off_axis = |sphere: &&Sphere| {
+            let direction = pose.camera_from_world(sphere.center).normalize_or_zero();
+            1.0 - direction.z
+        };
+        let sphere = scene
+            .spheres()
+            .iter()
+            .min_by(|a, b| off_axis(a).total_cmp(&off_axis(b)))?;
+        let scale = image_analysis::sphere_scale(camera, &pose, sphere)?;
+        Some(Analysis {
+            method: "scale object",
+            photo,
+            scale: Scale {
+                top: scale,
+                bottom: scale,
+                rows,
+            },
+        })
+    });
+    let analyses: Vec<Analysis<'_>> = by_rows.chain(by_spheres).collect();
+    let smallest = recipe.pile.smallest;
+    let fines = recipe.pile.sizes.passing(smallest);
+    let width = f64::from(camera.width);
+    image_analysis::distributions_csv(sieved, smallest * 1000.0, fines, width, &analyses)
+}
+
+/// Takes the photos, writes them, and gives back what an image analysis would outline on each.
 fn take_photos(
     folder: &Path,
     scene: &Scene,
@@ -349,7 +407,7 @@ fn take_photos(
     look: &Look,
     options: &SampleOptions,
     progress: &Progress,
-) -> Result<(), Fault> {
+) -> Result<Vec<Outlined>, Fault> {
     let report = |error: String| Fault::new(error, "report this");
     let photos = folder.join("photos");
     fs::create_dir(&photos).map_err(|error| cannot_write(&error))?;
@@ -359,6 +417,7 @@ fn take_photos(
     }
     progress.stage("taking photos");
     let camera = &recipe.camera;
+    let mut outlined = Vec::with_capacity(shots.len());
     for (index, shot) in shots.iter().enumerate() {
         progress.advance(index as u64, shots.len() as u64)?;
         let noise = options.seed ^ ((index as u64 + 1) << 32);
@@ -370,8 +429,10 @@ fn take_photos(
             let name = shot.name.replace(".jpg", ".png");
             write(&labels.join(name), &label.map_err(report)?)?;
         }
+        let (width, height) = (camera.width, camera.height);
+        outlined.push(Outlined::new(&shot.name, &photo.labels, width, height));
     }
-    Ok(())
+    Ok(outlined)
 }
 
 /// What the camera writes about a photo.

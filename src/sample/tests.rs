@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::*;
 use crate::camera::Camera;
 use crate::flight::Outcome;
-use crate::formats::{OpenOptions, open_flight};
+use crate::formats::{DistributionColumns, OpenOptions, open_flight, read_size_distributions};
 use crate::scale::EdgeScales;
 
 fn options() -> SampleOptions {
@@ -218,6 +218,55 @@ fn the_reference_is_the_sieve_analysis_of_the_truth() {
         }
     }
     assert!(sieves_above_the_fines >= 3);
+}
+
+/// distributions.csv reads back: the sieve's curve is reference.csv, each photo has one by each kind of
+/// scale, and where the one scale of a photo is larger than the other everywhere, its fragments are
+/// smaller.
+#[test]
+fn the_distributions_are_the_reference_and_two_of_each_photo() {
+    let options = SampleOptions {
+        photos: true,
+        ..options()
+    };
+    let mut recipe = small(&options);
+    recipe.camera = recipe.camera.rescaled(320, 180).unwrap();
+    let folder = made(&options, &recipe);
+    let read = |name: &str| {
+        let columns = DistributionColumns::default();
+        let path = folder.path().join(name);
+        let (set, warnings) = read_size_distributions(&path, &columns).unwrap();
+        assert!(warnings.is_empty(), "{warnings:?}");
+        assert_eq!(set.unit, LengthUnit::Millimetre);
+        set.curves
+    };
+    let (curves, reference) = (read("distributions.csv"), read("reference.csv"));
+    let names: Vec<String> = curves.iter().map(|c| c.labels.to_string()).collect();
+    assert_eq!(
+        names,
+        [
+            "sieve",
+            "point cloud / IMG_0001.jpg",
+            "point cloud / IMG_0002.jpg",
+            "scale object / IMG_0001.jpg",
+            "scale object / IMG_0002.jpg",
+        ]
+    );
+    assert_eq!(curves[0].distribution, reference[0].distribution);
+    assert_eq!(curves[0].weight, None);
+    for (by_rows, by_sphere) in [(1, 3), (2, 4)] {
+        let scale = |curve: usize| 1.0 / curves[curve].weight.unwrap().sqrt();
+        let median = |curve: usize| curves[curve].distribution.size_at(50.0).unwrap();
+        let (scales, sizes) = (
+            scale(by_rows) / scale(by_sphere),
+            median(by_sphere) / median(by_rows),
+        );
+        // The scale of a row is within a few percent of the photo's mean.
+        assert!((sizes / scales - 1.0).abs() < 0.05, "{sizes} {scales}");
+        // What is seen is a pile of these fragments: half of the mass passes within a factor of 2.
+        let off = median(by_rows) / reference[0].distribution.size_at(50.0).unwrap();
+        assert!((0.5..2.0).contains(&off), "{off}");
+    }
 }
 
 /// Fragments hardly share space: of points drawn inside fragments few lie inside another one.

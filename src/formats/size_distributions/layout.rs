@@ -174,7 +174,7 @@ impl Layout {
 /// Whether a table has columns of all these names.
 fn has_all(table: &Table, names: &[&str]) -> bool {
     let has = |name: &&str| table.header().iter().any(|column| key(column) == **name);
-    names.iter().all(|name| has(name))
+    names.iter().all(has)
 }
 
 /// What the names of a table's columns say.
@@ -365,8 +365,12 @@ impl<'a> Names<'a> {
             return Err(self.fault(what, remedy));
         }
         let passing = self.with(|role| role == Role::Passing);
-        let size = self.size(!passing.is_empty())?;
         let sets = self.percentile_sets();
+        let mut size = self.size(!passing.is_empty())?;
+        if passing.is_empty() && !sets.is_empty() {
+            // A sample's size, or a coordinate.
+            size = size.filter(|&column| matches!(self.roles.get(column), Some(Role::Size(_))));
+        }
         let has_unit = |(_, text): &&(usize, SizeText)| {
             text.sieve_mm.is_some() || text.number.is_some_and(|(_, unit)| unit.is_some())
         };

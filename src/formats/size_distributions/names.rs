@@ -108,6 +108,48 @@ fn take_unit(words: &mut Vec<String>) -> Option<SizeUnit> {
     Some(unit)
 }
 
+/// A column called a size: of sieves or fragments, or, like a sample's or an image's, of something else.
+fn of_size_role(words: &[String], unit: Option<SizeUnit>) -> Role {
+    let known = [
+        "size",
+        "sizes",
+        "opening",
+        "openings",
+        "aperture",
+        "apertures",
+        "diameter",
+        "diameters",
+        "sieve",
+        "sieves",
+        "screen",
+        "particle",
+        "grain",
+        "fragment",
+        "rock",
+        "block",
+        "stone",
+        "nominal",
+        "sievesize",
+        "screensize",
+        "grainsize",
+        "particlesize",
+        "fragmentsize",
+        "square",
+        "hole",
+        "passing",
+        "of",
+        "the",
+        "min",
+        "max",
+        "lower",
+        "upper",
+    ];
+    match words.iter().all(|word| known.contains(&word.as_str())) {
+        true => Role::Size(unit),
+        false => Role::PerhapsSize(unit),
+    }
+}
+
 /// What the name of a column says.
 pub(super) fn role(name: &str) -> Role {
     let mut words = words(name);
@@ -122,7 +164,7 @@ pub(super) fn role(name: &str) -> Role {
     let of_size =
         within(&["size", "opening", "aperture", "diameter"]) && !within(&["undersize", "oversize"]);
     if of_size && unit.is_some() {
-        return Role::Size(unit);
+        return of_size_role(&words, unit);
     }
     if within(&["retained", "oversize", "coarser", "residue"]) {
         return Role::Retained;
@@ -164,7 +206,7 @@ pub(super) fn role(name: &str) -> Role {
         return Role::NotCumulative;
     }
     if of_size {
-        return Role::Size(unit);
+        return of_size_role(&words, unit);
     }
     let photos = [
         "photo",

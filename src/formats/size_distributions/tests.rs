@@ -187,6 +187,8 @@ fn a_line_a_curve_by_percent() {
             "of percentiles of the same size the largest percent is kept (line 3)",
         ]
     );
+    let (set, _) = read("sample size,label,D10_mm,D50_mm\n12,a,9,26\n");
+    assert_eq!(names(&set), ["||a"]);
     for header in ["P10,P50", "x10,x50", "d_10,d_50", "K10 mm,K50 mm"] {
         let (set, _) = read(&format!("photo,{header}\na,9,26\n"));
         assert_eq!(

@@ -136,7 +136,7 @@ pub fn compare(set: &DistributionSet, options: &ComparisonOptions) -> Result<Com
     Ok(Comparison {
         unit: set.unit,
         options: options.clone(),
-        notes: notes_of_reference(&reference, span),
+        notes: notes_of_reference(&reference, span, set.unit),
         reference,
         span,
         methods,
@@ -147,12 +147,15 @@ pub fn compare(set: &DistributionSet, options: &ComparisonOptions) -> Result<Com
 /// A method's trials, by name.
 type Trials<'a> = Vec<(&'a str, &'a SizeDistribution)>;
 
+/// A method's name and trials.
+type Method<'a> = (&'a str, Trials<'a>);
+
 /// The trials of the reference, and of the other methods, which are one or more, with their names.
 fn methods_of<'a>(
     set: &'a DistributionSet,
     reference: &str,
-) -> Result<(Trials<'a>, Vec<(&'a str, Trials<'a>)>), Fault> {
-    let mut methods: Vec<(&str, Trials<'_>)> = Vec::new();
+) -> Result<(Trials<'a>, Vec<Method<'a>>), Fault> {
+    let mut methods: Vec<Method<'_>> = Vec::new();
     for curve in &set.curves {
         let (method, trial) = (curve.labels.method.as_str(), curve.labels.trial.as_str());
         let at = methods.iter().position(|(known, _)| *known == method);
@@ -249,14 +252,14 @@ fn partly_known(curve: &MethodCurve) -> Option<String> {
     })
 }
 
-fn notes_of_reference(reference: &MethodCurve, span: Span) -> Vec<String> {
+fn notes_of_reference(reference: &MethodCurve, span: Span, unit: LengthUnit) -> Vec<String> {
     let mut notes: Vec<String> = partly_known(reference).into_iter().collect();
     if let Some([from, to]) = reference.range()
         && (span.from < from || span.to > to)
     {
         notes.push(format!(
-            "the norms go from {} to {}, beyond the sizes {from} to {to} that '{}' was measured at: \
-             there the fitted functions are compared where nothing was measured",
+            "the norms go from {} to {} {unit}, beyond the sizes {from} to {to} {unit} that '{}' was \
+             measured at: there the fitted functions are compared where nothing was measured",
             rounded(span.from),
             rounded(span.to),
             reference.method
@@ -358,7 +361,7 @@ mod tests {
         assert!((improvement.percent.expect("a percentage") - 100.0 * gained).abs() < 1e-9);
         assert_eq!(found.improvements.len(), 2);
         assert!(
-            found.notes[0].contains("beyond the sizes 3 to 135"),
+            found.notes[0].contains("beyond the sizes 3 to 135 mm"),
             "{:?}",
             found.notes
         );

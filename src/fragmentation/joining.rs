@@ -1,0 +1,84 @@
+//! The distributions of several files as one set.
+
+use super::{DistributionSet, LabelledDistribution, SizeDistribution};
+use crate::fault::Fault;
+
+impl DistributionSet {
+    /// Gives curves without a method this one, as the name of their file.
+    pub fn name_method(&mut self, method: &str) {
+        for curve in &mut self.curves {
+            if curve.labels.method.is_empty() {
+                method.clone_into(&mut curve.labels.method);
+            }
+        }
+    }
+
+    /// Adds the curves of another set, their sizes in the unit of this one.
+    ///
+    /// # Errors
+    ///
+    /// A curve with the same labels is there already; sizes that become 0 or infinite in that unit.
+    pub fn join(&mut self, other: &Self) -> Result<(), Fault> {
+        let factor = other.unit.in_units_of(self.unit);
+        for curve in &other.curves {
+            if self.curves.iter().any(|known| known.labels == curve.labels) {
+                let what = format!(
+                    "{}a curve of this name is there already",
+                    curve.labels.in_front()
+                );
+                return Err(Fault::new(what, "give it another method, trial or photo"));
+            }
+            let points = curve.distribution.points();
+            let points = points
+                .iter()
+                .map(|[size, percent]| [size * factor, *percent]);
+            self.curves.push(LabelledDistribution {
+                distribution: SizeDistribution::new(points.collect())?,
+                ..curve.clone()
+            });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::expect_used, reason = "in a test a panic is the report")]
+mod tests {
+    use super::*;
+    use crate::fragmentation::Labels;
+    use crate::units::LengthUnit;
+
+    fn set(unit: LengthUnit, method: &str, points: [[f64; 2]; 2]) -> DistributionSet {
+        let curve = LabelledDistribution {
+            labels: Labels {
+                method: method.to_owned(),
+                ..Labels::default()
+            },
+            weight: None,
+            distribution: SizeDistribution::new(points.to_vec()).expect("a distribution"),
+        };
+        DistributionSet {
+            unit,
+            curves: vec![curve],
+        }
+    }
+
+    /// 1 in is 25.4 mm.
+    #[test]
+    fn sizes_are_in_the_unit_of_the_first() {
+        let mut both = set(LengthUnit::Millimetre, "sieve", [[10.0, 5.0], [50.0, 95.0]]);
+        let mut other = set(LengthUnit::Inch, "", [[1.0, 20.0], [10.0, 100.0]]);
+        other.name_method("cloud");
+        other.name_method("never");
+        both.join(&other).expect("joined");
+        assert_eq!(both.unit, LengthUnit::Millimetre);
+        assert_eq!(both.curves[1].labels.method, "cloud");
+        let points = both.curves[1].distribution.points();
+        assert!((points[0][0] - 25.4).abs() < 1e-12 && (points[1][0] - 254.0).abs() < 1e-11);
+        let fault = both.join(&other).expect_err("twice").to_string();
+        assert!(
+            fault.contains("cloud") && fault.contains("already"),
+            "{fault}"
+        );
+    }
+}
