@@ -42,7 +42,7 @@ pub use state::State;
 
 use frame_times::{FrameTimes, Phase};
 use panels::Inspector;
-use size_distributions::Page;
+use size_distributions::{Page, ResultTab};
 use state::{HeldBack, Severity};
 use viewport::Viewport;
 
@@ -251,6 +251,9 @@ fn drop_hint(state: &State, context: &egui::Context) {
             egui::Align2::CENTER_CENTER,
             match state.page {
                 Page::Pile => "Let go to open this flight",
+                Page::SizeDistributions if state.distributions.tab == ResultTab::Effort => {
+                    "Let go to add these times of steps"
+                }
                 Page::SizeDistributions => "Let go to add these size distributions",
             },
             egui::FontId::proportional(26.0),

@@ -4,8 +4,8 @@
 use glam::DVec2;
 
 use super::ExportRequest;
-use super::sheet::escaped;
 use crate::camera::Camera;
+use crate::exports::markup::escaped;
 use crate::fault::Fault;
 use crate::flight::{ComparedObject, ScaleObject};
 use crate::picture::significant_digits;

@@ -4,8 +4,8 @@ use roxmltree::{Document, Node};
 
 use super::*;
 use crate::fragmentation::{
-    Comparison, ComparisonOptions, CurveNorm, Fit, FitOptions, MeanPoint, MethodComparison, MethodCurve,
-    Model, PercentError, Shift, SizeDistribution, Span, Swebrec, fit,
+    Comparison, ComparisonOptions, CurveNorm, Fit, FitOptions, MeanPoint, MethodComparison,
+    MethodCurve, Model, PercentError, Shift, SizeDistribution, Span, Swebrec, fit,
 };
 use crate::units::LengthUnit;
 
@@ -315,7 +315,10 @@ fn a_comparison_shows_what_it_found() {
     let [median, _] = &sieve.marks[..] else {
         panic!("P50 and P80");
     };
-    assert!((median[0] - 80.0).abs() < 1e-6 && median[1] == 50.0, "{median:?}");
+    assert!(
+        (median[0] - 80.0).abs() < 1e-6 && median[1] == 50.0,
+        "{median:?}"
+    );
     let [envelope, spread] = &contents.passing.bands[..] else {
         panic!("two bands");
     };
