@@ -218,6 +218,11 @@ fn the_reference_can_be_chosen() {
     assert_eq!(rows.len(), 5);
     // The mean of the six photos at 8 mm is 41 / 6, of the sieve 6: 100 (41 / 36 - 1) = 13.9 %.
     assert_eq!(rows[0], ["8.000", "6.00", "6.83", "+13.9", "yes"]);
+    // The trials pass 7, 8 and 5.5 % there: a mean of 6.833 and a standard deviation of 1.258.
+    let drawn = &computed(&desk).drawing.methods[1];
+    assert_eq!(drawn.spread.sizes[0], 8.0_f64.log10());
+    assert!((drawn.spread.low[0] - (41.0 / 6.0 - (19.0_f64 / 12.0).sqrt())).abs() < 1e-9);
+    assert!((drawn.errors[0].y - 100.0 * (41.0 / 36.0 - 1.0)).abs() < 1e-9);
     choose(&mut desk, "Reference", "point cloud");
     assert_eq!(settings(&desk).reference.as_deref(), Some("point cloud"));
     assert_eq!(computed(&desk).reference.as_deref(), Some("point cloud"));
@@ -295,18 +300,16 @@ fn a_bad_table_is_refused_in_one_line() {
     assert!(desk.says(&refused) && desk.logged(&refused));
     assert!(page.sources().is_empty());
     // Mended, it is taken.
-    desk.node(Role::TextInput, "Table").click();
-    desk.harness.run();
-    desk.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     paste(&mut desk, "size\tpassing\n1\t10\n2\t35\n4\t80\n");
     desk.click(Role::Button, "Add table");
     assert_eq!(computed(&desk).set.curves.len(), 1);
 }
 
-/// Pastes into the small window.
+/// Pastes into the small window, over what is there.
 fn paste(desk: &mut Desk, text: &str) {
     desk.node(Role::TextInput, "Table").click();
     desk.harness.run();
+    desk.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     desk.harness.event(Event::Paste(text.to_owned()));
     desk.settle();
 }

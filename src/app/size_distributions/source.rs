@@ -1,5 +1,6 @@
 //! What came from one file or one pasted table, and all of them in one unit.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -75,6 +76,15 @@ impl Source {
                 return Err(Fault::new(what, "give it another method or trial"));
             }
         }
+        let mut seen = BTreeSet::new();
+        let mut labels = self.set.curves.iter().map(|curve| &curve.labels);
+        if let Some(twice) = labels.find(|labels| !seen.insert(*labels)) {
+            let what = format!("{twice} would be there twice");
+            return Err(Fault::new(
+                what,
+                "give one of the two another method or trial",
+            ));
+        }
         if named > 0 {
             self.warnings.push(format!(
                 "{named} curves without a trial are the trial '{stem}', to tell them from those that \
@@ -106,4 +116,65 @@ pub fn joined(sources: &[Arc<Source>], unit: LengthUnit) -> Result<DistributionS
         }
     }
     Ok(DistributionSet { unit, curves })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fragmentation::Labels;
+
+    fn source(name: &str, unit: LengthUnit, labels: &[(&str, &str)]) -> Source {
+        let curve = |&(method, trial): &(&str, &str)| LabelledDistribution {
+            labels: Labels {
+                method: method.to_owned(),
+                trial: trial.to_owned(),
+                photo: String::new(),
+            },
+            weight: None,
+            distribution: SizeDistribution::new(vec![[1.0, 10.0], [2.0, 90.0]]).unwrap(),
+        };
+        let curves = labels.iter().map(curve).collect();
+        Source::of_file(
+            Path::new(name),
+            DistributionSet { unit, curves },
+            Vec::new(),
+        )
+    }
+
+    #[test]
+    fn sources_in_two_units_are_joined_in_a_third() {
+        let of = |name, unit| Arc::new(source(name, unit, &[("sieve", name)]));
+        let sources = [of("a", LengthUnit::Inch), of("b", LengthUnit::Metre)];
+        let set = joined(&sources, LengthUnit::Millimetre).unwrap();
+        let smallest = |place: usize| set.curves[place].distribution.points()[0];
+        assert!((smallest(0)[0] - 25.4).abs() < 1e-12, "an inch is 25.4 mm");
+        assert!((smallest(1)[0] - 1000.0).abs() < 1e-9);
+        assert_eq!(smallest(1)[1], 10.0);
+    }
+
+    #[test]
+    fn the_same_method_from_two_files_is_two_trials() {
+        let unit = LengthUnit::Millimetre;
+        let first = Arc::new(source("one.csv", unit, &[("", ""), ("sieve", "")]));
+        assert_eq!(first.set.curves[0].labels.method, "one");
+        let mut second = source("two.csv", unit, &[("sieve", "")]);
+        second.set_apart(std::slice::from_ref(&first)).unwrap();
+        assert_eq!(second.set.curves[0].labels.to_string(), "sieve / two");
+        assert!(second.warnings[0].contains("the trial 'two'"));
+        let mut third = source("one.csv", unit, &[("sieve", "two")]);
+        let fault = third.set_apart(&[first, Arc::new(second)]).unwrap_err();
+        assert!(
+            fault
+                .what
+                .contains("sieve / two is there already, from two.csv")
+        );
+    }
+
+    #[test]
+    fn no_two_curves_of_one_source_become_the_same() {
+        let unit = LengthUnit::Millimetre;
+        let first = Arc::new(source("one.csv", unit, &[("sieve", "")]));
+        let mut second = source("two.csv", unit, &[("sieve", "two"), ("sieve", "")]);
+        assert!(second.set_apart(&[first]).is_err());
+    }
 }
