@@ -38,7 +38,8 @@ pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Co
     parameters.column("Points", "How many points it is fitted to");
     let mut percentiles = Table::new(format!("Percentiles, {unit}"));
     percentiles.column("Curve", "Method, trial");
-    let confidence = number(100.0 * (1.0 - settings.level), 3);
+    // The difference may end in ...9999; seven digits are what a level has.
+    let confidence = ((1.0 - settings.level) * 1e9).round() / 1e7;
     let mut bands = Table::new(format!("Confidence bands of {confidence} %, {unit}"));
     bands.column("Curve", "Method, trial");
     for percent in PERCENTILES {

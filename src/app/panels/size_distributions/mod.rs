@@ -57,7 +57,7 @@ pub fn size_distributions(state: &State, ui: &mut egui::Ui, commands: &mut Vec<C
         });
     egui::Panel::right("distribution results")
         .resizable(true)
-        .default_size(420.0)
+        .default_size((width * 0.34).clamp(260.0, 420.0))
         .min_size(220.0)
         .max_size((width * 0.5).max(220.0))
         .show(ui, |ui| results::results(state, ui, commands));

@@ -95,6 +95,7 @@ fn over_size<'a>(
     Plot::new(name.to_owned())
         .legend(legend)
         .grid_color(grid)
+        .cursor_color(grid)
         .custom_x_axes(vec![
             AxisHints::new_x()
                 .label(format!("Size [{unit}]"))
