@@ -10,6 +10,9 @@ use crate::app::state::State;
 use crate::fragmentation::LabelledDistribution;
 use crate::picture::significant_digits;
 
+/// A trial of more photos is closed at first.
+const FEW: usize = 4;
+
 /// Draws the tree.
 pub(super) fn curves(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let Some(computed) = &state.distributions.computed else {
@@ -65,29 +68,27 @@ fn trials(
             "" => "no trial",
             trial => trial,
         };
-        ui.horizontal(|ui| {
-            check(
-                state,
-                &format!("{method} / {text}"),
-                text,
-                &photos,
-                ui,
-                commands,
-            );
+        let name = format!("{method} / {text}");
+        let head = |ui: &mut egui::Ui, commands: &mut Vec<Command>| {
+            check(state, &name, text, &photos, ui, commands);
             weights(&photos, ui);
-        });
-        let named = photos.iter().any(|photo| !photo.labels.photo.is_empty());
-        if named {
-            ui.indent(("photos of", trial), |ui| {
-                for photo in photos {
-                    ui.horizontal(|ui| {
-                        let name = photo.labels.to_string();
-                        check(state, &name, &photo.labels.photo, &[photo], ui, commands);
-                        weights(&[photo], ui);
-                    });
-                }
-            });
+        };
+        if !photos.iter().any(|photo| !photo.labels.photo.is_empty()) {
+            ui.horizontal(|ui| head(ui, commands));
+            continue;
         }
+        let id = ui.make_persistent_id(("photos of", trial));
+        let open = CollapsingState::load_with_default_open(ui.ctx(), id, photos.len() <= FEW);
+        let head = open.show_header(ui, |ui| head(ui, commands));
+        head.body(|ui| {
+            for photo in &photos {
+                ui.horizontal(|ui| {
+                    let name = photo.labels.to_string();
+                    check(state, &name, &photo.labels.photo, &[photo], ui, commands);
+                    weights(&[photo], ui);
+                });
+            }
+        });
     }
 }
 
