@@ -9,6 +9,8 @@
     reason = "in a test or a benchmark a panic is the report"
 )]
 
+mod common;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -88,7 +90,7 @@ fn compared(
     compared.into_iter().next().expect("one")
 }
 
-/// Focal length over the true depth, to 1e-9; and on which side the point cloud's scales lie.
+/// Focal length over the true depth, to 1e-9; and on which side of it the point cloud's scales lie.
 #[test]
 fn a_traced_sphere_gives_the_true_scale_at_its_place() {
     let (flight, outcomes, centers) = flight();
@@ -103,22 +105,26 @@ fn a_traced_sphere_gives_the_true_scale_at_its_place() {
         assert!((sphere.center - center).length() / center.length() < 1e-9);
         let scale = compared.scale.expect("a scale");
         assert!((scale * center.z / camera.fx - 1.0).abs() < 1e-9);
-        // The cloud shows the sphere: the ray to its centre meets its near side, give or take the
-        // cloud's noise.
+        // The cloud shows the sphere: the ray to its centre meets its near side, or, where points are
+        // few, what lies between it and the ground; 2 % for the cloud's noise.
         let near = camera.fx / (center.z * (1.0 - DIAMETER / 2.0 / center.length()));
         let under = compared.place.on_surface.expect("a scale");
         assert!(
-            (under / near - 1.0).abs() < 0.02,
+            (scale..near * 1.02).contains(&under),
             "{}: {under} for {near}",
             photo.name
         );
-        // The pile is not flat and the sphere lies on it: the two methods differ by a few percent.
+        // The spheres lie on the pile, so the rock around them and at its edges is further away than
+        // their centres: with their scale fragments would come out too small in every photo.
+        let around = compared.beyond_surroundings().expect("a scale");
+        assert!((0.0..0.2).contains(&around), "{}: {around}", photo.name);
         let off = compared.beyond_edges().expect("a scale");
-        assert!(off.abs() < 0.15, "{}: {off}", photo.name);
+        assert!((0.0..0.3).contains(&off), "{}: {off}", photo.name);
         println!(
-            "{}: object {scale:.1} px/m, row {:+.2} %, under it {:+.2} %",
+            "{}: object {scale:.1} px/m, row {:+.2} %, around it {:+.2} %, under it {:+.2} %",
             photo.name,
             off * 100.0,
+            around * 100.0,
             compared.beyond_surface().expect("a scale") * 100.0
         );
     }
@@ -196,4 +202,49 @@ fn the_scale_is_that_of_the_image_asked_for() {
             "{scale} for {measured}"
         );
     }
+}
+
+/// The command says the same of a flight.toml with a scale object, in the unit that is asked for.
+#[test]
+fn the_command_has_scale_objects_beside_the_scales() {
+    let (flight, _, centers) = flight();
+    let photo = &flight.parts().photos[1];
+    let camera = flight.camera(photo);
+    let center = sphere_of(photo, camera, &centers);
+    let outline: Vec<[f64; 2]> = true_outline(camera, center, 9)
+        .iter()
+        .map(DVec2::to_array)
+        .collect();
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["flight.toml", "pile.ply", "ost.yaml", "poses.csv"] {
+        fs::copy(sample().join(name), folder.path().join(name)).expect("a copy");
+    }
+    let toml = folder.path().join("flight.toml");
+    let plain = common::scales_json(folder.path(), &["--unit", "in"]);
+    let text = fs::read_to_string(&toml).expect("the flight");
+    let object = format!(
+        "\n[[scale_object]]\nphoto = \"{}\"\nkind = \"sphere\"\nsize = {DIAMETER}\noutline = {outline:?}\n",
+        photo.name
+    );
+    fs::write(&toml, text + &object).expect("written");
+    let mut with = common::scales_json(folder.path(), &["--unit", "in"]);
+    let found = with["photos"][1]["scale_objects"][0].take();
+    let scale = found["scale"].as_f64().expect("a scale");
+    // 0.0254 m are an inch.
+    assert!((scale * center.z / camera.fx / 0.0254 - 1.0).abs() < 1e-9);
+    assert_eq!(found["kind"], "sphere");
+    assert!(found["rms_px"].as_f64().expect("a number") < 1e-6);
+    let edge = |name: &str| plain["photos"][1]["scale"][name].as_f64().expect("a scale");
+    let share = camera.pixel_undistorted(center).expect("seen").y / 720.0;
+    let on_row = edge("top") + (edge("bottom") - edge("top")) * share;
+    let found_on_row = found["point_cloud"]["on_row"].as_f64().expect("a scale");
+    assert!((found_on_row / on_row - 1.0).abs() < 1e-9);
+    // Nothing else is another than without it.
+    for photo in with["photos"].as_array_mut().expect("photos") {
+        photo
+            .as_object_mut()
+            .expect("a photo")
+            .remove("scale_objects");
+    }
+    assert_eq!(with, plain);
 }

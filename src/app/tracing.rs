@@ -46,7 +46,7 @@ impl Tracing {
 }
 
 /// A place to a hundredth of a pixel: nobody points closer, and flight.toml stays readable.
-fn rounded(pixel: DVec2) -> DVec2 {
+pub(super) fn rounded(pixel: DVec2) -> DVec2 {
     (pixel * 100.0).round() / 100.0
 }
 
@@ -170,6 +170,17 @@ impl OpenFlight {
         let name = self.name(photo).to_owned();
         let objects = self.history.now().settings.scale_objects.iter();
         objects.enumerate().filter(move |(_, o)| o.photo == name)
+    }
+
+    /// The command that changes a scale object; `None` where there is none at that place.
+    pub fn change_object(
+        &self,
+        place: usize,
+        change: impl FnOnce(&mut ScaleObject),
+    ) -> Option<Command> {
+        let mut settings = self.settings();
+        change(settings.scale_objects.get_mut(place)?);
+        Some(Command::Set(settings))
     }
 
     /// What the point cloud says beside a scale object, once that is known.

@@ -334,11 +334,12 @@ fn window(flight: Vec<PathBuf>) -> ExitCode {
 fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, String> {
     let opened = arguments.flight.open(progress)?;
     let path = &arguments.flight.flight;
-    let outcomes = opened
-        .flight
-        .scales(progress)
-        .map_err(|fault| FileError::new(path, fault).to_string())?;
-    let report = exports::ScaleReport::new(&opened.flight, &outcomes, arguments.unit.into());
+    let in_flight = |fault| FileError::new(path, fault).to_string();
+    let (flight, objects) = (&opened.flight, &opened.settings.scale_objects);
+    let outcomes = flight.scales(progress).map_err(in_flight)?;
+    let report = exports::ScaleReport::new(flight, &outcomes, arguments.unit.into())
+        .with_scale_objects(flight, objects, &outcomes)
+        .map_err(in_flight)?;
     let text = match arguments.format {
         ScalesFormat::Table => exports::scales_table(&report),
         ScalesFormat::Csv => exports::scales_csv(&report).map_err(|e| e.to_string())?,

@@ -3,6 +3,7 @@
 
 mod atomic;
 mod markup;
+mod report_object;
 mod scale_report;
 mod scales_csv;
 mod scales_json;
@@ -11,6 +12,7 @@ mod size_distributions;
 mod split_desktop;
 
 pub use atomic::{make_folder_whole, remove_unfinished, write_whole};
+pub use report_object::{PointCloudScale, ReportObject};
 pub use scale_report::{ReportLine, ScaleReport};
 pub use scales_csv::scales_csv;
 pub use scales_json::scales_json;

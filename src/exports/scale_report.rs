@@ -1,6 +1,8 @@
 //! The scales of a flight, ready to be written: in the unit asked for, with notes in words.
 
-use crate::flight::{Flight, Outcome};
+use super::ReportObject;
+use crate::fault::Fault;
+use crate::flight::{Flight, Outcome, ScaleObject};
 use crate::scale::{CornerName, CornerOutcome, EdgeScales, ImageKind};
 use crate::units::LengthUnit;
 
@@ -38,6 +40,8 @@ pub struct ReportLine {
     pub corners_on_surface: usize,
     /// What fell back or failed, one sentence each.
     pub notes: Vec<String>,
+    /// Scale objects that were traced on it.
+    pub scale_objects: Vec<ReportObject>,
 }
 
 /// A corner of a photo; x, y, z in the world.
@@ -76,6 +80,7 @@ impl ScaleReport {
                 }),
                 corners_on_surface: 0,
                 notes: Vec::new(),
+                scale_objects: Vec::new(),
             };
             match outcome {
                 Outcome::Trouble(trouble) => line.notes.push(trouble.clone()),
@@ -105,6 +110,25 @@ impl ScaleReport {
             image: parts.image,
             lines: lines.collect(),
         }
+    }
+
+    /// The same report with scale objects beside their photos' scales; of the same flight, with the
+    /// same outcomes.
+    ///
+    /// # Errors
+    /// Where the surface cannot be met.
+    pub fn with_scale_objects(
+        mut self,
+        flight: &Flight,
+        objects: &[ScaleObject],
+        outcomes: &[Outcome],
+    ) -> Result<Self, Fault> {
+        let factor = self.unit.in_units_of(self.world_unit);
+        let of_photos = ReportObject::of_photos(flight, objects, outcomes, factor)?;
+        for (line, objects) in self.lines.iter_mut().zip(of_photos) {
+            line.scale_objects = objects;
+        }
+        Ok(self)
     }
 
     /// The report of some of the photos, those that are `true` in `selected`, in the same order.

@@ -1,7 +1,9 @@
-//! Scales as JSON (contract, section 5). Numbers read back to the same f64.
+//! Scales as JSON (contract, section 5). Numbers read back to the same f64. Photos with scale objects
+//! have these besides, as `scale_objects`.
 
 use serde::Serialize;
 
+use super::ReportObject;
 use super::scale_report::ScaleReport;
 
 #[derive(Serialize)]
@@ -20,6 +22,8 @@ struct Photo<'a> {
     ground: Option<f64>,
     scale: Scale,
     corners: Vec<Corner>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    scale_objects: &'a [ReportObject],
 }
 
 #[derive(Serialize)]
@@ -66,6 +70,7 @@ pub fn scales_json(report: &ScaleReport) -> serde_json::Result<String> {
                 on: corner.on,
             })
             .collect(),
+        scale_objects: &line.scale_objects,
     });
     let mut text = serde_json::to_string(&Report {
         flight: &report.flight,

@@ -109,10 +109,11 @@ pub(super) struct Analysis<'a> {
 }
 
 /// The text of distributions.csv. `reference` are the sieve's openings in mm and the percent that
-/// passes; the analyses are given at its openings from `smallest` mm on, below which all is fines.
+/// passes. The analyses are given at `openings` in mm, ascending, up to the first that all passes; they
+/// lie above the fines, of which the share 0 to 1 is given.
 pub(super) fn distributions_csv(
     reference: &[(f64, f64)],
-    smallest: f64,
+    openings: &[f64],
     fines: f64,
     width: f64,
     analyses: &[Analysis<'_>],
@@ -122,7 +123,8 @@ pub(super) fn distributions_csv(
          # with the scale of each row (point cloud) or of the sphere in the photo (scale object).\n\
          # size: diameter of the circle of as many pixels; mass: its cube; the share of fines is the true\n\
          # one. area: what the photo shows, m2. Nothing corrects for hidden parts, shape or depth: it is\n\
-         # no result of Split-Desktop. sieve: as in reference.csv.\n\
+         # no result of Split-Desktop. sieve: as in reference.csv. The diameters come out larger than a sieve's\n\
+         # sizes, so a smaller scale error may lie farther from the sieve: compare the methods' sizes.\n\
          method,photo,size_mm,percent_passing,area\n",
     );
     for (size, percent) in reference {
@@ -134,7 +136,7 @@ pub(super) fn distributions_csv(
         if total <= 0.0 {
             continue;
         }
-        for (size, _) in reference.iter().filter(|(size, _)| *size >= smallest) {
+        for size in openings {
             let passed = diameters.iter().filter(|d| **d * 1000.0 <= *size);
             let share = passed.map(|d| d.powi(3)).sum::<f64>() / total;
             let percent = 100.0 * (fines + (1.0 - fines) * share);
@@ -191,7 +193,7 @@ mod tests {
             (4.0, 99.0),
             (8.0, 100.0),
         ];
-        let text = distributions_csv(&reference, 1.0, 0.1, 8.0, &[analysis]);
+        let text = distributions_csv(&reference, &[1.0, 2.0, 4.0, 8.0], 0.1, 8.0, &[analysis]);
         let lines: Vec<&str> = text
             .lines()
             .filter(|line| line.starts_with("point"))

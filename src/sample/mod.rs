@@ -394,8 +394,11 @@ fn analysed(
     let analyses: Vec<Analysis<'_>> = by_rows.chain(by_spheres).collect();
     let smallest = recipe.pile.smallest;
     let fines = recipe.pile.sizes.passing(smallest);
+    // A fragment's image may be wider than any sieve that it needs.
+    let largest = recipe.pile.sizes.size_at(1.0) * 4.0;
+    let openings = SieveSeries::Iso565.openings_mm(smallest * 1000.0, largest * 1000.0);
     let width = f64::from(camera.width);
-    image_analysis::distributions_csv(sieved, smallest * 1000.0, fines, width, &analyses)
+    image_analysis::distributions_csv(sieved, &openings, fines, width, &analyses)
 }
 
 /// Takes the photos, writes them, and gives back what an image analysis would outline on each.

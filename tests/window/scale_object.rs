@@ -75,7 +75,7 @@ fn on_screen(desk: &Desk, pixel: DVec2) -> Pos2 {
 }
 
 fn open_section(desk: &mut Desk) {
-    desk.click(Role::Button, "Scale object");
+    desk.click(Role::DisclosureTriangle, "Scale object");
 }
 
 fn objects(desk: &Desk) -> Vec<ScaleObject> {

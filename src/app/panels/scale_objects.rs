@@ -1,7 +1,6 @@
 //! The inspector's section of scale objects: tracing one, and what it says beside the point cloud.
 
 use super::field::{number_field, text_field};
-use super::traced_photo::changed;
 use super::verdict_color;
 use crate::app::actions;
 use crate::app::command::Command;
@@ -88,10 +87,16 @@ fn begin(
 
 /// What can be done while the outline grows.
 fn being_traced(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    let Some(tracing) = state.open.as_ref().and_then(|open| open.tracing.as_ref()) else {
+    let Some(open) = &state.open else {
+        return;
+    };
+    let Some(tracing) = &open.tracing else {
         return;
     };
     ui.strong(next_step(tracing));
+    if let Some(so_far) = scale_so_far(state, open, tracing) {
+        ui.label(so_far);
+    }
     ui.weak("The wheel zooms, dragging moves the photo or a point.");
     ui.horizontal_wrapped(|ui| {
         for (action, text) in [
@@ -108,6 +113,26 @@ fn being_traced(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             }
         }
     });
+}
+
+/// The scale that the points give already.
+fn scale_so_far(state: &State, open: &OpenFlight, tracing: &Tracing) -> Option<String> {
+    let parts = open.flight.parts();
+    let camera = open.flight.camera(parts.photos.get(open.selected?)?);
+    let size = open.trace_size(tracing.kind)?;
+    let traced = Traced::new(camera, tracing.kind, size, &tracing.outline).ok()?;
+    let unit = state.preferences.unit();
+    let scale = traced.scale(camera, parts.image)? * unit.in_units_of(parts.unit);
+    let error = match traced {
+        Traced::Sphere(sphere) => sphere.relative_error,
+        Traced::Bar(_) => None,
+    };
+    let error = error.map(|error| format!(" ± {:.1} %", error * 100.0));
+    Some(format!(
+        "{} px/{unit}{}",
+        significant_digits(scale, 4),
+        error.unwrap_or_default()
+    ))
 }
 
 /// What to do next.
@@ -143,7 +168,7 @@ fn card(
             let hover = "As it was measured, in the unit of the flight's world";
             let typed = number_field(ui, &label, hover, object.size, world.symbol());
             if let Some(size) = typed.filter(|&size| size > 0.0) {
-                commands.extend(changed(open, place, |object| object.size = size));
+                commands.extend(open.change_object(place, |object| object.size = size));
             }
         });
         match open.compared(object) {
@@ -167,7 +192,7 @@ fn card(
             });
             let hover = "Paint it blue in the exported photo, so that it is not taken for rock";
             if check.on_hover_text(hover).changed() {
-                commands.extend(changed(open, place, |object| object.mask = mask));
+                commands.extend(open.change_object(place, |object| object.mask = mask));
             }
             let delete = ui.button("Delete");
             delete.widget_info(|| {

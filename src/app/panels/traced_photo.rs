@@ -1,14 +1,13 @@
 //! Scale objects on the inspector's photo: their outlines, and points that are set and moved with the
 //! mouse.
 
-use egui::{Color32, Pos2, Rect, Stroke, vec2};
+use egui::{Color32, Pos2, Rect, Stroke, Vec2, vec2};
 use glam::DVec2;
 
 use crate::app::command::Command;
 use crate::app::open_flight::OpenFlight;
-use crate::app::tracing::{Trace, Tracing};
+use crate::app::tracing::{Trace, Tracing, rounded};
 use crate::camera::Camera;
-use crate::flight::ScaleObject;
 use crate::scale::{ImageKind, ScaleObjectKind, Traced};
 
 /// Within this distance the mouse means a point, screen points.
@@ -74,6 +73,8 @@ pub(super) struct Dragged {
     object: Option<usize>,
     point: usize,
     to: DVec2,
+    /// From the mouse to the point: what is taken at its rim does not jump.
+    grip: Vec2,
 }
 
 /// An outline on the photo.
@@ -120,18 +121,16 @@ pub(super) fn mouse(
             points.map(move |(point, pixel)| (object, point, *pixel))
         });
         let near = points.filter_map(|(object, point, pixel)| {
-            let far = place.from_shot(pixel)?.distance(at);
-            (far <= REACH).then_some((
-                far,
-                Dragged {
-                    object,
-                    point,
-                    to: pixel,
-                },
-            ))
+            let grip = place.from_shot(pixel)? - at;
+            let to = pixel;
+            (grip.length() <= REACH).then_some(Dragged {
+                object,
+                point,
+                to,
+                grip,
+            })
         });
-        near.min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, point)| point)
+        near.min_by(|a, b| a.grip.length().total_cmp(&b.grip.length()))
     };
     let is_primary = response.dragged_by(egui::PointerButton::Primary);
     if response.drag_started() && is_primary {
@@ -139,7 +138,9 @@ pub(super) fn mouse(
         *dragged = origin.and_then(point_at);
     }
     let at = response.interact_pointer_pos();
-    if let (Some(moved), Some(pixel)) = (dragged.as_mut(), at.and_then(|at| place.to_shot(at))) {
+    if let (Some(moved), Some(at)) = (dragged.as_mut(), at)
+        && let Some(pixel) = place.to_shot(at + moved.grip)
+    {
         moved.to = pixel;
     }
     if response.drag_stopped()
@@ -154,7 +155,11 @@ pub(super) fn mouse(
     if response.clicked()
         && let Some(at) = at
     {
-        commands.extend(click(tracing, point_at(at), place.to_shot(at)));
+        // Beside the photo there is nothing to mark.
+        let pixel = place
+            .to_shot(at)
+            .filter(|&pixel| place.camera.contains(pixel));
+        commands.extend(click(tracing, point_at(at), pixel));
     }
     if response.hovered() {
         ui.set_cursor_icon(egui::CursorIcon::Crosshair);
@@ -184,10 +189,11 @@ fn drop_point(open: &OpenFlight, moved: Dragged) -> Option<Command> {
     let Some(object) = moved.object else {
         return Some(Command::Trace(Trace::Move(moved.point, moved.to)));
     };
-    let mut settings = open.settings();
-    let outline = &mut settings.scale_objects.get_mut(object)?.outline;
-    *outline.get_mut(moved.point)? = (moved.to * 100.0).round() / 100.0;
-    Some(Command::Set(settings))
+    open.change_object(object, |object| {
+        if let Some(place) = object.outline.get_mut(moved.point) {
+            *place = rounded(moved.to);
+        }
+    })
 }
 
 /// Draws the outlines with their points.
@@ -262,15 +268,4 @@ fn label(painter: &egui::Painter, at: Pos2, anchor: egui::Align2, text: String) 
     let place = anchor.anchor_size(at, galley.size());
     painter.rect_filled(place.expand(3.0), 3.0, SHADE);
     painter.galley(place.min, galley, Color32::WHITE);
-}
-
-/// The same object with another outline, size or mask, for [`Command::Set`].
-pub(super) fn changed(
-    open: &OpenFlight,
-    place: usize,
-    change: impl FnOnce(&mut ScaleObject),
-) -> Option<Command> {
-    let mut settings = open.settings();
-    change(settings.scale_objects.get_mut(place)?);
-    Some(Command::Set(settings))
 }

@@ -91,6 +91,11 @@ impl Family {
         }
     }
 
+    /// Whether a and c are fitted too.
+    pub(super) fn is_extended(&self) -> bool {
+        matches!(self, Self::Swebrec(family) if family.is_extended())
+    }
+
     /// The change of each parameter (row) by each coordinate (column).
     pub(super) fn parameter_gradients(&self, at: &Coordinates) -> [Coordinates; MOST] {
         match self {

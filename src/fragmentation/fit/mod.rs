@@ -24,6 +24,8 @@ mod points;
 mod rosin_rammler;
 mod search;
 mod swebrec;
+#[cfg(test)]
+mod tests;
 mod uncertainty;
 
 use coordinates::Family;

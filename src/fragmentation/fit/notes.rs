@@ -26,17 +26,20 @@ pub(super) struct Told<'a> {
 /// Which coordinates a small change is learnt from: neither fixed nor at a bound, and with a meaning.
 pub(super) fn free(family: &Family, best: &Optimum) -> Vec<usize> {
     let bounds = family.bounds();
-    let extended = bounds[3] == [0.0, 1.0];
     (0..bounds.len())
         .filter(|&index| {
             let at = best.at[index];
             let [low, high] = bounds[index];
             let inside = low < high && !near(at, low, high) && !near(at, high, low);
-            let means_nothing =
-                extended && (index == 2 && best.at[3] == 0.0 || index == 4 && best.at[3] == 1.0);
-            inside && !means_nothing
+            inside && has_meaning(family, &best.at, index)
         })
         .collect()
+}
+
+/// b means nothing where a is 0, c where a is 1.
+fn has_meaning(family: &Family, at: &Coordinates, index: usize) -> bool {
+    let [low, high] = family.bounds()[3];
+    !(family.is_extended() && (index == 2 && at[3] <= low || index == 4 && at[3] >= high))
 }
 
 /// Whether a coordinate lies at a bound, as far as can be told.
@@ -85,13 +88,22 @@ fn swebrec(told: &Told, at: &Coordinates, notes: &mut Vec<String>) {
             told.points.retained
         ));
     }
-    if bounds[3] == [0.0, 1.0] && at[3] == 0.0 {
+    if !told.family.is_extended() {
+        return;
+    }
+    if !has_meaning(told.family, at, 2) {
         notes.push(
             "a ended at 0: only the term of the fines is left, and b means nothing".to_owned(),
         );
-    }
-    if bounds[3] == [0.0, 1.0] && at[3] == 1.0 {
+    } else if !has_meaning(told.family, at, 4) {
         notes.push("a ended at 1: it is the Swebrec function, and c means nothing".to_owned());
+    } else if at[3].abs() > 7.0 {
+        // A share of 0.001.
+        notes.push(
+            "a is next to 0 or 1: the smaller term bends the curve at the smallest sizes only, which \
+             few points can bear out"
+                .to_owned(),
+        );
     }
 }
 
@@ -120,7 +132,7 @@ fn exponents(told: &Told, at: &Coordinates, notes: &mut Vec<String>) {
     for (index, parameter) in told.parameters.iter().enumerate() {
         let [low, high] = bounds[index];
         let exponent = ["b", "c", "n", "m"].contains(&parameter.name);
-        let meant = free_of_meaning(told.family, at, index);
+        let meant = has_meaning(told.family, at, index);
         if exponent
             && meant
             && low < high
@@ -137,11 +149,6 @@ fn exponents(told: &Told, at: &Coordinates, notes: &mut Vec<String>) {
             ));
         }
     }
-}
-
-fn free_of_meaning(family: &Family, at: &Coordinates, index: usize) -> bool {
-    let extended = family.bounds()[3] == [0.0, 1.0];
-    !(extended && (index == 2 && at[3] == 0.0 || index == 4 && at[3] == 1.0))
 }
 
 /// Another place with nearly the same sum and other parameters.

@@ -51,6 +51,15 @@ pub(super) fn optima(family: &Family, points: &Points) -> Vec<Optimum> {
     long.retain(|optimum| optimum.sum <= NEARLY * least);
     let at_bounds = long.iter().map(|at| along_its_bounds(family, points, *at));
     let mut rested = search(at_bounds.collect(), TO_THE_END);
+    if family.is_extended() {
+        // Next to 1, a has few digits, and the sum is a staircase in it: so the others by themselves.
+        for optimum in &mut rested {
+            let mut at_its_a = *optimum;
+            at_its_a.bounds[3] = [optimum.at[3]; 2];
+            let there = minimise(family, points, &at_its_a, LONG);
+            (optimum.at, optimum.sum) = (there.at, there.sum);
+        }
+    }
     sort(&mut rested);
     rested
 }

@@ -1,4 +1,4 @@
-//! Swebrec and its extension in coordinates u, d, ln k, a, ln c.
+//! Swebrec and its extension in coordinates u, d, ln k, ln(a / (1 - a)), ln c.
 //!
 //! With t = ln(x / r) for a size r amid the points, that stays where it is:
 //!
@@ -10,6 +10,9 @@
 //! For u -> 0, xmax without end, this becomes exp(-k (t - t50)), the log-logistic curve. So what is
 //! a valley without end in xmax and b is a short way in u at almost the same k, and the bounds of
 //! xmax are bounds of u alone. Swebrec itself is the extension with a = 1.
+//!
+//! The logarithm tells a's apart that are next to 0 or 1: with an exponent of 30, a share of 1e-9 moves
+//! the smallest sizes. 0 and 1 themselves are its bounds.
 
 use super::coordinates::{
     Bounds, Coordinates, EXPONENT, FARTHEST, MOST, Share, geometric, sum_of_squares,
@@ -19,11 +22,26 @@ use super::search::Optimum;
 use crate::fragmentation::swebrec5::ln_exp_m1;
 use crate::fragmentation::{Curve, Swebrec, Swebrec5};
 
+/// Bounds of ln(a / (1 - a)): a is 0 at the lower and 1 at the upper one, between them not nearer to
+/// either than 2e-16, the last step of 1 - a in an f64.
+const ODDS: [f64; 2] = [-36.0, 36.0];
+
+/// a, from the logarithm of its odds.
+fn share_of_coarse(odds: f64) -> f64 {
+    if odds <= ODDS[0] {
+        0.0
+    } else if odds >= ODDS[1] {
+        1.0
+    } else {
+        1.0 / (1.0 + (-odds).exp())
+    }
+}
+
 /// How many starts are searched from.
 const STARTS: usize = 80;
 
 /// How many k and c are tried for them.
-const EXPONENTS: u32 = 14;
+const EXPONENTS: u32 = 18;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SwebrecCoordinates {
@@ -53,17 +71,22 @@ impl SwebrecCoordinates {
         }
     }
 
+    pub(super) fn is_extended(&self) -> bool {
+        self.extended
+    }
+
     pub(super) fn bounds(&self) -> Bounds {
         // Beyond, x50 leaves what an f64 can hold.
         let d = (300.0 / self.u[1]).min(FARTHEST);
         if self.extended {
-            return [self.u, [-d, d], EXPONENT, [0.0, 1.0], EXPONENT];
+            return [self.u, [-d, d], EXPONENT, ODDS, EXPONENT];
         }
-        [self.u, [-d, d], EXPONENT, [1.0; 2], [0.0; 2]]
+        [self.u, [-d, d], EXPONENT, [ODDS[1]; 2], [0.0; 2]]
     }
 
     pub(super) fn share(&self, at: &Coordinates, ln_size: f64) -> Share {
-        let &[u, d, ln_k, a, ln_c] = at;
+        let &[u, d, ln_k, odds, ln_c] = at;
+        let a = share_of_coarse(odds);
         let t = ln_size - self.ln_middle;
         // ln(xmax / x); of a size at xmax only rounding is left.
         let below = 1.0 / u - t;
@@ -99,7 +122,7 @@ impl SwebrecCoordinates {
             by_d -= fines * c * steep(spread) * u * spread;
             by_size -= fines * c * steep(below);
             by_c = fines * c * log;
-            by_a = (k * (bent - d)).min(300.0).exp() - full;
+            by_a = a * (1.0 - a) * ((k * (bent - d)).min(300.0).exp() - full);
         }
         let share = 1.0 / (1.0 + coarse + fines);
         // dP = -P^2 d(1 / P).
@@ -128,19 +151,21 @@ impl SwebrecCoordinates {
             us.push(self.u[0]);
         }
         let shares: &[f64] = if self.extended {
-            &[0.0, 0.03, 0.2, 0.5, 0.8, 0.97, 1.0]
+            &[
+                ODDS[0], -28.0, -14.0, -7.0, -3.0, -1.0, 1.0, 3.0, 7.0, 14.0, 28.0, ODDS[1],
+            ]
         } else {
-            &[1.0]
+            &[ODDS[1]]
         };
         let mut starts = Vec::new();
         for u in us {
             // The median may be a little aside of where the points cross 50 %.
             let terms = [-0.15, 0.0, 0.15].map(|aside| Terms::new(self, points, u, aside * range));
-            for &a in shares {
+            for &odds in shares {
                 for gentle in [true, false] {
                     let bests = terms
                         .iter()
-                        .map(|terms| terms.best(self, points, a, gentle));
+                        .map(|terms| terms.best(self, points, odds, gentle));
                     starts.extend(bests.min_by(|a, b| a.sum.total_cmp(&b.sum)));
                 }
             }
@@ -151,7 +176,8 @@ impl SwebrecCoordinates {
     }
 
     pub(super) fn curve(&self, at: &Coordinates) -> Option<Curve> {
-        let &[u, d, ln_k, a, ln_c] = at;
+        let &[u, d, ln_k, odds, ln_c] = at;
+        let a = share_of_coarse(odds);
         let xmax = if u == self.u[1] {
             self.smallest_xmax
         } else {
@@ -168,7 +194,8 @@ impl SwebrecCoordinates {
     }
 
     pub(super) fn parameter_gradients(&self, at: &Coordinates) -> [Coordinates; MOST] {
-        let &[u, d, ln_k, _, ln_c] = at;
+        let &[u, d, ln_k, odds, ln_c] = at;
+        let a = share_of_coarse(odds);
         let mut gradients = [[0.0; MOST]; MOST];
         gradients[0][0] = -(self.ln_middle + 1.0 / u).exp() / (u * u);
         let t50 = -(u * d).exp_m1() / u;
@@ -178,7 +205,7 @@ impl SwebrecCoordinates {
         let b = ln_k.exp() / u;
         gradients[2][0] = -b / u;
         gradients[2][2] = b;
-        gradients[3][3] = 1.0;
+        gradients[3][3] = a * (1.0 - a);
         gradients[4][4] = ln_c.exp();
         gradients
     }
@@ -233,16 +260,23 @@ impl Terms {
     }
 
     /// The exponents with the least sum at one a, in the gentle or in the steep half of the k.
-    fn best(&self, family: &SwebrecCoordinates, points: &Points, a: f64, gentle: bool) -> Optimum {
+    fn best(
+        &self,
+        family: &SwebrecCoordinates,
+        points: &Points,
+        odds: f64,
+        gentle: bool,
+    ) -> Optimum {
+        let a = share_of_coarse(odds);
         let mut bounds = family.bounds();
         // At a bound the search runs along it.
-        for (index, at) in [(0, self.u), (3, a)] {
+        for (index, at) in [(0, self.u), (3, odds)] {
             if bounds[index].contains(&at) {
                 bounds[index] = [at; 2];
             }
         }
         let mut best = Optimum {
-            at: [self.u, self.d, 0.0, a, 0.0],
+            at: [self.u, self.d, 0.0, odds, 0.0],
             bounds,
             sum: f64::INFINITY,
         };

@@ -17,8 +17,9 @@ const GRID: Colour = [226, 226, 226];
 const MARKER: f64 = 4.6;
 const CURVE: f64 = 2.0;
 const THIN: f64 = 1.0;
-/// Bands lie over each other.
-const SHADE: f64 = 0.13;
+/// Bands lie over each other, those with outlines below: they need less.
+const SHADE: f64 = 0.2;
+const OUTLINED_SHADE: f64 = 0.08;
 
 /// Draws everything, from the back to the front.
 pub(super) fn draw<B: DrawingBackend>(
@@ -78,7 +79,7 @@ fn draw_panel<B: DrawingBackend>(
             .chain(edges[1].iter().rev())
             .copied()
             .collect();
-        pen.area(&outline, band.look.colour, SHADE)?;
+        pen.area(&outline, band.look.colour, shade(band))?;
     }
     // The outlines over all the shades.
     for band in panel.bands.iter().filter(|band| band.outlined) {
@@ -232,12 +233,19 @@ fn draw_swatch<B: DrawingBackend>(
 ) -> Result<(), Fault> {
     let colour = band.look.colour;
     let outline = [[left, top], [right, top], [right, bottom], [left, bottom]];
-    pen.area(&outline, colour, SHADE)?;
+    pen.area(&outline, colour, shade(band))?;
     if band.outlined {
         pen.line(&[[left, top], [right, top]], colour, 1.2, Dash::Short)?;
         pen.line(&[[left, bottom], [right, bottom]], colour, 1.2, Dash::Short)?;
     }
     Ok(())
+}
+
+fn shade(band: &Band) -> f64 {
+    match band.outlined {
+        true => OUTLINED_SHADE,
+        false => SHADE,
+    }
 }
 
 /// A value at an axis; with its sign where the axis has both, the minus as long as the plus.

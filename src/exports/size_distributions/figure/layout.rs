@@ -171,7 +171,7 @@ impl Frame {
         let share = sizes.share(size);
         // Of a size on the frame the logarithm may be a rounding beyond it.
         let inside = (-1e-9..=1.0 + 1e-9).contains(&share);
-        inside.then(|| self.left + share * (self.right - self.left))
+        inside.then_some(self.left + share * (self.right - self.left))
     }
 
     /// Where a value is; beyond the range, at its end.

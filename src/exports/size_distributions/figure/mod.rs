@@ -4,6 +4,7 @@
 //! look        colours, markers and dashes that are told apart in print and by the colour-blind
 //! size_axis   where the logarithmic axis begins and ends, its lines and labels
 //! of_comparison, of_fits  what is shown of them
+//! panels      what the panels of both have in common
 //! layout      where everything is
 //! pen         strokes, areas, markers and words by plotters
 //! draw        the contents with a pen, the same on paper (SVG) and in pixels (PNG)
@@ -35,7 +36,7 @@ pub use of_fits::{FittedDistribution, figure_of_fits};
 pub use picture::{FigureFormat, figure_png, figure_svg};
 pub use size_axis::{SizeAxis, SizeTick};
 
-/// What a figure shows. All sizes are in the unit of the size axis; nothing in it is drawn twice.
+/// What a figure shows. All sizes are in the unit of the size axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureContents {
     /// Above the figure; may be empty.

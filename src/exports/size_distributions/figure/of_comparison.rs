@@ -83,9 +83,13 @@ pub fn figure_of_comparison(comparison: &Comparison) -> FigureContents {
 
 /// The envelope of the sizes about the fitted reference.
 fn envelope_band(comparison: &Comparison) -> Band {
-    let percents = || (0..=200).map(|half| f64::from(half) / 2.0);
+    // Finer at the ends, where a function may come to 0 or 100 % only far away.
+    let ends = [0.01, 0.02, 0.05, 0.1, 0.2];
+    let mut percents: Vec<f64> = (0..=200).map(|half| f64::from(half) / 2.0).collect();
+    percents.extend(ends.into_iter().chain(ends.map(|end| 100.0 - end)));
+    percents.sort_by(f64::total_cmp);
     let edge = |side: usize| {
-        let edge = percents().filter_map(|percent| {
+        let edge = percents.iter().filter_map(|&percent| {
             let size = comparison.envelope_at(percent).get(side).copied()?;
             (size.is_finite() && size > 0.0).then_some([size, percent])
         });

@@ -9,6 +9,8 @@ use crate::units::LengthUnit;
 const LEVEL: f64 = 0.95;
 /// Sizes at which a band is drawn.
 const SAMPLES: u32 = 121;
+/// Of more curves bands and marks would hide each other.
+const MOST_WITH_BANDS: usize = 6;
 
 /// A measured distribution with the function fitted to it.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +23,8 @@ pub struct FittedDistribution<'a> {
     pub fit: &'a Fit,
 }
 
-/// Measured points, fitted functions with their confidence bands (95 %); below them what is left.
+/// Measured points, fitted functions with their confidence bands (95 %) and P50 and P80 where they are
+/// few; below them what is left.
 pub fn figure_of_fits(
     title: impl Into<String>,
     unit: LengthUnit,
@@ -32,6 +35,7 @@ pub fn figure_of_fits(
         .flat_map(|f| f.distribution.points())
         .map(|point| point[0]);
     let sizes = SizeAxis::covering(panels::size_title(unit), measured);
+    let few = fitted.len() <= MOST_WITH_BANDS;
     let mut bands = Vec::new();
     let mut passing = Vec::new();
     let mut left_over = Vec::new();
@@ -42,14 +46,18 @@ pub fn figure_of_fits(
             "" => words,
             name => format!("{name}: {words}"),
         };
-        bands.extend(confidence_band(look, of, &sizes));
+        bands.extend(few.then(|| confidence_band(look, of, &sizes)).flatten());
         let points = of.distribution.points();
         passing.push(Series {
             name,
             look,
             points: points.to_vec(),
             line: panels::fitted_line(of.fit, &sizes),
-            marks: panels::marks(of.fit),
+            marks: if few {
+                panels::marks(of.fit)
+            } else {
+                Vec::new()
+            },
         });
         let left: Vec<[f64; 2]> = points
             .iter()

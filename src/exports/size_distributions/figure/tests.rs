@@ -239,11 +239,9 @@ fn fitted(median: f64) -> Fit {
     let sizes = [0.1, 0.2, 0.5, 1.0, 2.0, 4.0].map(|share| share * median);
     let points = sizes.map(|size| [size, 100.0 * swebrec.passing(size)]);
     let measured = SizeDistribution::new(points.to_vec()).expect("points");
-    let found = fit(&measured, Model::Swebrec, &FitOptions::default()).expect("a fit");
-    Fit {
-        residuals: vec![1.0, -1.0],
-        ..found
-    }
+    let mut found = fit(&measured, Model::Swebrec, &FitOptions::default()).expect("a fit");
+    found.residuals = vec![1.0, -1.0];
+    found
 }
 
 fn method(name: &str, trials: usize, median: f64) -> MethodCurve {

@@ -110,15 +110,15 @@ fn compared(report: &ComparisonReport<'_>) -> String {
     ];
     html += &table(&head, rows.collect());
     let of_methods = comparison.methods.iter().flat_map(|method| &method.notes);
-    let of_fits = curves(comparison).flat_map(|curve| &curve.fit.notes);
-    html + &notes(
-        report
-            .warnings
-            .iter()
-            .chain(&comparison.notes)
-            .chain(of_methods)
-            .chain(of_fits),
-    )
+    let of_fits: Vec<String> = curves(comparison).flat_map(fit_notes).collect();
+    let all = report.warnings.iter().chain(&comparison.notes);
+    html + &notes(all.chain(of_methods).chain(&of_fits))
+}
+
+/// What to know of a method's fit, with the method's name.
+fn fit_notes(curve: &MethodCurve) -> impl Iterator<Item = String> {
+    let notes = curve.fit.notes.iter();
+    notes.map(|note| format!("'{}': {note}", method_name(&curve.method)))
 }
 
 /// How near each method is, in one table.

@@ -94,6 +94,8 @@ pub(super) fn percent(value: Option<f64>) -> String {
 /// With its sign.
 pub(super) fn signed(value: Option<f64>) -> String {
     match value {
+        // What rounds to nothing has no sign.
+        Some(value) if value.abs() < 0.05 => "0.0".to_owned(),
         Some(value) if value.is_finite() => format!("{value:+.1}").replace('-', "\u{2212}"),
         _ => NONE.to_owned(),
     }
