@@ -44,6 +44,7 @@ pub fn start_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
                 "flight.toml · Metashape · Pix4D · RealityCapture · ContextCapture · OpenDroneMap",
             );
             ui.weak("COLMAP · VisualSFM · Bundler · Meshroom · ROS · a folder of drone photos");
+            ui.weak("or tables of size distributions (CSV)");
             if state.is_opening() {
                 ui.add_space(14.0);
                 ui.spinner();

@@ -10,15 +10,18 @@ use crate::app::state::{Severity, State};
 use crate::app::work::{Done, Task};
 use crate::formats::{self, DistributionColumns, Kind};
 
-/// What was read, file by file, or why not in a line; or what is no size distribution at all.
+/// What was read, or why not in a line.
 #[derive(Debug)]
 pub enum Read {
-    /// Of each file.
-    Sources(Vec<Result<Source, String>>),
+    /// What was named or dropped.
+    Files {
+        /// Of each file of size distributions.
+        sources: Vec<Result<Source, String>>,
+        /// What was dropped with them, or alone, and is something of a flight.
+        of_flight: Vec<PathBuf>,
+    },
     /// The table of the small window.
     Pasted(Result<Source, String>),
-    /// Dropped on the pile, and not size distributions: something of a flight.
-    OfFlight(Vec<PathBuf>),
 }
 
 /// Whether a file may hold a table by its name.
@@ -65,17 +68,18 @@ fn pasted(form: &PasteForm, number: usize) -> Result<Source, String> {
 }
 
 impl State {
-    /// Whether what was dropped may be size distributions, so that they are looked at first.
+    /// Whether there may be size distributions in what was dropped, so that it is looked at first.
     pub(in crate::app) fn may_be_distributions(&self, paths: &[PathBuf]) -> bool {
-        !paths.is_empty() && paths.iter().all(|path| is_table(path))
+        paths.iter().any(|path| is_table(path))
     }
 
-    /// Reads what was dropped; on the pile only if the files hold size distributions.
+    /// Reads the size distributions in what was dropped; the rest is something of a flight. Tables that
+    /// are dropped on their page are taken for what the page shows.
     pub(in crate::app) fn read_dropped(&mut self, paths: Vec<PathBuf>) {
-        let effort = self.distributions.tab == ResultTab::Effort;
+        let here = self.page == Page::SizeDistributions && paths.iter().all(|path| is_table(path));
         if let [path] = paths.as_slice()
-            && self.page == Page::SizeDistributions
-            && effort
+            && here
+            && self.distributions.tab == ResultTab::Effort
         {
             self.read_effort(path.clone());
             return;
@@ -83,16 +87,17 @@ impl State {
         if self.is_busy(Task::ReadDistributions) {
             return;
         }
-        let on_pile = self.page == Page::Pile;
         self.start(Task::ReadDistributions, move |progress| {
             progress.stage("reading size distributions");
-            let holds =
-                |path: &PathBuf| matches!(formats::detect(path), Ok(Kind::SizeDistributions));
-            if on_pile && !paths.iter().all(holds) {
-                return Done::ReadDistributions(Read::OfFlight(paths));
-            }
-            let sources = paths.iter().map(|path| source(path)).collect();
-            Done::ReadDistributions(Read::Sources(sources))
+            let holds = |path: &PathBuf| {
+                is_table(path) && matches!(formats::detect(path), Ok(Kind::SizeDistributions))
+            };
+            let (tables, of_flight): (Vec<_>, Vec<_>) =
+                paths.into_iter().partition(|path| here || holds(path));
+            Done::ReadDistributions(Read::Files {
+                sources: tables.iter().map(|path| source(path)).collect(),
+                of_flight,
+            })
         });
     }
 
@@ -104,8 +109,10 @@ impl State {
         self.asking = None;
         self.start(Task::ReadDistributions, move |progress| {
             progress.stage("reading size distributions");
-            let sources = paths.iter().map(|path| source(path)).collect();
-            Done::ReadDistributions(Read::Sources(sources))
+            Done::ReadDistributions(Read::Files {
+                sources: paths.iter().map(|path| source(path)).collect(),
+                of_flight: Vec::new(),
+            })
         });
     }
 
@@ -131,9 +138,10 @@ impl State {
     /// Takes what was read.
     pub(in crate::app) fn take_distributions(&mut self, read: Read) {
         match read {
-            Read::OfFlight(paths) => self.apply(Command::DropFlight(paths)),
-            Read::Sources(sources) => {
-                self.page = Page::SizeDistributions;
+            Read::Files { sources, of_flight } => {
+                if !sources.is_empty() {
+                    self.page = Page::SizeDistributions;
+                }
                 for source in sources {
                     match source {
                         Ok(source) => {
@@ -141,6 +149,9 @@ impl State {
                         }
                         Err(why) => self.say(Severity::Error, &why),
                     }
+                }
+                if !of_flight.is_empty() {
+                    self.apply(Command::DropFlight(of_flight));
                 }
             }
             Read::Pasted(Err(why)) => {

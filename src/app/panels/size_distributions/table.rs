@@ -63,6 +63,14 @@ impl Table {
     }
 
     fn grid(&self, ui: &mut egui::Ui) {
+        // Columns learn their widths while they are drawn: with new texts that is done once more before
+        // anybody sees it, for an idle window draws no second frame.
+        let id = ui.scope_id().with("texts");
+        let texts = ui.scope_id().with((&self.head, &self.rows));
+        if ui.data(|data| data.get_temp(id)) != Some(texts) {
+            ui.data_mut(|data| data.insert_temp(id, texts));
+            ui.ctx().request_discard("a table has new texts");
+        }
         ui.spacing_mut().item_spacing.x = 12.0;
         TableBuilder::new(ui)
             .striped(true)
@@ -119,7 +127,7 @@ impl Table {
 pub(super) fn number(value: impl Into<Option<f64>>, digits: u8) -> String {
     match value.into() {
         Some(0.0) => "0".to_owned(),
-        Some(value) if value.is_finite() && !(1e-6..1e9).contains(&value.abs()) => {
+        Some(value) if value.is_finite() && !(1e-4..1e9).contains(&value.abs()) => {
             format!("{value:.*e}", usize::from(digits.max(1)) - 1)
         }
         Some(value) if value.is_finite() => significant_digits(value, digits),
