@@ -3,6 +3,7 @@
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::command::{Asking, Choice, Command, Look};
+use super::size_distributions::{DistributionCommand, Page};
 use super::state::State;
 use super::tracing::Trace;
 use super::work::DialogFor;
@@ -31,8 +32,19 @@ fn with_flight(state: &State, command: Command) -> Option<Command> {
     state.open.is_some().then_some(command)
 }
 
+fn with_distributions(state: &State, asking: Asking) -> Option<Command> {
+    let computed = state.distributions.computed.is_some();
+    computed.then_some(Command::Ask(Some(asking)))
+}
+
+/// What is done in sight of the pile.
+fn on_pile(state: &State, command: Command) -> Option<Command> {
+    let in_sight = state.page == Page::Pile;
+    in_sight.then(|| with_flight(state, command)).flatten()
+}
+
 fn with_photo(state: &State, command: Command) -> Option<Command> {
-    let open = state.open.as_ref()?;
+    let open = state.open.as_ref().filter(|_| state.page == Page::Pile)?;
     open.selected.map(|_| command)
 }
 
@@ -111,7 +123,7 @@ pub const PICTURE: Action = Action {
     label: "Save picture…",
     hover: "Write the viewport, or the corner-ray figure, as a PNG of any size",
     shortcut: keys(Modifiers::COMMAND, Key::P),
-    command: |state| with_flight(state, Command::Ask(Some(Asking::Picture))),
+    command: |state| on_pile(state, Command::Ask(Some(Asking::Picture))),
 };
 /// See its `hover`.
 pub const CLOSE: Action = Action {
@@ -130,9 +142,14 @@ pub const QUIT: Action = Action {
 /// See its `hover`.
 pub const UNDO: Action = Action {
     label: "Undo",
-    hover: "Undo the last change of the flight's settings or of the photos to export",
+    hover: "Undo the last change: of the flight's settings and photos to export, or of the size \
+            distributions on their page",
     shortcut: keys(Modifiers::COMMAND, Key::Z),
     command: |state| {
+        if state.page == Page::SizeDistributions {
+            let can = state.distributions.history.can_undo();
+            return can.then_some(Command::Undo);
+        }
         let open = state.open.as_ref()?;
         open.history.can_undo().then_some(Command::Undo)
     },
@@ -143,6 +160,10 @@ pub const REDO: Action = Action {
     hover: "Take the last undo back",
     shortcut: keys(SHIFT, Key::Z),
     command: |state| {
+        if state.page == Page::SizeDistributions {
+            let can = state.distributions.history.can_redo();
+            return can.then_some(Command::Redo);
+        }
         let open = state.open.as_ref()?;
         open.history.can_redo().then_some(Command::Redo)
     },
@@ -183,14 +204,14 @@ pub const NEXT: Action = Action {
     label: "Next photo",
     hover: "Select the next photo of the table",
     shortcut: keys(Modifiers::NONE, Key::ArrowDown),
-    command: |state| with_flight(state, Command::SelectBy(1)),
+    command: |state| on_pile(state, Command::SelectBy(1)),
 };
 /// See its `hover`.
 pub const PREVIOUS: Action = Action {
     label: "Previous photo",
     hover: "Select the photo above in the table",
     shortcut: keys(Modifiers::NONE, Key::ArrowUp),
-    command: |state| with_flight(state, Command::SelectBy(-1)),
+    command: |state| on_pile(state, Command::SelectBy(-1)),
 };
 /// See its `hover`.
 pub const CHOOSE: Action = Action {
@@ -201,7 +222,7 @@ pub const CHOOSE: Action = Action {
         let open = state.open.as_ref()?;
         let photo = open.selected?;
         let chosen = *open.history.now().chosen.get(photo)?;
-        Some(Command::Choose(photo, !chosen))
+        on_pile(state, Command::Choose(photo, !chosen))
     },
 };
 /// See its `hover`.
@@ -209,28 +230,28 @@ pub const TOP: Action = Action {
     label: "From above",
     hover: "Look straight down, north up",
     shortcut: keys(Modifiers::NONE, Key::T),
-    command: |state| with_flight(state, Command::Look(Look::Top)),
+    command: |state| on_pile(state, Command::Look(Look::Top)),
 };
 /// See its `hover`.
 pub const FRONT: Action = Action {
     label: "From the front",
     hover: "Look to the north, level",
     shortcut: keys(Modifiers::NONE, Key::F),
-    command: |state| with_flight(state, Command::Look(Look::Front)),
+    command: |state| on_pile(state, Command::Look(Look::Front)),
 };
 /// See its `hover`.
 pub const SIDE: Action = Action {
     label: "From the side",
     hover: "Look to the west, level",
     shortcut: keys(Modifiers::NONE, Key::S),
-    command: |state| with_flight(state, Command::Look(Look::Side)),
+    command: |state| on_pile(state, Command::Look(Look::Side)),
 };
 /// See its `hover`.
 pub const FIT: Action = Action {
     label: "Show everything",
     hover: "Bring the whole flight into sight",
     shortcut: keys(Modifiers::NONE, Key::Home),
-    command: |state| with_flight(state, Command::Look(Look::Fit)),
+    command: |state| on_pile(state, Command::Look(Look::Fit)),
 };
 /// See its `hover`.
 pub const FIT_SELECTED: Action = Action {
@@ -251,7 +272,72 @@ pub const MEASURE: Action = Action {
     label: "Measure a distance",
     hover: "Click two points on the surface",
     shortcut: keys(Modifiers::NONE, Key::M),
-    command: |state| with_flight(state, Command::ToggleMeasure),
+    command: |state| on_pile(state, Command::ToggleMeasure),
+};
+/// See its `hover`.
+pub const ADD_DISTRIBUTIONS: Action = Action {
+    label: "Add size distributions…",
+    hover: "Add tables of cumulative percent passing by size: what Split-Desktop or a sieve gave",
+    shortcut: keys(Modifiers::COMMAND, Key::D),
+    command: |_| Some(Command::Ask(Some(Asking::AddDistributions))),
+};
+/// See its `hover`.
+pub const PASTE_TABLE: Action = Action {
+    label: "Paste table…",
+    hover: "Add a table of size distributions that was copied from a spreadsheet or a text",
+    shortcut: keys(SHIFT, Key::D),
+    command: |_| Some(Command::Ask(Some(Asking::PasteTable))),
+};
+/// See its `hover`.
+pub const ADD_KNOWN: Action = Action {
+    label: "Add the flight's known fragments",
+    hover: "Add reference.csv beside the flight on the screen: the sieve curve of its fragments",
+    shortcut: None,
+    command: |state| {
+        state.known_fragments()?;
+        Some(Command::Distributions(DistributionCommand::AddKnown))
+    },
+};
+/// See its `hover`.
+pub const REMOVE_ALL: Action = Action {
+    label: "Remove all size distributions",
+    hover: "Take every file and table from the page of size distributions; undo brings them back",
+    shortcut: None,
+    command: |state| {
+        let some = !state.distributions.sources().is_empty();
+        some.then_some(Command::Distributions(DistributionCommand::RemoveAll))
+    },
+};
+/// See its `hover`.
+pub const SAVE_FIGURE: Action = Action {
+    label: "Save figure…",
+    hover: "Write the figure of the size distributions as an SVG or PNG",
+    shortcut: None,
+    command: |state| with_distributions(state, Asking::SaveFigure),
+};
+/// See its `hover`.
+pub const SAVE_REPORT: Action = Action {
+    label: "Save report…",
+    hover: "Write the figure and all tables of methods held against the reference as an HTML page",
+    shortcut: None,
+    command: |state| {
+        let compared = state.distributions.computed.as_ref()?.comparison.is_some();
+        compared.then_some(Command::Ask(Some(Asking::SaveReport)))
+    },
+};
+/// See its `hover`.
+pub const PILE: Action = Action {
+    label: "Pile",
+    hover: "Show the flight over the pile",
+    shortcut: keys(Modifiers::COMMAND, Key::Num1),
+    command: |_| Some(Command::Page(Page::Pile)),
+};
+/// See its `hover`.
+pub const SIZE_DISTRIBUTIONS: Action = Action {
+    label: "Size distributions",
+    hover: "Show size distributions: fits, the reference, repeatability",
+    shortcut: keys(Modifiers::COMMAND, Key::Num2),
+    command: |_| Some(Command::Page(Page::SizeDistributions)),
 };
 fn begin_tracing(state: &State, kind: ScaleObjectKind) -> Option<Command> {
     let open = state.open.as_ref()?;
@@ -339,6 +425,12 @@ pub const MENUS: [(&str, &[Option<Action>]); 5] = [
             Some(GEOREFERENCE),
             Some(OPEN_SAMPLE),
             None,
+            Some(ADD_DISTRIBUTIONS),
+            Some(PASTE_TABLE),
+            Some(ADD_KNOWN),
+            Some(SAVE_FIGURE),
+            Some(SAVE_REPORT),
+            None,
             Some(SAVE),
             Some(SAVE_AS),
             None,
@@ -361,11 +453,16 @@ pub const MENUS: [(&str, &[Option<Action>]); 5] = [
             Some(CHOOSE_TRUSTED),
             Some(CHOOSE_ALL),
             Some(CHOOSE_NONE),
+            None,
+            Some(REMOVE_ALL),
         ],
     ),
     (
         "View",
         &[
+            Some(PILE),
+            Some(SIZE_DISTRIBUTIONS),
+            None,
             Some(TOP),
             Some(FRONT),
             Some(SIDE),

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::command::{Asking, Command};
 use super::open_flight::OpenFlight;
+use super::size_distributions::Page;
 use super::state::{HeldBack, PictureRequest, Severity, State, sample_flight};
 use super::work::Task;
 use crate::render::MOST_PIXELS;
@@ -12,8 +13,10 @@ impl State {
     /// Does what a command says.
     pub fn apply(&mut self, command: Command) {
         match command {
+            Command::Drop(paths) if self.may_be_distributions(&paths) => self.read_dropped(paths),
+            Command::Drop(paths) => self.apply(Command::DropFlight(paths)),
             Command::Open(_)
-            | Command::Drop(_)
+            | Command::DropFlight(_)
             | Command::Add(_)
             | Command::OpenSample
             | Command::Close
@@ -66,6 +69,8 @@ impl State {
                 self.apply_theme();
             }
             Command::Zoom(factor) => self.context.set_zoom_factor(factor.clamp(0.5, 3.0)),
+            Command::Page(page) => self.page = page,
+            Command::Distributions(command) => self.apply_to_distributions(command),
             Command::Tab(tab) => self.tab = tab,
             Command::ToggleLog => self.preferences.log_open ^= true,
             Command::DismissNotice => self.notice = None,
@@ -77,6 +82,9 @@ impl State {
             Command::Copy(text) => self.context.copy_text(text),
             Command::Report(text) => self.say(Severity::Error, &text),
             Command::TakeAnswer => self.answered = None,
+            Command::Undo | Command::Redo if self.page == Page::SizeDistributions => {
+                self.undo_distributions(&command);
+            }
             Command::Set(_) | Command::Undo | Command::Redo => self.edit_settings(&command),
             Command::Trace(step) => self.trace(step),
             Command::Select(_) | Command::SelectBy(_) => {
@@ -130,9 +138,12 @@ impl State {
     fn go(&mut self, command: Command) {
         self.asking = None;
         self.after_saving = None;
+        if command != Command::Quit && command != Command::Close {
+            self.page = Page::Pile;
+        }
         match command {
             Command::Open(path) => self.start_opening(vec![path], false),
-            Command::Drop(paths) => self.start_opening(paths, false),
+            Command::DropFlight(paths) => self.start_opening(paths, false),
             Command::Add(path) => self.start_opening(vec![path], true),
             Command::OpenSample => match sample_flight() {
                 Some(path) => self.start_opening(vec![path], false),
@@ -163,6 +174,7 @@ impl State {
             HeldBack::Replace(command) => match *command {
                 Command::SaveAs(path) => self.start_saving(path),
                 Command::Picture(request) => self.picture = Some(request),
+                Command::Distributions(command) => self.replace_distributions(command),
                 Command::SaveGeoreferenced { path, keep_surface } => {
                     self.start_saving_georeferenced(path, keep_surface);
                 }

@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 use super::georeferencing::GeoreferenceForm;
 use super::layers::Layers;
 use super::preferences::Theme;
+use super::size_distributions::{DistributionCommand, Page};
 use super::state::PictureRequest;
 use super::table::Column;
 use super::tracing::Trace;
@@ -47,6 +48,16 @@ pub enum Asking {
     SaveAs,
     /// Where a picture goes, and how large it is.
     Picture,
+    /// Which files of size distributions to add.
+    AddDistributions,
+    /// A table of size distributions.
+    PasteTable,
+    /// Which file has the times of steps.
+    AddEffort,
+    /// Where the figure of the size distributions goes.
+    SaveFigure,
+    /// Where the report on them goes.
+    SaveReport,
     /// Which keys do what.
     Keys,
     /// What this program is.
@@ -105,9 +116,11 @@ pub enum Look {
 pub enum Command {
     /// Opens a flight.
     Open(PathBuf),
+    /// Takes what was dropped: size distributions, or something of a flight.
+    Drop(Vec<PathBuf>),
     /// Opens what was dropped: a flight, perhaps with its surface and photos; a surface alone is for
     /// the flight that could not be opened last, else for the one on the screen.
-    Drop(Vec<PathBuf>),
+    DropFlight(Vec<PathBuf>),
     /// Gives the flight on the screen, or the one that could not be opened last, this surface or this
     /// folder of photos.
     Add(PathBuf),
@@ -189,6 +202,10 @@ pub enum Command {
     Theme(Theme),
     /// Enlarges everything; 1 is as the system has it.
     Zoom(f32),
+    /// Shows a page of the window.
+    Page(Page),
+    /// Does something with the size distributions.
+    Distributions(DistributionCommand),
     /// Shows a tab of the right panel.
     Tab(Tab),
     /// Shows or hides the log.

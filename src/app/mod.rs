@@ -27,6 +27,7 @@ pub mod panels;
 pub mod picker;
 pub mod poll;
 pub mod preferences;
+pub mod size_distributions;
 pub mod state;
 pub mod table;
 pub mod tracing;
@@ -41,6 +42,7 @@ pub use state::State;
 
 use frame_times::{FrameTimes, Phase};
 use panels::Inspector;
+use size_distributions::{Page, ResultTab};
 use state::{HeldBack, Severity};
 use viewport::Viewport;
 
@@ -138,7 +140,7 @@ impl eframe::App for App {
         let mut commands = Vec::new();
         let (state, out) = (&self.state, &mut commands);
         egui::Panel::top("menu").show(ui, |ui| panels::menu_bar(state, ui, out));
-        if state.open.is_some() {
+        if state.open.is_some() || state.page == Page::SizeDistributions {
             egui::Panel::top("tools").show(ui, |ui| panels::tool_bar(state, ui, out));
         }
         egui::Panel::bottom("status").show(ui, |ui| panels::status_bar(state, ui, out));
@@ -148,7 +150,9 @@ impl eframe::App for App {
                 .default_size(120.0)
                 .show(ui, |ui| panels::log_panel(state, ui, out));
         }
-        if state.open.is_some() {
+        if state.page == Page::SizeDistributions {
+            panels::size_distributions(state, ui, out);
+        } else if state.open.is_some() {
             // However narrow the window is, a part of it is left for the viewport.
             let width = ui.available_width();
             egui::Panel::left("photos")
@@ -182,7 +186,7 @@ impl eframe::App for App {
             });
         }
         panels::ask(state, ui.ctx(), out);
-        drop_hint(ui.ctx());
+        drop_hint(state, ui.ctx());
         self.times.end(Phase::Panels);
         for command in commands {
             self.state.apply(command);
@@ -233,7 +237,7 @@ fn more_contrast(style: &mut egui::Style) {
 }
 
 /// Says what happens when the file over the window is let go.
-fn drop_hint(context: &egui::Context) {
+fn drop_hint(state: &State, context: &egui::Context) {
     let hovering = context.input(|input| !input.raw.hovered_files.is_empty());
     if hovering {
         let painter = context.layer_painter(egui::LayerId::new(
@@ -245,7 +249,13 @@ fn drop_hint(context: &egui::Context) {
         painter.text(
             place.center(),
             egui::Align2::CENTER_CENTER,
-            "Let go to open this flight",
+            match state.page {
+                Page::Pile => "Let go to open this flight",
+                Page::SizeDistributions if state.distributions.tab == ResultTab::Effort => {
+                    "Let go to add these times of steps"
+                }
+                Page::SizeDistributions => "Let go to add these size distributions",
+            },
             egui::FontId::proportional(26.0),
             egui::Color32::WHITE,
         );

@@ -167,6 +167,7 @@ impl OpenFlight {
             opened,
             outcomes,
             surface_bounds,
+            took: _,
             again_for: _,
         } = loaded;
         let count = outcomes.len();

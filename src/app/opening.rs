@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Instant;
 
 use image::RgbImage;
 use image::buffer::ConvertBuffer;
@@ -302,6 +303,25 @@ impl State {
                     DialogFor::Georeference(_) => {
                         dialog.set_title("List of positions").pick_file().await
                     }
+                    DialogFor::Distributions => {
+                        let dialog = dialog.set_title("Size distributions");
+                        dialog.pick_file().await
+                    }
+                    DialogFor::Effort => dialog.set_title("Times of steps").pick_file().await,
+                    DialogFor::Figure => {
+                        let dialog = dialog.set_title("Save figure");
+                        dialog
+                            .set_file_name("size-distributions.svg")
+                            .save_file()
+                            .await
+                    }
+                    DialogFor::Report => {
+                        let dialog = dialog.set_title("Save report");
+                        dialog
+                            .set_file_name("size-distributions.html")
+                            .save_file()
+                            .await
+                    }
                     DialogFor::Picture => {
                         let dialog = dialog.set_title("Save picture").set_file_name("figure.png");
                         dialog.save_file().await
@@ -372,7 +392,9 @@ fn open(
             tried: Some((path.clone(), options.clone())),
         })
     };
+    let begun = Instant::now();
     let opened = formats::open_flight(&path, &options, progress).map_err(not_opened)?;
+    let read = begun.elapsed();
     let at_path = |fault: Fault| not_opened(FileError::new(&path, fault));
     let outcomes = opened.flight.scales(progress).map_err(at_path)?;
     let surface_bounds = opened.flight.parts().surface.bounds();
@@ -382,6 +404,7 @@ fn open(
         opened,
         outcomes,
         surface_bounds,
+        took: [read, begun.elapsed().saturating_sub(read)],
         again_for,
     })
 }

@@ -18,7 +18,10 @@ impl State {
     pub fn poll(&mut self) {
         while let Some(done) = self.work.finished() {
             match done {
-                Ok(done) => self.take(done),
+                Ok((done, took)) => {
+                    self.measure(&done, took);
+                    self.take(done);
+                }
                 Err(fault) => self.say(Severity::Error, &fault.to_string()),
             }
         }
@@ -165,6 +168,13 @@ impl State {
                 self.say(Severity::Note, &format!("{}: saved", path.display()));
                 self.apply(Command::Open(path));
             }
+            Done::ReadEffort(path, read) => self.take_effort(&path, read),
+            Done::ReadDistributions(read) => self.take_distributions(read),
+            Done::Fitted(result) => self.take_fitted(result),
+            Done::SavedDistributions(Ok(path)) => {
+                self.say(Severity::Note, &format!("{}: written", path.display()));
+            }
+            Done::SavedDistributions(Err(message)) => self.say(Severity::Error, &message),
             Done::SavedGeoreferenced(Err(message)) => self.say(Severity::Error, &message),
             Done::Dialog(what, Some(path)) => match what {
                 DialogFor::Georeference(field) => {
@@ -175,7 +185,14 @@ impl State {
                     }
                 }
                 DialogFor::Open => self.apply(Command::Open(path)),
-                DialogFor::Add | DialogFor::Export | DialogFor::SaveAs | DialogFor::Picture => {
+                DialogFor::Add
+                | DialogFor::Export
+                | DialogFor::SaveAs
+                | DialogFor::Picture
+                | DialogFor::Distributions
+                | DialogFor::Effort
+                | DialogFor::Figure
+                | DialogFor::Report => {
                     self.answered = Some(path);
                 }
             },

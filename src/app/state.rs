@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::command::{Asking, Command, Tab};
 use super::open_flight::OpenFlight;
 use super::preferences::Preferences;
+use super::size_distributions::{Page, SizeDistributions};
 use super::work::Work;
 use crate::fault::one_line;
 use crate::formats::OpenOptions;
@@ -55,6 +56,10 @@ pub struct State {
     pub preferences: Preferences,
     /// The flight on the screen; `None` on the start page.
     pub open: Option<Box<OpenFlight>>,
+    /// Which page is shown.
+    pub page: Page,
+    /// The size distributions, with or without a flight.
+    pub distributions: SizeDistributions,
     /// Jobs under way.
     pub work: Work,
     /// What was said, oldest first.
@@ -105,6 +110,8 @@ impl State {
             gpu: None,
             preferences,
             open: None,
+            page: Page::default(),
+            distributions: SizeDistributions::default(),
             log: Vec::new(),
             notice: None,
             tab: Tab::default(),

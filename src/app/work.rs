@@ -6,13 +6,17 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::time::{Duration, Instant};
 
 use egui::ColorImage;
 
 use super::georeferencing::PathField;
+use super::size_distributions::Computed;
+use super::size_distributions::reading::Read;
 use crate::fault::Fault;
 use crate::flight::{ComparedObject, Flight, FlightSettings, Outcome, ScaleObject};
 use crate::formats::{FlightOrigin, Georeferenced, OpenOptions, Opened};
+use crate::fragmentation::Effort;
 use crate::geometry::Bounds;
 use crate::jobs::{Job, Progress};
 use crate::render::{CloudBuffers, LargePhoto, MeshBuffers, PhotoImage};
@@ -43,6 +47,14 @@ pub enum Task {
     Picture,
     /// Fitting a reconstruction to the world.
     Georeference,
+    /// Reading size distributions.
+    ReadDistributions,
+    /// Reading times of steps.
+    ReadEffort,
+    /// Fitting and comparing them.
+    Fits,
+    /// Writing their figure or report.
+    SaveDistributions,
     /// Waiting for the desktop's own dialog.
     Dialog,
 }
@@ -62,6 +74,10 @@ impl Task {
             Self::Save => "Saving",
             Self::Picture => "Picture",
             Self::Georeference => "Georeferencing",
+            Self::ReadDistributions => "Reading",
+            Self::ReadEffort => "Reading times",
+            Self::Fits => "Fitting",
+            Self::SaveDistributions => "Writing",
             Self::Dialog => "Dialog",
         }
     }
@@ -86,6 +102,14 @@ pub enum DialogFor {
     SaveAs,
     /// Where a picture goes.
     Picture,
+    /// Files of size distributions.
+    Distributions,
+    /// A table of times.
+    Effort,
+    /// Where the figure of the size distributions goes.
+    Figure,
+    /// Where the report on them goes.
+    Report,
     /// What georeferencing reads: this field's file or folder.
     Georeference(PathField),
 }
@@ -103,6 +127,8 @@ pub struct Loaded {
     pub outcomes: Vec<Outcome>,
     /// Around the surface.
     pub surface_bounds: Bounds,
+    /// How long reading took, and computing the scales.
+    pub took: [Duration; 2],
     /// The number of the open flight that was read again with other surface options.
     pub again_for: Option<u64>,
 }
@@ -160,6 +186,14 @@ pub enum Done {
     Georeferenced(Option<PathBuf>, Box<Result<Georeferenced, String>>),
     /// Where the georeferenced flight was written.
     SavedGeoreferenced(Result<PathBuf, String>),
+    /// Times of steps from this file, with what was noticed, or why there are none in a line.
+    ReadEffort(PathBuf, Result<(Effort, Vec<String>), String>),
+    /// Size distributions, or why they cannot be read.
+    ReadDistributions(Read),
+    /// Fits and comparisons.
+    Fitted(Result<Arc<Computed>, Fault>),
+    /// Where a figure or report was written.
+    SavedDistributions(Result<PathBuf, String>),
     /// Where the picture was written.
     Picture(Result<PathBuf, String>),
     /// What the person chose; `None` where she did not, or where the desktop has no dialog.
@@ -193,7 +227,7 @@ pub struct PreviewPicture {
 /// The jobs under way.
 #[derive(Debug)]
 pub struct Work {
-    running: Vec<(Task, Job<Done>)>,
+    running: Vec<(Task, Job<(Done, Duration)>)>,
     context: egui::Context,
     /// Small pictures arrive one by one, not at the end.
     thumbnails: Receiver<Thumbnail>,
@@ -225,9 +259,10 @@ impl Work {
         self.cancel(task);
         let context = self.context.clone();
         let job = Job::start(task.in_words(), move |progress| {
+            let begun = Instant::now();
             let done = work(progress);
             context.request_repaint();
-            done
+            (done, begun.elapsed())
         })?;
         self.running.push((task, job));
         Ok(())
@@ -270,7 +305,12 @@ impl Work {
 
     /// Whether a file is being written.
     pub fn is_writing(&self) -> bool {
-        let tasks = [Task::Export, Task::Save, Task::Picture];
+        let tasks = [
+            Task::Export,
+            Task::Save,
+            Task::Picture,
+            Task::SaveDistributions,
+        ];
         tasks.into_iter().any(|task| self.is_running(task))
     }
 
@@ -298,9 +338,9 @@ impl Work {
         self.running.is_empty()
     }
 
-    /// Takes the first that is done: one at a time, because taking it may cancel others that are done
+    /// Takes the first that is done, with how long it took: one at a time, because taking it may cancel others that are done
     /// as well. A job that panicked is a fault of ours, told like any other.
-    pub fn finished(&mut self) -> Option<Result<Done, Fault>> {
+    pub fn finished(&mut self) -> Option<Result<(Done, Duration), Fault>> {
         let place = self.running.iter().position(|(_, job)| job.is_finished())?;
         let (_, job) = self.running.remove(place);
         Some(job.finish())

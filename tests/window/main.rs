@@ -29,4 +29,5 @@ mod photos;
 mod random;
 mod scale_object;
 mod settings;
+mod size_distributions;
 mod viewport;

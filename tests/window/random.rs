@@ -22,7 +22,7 @@ use glam::{DVec2, DVec3};
 use crate::desk::{Desk, copy, copy_files, flight};
 
 /// A sequence that is the same every time (SplitMix64).
-struct Dice(u64);
+pub struct Dice(pub u64);
 
 impl Dice {
     fn next(&mut self) -> u64 {
@@ -34,7 +34,7 @@ impl Dice {
     }
 
     /// Below `end`.
-    fn below(&mut self, end: usize) -> usize {
+    pub fn below(&mut self, end: usize) -> usize {
         (self.next() % end as u64) as usize
     }
 
@@ -46,7 +46,7 @@ impl Dice {
         self.below(2) == 0
     }
 
-    fn one_of<T: Copy>(&mut self, of: &[T]) -> T {
+    pub fn one_of<T: Copy>(&mut self, of: &[T]) -> T {
         of[self.below(of.len())]
     }
 }

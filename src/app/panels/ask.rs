@@ -4,9 +4,11 @@
 use std::path::PathBuf;
 
 use super::georeference::{georeference, save_georeferenced};
+use super::size_distributions::{add_distributions, add_effort, paste, save_figure, save_report};
 use crate::app::actions;
 use crate::app::command::{Asking, Command};
 use crate::app::open_flight::OpenFlight;
+use crate::app::size_distributions::DistributionCommand;
 use crate::app::state::{HeldBack, PictureRequest, State};
 use crate::app::work::DialogFor;
 
@@ -21,6 +23,11 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::SaveGeoreferenced => "Save georeferenced flight",
             Asking::SaveAs => "Save flight",
             Asking::Picture => "Save picture",
+            Asking::AddDistributions => "Add size distributions",
+            Asking::PasteTable => "Paste table",
+            Asking::AddEffort => "Add times of steps",
+            Asking::SaveFigure => "Save figure",
+            Asking::SaveReport => "Save report",
             Asking::Keys => "Keys and mouse",
             Asking::About => "About fragscale",
         };
@@ -42,6 +49,11 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::SaveGeoreferenced => save_georeferenced(state, ui, commands),
                     Asking::SaveAs => save_as(state, ui, commands),
                     Asking::Picture => picture(state, ui, commands),
+                    Asking::AddDistributions => add_distributions(state, ui, commands),
+                    Asking::PasteTable => paste(state, ui, commands),
+                    Asking::AddEffort => add_effort(state, ui, commands),
+                    Asking::SaveFigure => save_figure(state, ui, commands),
+                    Asking::SaveReport => save_report(state, ui, commands),
                     Asking::Keys => keys(ui),
                     Asking::About => about(ui),
                 }
@@ -113,6 +125,9 @@ fn replace(command: &Command, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             path.display().to_string()
         }
         Command::Picture(request) => request.path.display().to_string(),
+        Command::Distributions(
+            DistributionCommand::SaveFigure(path) | DistributionCommand::SaveReport(path),
+        ) => path.display().to_string(),
         _ => String::new(),
     };
     ui.label(format!("There is a file already: {path}"));

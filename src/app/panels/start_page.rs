@@ -3,6 +3,7 @@
 use super::menu_bar::short;
 use crate::app::actions;
 use crate::app::command::{Asking, Command};
+use crate::app::size_distributions::Page;
 use crate::app::state::State;
 
 /// Draws the start page.
@@ -29,6 +30,12 @@ pub fn start_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
             if open.on_hover_text(actions::OPEN.hover).clicked() {
                 commands.push(Command::Ask(Some(Asking::Open)));
             }
+            ui.add_space(4.0);
+            let sizes = ui.add(big("Size distributions"));
+            let sizes = sizes.on_hover_text(actions::SIZE_DISTRIBUTIONS.hover);
+            if sizes.clicked() {
+                commands.push(Command::Page(Page::SizeDistributions));
+            }
             ui.add_space(14.0);
             ui.weak(
                 "or drop it on this window, with its cloud and photos where they lie elsewhere:",
@@ -37,6 +44,7 @@ pub fn start_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
                 "flight.toml · Metashape · Pix4D · RealityCapture · ContextCapture · OpenDroneMap",
             );
             ui.weak("COLMAP · VisualSFM · Bundler · Meshroom · ROS · a folder of drone photos");
+            ui.weak("or tables of size distributions (CSV)");
             if state.is_opening() {
                 ui.add_space(14.0);
                 ui.spinner();

@@ -3,6 +3,7 @@
 use crate::app::actions;
 use crate::app::command::Command;
 use crate::app::panels::{verdict_color, verdict_sign};
+use crate::app::size_distributions::Page;
 use crate::app::state::State;
 use crate::flight::Verdict;
 use crate::units::LengthUnit;
@@ -19,25 +20,29 @@ const UNITS: [LengthUnit; 5] = [
 /// Draws the tool bar.
 pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
+        pages(state, ui, commands);
+        ui.separator();
+        if state.page == Page::SizeDistributions {
+            for (action, text) in [
+                (actions::ADD_DISTRIBUTIONS, "Add…"),
+                (actions::PASTE_TABLE, "Paste…"),
+                (actions::ADD_KNOWN, "Known fragments"),
+                (actions::UNDO, "⟲"),
+                (actions::REDO, "⟳"),
+                (actions::SAVE_FIGURE, "Save figure…"),
+                (actions::SAVE_REPORT, "Save report…"),
+            ] {
+                action_button(state, action, text, ui, commands);
+            }
+            return;
+        }
         for (action, text) in [
             (actions::OPEN, "Open"),
             (actions::SAVE, "Save flight"),
             (actions::UNDO, "⟲"),
             (actions::REDO, "⟳"),
         ] {
-            let command = (action.command)(state);
-            let button = ui.add_enabled(command.is_some(), egui::Button::new(text));
-            let button = button.on_hover_text(action.hover);
-            button.widget_info(|| {
-                egui::WidgetInfo::labeled(
-                    egui::Role::Button,
-                    command.is_some(),
-                    label(text, action),
-                )
-            });
-            if button.clicked() {
-                commands.extend(command);
-            }
+            action_button(state, action, text, ui, commands);
         }
         ui.separator();
         ui.label("Scales in px per");
@@ -85,7 +90,49 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     });
 }
 
+/// The switch between the flight and the size distributions.
+fn pages(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    for (page, name, action) in [
+        (Page::Pile, "Pile", actions::PILE),
+        (
+            Page::SizeDistributions,
+            "Size distributions",
+            actions::SIZE_DISTRIBUTIONS,
+        ),
+    ] {
+        let chosen = state.page == page;
+        let button = ui
+            .selectable_label(chosen, name)
+            .on_hover_text(action.hover);
+        button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Tab, true, chosen, name));
+        if button.clicked() {
+            commands.push(Command::Page(page));
+        }
+    }
+}
+
+/// A button for an action, grey where it makes no sense.
+pub(super) fn action_button(
+    state: &State,
+    action: actions::Action,
+    text: &str,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let command = (action.command)(state);
+    let button = ui.add_enabled(command.is_some(), egui::Button::new(text));
+    let button = button.on_hover_text(action.hover);
+    button.widget_info(|| {
+        let label = label(text, action);
+        egui::WidgetInfo::labeled(egui::Role::Button, command.is_some(), label)
+    });
+    if button.clicked() {
+        commands.extend(command);
+    }
+}
+
 /// Signs have names for those who do not see them.
 fn label(text: &str, action: actions::Action) -> &str {
-    if text.is_ascii() { text } else { action.label }
+    let sign = text.chars().all(|c| !c.is_alphabetic());
+    if sign { action.label } else { text }
 }

@@ -1,0 +1,105 @@
+//! The small windows that ask which files to add and where the figure and the report go.
+
+use std::path::PathBuf;
+
+use crate::app::command::Command;
+use crate::app::panels::ask::{path_field, typed};
+use crate::app::size_distributions::DistributionCommand;
+use crate::app::state::State;
+use crate::app::work::DialogFor;
+
+/// Which file to add.
+pub(in crate::app::panels) fn add_distributions(
+    state: &State,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    ui.label(
+        "A table of cumulative percent passing by size: CSV, with one line a point or one column a \
+         curve. It can also be dropped on this window.",
+    );
+    let browse = [("Browse…", DialogFor::Distributions, false)];
+    if let Some(path) = path(state, "", &browse, "Add file", ui, commands) {
+        commands.push(Command::Distributions(DistributionCommand::Add(vec![path])));
+    }
+}
+
+/// Which file has the times of steps.
+pub(in crate::app::panels) fn add_effort(
+    state: &State,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    ui.label(
+        "A table of the time that each step took: step, time and perhaps method and trial; or a column \
+         of times for each trial. Minutes, where it says nothing else.",
+    );
+    let browse = [("Browse…", DialogFor::Effort, false)];
+    if let Some(path) = path(state, "", &browse, "Add times", ui, commands) {
+        commands.push(Command::Distributions(DistributionCommand::AddEffort(path)));
+    }
+}
+
+/// Where the figure goes.
+pub(in crate::app::panels) fn save_figure(
+    state: &State,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    ui.label(
+        "The figure for a report: a name that ends in .svg is drawn in lines, .png in pixels.",
+    );
+    let browse = [("Browse…", DialogFor::Figure, false)];
+    let start = beside(state, "size-distributions.svg");
+    if let Some(path) = path(state, &start, &browse, "Write figure", ui, commands) {
+        commands.push(Command::Distributions(DistributionCommand::SaveFigure(
+            path,
+        )));
+    }
+}
+
+/// Where the report goes.
+pub(in crate::app::panels) fn save_report(
+    state: &State,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    ui.label("One HTML page with the figure, all tables and how they were computed.");
+    let browse = [("Browse…", DialogFor::Report, false)];
+    let start = beside(state, "size-distributions.html");
+    if let Some(path) = path(state, &start, &browse, "Write report", ui, commands) {
+        commands.push(Command::Distributions(DistributionCommand::SaveReport(
+            path,
+        )));
+    }
+}
+
+/// A path field with the button that takes it.
+fn path(
+    state: &State,
+    start: &str,
+    browse: &[(&str, DialogFor, bool)],
+    button: &str,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) -> Option<PathBuf> {
+    let (path, entered) = path_field(state, ui, start, browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new(button));
+    path.filter(|_| button.clicked() || entered)
+}
+
+/// A name beside the first file that was added. The bundled flight's folder stays as it came.
+fn beside(state: &State, name: &str) -> String {
+    let bundled = crate::app::state::sample_flight();
+    let mut paths = state
+        .distributions
+        .sources()
+        .iter()
+        .filter_map(|s| s.path.as_deref());
+    let first = paths.find(|path| path.parent() != bundled.as_deref());
+    let path = first.map_or_else(|| PathBuf::from(name), |first| first.with_file_name(name));
+    let path = std::path::absolute(&path).unwrap_or(path);
+    path.display().to_string()
+}

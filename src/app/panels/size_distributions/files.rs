@@ -1,0 +1,35 @@
+//! What was added to the page of size distributions.
+
+use crate::app::actions;
+use crate::app::command::Command;
+use crate::app::panels::tool_bar::action_button;
+use crate::app::size_distributions::DistributionCommand;
+use crate::app::state::State;
+
+/// Draws the list of files and tables, with what was noticed while reading them.
+pub(super) fn files(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    for (place, source) in state.distributions.sources().iter().enumerate() {
+        ui.horizontal(|ui| {
+            let remove = ui.small_button("✖");
+            let label = format!("Remove {}", source.name);
+            remove.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
+            if remove.on_hover_text(&label).clicked() {
+                commands.push(Command::Distributions(DistributionCommand::Remove(place)));
+            }
+            let path = source.path.as_ref().map(|path| path.display().to_string());
+            let name = ui.strong(&source.name);
+            name.on_hover_text(path.as_deref().unwrap_or("A table that was pasted"));
+            let count = source.set.curves.len();
+            let curves = if count == 1 { "curve" } else { "curves" };
+            ui.weak(format!("{count} {curves}, {}", source.set.unit));
+        });
+        for warning in &source.warnings {
+            let text = egui::RichText::new(format!("⚠ {warning}"));
+            let text = text.color(ui.visuals().warn_fg_color).small();
+            ui.add(egui::Label::new(text).wrap());
+        }
+    }
+    if state.distributions.sources().len() > 1 {
+        action_button(state, actions::REMOVE_ALL, "Remove all", ui, commands);
+    }
+}

@@ -1,0 +1,99 @@
+//! The fitted functions: parameters, how well they fit, percentiles with their bands.
+
+use super::results::{sentence, warning};
+use super::table::{Table, fixed, number};
+use crate::app::command::Command;
+use crate::app::size_distributions::Computed;
+use crate::app::size_distributions::computing::{FittedCurve, PERCENTILES};
+use crate::fragmentation::{Labels, Percentile};
+
+/// Draws the tables.
+pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let settings = &computed.edit.settings;
+    let unit = computed.set.unit;
+    sentence(
+        &format!(
+            "{} by least squares, every point alike.",
+            settings.model.name()
+        ),
+        ui,
+    );
+    let mut parameters = Table::new("Parameters");
+    parameters.column("Curve", "Method, trial; the photos of a trial are merged");
+    for name in settings.model.parameter_names() {
+        let is_size = name.starts_with('x');
+        let name = if is_size {
+            format!("{name} {unit}")
+        } else {
+            (*name).to_owned()
+        };
+        parameters.column(name, "Least-squares estimate");
+        parameters.column("±", "Standard error of the estimate before it");
+    }
+    parameters.column(
+        "RMSE",
+        "Root of the mean squared residual, percentage points",
+    );
+    parameters.column("R²", "Share of the variation that the function explains");
+    parameters.column("Points", "How many points it is fitted to");
+    let mut percentiles = Table::new(format!("Percentiles, {unit}"));
+    percentiles.column("Curve", "Method, trial");
+    // The difference may end in ...9999; seven digits are what a level has.
+    let confidence = ((1.0 - settings.level) * 1e9).round() / 1e7;
+    let mut bands = Table::new(format!("Confidence bands of {confidence} %, {unit}"));
+    bands.column("Curve", "Method, trial");
+    for percent in PERCENTILES {
+        percentiles.column(
+            format!("P{percent}"),
+            format!("{percent} % of the mass passes it"),
+        );
+        for end in ["from", "to"] {
+            let hover = format!("Of the confidence band of P{percent}");
+            bands.column(format!("P{percent} {end}"), hover);
+        }
+    }
+    for FittedCurve {
+        labels,
+        fit,
+        percentiles: sizes,
+    } in &computed.fits
+    {
+        let Ok(fit) = fit else {
+            continue;
+        };
+        let mut row = vec![labels.to_string()];
+        for parameter in &fit.parameters {
+            row.push(number(parameter.value, 5));
+            row.push(number(parameter.standard_error, 2));
+        }
+        row.push(fixed(fit.rmse, 2));
+        row.push(fixed(fit.r_squared, 4));
+        row.push(fit.residuals.len().to_string());
+        parameters.row(row);
+        let cells = sizes.iter().map(|size| number(size.size, 4));
+        percentiles.row([labels.to_string()].into_iter().chain(cells).collect());
+        let ends = |size: &Percentile| match size.band {
+            Some(band) => band.map(|end| number(end, 4)),
+            None => [number(None, 4), number(None, 4)],
+        };
+        let cells = sizes.iter().flat_map(ends);
+        bands.row([labels.to_string()].into_iter().chain(cells).collect());
+    }
+    parameters.show(ui, commands);
+    percentiles.show(ui, commands);
+    bands.show(ui, commands);
+    for (labels, text) in notes(computed) {
+        warning(&format!("{labels}: {text}"), ui);
+    }
+}
+
+/// What is to be known of the fits, with the curves that have none.
+fn notes(computed: &Computed) -> impl Iterator<Item = (&Labels, String)> {
+    computed.fits.iter().flat_map(|fitted| {
+        let said = match &fitted.fit {
+            Ok(fit) => fit.notes.clone(),
+            Err(fault) => vec![fault.to_string()],
+        };
+        said.into_iter().map(|text| (&fitted.labels, text))
+    })
+}

@@ -1,0 +1,68 @@
+//! The page of size distributions.
+//!
+//! ```text
+//! welcome     what can be brought here, before anything was
+//! files       what was added, and how to look at it
+//! curves      the curves by method, trial and photo
+//! plot        percent passing, or percent error, over the size; log_axis its axis
+//! results     the tabs beside it: fits, against_reference, repeatability, effort; table how they
+//!             are drawn and copied
+//! paste       the small window for a table
+//! ```
+
+mod against_reference;
+mod asking;
+mod curves;
+mod effort;
+mod files;
+mod fits;
+mod log_axis;
+mod paste;
+mod plot;
+mod repeatability;
+mod results;
+mod settings;
+mod table;
+mod welcome;
+
+pub(super) use asking::{add_distributions, add_effort, save_figure, save_report};
+pub(super) use paste::paste;
+
+use crate::app::command::Command;
+use crate::app::state::State;
+
+/// Draws the page.
+pub fn size_distributions(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let width = ui.available_width();
+    if state.distributions.sources().is_empty() {
+        egui::CentralPanel::default_margins().show(ui, |ui| {
+            super::notice(state, ui, commands);
+            welcome::welcome(state, ui, commands);
+        });
+        return;
+    }
+    egui::Panel::left("distributions")
+        .resizable(true)
+        .default_size(270.0)
+        .min_size(180.0)
+        .max_size((width * 0.4).max(180.0))
+        .show(ui, |ui| {
+            egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+                files::files(state, ui, commands);
+                ui.separator();
+                settings::settings(state, ui, commands);
+                ui.separator();
+                curves::curves(state, ui, commands);
+            });
+        });
+    egui::Panel::right("distribution results")
+        .resizable(true)
+        .default_size((width * 0.34).clamp(260.0, 420.0))
+        .min_size(220.0)
+        .max_size((width * 0.5).max(220.0))
+        .show(ui, |ui| results::results(state, ui, commands));
+    egui::CentralPanel::default_margins().show(ui, |ui| {
+        super::notice(state, ui, commands);
+        plot::plot(state, ui, commands);
+    });
+}

@@ -1,0 +1,147 @@
+//! Writing the figure and the report of the size distributions.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::DistributionCommand;
+use super::computing::Computed;
+use crate::app::command::Command;
+use crate::app::state::{HeldBack, Severity, State};
+use crate::app::work::{Done, Task};
+use crate::exports::{self, ComparisonReport, FigureContents, FittedDistribution};
+use crate::fault::Fault;
+use crate::formats::FileError;
+
+impl State {
+    /// Writes the figure; asks before a file is replaced.
+    pub(super) fn save_figure(&mut self, path: PathBuf) {
+        let command = DistributionCommand::SaveFigure(path.clone());
+        if self.may_write(&path, command) {
+            self.start_saving_figure(path);
+        }
+    }
+
+    /// Writes the report; asks before a file is replaced.
+    pub(super) fn save_report(&mut self, path: PathBuf) {
+        let command = DistributionCommand::SaveReport(path.clone());
+        if self.may_write(&path, command) {
+            self.start_saving_report(path);
+        }
+    }
+
+    /// Whether the file can be written now; else asks, or says why not.
+    fn may_write(&mut self, path: &Path, command: DistributionCommand) -> bool {
+        self.asking = None;
+        if self.is_busy(Task::SaveDistributions) {
+            return false;
+        }
+        if !self.distributions.is_current() || self.distributions.computed.is_none() {
+            let text = "the fits are still being computed; write when they are there";
+            self.say(Severity::Error, text);
+            return false;
+        }
+        if path.exists() {
+            let command = Command::Distributions(command);
+            self.held_back = Some(HeldBack::Replace(Box::new(command)));
+            return false;
+        }
+        true
+    }
+
+    /// Goes on once a file may be replaced.
+    pub(in crate::app) fn replace_distributions(&mut self, command: DistributionCommand) {
+        match command {
+            DistributionCommand::SaveFigure(path) => self.start_saving_figure(path),
+            DistributionCommand::SaveReport(path) => self.start_saving_report(path),
+            _ => {}
+        }
+    }
+
+    fn start_saving_figure(&mut self, path: PathBuf) {
+        self.write(path, |computed, path| {
+            let contents = contents(computed);
+            let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+            match extension.as_deref() {
+                Some("svg") => Ok(exports::figure_svg(&contents)?.into_bytes()),
+                Some("png") => exports::figure_png(&contents),
+                _ => Err(Fault::new(
+                    "a figure is an SVG or a PNG",
+                    "let its name end in .svg or .png",
+                )),
+            }
+        });
+    }
+
+    fn start_saving_report(&mut self, path: PathBuf) {
+        self.write(path, |computed, _| report(computed).map(String::into_bytes));
+    }
+
+    fn write(
+        &mut self,
+        path: PathBuf,
+        bytes: impl FnOnce(&Computed, &Path) -> Result<Vec<u8>, Fault> + Send + 'static,
+    ) {
+        let Some(computed) = self.distributions.computed.clone() else {
+            return;
+        };
+        self.start(Task::SaveDistributions, move |progress| {
+            progress.stage("drawing and writing");
+            let computed: Arc<Computed> = computed;
+            let written = bytes(&computed, &path).and_then(|bytes| {
+                exports::write_whole(&path, &bytes).map_err(|error| {
+                    let what = format!("it cannot be written ({error})");
+                    Fault::new(what, "choose a folder that may be written to")
+                })
+            });
+            Done::SavedDistributions(match written {
+                Ok(()) => Ok(path),
+                Err(fault) => Err(FileError::new(&path, fault).to_string()),
+            })
+        });
+    }
+}
+
+/// The figure of the comparison, or of the fits where nothing is compared.
+fn contents(computed: &Computed) -> FigureContents {
+    if let Some(Ok(comparison)) = &computed.comparison {
+        return exports::figure_of_comparison(comparison);
+    }
+    let names: Vec<String> = computed.fits.iter().map(|f| f.labels.to_string()).collect();
+    let curves = computed
+        .trials
+        .curves
+        .iter()
+        .zip(&computed.fits)
+        .zip(&names);
+    let fitted = curves.filter_map(|((curve, fitted), name)| {
+        Some(FittedDistribution {
+            name,
+            distribution: &curve.distribution,
+            fit: fitted.fit.as_ref().ok()?,
+        })
+    });
+    let fitted: Vec<_> = fitted.collect();
+    let title = computed.edit.settings.model.name();
+    exports::figure_of_fits(title, computed.set.unit, &fitted)
+}
+
+fn report(computed: &Computed) -> Result<String, Fault> {
+    let Some(comparison) = &computed.comparison else {
+        let what = "there is one method only, and a report compares";
+        return Err(Fault::new(what, "add another method"));
+    };
+    let sources = &computed.edit.sources;
+    let warnings = sources.iter().flat_map(|source| {
+        let named = |warning| format!("{}: {warning}", source.name);
+        source.warnings.iter().map(named)
+    });
+    let repeatability = computed.repeatability.iter();
+    let repeatability = repeatability.filter_map(|(_, found)| found.clone().ok());
+    exports::comparison_report(&ComparisonReport {
+        sources: &sources.iter().map(|s| s.name.clone()).collect::<Vec<_>>(),
+        comparison: comparison.as_ref().map_err(Clone::clone)?,
+        repeatability: &repeatability.collect::<Vec<_>>(),
+        preparation: &computed.notes,
+        warnings: &warnings.collect::<Vec<_>>(),
+    })
+}
