@@ -24,7 +24,7 @@ pub(super) struct FitArguments {
     #[arg(long, value_name = "COLUMN")]
     passing: Option<String>,
     /// The unit of sizes, where the table does not state it.
-    #[arg(long, value_enum)]
+    #[arg(long = "size-unit", alias = "unit", value_enum)]
     unit: Option<OutputUnit>,
     /// The function to fit.
     #[arg(long, value_parser = models(), default_value = "swebrec")]
