@@ -33,7 +33,7 @@ pub(super) struct DistributionArguments {
     #[arg(long, value_name = "COLUMN")]
     weight: Option<String>,
     /// The unit of sizes, where a table does not state it.
-    #[arg(long, value_enum)]
+    #[arg(long = "size-unit", alias = "unit", value_enum)]
     unit: Option<OutputUnit>,
 }
 

@@ -43,7 +43,8 @@ impl Uncertainty {
         }
         // Columns of length 1, so that what is small by its unit is not taken for nothing.
         let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
-        if lengths.iter().any(|length| !(*length > 0.0)) {
+        let known = |length: &f64| *length > 0.0;
+        if !lengths.iter().all(known) {
             return None;
         }
         for (mut column, length) in jacobian.column_iter_mut().zip(&lengths) {
@@ -52,7 +53,8 @@ impl Uncertainty {
         let svd = jacobian.svd(false, true);
         let v_t = svd.v_t?;
         let singular = &svd.singular_values;
-        if !(singular.min() > 1e-9 * singular.max()) {
+        let well_conditioned = singular.min() > 1e-9 * singular.max();
+        if !well_conditioned {
             return None;
         }
         let variance = sum / degrees_of_freedom as f64;
