@@ -132,6 +132,7 @@ fn table(c: &mut Criterion) {
         opened,
         outcomes,
         surface_bounds: Bounds::of(&vertices).expect("vertices"),
+        took: [std::time::Duration::ZERO; 2],
         again_for: None,
     };
     let limits = Limits::default();

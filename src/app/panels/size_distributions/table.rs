@@ -75,6 +75,7 @@ impl Table {
         TableBuilder::new(ui)
             .striped(true)
             .auto_shrink([true, true])
+            .min_scrolled_height(TALLEST)
             .max_scroll_height(TALLEST)
             .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
             .columns(Column::auto().at_least(24.0), self.head.len())
