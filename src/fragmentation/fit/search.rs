@@ -30,8 +30,9 @@ const LONG: usize = 20;
 /// Evaluations a coordinate in which the search comes to rest.
 const TO_THE_END: usize = 200;
 
-/// So many of the starts are searched for long, the best ones after a short search.
-const FINALISTS: usize = 10;
+/// So many of the starts are searched for long, the best ones after a short search. With 10 of 80
+/// starts the extended Swebrec missed the least sum of 6 of 458 real curves, of one by half.
+const FINALISTS: usize = 80;
 
 /// Where sums after a long search differ by this share, the lesser is surely the better.
 const NEARLY: f64 = 1.02;

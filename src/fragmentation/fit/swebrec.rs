@@ -38,7 +38,7 @@ fn share_of_coarse(odds: f64) -> f64 {
 }
 
 /// How many starts are searched from.
-const STARTS: usize = 80;
+const STARTS: usize = 400;
 
 /// How many k and c are tried for them.
 const EXPONENTS: u32 = 18;
