@@ -212,10 +212,11 @@ impl State {
                     FileError::new(&path, Fault::new(what, remedy))
                 })
             });
-            Done::Saved(match saved {
+            let saved = match saved {
                 Ok(()) => Ok((origin.saved_at(&path), settings)),
                 Err(error) => Err(error.to_string()),
-            })
+            };
+            Done::Saved(origin, saved)
         });
     }
 

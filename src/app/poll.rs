@@ -131,22 +131,24 @@ impl State {
             Done::Exported(Err(message)) | Done::Picture(Err(message)) => {
                 self.say(Severity::Error, &message);
             }
-            Done::Saved(Err(message)) => {
+            Done::Saved(_, Err(message)) => {
                 self.after_saving = None;
                 self.say(Severity::Error, &message);
             }
-            Done::Saved(Ok((origin, settings))) => {
+            Done::Saved(flight, Ok((origin, settings))) => {
                 if let Some(path) = origin.flight_file() {
                     let path = path.to_owned();
                     self.preferences.remember(&path);
                     self.say(Severity::Note, &format!("{}: saved", path.display()));
-                    if let Some(open) = &mut self.open {
-                        open.path = path;
+                }
+                // She may have gone on to another flight meanwhile.
+                let on_screen = self.open.as_mut().filter(|open| open.origin == flight);
+                if let Some(open) = on_screen {
+                    if let Some(path) = origin.flight_file() {
+                        open.path = path.to_owned();
                         // They stand in the file now.
                         open.options = OpenOptions::default();
                     }
-                }
-                if let Some(open) = &mut self.open {
                     open.bundled = false;
                     open.origin = origin;
                     open.saved = settings;

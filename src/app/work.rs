@@ -179,8 +179,8 @@ pub enum Done {
     },
     /// What was exported and where, in a sentence, with what to know about it.
     Exported(Result<(String, Vec<String>), String>),
-    /// The flight.toml that was written, with the settings in it.
-    Saved(Result<(FlightOrigin, FlightSettings), String>),
+    /// Of the flight of this origin: the flight.toml that was written, with the settings in it.
+    Saved(FlightOrigin, Result<(FlightOrigin, FlightSettings), String>),
     /// The reconstruction fitted to the world, or why not in a line; with the folder of photos that
     /// was named for it.
     Georeferenced(Option<PathBuf>, Box<Result<Georeferenced, String>>),
