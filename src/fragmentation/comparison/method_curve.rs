@@ -37,7 +37,7 @@ impl MethodCurve {
     ///
     /// # Errors
     ///
-    /// Too few sizes at which every trial is known, or what [`fit`] says.
+    /// Too few sizes at which every trial is known, or what [`fit`](fn@fit) says.
     pub(super) fn new(
         method: &str,
         trials: &[(&str, &SizeDistribution)],
