@@ -523,7 +523,7 @@ fn usage_in_one_line(text: &str) -> String {
         .take_while(|line| !line.starts_with("Usage:"))
         .filter(|line| !line.is_empty())
         .collect();
-    let what = lines.join(", ");
+    let what = lines.join(", ").replace(":, ", ": ");
     let what = what.strip_prefix("error: ").unwrap_or(&what).to_owned();
     let name: OsString = std::env::args_os().next().unwrap_or_default();
     let name = Path::new(&name).file_name().map_or_else(

@@ -100,12 +100,20 @@ pub fn merge(
     let mut unknown = Vec::new();
     let mut points: Vec<[f64; 2]> = Vec::new();
     for size in sizes {
-        let sum = counting
-            .iter()
-            .try_fold(0.0, |sum, (weight, distribution)| {
-                Some(sum + weight / total * distribution.percent_passing(size)?)
-            });
-        match sum {
+        // From the first curve on: where all of them say 100 %, rounding must not make it less, which
+        // would say that something was retained.
+        let first = counting
+            .first()
+            .and_then(|(_, distribution)| distribution.percent_passing(size));
+        let mean = first.and_then(|first| {
+            counting
+                .iter()
+                .try_fold(first, |mean, (weight, distribution)| {
+                    let percent = distribution.percent_passing(size)?;
+                    Some(mean + weight / total * (percent - first))
+                })
+        });
+        match mean {
             Some(percent) => {
                 // A mean of curves that never fall does not fall, but for its rounding.
                 let before = points.last().map_or(0.0, |point| point[1]);
@@ -391,5 +399,29 @@ mod tests {
             fault.what.starts_with("m / 1: the 2 curves share fewer"),
             "{fault}"
         );
+    }
+
+    /// Weights whose shares are no binary fractions: 100 % stays 100 %, 0 stays 0.
+    #[test]
+    fn where_all_passes_all_passes_merged() {
+        let photo = |name: &str, weight: f64, middle: f64| {
+            let points = [[1.0, 0.0], [2.0, middle], [3.0, 100.0]];
+            curve(["", "", name], Some(weight), &points)
+        };
+        let photos = [
+            photo("a", 0.195, 30.0),
+            photo("b", 0.1934, 40.0),
+            photo("c", 0.2159, 50.0),
+        ];
+        let photos: Vec<_> = photos.iter().collect();
+        let by_area = (0.195 * 30.0 + 0.1934 * 40.0 + 0.2159 * 50.0) / (0.195 + 0.1934 + 0.2159);
+        for (weighting, wanted) in [(Weighting::Equal, 40.0), (Weighting::Area, by_area)] {
+            let merged = merge(&photos, weighting, None).expect("merged");
+            assert_points(
+                &merged.distribution,
+                &[[1.0, 0.0], [2.0, wanted], [3.0, 100.0]],
+            );
+            assert_eq!(merged.distribution.points()[2][1], 100.0);
+        }
     }
 }
