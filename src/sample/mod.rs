@@ -48,7 +48,7 @@ use crate::units::LengthUnit;
 use files::flight::FlightText;
 use files::photo::{DjiGimbal, PhotoMetadata};
 use files::poses::{Orientation, PoseRow};
-use files::reference::SieveSeries;
+use files::reference::openings_mm;
 use image_analysis::{Analysis, Outlined, PixelPlaces, Scale};
 use light::Light;
 use material::Material;
@@ -338,7 +338,7 @@ fn sieved(scene: &Scene, recipe: &Recipe) -> Vec<(f64, f64)> {
         fines + (1.0 - fines) * passed.map(|f| pile.volume(f)).sum::<f64>() / total
     };
     let largest = recipe.pile.sizes.size_at(1.0) * 1000.0;
-    let openings = SieveSeries::Iso565.openings_mm(largest / 100.0, largest * 1.2);
+    let openings = openings_mm(largest / 100.0, largest * 1.2);
     openings
         .into_iter()
         .map(|mm| (mm, 100.0 * passing(mm / 1000.0)))
@@ -405,7 +405,7 @@ fn analysed(
     let largest = recipe.pile.sizes.size_at(1.0) * 4.0;
     let material = image_analysis::Material {
         reference: sieved,
-        openings: &SieveSeries::Iso565.openings_mm(smallest * 1000.0, largest * 1000.0),
+        openings: &openings_mm(smallest * 1000.0, largest * 1000.0),
         fines: recipe.pile.sizes.passing(smallest),
         shape_factor: image_analysis::shape_factor(&scene.pile().bodies),
         width: f64::from(camera.width),

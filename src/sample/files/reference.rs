@@ -1,52 +1,25 @@
 //! reference.csv: what a sieve analysis of the pile would find, `size_mm,percent_passing`: the mass
-//! that passes each sieve, in percent of all, from the smallest opening on. And the sieves to choose
-//! from: ISO 565 R20/3 and ASTM E11, openings in mm.
+//! that passes each sieve, in percent of all, from the smallest opening on. The sieves are those of
+//! ISO 565 R20/3.
 
-/// Nominal openings of ISO 565:1990, principal sizes R20/3, in mm from the smallest on: every third
-/// of ISO 3's preferred numbers R20, a ratio of about 1.41. Down to 45 um, where its woven wire goes
-/// over to another series.
-pub const ISO_565_R20_3_MM: &[f64] = &[
-    0.045, 0.063, 0.09, 0.125, 0.18, 0.25, 0.355, 0.5, 0.71, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0,
-    11.2, 16.0, 22.4, 31.5, 45.0, 63.0, 90.0, 125.0,
-];
+use crate::fragmentation::SieveSeries;
+use crate::units::LengthUnit;
 
 /// What follows the largest sieve of ISO 565 in the same series R20/3 of ISO 3:1973, in mm. No such
 /// test sieve is standard, but blasted rock is larger than 125 mm.
-pub const ISO_3_R20_3_ABOVE_MM: &[f64] = &[
+const ISO_3_R20_3_ABOVE_MM: &[f64] = &[
     180.0, 250.0, 355.0, 500.0, 710.0, 1000.0, 1400.0, 2000.0, 2800.0,
 ];
 
-/// Openings of ASTM E11, table 1, standard designation, in mm from the smallest on: steps of the
-/// fourth root of 2 from 125 mm, and the 100, 50, 25, 12.5 and 6.3 mm that the table adds because
-/// they are in common use.
-pub const ASTM_E11_MM: &[f64] = &[
-    0.02, 0.025, 0.032, 0.038, 0.045, 0.053, 0.063, 0.075, 0.09, 0.106, 0.125, 0.15, 0.18, 0.212,
-    0.25, 0.3, 0.355, 0.425, 0.5, 0.6, 0.71, 0.85, 1.0, 1.18, 1.4, 1.7, 2.0, 2.36, 2.8, 3.35, 4.0,
-    4.75, 5.6, 6.3, 6.7, 8.0, 9.5, 11.2, 12.5, 13.2, 16.0, 19.0, 22.4, 25.0, 26.5, 31.5, 37.5,
-    45.0, 50.0, 53.0, 63.0, 75.0, 90.0, 100.0, 106.0, 125.0,
-];
-
-/// A series of sieve openings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SieveSeries {
-    /// [`ISO_565_R20_3_MM`], then [`ISO_3_R20_3_ABOVE_MM`].
-    Iso565,
-    /// [`ASTM_E11_MM`]; nothing above 125 mm.
-    AstmE11,
-}
-
-impl SieveSeries {
-    /// The openings from `smallest` to `largest` mm, both included, from the smallest on; none where
-    /// the series has none between them.
-    pub fn openings_mm(self, smallest: f64, largest: f64) -> Vec<f64> {
-        let (table, above): (&[f64], &[f64]) = match self {
-            Self::Iso565 => (ISO_565_R20_3_MM, ISO_3_R20_3_ABOVE_MM),
-            Self::AstmE11 => (ASTM_E11_MM, &[]),
-        };
-        let all = table.iter().chain(above).copied();
-        all.filter(|size| (smallest..=largest).contains(size))
-            .collect()
-    }
+/// The openings from `smallest` to `largest` mm, both included, from the smallest on; none where the
+/// series has none between them.
+pub fn openings_mm(smallest: f64, largest: f64) -> Vec<f64> {
+    let standard = SieveSeries::Iso565.openings(LengthUnit::Millimetre);
+    let all = standard
+        .into_iter()
+        .chain(ISO_3_R20_3_ABOVE_MM.iter().copied());
+    all.filter(|size| (smallest..=largest).contains(size))
+        .collect()
 }
 
 /// The text of a reference.csv, from pairs of an opening in mm and the percent of the mass that
@@ -115,7 +88,7 @@ mod tests {
     /// 20 numbers, at 1000 times the size.
     #[test]
     fn iso_565_is_r20_3() {
-        let all = SieveSeries::Iso565.openings_mm(0.0, f64::INFINITY);
+        let all = openings_mm(0.0, f64::INFINITY);
         assert_eq!(all.len(), 33);
         for (k, size) in (-9..).zip(&all) {
             // 1 mm is number 0 and stands at index 9.
@@ -127,30 +100,10 @@ mod tests {
         }
     }
 
-    /// E11: the ratio is the fourth root of 2, but for the five sizes that the table adds.
     #[test]
-    fn astm_e11_steps_by_the_fourth_root_of_two() {
-        let added = [100.0, 50.0, 25.0, 12.5, 6.3];
-        let all = SieveSeries::AstmE11.openings_mm(0.02, 125.0);
-        assert_eq!(all, ASTM_E11_MM);
-        let regular: Vec<f64> = all.into_iter().filter(|s| !added.contains(s)).collect();
-        // Rounding to preferred numbers and whole micrometres moves a step by up to 8 %.
-        for pair in regular.windows(2) {
-            let off = pair[1] / pair[0] / 2_f64.powf(0.25) - 1.0;
-            assert!(off.abs() < 0.08, "{pair:?}");
-        }
-        assert!(ASTM_E11_MM.is_sorted() && added.iter().all(|s| ASTM_E11_MM.contains(s)));
-    }
-
-    #[test]
-    fn openings_between_two_sizes() {
-        let iso = SieveSeries::Iso565;
-        assert_eq!(iso.openings_mm(63.0, 200.0), [63.0, 90.0, 125.0, 180.0]);
-        assert_eq!(iso.openings_mm(64.0, 65.0), [0.0; 0]);
-        assert_eq!(iso.openings_mm(f64::NAN, 65.0), [0.0; 0]);
-        assert_eq!(
-            SieveSeries::AstmE11.openings_mm(50.0, 1000.0),
-            [50.0, 53.0, 63.0, 75.0, 90.0, 100.0, 106.0, 125.0]
-        );
+    fn only_what_lies_between() {
+        assert_eq!(openings_mm(8.0, 22.4), [8.0, 11.2, 16.0, 22.4]);
+        assert_eq!(openings_mm(100.0, 200.0), [125.0, 180.0]);
+        assert!(openings_mm(3000.0, 4000.0).is_empty());
     }
 }
