@@ -172,7 +172,11 @@ fn another_optimum(told: &Told, notes: &mut Vec<String>) {
             let names = told.parameters.iter().map(|parameter| parameter.name);
             let values: Vec<String> = names
                 .zip(&parameters)
-                .map(|(name, value)| format!("{name} {value:.4}"))
+                .map(|(name, value)| match value.abs() {
+                    // At its bound xmax has a hundred digits.
+                    1e-3..1e6 => format!("{name} {value:.4}"),
+                    _ => format!("{name} {value:.3e}"),
+                })
                 .collect();
             notes.push(format!(
                 "other parameters fit nearly as well ({}; residual sum {:.2} % above)",
