@@ -2,6 +2,7 @@
 
 use super::{DistributionSet, LabelledDistribution, SizeDistribution};
 use crate::fault::Fault;
+use crate::units::LengthUnit;
 
 impl DistributionSet {
     /// Gives curves without a method this one, as the name of their file.
@@ -19,8 +20,7 @@ impl DistributionSet {
     ///
     /// A curve with the same labels is there already; sizes that become 0 or infinite in that unit.
     pub fn join(&mut self, other: &Self) -> Result<(), Fault> {
-        let factor = other.unit.in_units_of(self.unit);
-        for curve in &other.curves {
+        for curve in other.in_unit(self.unit)?.curves {
             if self.curves.iter().any(|known| known.labels == curve.labels) {
                 let what = format!(
                     "{}a curve of this name is there already",
@@ -28,16 +28,31 @@ impl DistributionSet {
                 );
                 return Err(Fault::new(what, "give it another method, trial or photo"));
             }
-            let points = curve.distribution.points();
-            let points = points
-                .iter()
-                .map(|[size, percent]| [size * factor, *percent]);
-            self.curves.push(LabelledDistribution {
-                distribution: SizeDistribution::new(points.collect())?,
-                ..curve.clone()
-            });
+            self.curves.push(curve);
         }
         Ok(())
+    }
+
+    /// The same curves with their sizes in another unit.
+    ///
+    /// # Errors
+    ///
+    /// Sizes that become 0 or infinite in that unit.
+    pub fn in_unit(&self, unit: LengthUnit) -> Result<Self, Fault> {
+        let factor = self.unit.in_units_of(unit);
+        let converted = |curve: &LabelledDistribution| {
+            let points = curve.distribution.points().iter();
+            let points = points.map(|[size, percent]| [size * factor, *percent]);
+            Ok(LabelledDistribution {
+                distribution: SizeDistribution::new(points.collect())?,
+                ..curve.clone()
+            })
+        };
+        let curves = self.curves.iter().map(converted);
+        Ok(Self {
+            unit,
+            curves: curves.collect::<Result<_, Fault>>()?,
+        })
     }
 }
 
@@ -46,7 +61,6 @@ impl DistributionSet {
 mod tests {
     use super::*;
     use crate::fragmentation::Labels;
-    use crate::units::LengthUnit;
 
     fn set(unit: LengthUnit, method: &str, points: [[f64; 2]; 2]) -> DistributionSet {
         let curve = LabelledDistribution {

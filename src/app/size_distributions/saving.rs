@@ -8,7 +8,7 @@ use super::computing::Computed;
 use crate::app::command::Command;
 use crate::app::state::{HeldBack, Severity, State};
 use crate::app::work::{Done, Task};
-use crate::exports::{self, ComparisonReport, FigureContents, FittedDistribution};
+use crate::exports::{self, ComparisonReport, FigureContents, FigureFormat, FittedDistribution};
 use crate::fault::Fault;
 use crate::formats::FileError;
 
@@ -59,16 +59,7 @@ impl State {
 
     fn start_saving_figure(&mut self, path: PathBuf) {
         self.write(path, |computed, path| {
-            let contents = contents(computed);
-            let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-            match extension.as_deref() {
-                Some("svg") => Ok(exports::figure_svg(&contents)?.into_bytes()),
-                Some("png") => exports::figure_png(&contents),
-                _ => Err(Fault::new(
-                    "a figure is an SVG or a PNG",
-                    "let its name end in .svg or .png",
-                )),
-            }
+            FigureFormat::of(path)?.bytes(&contents(computed))
         });
     }
 

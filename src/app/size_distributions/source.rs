@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::fault::Fault;
-use crate::fragmentation::{DistributionSet, LabelledDistribution, SizeDistribution};
+use crate::fragmentation::{DistributionSet, LabelledDistribution};
 use crate::units::LengthUnit;
 
 /// Size distributions that were added together.
@@ -102,18 +102,7 @@ impl Source {
 pub fn joined(sources: &[Arc<Source>], unit: LengthUnit) -> Result<DistributionSet, Fault> {
     let mut curves = Vec::new();
     for source in sources {
-        let factor = source.set.unit.in_units_of(unit);
-        for curve in &source.set.curves {
-            let points = curve.distribution.points();
-            let points = points
-                .iter()
-                .map(|[size, percent]| [size * factor, *percent]);
-            curves.push(LabelledDistribution {
-                labels: curve.labels.clone(),
-                weight: curve.weight,
-                distribution: SizeDistribution::new(points.collect())?,
-            });
-        }
+        curves.extend(source.set.in_unit(unit)?.curves);
     }
     Ok(DistributionSet { unit, curves })
 }
@@ -121,7 +110,7 @@ pub fn joined(sources: &[Arc<Source>], unit: LengthUnit) -> Result<DistributionS
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fragmentation::Labels;
+    use crate::fragmentation::{Labels, SizeDistribution};
 
     fn source(name: &str, unit: LengthUnit, labels: &[(&str, &str)]) -> Source {
         let curve = |&(method, trial): &(&str, &str)| LabelledDistribution {

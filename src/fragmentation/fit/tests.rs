@@ -62,6 +62,18 @@ fn a_curve_without_noise_gives_its_parameters_back() {
     }
 }
 
+/// Of Rosin-Rammler the size that a share p passes goes with (-ln(1 - p))^(1 / n).
+#[test]
+fn uniformity_and_curvature_of_rosin_rammler() {
+    let truth = RosinRammler::new(120.0, 1.1).expect("a curve");
+    let distribution = measured(&Curve::RosinRammler(truth), || 0.0).expect("it rises");
+    let fit = fit(&distribution, Model::RosinRammler, &FitOptions::default()).expect("a fit");
+    let passed = |share: f64| (-(1.0 - share).ln()).powf(1.0 / 1.1);
+    assert!(near(fit.uniformity(), passed(0.6) / passed(0.1), 1e-6));
+    let curvature = passed(0.3).powi(2) / (passed(0.1) * passed(0.6));
+    assert!(near(fit.curvature(), curvature, 1e-6));
+}
+
 /// The gradients that covariance and search rest on, against differences.
 #[test]
 fn gradients_are_slopes() {
