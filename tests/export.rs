@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 use common::{fragscale, stdout_of};
 use fragscale::exports::{ExportError, ExportRequest, ExportSummary, export_for_split_desktop};
-use fragscale::flight::{Doubt, Limits, Outcome, PhotoFileState, Verdict, judge};
+use fragscale::flight::{Evidence, Judged, Limits, Outcome, PhotoFileState, judge};
 use fragscale::formats::{OpenOptions, Opened, open_flight};
 use fragscale::jobs::Progress;
 use fragscale::scale::{ImageKind, ViewFacts};
@@ -60,7 +60,8 @@ struct Computed {
     opened: Opened,
     outcomes: Vec<Outcome>,
     views: Vec<Option<ViewFacts>>,
-    judged: Vec<(Verdict, Vec<Doubt>)>,
+    evidence: Vec<Evidence>,
+    judged: Vec<Judged>,
     photo_files: Vec<Option<PathBuf>>,
     crs: Option<String>,
 }
@@ -71,13 +72,17 @@ impl Computed {
         let opened = open_flight(flight, &OpenOptions::default(), &progress).expect("opens");
         let outcomes = opened.flight.scales(&progress).expect("scales");
         let views = opened.flight.views(&outcomes, &progress).expect("views");
-        let file = PhotoFileState::NotNamed;
+        let (width, height) = (1280, 720);
+        let evidence = Evidence {
+            file: PhotoFileState::Found { width, height },
+            doubts: Vec::new(),
+        };
         let judged = outcomes.iter().zip(&views).map(|(outcome, view)| {
-            let unit = opened.settings.unit;
+            let unit = Some(opened.settings.unit);
             judge(
                 outcome,
                 view.as_ref(),
-                &file,
+                &evidence,
                 (1280, 720),
                 unit,
                 &Limits::default(),
@@ -85,6 +90,7 @@ impl Computed {
         });
         Self {
             judged: judged.collect(),
+            evidence: vec![evidence.clone(); outcomes.len()],
             photo_files: opened
                 .photo_files
                 .iter()
@@ -107,6 +113,7 @@ impl Computed {
             flight: &self.opened.flight,
             outcomes: &self.outcomes,
             views: &self.views,
+            evidence: &self.evidence,
             judged: &self.judged,
             photo_files: &self.photo_files,
             selected,

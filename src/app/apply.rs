@@ -275,7 +275,7 @@ impl State {
         if !open.is_computed() {
             return None;
         }
-        let scale = open.scale(open.selected?)?;
+        let scale = open.scale_to_type(open.selected?)?;
         let unit = self.preferences.unit();
         let factor = unit.in_units_of(open.flight.parts().unit);
         let shown = |scale: Option<f64>| {

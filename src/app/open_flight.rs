@@ -13,9 +13,12 @@ use super::table::{Row, TableOrder};
 use super::tracing::Tracing;
 use super::work::{Geometry, Loaded, PreviewPicture};
 use crate::flight::{
-    ComparedObject, Doubt, Flight, FlightSettings, Limits, Outcome, ScaleObject, Verdict, judge_all,
+    ComparedObject, Flight, FlightSettings, Judged, Limits, Outcome, ScaleObject, Verdict,
+    judge_all,
 };
-use crate::formats::{FlightOrigin, FlightReconstruction, OpenOptions, PhotoFile};
+use crate::formats::{
+    Colours, FlightOrigin, FlightReconstruction, LookedUp, OpenOptions, PhotoFile, with_colours,
+};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::render::{Orbit, PhotoImage};
 use crate::scale::{PhotoScale, ViewFacts};
@@ -27,15 +30,6 @@ pub struct Edit {
     pub settings: FlightSettings,
     /// Which photos are chosen for export.
     pub chosen: Vec<bool>,
-}
-
-/// A photo's verdict with its reasons.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Judged {
-    /// What to do with its scale.
-    pub verdict: Verdict,
-    /// The gravest first.
-    pub doubts: Vec<Doubt>,
 }
 
 /// The selected photo in the inspector.
@@ -97,6 +91,10 @@ pub struct OpenFlight {
     pub inputs: Vec<PathBuf>,
     /// What was noticed while reading.
     pub warnings: Vec<String>,
+    /// What was looked up of the photos with the settings that it is computed with.
+    pub looked_up: LookedUp,
+    /// How the colours of each photo compare with the surface's, once known.
+    pub colours: Vec<Option<Colours>>,
     /// Where it came from, and where it is saved.
     pub origin: FlightOrigin,
     /// The reconstruction that it was made of, if any.
@@ -189,6 +187,8 @@ impl OpenFlight {
             crs: opened.crs,
             inputs: opened.inputs,
             warnings: opened.warnings,
+            looked_up: opened.looked_up,
+            colours: vec![None; count],
             bundled: is_bundled(&opened.origin.suggested_file()),
             georeferencing: Georeferencing::new(opened.origin.photo_folder()),
             reconstruction: opened.reconstruction,
@@ -301,11 +301,9 @@ impl OpenFlight {
     /// Judges all photos anew, and sorts and filters the table.
     pub fn judge(&mut self, limits: &Limits) {
         let views = self.views.as_ref().map(|views| views.as_slice());
-        let files = self.photo_files.iter().map(|file| &file.state);
-        self.judged = judge_all(&self.flight, &self.outcomes, views, files, limits)
-            .into_iter()
-            .map(|(verdict, doubts)| Judged { verdict, doubts })
-            .collect();
+        let colours = self.colours.iter().map(Option::as_ref);
+        let evidence = with_colours(&self.looked_up.evidence, colours);
+        self.judged = judge_all(&self.flight, &self.outcomes, views, &evidence, limits);
         if self.views.is_some() && !self.proposed {
             // What can be trusted is proposed for export; the rest waits for the engineer.
             self.proposed = true;
@@ -314,6 +312,38 @@ impl OpenFlight {
             self.history.each(|edit| edit.chosen.clone_from(&proposal));
         }
         self.arrange();
+    }
+
+    /// Takes what a photo's colours say. One that they speak against is no longer proposed for export.
+    pub fn take_colours(&mut self, photo: usize, colours: Colours, limits: &Limits) {
+        let speaks_against = colours.doubt().is_some();
+        let before = self.judged.get(photo).map(|judged| judged.verdict);
+        if let Some(place) = self.colours.get_mut(photo) {
+            *place = Some(colours);
+        }
+        if !speaks_against {
+            return;
+        }
+        self.judge(limits);
+        if self.proposed && before == Some(Verdict::Trust) {
+            self.history.each(|edit| {
+                if let Some(chosen) = edit.chosen.get_mut(photo) {
+                    *chosen = false;
+                }
+            });
+            self.arrange();
+        }
+    }
+
+    /// What was noticed while reading and what was looked up, one sentence each.
+    pub fn all_warnings(&self) -> Vec<String> {
+        let looked_up = self.looked_up.warnings_of(&self.path);
+        self.warnings.iter().cloned().chain(looked_up).collect()
+    }
+
+    /// The photo's scale, where its numbers mean something: the unit is known.
+    pub fn scale_to_type(&self, photo: usize) -> Option<&PhotoScale> {
+        self.scale(photo).filter(|_| self.flight.parts().unit_known)
     }
 
     /// Sorts and filters the table.

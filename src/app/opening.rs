@@ -12,8 +12,8 @@ use super::work::{DialogFor, Done, Geometry, Loaded, NotOpened, PreviewPicture, 
 use crate::camera::Camera;
 use crate::exports::{self, ExportRequest};
 use crate::fault::Fault;
-use crate::flight::{Flight, FlightSettings};
-use crate::formats::{self, Dropped, FileError, OpenOptions};
+use crate::flight::{Flight, FlightSettings, judge_all};
+use crate::formats::{self, Colours, Dropped, FileError, OpenOptions};
 use crate::geometry::LocalFrame;
 use crate::jobs::Progress;
 use crate::picture;
@@ -82,12 +82,15 @@ impl State {
             return;
         };
         let (flight, settings) = (open.flight.clone(), open.settings());
+        let files = open.photo_files.clone();
         // Footprints under way go on: where these scales are cancelled, they are still wanted.
         self.start(Task::Scales, move |progress| {
             let compute = || {
                 let flight = flight.with_settings(&settings)?;
                 let outcomes = flight.scales(progress)?;
-                Ok((Arc::new(flight), outcomes, settings))
+                // Heights and laser ranges are held against the unit of now.
+                let looked_up = formats::look_up(&flight, &files);
+                Ok((Arc::new(flight), outcomes, looked_up, settings))
             };
             Done::Scales(compute())
         });
@@ -141,14 +144,12 @@ impl State {
                 };
                 let image = flight.parts().image;
                 let plane = undistorted(&large, camera, THUMBNAIL);
-                let surface = &flight.parts().surface;
-                let colors = picture::Agreement::of(surface, camera, &photo.pose, &plane);
                 let thumbnail = Thumbnail {
                     flight: number,
                     photo: index,
                     small: color_image(&as_scaled(&large, camera, image, ROW_THUMBNAIL)),
                     image: PhotoImage::new(&plane.convert()),
-                    warning: colors.and_then(|colors| colors.warning(&photo.name)),
+                    colours: Colours::of_photo(&flight, index, &large),
                 };
                 // Waits until the window has taken some; a cancelled job gives up.
                 if !offer(&send, thumbnail, progress) {
@@ -234,23 +235,29 @@ impl State {
             return;
         };
         let (flight, outcomes) = (open.flight.clone(), open.outcomes.clone());
-        let judged: Vec<_> = open
-            .judged
-            .iter()
-            .map(|judged| (judged.verdict, judged.doubts.clone()))
-            .collect();
-        let files = open.photo_files.iter().map(|file| file.path.clone());
+        let photo_files = open.photo_files.clone();
+        let files = photo_files.iter().map(|file| file.path.clone());
         let files: Vec<Option<PathBuf>> = files.collect();
+        let (looked_up, colours) = (open.looked_up.evidence.clone(), open.colours.clone());
         let selected = open.history.now().chosen.clone();
         let (unit, limits) = (self.preferences.unit(), self.preferences.limits);
         let settings = open.settings();
         let (crs, inputs) = (open.crs.clone(), open.inputs.clone());
-        let warnings = open.warnings.clone();
+        let warnings = open.all_warnings();
         self.start(Task::Export, move |progress| {
+            // Those that the window has not come to yet.
+            let compared = formats::compare_colours(&flight, &photo_files, &colours, progress);
+            let colours = match compared {
+                Ok(colours) => colours,
+                Err(fault) => return Done::Exported(Err(fault.to_string())),
+            };
+            let evidence = formats::with_colours(&looked_up, colours.iter().map(Some));
+            let judged = judge_all(&flight, &outcomes, Some(&views), &evidence, &limits);
             let request = ExportRequest {
                 flight: &flight,
                 outcomes: &outcomes,
                 views: &views,
+                evidence: &evidence,
                 judged: &judged,
                 photo_files: &files,
                 selected: &selected,

@@ -59,7 +59,7 @@ impl State {
                     self.take_back_settings();
                 }
             },
-            Done::Scales(Ok((flight, outcomes, settings))) => {
+            Done::Scales(Ok((flight, outcomes, looked_up, settings))) => {
                 let limits = self.preferences.limits;
                 let Some(open) = &mut self.open else {
                     return;
@@ -74,7 +74,20 @@ impl State {
                 open.outcomes = Arc::new(outcomes);
                 open.views = None;
                 open.compared.clear();
+                let said_before = open.looked_up.warnings.clone();
+                open.looked_up = looked_up;
+                let said = open
+                    .looked_up
+                    .warnings_of(&open.path)
+                    .zip(&open.looked_up.warnings);
+                let new: Vec<String> = said
+                    .filter(|(_, bare)| !said_before.contains(bare))
+                    .map(|(warning, _)| warning)
+                    .collect();
                 open.judge(&limits);
+                for warning in new {
+                    self.say(Severity::Warning, &warning);
+                }
                 if other_surface {
                     self.start_geometry();
                     self.start_picker();
@@ -242,11 +255,11 @@ impl State {
             self.work.cancel_for_flight();
             self.preferences.remember(&loaded.path);
         }
-        for warning in loaded.opened.warnings.clone() {
+        for warning in loaded.opened.all_warnings() {
             // Read again with other settings, a file can have something new to say.
             let known = again
                 .as_ref()
-                .is_some_and(|before| before.warnings.contains(&warning));
+                .is_some_and(|before| before.all_warnings().contains(&warning));
             if !known {
                 self.say(Severity::Warning, &warning);
             }
@@ -302,8 +315,9 @@ impl State {
             photo,
             small,
             image,
-            warning,
+            colours,
         } = thumbnail;
+        let limits = self.preferences.limits;
         let Some(open) = &mut self.open else {
             return;
         };
@@ -316,12 +330,12 @@ impl State {
             egui::TextureOptions::LINEAR,
         ));
         open.images[photo] = Some(Arc::new(image));
-        if let Some(warning) = warning
-            && !open.warnings.contains(&warning)
-        {
-            // Exports carry it, too.
-            open.warnings.push(warning.clone());
-            self.say(Severity::Warning, &warning);
+        let is_known = open.colours[photo].is_some();
+        let doubt = colours.doubt().filter(|_| !is_known);
+        let said = doubt.map(|doubt| format!("photo '{}': {doubt}", open.name(photo)));
+        open.take_colours(photo, colours, &limits);
+        if let Some(said) = said {
+            self.say(Severity::Warning, &said);
         }
     }
 

@@ -2,8 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::open_flight::Judged;
-use crate::flight::{Outcome, Photo, Verdict, compare_names};
+use crate::flight::{Judged, Outcome, Photo, Verdict, compare_names};
 use crate::scale::{PhotoScale, ViewFacts};
 
 /// What the table can be sorted by.

@@ -15,7 +15,7 @@ use super::size_distributions::Computed;
 use super::size_distributions::reading::Read;
 use crate::fault::Fault;
 use crate::flight::{ComparedObject, Flight, FlightSettings, Outcome, ScaleObject};
-use crate::formats::{FlightOrigin, Georeferenced, OpenOptions, Opened};
+use crate::formats::{Colours, FlightOrigin, Georeferenced, LookedUp, OpenOptions, Opened};
 use crate::fragmentation::Effort;
 use crate::geometry::Bounds;
 use crate::jobs::{Job, Progress};
@@ -159,7 +159,7 @@ pub enum Done {
     /// A flight, or why it cannot be opened.
     Opened(Box<Result<Loaded, Box<NotOpened>>>),
     /// Scales after a setting changed, with the settings.
-    Scales(Result<(Arc<Flight>, Vec<Outcome>, FlightSettings), Fault>),
+    Scales(Result<(Arc<Flight>, Vec<Outcome>, LookedUp, FlightSettings), Fault>),
     /// The scale objects with what the point cloud says beside them.
     Compared(Result<Vec<(ScaleObject, ComparedObject)>, Fault>),
     /// How the photos look at the surface.
@@ -211,8 +211,8 @@ pub struct Thumbnail {
     pub small: ColorImage,
     /// For the viewport.
     pub image: PhotoImage,
-    /// That its colours do not match those of the surface, in a sentence.
-    pub warning: Option<String>,
+    /// How its colours compare with the surface's.
+    pub colours: Colours,
 }
 
 /// The selected photo, undistorted as its scale assumes.

@@ -9,7 +9,7 @@ use super::{Answer, OutputUnit};
 use crate::exports::{self, ExportRequest, ScaleReport};
 use crate::fault::Fault;
 use crate::flight::{Limits, Verdict, judge_all};
-use crate::formats::FileError;
+use crate::formats::{self, FileError};
 use crate::jobs::Progress;
 
 #[derive(Debug, Args)]
@@ -42,11 +42,13 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
     let outcomes = flight.scales(progress).map_err(in_flight)?;
     let views = flight.views(&outcomes, progress).map_err(in_flight)?;
     let limits = Limits::default();
-    let files = opened.photo_files.iter().map(|file| &file.state);
-    let judged = judge_all(flight, &outcomes, Some(&views), files, &limits);
+    let colours = formats::compare_colours(flight, &opened.photo_files, &[], progress);
+    let colours = colours.map_err(in_flight)?;
+    let evidence = formats::with_colours(&opened.looked_up.evidence, colours.iter().map(Some));
+    let judged = judge_all(flight, &outcomes, Some(&views), &evidence, &limits);
     let selected: Vec<bool> = judged
         .iter()
-        .map(|(verdict, _)| arguments.photos == Selection::All || *verdict == Verdict::Trust)
+        .map(|judged| arguments.photos == Selection::All || judged.verdict == Verdict::Trust)
         .collect();
     if !selected.contains(&true) {
         let fault = Fault::new(
@@ -67,6 +69,7 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
             flight,
             outcomes: &outcomes,
             views: &views,
+            evidence: &evidence,
             judged: &judged,
             photo_files: &photo_files,
             selected: &selected,
@@ -75,13 +78,15 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
             settings: &opened.settings,
             crs: opened.crs.as_deref(),
             inputs: &opened.inputs,
-            warnings: &opened.warnings,
+            warnings: &opened.all_warnings(),
         },
         progress,
     )
     .map_err(|error| error.to_string())?;
-    let report = ScaleReport::new(flight, &outcomes, unit).of_photos(&selected);
-    let mut warnings = opened.warnings;
+    let report = ScaleReport::new(flight, &outcomes, unit)
+        .with_evidence(&evidence)
+        .of_photos(&selected);
+    let mut warnings = opened.all_warnings();
     warnings.extend(summary.warnings.iter().cloned());
     warnings.extend(super::notes_of(&report));
     Ok(Answer {

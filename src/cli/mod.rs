@@ -338,6 +338,7 @@ fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, St
     let (flight, objects) = (&opened.flight, &opened.settings.scale_objects);
     let outcomes = flight.scales(progress).map_err(in_flight)?;
     let report = exports::ScaleReport::new(flight, &outcomes, arguments.unit.into())
+        .with_evidence(&opened.looked_up.evidence)
         .with_scale_objects(flight, objects, &outcomes)
         .map_err(in_flight)?;
     let text = match arguments.format {
@@ -345,7 +346,7 @@ fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, St
         ScalesFormat::Csv => exports::scales_csv(&report).map_err(|e| e.to_string())?,
         ScalesFormat::Json => exports::scales_json(&report).map_err(|e| e.to_string())?,
     };
-    let mut warnings = opened.warnings;
+    let mut warnings = opened.all_warnings();
     warnings.extend(notes_of(&report));
     Ok(Answer { text, warnings })
 }

@@ -2,7 +2,7 @@
 
 use super::ReportObject;
 use crate::fault::Fault;
-use crate::flight::{Flight, Outcome, ScaleObject};
+use crate::flight::{Doubt, Evidence, Flight, Outcome, ScaleObject};
 use crate::scale::{CornerName, CornerOutcome, EdgeScales, ImageKind};
 use crate::units::LengthUnit;
 
@@ -15,6 +15,8 @@ pub struct ScaleReport {
     pub unit: LengthUnit,
     /// The unit of points and elevations.
     pub world_unit: LengthUnit,
+    /// Whether anybody says that it is this unit; else no number here is a scale.
+    pub unit_known: bool,
     /// Which image the scales are for.
     pub image: ImageKind,
     /// One a photo, in the order of the flight.
@@ -101,12 +103,16 @@ impl ScaleReport {
                     line.notes = scale.notes(parts.unit.symbol());
                 }
             }
+            if !parts.unit_known {
+                line.notes.insert(0, Doubt::UnitUnknown.to_string());
+            }
             line
         });
         Self {
             flight: parts.name.clone(),
             unit,
             world_unit: parts.unit,
+            unit_known: parts.unit_known,
             image: parts.image,
             lines: lines.collect(),
         }
@@ -129,6 +135,30 @@ impl ScaleReport {
             line.scale_objects = objects;
         }
         Ok(self)
+    }
+
+    /// The same report with what was looked up and concerns the numbers themselves in the notes; of
+    /// the same flight.
+    #[must_use]
+    pub fn with_evidence(mut self, evidence: &[Evidence]) -> Self {
+        for (line, evidence) in self.lines.iter_mut().zip(evidence) {
+            let doubts = evidence.doubts.iter();
+            let of_number = doubts.filter(|doubt| doubt.is_of_the_number());
+            line.notes.extend(of_number.map(Doubt::to_string));
+        }
+        self
+    }
+
+    /// The same report to type scales from: without those that are none, because nobody knows the
+    /// world's unit.
+    #[must_use]
+    pub fn to_type_from(mut self) -> Self {
+        if !self.unit_known {
+            for line in &mut self.lines {
+                line.scale = EdgeScales::default();
+            }
+        }
+        self
     }
 
     /// The report of some of the photos, those that are `true` in `selected`, in the same order.

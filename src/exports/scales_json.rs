@@ -11,6 +11,8 @@ struct Report<'a> {
     flight: &'a str,
     unit: &'a str,
     world_unit: &'a str,
+    /// Whether anybody states the world's unit; without one no number is a scale.
+    unit_known: bool,
     photos: Vec<Photo<'a>>,
 }
 
@@ -76,6 +78,7 @@ pub fn scales_json(report: &ScaleReport) -> serde_json::Result<String> {
         flight: &report.flight,
         unit: report.unit.symbol(),
         world_unit: report.world_unit.symbol(),
+        unit_known: report.unit_known,
         photos: photos.collect(),
     })?;
     text.push('\n');

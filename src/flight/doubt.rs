@@ -55,8 +55,27 @@ pub enum Doubt {
         /// Of both.
         unit: LengthUnit,
     },
-    /// The photo's file is missing.
-    FileMissing,
+    /// Nobody says what unit the world counts in.
+    UnitUnknown,
+    /// The photo's file is missing, so that the photo's size is not known.
+    FileMissing {
+        /// The image that the scale is for, pixels.
+        size: (u32, u32),
+    },
+    /// The flight names no folder of photo files, so that the photo's size is not known.
+    NoPhotoFolder {
+        /// The image that the scale is for, pixels.
+        size: (u32, u32),
+    },
+    /// The photo's file is not there, and there is reason to believe that the model was solved on a
+    /// reduced copy of it.
+    ReducedPhotos {
+        /// The image that the scale is for, pixels.
+        size: (u32, u32),
+        /// The photo's own size where the package names it; `None` where the package is only known to
+        /// reduce.
+        original: Option<(u32, u32)>,
+    },
     /// The photo's file cannot be read, with the reason.
     FileUnreadable(String),
     /// The photo's file has another size than its camera.
@@ -66,6 +85,89 @@ pub enum Doubt {
         /// Of the camera.
         camera: (u32, u32),
     },
+    /// The camera is so far from the surface that the two are in different coordinate systems.
+    FarFromSurface {
+        /// World units.
+        distance: f64,
+        /// The surface's extent, world units.
+        extent: f64,
+        /// Of both.
+        unit: LengthUnit,
+    },
+    /// The camera stands under the surface.
+    UnderSurface,
+    /// Its camera stands for photos of several devices.
+    SeveralDevices {
+        /// What the flight calls the camera.
+        camera: String,
+        /// The models.
+        devices: Vec<String>,
+    },
+    /// Its camera is named after another device than the one that took it.
+    OtherDevice {
+        /// What the flight calls the camera.
+        camera: String,
+        /// Make and model in the photo's metadata.
+        device: String,
+    },
+    /// The camera's focal length is not the metadata's.
+    FocalLength {
+        /// What the flight calls the camera.
+        camera: String,
+        /// Of the camera, pixels.
+        focal: f64,
+        /// Over what the metadata say.
+        ratio: f64,
+        /// Where the metadata say it, in words.
+        source: &'static str,
+        /// How far the metadata may be off, as a share.
+        error: f64,
+    },
+    /// The cameras fly at another height than their metadata say (medians over the flight).
+    FlyingHeight {
+        /// Above the surface below them, metres.
+        above: f64,
+        /// Above the take-off, as the metadata say, metres.
+        stated: f64,
+    },
+    /// The surface is not where the drone's laser measured it (medians over the flight).
+    LaserRange {
+        /// To the surface in the middle of the photos, metres.
+        distance: f64,
+        /// As the laser measured it, metres.
+        stated: f64,
+    },
+    /// The photo's colours are not those of the surface.
+    OtherColours {
+        /// Pearson's correlation of the brightness.
+        correlation: f64,
+        /// Of so many points.
+        points: usize,
+    },
+    /// The photo's colours match those of the surface when it is turned over.
+    Flipped {
+        /// Pearson's correlation as the photo is.
+        correlation: f64,
+        /// Pearson's correlation after turning it.
+        flipped: f64,
+        /// Of so many points.
+        points: usize,
+        /// How it was turned, in words.
+        how: &'static str,
+    },
+}
+
+impl Doubt {
+    /// Whether the numbers of the scale are not those of the photo that the engineer has, for a reason
+    /// that no look at the flight can dispel: every list of scales has to say it.
+    pub fn is_of_the_number(&self) -> bool {
+        matches!(self, Self::UnitUnknown | Self::ReducedPhotos { .. })
+    }
+}
+
+/// How much more `is` than `stated`, in percent.
+fn percent_off(is: f64, stated: f64) -> f64 {
+    (is / stated - 1.0) * 100.0
 }
 
 fn names(corners: &[CornerName]) -> String {
@@ -144,12 +246,89 @@ impl fmt::Display for Doubt {
                     "not flat between the corners: the surface is {distance} {unit} (root mean square) off their plane, more than {limit} {unit}"
                 )
             }
-            Self::FileMissing => f.write_str("the photo file is missing"),
+            Self::UnitUnknown => f.write_str(
+                "not a scale: the model is in a frame of its own, whose unit nobody states; georeference it, or set its unit",
+            ),
+            Self::FileMissing { size: (w, h) } => write!(
+                f,
+                "the photo file is missing: the scale is for images of {w} x {h} px"
+            ),
+            Self::NoPhotoFolder { size: (w, h) } => write!(
+                f,
+                "no photo files are known: the scale is for images of {w} x {h} px"
+            ),
+            Self::ReducedPhotos { size: (w, _), original: Some((ow, oh)) } => write!(
+                f,
+                "for images of {w} px width, not for the photos, which have {ow} x {oh} px: add the photos"
+            ),
+            Self::ReducedPhotos { size: (w, _), original: None } => write!(
+                f,
+                "for images of {w} px width, not for the photos: the package often solves on reduced photos, and the photo file is not there to compare; add the photos"
+            ),
             Self::FileUnreadable(reason) => write!(f, "the photo file cannot be read: {reason}"),
             Self::FileSize { file, camera } => write!(
                 f,
                 "the photo file has {} x {} pixels, its camera {} x {}",
                 file.0, file.1, camera.0, camera.1
+            ),
+            Self::FarFromSurface {
+                distance,
+                extent,
+                unit,
+            } => write!(
+                f,
+                "taken {distance:.0} {unit} from the surface, which is {extent:.0} {unit} wide: the poses and the surface are in two coordinate systems"
+            ),
+            Self::UnderSurface => f.write_str(
+                "taken from under the surface: check which axis is up, the heights' datum and the poses' convention",
+            ),
+            Self::SeveralDevices { camera, devices } => write!(
+                f,
+                "{camera} stands for photos of {} devices ({}): give each its own calibration",
+                devices.len(),
+                devices.join(", ")
+            ),
+            Self::OtherDevice { camera, device } => write!(
+                f,
+                "{camera} is used for photos that were taken with a {device}: check that the calibration is theirs"
+            ),
+            Self::FocalLength {
+                camera,
+                focal,
+                ratio,
+                source,
+                error,
+            } => write!(
+                f,
+                "{camera} has a focal length of {focal:.1} px, {:+.1} % from the {:.1} px of the photos' metadata ({source}, {:.1} % of error expected): check that the calibration is theirs",
+                (ratio - 1.0) * 100.0,
+                focal / ratio,
+                error * 100.0
+            ),
+            Self::FlyingHeight { above, stated } => write!(
+                f,
+                "the cameras are {above:.1} m above the surface below them, but their photos say {stated:.1} m above the take-off ({:+.1} %): the scale, the unit or the heights are wrong, unless the take-off was {:.1} m {} the surface",
+                percent_off(*above, *stated),
+                (above - stated).abs(),
+                if above > stated { "above" } else { "below" }
+            ),
+            Self::LaserRange { distance, stated } => write!(
+                f,
+                "the surface in the middle of the photos is {distance:.1} m away, but the drone's laser measured {stated:.1} m ({:+.1} %): the scale, the unit or the poses are wrong",
+                percent_off(*distance, *stated)
+            ),
+            Self::OtherColours { correlation, points } => write!(
+                f,
+                "its colours do not match those of the surface where its pose says (r = {correlation:.2} at {points} points; a right pose gives over 0.5): check its pose, its camera, whether it is this photo and this surface"
+            ),
+            Self::Flipped {
+                correlation,
+                flipped,
+                points,
+                how,
+            } => write!(
+                f,
+                "its colours match those of the surface (r = {flipped:.2} at {points} points, else {correlation:.2}) after {how}: an axis of its pose is flipped"
             ),
         }
     }

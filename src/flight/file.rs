@@ -93,6 +93,17 @@ enum ImageEntry {
     AsShot,
 }
 
+/// What `world.unit` says of a frame whose unit nobody knows.
+pub(super) const UNKNOWN_UNIT: &str = "unknown";
+
+/// `world.unit` of these settings.
+pub(super) fn unit_word(settings: &FlightSettings) -> &'static str {
+    match settings.unit_known {
+        true => settings.unit.symbol(),
+        false => UNKNOWN_UNIT,
+    }
+}
+
 /// A number or "auto".
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct GroundEntry(pub(super) Ground);
@@ -205,7 +216,7 @@ impl FlightFile {
             format: 1,
             name: Some(flight.name.to_owned()),
             world: World {
-                unit: settings.unit.symbol().to_owned(),
+                unit: unit_word(settings).to_owned(),
                 ground: GroundEntry(settings.ground),
                 crs: flight.crs.map(str::to_owned),
             },
@@ -236,10 +247,10 @@ impl FlightFile {
             .map_err(|e| Fault::new(format!("the flight cannot be written ({e})"), "report this"))
     }
 
-    /// The unit of all world coordinates.
-    pub fn unit(&self) -> LengthUnit {
-        // `parse` has checked it.
-        self.world.unit.parse().unwrap_or(LengthUnit::Metre)
+    /// The unit of all world coordinates; `None` where the file says that it is not known.
+    pub fn unit(&self) -> Option<LengthUnit> {
+        // `parse` has checked that it is a unit or [`UNKNOWN_UNIT`].
+        self.world.unit.parse().ok()
     }
 
     /// The coordinate system of the world, where the file names one: "EPSG:n", WKT or a PROJ text.
@@ -284,7 +295,8 @@ impl FlightFile {
     /// All that can be set while the flight is looked at.
     pub fn settings(&self) -> FlightSettings {
         FlightSettings {
-            unit: self.unit(),
+            unit: self.unit().unwrap_or(LengthUnit::Metre),
+            unit_known: self.unit().is_some(),
             ground: self.ground(),
             image: self.image(),
             surface: self.surface_options(),
@@ -357,7 +369,7 @@ image = "as-shot"
     fn everything_is_read() {
         let file = FlightFile::parse(WHOLE).unwrap();
         assert_eq!(file.name.as_deref(), Some("Lab trial 1"));
-        assert_eq!(file.unit(), LengthUnit::Metre);
+        assert_eq!(file.unit(), Some(LengthUnit::Metre));
         assert_eq!(file.ground(), Ground::At(0.25));
         assert_eq!(file.image(), ImageKind::AsShot);
         assert_eq!(file.surface(), Some("pile.ply"));

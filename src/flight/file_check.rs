@@ -1,6 +1,7 @@
 //! What a flight.toml must keep to that its types do not say.
 
 use super::FlightFile;
+use super::file::UNKNOWN_UNIT;
 use crate::fault::Fault;
 use crate::scale::Ground;
 use crate::surface::{SurfaceError, UpAxis};
@@ -21,7 +22,9 @@ impl FlightFile {
                 "write format = 1, or use a newer fragscale",
             );
         }
-        if let Err(unknown) = self.world.unit.parse::<LengthUnit>() {
+        if self.world.unit != UNKNOWN_UNIT
+            && let Err(unknown) = self.world.unit.parse::<LengthUnit>()
+        {
             let what = format!("world.unit {unknown}");
             return at("world", "unit", what, "name the unit of the coordinates");
         }

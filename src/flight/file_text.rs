@@ -2,6 +2,7 @@
 
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, Value};
 
+use super::file::unit_word;
 use super::{FlightFile, FlightSettings, ScaleObject};
 use crate::fault::Fault;
 use crate::scale::{Ground, ImageKind};
@@ -24,8 +25,8 @@ impl FlightFile {
     pub fn text_with_settings(text: &str, settings: &FlightSettings) -> Result<String, Fault> {
         let old = Self::parse(text)?.settings();
         let mut document = document(text)?;
-        if settings.unit != old.unit {
-            set(&mut document, "world", "unit", settings.unit.symbol())?;
+        if unit_word(settings) != unit_word(&old) {
+            set(&mut document, "world", "unit", unit_word(settings))?;
         }
         if settings.ground != old.ground {
             match settings.ground {
@@ -368,6 +369,7 @@ folder = "photos"
         (settings, objects).prop_map(
             |((unit, ground, image, max_edge, thinning), scale_objects)| FlightSettings {
                 unit: LengthUnit::ALL[unit],
+                unit_known: true,
                 ground,
                 image,
                 surface: SurfaceOptions { max_edge, thinning },

@@ -20,8 +20,9 @@ pub use camera_entry::{CameraEntry, CameraSource};
 pub use doubt::Doubt;
 pub use file::{FlightFile, PhotoSource, ReconstructionFlight};
 pub use name_order::compare_names;
+pub use placement::Placement;
 pub use scale_object::{ComparedObject, ScaleObject};
-pub use verdict::{Limits, PhotoFileState, Verdict, judge, judge_all};
+pub use verdict::{Evidence, Judged, Limits, PhotoFileState, Verdict, judge, judge_all};
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
@@ -48,6 +49,9 @@ pub struct Photo {
 pub struct FlightSettings {
     /// The unit of all world coordinates.
     pub unit: LengthUnit,
+    /// Whether somebody says that it is this unit. Else the world is a package's own frame: its
+    /// lengths, and every scale, mean nothing.
+    pub unit_known: bool,
     /// The plane that rays fall back to.
     pub ground: Ground,
     /// Which image the scales are for.
@@ -63,12 +67,14 @@ impl FlightSettings {
     pub fn gives_the_scales_of(&self, other: &Self) -> bool {
         let Self {
             unit,
+            unit_known,
             ground,
             image,
             surface,
             scale_objects: _,
         } = self;
-        (*unit, *ground, *image, *surface) == (other.unit, other.ground, other.image, other.surface)
+        (*unit, *unit_known) == (other.unit, other.unit_known)
+            && (*ground, *image, *surface) == (other.ground, other.image, other.surface)
     }
 }
 
@@ -79,6 +85,8 @@ pub struct FlightParts {
     pub name: String,
     /// The unit of all world coordinates.
     pub unit: LengthUnit,
+    /// [`FlightSettings::unit_known`].
+    pub unit_known: bool,
     /// The plane that rays fall back to.
     pub ground: Ground,
     /// Which image the scales are for.
@@ -190,6 +198,7 @@ impl Flight {
         })?;
         Self::new(FlightParts {
             unit: settings.unit,
+            unit_known: settings.unit_known,
             ground: settings.ground,
             image: settings.image,
             surface: Arc::new(surface),

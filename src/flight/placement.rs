@@ -1,8 +1,9 @@
 //! Whether the photos stand where photos of this surface can stand. Poses and surface often come
 //! from two exports: in two coordinate systems, or upside down, they still give numbers.
 
-use super::Flight;
+use super::{Doubt, Flight, FlightParts};
 use crate::geometry::Ray;
+use crate::units::LengthUnit;
 
 /// A photo is in another coordinate system rather than far away, if its distance to the surface is
 /// so many times the surface's extent: a lens that still resolves the rock does not see so little.
@@ -11,50 +12,90 @@ const FAR: f64 = 100.0;
 /// How many photos a sentence names.
 const NAMED: usize = 3;
 
+/// Which photos stand where none can, by their index in the flight.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Placement {
+    /// Photos that are too far away, with their distances to the surface, world units.
+    pub far: Vec<(usize, f64)>,
+    /// Photos under the surface.
+    pub under: Vec<usize>,
+    /// The surface's extent, world units.
+    pub extent: f64,
+}
+
 impl Flight {
-    /// What is wrong with where the photos stand, one sentence each, with numbers.
-    pub fn placement_warnings(&self) -> Vec<String> {
+    /// Looks where the photos stand.
+    pub fn placement(&self) -> Placement {
         let parts = self.parts();
         let bounds = parts.surface.bounds();
-        let extent = bounds.size().length();
-        let unit = parts.unit;
-        let mut warnings = Vec::new();
+        let mut placement = Placement {
+            extent: bounds.size().length(),
+            ..Placement::default()
+        };
+        let centers = || parts.photos.iter().map(|photo| photo.pose.center);
         let away = |center: glam::DVec3| (center - center.clamp(bounds.min, bounds.max)).length();
-        let distances = parts
-            .photos
-            .iter()
-            .map(|photo| (photo, away(photo.pose.center)));
-        let far: Vec<_> = distances.filter(|(_, away)| *away > FAR * extent).collect();
-        if let Some(nearest) = far.iter().map(|(_, away)| *away).min_by(f64::total_cmp) {
-            warnings.push(format!(
-                "{} of {} photos ({}) were taken over {nearest:.0} {unit} from the surface, which is {extent:.0} {unit} wide: the poses and the surface are in two coordinate systems",
-                far.len(),
-                parts.photos.len(),
-                names(far.iter().map(|(photo, _)| photo.name.as_str())),
-            ));
-            return warnings;
+        let distances = centers().map(away).enumerate();
+        placement.far = distances
+            .filter(|(_, away)| *away > FAR * placement.extent)
+            .collect();
+        if !placement.far.is_empty() {
+            return placement;
         }
         // A surface that cannot be met says so when scales are asked of it.
         let Ok(mut caster) = parts.surface.caster_for(parts.photos.len()) else {
-            return warnings;
+            return placement;
         };
         let mut hit = |origin, direction| caster.cast(&Ray { origin, direction });
-        let under: Vec<&str> = parts
-            .photos
-            .iter()
-            .filter(|photo| {
+        placement.under = centers()
+            .enumerate()
+            .filter(|&(_, center)| {
                 // Under a quarry's overhang the surface is above and below.
-                let center = photo.pose.center;
                 hit(center, glam::DVec3::Z).is_some() && hit(center, glam::DVec3::NEG_Z).is_none()
             })
-            .map(|photo| photo.name.as_str())
+            .map(|(index, _)| index)
             .collect();
-        if !under.is_empty() {
+        placement
+    }
+}
+
+impl Placement {
+    /// What it says against each photo of its flight.
+    pub fn doubts(&self, unit: LengthUnit) -> impl Iterator<Item = (usize, Doubt)> {
+        let extent = self.extent;
+        let far = self.far.iter().map(move |&(photo, distance)| {
+            let doubt = Doubt::FarFromSurface {
+                distance,
+                extent,
+                unit,
+            };
+            (photo, doubt)
+        });
+        let under = self.under.iter();
+        far.chain(under.map(|&photo| (photo, Doubt::UnderSurface)))
+    }
+
+    /// The same of the whole flight, one sentence each, with numbers.
+    pub fn warnings(&self, flight: &Flight) -> Vec<String> {
+        let FlightParts { photos, unit, .. } = flight.parts();
+        let name = |photo: &usize| photos.get(*photo).map_or("", |photo| photo.name.as_str());
+        let mut warnings = Vec::new();
+        let distances = self.far.iter().map(|(_, away)| *away);
+        if let Some(nearest) = distances.min_by(f64::total_cmp) {
             warnings.push(format!(
-                "{} of {} photos ({}) were taken from under the surface: check which axis is up, the heights' datum and the poses' convention",
-                under.len(),
-                parts.photos.len(),
-                names(under.iter().copied()),
+                "{} of {} photos ({}) were taken over {nearest:.0} {unit} from the surface, which is {:.0} {unit} wide: the poses and the surface are in two coordinate systems",
+                self.far.len(),
+                photos.len(),
+                names(self.far.iter().map(|(photo, _)| name(photo))),
+                self.extent,
+            ));
+        }
+        if !self.under.is_empty() {
+            warnings.push(format!(
+                "{} of {} photos ({}) were {}",
+                self.under.len(),
+                photos.len(),
+                names(self.under.iter().map(name)),
+                Doubt::UnderSurface,
             ));
         }
         warnings
@@ -107,13 +148,15 @@ mod tests {
         let flight = Flight::new(FlightParts {
             name: String::new(),
             unit: LengthUnit::Metre,
+            unit_known: true,
             ground: Ground::Auto,
             image: ImageKind::Undistorted,
             surface: Arc::new(Surface::new(cloud).unwrap()),
             cameras: vec![camera],
             photos: centers.iter().enumerate().map(photo).collect(),
         });
-        flight.unwrap().placement_warnings()
+        let flight = flight.unwrap();
+        flight.placement().warnings(&flight)
     }
 
     #[test]

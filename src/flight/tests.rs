@@ -34,6 +34,7 @@ fn flight() -> Flight {
     Flight::new(FlightParts {
         name: "test".to_owned(),
         unit: LengthUnit::Metre,
+        unit_known: true,
         ground: Ground::Auto,
         image: ImageKind::Undistorted,
         surface: Arc::new(Surface::new(cloud).unwrap()),
@@ -51,6 +52,7 @@ fn flight() -> Flight {
 fn settings() -> FlightSettings {
     FlightSettings {
         unit: LengthUnit::Metre,
+        unit_known: true,
         ground: Ground::Auto,
         image: ImageKind::Undistorted,
         surface: SurfaceOptions::default(),

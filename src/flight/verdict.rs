@@ -105,16 +105,35 @@ impl fmt::Display for Verdict {
     }
 }
 
+/// A photo's verdict with its reasons.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// What to do with its scale.
+    pub verdict: Verdict,
+    /// The gravest first.
+    pub doubts: Vec<Doubt>,
+}
+
+/// What was looked up of one photo, outside of the flight's own numbers.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Evidence {
+    /// Its image file.
+    pub file: PhotoFileState,
+    /// What its place, its metadata and its colours say against it, the gravest first.
+    pub doubts: Vec<Doubt>,
+}
+
 /// Judges a photo: every reason for doubt, the gravest first, and what follows from them. `view` is
-/// `None` where the photo has no scale to look at; `camera` is its camera's image size.
+/// `None` where the photo has no scale to look at; `camera` is its camera's image size; `unit` is the
+/// world's, `None` where nobody states it.
 pub fn judge(
     outcome: &Outcome,
     view: Option<&ViewFacts>,
-    file: &PhotoFileState,
+    evidence: &Evidence,
     camera: (u32, u32),
-    unit: LengthUnit,
+    unit: Option<LengthUnit>,
     limits: &Limits,
-) -> (Verdict, Vec<Doubt>) {
+) -> Judged {
     let mut doubts = Vec::new();
     let mut verdict = Verdict::Trust;
     match outcome {
@@ -161,11 +180,27 @@ pub fn judge(
             }
         }
     }
+    let found = evidence.doubts.iter().cloned();
+    let (mut of_number, found): (Vec<Doubt>, Vec<Doubt>) = found.partition(Doubt::is_of_the_number);
+    // Whether it is known already that the photos have another size.
+    let is_reduced = of_number
+        .iter()
+        .any(|doubt| matches!(doubt, Doubt::ReducedPhotos { .. }));
+    if unit.is_none() {
+        of_number.insert(0, Doubt::UnitUnknown);
+        verdict = Verdict::NoScale;
+    }
+    doubts.splice(0..0, of_number);
+    doubts.extend(found);
     if let Some(view) = view {
+        // Where the unit is not known, no length is said in it: the shares hold all the same.
+        let unit = unit.unwrap_or(LengthUnit::Metre);
         doubts.extend(doubts_of_view(view, unit, limits));
     }
-    match file {
-        PhotoFileState::Missing => doubts.push(Doubt::FileMissing),
+    match &evidence.file {
+        PhotoFileState::Missing | PhotoFileState::NotNamed if is_reduced => {}
+        PhotoFileState::Missing => doubts.push(Doubt::FileMissing { size: camera }),
+        PhotoFileState::NotNamed => doubts.push(Doubt::NoPhotoFolder { size: camera }),
         PhotoFileState::Unreadable(reason) => doubts.push(Doubt::FileUnreadable(reason.clone())),
         PhotoFileState::Found { width, height } if (*width, *height) != camera => {
             doubts.push(Doubt::FileSize {
@@ -173,12 +208,12 @@ pub fn judge(
                 camera,
             });
         }
-        PhotoFileState::NotNamed | PhotoFileState::Found { .. } => {}
+        PhotoFileState::Found { .. } => {}
     }
     if verdict == Verdict::Trust && !doubts.is_empty() {
         verdict = Verdict::Check;
     }
-    (verdict, doubts)
+    Judged { verdict, doubts }
 }
 
 /// The larger of two scales over the smaller.
@@ -193,19 +228,21 @@ pub fn judge_all<'a>(
     flight: &Flight,
     outcomes: &[Outcome],
     views: Option<&[Option<ViewFacts>]>,
-    files: impl IntoIterator<Item = &'a PhotoFileState>,
+    evidence: impl IntoIterator<Item = &'a Evidence>,
     limits: &Limits,
-) -> Vec<(Verdict, Vec<Doubt>)> {
-    let photos = flight.parts().photos.iter();
+) -> Vec<Judged> {
+    let parts = flight.parts();
+    let photos = parts.photos.iter();
     photos
         .zip(outcomes)
-        .zip(files)
+        .zip(evidence)
         .enumerate()
-        .map(|(index, ((photo, outcome), file))| {
+        .map(|(index, ((photo, outcome), evidence))| {
             let camera = flight.camera(photo);
             let size = (camera.width, camera.height);
             let view = views.and_then(|views| views.get(index)?.as_ref());
-            judge(outcome, view, file, size, flight.parts().unit, limits)
+            let unit = parts.unit_known.then_some(parts.unit);
+            judge(outcome, view, evidence, size, unit, limits)
         })
         .collect()
 }
@@ -258,6 +295,14 @@ mod tests {
         width: SIZE.0,
         height: SIZE.1,
     };
+
+    /// Of that file, without a finding.
+    fn evidence(file: &PhotoFileState) -> Evidence {
+        Evidence {
+            file: file.clone(),
+            doubts: Vec::new(),
+        }
+    }
 
     fn on_surface() -> CornerOutcome {
         CornerOutcome::OnSurface {
@@ -320,15 +365,57 @@ mod tests {
     }
 
     fn judged(outcome: &Outcome, view: &ViewFacts, file: &PhotoFileState) -> (Verdict, Vec<Doubt>) {
-        let unit = LengthUnit::Metre;
-        judge(outcome, Some(view), file, SIZE, unit, &limits())
+        let unit = Some(LengthUnit::Metre);
+        let judged = judge(outcome, Some(view), &evidence(file), SIZE, unit, &limits());
+        (judged.verdict, judged.doubts)
     }
 
     #[test]
     fn a_good_photo_is_trusted() {
         assert_eq!(judged(&good(), &view(), &FOUND), (Verdict::Trust, vec![]));
-        let not_named = PhotoFileState::NotNamed;
-        assert_eq!(judged(&good(), &view(), &not_named).0, Verdict::Trust);
+    }
+
+    /// Whose size nobody has seen may be ten times as large as the image that the scale is for.
+    #[test]
+    fn a_photo_of_unknown_size_is_not_trusted() {
+        let [missing, not_named] = [PhotoFileState::Missing, PhotoFileState::NotNamed];
+        assert_eq!(
+            judged(&good(), &view(), &not_named),
+            (Verdict::Check, vec![Doubt::NoPhotoFolder { size: SIZE }])
+        );
+        let found = Doubt::ReducedPhotos {
+            size: SIZE,
+            original: Some((6400, 3600)),
+        };
+        let evidence = Evidence {
+            file: missing,
+            doubts: vec![Doubt::UnderSurface, found.clone()],
+        };
+        let unit = Some(LengthUnit::Metre);
+        let judged = judge(&good(), Some(&view()), &evidence, SIZE, unit, &limits());
+        // The size is said once, and first: it is the number that is wrong.
+        assert_eq!(judged.verdict, Verdict::Check);
+        assert_eq!(judged.doubts, [found, Doubt::UnderSurface]);
+        let said = judged.doubts[0].to_string();
+        assert!(
+            said.starts_with("for images of 1280 px width, not for the photos"),
+            "{said}"
+        );
+    }
+
+    /// Pixels per nothing are no scale, however good the view.
+    #[test]
+    fn without_a_unit_there_is_no_scale() {
+        let judged = judge(
+            &good(),
+            Some(&view()),
+            &evidence(&FOUND),
+            SIZE,
+            None,
+            &limits(),
+        );
+        assert_eq!(judged.verdict, Verdict::NoScale);
+        assert_eq!(judged.doubts, [Doubt::UnitUnknown]);
     }
 
     /// At its limit a value is good, the next number beyond it is not.
@@ -412,7 +499,7 @@ mod tests {
                     angle: 3.0,
                     limit: 30.0
                 },
-                Doubt::FileMissing,
+                Doubt::FileMissing { size: SIZE },
             ]
         );
         let (verdict, doubts) = judged(&scale([s, s, g, s], [100.0; 4]), &view(), &FOUND);
@@ -426,9 +513,13 @@ mod tests {
             judged(&scale([s; 4], [f64::NAN, 1.0, 100.0, 1.0]), &view(), &FOUND);
         assert_eq!((verdict, doubts.len()), (Verdict::NoScale, 1));
         let trouble = Outcome::Trouble("another shape".to_owned());
-        let judged = judge(&trouble, None, &FOUND, SIZE, LengthUnit::Metre, &limits());
+        let unit = Some(LengthUnit::Metre);
+        let judged = judge(&trouble, None, &evidence(&FOUND), SIZE, unit, &limits());
         let reason = Doubt::NoScale("another shape".to_owned());
-        assert_eq!(judged, (Verdict::NoScale, vec![reason]));
+        assert_eq!(
+            (judged.verdict, judged.doubts),
+            (Verdict::NoScale, vec![reason])
+        );
     }
 
     #[test]

@@ -13,6 +13,7 @@ mod drone_photos;
 mod dropped;
 mod e57;
 mod effort_table;
+mod evidence;
 mod fields;
 mod flight_poses;
 mod georeferencing;
@@ -73,6 +74,7 @@ use std::path::{Path, PathBuf};
 pub use cloud_file::CloudFile;
 pub use dropped::Dropped;
 pub use effort_table::{effort_table, read_effort_table};
+pub use evidence::{Colours, LookedUp, compare_colours, look_up, with_colours};
 pub use georeferencing::{
     GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind, LengthResidual,
     PositionResidual, georeference,
@@ -80,10 +82,10 @@ pub use georeferencing::{
 pub use grouped_values::{GroupedValues, Groups, grouped_values, read_grouped_values};
 pub use info::info;
 pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
-pub use open::{FlightReconstruction, OpenOptions, Opened, PhotoFile, open_flight};
+pub use open::{FlightReconstruction, OpenOptions, Opened, open_flight};
 pub use origin::FlightOrigin;
 pub use package::Package;
-pub use photo_checks::photo_checks;
+pub use photo_files::PhotoFile;
 pub use poses_csv::{PoseLine, PosesFile};
 pub use position_list::{
     ControlPoint, ControlPoints, NamedPosition, PositionList, positions_of_photos,

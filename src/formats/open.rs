@@ -5,19 +5,18 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::evidence::{LookedUp, look_up};
 use super::flight_poses::{self, PhotosToPose};
 use super::input::{FileError, read_text};
 use super::origin::FlightOrigin;
-use super::photo_checks::photo_checks;
-use super::photo_files::{PhotoFolder, fit_cameras_to_files};
+use super::photo_files::{PhotoFile, PhotoFolder, fit_cameras_to_files, set_sizes_from_files};
 use super::size_distributions::no_flight_but_sizes;
 use super::world_frame::{Frame, Known};
 use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, read_project};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{
-    CameraEntry, CameraSource, Flight, FlightFile, FlightParts, FlightSettings, Photo,
-    PhotoFileState, PhotoSource,
+    CameraEntry, CameraSource, Flight, FlightFile, FlightParts, FlightSettings, Photo, PhotoSource,
 };
 use crate::geodesy::Crs;
 use crate::geometry::Similarity;
@@ -37,15 +36,6 @@ pub struct OpenOptions {
     pub settings: Option<FlightSettings>,
 }
 
-/// The image file of a photo.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct PhotoFile {
-    /// Where it is, if it is there.
-    pub path: Option<PathBuf>,
-    /// What is known about it.
-    pub state: PhotoFileState,
-}
-
 /// The reconstruction that a flight's poses are from.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FlightReconstruction {
@@ -60,10 +50,12 @@ pub struct FlightReconstruction {
 pub struct Opened {
     /// Ready for scales.
     pub flight: Flight,
-    /// One sentence each, with the file in front where there is one.
+    /// What was noticed while reading, one sentence each, with the file in front where there is one.
     pub warnings: Vec<String>,
     /// The image file of each photo, in the order of the flight's photos.
     pub photo_files: Vec<PhotoFile>,
+    /// What was looked up of the photos, their colours excepted.
+    pub looked_up: LookedUp,
     /// The coordinate system of the world where the files state one: "EPSG:n" or WKT.
     pub crs: Option<String>,
     /// What was set, by the flight's file or by [`OpenOptions`].
@@ -76,6 +68,15 @@ pub struct Opened {
     pub reconstruction: Option<FlightReconstruction>,
     /// Every file that was read except the photos, in the order of reading.
     pub inputs: Vec<PathBuf>,
+}
+
+impl Opened {
+    /// What was noticed while reading and what was looked up, one sentence each with the file in front.
+    pub fn all_warnings(&self) -> Vec<String> {
+        let mut warnings = self.warnings.clone();
+        warnings.extend(self.looked_up.warnings_of(&self.origin.path));
+        warnings
+    }
 }
 
 /// Opens a flight.toml, a folder that holds one, or a reconstruction.
@@ -136,6 +137,12 @@ struct Source {
     package_surface_to_world: Option<Similarity>,
     reconstruction_cloud: CloudFile,
     photo_folder: Option<PathBuf>,
+    /// Whether somebody named that folder, so that it must be the photos'.
+    photo_folder_is_named: bool,
+    /// The size that the package names for each photo, and whether it may have been reduced; empty
+    /// without a reconstruction.
+    named_sizes: Vec<Option<(u32, u32)>>,
+    may_be_reduced: bool,
     cameras: Vec<Camera>,
     photos: Vec<Photo>,
     warnings: Vec<String>,
@@ -160,6 +167,9 @@ impl Source {
             package_surface_to_world: None,
             reconstruction_cloud: CloudFile::default(),
             photo_folder: options.photos.clone(),
+            photo_folder_is_named: options.photos.is_some(),
+            named_sizes: Vec::new(),
+            may_be_reduced: false,
             cameras: Vec::new(),
             photos: Vec::new(),
             warnings: Vec::new(),
@@ -187,6 +197,8 @@ impl Source {
         let file_in = |name: Option<&str>| name.map(|name| folder.join(name));
         source.surface = source.surface.or(file_in(file.surface()));
         source.photo_folder = source.photo_folder.or(file_in(file.photo_folder()));
+        source.photo_folder_is_named = source.photo_folder.is_some();
+        source.unit_is_stated = file.unit().is_some();
         source.surface_up = file.surface_up();
         match file.photo_source() {
             PhotoSource::Poses(name) => {
@@ -243,6 +255,7 @@ impl Source {
     ) -> Result<Self, FileError> {
         let settings = FlightSettings {
             unit: LengthUnit::Metre,
+            unit_known: false,
             ground: Ground::Auto,
             image: ImageKind::Undistorted,
             surface: SurfaceOptions::default(),
@@ -255,12 +268,6 @@ impl Source {
             path: path.to_owned(),
             in_world: reconstruction.crs.clone(),
         });
-        if reconstruction.crs.is_none() && reconstruction.enu_origin.is_none() {
-            let path = path.display();
-            source.warnings.push(format!(
-                "{path}: the reconstruction states neither a unit nor which way is up; its frame is taken as metres with z up"
-            ));
-        }
         if source.photo_folder.is_none() && !reconstruction.sizes_known {
             // Packages name photos relative to their own file; a folder has them in it.
             source.photo_folder = match path.is_dir() {
@@ -323,34 +330,15 @@ impl Source {
             }
         } else {
             let folder = PhotoFolder::new(self.photo_folder.as_deref());
-            let names: Vec<String> = reconstruction
-                .cameras
-                .iter()
-                .map(|c| c.name.clone())
-                .collect();
-            let photo_of: Vec<Option<String>> = (0..names.len())
-                .map(|camera| {
-                    let photos = &reconstruction.photos;
-                    photos
-                        .iter()
-                        .find(|p| p.camera == camera)
-                        .map(|p| p.name.clone())
-                })
-                .collect();
-            reconstruction
-                .set_sizes(|camera| {
-                    given(&names[camera])
-                        .or_else(|| folder.size_of(photo_of[camera].as_deref()?)?.ok())
-                        .ok_or_else(|| {
-                            let photo = photo_of[camera].as_deref().unwrap_or(&names[camera]);
-                            Fault::new(
-                                format!("the image size of '{photo}' is not known: this package writes none, and there is no such image file"),
-                                "give [photos] folder, or a [[camera]] table with width and height, in a flight.toml",
-                            )
-                        })
-                })
-                .map_err(at)?;
+            let mut said = Vec::new();
+            set_sizes_from_files(&mut reconstruction, &folder, given, &mut said).map_err(at)?;
+            self.warn(path, &said);
         }
+        let photos = reconstruction.photos.iter();
+        self.named_sizes = photos
+            .map(|photo| reconstruction.named_size(photo))
+            .collect();
+        self.may_be_reduced = reconstruction.may_be_reduced;
         self.cameras = reconstruction.cameras;
         self.photos = reconstruction
             .photos
@@ -455,7 +443,18 @@ impl Source {
         progress: &Progress,
     ) -> Result<Opened, FileError> {
         let folder = PhotoFolder::new(self.photo_folder.as_deref());
-        let photo_files = folder.files_of(&self.photos);
+        if let Some(path) = &self.photo_folder
+            && self.photo_folder_is_named
+        {
+            folder
+                .check(&self.photos)
+                .map_err(|fault| FileError::new(path, fault))?;
+        }
+        let mut photo_files = folder.files_of(&self.photos);
+        for (index, file) in photo_files.iter_mut().enumerate() {
+            file.named_size = self.named_sizes.get(index).copied().flatten();
+            file.may_be_reduced = self.may_be_reduced;
+        }
         fit_cameras_to_files(
             &folder,
             &photo_files,
@@ -532,6 +531,7 @@ impl Source {
         let flight = Flight::new(FlightParts {
             name: self.name,
             unit: settings.unit,
+            unit_known: settings.unit_known,
             ground: settings.ground,
             image: settings.image,
             surface: Arc::new(surface),
@@ -540,20 +540,18 @@ impl Source {
         })
         .map_err(|fault| FileError::new(&self.file, fault))?;
         let file = self.file.display();
-        let misplaced = flight.placement_warnings();
-        let contradicting = photo_checks(&flight, &photo_files);
+        let looked_up = look_up(&flight, &photo_files);
         let without_photo = flight.objects_without_photo(&settings.scale_objects);
         self.warnings.extend(
-            misplaced
+            without_photo
                 .into_iter()
-                .chain(contradicting)
-                .chain(without_photo)
                 .map(|warning| format!("{file}: {warning}")),
         );
         Ok(Opened {
             flight,
             warnings: self.warnings,
             photo_files,
+            looked_up,
             crs: world.crs().map(str::to_owned),
             settings,
             file: self.flight_file.map(|file| (self.file, file)),
@@ -620,11 +618,13 @@ impl Source {
             None => {}
         }
         let Some(unit) = world.unit().map_err(at_poses)? else {
+            self.settings.unit_known = self.unit_is_stated;
             return Ok((cloud, world));
         };
         let stated = self.settings.unit;
         if !self.unit_is_stated {
             self.settings.unit = unit;
+            self.settings.unit_known = true;
         } else if unit != stated {
             let what = format!(
                 "the world is {}, which counts in {unit}, not {stated}",

@@ -1,6 +1,6 @@
 //! A careful engineer's checks: what the photo files say about themselves against what the flight
-//! says about them. Each finding is a sentence with its numbers; none is an error, because metadata
-//! err as well.
+//! says about them. Each finding is a doubt with its numbers and the photos that it speaks against;
+//! none is an error, because metadata err as well.
 //!
 //! - The camera: photos of two devices under one calibration, a calibration named after another
 //!   model, a focal length over 5 % (or what the metadata's own error allows) from the metadata's.
@@ -17,7 +17,7 @@ use glam::{DVec2, DVec3};
 
 use super::PhotoFile;
 use super::photo_metadata::{self, PhotoMetadata};
-use crate::flight::{Flight, Photo};
+use crate::flight::{Doubt, Flight, Photo};
 use crate::geometry::{Ray, median};
 
 /// How many photos are looked at, evenly over the flight.
@@ -33,34 +33,48 @@ const MOST_VERTICES: usize = 10_000;
 /// beyond 5 %.
 const LOWEST: f64 = 10.0;
 
+/// A finding and the photos that it speaks against, by their index.
+pub(super) type Finding = (Doubt, Vec<usize>);
+
+/// A photo with its index and what its file says of itself.
+type Described<'a> = (usize, &'a Photo, PhotoMetadata);
+
 /// Compares a flight with its photo files, which are in the order of its photos.
-pub fn photo_checks(flight: &Flight, files: &[PhotoFile]) -> Vec<String> {
+pub(super) fn photo_checks(flight: &Flight, files: &[PhotoFile]) -> Vec<Finding> {
     let photos = &flight.parts().photos;
     let step = photos.len().div_ceil(MOST_PHOTOS).max(1);
-    let described: Vec<(&Photo, PhotoMetadata)> = photos
+    let described: Vec<Described<'_>> = photos
         .iter()
         .zip(files)
+        .enumerate()
         .step_by(step)
-        .filter_map(|(photo, file)| {
+        .filter_map(|(index, (photo, file))| {
             let metadata = photo_metadata::read_file(file.path.as_deref()?).ok()?;
-            Some((photo, metadata))
+            Some((index, photo, metadata))
         })
         .collect();
     if described.is_empty() {
         return Vec::new();
     }
-    let mut warnings = check_cameras(flight, &described);
-    warnings.extend(check_distances(flight, &described));
-    warnings
+    let mut findings = check_cameras(flight, &described);
+    findings.extend(check_distances(flight, &described));
+    findings
 }
 
-fn check_cameras(flight: &Flight, described: &[(&Photo, PhotoMetadata)]) -> Vec<String> {
-    let mut warnings = Vec::new();
-    for (index, camera) in flight.parts().cameras.iter().enumerate() {
+fn check_cameras(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let parts = flight.parts();
+    for (index, camera) in parts.cameras.iter().enumerate() {
         let of_camera = described
             .iter()
-            .filter(|(photo, _)| photo.camera == index)
-            .map(|(_, metadata)| metadata);
+            .filter(|(_, photo, _)| photo.camera == index)
+            .map(|(.., metadata)| metadata);
+        // All of its photos: those between the ones looked at are no better.
+        let mut found = |doubt: Doubt| {
+            let photos = parts.photos.iter().enumerate();
+            let its = photos.filter(|(_, photo)| photo.camera == index);
+            findings.push((doubt, its.map(|(photo, _)| photo).collect()));
+        };
         let name = match camera.name.as_str() {
             "" => "the camera".to_owned(),
             name => format!("camera '{name}'"),
@@ -70,18 +84,17 @@ fn check_cameras(flight: &Flight, described: &[(&Photo, PhotoMetadata)]) -> Vec<
             .filter_map(|m| Some((m.make.clone().unwrap_or_default(), m.model.clone()?)))
             .collect();
         if devices.len() > 1 {
-            let names: Vec<&str> = devices.iter().map(|(_, model)| model.as_str()).collect();
-            warnings.push(format!(
-                "{name} stands for photos of {} devices ({}): give each its own calibration",
-                devices.len(),
-                names.join(", ")
-            ));
+            found(Doubt::SeveralDevices {
+                camera: name.clone(),
+                devices: devices.into_iter().map(|(_, model)| model).collect(),
+            });
         } else if let Some((make, model)) = devices.first()
             && is_named_otherwise(&camera.name, make, model)
         {
-            warnings.push(format!(
-                "{name} is used for photos that were taken with a {make} {model}: check that the calibration is theirs"
-            ));
+            found(Doubt::OtherDevice {
+                camera: name.clone(),
+                device: format!("{make} {model}"),
+            });
         }
         let same_size = of_camera.filter(|m| m.size == (camera.width, camera.height));
         let stated = same_size.filter_map(|m| m.focal.first());
@@ -90,17 +103,16 @@ fn check_cameras(flight: &Flight, described: &[(&Photo, PhotoMetadata)]) -> Vec<
             continue;
         };
         if (ratio - 1.0).abs() > stated.relative_error.max(WORTH_SAYING) {
-            warnings.push(format!(
-                "{name} has a focal length of {:.1} px, {:+.1} % from the {:.1} px of the photos' metadata ({}, {:.1} % of error expected): check that the calibration is theirs",
-                camera.fx,
-                (ratio - 1.0) * 100.0,
-                camera.fx / ratio,
-                stated.source.in_words(),
-                stated.relative_error * 100.0
-            ));
+            found(Doubt::FocalLength {
+                camera: name,
+                focal: camera.fx,
+                ratio,
+                source: stated.source.in_words(),
+                error: stated.relative_error,
+            });
         }
     }
-    warnings
+    findings
 }
 
 /// Whether a calibration's name has the maker's name in it, but not the model's.
@@ -115,14 +127,19 @@ fn is_named_otherwise(name: &str, make: &str, model: &str) -> bool {
     !make.is_empty() && !model.is_empty() && name.contains(make) && !name.contains(model)
 }
 
-fn check_distances(flight: &Flight, described: &[(&Photo, PhotoMetadata)]) -> Vec<String> {
+fn check_distances(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding> {
     let parts = flight.parts();
     let metres = parts.unit.metres();
-    let mut warnings = Vec::new();
+    let mut findings = Vec::new();
+    if !parts.unit_known {
+        // No length to compare.
+        return findings;
+    }
     // A surface that cannot be met says so when scales are asked of it.
     let Ok(mut caster) = parts.surface.caster_for(described.len()) else {
-        return warnings;
+        return findings;
     };
+    let all: Vec<usize> = (0..parts.photos.len()).collect();
     let mut distance = |origin: DVec3, direction: DVec3| {
         let direction = direction.normalize();
         caster
@@ -130,7 +147,7 @@ fn check_distances(flight: &Flight, described: &[(&Photo, PhotoMetadata)]) -> Ve
             .map(|hit| hit.t * metres)
     };
     let (mut above, mut ahead, mut take_offs) = (Vec::new(), Vec::new(), Vec::new());
-    for (photo, metadata) in described {
+    for (_, photo, metadata) in described {
         let pose = &photo.pose;
         if let Some(stated) = metadata.relative_altitude.filter(|&h| h >= LOWEST)
             && let Some(height) = distance(pose.center, DVec3::NEG_Z)
@@ -147,23 +164,15 @@ fn check_distances(flight: &Flight, described: &[(&Photo, PhotoMetadata)]) -> Ve
             }
         }
     }
-    if let Some((is, stated, part)) = deviation(&above)
+    if let Some((above, stated)) = deviation(&above)
         && !has_level(flight, &take_offs, WORTH_SAYING * stated / metres)
     {
-        warnings.push(format!(
-            "the cameras are {is:.1} m above the surface below them, but their photos say {stated:.1} m above the take-off ({:+.1} %): the scale, the unit or the heights are wrong, unless the take-off was {:.1} m {} the surface",
-            part * 100.0,
-            (is - stated).abs(),
-            if is > stated { "above" } else { "below" }
-        ));
+        findings.push((Doubt::FlyingHeight { above, stated }, all.clone()));
     }
-    if let Some((is, stated, part)) = deviation(&ahead) {
-        warnings.push(format!(
-            "the surface in the middle of the photos is {is:.1} m away, but the drone's laser measured {stated:.1} m ({:+.1} %): the scale, the unit or the poses are wrong",
-            part * 100.0
-        ));
+    if let Some((distance, stated)) = deviation(&ahead) {
+        findings.push((Doubt::LaserRange { distance, stated }, all));
     }
-    warnings
+    findings
 }
 
 /// Whether the surface has the median of these levels, give or take `slack`; all in world units. The
@@ -182,14 +191,14 @@ fn has_level(flight: &Flight, levels: &[f64], slack: f64) -> bool {
     }
 }
 
-/// The medians of what is and of what is stated, and the median part by which they deviate; `None`
-/// where that is not worth saying.
-fn deviation(pairs: &[(f64, f64)]) -> Option<(f64, f64, f64)> {
+/// The medians of what is and of what is stated; `None` where the median part by which they deviate is
+/// not worth saying.
+fn deviation(pairs: &[(f64, f64)]) -> Option<(f64, f64)> {
     let of =
         |value: fn(&(f64, f64)) -> f64| median(&mut pairs.iter().map(value).collect::<Vec<f64>>());
     let part = of(|(is, stated)| is / stated)? - 1.0;
     let (is, stated) = (of(|pair| pair.0)?, of(|pair| pair.1)?);
-    (part.abs() > WORTH_SAYING).then_some((is, stated, part))
+    (part.abs() > WORTH_SAYING).then_some((is, stated))
 }
 
 #[cfg(test)]
@@ -230,6 +239,7 @@ mod tests {
         Flight::new(FlightParts {
             name: "test".to_owned(),
             unit,
+            unit_known: true,
             ground: Ground::Auto,
             image: ImageKind::Undistorted,
             surface: Arc::new(Surface::new(cloud).unwrap()),
@@ -268,6 +278,7 @@ mod tests {
                     width: 4000,
                     height: 3000,
                 },
+                ..PhotoFile::default()
             });
         }
         files
@@ -278,7 +289,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let film = 24.0 / 1872.0_f64.sqrt() * 5000.0;
         let check = |flight: &Flight, models, altitude, range| {
-            photo_checks(flight, &files(folder.path(), models, altitude, range))
+            let found = photo_checks(flight, &files(folder.path(), models, altitude, range));
+            // Each of these speaks against all of its two photos.
+            assert!(found.iter().all(|(_, photos)| *photos == [0, 1]));
+            found
+                .iter()
+                .map(|(doubt, _)| doubt.to_string())
+                .collect::<Vec<_>>()
         };
         let good = flight("DJI FC1", film, LengthUnit::Metre);
         assert_eq!(check(&good, ["FC1"; 2], 50.0, 50.0), [""; 0]);
@@ -356,7 +373,7 @@ mod tests {
         // Files that are not there are not spoken of here.
         assert_eq!(
             photo_checks(&good, &[PhotoFile::default(), PhotoFile::default()]),
-            [""; 0]
+            []
         );
     }
 }

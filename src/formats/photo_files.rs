@@ -6,7 +6,6 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use super::input::open_file;
-use super::open::PhotoFile;
 use super::{Reconstruction, photo_size};
 use crate::camera::Camera;
 use crate::fault::Fault;
@@ -23,25 +22,116 @@ pub(super) fn is_image(name: &str) -> bool {
         .any(|known| ending.eq_ignore_ascii_case(known))
 }
 
+/// Endings that lists of poses and labels leave out, and that programs put behind the photo's own:
+/// "DJI_0025.JPG.tif".
+const ENDINGS: [&str; 5] = ["", ".jpg", ".jpeg", ".tif", ".tiff"];
+
+/// How many files an error about a folder names.
+const SHOWN: usize = 2;
+
+/// The image file of a photo.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct PhotoFile {
+    /// Where it is, if it is there.
+    pub path: Option<PathBuf>,
+    /// What is known about it.
+    pub state: PhotoFileState,
+    /// The photo's size in pixels, where the package names one beside its camera's.
+    pub named_size: Option<(u32, u32)>,
+    /// Whether the photo's camera may be for a reduced copy of it, as the package is known to make.
+    pub may_be_reduced: bool,
+}
+
 /// The folder of a flight's image files, if it has one.
 pub(super) struct PhotoFolder<'a> {
     folder: Option<&'a Path>,
+    /// The files directly in it by their names in lower case; of two that differ in nothing else,
+    /// `None`: which is meant is not for us to say.
+    in_any_case: HashMap<String, Option<PathBuf>>,
 }
 
 impl<'a> PhotoFolder<'a> {
     pub(super) fn new(folder: Option<&'a Path>) -> Self {
-        Self { folder }
+        let mut in_any_case = HashMap::new();
+        let entries = folder.and_then(|folder| std::fs::read_dir(folder).ok());
+        for entry in entries.into_iter().flatten().flatten() {
+            let key = entry.file_name().to_string_lossy().to_lowercase();
+            in_any_case
+                .entry(key)
+                .and_modify(|known| *known = None)
+                .or_insert_with(|| Some(entry.path()));
+        }
+        Self {
+            folder,
+            in_any_case,
+        }
     }
 
-    /// The file of a photo: its name below the folder, or the last part of its name in the folder;
-    /// lists of poses and labels often leave out the extension.
+    /// The file of a photo: its name below the folder, or the last part of its name in the folder,
+    /// whatever its case, perhaps with an ending more. Where the photo's own name has two endings
+    /// ("DJI_0025.JPG.tif"), the file may have the first alone.
     fn find(&self, photo: &str) -> Option<PathBuf> {
         let folder = self.folder?;
         let last = photo.rsplit(['/', '\\']).next().unwrap_or(photo);
-        let ends = ["", ".jpg", ".JPG", ".jpeg", ".tif", ".TIF", ".tiff", ".png"];
-        ends.iter()
-            .flat_map(|end| [photo, last].map(|name| folder.join(format!("{name}{end}"))))
+        if last.is_empty() {
+            return None;
+        }
+        let as_named = [photo, last].map(|name| folder.join(name));
+        let first_ending = last.rsplit_once('.').map(|(stem, _)| stem);
+        let bare = first_ending.filter(|stem| is_image(stem));
+        let names = ENDINGS.iter().map(|ending| format!("{last}{ending}"));
+        let in_any_case = |name: String| self.in_any_case.get(&name.to_lowercase())?.clone();
+        as_named
+            .into_iter()
             .find(|path| path.is_file())
+            .or_else(|| {
+                let mut found = names.chain([format!("{last}.png")]).filter_map(in_any_case);
+                found.find(|path| path.is_file())
+            })
+            .or_else(|| in_any_case(bare?.to_owned()).filter(|path| path.is_file()))
+    }
+
+    /// Refuses a folder that somebody named for the photos and that cannot be theirs.
+    ///
+    /// # Errors
+    /// Where it is not there, is no folder, or holds none of them.
+    pub(super) fn check(&self, photos: &[Photo]) -> Result<(), Fault> {
+        let Some(folder) = self.folder else {
+            return Ok(());
+        };
+        let refuse = |what: String| Err(Fault::new(what, "name the folder of the photos"));
+        if folder.is_file() {
+            return refuse("a file, where the folder of the photos is needed".to_owned());
+        }
+        if let Err(e) = std::fs::read_dir(folder) {
+            return match e.kind() {
+                std::io::ErrorKind::NotFound => refuse("there is no such folder".to_owned()),
+                _ => refuse(format!("a folder that cannot be read ({e})")),
+            };
+        }
+        if photos.iter().any(|photo| self.find(&photo.name).is_some()) {
+            return Ok(());
+        }
+        let mut there: Vec<&str> = self.in_any_case.keys().map(String::as_str).collect();
+        there.retain(|name| is_image(name));
+        there.sort_unstable();
+        let images = there.len();
+        there.truncate(SHOWN);
+        let wanted: Vec<&str> = photos.iter().map(|photo| photo.name.as_str()).collect();
+        let there = match images {
+            0 => "no images".to_owned(),
+            n => format!("{n} images ({}, ...)", there.join(", ")),
+        };
+        refuse(format!(
+            "it holds {there}, but none of the flight's {} photos ({}, ...)",
+            wanted.len(),
+            wanted
+                .iter()
+                .take(SHOWN)
+                .copied()
+                .collect::<Vec<_>>()
+                .join(", ")
+        ))
     }
 
     /// The file of each photo and what is known about it, in their order.
@@ -51,24 +141,82 @@ impl<'a> PhotoFolder<'a> {
                 return PhotoFile::default();
             }
             let path = self.find(&photo.name);
-            let state = match self.size_of(&photo.name) {
+            let state = match path.as_deref().map(size_of_file) {
                 None => PhotoFileState::Missing,
                 Some(Ok((width, height))) => PhotoFileState::Found { width, height },
                 Some(Err(fault)) => PhotoFileState::Unreadable(fault.to_string()),
             };
-            PhotoFile { path, state }
+            PhotoFile {
+                path,
+                state,
+                ..PhotoFile::default()
+            }
         };
         photos.iter().map(file_of).collect()
     }
 
     /// Width and height of a photo's file; `None` where there is no file.
     pub(super) fn size_of(&self, photo: &str) -> Option<Result<(u32, u32), Fault>> {
-        let path = self.find(photo)?;
-        let size = open_file(&path)
-            .map_err(|error| error.fault)
-            .and_then(|file| photo_size::read(BufReader::new(file)));
-        Some(size)
+        self.find(photo).map(|path| size_of_file(&path))
     }
+}
+
+fn size_of_file(path: &Path) -> Result<(u32, u32), Fault> {
+    open_file(path)
+        .map_err(|error| error.fault)
+        .and_then(|file| photo_size::read(BufReader::new(file)))
+}
+
+/// Gives the cameras of a package that writes no image sizes those of their photos; `given` is what a
+/// flight.toml says. A photo whose file cannot be read, or is missing among others that are there, is
+/// left out, which is said in `warnings`.
+///
+/// # Errors
+/// Where no photo's size is known.
+pub(super) fn set_sizes_from_files(
+    reconstruction: &mut Reconstruction,
+    folder: &PhotoFolder<'_>,
+    given: impl Fn(&str) -> Option<(u32, u32)>,
+    warnings: &mut Vec<String>,
+) -> Result<(), Fault> {
+    let mut left_out = Vec::new();
+    let mut sizes = Vec::with_capacity(reconstruction.cameras.len());
+    for (index, camera) in reconstruction.cameras.iter().enumerate() {
+        let photos = reconstruction.photos.iter();
+        let mut its = photos.filter(|photo| photo.camera == index).peekable();
+        let first = its.peek().map(|photo| photo.name.clone());
+        let mut why = None;
+        let size = given(&camera.name).or_else(|| {
+            its.find_map(|photo| match folder.size_of(&photo.name)? {
+                Ok(size) => Some(size),
+                Err(fault) => {
+                    why = Some(fault.to_string());
+                    None
+                }
+            })
+        });
+        sizes.push(size);
+        if let (None, Some(photo)) = (size, first) {
+            let why = why.unwrap_or_else(|| "there is no such image file".to_owned());
+            left_out.push((photo, why));
+        }
+    }
+    if !sizes.iter().any(Option::is_some) {
+        let (photo, why) = left_out.into_iter().next().unwrap_or_default();
+        return Err(Fault::new(
+            format!(
+                "the image size of '{photo}' is not known: this package writes none, and its file does not tell it ({why})"
+            ),
+            "give [photos] folder, or a [[camera]] table with width and height, in a flight.toml",
+        ));
+    }
+    for (photo, why) in left_out {
+        warnings.push(format!(
+            "photo '{photo}' is left out: the package writes no image size, and its file does not tell it ({why})"
+        ));
+    }
+    reconstruction.set_sizes(|camera| sizes.get(camera).copied().flatten());
+    Ok(())
 }
 
 /// The first of `folders` that holds the file of one of the first photos.

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use glam::DVec2;
 
 use crate::camera::{Camera, Distortion, Pose};
-use crate::fault::Fault;
 use crate::geodesy::Geographic;
 use crate::geometry::{Similarity, median};
 use crate::surface::Cloud;
@@ -94,6 +93,11 @@ pub struct Reconstruction {
     /// Whether fx, fy, cx, cy and the skew are in units of the image's longer side until the sizes
     /// are set: a package that writes focal lengths in parts of the film.
     pub intrinsics_in_longer_sides: bool,
+    /// Whether the package is known to solve on reduced copies of the photos, so that `cameras` may
+    /// not be for the photos that the engineer has.
+    pub may_be_reduced: bool,
+    /// Sizes of photos in pixels as the package names them beside its cameras, by the photo's name.
+    pub named_sizes: Vec<(String, (u32, u32))>,
     /// Whether the observations count from the middle of the image (else from its top-left corner).
     pub observed_from_middle: bool,
     /// The median reprojection error in the frame that the package solved in, where the reader had
@@ -130,22 +134,43 @@ impl Reconstruction {
         camera
     }
 
-    /// Gives the cameras of a package that writes no image sizes theirs. `size_of` tells the width
-    /// and height of a camera by its index.
-    ///
-    /// # Errors
-    /// Passes on what `size_of` could not find out.
-    pub fn set_sizes(
-        &mut self,
-        size_of: impl Fn(usize) -> Result<(u32, u32), Fault>,
-    ) -> Result<(), Fault> {
-        for index in 0..self.cameras.len() {
-            let (width, height) = size_of(index)?;
-            self.cameras[index] = self.sized(&self.cameras[index], width, height);
+    /// Gives the cameras of a package that writes no image sizes theirs. `size_of` tells the width and
+    /// height of a camera by its index. Cameras without one go, with their photos and what these show.
+    pub fn set_sizes(&mut self, size_of: impl Fn(usize) -> Option<(u32, u32)>) {
+        let mut now_at = Vec::with_capacity(self.cameras.len());
+        let mut cameras = Vec::with_capacity(self.cameras.len());
+        for (index, camera) in self.cameras.iter().enumerate() {
+            let size = size_of(index);
+            now_at.push(size.map(|_| cameras.len()));
+            cameras.extend(size.map(|(width, height)| self.sized(camera, width, height)));
         }
+        self.cameras = cameras;
+        let mut photo_now_at = Vec::with_capacity(self.photos.len());
+        let mut kept = 0;
+        self.photos.retain_mut(|photo| {
+            let camera = now_at.get(photo.camera).copied().flatten();
+            photo_now_at.push(camera.map(|_| kept));
+            kept += u32::from(camera.is_some());
+            photo.camera = camera.unwrap_or_default();
+            camera.is_some()
+        });
+        self.observations.retain_mut(|observation| {
+            let photo = photo_now_at.get(observation.photo as usize).copied();
+            observation.photo = photo.flatten().unwrap_or_default();
+            photo.flatten().is_some()
+        });
         self.sizes_known = true;
         self.intrinsics_in_longer_sides = false;
-        Ok(())
+    }
+
+    /// The size in pixels that the package names for each photo, beside its camera's.
+    pub fn named_size(&self, photo: &PosedPhoto) -> Option<(u32, u32)> {
+        let named = self
+            .named_sizes
+            .iter()
+            .find(|(name, _)| *name == photo.name);
+        let of_camera = || size_in_camera_name(&self.cameras.get(photo.camera)?.name);
+        named.map(|(_, size)| *size).or_else(of_camera)
     }
 
     /// The median distance, in pixels, between the measured image points and the projections of
@@ -189,5 +214,91 @@ impl Reconstruction {
         for point in &mut self.cloud.points {
             *point = similarity.apply(*point);
         }
+    }
+}
+
+/// The photos' size in the name that OpenSfM and OpenDroneMap give to a camera, after what the photos'
+/// own EXIF says: "v2 dji fc6310 5472 3648 brown 0.6666" (`opensfm/exif.py`, `camera_id_`).
+fn size_in_camera_name(name: &str) -> Option<(u32, u32)> {
+    let words: Vec<&str> = name.split_whitespace().collect();
+    let is_projection = |word: &str| word.chars().all(|c| c.is_ascii_lowercase() || c == '_');
+    words.windows(4).rev().find_map(|four| {
+        let [width, height, projection, focal] = four else {
+            return None;
+        };
+        let size = (width.parse().ok()?, height.parse().ok()?);
+        let focal: f64 = focal.parse().ok()?;
+        let sane = size.0 > 0 && size.1 > 0 && (0.0..100.0).contains(&focal);
+        (sane && is_projection(projection)).then_some(size)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    #[test]
+    fn the_size_in_a_cameras_name() {
+        for (name, size) in [
+            ("v2 dji fc6310 5472 3648 brown 0.6666", Some((5472, 3648))),
+            ("dji fc300s 400 225 brown 0.5555 rgb", Some((400, 225))),
+            ("v2 sony ilce-7 4000 6000 perspective 0", Some((4000, 6000))),
+            ("v2 unknown unknown -1 -1 perspective 0", None),
+            ("FC6310 8.8 5472x3648", None),
+            ("1", None),
+            ("", None),
+        ] {
+            assert_eq!(size_in_camera_name(name), size, "{name}");
+        }
+    }
+
+    /// The photo without a size goes, and what it shows; all else points where it pointed before.
+    #[test]
+    fn cameras_without_a_size_go_with_their_photos() {
+        let camera = |name: &str| Camera {
+            name: name.to_owned(),
+            width: 0,
+            height: 0,
+            fx: 100.0,
+            fy: 100.0,
+            cx: 1.0,
+            cy: -2.0,
+            skew: 0.0,
+            distortion: Distortion::None,
+        };
+        let photo = |name: &str, camera| PosedPhoto {
+            name: name.to_owned(),
+            camera,
+            pose: Pose::from_tilt_pan(DVec3::ZERO, [90.0, 0.0]),
+        };
+        let seen = |photo| Observation {
+            photo,
+            point: 7,
+            pixel: DVec2::ZERO,
+        };
+        let mut found = Reconstruction {
+            cameras: vec![camera("a"), camera("b"), camera("c")],
+            photos: vec![photo("1", 1), photo("2", 2), photo("3", 0)],
+            observations: vec![seen(0), seen(1), seen(2), seen(9)],
+            ..Reconstruction::default()
+        };
+        found.set_sizes(|camera| [Some((40, 30)), None, Some((20, 10))][camera]);
+        let sizes: Vec<_> = found
+            .cameras
+            .iter()
+            .map(|c| (c.name.as_str(), c.width, c.cx))
+            .collect();
+        assert_eq!(sizes, [("a", 40, 21.0), ("c", 20, 11.0)]);
+        let photos: Vec<_> = found
+            .photos
+            .iter()
+            .map(|p| (p.name.as_str(), p.camera))
+            .collect();
+        assert_eq!(photos, [("2", 1), ("3", 0)]);
+        let seen: Vec<u32> = found.observations.iter().map(|o| o.photo).collect();
+        assert_eq!(seen, [0, 1]);
+        assert!(found.sizes_known);
     }
 }

@@ -4,13 +4,18 @@
 //!
 //! The brightness of the cloud's vertices and of the pixels that they project to are compared by
 //! their correlation (Pearson's r): it does not mind exposure, white balance or contrast. What is
-//! hidden behind something lowers it a little; nobody looks for hidden points here.
+//! hidden behind something lowers it a little; nobody looks for hidden points here. Photos are compared
+//! at one size, whoever asks: a finer one has more noise, and the limits are for this one.
 
 use glam::DVec2;
 use image::RgbImage;
 
+use super::undistorted;
 use crate::camera::{Camera, Pose};
 use crate::surface::Surface;
+
+/// The longer side at which photos are compared, pixels: finer than most clouds.
+const COMPARED: u32 = 512;
 
 /// How many vertices are looked at; the standard error of r is under 1/sqrt(n).
 const LOOKED_AT: usize = 200_000;
@@ -59,7 +64,8 @@ impl Flip {
         }
     }
 
-    fn in_words(self) -> &'static str {
+    /// What was done to the photo.
+    pub fn in_words(self) -> &'static str {
         match self {
             Self::LeftRight => "left and right exchanged",
             Self::TopBottom => "top and bottom exchanged",
@@ -69,15 +75,36 @@ impl Flip {
 }
 
 impl Agreement {
-    /// Compares a surface's colours with an undistorted photo of any size. `None` where the surface
-    /// has no colours, or too few of its vertices are in the photo.
-    pub fn of(
+    /// Compares a surface's colours with a photo, in the size of its camera and as shot.
+    ///
+    /// # Errors
+    /// Why there is nothing to compare.
+    pub fn of_photo(
+        surface: &Surface,
+        camera: &Camera,
+        pose: &Pose,
+        photo: &RgbImage,
+    ) -> Result<Self, NotComparable> {
+        if surface.colors().is_empty() {
+            return Err(NotComparable::NoColours);
+        }
+        if photo.dimensions() != (camera.width, camera.height) {
+            return Err(NotComparable::OtherSize);
+        }
+        Self::of(surface, camera, pose, &undistorted(photo, camera, COMPARED))
+    }
+
+    /// Compares a surface's colours with an undistorted photo of any size.
+    fn of(
         surface: &Surface,
         camera: &Camera,
         pose: &Pose,
         undistorted: &RgbImage,
-    ) -> Option<Self> {
+    ) -> Result<Self, NotComparable> {
         let colors = surface.colors();
+        if colors.is_empty() {
+            return Err(NotComparable::NoColours);
+        }
         let step = colors.len().div_ceil(LOOKED_AT).max(1);
         let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
         let seen: Vec<(f64, [f64; 2])> = surface
@@ -91,8 +118,10 @@ impl Agreement {
                 inside.then(|| (brightness(*color), place))
             })
             .collect();
-        if seen.len() < FEWEST {
-            return None;
+        match seen.len() {
+            0 => return Err(NotComparable::NotInPhoto),
+            points if points < FEWEST => return Err(NotComparable::TooFew { points }),
+            _ => {}
         }
         let correlation_of = |flip: &dyn Fn([f64; 2]) -> [f64; 2]| {
             let pairs = seen.iter().filter_map(|(cloud, place)| {
@@ -100,33 +129,61 @@ impl Agreement {
             });
             correlation(pairs)
         };
-        let flipped = Flip::ALL.map(|flip| (correlation_of(&|place| flip.of(place)), flip));
-        Some(Self {
+        let as_it_is = correlation_of(&|place| place).ok_or(NotComparable::OneColour)?;
+        let flipped = Flip::ALL.map(|flip| {
+            let correlation = correlation_of(&|place| flip.of(place));
+            (correlation.unwrap_or(-1.0), flip)
+        });
+        let best = flipped.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(Self {
             points: seen.len(),
-            correlation: correlation_of(&|place| place),
-            flipped: flipped.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?,
+            correlation: as_it_is,
+            flipped: best.unwrap_or((-1.0, Flip::HalfTurn)),
         })
     }
 
-    /// What is wrong with the pose of `photo`, if its colours say so.
-    pub fn warning(&self, photo: &str) -> Option<String> {
-        let Self {
-            points,
-            correlation,
-            flipped: (best, flip),
-        } = *self;
-        if best > correlation + BETTER && best > POOR {
-            return Some(format!(
-                "photo '{photo}': its colours match those of the surface (r = {best:.2} at {points} points, else {correlation:.2}) after {}: an axis of its pose is flipped",
-                flip.in_words()
-            ));
+    /// What is wrong with the photo's pose, or with the photo, if its colours say so.
+    pub fn mismatch(&self) -> Option<Mismatch> {
+        let (flipped, flip) = self.flipped;
+        if flipped > self.correlation + BETTER && flipped > POOR {
+            return Some(Mismatch::Flipped(flip));
         }
-        (correlation < POOR).then(|| {
-            format!(
-                "photo '{photo}': its colours do not match those of the surface where its pose says (r = {correlation:.2} at {points} points; a right pose gives over 0.5): check its pose, its camera and whether it is this surface"
-            )
-        })
+        (self.correlation < POOR).then_some(Mismatch::Different)
     }
+}
+
+/// How the colours of a photo are not those of the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mismatch {
+    /// They would match after this: an axis of the pose is flipped.
+    Flipped(Flip),
+    /// They match in no way: another photo, another pose or another surface.
+    Different,
+}
+
+/// Why a photo's colours cannot be compared with the surface's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum NotComparable {
+    /// The surface has no colours.
+    #[error("the surface has no colours")]
+    NoColours,
+    /// No vertex of the surface projects into the photo.
+    #[error("no point of the surface projects into the photo")]
+    NotInPhoto,
+    /// Too few vertices project into the photo.
+    #[error(
+        "only {points} points of the surface project into the photo, too few to compare colours"
+    )]
+    TooFew {
+        /// How many.
+        points: usize,
+    },
+    /// The photo or the surface has one brightness all over.
+    #[error("the photo or the surface has only one brightness there")]
+    OneColour,
+    /// The photo's size is not its camera's.
+    #[error("the photo's size is not that of its camera")]
+    OtherSize,
 }
 
 /// ITU-R BT.601's luma, 0 to 255.
@@ -149,8 +206,8 @@ fn pixel_at(image: &RgbImage, [u, v]: [f64; 2]) -> Option<[u8; 3]> {
     Some(pixel.0)
 }
 
-/// Pearson's r, in one pass after Welford; 0 where one side does not vary.
-fn correlation(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
+/// Pearson's r, in one pass after Welford; `None` where one side does not vary.
+fn correlation(pairs: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     let (mut n, mut mean, mut sums) = (0.0, (0.0, 0.0), (0.0, 0.0, 0.0));
     for (a, b) in pairs {
         n += 1.0;
@@ -164,7 +221,7 @@ fn correlation(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
         );
     }
     let spread = (sums.0 * sums.1).sqrt();
-    if spread > 0.0 { sums.2 / spread } else { 0.0 }
+    (spread > 0.0).then(|| sums.2 / spread)
 }
 
 #[cfg(test)]
@@ -182,9 +239,9 @@ mod tests {
         let y = [
             8.04, 6.95, 7.58, 8.81, 8.33, 9.96, 7.24, 4.26, 10.84, 4.82, 5.68,
         ];
-        let r = correlation(x.into_iter().zip(y));
+        let r = correlation(x.into_iter().zip(y)).unwrap();
         assert!((r - 0.816_42).abs() < 1e-5, "{r}");
-        assert_eq!(correlation([(1.0, 2.0), (1.0, 3.0)].into_iter()), 0.0);
+        assert_eq!(correlation([(1.0, 2.0), (1.0, 3.0)].into_iter()), None);
     }
 
     /// A chequered square of 2 m seen straight from above, each field of its own brightness.
@@ -223,38 +280,59 @@ mod tests {
         let right = Agreement::of(&surface, &camera, &pose, &image).unwrap();
         // Not all: rounding may exclude vertices on the photo's edge.
         assert!(right.points > 4000 && right.correlation > 0.99, "{right:?}");
-        assert_eq!(right.warning("a"), None);
+        assert_eq!(right.mismatch(), None);
         let turned = Pose {
             rotation: pose.rotation * DMat3::from_rotation_z(std::f64::consts::PI),
             ..pose
         };
         let wrong = Agreement::of(&surface, &camera, &turned, &image).unwrap();
         assert_eq!(wrong.flipped.1, Flip::HalfTurn);
-        let said = wrong.warning("a").unwrap();
-        assert!(said.contains("turn by 180 degrees"), "{said}");
+        assert_eq!(wrong.mismatch(), Some(Mismatch::Flipped(Flip::HalfTurn)));
         let quarter = Pose {
             rotation: pose.rotation * DMat3::from_rotation_z(std::f64::consts::FRAC_PI_2),
             ..pose
         };
-        let said = Agreement::of(&surface, &camera, &quarter, &image)
-            .unwrap()
-            .warning("a");
-        assert!(said.unwrap().contains("do not match"));
+        let quarter = Agreement::of(&surface, &camera, &quarter, &image).unwrap();
+        assert_eq!(quarter.mismatch(), Some(Mismatch::Different));
     }
 
     #[test]
-    fn without_colours_or_points_nothing_is_said() {
+    fn what_cannot_be_compared_says_why() {
         let (surface, camera, pose, image) = scene();
         let away = Pose {
             center: pose.center + DVec3::X * 100.0,
             ..pose
         };
-        assert_eq!(Agreement::of(&surface, &camera, &away, &image), None);
+        assert_eq!(
+            Agreement::of(&surface, &camera, &away, &image),
+            Err(NotComparable::NotInPhoto)
+        );
+        // 1.95 m to the side leaves the first of the 64 columns and a half of the second.
+        let aside = Pose {
+            center: pose.center - DVec3::X * 1.95,
+            ..pose
+        };
+        assert_eq!(
+            Agreement::of(&surface, &camera, &aside, &image),
+            Err(NotComparable::TooFew { points: 128 })
+        );
+        let black = RgbImage::new(64, 64);
+        assert_eq!(
+            Agreement::of(&surface, &camera, &pose, &black),
+            Err(NotComparable::OneColour)
+        );
+        assert_eq!(
+            Agreement::of_photo(&surface, &camera, &pose, &black),
+            Err(NotComparable::OtherSize)
+        );
         let cloud = Cloud {
             points: surface.vertices().collect(),
             ..Cloud::default()
         };
         let plain = Surface::new(cloud).unwrap();
-        assert_eq!(Agreement::of(&plain, &camera, &pose, &image), None);
+        assert_eq!(
+            Agreement::of(&plain, &camera, &pose, &image),
+            Err(NotComparable::NoColours)
+        );
     }
 }

@@ -16,7 +16,7 @@ mod scale_bar;
 mod text;
 mod undistort;
 
-pub use agreement::{Agreement, Flip};
+pub use agreement::{Agreement, Flip, Mismatch, NotComparable};
 pub use canvas::{Canvas, Color, Halo};
 pub use decode::{DecodedPhoto, PhotoFormat, decode, decode_photo};
 pub use encode::encode;

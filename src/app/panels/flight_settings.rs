@@ -30,16 +30,21 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
     ui.add_space(8.0);
 
     ui.strong("Unit of the world's coordinates");
+    let unit_now = match now.unit_known {
+        true => now.unit.symbol(),
+        false => "not known",
+    };
     egui::ComboBox::from_id_salt("world unit")
-        .selected_text(now.unit.symbol())
+        .selected_text(unit_now)
         .show_ui(ui, |ui| {
             for unit in LengthUnit::ALL {
                 if ui
-                    .selectable_label(now.unit == unit, unit.symbol())
+                    .selectable_label(now.unit_known && now.unit == unit, unit.symbol())
                     .clicked()
                 {
                     set(FlightSettings {
                         unit,
+                        unit_known: true,
                         ..now.clone()
                     });
                 }
@@ -47,7 +52,7 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
         })
         .response
         .on_hover_text("Of the cloud and the poses, as your package wrote them")
-        .widget_info(|| combo_box("Unit of the world's coordinates", now.unit.symbol()));
+        .widget_info(|| combo_box("Unit of the world's coordinates", unit_now));
     ui.add_space(8.0);
 
     ui.strong("Ground");

@@ -53,7 +53,7 @@ impl Inspector {
         self.take_texture(open, ui);
         self.picture(state, open, photo, ui, commands);
         egui::ScrollArea::vertical().show(ui, |ui| {
-            if let Outcome::Scale(scale) = row.outcome {
+            if let Some(scale) = open.scale_to_type(photo) {
                 scales(state, open, scale, ui, commands);
             }
             if row.judged.doubts.is_empty() {
@@ -174,7 +174,7 @@ impl Inspector {
             }
         }
         // Nothing else lies over what is traced.
-        if let Some(scale) = open.scale(photo).filter(|_| !is_traced) {
+        if let Some(scale) = open.scale_to_type(photo).filter(|_| !is_traced) {
             let unit = state.preferences.unit();
             let world = open.flight.parts().unit;
             let to_screen = |pixel: DVec2| shown.to_screen(pixel);

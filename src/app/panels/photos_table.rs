@@ -21,6 +21,7 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     filter(open, ui, commands);
     let unit = state.preferences.unit();
     let factor = unit.in_units_of(open.flight.parts().unit);
+    let unit_known = open.flight.parts().unit_known;
     let columns = [
         (Column::Export, "⬇".to_owned(), "Chosen for export"),
         (Column::Name, "Photo".to_owned(), "Name of the photo's file"),
@@ -137,8 +138,8 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
                     text(ui, known.photo.name.clone());
                 });
                 let scale = |scale: Option<f64>| or_dash(scale.map(|scale| scale * factor), 4);
-                row.col(|ui| text(ui, scale(known.top())));
-                row.col(|ui| text(ui, scale(known.bottom())));
+                row.col(|ui| text(ui, scale(known.top().filter(|_| unit_known))));
+                row.col(|ui| text(ui, scale(known.bottom().filter(|_| unit_known))));
                 row.col(|ui| verdict(known.verdict, &known.judged.doubts, ui));
                 row.col(|ui| {
                     text(

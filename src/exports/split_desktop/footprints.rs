@@ -83,7 +83,7 @@ impl<'a> Footprints<'a> {
                     .request
                     .judged
                     .get(index)
-                    .map_or("", |(verdict, _)| verdict.as_str()),
+                    .map_or("", |judged| judged.verdict.as_str()),
                 is_complete: !outline.is_empty() && ring.len() == outline.len(),
                 ring: closed_ring(ring),
                 off_surface: off.count(),

@@ -45,7 +45,7 @@ use self::pictures::PictureSource;
 use self::plan::PhotoNames;
 use crate::exports::{ScaleReport, scales_csv};
 use crate::fault::Fault;
-use crate::flight::{Doubt, Flight, FlightSettings, Limits, Outcome, Verdict};
+use crate::flight::{Evidence, Flight, FlightSettings, Judged, Limits, Outcome};
 use crate::jobs::Progress;
 use crate::scale::ViewFacts;
 use crate::units::LengthUnit;
@@ -68,8 +68,10 @@ pub struct ExportRequest<'a> {
     pub outcomes: &'a [Outcome],
     /// Its views.
     pub views: &'a [Option<ViewFacts>],
+    /// What was looked up of its photos.
+    pub evidence: &'a [Evidence],
     /// What `flight::judge` said.
-    pub judged: &'a [(Verdict, Vec<Doubt>)],
+    pub judged: &'a [Judged],
     /// The image files, where there are any.
     pub photo_files: &'a [Option<PathBuf>],
     /// Which photos are exported.
@@ -175,7 +177,10 @@ pub fn export_for_split_desktop(
 
     progress.stage("writing the sheet");
     let report = ScaleReport::new(request.flight, request.outcomes, request.unit);
-    let report = report.of_photos(request.selected);
+    let report = report
+        .with_evidence(request.evidence)
+        .of_photos(request.selected)
+        .to_type_from();
     let csv = scales_csv(&report).map_err(|e| {
         at_dir(Fault::new(
             format!("the scales cannot be written ({e})"),

@@ -42,6 +42,10 @@ pub(super) fn pictures(
         .map(
             |(index, (stem, extension))| match request.outcomes.get(index) {
                 Some(Outcome::Trouble(trouble)) => Err(format!("no pictures: {trouble}")),
+                // They would show bars of a length that nobody knows.
+                _ if !request.flight.parts().unit_known => {
+                    Err("no pictures: the model's unit is not known".to_owned())
+                }
                 _ if request.photo_files.get(index).is_none_or(Option::is_none) => {
                     Err("no pictures: the photo file is missing".to_owned())
                 }

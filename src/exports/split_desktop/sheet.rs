@@ -7,7 +7,7 @@ use super::plan::PhotoNames;
 use super::{CheckedInput, ExportRequest};
 use crate::exports::markup::escaped;
 use crate::exports::{ReportLine, ScaleReport};
-use crate::flight::{Doubt, Verdict, compare_names};
+use crate::flight::{Doubt, Judged, compare_names};
 use crate::picture::significant_digits;
 use crate::scale::{Ground, ImageKind};
 use crate::units::LengthUnit;
@@ -92,7 +92,7 @@ fn row(
     number: usize,
     line: &ReportLine,
     report: &ScaleReport,
-    judged: Option<&(Verdict, Vec<Doubt>)>,
+    judged: Option<&Judged>,
     picture: Result<&PhotoNames, &str>,
     objects: &[PhotoObject<'_>],
 ) -> String {
@@ -115,9 +115,9 @@ fn row(
     });
     let mut reasons: Vec<String> = Vec::new();
     let mut verdict = "";
-    if let Some((judgement, doubts)) = judged {
-        verdict = judgement.as_str();
-        reasons.extend(doubts.iter().map(Doubt::to_string));
+    if let Some(judged) = judged {
+        verdict = judged.verdict.as_str();
+        reasons.extend(judged.doubts.iter().map(Doubt::to_string));
     }
     let ground = line.ground.map_or_else(String::new, |z| {
         format!(
@@ -149,13 +149,13 @@ fn row(
          <div class=\"verdict {class}\">{verdict}</div>\
          <div class=\"small\">{} of 4 corners on the surface{ground}</div>{reasons}{objects}</td>{}{}</tr>\n",
         line.corners_on_surface,
-        scale_cell(line.scale.top, report.unit),
-        scale_cell(line.scale.bottom, report.unit),
+        scale_cell(line.scale.top, report.unit, line.width),
+        scale_cell(line.scale.bottom, report.unit, line.width),
     )
 }
 
-/// The scale in the chosen unit, big, and in the others.
-fn scale_cell(scale: Option<f64>, unit: LengthUnit) -> String {
+/// The scale in the chosen unit, big, and in the others; it holds for images of this width alone.
+fn scale_cell(scale: Option<f64>, unit: LengthUnit, width: u32) -> String {
     let Some(scale) = scale else {
         return "<td class=\"scale\"><div class=\"big missing\">no scale</div></td>".to_owned();
     };
@@ -170,7 +170,7 @@ fn scale_cell(scale: Option<f64>, unit: LengthUnit) -> String {
         );
     }
     format!(
-        "<td class=\"scale\"><div class=\"big\">{}</div><div>px/{unit}</div><table class=\"others\">{others}</table></td>",
+        "<td class=\"scale\"><div class=\"big\">{}</div><div>px/{unit}</div><div class=\"small\">at {width} px width</div><table class=\"others\">{others}</table></td>",
         significant_digits(scale, DIGITS)
     )
 }
@@ -207,7 +207,13 @@ fn settings(request: &ExportRequest<'_>) -> String {
         format!("{percent} % of the footprint's mean edge")
     };
     let rows = [
-        ("World unit", unit.to_string()),
+        (
+            "World unit",
+            match settings.unit_known {
+                true => unit.to_string(),
+                false => "not known".to_owned(),
+            },
+        ),
         (
             "Coordinate system",
             request.crs.unwrap_or("not stated").to_owned(),
@@ -284,15 +290,16 @@ mod tests {
     /// 25.6 px/cm are 2560 px/m, 65.024 px/in and 780.288 px/ft exactly.
     #[test]
     fn a_scale_in_all_units() {
-        let cell = scale_cell(Some(25.6), LengthUnit::Centimetre);
+        let cell = scale_cell(Some(25.6), LengthUnit::Centimetre, 1280);
         for text in [
             ">25.600</div><div>px/cm",
+            ">at 1280 px width<",
             "<td>2560.0</td><td>px/m",
             "<td>65.024</td><td>px/in",
             "<td>780.29</td><td>px/ft",
         ] {
             assert!(cell.contains(text), "{text} is not in {cell}");
         }
-        assert!(scale_cell(None, LengthUnit::Inch).contains("no scale"));
+        assert!(scale_cell(None, LengthUnit::Inch, 1280).contains("no scale"));
     }
 }

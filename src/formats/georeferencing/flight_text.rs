@@ -59,6 +59,7 @@ impl Georeferenced {
         };
         let settings = FlightSettings {
             unit: self.unit,
+            unit_known: true,
             ground: Ground::Auto,
             image: ImageKind::Undistorted,
             surface: SurfaceOptions::default(),

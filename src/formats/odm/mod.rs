@@ -103,6 +103,7 @@ fn read_one(dir: &Path) -> Result<Project, FileError> {
     Ok(Project {
         reconstruction: Reconstruction {
             package: "opendronemap",
+            may_be_reduced: true,
             crs: frames.crs.filter(|_| posed.in_world),
             cameras,
             photos,

@@ -108,6 +108,8 @@ impl Joined {
         let found = &mut self.found;
         found.package = part.package;
         found.sizes_known = true;
+        found.may_be_reduced |= part.may_be_reduced;
+        found.named_sizes.extend(part.named_sizes);
         let said = part.warnings.iter();
         found
             .warnings

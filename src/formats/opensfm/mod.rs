@@ -147,6 +147,8 @@ impl OpenSfm {
                 photos,
                 cloud,
                 sizes_known: true,
+                // OpenDroneMap, which most often brings it, has reduced photos before it.
+                may_be_reduced: true,
                 warnings,
                 ..Reconstruction::default()
             },

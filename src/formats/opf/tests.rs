@@ -139,7 +139,7 @@ fn frames_are_taken_back() {
 fn sizes_may_come_from_the_photos() {
     let mut found = project(|_, text| text.replace("opf-input-cameras", "ext-x")).unwrap();
     assert!(!found.sizes_known);
-    found.set_sizes(|_| Ok((6000, 4000))).unwrap();
+    found.set_sizes(|_| Some((6000, 4000)));
     // Without a size nothing can be fitted.
     let said = found.warnings.join("; ");
     assert!(

@@ -64,7 +64,7 @@ mod tests {
             assert_eq!(flight_toml(&flight).unwrap(), text);
             let file = FlightFile::parse(&text).unwrap();
             assert_eq!(file.name.as_deref(), Some(flight.name));
-            assert_eq!(file.unit(), flight.unit);
+            assert_eq!(file.unit(), Some(flight.unit));
             assert_eq!(file.surface(), Some(flight.surface));
             assert_eq!(file.cameras.len(), 1);
             let camera = CameraSource::File(flight.camera);
