@@ -358,7 +358,7 @@ fn named(
             OpenOptions {
                 surface,
                 photos,
-                settings: None,
+                ..OpenOptions::default()
             },
         )),
         (None, Some((path, before))) => Ok((
@@ -366,6 +366,7 @@ fn named(
             OpenOptions {
                 surface: surface.or(before.surface),
                 photos: photos.or(before.photos),
+                topic: before.topic,
                 settings: None,
             },
         )),

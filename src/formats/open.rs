@@ -12,7 +12,7 @@ use super::photo_checks::photo_checks;
 use super::photo_files::{PhotoFolder, fit_cameras_to_files};
 use super::size_distributions::no_flight_but_sizes;
 use super::world_frame::{Frame, Known};
-use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, read_project};
+use super::{CloudFile, Kind, Package, PoseLine, Reconstruction, detect, read_project, ros};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{
@@ -33,6 +33,8 @@ pub struct OpenOptions {
     pub surface: Option<PathBuf>,
     /// The folder of the image files, instead of the flight's own.
     pub photos: Option<PathBuf>,
+    /// The topic of a ROS recording whose poses are taken, instead of the flight's own choice.
+    pub topic: Option<String>,
     /// What to set instead of what the flight says.
     pub settings: Option<FlightSettings>,
 }
@@ -136,6 +138,8 @@ struct Source {
     package_surface_to_world: Option<Similarity>,
     reconstruction_cloud: CloudFile,
     photo_folder: Option<PathBuf>,
+    /// The topic of a recording whose poses are taken.
+    topic: Option<String>,
     cameras: Vec<Camera>,
     photos: Vec<Photo>,
     warnings: Vec<String>,
@@ -160,6 +164,7 @@ impl Source {
             package_surface_to_world: None,
             reconstruction_cloud: CloudFile::default(),
             photo_folder: options.photos.clone(),
+            topic: options.topic.clone(),
             cameras: Vec::new(),
             photos: Vec::new(),
             warnings: Vec::new(),
@@ -187,14 +192,17 @@ impl Source {
         let file_in = |name: Option<&str>| name.map(|name| folder.join(name));
         source.surface = source.surface.or(file_in(file.surface()));
         source.photo_folder = source.photo_folder.or(file_in(file.photo_folder()));
+        source.topic = source.topic.or(file.topic().map(str::to_owned));
         source.surface_up = file.surface_up();
         match file.photo_source() {
             PhotoSource::Poses(name) => {
                 let names = source.add_cameras(path, folder, &file.cameras)?;
+                let topic = source.topic.clone();
                 let photos = PhotosToPose {
                     flight_folder: folder,
                     cameras: &file.cameras,
                     folder: source.photo_folder.clone(),
+                    topic: topic.as_deref(),
                 };
                 source.add_poses(&folder.join(name), &photos, &names, progress)?;
             }
@@ -279,7 +287,16 @@ impl Source {
     ) -> Result<Reconstruction, FileError> {
         progress.stage(format!("reading {}", path.display()));
         self.inputs.push(path.to_owned());
-        let project = read_project(path, progress)?;
+        let project = match (&self.topic, detect(path)?) {
+            (None, _) => read_project(path, progress)?,
+            (Some(topic), Kind::Reconstruction(Package::Ros, recording)) => {
+                ros::read_with_topic(&recording, topic, progress)?
+            }
+            (Some(topic), _) => {
+                let fault = flight_poses::topic_without_recording(topic);
+                return Err(FileError::new(path, fault));
+            }
+        };
         if self.surface.is_none() {
             self.surface_is_packages = project.surface.is_some();
             self.surface = project.surface;
