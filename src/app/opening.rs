@@ -365,7 +365,7 @@ fn named(
             OpenOptions {
                 surface,
                 photos,
-                settings: None,
+                ..OpenOptions::default()
             },
         )),
         (None, Some((path, before))) => Ok((
@@ -373,6 +373,7 @@ fn named(
             OpenOptions {
                 surface: surface.or(before.surface),
                 photos: photos.or(before.photos),
+                topic: before.topic,
                 settings: None,
             },
         )),

@@ -18,6 +18,9 @@ pub(super) struct FlightArguments {
     /// The folder of the image files, where the flight does not name it.
     #[arg(long, value_name = "DIR")]
     photo_folder: Option<PathBuf>,
+    /// Of a ROS recording, take the poses of this topic; else the densest that lead to the camera.
+    #[arg(long, value_name = "NAME")]
+    topic: Option<String>,
 }
 
 impl FlightArguments {
@@ -26,6 +29,7 @@ impl FlightArguments {
         let options = OpenOptions {
             surface: self.surface.clone(),
             photos: self.photo_folder.clone(),
+            topic: self.topic.clone(),
             settings: None,
         };
         formats::open_flight(&self.flight, &options, progress).map_err(|error| error.to_string())

@@ -422,6 +422,18 @@ fn info_text(value: &Value) -> String {
                 }
                 continue;
             }
+            Value::Array(list) if key == "topics" => {
+                for topic in list {
+                    let of = |key: &str| topic[key].as_str().unwrap_or_default();
+                    let poses = match topic["gives_poses"].as_bool() {
+                        Some(true) => ", gives poses",
+                        _ => "",
+                    };
+                    let (name, kind, count) = (of("name"), of("type"), &topic["messages"]);
+                    text += &format!("topic: {name} ({kind}), {count} messages{poses}\n");
+                }
+                continue;
+            }
             Value::Array(list) => list.len().to_string(),
             Value::Object(bounds) => {
                 let ends: Vec<String> = bounds

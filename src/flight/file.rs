@@ -69,6 +69,8 @@ pub(super) struct PhotosEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) folder: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) topic: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) transform: Option<Vec<f64>>,
 }
 
@@ -226,6 +228,7 @@ impl FlightFile {
                 poses: None,
                 reconstruction: Some(flight.reconstruction.to_owned()),
                 folder: flight.folder.map(str::to_owned),
+                topic: None,
                 transform: flight.transform.map(Vec::from),
             },
             scale: ScaleEntry {
@@ -307,6 +310,11 @@ impl FlightFile {
     /// The folder of the image files, relative to flight.toml.
     pub fn photo_folder(&self) -> Option<&str> {
         self.photos.folder.as_deref()
+    }
+
+    /// The topic of a ROS recording whose poses are meant.
+    pub fn topic(&self) -> Option<&str> {
+        self.photos.topic.as_deref()
     }
 
     /// Where the posed photos come from.

@@ -51,6 +51,7 @@ impl FlightFile {
             ("photos", "poses", &photos.poses),
             ("photos", "reconstruction", &photos.reconstruction),
             ("photos", "folder", &photos.folder),
+            ("photos", "topic", &photos.topic),
         ];
         for (table, key, file) in files.into_iter().chain(camera_files) {
             if file.as_deref() == Some("") {
@@ -58,7 +59,11 @@ impl FlightFile {
                     table,
                     key,
                     format!("{table}.{key} is empty"),
-                    "name a file, or remove the key",
+                    if key == "topic" {
+                        "name a topic, or remove the key"
+                    } else {
+                        "name a file, or remove the key"
+                    },
                 );
             }
         }

@@ -42,7 +42,7 @@ const KNOWN_KEYS: [(&str, &[&str]); 7] = [
     ),
     (
         "photos",
-        &["poses", "folder", "reconstruction", "transform"],
+        &["poses", "folder", "reconstruction", "topic", "transform"],
     ),
     ("scale", &["image"]),
     (

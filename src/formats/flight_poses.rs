@@ -26,6 +26,16 @@ pub(super) struct PhotosToPose<'a> {
     pub(super) cameras: &'a [CameraEntry],
     /// The folder of the image files.
     pub(super) folder: Option<PathBuf>,
+    /// The topic of a recording whose poses are meant.
+    pub(super) topic: Option<&'a str>,
+}
+
+/// What is to be said where a topic is named and no recording is there.
+pub(super) fn topic_without_recording(topic: &str) -> Fault {
+    Fault::new(
+        format!("a topic ('{topic}') is named, and this is no recording of ROS"),
+        "leave out --topic, or topic in flight.toml's [photos]",
+    )
 }
 
 /// Reads the poses of a flight's photos.
@@ -39,7 +49,13 @@ pub(super) fn read(
     progress: &Progress,
 ) -> Result<PosesFile, FileError> {
     let at = |fault| FileError::new(path, fault);
-    let (posed, warnings) = match detect(path) {
+    let kind = detect(path);
+    if let Some(topic) = photos.topic
+        && !matches!(kind, Ok(Kind::Reconstruction(Package::Ros, _)))
+    {
+        return Err(at(topic_without_recording(topic)));
+    }
+    let (posed, warnings) = match kind {
         Ok(Kind::Trajectory(format)) => {
             let trajectory = read_trajectory(path, format, progress)?;
             let mut posed = trajectory.pose_files(&photos.files(path)?).map_err(at)?;
@@ -57,7 +73,8 @@ pub(super) fn read(
         Ok(Kind::Reconstruction(Package::Ros, folder)) => {
             let files = photos.files(path)?;
             let recording = ros::read(&folder, progress)?;
-            (recording.pose_files(&files).map_err(at)?, Vec::new())
+            let posed = recording.pose_files(&files, photos.topic).map_err(at)?;
+            (posed, Vec::new())
         }
         // Whatever else it is, its faults are those of a list of poses.
         _ => return read_poses(path),

@@ -185,9 +185,14 @@ fn recording_info(recording: &Recording) -> Value {
             })
         }
     };
-    let topics = recording.topics.iter().map(
-        |topic| json!({"name": topic.name, "type": topic.type_name, "messages": topic.messages}),
-    );
+    let topics = recording.topics.iter().map(|topic| {
+        json!({
+            "name": topic.name,
+            "type": topic.type_name,
+            "messages": topic.messages,
+            "gives_poses": recording.gives_poses(topic),
+        })
+    });
     value["messages"] = recording.messages().into();
     value["topics"] = topics.collect();
     value

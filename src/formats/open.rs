@@ -12,7 +12,7 @@ use super::origin::FlightOrigin;
 use super::photo_files::{PhotoFile, PhotoFolder, fit_cameras_to_files, set_sizes_from_files};
 use super::size_distributions::no_flight_but_sizes;
 use super::world_frame::{Frame, Known};
-use super::{CloudFile, Kind, PoseLine, Reconstruction, detect, read_project};
+use super::{CloudFile, Kind, Package, PoseLine, Reconstruction, detect, read_project, ros};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{
@@ -32,6 +32,8 @@ pub struct OpenOptions {
     pub surface: Option<PathBuf>,
     /// The folder of the image files, instead of the flight's own.
     pub photos: Option<PathBuf>,
+    /// The topic of a ROS recording whose poses are taken, instead of the flight's own choice.
+    pub topic: Option<String>,
     /// What to set instead of what the flight says.
     pub settings: Option<FlightSettings>,
 }
@@ -143,6 +145,8 @@ struct Source {
     /// without a reconstruction.
     named_sizes: Vec<Option<(u32, u32)>>,
     may_be_reduced: bool,
+    /// The topic of a recording whose poses are taken.
+    topic: Option<String>,
     cameras: Vec<Camera>,
     photos: Vec<Photo>,
     warnings: Vec<String>,
@@ -170,6 +174,7 @@ impl Source {
             photo_folder_is_named: options.photos.is_some(),
             named_sizes: Vec::new(),
             may_be_reduced: false,
+            topic: options.topic.clone(),
             cameras: Vec::new(),
             photos: Vec::new(),
             warnings: Vec::new(),
@@ -199,14 +204,17 @@ impl Source {
         source.photo_folder = source.photo_folder.or(file_in(file.photo_folder()));
         source.photo_folder_is_named = source.photo_folder.is_some();
         source.unit_is_stated = file.unit().is_some();
+        source.topic = source.topic.or(file.topic().map(str::to_owned));
         source.surface_up = file.surface_up();
         match file.photo_source() {
             PhotoSource::Poses(name) => {
                 let names = source.add_cameras(path, folder, &file.cameras)?;
+                let topic = source.topic.clone();
                 let photos = PhotosToPose {
                     flight_folder: folder,
                     cameras: &file.cameras,
                     folder: source.photo_folder.clone(),
+                    topic: topic.as_deref(),
                 };
                 source.add_poses(&folder.join(name), &photos, &names, progress)?;
             }
@@ -286,7 +294,16 @@ impl Source {
     ) -> Result<Reconstruction, FileError> {
         progress.stage(format!("reading {}", path.display()));
         self.inputs.push(path.to_owned());
-        let project = read_project(path, progress)?;
+        let project = match (&self.topic, detect(path)?) {
+            (None, _) => read_project(path, progress)?,
+            (Some(topic), Kind::Reconstruction(Package::Ros, recording)) => {
+                ros::read_with_topic(&recording, topic, progress)?
+            }
+            (Some(topic), _) => {
+                let fault = flight_poses::topic_without_recording(topic);
+                return Err(FileError::new(path, fault));
+            }
+        };
         if self.surface.is_none() {
             self.surface_is_packages = project.surface.is_some();
             self.surface = project.surface;

@@ -4,7 +4,8 @@
 //!
 //! Positions are (degrees east, degrees north, metres up) in EPSG:4326; rotations take camera axes to
 //! east, north, up at the photo's own place. Photos that do not say where they were or which way the
-//! camera looked are left out and counted; those with a place alone still are measured positions.
+//! camera looked, or say it in a way that is not known, are left out and counted; those with a place
+//! alone still are measured positions.
 //! Photos of one maker, model, camera, size and source of the focal length share a camera.
 //!
 //! Beside photos of DJI's drones with RTK there may be a `*_Timestamp.MRK`: its places, which have
@@ -114,7 +115,7 @@ pub(super) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
             position: place,
         });
         let Some(orientation) = &metadata.orientation else {
-            left_out.add("do not say which way the camera looked", name.clone());
+            left_out.add(no_orientation(metadata), name.clone());
             continue;
         };
         if metadata.place.is_none_or(|place| place.height.is_none()) {
@@ -152,12 +153,12 @@ pub(super) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
 /// Photos that are left out, by the reason.
 #[derive(Default)]
 struct LeftOut {
-    by_reason: BTreeMap<&'static str, Vec<String>>,
+    by_reason: BTreeMap<String, Vec<String>>,
 }
 
 impl LeftOut {
-    fn add(&mut self, reason: &'static str, photo: String) {
-        self.by_reason.entry(reason).or_default().push(photo);
+    fn add(&mut self, reason: impl Into<String>, photo: String) {
+        self.by_reason.entry(reason.into()).or_default().push(photo);
     }
 
     fn sentences(&self, all: usize) -> impl Iterator<Item = String> {
@@ -183,6 +184,17 @@ impl LeftOut {
             ),
             "give the reconstruction that was made from them, or a poses.csv",
         )
+    }
+}
+
+/// Why it is not known which way a photo's camera looked.
+fn no_orientation(photo: &PhotoMetadata) -> String {
+    match photo.unknown_angles.as_slice() {
+        [] => "do not say which way the camera looked".to_owned(),
+        uris => format!(
+            "have angles in the XMP namespace '{}', of which it is not known whether they are the camera's and how they count",
+            uris.join("', '")
+        ),
     }
 }
 

@@ -106,6 +106,27 @@ fn photos_that_say_nothing_are_refused_in_words() {
     assert!(error.contains("none of its 1 photos"), "{error}");
 }
 
+/// As Parrot's Disco writes them: the aircraft's angles, under Pix4D's prefix in nobody's namespace.
+#[test]
+fn angles_that_are_not_understood_give_no_pose_and_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let disco = r#"<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#"><rdf:Description xmlns:Camera="Camera/" Camera:Yaw="18.5" Camera:Pitch="2.25" Camera:Roll="-2.5"/></rdf:RDF></x:xmpmeta>"#;
+    let bytes = jpeg((1920, 1088), &exif(), &[disco]);
+    fs::write(folder.path().join("disco.jpg"), bytes).unwrap();
+    let error = read(folder.path(), &Progress::default()).unwrap_err();
+    let what = "1 of 1 have angles in the XMP namespace 'Camera/', of which it is not known whether they are the camera's and how they count (disco.jpg)";
+    assert!(error.fault.what.contains(what), "{}", error.fault.what);
+    // Beside a photo with a pose it is left out, and still a measured position.
+    let bytes = jpeg((4000, 3000), &exif(), &[&packet(DOWN)]);
+    fs::write(folder.path().join("down.jpg"), bytes).unwrap();
+    let found = read_ok(folder.path());
+    assert_eq!(found.photos.len(), 1);
+    assert_eq!(found.measured_positions.len(), 2);
+    let said =
+        "1 of 2 photos are left out, because they have angles in the XMP namespace 'Camera/'";
+    assert!(self::said(&found, said), "{:#?}", found.warnings);
+}
+
 #[test]
 fn an_mrk_corrects_the_photos_it_numbers() {
     let folder = tempfile::tempdir().unwrap();

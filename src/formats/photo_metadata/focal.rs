@@ -18,13 +18,17 @@
 //!    the diagonal, 5 % by the width. Photos wider than 3:2 are mostly cut from a 4:3 sensor, whose
 //!    diagonal counts then: 10 %.
 //!
-//! A centre far from the middle says that a calibration is of another image size (Skydio's X2 writes its
-//! colour camera's into its thermal photos), and a sensor's resolution that contradicts the 35 mm
-//! equivalent that the photo was reduced by a program that left it: neither is used.
+//! A calibration of 1 to 3 may be of the whole sensor where the photo is a part of it, or of another
+//! image size: [`calibrated_frame`](super::calibrated_frame) fits it by its centre, and says so. One
+//! that fits nowhere (Skydio's X2 writes its colour camera's into its thermal photos) is not used, nor
+//! a sensor's resolution or a scaled calibration that contradicts the 35 mm equivalent. DewarpData
+//! count their centre from the photo's and so do not say their size: CalibratedOpticalCenter beside
+//! them does.
 //!
 //! Pixels of 1 to 3 belong to the size that the camera wrote (EXIF's PixelXDimension); where the file
 //! has been reduced since, they are scaled.
 
+use super::calibrated_frame::{Centre, Fit, fit};
 use super::exif_fields::ExifFields;
 use super::xmp::{Vocabulary, Xmp};
 use crate::camera::{Brown, Distortion};
@@ -91,26 +95,67 @@ pub(super) fn candidates(
             "it was taken with a digital zoom of {zoom}, which focal lengths in metadata may or may not hold"
         ));
     }
+    let film = film_equivalent(exif, &frame);
     let all = [
         dewarp(xmp, &frame, warnings),
         pix4d_tags(xmp, exif, &frame),
         skydio(xmp, &frame, warnings),
         designed(xmp, &frame),
-        focal_plane(exif, &frame),
-        film_equivalent(exif, &frame),
+        focal_plane(exif, &frame).map(Stated::of_photo),
+        film.map(Stated::of_photo),
     ];
-    let film = all[all.len() - 1];
     let mut candidates = Vec::new();
-    for candidate in all.into_iter().flatten() {
-        match frame.objection(&candidate, film.as_ref()) {
-            None => candidates.push(frame.in_file(candidate)),
-            Some(why) => warnings.push(format!(
+    for stated in all.into_iter().flatten() {
+        let candidate = stated.candidate;
+        let fitted = frame.fitted(&stated).and_then(|(fitted, fit)| {
+            match frame.objection(&fitted, &fit, film.as_ref()) {
+                None => Ok((fitted, fit)),
+                Some(why) => Err(why),
+            }
+        });
+        match fitted {
+            Ok((fitted, fit)) => {
+                let said = fit.sentence(frame.written);
+                warnings.extend(said.filter(|said| !warnings.contains(said)));
+                candidates.push(frame.in_file(fitted));
+            }
+            Err(why) => warnings.push(format!(
                 "{} {why}; it is not used",
                 candidate.source.in_words()
             )),
         }
     }
     candidates
+}
+
+/// Intrinsics as the metadata state them, in pixels of the image that they are for.
+struct Stated {
+    candidate: FocalCandidate,
+    /// What says which image that is; `None` where it is the photo.
+    centre: Option<((f64, f64), Centre)>,
+    /// Whether the candidate's own centre counts from the photo's middle, and not from the corner of
+    /// that image.
+    from_middle: bool,
+}
+
+impl Stated {
+    fn of_photo(candidate: FocalCandidate) -> Self {
+        Self {
+            candidate,
+            centre: None,
+            from_middle: false,
+        }
+    }
+
+    /// With a centre in pixels from the corner of its image.
+    fn with_centre(mut candidate: FocalCandidate, at: (f64, f64), centre: Centre) -> Self {
+        (candidate.cx, candidate.cy) = at;
+        Self {
+            candidate,
+            centre: Some((at, centre)),
+            from_middle: false,
+        }
+    }
 }
 
 /// The image as the camera wrote it, and as the file is.
@@ -149,9 +194,46 @@ impl Frame {
         (self.written.0 / 2.0, self.written.1 / 2.0)
     }
 
+    /// The intrinsics for the photo, and how they became so.
+    fn fitted(&self, stated: &Stated) -> Result<(FocalCandidate, Fit), String> {
+        let mut found = stated.candidate;
+        let Some((at, centre)) = stated.centre else {
+            return Ok((found, Fit::SAME));
+        };
+        let fit = fit(at, centre, self.written).ok_or_else(|| {
+            let ((x, y), (width, height)) = (at, self.written);
+            format!(
+                "has its centre at {x:.0}, {y:.0}, far from the middle of {width} x {height}, and that of no image that this is the middle of: it is of another image size"
+            )
+        })?;
+        found.fx *= fit.scale;
+        found.fy *= fit.scale;
+        let (middle_x, middle_y) = self.middle();
+        (found.cx, found.cy) = if stated.from_middle {
+            let from_middle = |c: f64, middle: f64| middle + (c - middle) * fit.scale;
+            (
+                from_middle(found.cx, middle_x),
+                from_middle(found.cy, middle_y),
+            )
+        } else {
+            let (left, top) = fit.cut;
+            (found.cx * fit.scale - left, found.cy * fit.scale - top)
+        };
+        // Twice a measured centre is the size only as far as the centre is the middle.
+        if fit.is_scaled() && centre == Centre::Measured {
+            found.relative_error = found.relative_error.max(0.03);
+        }
+        Ok((found, fit))
+    }
+
     /// Why what the metadata state cannot be of this image. `film` is the 35 mm equivalent, which
     /// counts no pixels and so outlives a program that reduced the photo.
-    fn objection(&self, found: &FocalCandidate, film: Option<&FocalCandidate>) -> Option<String> {
+    fn objection(
+        &self,
+        found: &FocalCandidate,
+        fit: &Fit,
+        film: Option<&FocalCandidate>,
+    ) -> Option<String> {
         let (width, height) = self.written;
         // From a fisheye's to a long telephoto's.
         if !(0.2..=100.0).contains(&(found.fx / width)) || found.fy <= 0.0 {
@@ -168,14 +250,16 @@ impl Frame {
             ));
         }
         let of_sensor = [FocalSource::FocalPlane, FocalSource::Pix4dTags].contains(&found.source);
-        let ratio = film.filter(|_| of_sensor).map(|film| found.fx / film.fx);
-        ratio
-            .filter(|ratio| !(1.0 / 1.5..=1.5).contains(ratio))
-            .map(|ratio| {
-                format!(
-                    "gives {ratio:.2} times the focal length of EXIF's 35 mm equivalent: the photo was reduced, and its sensor's resolution left"
-                )
-            })
+        let ratio = film.map(|film| found.fx / film.fx);
+        let ratio = ratio.filter(|ratio| !(1.0 / 1.5..=1.5).contains(ratio))?;
+        let why = match (fit.is_scaled(), of_sensor) {
+            (true, _) => "it is of another camera",
+            (false, true) => "the photo was reduced, and its sensor's resolution left",
+            (false, false) => return None,
+        };
+        Some(format!(
+            "gives {ratio:.2} times the focal length of EXIF's 35 mm equivalent: {why}"
+        ))
     }
 
     fn in_file(&self, candidate: FocalCandidate) -> FocalCandidate {
@@ -209,7 +293,7 @@ fn numbers(text: &str) -> Option<Vec<f64>> {
     text.split(',').map(parse).collect()
 }
 
-fn dewarp(xmp: &Xmp, frame: &Frame, warnings: &mut Vec<String>) -> Option<FocalCandidate> {
+fn dewarp(xmp: &Xmp, frame: &Frame, warnings: &mut Vec<String>) -> Option<Stated> {
     if xmp.number(Vocabulary::Dji, "DewarpFlag") == Some(1.0) {
         return None;
     }
@@ -238,17 +322,22 @@ fn dewarp(xmp: &Xmp, frame: &Frame, warnings: &mut Vec<String>) -> Option<FocalC
             *coefficient = value;
         }
         let (middle_x, middle_y) = frame.middle();
-        return Some(FocalCandidate {
+        let candidate = FocalCandidate {
             cx: middle_x + cx,
             cy: middle_y + cy,
             distortion: Distortion::Brown(Brown::new(coefficients)),
             ..frame.plain(FocalSource::Dewarp, (fx, fy), 0.003)
+        };
+        return Some(Stated {
+            candidate,
+            centre: designed_centre(xmp).map(|at| (at, Centre::Designed)),
+            from_middle: true,
         });
     }
     None
 }
 
-fn pix4d_tags(xmp: &Xmp, exif: &ExifFields, frame: &Frame) -> Option<FocalCandidate> {
+fn pix4d_tags(xmp: &Xmp, exif: &ExifFields, frame: &Frame) -> Option<Stated> {
     let text = |name| xmp.text(Vocabulary::Pix4dCamera, name);
     if text("ModelType").is_some_and(|model| !model.eq_ignore_ascii_case("perspective")) {
         return None;
@@ -256,52 +345,52 @@ fn pix4d_tags(xmp: &Xmp, exif: &ExifFields, frame: &Frame) -> Option<FocalCandid
     let length = xmp.number(Vocabulary::Pix4dCamera, "PerspectiveFocalLength")?;
     let (x, y) = exif.plane?;
     let mut candidate = frame.plain(FocalSource::Pix4dTags, (length * x, length * y), 0.005);
-    if let Some([cx, cy]) = text("PrincipalPoint").and_then(numbers).as_deref() {
-        (candidate.cx, candidate.cy) = (cx * x, cy * y);
-    }
     if let Some(&[r1, r2, r3, t1, t2]) = text("PerspectiveDistortion").and_then(numbers).as_deref()
     {
         let brown = Brown::new([r1, r2, t1, t2, r3, 0.0, 0.0, 0.0]);
         candidate.distortion = Distortion::Brown(brown);
     }
-    Some(candidate)
+    Some(match text("PrincipalPoint").and_then(numbers).as_deref() {
+        Some([cx, cy]) => Stated::with_centre(candidate, (cx * x, cy * y), Centre::Measured),
+        _ => Stated::of_photo(candidate),
+    })
 }
 
-fn skydio(xmp: &Xmp, frame: &Frame, warnings: &mut Vec<String>) -> Option<FocalCandidate> {
+fn skydio(xmp: &Xmp, frame: &Frame, warnings: &mut Vec<String>) -> Option<Stated> {
     let number = |name: &str| xmp.number(Vocabulary::Skydio, name);
     let fx = number("CalibratedFocalLength/X").or_else(|| number("CalibratedFocalLengthX"))?;
     let fy = number("CalibratedFocalLength/Y").or_else(|| number("CalibratedFocalLengthY"))?;
-    let mut candidate = frame.plain(FocalSource::SkydioCalibrated, (fx, fy), 0.005);
+    let candidate = frame.plain(FocalSource::SkydioCalibrated, (fx, fy), 0.005);
     let center = |axis| {
         number(&format!("CalibratedOpticalCenter/{axis}"))
             .or_else(|| number(&format!("CalibratedOpticalCenter{axis}")))
     };
-    if let (Some(x), Some(y)) = (center("X"), center("Y")) {
-        (candidate.cx, candidate.cy) = (x + 0.5, y + 0.5);
-    }
     let bent = xmp.text(Vocabulary::Skydio, "DewarpData");
     if let Some(bent) = bent.filter(|text| text.contains(|c: char| ('1'..='9').contains(&c))) {
         warnings.push(format!(
             "Skydio's distortion ({bent}) is left out, because its formula is not published"
         ));
     }
-    Some(candidate)
+    Some(match center("X").zip(center("Y")) {
+        Some((x, y)) => Stated::with_centre(candidate, (x + 0.5, y + 0.5), Centre::Measured),
+        None => Stated::of_photo(candidate),
+    })
 }
 
-fn designed(xmp: &Xmp, frame: &Frame) -> Option<FocalCandidate> {
-    [Vocabulary::Dji, Vocabulary::Autel]
-        .into_iter()
-        .find_map(|vocabulary| {
-            let number = |name| xmp.number(vocabulary, name).filter(|&n| n > 0.0);
-            let f = number("CalibratedFocalLength")?;
-            let mut candidate = frame.plain(FocalSource::DesignedLens, (f, f), 0.01);
-            let x = number("CalibratedOpticalCenterX");
-            let y = number("CalibratedOpticalCenterY");
-            if let (Some(x), Some(y)) = (x, y) {
-                (candidate.cx, candidate.cy) = (x, y);
-            }
-            Some(candidate)
-        })
+/// Where DJI's lens is designed to have its centre, in pixels of the image that it is designed for.
+fn designed_centre(xmp: &Xmp) -> Option<(f64, f64)> {
+    let number = |name| xmp.number(Vocabulary::Dji, name).filter(|&n| n > 0.0);
+    number("CalibratedOpticalCenterX").zip(number("CalibratedOpticalCenterY"))
+}
+
+fn designed(xmp: &Xmp, frame: &Frame) -> Option<Stated> {
+    let f = xmp.number(Vocabulary::Dji, "CalibratedFocalLength");
+    let f = f.filter(|&f| f > 0.0)?;
+    let candidate = frame.plain(FocalSource::DesignedLens, (f, f), 0.01);
+    Some(match designed_centre(xmp) {
+        Some(at) => Stated::with_centre(candidate, at, Centre::Designed),
+        None => Stated::of_photo(candidate),
+    })
 }
 
 fn focal_plane(exif: &ExifFields, frame: &Frame) -> Option<FocalCandidate> {

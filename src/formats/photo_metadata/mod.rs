@@ -2,10 +2,11 @@
 //! camera looked, and what is known of the lens. Only the file's header is read.
 //!
 //! [`blocks`] finds EXIF and XMP in the file, [`exif_fields`] and [`xmp`] take them apart,
-//! [`makers`] knows what each maker writes, [`focal`] what it says about the lens. Damaged blocks are
-//! warnings: the photo itself may be whole.
+//! [`makers`] knows what each maker writes, [`focal`] what it says about the lens, and
+//! [`calibrated_frame`] for which image. Damaged blocks are warnings: the photo itself may be whole.
 
 mod blocks;
+mod calibrated_frame;
 mod exif_fields;
 mod focal;
 mod makers;
@@ -49,6 +50,9 @@ pub(crate) struct PhotoMetadata {
     pub(crate) laser_range: Option<f64>,
     /// Which way the camera looked.
     pub(crate) orientation: Option<CameraOrientation>,
+    /// Where that is not known though XMP has angles: the URIs of their namespaces, in which it is
+    /// not known whose angles they are.
+    pub(crate) unknown_angles: Vec<String>,
     /// What is known of the lens, the most trustworthy first.
     pub(crate) focal: Vec<FocalCandidate>,
     /// What could not be read or has to be doubted, one sentence each.
@@ -204,10 +208,14 @@ pub(crate) fn read(mut input: impl BufRead + Seek) -> Result<PhotoMetadata, Faul
     }
     let text = |name| xmp.text(Vocabulary::Tiff, name).map(str::to_owned);
     let make = exif.make.clone().or_else(|| text("Make"));
-    let orientation = makers::orientation(&xmp, make.as_deref());
+    let orientation = makers::orientation(&xmp, make.as_deref(), &mut warnings);
     if let Some(orientation) = &orientation {
         doubt_orientation(orientation, &exif, &xmp, &mut warnings);
     }
+    let unknown_angles = match orientation {
+        Some(_) => Vec::new(),
+        None => makers::unknown_angles(&xmp),
+    };
     let focal = focal::candidates(&exif, &xmp, size, &mut warnings);
     Ok(PhotoMetadata {
         place: place(&exif, &xmp, make.as_deref(), &mut warnings),
@@ -220,6 +228,7 @@ pub(crate) fn read(mut input: impl BufRead + Seek) -> Result<PhotoMetadata, Faul
         relative_altitude: makers::relative_altitude(&xmp),
         laser_range: makers::laser_range(&xmp),
         orientation,
+        unknown_angles,
         focal,
         warnings,
     })
@@ -317,6 +326,10 @@ fn place(
     Some(found)
 }
 
+#[cfg(test)]
+mod crop_tests;
+#[cfg(test)]
+mod namespace_tests;
 #[cfg(test)]
 pub(in crate::formats) mod test_jpeg;
 #[cfg(test)]

@@ -77,7 +77,8 @@ pub(in crate::formats) fn gps() -> Vec<Field> {
     ]
 }
 
-/// An XMP packet around descriptions, with every maker's namespace and padding.
+/// An XMP packet around descriptions, with every maker's namespace and padding. `drone` is the prefix
+/// under which Autel writes DJI's.
 pub(in crate::formats) fn packet(descriptions: &str) -> String {
     let padding = " ".repeat(200);
     format!(
@@ -85,7 +86,7 @@ pub(in crate::formats) fn packet(descriptions: &str) -> String {
          <x:xmpmeta xmlns:x=\"adobe:ns:meta/\">\n\
          <rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"\n\
          xmlns:drone-dji=\"http://www.dji.com/drone-dji/1.0/\"\n\
-         xmlns:drone=\"http://www.autelrobotics.com/drone/1.0/\"\n\
+         xmlns:drone=\"http://www.dji.com/drone-dji/1.0/\"\n\
          xmlns:Camera=\"http://pix4d.com/camera/1.0/\"\n\
          xmlns:sense=\"http://ns.sensefly.com/Camera/1.0/\"\n\
          xmlns:drone-parrot=\"http://www.parrot.com/drone-parrot/1.0/\"\n\

@@ -8,11 +8,11 @@ use super::*;
 use crate::camera::Distortion;
 use crate::formats::test_data::shared_data;
 
-fn photo(bytes: Vec<u8>) -> PhotoMetadata {
+pub(super) fn photo(bytes: Vec<u8>) -> PhotoMetadata {
     read(Cursor::new(bytes)).unwrap()
 }
 
-fn with_xmp(descriptions: &str) -> PhotoMetadata {
+pub(super) fn with_xmp(descriptions: &str) -> PhotoMetadata {
     photo(jpeg((4000, 3000), &[], &[&packet(descriptions)]))
 }
 
@@ -23,7 +23,7 @@ fn looks(photo: &PhotoMetadata) -> (DVec3, DVec3) {
 }
 
 #[track_caller]
-fn assert_looks(photo: &PhotoMetadata, forward: DVec3, top: DVec3) {
+pub(super) fn assert_looks(photo: &PhotoMetadata, forward: DVec3, top: DVec3) {
     let (is_forward, is_top) = looks(photo);
     assert!(
         is_forward.abs_diff_eq(forward, 1e-12) && is_top.abs_diff_eq(top, 1e-12),
@@ -31,10 +31,8 @@ fn assert_looks(photo: &PhotoMetadata, forward: DVec3, top: DVec3) {
     );
 }
 
-const EAST: DVec3 = DVec3::X;
-const DOWN: DVec3 = DVec3::NEG_Z;
-const NORTH: DVec3 = DVec3::Y;
-
+pub(super) const EAST: DVec3 = DVec3::X;
+pub(super) const DOWN: DVec3 = DVec3::NEG_Z;
 #[test]
 fn exif_place_and_camera() {
     let fields = [
@@ -155,48 +153,6 @@ fn heights_of_dji_without_rtk_are_the_barometers() {
     assert_eq!(of(absolute), (-3.25, HeightReference::Barometer));
     let rtk = format!(r#"{absolute} drone-dji:AltitudeType="RtkAlt""#);
     assert_eq!(of(&rtk), (-3.25, HeightReference::Ellipsoid));
-}
-
-#[test]
-fn autel_parrot_skydio_and_sensefly() {
-    // Each looks down with its image's top to the east.
-    for descriptions in [
-        r#"<rdf:Description rdf:about="DJI Meta Data" drone:GimbalYawDegree="90.0" drone:GimbalPitchDegree="-90.0" drone:GimbalRollDegree="0.0"/>"#,
-        r#"<rdf:Description rdf:about="Autel Robotics Meta Data" Camera:Yaw="90" Camera:Pitch="0" Camera:Roll="0"/>"#,
-        // Two conventions in one file.
-        "<rdf:Description><Camera:Yaw>90</Camera:Yaw><Camera:Pitch>0.0</Camera:Pitch><Camera:Roll>0</Camera:Roll>\
-         <drone-parrot:CameraYawDegree>90</drone-parrot:CameraYawDegree>\
-         <drone-parrot:CameraPitchDegree>-90</drone-parrot:CameraPitchDegree>\
-         <drone-parrot:CameraRollDegree>0</drone-parrot:CameraRollDegree></rdf:Description>",
-        // FLIR's fractions.
-        "<rdf:Description><Camera:Yaw>9000/100</Camera:Yaw><Camera:Pitch>0/100</Camera:Pitch></rdf:Description>",
-        r#"<rdf:Description sense:Yaw="90" sense:Pitch="0" sense:Roll="0"/>"#,
-        r#"<rdf:Description><drone-skydio:CameraOrientationNED drone-skydio:Roll="0" drone-skydio:Pitch="-90" drone-skydio:Yaw="90"/></rdf:Description>"#,
-        r#"<rdf:Description><drone-skydio:CameraOrientationNED rdf:parseType="Resource"><drone-skydio:Roll>0</drone-skydio:Roll><drone-skydio:Pitch>-90</drone-skydio:Pitch><drone-skydio:Yaw>90</drone-skydio:Yaw></drone-skydio:CameraOrientationNED></rdf:Description>"#,
-        r#"<rdf:Description><drone-skydio:CameraOrientationNED><rdf:Description drone-skydio:Roll="0" drone-skydio:Pitch="-90"><drone-skydio:Yaw>90</drone-skydio:Yaw></rdf:Description></drone-skydio:CameraOrientationNED></rdf:Description>"#,
-    ] {
-        let photo = with_xmp(descriptions);
-        assert!(
-            photo.orientation.is_some(),
-            "{descriptions} {:?}",
-            photo.warnings
-        );
-        assert_looks(&photo, DOWN, EAST);
-    }
-}
-
-#[test]
-fn pitch_and_roll_of_a_body_that_looks_down() {
-    // Pix4D: pitch 90 looks forward, here to the north, and the top is up.
-    let forward =
-        with_xmp(r#"<rdf:Description Camera:Yaw="0" Camera:Pitch="90" Camera:Roll="0"/>"#);
-    assert_looks(&forward, NORTH, -DOWN);
-    // A right wing that hangs down (roll > 0) points the belly's camera to the left, here the west.
-    let banked = with_xmp(r#"<rdf:Description Camera:Yaw="0" Camera:Pitch="0" Camera:Roll="90"/>"#);
-    assert_looks(&banked, -EAST, NORTH);
-    // senseFly's roll has the other sign.
-    let sensefly = with_xmp(r#"<rdf:Description sense:Yaw="0" sense:Pitch="0" sense:Roll="90"/>"#);
-    assert_looks(&sensefly, EAST, NORTH);
 }
 
 #[test]

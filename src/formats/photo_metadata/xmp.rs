@@ -6,10 +6,13 @@
 //! as its children (`rdf:parseType="Resource"`), or in an `rdf:Description` inside. A structure's
 //! field is called "property/field".
 //!
-//! Namespaces are told apart by their URI, because writers choose prefixes as they like: Pix4D's
-//! ends with and without a slash, Autel's differs between firmwares.
+//! Namespaces are told apart by their URI alone, because writers choose prefixes as they like: Autel
+//! writes DJI's namespace under the prefix "drone", and four makers "Camera" for three namespaces.
+//! The URIs that are known, in every form that real files have them in, are listed at
+//! [`Vocabulary::of`]. Of all others only the angles are noted ([`Xmp::strange_angles`]), so that a
+//! photo whose angles nobody understands is said to have some.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use roxmltree::{Document, Node, ParsingOptions};
 
@@ -21,45 +24,69 @@ const MOST_NODES: u32 = 100_000;
 /// Whose field a value is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Vocabulary {
-    /// <http://www.dji.com/drone-dji/1.0/>
+    /// DJI's, which Autel's newer firmware writes too.
     Dji,
-    /// Autel's, which has the names of DJI's fields and the prefix "drone".
-    Autel,
-    /// <http://pix4d.com/camera/1.0/>, which many makers write.
+    /// Pix4D's, which many makers write.
     Pix4dCamera,
-    /// <http://ns.sensefly.com/Camera/1.0/>
+    /// senseFly's.
     SenseFlyCamera,
-    /// <http://www.parrot.com/drone-parrot/1.0/>
+    /// `Camera/`, which is nobody's: what Exiv2 makes of the name "Camera" where a maker registered
+    /// no URI. senseFly's eBee and Parrot's Bebop 2 and Disco write it, and mean different things.
+    NamelessCamera,
+    /// Parrot's.
     Parrot,
     /// Skydio's.
     Skydio,
-    /// <http://ns.adobe.com/tiff/1.0/>
+    /// Adobe's, of TIFF's fields.
     Tiff,
 }
 
+/// The known namespaces, in every form that is known of files. Exiv2 adds the slash at the end to
+/// those that lack it (`XmpProperties::registerNs`).
+const NAMESPACES: [(&str, Vocabulary); 16] = [
+    ("http://www.dji.com/drone-dji/1.0/", Vocabulary::Dji),
+    ("http://www.dji.com/drone-dji/1.0", Vocabulary::Dji),
+    ("https://www.dji.com/drone-dji/1.0/", Vocabulary::Dji),
+    ("http://www.dji.com/drone-dji/", Vocabulary::Dji),
+    ("http://pix4d.com/camera/1.0/", Vocabulary::Pix4dCamera),
+    ("http://pix4d.com/camera/1.0", Vocabulary::Pix4dCamera),
+    ("https://pix4d.com/camera/1.0/", Vocabulary::Pix4dCamera),
+    ("https://pix4d.com/camera/1.0", Vocabulary::Pix4dCamera),
+    (
+        "http://ns.sensefly.com/Camera/1.0/",
+        Vocabulary::SenseFlyCamera,
+    ),
+    (
+        "http://ns.sensefly.com/Camera/1.0",
+        Vocabulary::SenseFlyCamera,
+    ),
+    ("Camera/", Vocabulary::NamelessCamera),
+    (
+        "http://www.parrot.com/drone-parrot/1.0/",
+        Vocabulary::Parrot,
+    ),
+    ("http://www.parrot.com/drone-parrot/1.0", Vocabulary::Parrot),
+    (
+        "https://www.skydio.com/drone-skydio/1.0/",
+        Vocabulary::Skydio,
+    ),
+    (
+        "http://www.skydio.com/drone-skydio/1.0/",
+        Vocabulary::Skydio,
+    ),
+    ("http://ns.adobe.com/tiff/1.0/", Vocabulary::Tiff),
+];
+
 impl Vocabulary {
-    fn of(uri: &str, prefix: Option<&str>) -> Option<Self> {
-        let uri = uri.to_ascii_lowercase();
-        let has = |part: &str| uri.contains(part);
-        Some(if has("dji.com") {
-            Self::Dji
-        } else if has("pix4d.com/camera") {
-            Self::Pix4dCamera
-        } else if has("sensefly.com/camera") {
-            Self::SenseFlyCamera
-        } else if has("parrot.com") {
-            Self::Parrot
-        } else if has("skydio") {
-            Self::Skydio
-        } else if has("ns.adobe.com/tiff") {
-            Self::Tiff
-        } else if has("autel") || matches!(prefix, Some("drone" | "drone-autel")) {
-            Self::Autel
-        } else if matches!(prefix, Some("Camera" | "camera")) {
-            Self::Pix4dCamera
-        } else {
-            return None;
-        })
+    fn of(uri: &str) -> Option<Self> {
+        let known = NAMESPACES.iter().find(|(known, _)| *known == uri);
+        known.map(|(_, vocabulary)| *vocabulary)
+    }
+
+    /// The namespace, in the form that its maker documents or writes.
+    pub(super) fn uri(self) -> &'static str {
+        let form = NAMESPACES.iter().find(|(_, of)| *of == self);
+        form.map_or("", |(uri, _)| uri)
     }
 }
 
@@ -67,6 +94,8 @@ impl Vocabulary {
 #[derive(Debug, Default)]
 pub(super) struct Xmp {
     values: HashMap<(Vocabulary, String), String>,
+    /// The angles' axes by the URI of a namespace that is not known.
+    strange: BTreeMap<String, BTreeSet<&'static str>>,
 }
 
 impl Xmp {
@@ -102,72 +131,121 @@ impl Xmp {
         number(self.text(vocabulary, name)?)
     }
 
+    /// The URIs of the namespaces that are not known and hold angles: numbers called by two at
+    /// least of yaw, pitch and roll.
+    pub(super) fn strange_angles(&self) -> impl Iterator<Item = &str> {
+        let axes_of = self.strange.iter();
+        let angles = axes_of.filter(|(_, axes)| axes.len() >= 2);
+        angles.map(|(uri, _)| uri.as_str())
+    }
+
     fn properties(&mut self, description: Node<'_, '_>) {
-        self.attributes(description, "");
+        self.attributes(description, None);
         for property in description.children().filter(Node::is_element) {
-            let name = property.tag_name().name();
-            let fields_of = format!("{name}/");
-            self.attributes(property, &fields_of);
-            let list = property.children().find(|child| {
-                ["Seq", "Bag", "Alt"]
-                    .iter()
-                    .any(|kind| child.has_tag_name((RDF, *kind)))
-            });
-            if let Some(list) = list {
-                let items = list.children().filter(Node::is_element);
-                let items: Vec<&str> = items.filter_map(|item| item.text()).collect();
-                self.insert(property, String::new(), name, items.join(","));
-                continue;
+            self.property(property);
+        }
+    }
+
+    fn property(&mut self, property: Node<'_, '_>) {
+        self.attributes(property, Some(property));
+        let list = property.children().find(|child| {
+            ["Seq", "Bag", "Alt"]
+                .iter()
+                .any(|kind| child.has_tag_name((RDF, *kind)))
+        });
+        if let Some(list) = list {
+            let items = list.children().filter(Node::is_element);
+            let items: Vec<&str> = items.filter_map(|item| item.text()).collect();
+            self.insert(property, None, items.join(","));
+            // Structures in a list are not told apart: the first that has a field counts.
+            for item in list.children().filter(Node::is_element) {
+                self.attributes(item, Some(property));
+                self.fields(item, property);
             }
-            let mut is_structure = false;
-            for child in property.children().filter(Node::is_element) {
-                is_structure = true;
-                if child.has_tag_name((RDF, "Description")) {
-                    self.attributes(child, &fields_of);
-                    for field in child.children().filter(Node::is_element) {
-                        self.field(field, &fields_of);
-                    }
-                } else {
-                    self.field(child, &fields_of);
+        } else if property.children().any(|child| child.is_element()) {
+            self.fields(property, property);
+        } else {
+            let text = property.text().unwrap_or_default().to_owned();
+            self.insert(property, None, text);
+        }
+    }
+
+    /// The fields in an element of a structure, or in the rdf:Description that it holds.
+    fn fields(&mut self, element: Node<'_, '_>, structure: Node<'_, '_>) {
+        let field = |xmp: &mut Self, child: Node<'_, '_>| {
+            let text = child.text().unwrap_or_default().to_owned();
+            xmp.insert(child, Some(structure), text);
+        };
+        for child in element.children().filter(Node::is_element) {
+            if child.has_tag_name((RDF, "Description")) {
+                self.attributes(child, Some(structure));
+                for inner in child.children().filter(Node::is_element) {
+                    field(self, inner);
                 }
-            }
-            if !is_structure {
-                let text = property.text().unwrap_or_default().to_owned();
-                self.insert(property, String::new(), name, text);
+            } else {
+                field(self, child);
             }
         }
     }
 
-    fn field(&mut self, field: Node<'_, '_>, path: &str) {
-        let text = field.text().unwrap_or_default().to_owned();
-        self.insert(field, path.to_owned(), field.tag_name().name(), text);
-    }
-
-    fn attributes(&mut self, node: Node<'_, '_>, path: &str) {
+    fn attributes(&mut self, node: Node<'_, '_>, structure: Option<Node<'_, '_>>) {
         for attribute in node.attributes() {
-            let Some(uri) = attribute.namespace().filter(|uri| *uri != RDF) else {
-                continue;
-            };
-            if let Some(vocabulary) = Vocabulary::of(uri, node.lookup_prefix(uri)) {
-                let name = format!("{path}{}", attribute.name());
-                let value = attribute.value().trim().to_owned();
-                self.values.entry((vocabulary, name)).or_insert(value);
+            if let Some(uri) = attribute.namespace() {
+                let value = attribute.value().to_owned();
+                self.keep(uri, attribute.name(), structure, value);
             }
         }
     }
 
-    fn insert(&mut self, node: Node<'_, '_>, path: String, name: &str, value: String) {
-        let Some(uri) = node.tag_name().namespace() else {
+    fn insert(&mut self, node: Node<'_, '_>, structure: Option<Node<'_, '_>>, value: String) {
+        if let Some(uri) = node.tag_name().namespace() {
+            self.keep(uri, node.tag_name().name(), structure, value);
+        }
+    }
+
+    /// Keeps a value under its namespace and name, as a field of a structure of the same namespace.
+    fn keep(&mut self, uri: &str, name: &str, structure: Option<Node<'_, '_>>, value: String) {
+        let value = value.trim();
+        if uri == RDF || value.is_empty() {
+            return;
+        }
+        let Some(vocabulary) = Vocabulary::of(uri) else {
+            if let Some(axis) = axis_of(name)
+                && number(value).is_some()
+            {
+                self.strange.entry(uri.to_owned()).or_default().insert(axis);
+            }
             return;
         };
-        if let Some(vocabulary) = Vocabulary::of(uri, node.lookup_prefix(uri))
-            && !value.trim().is_empty()
-        {
-            let name = path + name;
-            let value = value.trim().to_owned();
-            self.values.entry((vocabulary, name)).or_insert(value);
-        }
+        let name = match structure.map(|structure| structure.tag_name()) {
+            None => name.to_owned(),
+            Some(of) if of.namespace().and_then(Vocabulary::of) == Some(vocabulary) => {
+                format!("{}/{name}", of.name())
+            }
+            // A field in somebody else's structure: nothing says what it is of.
+            Some(_) => return,
+        };
+        let entry = self.values.entry((vocabulary, name));
+        entry.or_insert_with(|| value.to_owned());
     }
+}
+
+/// Which of the three angles a name is of: "Yaw", "GimbalYawDegree", "PoseHeadingDegrees".
+fn axis_of(name: &str) -> Option<&'static str> {
+    let name = name.to_ascii_lowercase();
+    let ends = ["degrees", "degree", "deg", "angle"];
+    let name = ends
+        .iter()
+        .find_map(|end| name.strip_suffix(end))
+        .unwrap_or(&name);
+    let axes = [
+        ("yaw", "yaw"),
+        ("heading", "yaw"),
+        ("pitch", "pitch"),
+        ("roll", "roll"),
+    ];
+    let of = axes.into_iter().find(|(end, _)| name.ends_with(end));
+    of.map(|(_, axis)| axis)
 }
 
 /// The packet's element, without the padding and the processing instructions around it.

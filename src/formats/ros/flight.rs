@@ -8,6 +8,7 @@
 //! - A photo is called by its topic and its stamp in nanoseconds: `cam0/image_raw/1403715273262142976`.
 //! - Its pose is that of its frame (`pose_source.rs`) at its stamp. It is interpolated, not over more
 //!   than half a second, and never extrapolated.
+//! - Several topics may give poses: the densest is taken, or the one that the user names.
 //! - The world is the frame that the poses are in; called `earth`, it is ECEF (REP 105), else no
 //!   coordinate system is known.
 //! - `sensor_msgs/NavSatFix` gives measured positions, interpolated over 1.5 s at most. They are those
@@ -15,13 +16,13 @@
 
 use std::collections::BTreeMap;
 
-use super::pose_source::{PoseSource, pose_source};
+use super::pose_source::{PoseSource, Wanted, pose_source};
 use super::recording::{CameraTopic, ImageTopic, Recording};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::formats::camera_file;
 use crate::formats::reconstruction::{MeasuredPosition, PosedPhoto, Reconstruction};
-use crate::formats::trajectory::{NoPose, PosedFiles, Stamp, pose_photos};
+use crate::formats::trajectory::{NoPose, PosedFiles, Stamp, pose_photos, stamp_of};
 use crate::geodesy::Geographic;
 
 /// The longest time between two fixes that a position is interpolated over, in nanoseconds:
@@ -32,11 +33,22 @@ const LONGEST_FIX_GAP: u64 = 1_500_000_000;
 const USE_AS_POSES: &str = "record images, camera_info and tf, or name it in a flight.toml as [photos] poses beside a [[camera]] and a folder of photo files called by their stamps";
 
 impl Recording {
-    /// The flight that was recorded.
+    /// The flight that was recorded, with the densest poses.
     ///
     /// # Errors
     /// Where images, their camera or their poses are missing, naming what.
     pub(in crate::formats) fn reconstruction(&self) -> Result<Reconstruction, Fault> {
+        self.reconstruction_by(None)
+    }
+
+    /// The flight that was recorded, with the poses of a topic, where one is named.
+    ///
+    /// # Errors
+    /// As [`Self::reconstruction`], and where that topic gives no poses of the camera.
+    pub(in crate::formats) fn reconstruction_by(
+        &self,
+        topic: Option<&str>,
+    ) -> Result<Reconstruction, Fault> {
         let missing = match (self.images.is_empty(), self.cameras.is_empty()) {
             (true, true) => Some(
                 "neither images (sensor_msgs/Image, CompressedImage) nor a camera (sensor_msgs/CameraInfo)",
@@ -62,8 +74,18 @@ impl Recording {
         let mut without: Vec<(String, NoPose)> = Vec::new();
         let mut stamps = Vec::new();
         let mut world_frame: Option<String> = None;
+        // All cameras' images, so that two cameras of one body take the same poses.
+        let taken: Vec<Stamp> = shots
+            .iter()
+            .flat_map(|shot| shot.image.stamps.iter().copied())
+            .collect();
         for shot in &shots {
-            let source = pose_source(self, &shot.camera_topic.frame)?;
+            let wanted = Wanted {
+                frame: &shot.camera_topic.frame,
+                stamps: &taken,
+                topic,
+            };
+            let source = pose_source(self, wanted)?;
             let world = world_frame.get_or_insert_with(|| source.way.root.clone());
             if *world != source.way.root {
                 let what = format!(
@@ -75,7 +97,11 @@ impl Recording {
                     "record the tf between the two, or one camera",
                 ));
             }
-            reconstruction.warnings.extend(source.assumption.clone());
+            for said in source.said {
+                if !reconstruction.warnings.contains(&said) {
+                    reconstruction.warnings.push(said);
+                }
+            }
             let camera = reconstruction.cameras.len();
             reconstruction.cameras.push(shot.camera.clone());
             for (name, stamp) in shot.names(&mut reconstruction.warnings) {
@@ -112,11 +138,16 @@ impl Recording {
         Ok(reconstruction)
     }
 
-    /// Gives image files that are called by their stamps the poses of the recording.
+    /// Gives image files that are called by their stamps the poses of the recording, those of a topic
+    /// where one is named.
     ///
     /// # Errors
     /// Where the recording has several cameras or no poses, or no file gets one.
-    pub(in crate::formats) fn pose_files(&self, files: &[String]) -> Result<PosedFiles, Fault> {
+    pub(in crate::formats) fn pose_files(
+        &self,
+        files: &[String],
+        topic: Option<&str>,
+    ) -> Result<PosedFiles, Fault> {
         let mut frames: Vec<&str> = self.cameras.values().map(|c| c.frame.as_str()).collect();
         frames.sort_unstable();
         frames.dedup();
@@ -130,11 +161,17 @@ impl Recording {
                 ));
             }
         };
-        let PoseSource { way, assumption } = pose_source(self, frame)?;
+        let stamps: Vec<Stamp> = files.iter().filter_map(|file| stamp_of(file)).collect();
+        let wanted = Wanted {
+            frame,
+            stamps: &stamps,
+            topic,
+        };
+        let PoseSource { way, said } = pose_source(self, wanted)?;
         let mut posed = pose_photos(files, way.span(), |stamp| way.at(stamp))?;
         posed
             .warnings
-            .splice(0..0, self.warnings().into_iter().chain(assumption));
+            .splice(0..0, self.warnings().into_iter().chain(said));
         Ok(posed)
     }
 

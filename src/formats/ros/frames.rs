@@ -79,6 +79,29 @@ impl Way {
         spans.reduce(|(a, b), (c, d)| (a.max(c), b.min(d)))
     }
 
+    /// The poses that count between two times (see `Track::samples_around`): those of the moving frame
+    /// that has fewest.
+    pub(super) fn poses_around(&self, span: Option<(Stamp, Stamp)>) -> usize {
+        let counts = self.links.iter().filter_map(|(_, link)| match link {
+            Link::Fixed(_) => None,
+            Link::Moving(track) => Some(track.samples_around(span)),
+        });
+        counts.min().unwrap_or(0)
+    }
+
+    /// The topmost of the frames that are fixed to the lowest, and the way down from it.
+    pub(super) fn fixed_part(&self) -> (&str, &[(String, Link)]) {
+        let is_moving = |(_, link): &(String, Link)| matches!(link, Link::Moving(_));
+        match self.links.iter().rposition(is_moving) {
+            Some(at) => {
+                let (above, below) = self.links.split_at(at + 1);
+                let top = above.last().map_or("", |(name, _)| name.as_str());
+                (top, below)
+            }
+            None => (&self.root, &self.links),
+        }
+    }
+
     /// What lies below `frame`, as a way of its own; `None` where it is not on the way.
     pub(super) fn below(&self, frame: &str) -> Option<Vec<(String, Link)>> {
         if frame == self.root {

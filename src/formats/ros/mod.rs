@@ -37,6 +37,7 @@ use std::path::{Path, PathBuf};
 pub(super) use recording::Recording;
 
 use super::input::{FileError, open_file};
+use super::reconstruction::Project;
 use super::trajectory::Stamp;
 use crate::fault::Fault;
 use crate::jobs::Progress;
@@ -116,6 +117,22 @@ pub(super) fn read(path: &Path, progress: &Progress) -> Result<Recording, FileEr
         ));
     }
     Ok(recording)
+}
+
+/// Reads a recording as a flight, with the poses of a topic.
+///
+/// # Errors
+/// As [`read`], and where it is no flight with these poses.
+pub(super) fn read_with_topic(
+    path: &Path,
+    topic: &str,
+    progress: &Progress,
+) -> Result<Project, FileError> {
+    let recording = read(path, progress)?;
+    let reconstruction = recording.reconstruction_by(Some(topic));
+    reconstruction
+        .map(Project::from)
+        .map_err(|fault| FileError::new(path, fault))
 }
 
 /// The files of a recording of ROS 2, in the order of their names, in which rosbag2 numbers them.

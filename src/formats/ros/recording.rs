@@ -1,6 +1,6 @@
 //! What a recording holds, message by message.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::RawMessage;
 use super::frames::Frames;
@@ -22,6 +22,8 @@ pub(in crate::formats) struct Recording {
     pub(super) poses: BTreeMap<usize, PoseTopic>,
     pub(super) fixes: BTreeMap<usize, Vec<(Stamp, Geographic)>>,
     pub(super) frames: Frames,
+    /// The topics of tf that hold for a time.
+    pub(super) tf: BTreeSet<usize>,
     unstamped: u64,
     /// What was wrong with the files, one sentence each.
     pub(super) file_warnings: Vec<String>,
@@ -154,6 +156,9 @@ impl Recording {
                 topic.samples.push((stamp, pose));
             }
             Message::Transforms(transforms) => {
+                if !is_static && !transforms.is_empty() {
+                    self.tf.insert(index);
+                }
                 for (header, child, pose) in transforms {
                     let stamp = if is_static {
                         header.stamp
@@ -175,6 +180,28 @@ impl Recording {
     /// The name of a topic by its index.
     pub(super) fn name_of(&self, index: usize) -> &str {
         self.topics.get(index).map_or("", |topic| &topic.name)
+    }
+
+    /// What tf is called here.
+    pub(super) fn tf_name(&self) -> String {
+        let names = self.tf.iter().map(|&index| self.name_of(index));
+        names.collect::<Vec<_>>().join(" and ")
+    }
+
+    /// The topics that give poses, each with the count of its messages, in the recording's order.
+    pub(super) fn topics_of_poses(&self) -> Vec<String> {
+        let topics = self.topics.iter().enumerate();
+        let of_poses =
+            topics.filter(|(index, _)| self.poses.contains_key(index) || self.tf.contains(index));
+        of_poses
+            .map(|(_, topic)| format!("{} ({} messages)", topic.name, topic.messages))
+            .collect()
+    }
+
+    /// Whether a topic gives poses.
+    pub(in crate::formats) fn gives_poses(&self, topic: &Topic) -> bool {
+        let index = self.by_name.get(&topic.name);
+        index.is_some_and(|index| self.poses.contains_key(index) || self.tf.contains(index))
     }
 
     /// How many messages there are.

@@ -25,7 +25,7 @@ mod tum;
 use std::cmp::Ordering;
 use std::io::BufRead;
 
-pub(in crate::formats) use photos::{PosedFiles, pose_photos};
+pub(in crate::formats) use photos::{PosedFiles, pose_photos, stamp_of};
 pub(in crate::formats) use stamp::Stamp;
 pub(in crate::formats) use track::{NoPose, Track};
 

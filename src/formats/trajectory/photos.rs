@@ -24,7 +24,7 @@ fn stem(file: &str) -> &str {
 }
 
 /// The time that a file is named by: digits, perhaps with a point.
-fn stamp_of(file: &str) -> Option<Stamp> {
+pub(in crate::formats) fn stamp_of(file: &str) -> Option<Stamp> {
     let stem = stem(file);
     let is_plain = stem.bytes().all(|b| b.is_ascii_digit() || b == b'.');
     Stamp::parse(stem).filter(|_| is_plain)

@@ -66,6 +66,19 @@ impl Track {
         Some((self.samples.first()?.0, self.samples.last()?.0))
     }
 
+    /// How many samples can count between two times: from half a second, over which they are
+    /// interpolated, before the first to as long after the last. All of them without times.
+    pub(in crate::formats) fn samples_around(&self, span: Option<(Stamp, Stamp)>) -> usize {
+        let Some((first, last)) = span else {
+            return self.samples.len();
+        };
+        let counts = |stamp: Stamp| {
+            let reach = |end: Stamp| stamp.apart(end) <= LONGEST_GAP;
+            (first <= stamp && stamp <= last) || reach(first) || reach(last)
+        };
+        self.samples.iter().filter(|(s, _)| counts(*s)).count()
+    }
+
     /// The pose at a time.
     ///
     /// # Errors
