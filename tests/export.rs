@@ -17,7 +17,9 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use common::{fragscale, stdout_of};
-use fragscale::exports::{ExportError, ExportRequest, ExportSummary, export_for_split_desktop};
+use fragscale::exports::{
+    ExportError, ExportRequest, ExportSummary, Replace, export_for_split_desktop,
+};
 use fragscale::flight::{Doubt, Limits, Outcome, PhotoFileState, Verdict, judge};
 use fragscale::formats::{OpenOptions, Opened, open_flight};
 use fragscale::jobs::Progress;
@@ -115,6 +117,9 @@ impl Computed {
             settings: &self.opened.settings,
             crs: self.crs.as_deref(),
             inputs: &self.opened.inputs,
+            read: &self.opened.read,
+            source: self.opened.origin.file(),
+            replace: Replace::Nothing,
             warnings: &self.opened.warnings,
         };
         export_for_split_desktop(to, &request, progress)

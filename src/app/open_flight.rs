@@ -12,6 +12,7 @@ use super::state::sample_flight;
 use super::table::{Row, TableOrder};
 use super::tracing::Tracing;
 use super::work::{Geometry, Loaded, PreviewPicture};
+use crate::files::Inputs;
 use crate::flight::{
     ComparedObject, Doubt, Flight, FlightSettings, Limits, Outcome, ScaleObject, Verdict, judge_all,
 };
@@ -95,8 +96,12 @@ pub struct OpenFlight {
     pub crs: Option<String>,
     /// The files read.
     pub inputs: Vec<PathBuf>,
+    /// These, the photos and whatever was opened on the way: nothing of it is written over.
+    pub read: Inputs,
     /// What was noticed while reading.
     pub warnings: Vec<String>,
+    /// The flight.toml that it was opened from: it may be saved there.
+    pub opened_file: Option<PathBuf>,
     /// Where it came from, and where it is saved.
     pub origin: FlightOrigin,
     /// The reconstruction that it was made of, if any.
@@ -175,6 +180,8 @@ impl OpenFlight {
             .file
             .as_ref()
             .map_or_else(|| opened.settings.clone(), |(_, file)| file.settings());
+        let bundled = is_bundled(&opened.origin.suggested_file());
+        let opened_file = opened.file.map(|(path, _)| path).filter(|_| !bundled);
         let mut bounds = surface_bounds;
         for photo in &opened.flight.parts().photos {
             bounds.min = bounds.min.min(photo.pose.center);
@@ -188,8 +195,10 @@ impl OpenFlight {
             photo_files: Arc::new(opened.photo_files),
             crs: opened.crs,
             inputs: opened.inputs,
+            read: opened.read,
             warnings: opened.warnings,
-            bundled: is_bundled(&opened.origin.suggested_file()),
+            bundled,
+            opened_file,
             georeferencing: Georeferencing::new(opened.origin.photo_folder()),
             reconstruction: opened.reconstruction,
             origin: opened.origin,
