@@ -11,6 +11,7 @@ use super::state::{Severity, State};
 use super::work::{DialogFor, Done, Geometry, Loaded, NotOpened, PreviewPicture, Task, Thumbnail};
 use crate::camera::Camera;
 use crate::exports::{self, ExportRequest, Replace};
+use crate::fault::Fault;
 use crate::files::{self, Kind};
 use crate::flight::{Flight, FlightSettings};
 use crate::formats::{self, Dropped, FileError, OpenOptions};

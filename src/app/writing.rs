@@ -2,7 +2,7 @@
 //! file is replaced she is asked, and her answer counts as `--force`; what was read for what is on the
 //! screen is not written over whatever she answers.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::command::Command;
 use super::panels::typed;
