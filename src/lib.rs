@@ -23,10 +23,10 @@
 //! F1  camera/   surface/         intrinsics, distortion, pose | triangulation, ray casting
 //!     fragmentation/             size distributions
 //!     geodesy/  georeference/    coordinate systems | a frame of its own brought to the world
-//! F0  geometry/ units.rs jobs.rs fault.rs
+//! F0  geometry/ units.rs jobs.rs fault.rs files/
 //! ```
 //!
-//! F0 to F3 take no paths, write no log, know no clock and no f32: they return data and typed
+//! F0 to F3 take no paths (`files/` apart), write no log, know no clock and no f32: they return data and typed
 //! errors. `picture/` alone counts in f32, because colours and strokes are no measurements.
 //!
 //! The features: `render` brings wgpu, `app` the window on top of it; without both the command line
@@ -46,6 +46,7 @@ pub mod camera;
 pub mod cli;
 pub mod exports;
 pub mod fault;
+pub mod files;
 pub mod flight;
 pub mod formats;
 pub mod fragmentation;

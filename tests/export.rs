@@ -17,7 +17,9 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use common::{fragscale, stdout_of};
-use fragscale::exports::{ExportError, ExportRequest, ExportSummary, export_for_split_desktop};
+use fragscale::exports::{
+    ExportError, ExportRequest, ExportSummary, Replace, export_for_split_desktop,
+};
 use fragscale::flight::{Evidence, Judged, Limits, Outcome, PhotoFileState, judge};
 use fragscale::formats::{OpenOptions, Opened, open_flight};
 use fragscale::jobs::Progress;
@@ -122,6 +124,9 @@ impl Computed {
             settings: &self.opened.settings,
             crs: self.crs.as_deref(),
             inputs: &self.opened.inputs,
+            read: &self.opened.read,
+            source: self.opened.origin.file(),
+            replace: Replace::Nothing,
             warnings: &self.opened.warnings,
         };
         export_for_split_desktop(to, &request, progress)

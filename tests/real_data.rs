@@ -15,7 +15,6 @@ use std::fs;
 
 use common::{scale, scales_json, shared_data};
 use fragscale::camera::Pose;
-use fragscale::exports::write_whole;
 use fragscale::formats::{OpenOptions, Opened, open_flight, read_project};
 use fragscale::jobs::Progress;
 use glam::{DMat3, DQuat, DVec3};
@@ -75,7 +74,7 @@ fn brighton_saved_as_a_flight_opens_again() {
     let there = tempfile::tempdir().expect("a folder");
     let target = there.path().join("brighton.toml");
     let text = opened.origin.text_at(&target, &opened.settings);
-    write_whole(&target, text.expect("a text").as_bytes()).expect("written");
+    std::fs::write(&target, text.expect("a text")).expect("written");
     let saved = open_flight(&target, &options, &progress).expect("a flight");
     assert_eq!(saved.settings, opened.settings);
     assert_eq!(saved.flight.parts().photos, opened.flight.parts().photos);

@@ -7,6 +7,8 @@ use super::open_flight::OpenFlight;
 use super::size_distributions::Page;
 use super::state::{HeldBack, PictureRequest, Severity, State, sample_flight};
 use super::work::Task;
+use crate::exports::Replace;
+use crate::files::{self, Kind};
 use crate::render::MOST_PIXELS;
 
 impl State {
@@ -171,12 +173,13 @@ impl State {
         match held_back {
             HeldBack::Quit => self.quit(),
             HeldBack::Leave(command) => self.go(*command),
-            HeldBack::Replace(command) => match *command {
-                Command::SaveAs(path) => self.start_saving(path),
-                Command::Picture(request) => self.picture = Some(request),
+            HeldBack::Replace(command, _) => match *command {
+                Command::SaveAs(path) => self.start_saving(path, true),
+                Command::Export(folder) => self.start_export(folder, Replace::OtherFlight),
+                Command::Picture(request) => self.picture = Some((request, true)),
                 Command::Distributions(command) => self.replace_distributions(command),
                 Command::SaveGeoreferenced { path, keep_surface } => {
-                    self.start_saving_georeferenced(path, keep_surface);
+                    self.start_saving_georeferenced(path, keep_surface, true);
                 }
                 _ => {}
             },
@@ -311,21 +314,25 @@ impl State {
         if self.open.is_none() || self.is_busy(Task::Save) {
             return;
         }
-        let own = self
-            .open
-            .as_ref()
-            .and_then(|open| open.origin.flight_file());
-        if own != Some(path.as_path()) && path.exists() {
-            self.held_back = Some(HeldBack::Replace(Box::new(Command::SaveAs(path))));
-        } else {
-            self.start_saving(path);
+        let own = self.open.as_ref().filter(|open| !open.bundled);
+        let own = own.and_then(|open| open.origin.flight_file());
+        if own.is_some_and(|own| files::is_same_file(own, &path)) {
+            self.start_saving(path, true);
+            return;
+        }
+        let (read, command) = (self.read_beside(&path), Command::SaveAs(path.clone()));
+        if self.may_write(&path, Kind::Flight, &read, command) {
+            self.start_saving(path, false);
+        } else if self.held_back.is_none() {
+            // Not saved, and nothing to answer.
+            self.after_saving = None;
         }
     }
 
     fn export(&mut self, folder: PathBuf) {
         self.asking = None;
-        if !self.is_busy(Task::Export) {
-            self.start_export(folder);
+        if !self.is_busy(Task::Export) && self.may_export(&folder) {
+            self.start_export(folder, Replace::Nothing);
         }
     }
 
@@ -341,10 +348,11 @@ impl State {
                 "a picture of {width} x {height} pixels is too large; choose at most {most} million pixels"
             );
             self.say(Severity::Error, &text);
-        } else if request.path.exists() {
-            self.held_back = Some(HeldBack::Replace(Box::new(Command::Picture(request))));
-        } else {
-            self.picture = Some(request);
+            return;
+        }
+        let (read, command) = (self.read(), Command::Picture(request.clone()));
+        if self.may_write(&request.path, Kind::Result, &read, command) {
+            self.picture = Some((request, false));
         }
     }
 

@@ -19,6 +19,8 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
+use crate::files::{Inputs, Kind, may_write};
+
 /// A part of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
@@ -56,11 +58,13 @@ impl FrameTimes {
     /// Measures into this file; `None` measures nothing.
     ///
     /// # Errors
-    /// Where the file cannot be written.
+    /// Where the file cannot be written, or is one of somebody else's.
     pub fn into_file(path: Option<&Path>) -> std::io::Result<Self> {
         let Some(path) = path else {
             return Ok(Self(None));
         };
+        let none = Inputs::default();
+        may_write(path, Kind::Result, &none, false).map_err(std::io::Error::other)?;
         let mut file = File::create(path)?;
         writeln!(
             file,

@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::command::Command;
 use super::open_flight::OpenFlight;
-use super::state::{HeldBack, Severity, State};
+use super::state::{Severity, State};
 use super::work::{Done, Task};
-use crate::exports;
-use crate::fault::Fault;
+use crate::files::{self, Kind};
 use crate::formats::{self, FileError, GeoreferenceRequest, Georeferenced};
 
 /// What the reconstruction's place in the world is known from.
@@ -165,16 +164,23 @@ impl State {
         if self.is_busy(Task::Save) {
             return;
         }
-        if path.exists() {
-            let command = Command::SaveGeoreferenced { path, keep_surface };
-            self.held_back = Some(HeldBack::Replace(Box::new(command)));
-        } else {
-            self.start_saving_georeferenced(path, keep_surface);
+        let command = Command::SaveGeoreferenced {
+            path: path.clone(),
+            keep_surface,
+        };
+        if self.may_write(&path, Kind::Flight, &self.read(), command) {
+            self.start_saving_georeferenced(path, keep_surface, false);
         }
     }
 
-    /// The same once it may replace a file.
-    pub(super) fn start_saving_georeferenced(&mut self, path: PathBuf, keep_surface: bool) {
+    /// The same once that is clear; with `replace` over a file that is there.
+    pub(super) fn start_saving_georeferenced(
+        &mut self,
+        path: PathBuf,
+        keep_surface: bool,
+        replace: bool,
+    ) {
+        let read = self.read();
         let Some(open) = &self.open else {
             return;
         };
@@ -195,11 +201,8 @@ impl State {
             let (photos, surface) = (photos.as_deref(), surface.as_deref());
             let text = fitted.flight_text(&path, &reconstruction, photos, surface);
             let written = text.and_then(|text| {
-                exports::write_whole(&path, text.as_bytes()).map_err(|error| {
-                    let what = format!("it cannot be written ({error})");
-                    let remedy = "choose a folder that may be written to";
-                    FileError::new(&path, Fault::new(what, remedy))
-                })
+                files::write(&path, text.as_bytes(), Kind::Flight, &read, replace)
+                    .map_err(|fault| FileError::new(&path, fault))
             });
             Done::SavedGeoreferenced(match written {
                 Ok(()) => Ok(path),

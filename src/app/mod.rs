@@ -33,6 +33,7 @@ pub mod table;
 pub mod tracing;
 pub mod viewport;
 pub mod work;
+mod writing;
 
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -12,6 +12,7 @@ use super::state::sample_flight;
 use super::table::{Row, TableOrder};
 use super::tracing::Tracing;
 use super::work::{Geometry, Loaded, PreviewPicture};
+use crate::files::Inputs;
 use crate::flight::{
     ComparedObject, Flight, FlightSettings, Judged, Limits, Outcome, ScaleObject, Verdict,
     judge_all,
@@ -89,12 +90,16 @@ pub struct OpenFlight {
     pub crs: Option<String>,
     /// The files read.
     pub inputs: Vec<PathBuf>,
+    /// These, the photos and whatever was opened on the way: nothing of it is written over.
+    pub read: Inputs,
     /// What was noticed while reading.
     pub warnings: Vec<String>,
     /// What was looked up of the photos with the settings that it is computed with.
     pub looked_up: LookedUp,
     /// How the colours of each photo compare with the surface's, once known.
     pub colours: Vec<Option<Colours>>,
+    /// The flight.toml that it was opened from: it may be saved there.
+    pub opened_file: Option<PathBuf>,
     /// Where it came from, and where it is saved.
     pub origin: FlightOrigin,
     /// The reconstruction that it was made of, if any.
@@ -173,6 +178,8 @@ impl OpenFlight {
             .file
             .as_ref()
             .map_or_else(|| opened.settings.clone(), |(_, file)| file.settings());
+        let bundled = is_bundled(&opened.origin.suggested_file());
+        let opened_file = opened.file.map(|(path, _)| path).filter(|_| !bundled);
         let mut bounds = surface_bounds;
         for photo in &opened.flight.parts().photos {
             bounds.min = bounds.min.min(photo.pose.center);
@@ -186,10 +193,12 @@ impl OpenFlight {
             photo_files: Arc::new(opened.photo_files),
             crs: opened.crs,
             inputs: opened.inputs,
+            read: opened.read,
             warnings: opened.warnings,
             looked_up: opened.looked_up,
             colours: vec![None; count],
-            bundled: is_bundled(&opened.origin.suggested_file()),
+            bundled,
+            opened_file,
             georeferencing: Georeferencing::new(opened.origin.photo_folder()),
             reconstruction: opened.reconstruction,
             origin: opened.origin,

@@ -10,8 +10,9 @@ use image::buffer::ConvertBuffer;
 use super::state::{Severity, State};
 use super::work::{DialogFor, Done, Geometry, Loaded, NotOpened, PreviewPicture, Task, Thumbnail};
 use crate::camera::Camera;
-use crate::exports::{self, ExportRequest};
+use crate::exports::{self, ExportRequest, Replace};
 use crate::fault::Fault;
+use crate::files::{self, Kind};
 use crate::flight::{Flight, FlightSettings, judge_all};
 use crate::formats::{self, Colours, Dropped, FileError, OpenOptions};
 use crate::geometry::LocalFrame;
@@ -199,19 +200,17 @@ impl State {
         });
     }
 
-    /// Writes flight.toml.
-    pub fn start_saving(&mut self, path: PathBuf) {
+    /// Writes flight.toml; with `replace` over a file that is there.
+    pub fn start_saving(&mut self, path: PathBuf, replace: bool) {
+        let read = self.read_beside(&path);
         let Some(open) = &self.open else {
             return;
         };
         let (settings, origin) = (open.settings(), open.origin.clone());
         self.start(Task::Save, move |_| {
             let saved = origin.text_at(&path, &settings).and_then(|text| {
-                exports::write_whole(&path, text.as_bytes()).map_err(|error| {
-                    let what = format!("it cannot be written ({error})");
-                    let remedy = "choose a folder that may be written to";
-                    FileError::new(&path, Fault::new(what, remedy))
-                })
+                files::write(&path, text.as_bytes(), Kind::Flight, &read, replace)
+                    .map_err(|fault| FileError::new(&path, fault))
             });
             let saved = match saved {
                 Ok(()) => Ok((origin.saved_at(&path), settings)),
@@ -221,8 +220,10 @@ impl State {
         });
     }
 
-    /// Exports the chosen photos.
-    pub fn start_export(&mut self, folder: PathBuf) {
+    /// Exports the chosen photos, into a folder with the export of another flight where that may be
+    /// replaced.
+    pub fn start_export(&mut self, folder: PathBuf, replace: Replace) {
+        let read = self.read();
         let Some(open) = &self.open else {
             return;
         };
@@ -244,6 +245,7 @@ impl State {
         let settings = open.settings();
         let (crs, inputs) = (open.crs.clone(), open.inputs.clone());
         let warnings = open.all_warnings();
+        let source = open.origin.file().to_owned();
         self.start(Task::Export, move |progress| {
             // Those that the window has not come to yet.
             let compared = formats::compare_colours(&flight, &photo_files, &colours, progress);
@@ -266,6 +268,9 @@ impl State {
                 settings: &settings,
                 crs: crs.as_deref(),
                 inputs: &inputs,
+                read: &read,
+                source: &source,
+                replace,
                 warnings: &warnings,
             };
             let exported = exports::export_for_split_desktop(&folder, &request, progress);

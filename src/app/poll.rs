@@ -163,6 +163,9 @@ impl State {
                         open.options = OpenOptions::default();
                     }
                     open.bundled = false;
+                    if let Some(path) = origin.flight_file() {
+                        open.read.add(path);
+                    }
                     open.origin = origin;
                     open.saved = settings;
                 }
@@ -359,6 +362,8 @@ impl OpenFlight {
         self.path.clone_from(&before.path);
         self.options.clone_from(&before.options);
         self.origin = before.origin.clone();
+        self.opened_file.clone_from(&before.opened_file);
+        self.read.extend(&before.read);
         self.bundled = before.bundled;
         self.measure = before.measure;
         self.tracing = before.tracing.take();

@@ -42,8 +42,8 @@ pub enum HeldBack {
     Quit,
     /// Another flight, or the start page.
     Leave(Box<Command>),
-    /// Writing where there is a file already.
-    Replace(Box<Command>),
+    /// Writing where there is something already, with what that is in a sentence.
+    Replace(Box<Command>, String),
 }
 
 /// The whole state of the window.
@@ -84,8 +84,9 @@ pub struct State {
     pub reads_other: bool,
     /// How many flights were opened.
     pub opened: u64,
-    /// A picture of the viewport that was asked for; the viewport draws it.
-    pub picture: Option<PictureRequest>,
+    /// A picture of the viewport that was asked for, and whether it may replace a file of others; the
+    /// viewport draws it.
+    pub picture: Option<(PictureRequest, bool)>,
 }
 
 /// A picture of the viewport to be written.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::outputs::OutputArguments;
 use super::{Answer, ScalesFormat};
 use crate::exports::{self, AnovaReport};
 use crate::fault::Fault;
@@ -43,9 +44,8 @@ pub(super) struct AnovaArguments {
     /// How to write it.
     #[arg(long, value_enum, default_value = "table")]
     format: ScalesFormat,
-    /// Write to this file instead of standard output.
-    #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArguments,
 }
 
 /// "9,1.9"
@@ -57,12 +57,14 @@ fn published(text: &str) -> Result<(usize, f64), String> {
 }
 
 pub(super) fn anova(arguments: &AnovaArguments) -> Result<Answer, String> {
+    let outputs = arguments.output.outputs(&arguments.file)?;
     let (report, warnings) = report(arguments)?;
     let text = match arguments.format {
         ScalesFormat::Table => exports::anova_table(&report),
         ScalesFormat::Csv => exports::anova_csv(&report).map_err(|e| e.to_string())?,
         ScalesFormat::Json => exports::anova_json(&report).map_err(|e| e.to_string())?,
     };
+    let text = outputs.deliver(text)?;
     Ok(Answer { text, warnings })
 }
 

@@ -70,6 +70,11 @@ impl DistributionArguments {
         Ok((joined, warnings))
     }
 
+    /// The files.
+    pub(super) fn files(&self) -> &[PathBuf] {
+        &self.files
+    }
+
     /// The names of the files.
     pub(super) fn names(&self) -> Vec<String> {
         let names = self.files.iter().map(|file| file.display().to_string());

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::outputs::OutputArguments;
 use super::{Answer, ScalesFormat};
 use crate::exports;
 use crate::formats::read_effort_table;
@@ -17,17 +18,18 @@ pub(super) struct EffortArguments {
     /// How to write it.
     #[arg(long, value_enum, default_value = "table")]
     format: ScalesFormat,
-    /// Write to this file instead of standard output.
-    #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArguments,
 }
 
 pub(super) fn effort(arguments: &EffortArguments) -> Result<Answer, String> {
+    let outputs = arguments.output.outputs([&arguments.file])?;
     let (effort, warnings) = read_effort_table(&arguments.file).map_err(|e| e.to_string())?;
     let text = match arguments.format {
         ScalesFormat::Table => exports::effort_text(&effort),
         ScalesFormat::Csv => exports::effort_csv(&effort).map_err(|e| e.to_string())?,
         ScalesFormat::Json => exports::effort_json(&effort).map_err(|e| e.to_string())?,
     };
+    let text = outputs.deliver(text)?;
     Ok(Answer { text, warnings })
 }

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::flight_arguments::FlightArguments;
+use super::outputs::Force;
 use super::{Answer, OutputUnit};
-use crate::exports::{self, ExportRequest, ScaleReport};
+use crate::exports::{self, ExportRequest, Replace, ScaleReport};
 use crate::fault::Fault;
 use crate::flight::{Limits, Verdict, judge_all};
 use crate::formats::{self, FileError};
@@ -25,6 +26,8 @@ pub(super) struct ExportArguments {
     /// Which photos: all, or those without any doubt.
     #[arg(long, value_enum, default_value = "all")]
     photos: Selection,
+    #[command(flatten)]
+    force: Force,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
@@ -79,6 +82,12 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
             crs: opened.crs.as_deref(),
             inputs: &opened.inputs,
             warnings: &opened.all_warnings(),
+            read: &opened.read,
+            source: opened.origin.file(),
+            replace: match arguments.force.force {
+                true => Replace::Anything,
+                false => Replace::Nothing,
+            },
         },
         progress,
     )

@@ -24,6 +24,12 @@ pub(super) struct FlightArguments {
 }
 
 impl FlightArguments {
+    /// The files that are named. What a folder is, and what of it is read, is known when it is open.
+    pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        let named = std::iter::once(&self.flight).chain(&self.surface);
+        named.filter(|path| path.is_file())
+    }
+
     /// Opens it; an error is one line.
     pub(super) fn open(&self, progress: &Progress) -> Result<Opened, String> {
         let options = OpenOptions {

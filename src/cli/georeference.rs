@@ -7,8 +7,9 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::Answer;
-use crate::exports;
+use super::outputs::{Force, Outputs};
 use crate::fault::Fault;
+use crate::files::{Inputs, Kind, Recording};
 use crate::formats::{
     self, FileError, GeoreferenceRequest, Georeferenced, KnownDistance, KnownKind,
 };
@@ -50,6 +51,8 @@ pub(super) struct GeoreferenceArguments {
     /// Write the flight to this flight.toml.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    force: Force,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -71,25 +74,29 @@ pub(super) fn georeference(
         level: arguments.level,
     };
     let path = &arguments.reconstruction;
-    let result =
-        formats::georeference(path, &request, progress).map_err(|error| error.to_string())?;
+    let named = [
+        Some(path),
+        request.positions.as_ref(),
+        request.control_points.as_ref(),
+    ];
+    let mut outputs = Outputs::new(arguments.force, named.into_iter().flatten());
     if let Some(target) = &arguments.output {
-        if target
-            .extension()
-            .is_none_or(|extension| extension != "toml")
-        {
-            // Anything else could be one of the files that were read.
+        let ending = target.extension();
+        if ending.is_none_or(|ending| ending != "toml") {
             let fault = Fault::new("a flight file ends in .toml", "give it such a name");
             return Err(FileError::new(target, fault).to_string());
         }
+        outputs = outputs.and(target, Kind::Flight)?;
+    }
+    let recording = Recording::start();
+    let result =
+        formats::georeference(path, &request, progress).map_err(|error| error.to_string())?;
+    outputs.read(&Inputs::default().with_opened(&recording.files()))?;
+    if let Some(target) = &arguments.output {
         let text = result
             .flight_text(target, path, arguments.photos.as_deref(), None)
             .map_err(|error| error.to_string())?;
-        exports::write_whole(target, text.as_bytes()).map_err(|error| {
-            let what = format!("it cannot be written ({error})");
-            let fault = Fault::new(what, "choose a folder that may be written to");
-            FileError::new(target, fault).to_string()
-        })?;
+        outputs.write(target, text.as_bytes(), Kind::Flight)?;
     }
     Ok(Answer {
         text: match arguments.format {

@@ -14,6 +14,7 @@ mod effort;
 mod export;
 mod flight_arguments;
 mod georeference;
+mod outputs;
 mod psd;
 mod psd_compare;
 mod psd_fit;
@@ -32,9 +33,11 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use flight_arguments::FlightArguments;
+use outputs::OutputArguments;
 
 use crate::exports;
-use crate::fault::{Fault, one_line};
+use crate::fault::one_line;
+use crate::files;
 use crate::formats::{self, FileError};
 use crate::jobs::{Job, Progress};
 use crate::sample::{self, Lens, Preset, SampleOptions};
@@ -96,9 +99,8 @@ struct ScalesArguments {
     /// How to write them.
     #[arg(long, value_enum, default_value = "table")]
     format: ScalesFormat,
-    /// Write to this file instead of standard output.
-    #[arg(short, long, value_name = "FILE")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArguments,
 }
 
 #[derive(Debug, Args)]
@@ -211,6 +213,7 @@ enum InfoFormat {
 
 /// What a command has to say when it is done.
 struct Answer {
+    /// To standard output; empty where it went into a file.
     text: String,
     /// To standard error, one line each.
     warnings: Vec<String>,
@@ -233,7 +236,7 @@ pub fn run() -> ExitCode {
     // Whatever is being written is not finished now. Without the handler (which only fails where
     // another one is set) an interrupt could leave a temporary file.
     let _ = ctrlc::set_handler(|| {
-        exports::remove_unfinished();
+        files::remove_unfinished();
         std::process::exit(130);
     });
     let Some(command) = arguments.command else {
@@ -251,44 +254,24 @@ pub fn run() -> ExitCode {
     if std::env::var_os("FRAGSCALE_BACKTRACE").is_none() {
         std::panic::set_hook(Box::new(|_| {}));
     }
-    let (output, work): (Option<PathBuf>, Work) = match command {
-        Command::Scales(arguments) => (
-            arguments.output.clone(),
-            Box::new(move |progress| scales(&arguments, progress)),
-        ),
-        Command::Export(arguments) => (
-            None,
-            Box::new(move |progress| export::export(&arguments, progress)),
-        ),
-        Command::Check(arguments) => (
-            None,
-            Box::new(move |progress| check::check(&arguments, progress)),
-        ),
-        Command::Georeference(arguments) => (
-            None,
-            Box::new(move |progress| georeference::georeference(&arguments, progress)),
-        ),
-        Command::Anova(arguments) => (
-            arguments.output.clone(),
-            Box::new(move |_| anova::anova(&arguments)),
-        ),
-        Command::Effort(arguments) => (
-            arguments.output.clone(),
-            Box::new(move |_| effort::effort(&arguments)),
-        ),
-        Command::Psd(command) => (
-            command.output(),
-            Box::new(move |progress| psd::psd(&command, progress)),
-        ),
-        Command::Info(arguments) => (None, Box::new(move |progress| info(&arguments, progress))),
-        Command::Sample(arguments) => {
-            (None, Box::new(move |progress| sample(&arguments, progress)))
+    let work: Work = match command {
+        Command::Scales(arguments) => Box::new(move |progress| scales(&arguments, progress)),
+        Command::Export(arguments) => {
+            Box::new(move |progress| export::export(&arguments, progress))
         }
+        Command::Check(arguments) => Box::new(move |progress| check::check(&arguments, progress)),
+        Command::Georeference(arguments) => {
+            Box::new(move |progress| georeference::georeference(&arguments, progress))
+        }
+        Command::Anova(arguments) => Box::new(move |_| anova::anova(&arguments)),
+        Command::Effort(arguments) => Box::new(move |_| effort::effort(&arguments)),
+        Command::Psd(command) => Box::new(move |progress| psd::psd(&command, progress)),
+        Command::Info(arguments) => Box::new(move |progress| info(&arguments, progress)),
+        Command::Sample(arguments) => Box::new(move |progress| sample(&arguments, progress)),
         #[cfg(feature = "render")]
-        Command::Render(arguments) => (
-            None,
-            Box::new(move |progress| render::render(&arguments, progress)),
-        ),
+        Command::Render(arguments) => {
+            Box::new(move |progress| render::render(&arguments, progress))
+        }
     };
     let answer = match run_with_progress(work) {
         Ok(answer) => answer,
@@ -297,22 +280,7 @@ pub fn run() -> ExitCode {
     for warning in answer.warnings {
         say(&format!("warning: {}", one_line(&warning)));
     }
-    match output {
-        None => print(&answer.text),
-        Some(path) => match write(&path, answer.text.as_bytes()) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(message) => fail(&message),
-        },
-    }
-}
-
-/// Writes a file whole or not at all.
-fn write(path: &Path, contents: &[u8]) -> Result<(), String> {
-    exports::write_whole(path, contents).map_err(|error| {
-        let what = format!("it cannot be written ({error})");
-        let fault = Fault::new(what, "choose a folder that may be written to");
-        FileError::new(path, fault).to_string()
-    })
+    print(&answer.text)
 }
 
 /// Opens the window, with a flight where one is named.
@@ -324,7 +292,7 @@ fn window(flight: Vec<PathBuf>) -> ExitCode {
     }
     let ran = crate::app::run(flight);
     // What was being written when the window closed is not finished.
-    exports::remove_unfinished();
+    files::remove_unfinished();
     match ran {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => fail(&message),
@@ -332,7 +300,9 @@ fn window(flight: Vec<PathBuf>) -> ExitCode {
 }
 
 fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, String> {
+    let mut outputs = arguments.output.outputs(arguments.flight.files())?;
     let opened = arguments.flight.open(progress)?;
+    outputs.read(&opened.read)?;
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let (flight, objects) = (&opened.flight, &opened.settings.scale_objects);
@@ -346,6 +316,7 @@ fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, St
         ScalesFormat::Csv => exports::scales_csv(&report).map_err(|e| e.to_string())?,
         ScalesFormat::Json => exports::scales_json(&report).map_err(|e| e.to_string())?,
     };
+    let text = outputs.deliver(text)?;
     let mut warnings = opened.all_warnings();
     warnings.extend(notes_of(&report));
     Ok(Answer { text, warnings })

@@ -1,7 +1,5 @@
 //! `fragscale psd`: what is done with size distributions.
 
-use std::path::PathBuf;
-
 use clap::Subcommand;
 
 use super::Answer;
@@ -15,16 +13,6 @@ pub(super) enum PsdCommand {
     Fit(FitArguments),
     /// Hold methods against a reference: percent errors, norms, shifts, the figure and the report.
     Compare(CompareArguments),
-}
-
-impl PsdCommand {
-    /// Where the answer goes.
-    pub(super) fn output(&self) -> Option<PathBuf> {
-        match self {
-            Self::Fit(arguments) => arguments.output.clone(),
-            Self::Compare(arguments) => arguments.output.clone(),
-        }
-    }
 }
 
 pub(super) fn psd(command: &PsdCommand, progress: &Progress) -> Result<Answer, String> {

@@ -6,10 +6,12 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::distribution_arguments::DistributionArguments;
+use super::outputs::OutputArguments;
 use super::psd_fit::models;
 use super::written_beside::{check_report_name, drawn_figures, figure_formats, write_all};
 use super::{Answer, ScalesFormat};
 use crate::exports::{self, ComparisonReport};
+use crate::files::Kind;
 use crate::formats::FileError;
 use crate::fragmentation::{
     self, Comparison, ComparisonOptions, DistributionSet, Model, Repeatability, SieveSeries,
@@ -51,9 +53,8 @@ pub(super) struct CompareArguments {
     /// How to write it.
     #[arg(long, value_enum, default_value = "table")]
     format: ScalesFormat,
-    /// Write to this file instead of standard output.
-    #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArguments,
     /// Draw the distributions into this file, .svg or .png; may be given more than once.
     #[arg(long, value_name = "FILE")]
     figure: Vec<PathBuf>,
@@ -99,6 +100,10 @@ pub(super) fn compare(arguments: &CompareArguments, progress: &Progress) -> Resu
     if let Some(report) = &arguments.report {
         check_report_name(report)?;
     }
+    let mut outputs = arguments.output.outputs(arguments.table.files())?;
+    for path in arguments.figure.iter().chain(&arguments.report) {
+        outputs = outputs.and(path, Kind::Result)?;
+    }
     progress.stage("reading");
     let (read, mut warnings) = arguments.table.read()?;
     let prepared = prepare(read, arguments, &mut warnings)?;
@@ -131,7 +136,8 @@ pub(super) fn compare(arguments: &CompareArguments, progress: &Progress) -> Resu
         ScalesFormat::Csv => exports::comparison_csv(&comparison).map_err(|e| e.to_string())?,
         ScalesFormat::Json => exports::comparison_json(&comparison).map_err(|e| e.to_string())?,
     };
-    write_all(pending)?;
+    write_all(pending, &outputs)?;
+    let text = outputs.deliver(text)?;
     Ok(Answer { text, warnings })
 }
 

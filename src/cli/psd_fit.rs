@@ -6,10 +6,12 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rayon::prelude::*;
 
+use super::outputs::OutputArguments;
 use super::written_beside::{drawn_figures, figure_formats, write_all};
 use super::{Answer, OutputUnit, ScalesFormat};
 use crate::exports::{self, FitReport, FittedCurve, FittedDistribution};
 use crate::fault::Fault;
+use crate::files::Kind;
 use crate::formats::{DistributionColumns, FileError, read_point_weights, read_size_distributions};
 use crate::fragmentation::{self, FitOptions, LabelledDistribution, Model};
 
@@ -50,9 +52,8 @@ pub(super) struct FitArguments {
     /// How to write it.
     #[arg(long, value_enum, default_value = "table")]
     format: ScalesFormat,
-    /// Write to this file instead of standard output.
-    #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArguments,
     /// Draw points, fits and their bands (95 %) into this file, .svg or .png; may be given more than
     /// once.
     #[arg(long, value_name = "FILE")]
@@ -87,6 +88,10 @@ fn percent(text: &str) -> Result<f64, String> {
 pub(super) fn fit(arguments: &FitArguments) -> Result<Answer, String> {
     let formats = figure_formats(&arguments.figure)?;
     let path = &arguments.file;
+    let mut outputs = arguments.output.outputs([path])?;
+    for figure in &arguments.figure {
+        outputs = outputs.and(figure, Kind::Result)?;
+    }
     let columns = DistributionColumns {
         size: arguments.size.clone(),
         passing: arguments.passing.clone(),
@@ -150,6 +155,7 @@ pub(super) fn fit(arguments: &FitArguments) -> Result<Answer, String> {
         ScalesFormat::Csv => exports::fit_csv(&report).map_err(|e| e.to_string())?,
         ScalesFormat::Json => exports::fit_json(&report).map_err(|e| e.to_string())?,
     };
-    write_all(figures)?;
+    write_all(figures, &outputs)?;
+    let text = outputs.deliver(text)?;
     Ok(Answer { text, warnings })
 }

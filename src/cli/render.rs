@@ -9,9 +9,10 @@ use image::{DynamicImage, RgbaImage};
 
 use super::Answer;
 use super::flight_arguments::FlightArguments;
+use super::outputs::{Force, Outputs};
 use crate::camera::Camera;
-use crate::exports;
 use crate::fault::Fault;
+use crate::files::{Kind, marked_png};
 use crate::flight::{FlightParts, Outcome};
 use crate::formats::{self, FileError, Opened, PhotoFile};
 use crate::geometry::{Bounds, LocalFrame};
@@ -33,6 +34,8 @@ pub(super) struct RenderArguments {
     /// The picture to write, a PNG.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+    #[command(flatten)]
+    force: Force,
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: Size,
@@ -181,24 +184,28 @@ fn share(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn render(arguments: &RenderArguments, progress: &Progress) -> Result<Answer, String> {
+    let outputs = Outputs::new(arguments.force, arguments.flight.files());
+    let mut outputs = outputs.and(&arguments.output, Kind::Result)?;
     let opened = arguments.flight.open(progress)?;
+    outputs.read(&opened.read)?;
     let path = &arguments.flight.flight;
     let at_flight = |fault| FileError::new(path, fault).to_string();
     let picture = draw(arguments, &opened, progress).map_err(at_flight)?;
     progress.stage("writing the picture");
     let mut bytes = Vec::new();
-    let at_output = |what: String| {
-        let fault = Fault::new(what, "choose a folder that may be written to");
-        FileError::new(&arguments.output, fault).to_string()
-    };
     picture
         .write_to(
             &mut std::io::Cursor::new(&mut bytes),
             image::ImageFormat::Png,
         )
-        .map_err(|error| at_output(format!("it cannot be encoded ({error})")))?;
-    exports::write_whole(&arguments.output, &bytes)
-        .map_err(|error| at_output(format!("it cannot be written ({error})")))?;
+        .map_err(|error| {
+            let fault = Fault::new(
+                format!("it cannot be encoded ({error})"),
+                "draw a smaller picture",
+            );
+            FileError::new(&arguments.output, fault).to_string()
+        })?;
+    outputs.write(&arguments.output, &marked_png(bytes), Kind::Result)?;
     Ok(Answer {
         text: String::new(),
         warnings: opened.warnings,

@@ -3,8 +3,10 @@
 
 use std::path::{Path, PathBuf};
 
+use super::outputs::Outputs;
 use crate::exports::{FigureContents, FigureFormat};
 use crate::fault::Fault;
+use crate::files::Kind;
 use crate::formats::FileError;
 
 /// A file whose bytes are not written yet.
@@ -46,8 +48,8 @@ pub(super) fn check_report_name(path: &Path) -> Result<(), String> {
 }
 
 /// Each whole or not at all.
-pub(super) fn write_all(pending: Vec<Pending<'_>>) -> Result<(), String> {
+pub(super) fn write_all(pending: Vec<Pending<'_>>, outputs: &Outputs<'_>) -> Result<(), String> {
     pending
         .into_iter()
-        .try_for_each(|(path, bytes)| super::write(path, &bytes))
+        .try_for_each(|(path, bytes)| outputs.write(path, &bytes, Kind::Result))
 }

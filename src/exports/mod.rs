@@ -1,7 +1,6 @@
 //! What goes out: the scales of a flight as a table, CSV and JSON, the folder for Split-Desktop, and
-//! files that are there whole or not at all.
+//! what is learnt from size distributions.
 
-mod atomic;
 mod markup;
 mod report_object;
 mod scale_report;
@@ -11,7 +10,6 @@ mod scales_table;
 mod size_distributions;
 mod split_desktop;
 
-pub use atomic::{make_folder_whole, remove_unfinished, write_whole};
 pub use report_object::{PointCloudScale, ReportObject};
 pub use scale_report::{ReportLine, ScaleReport};
 pub use scales_csv::scales_csv;
@@ -24,4 +22,6 @@ pub use size_distributions::{
     effort_csv, effort_json, effort_text, figure_of_comparison, figure_of_fits, figure_png,
     figure_svg, fit_csv, fit_json, fit_table,
 };
-pub use split_desktop::{ExportError, ExportRequest, ExportSummary, export_for_split_desktop};
+pub use split_desktop::{
+    ExportError, ExportRequest, ExportSummary, Replace, export_for_split_desktop, other_flight_in,
+};

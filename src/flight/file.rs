@@ -10,6 +10,7 @@ use super::camera_entry::CameraEntry;
 use super::known_keys::{key_line, line_of, nth_key_line, refuse_unknown_keys};
 use super::scale_object::{ScaleObject, ScaleObjectEntry};
 use crate::fault::Fault;
+use crate::files::FLIGHT_MARK;
 use crate::scale::{Ground, ImageKind};
 use crate::surface::{SurfaceOptions, UpAxis};
 use crate::units::LengthUnit;
@@ -241,12 +242,13 @@ impl FlightFile {
         }
     }
 
-    /// The text of this flight.
+    /// The text of this flight, with a first line that says who wrote it.
     ///
     /// # Errors
     /// Never for a flight that was parsed; the serializer's sentence otherwise.
     pub fn to_toml(&self) -> Result<String, Fault> {
         toml::to_string(self)
+            .map(|text| format!("{FLIGHT_MARK}{text}"))
             .map_err(|e| Fault::new(format!("the flight cannot be written ({e})"), "report this"))
     }
 

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::fault::Fault;
+use crate::files::note_opened;
 
 /// A fault and the file that it is in; prints as `FILE[:LINE]: what; remedy`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -69,6 +70,7 @@ pub fn open_file(path: &Path) -> Result<fs::File, FileError> {
             ),
         ));
     }
+    note_opened(path);
     fs::File::open(path).map_err(|e| failed(&e))
 }
 

@@ -15,6 +15,7 @@ use super::world_frame::{Frame, Known};
 use super::{CloudFile, Kind, Package, PoseLine, Reconstruction, detect, read_project, ros};
 use crate::camera::Camera;
 use crate::fault::Fault;
+use crate::files::{Inputs, Recording};
 use crate::flight::{
     CameraEntry, CameraSource, Flight, FlightFile, FlightParts, FlightSettings, Photo, PhotoSource,
 };
@@ -70,6 +71,8 @@ pub struct Opened {
     pub reconstruction: Option<FlightReconstruction>,
     /// Every file that was read except the photos, in the order of reading.
     pub inputs: Vec<PathBuf>,
+    /// These, the photos and whatever was opened on the way: nothing of it may be written over.
+    pub read: Inputs,
 }
 
 impl Opened {
@@ -90,6 +93,7 @@ pub fn open_flight(
     options: &OpenOptions,
     progress: &Progress,
 ) -> Result<Opened, FileError> {
+    let recording = Recording::start();
     let kind = detect(path)?;
     let source = match &kind {
         Kind::Flight(file) => Source::of_file(file, options, progress)?,
@@ -107,7 +111,10 @@ pub fn open_flight(
             ));
         }
     };
-    source.into_flight(options, progress)
+    let mut opened = source.into_flight(options, progress)?;
+    let photos = opened.photo_files.iter().flat_map(|file| &file.path);
+    opened.read = Inputs::of(opened.inputs.iter().chain(photos)).with_opened(&recording.files());
+    Ok(opened)
 }
 
 /// What a flight is made of, before its surface is read and its cameras meet their photo files.
@@ -575,6 +582,7 @@ impl Source {
             origin,
             reconstruction: self.reconstruction,
             inputs: self.inputs,
+            read: Inputs::default(),
         })
     }
 

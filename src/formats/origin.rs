@@ -31,6 +31,11 @@ impl FlightOrigin {
         self.is_flight_file.then_some(self.path.as_path())
     }
 
+    /// The file or folder that the flight is of: its flight.toml, or a reconstruction.
+    pub fn file(&self) -> &Path {
+        &self.path
+    }
+
     /// Whether the flight has another surface or other photos than its flight.toml names.
     pub fn has_other_files(&self) -> bool {
         self.is_flight_file && self.is_changed
@@ -75,7 +80,7 @@ impl FlightOrigin {
     /// flight.toml, its comments and layout stay; its paths, and those of a reconstruction, are
     /// written relative to `target`.
     ///
-    /// Write it with `exports::write_whole`.
+    /// Write it with `files::write`.
     ///
     /// # Errors
     /// Where the flight.toml cannot be read any more, the folder of `target` does not exist, a path is

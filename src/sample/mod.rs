@@ -39,8 +39,8 @@ pub use preset::{Lens, Preset, Recipe};
 pub use scene::{Meeting, Scene, SceneCaster, Sphere, Thing};
 pub use sfm_cloud::CloudPlan;
 
-use crate::exports;
 use crate::fault::Fault;
+use crate::files::make_folder_whole;
 use crate::geometry::Ray;
 use crate::jobs::Progress;
 use crate::surface::Cloud;
@@ -86,7 +86,7 @@ pub struct SampleOptions {
 /// Where the folder cannot be written, or on cancel; then nothing is left.
 pub fn make(folder: &Path, options: &SampleOptions, progress: &Progress) -> Result<(), Fault> {
     let recipe = recipe(options)?;
-    let written = exports::make_folder_whole(folder, |part| {
+    let written = make_folder_whole(folder, |part| {
         fill(part, &recipe, options, progress).map_err(Stop::Fault)
     });
     written.map_err(|stop| match stop {

@@ -25,6 +25,7 @@ mod dropping;
 mod export;
 mod georeference;
 mod looks;
+mod overwriting;
 mod photos;
 mod random;
 mod scale_object;

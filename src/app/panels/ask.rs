@@ -8,7 +8,6 @@ use super::size_distributions::{add_distributions, add_effort, paste, save_figur
 use crate::app::actions;
 use crate::app::command::{Asking, Command};
 use crate::app::open_flight::OpenFlight;
-use crate::app::size_distributions::DistributionCommand;
 use crate::app::state::{HeldBack, PictureRequest, State};
 use crate::app::work::DialogFor;
 
@@ -72,7 +71,9 @@ fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
     let modal = egui::Modal::new(egui::Id::unique("unsaved")).show(context, |ui| {
         ui.set_width(360.0);
         match &state.held_back {
-            Some(HeldBack::Replace(command)) => replace(command, ui, commands),
+            Some(HeldBack::Replace(command, question)) => {
+                replace(command, question, ui, commands);
+            }
             _ if state.is_changed() => unsaved(state, ui, commands),
             _ => writing(ui, commands),
         }
@@ -118,25 +119,19 @@ fn writing(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     });
 }
 
-fn replace(command: &Command, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    ui.heading("Replace the file?");
-    let path = match command {
-        Command::SaveAs(path) | Command::SaveGeoreferenced { path, .. } => {
-            path.display().to_string()
-        }
-        Command::Picture(request) => request.path.display().to_string(),
-        Command::Distributions(
-            DistributionCommand::SaveFigure(path) | DistributionCommand::SaveReport(path),
-        ) => path.display().to_string(),
-        _ => String::new(),
+fn replace(command: &Command, question: &str, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let what = match command {
+        Command::Export(_) => "export",
+        _ => "file",
     };
-    ui.label(format!("There is a file already: {path}"));
+    ui.heading(format!("Replace the {what}?"));
+    ui.label(question);
     ui.add_space(8.0);
     ui.horizontal(|ui| {
         if ui.button("Replace it").clicked() {
             commands.push(Command::Discard);
         }
-        if ui.button("Keep the file").clicked() {
+        if ui.button(format!("Keep the {what}")).clicked() {
             commands.push(Command::Keep);
         }
     });
@@ -204,7 +199,7 @@ fn proposed(open: &OpenFlight, name: Option<&str>) -> PathBuf {
 }
 
 /// A path as typed, where it is one: without the quotes that file managers put around.
-pub(super) fn typed(path: &str) -> Option<PathBuf> {
+pub(in crate::app) fn typed(path: &str) -> Option<PathBuf> {
     let path = path.trim().trim_matches(['"', '\'']);
     let path = path.strip_prefix("file://").unwrap_or(path);
     (!path.is_empty()).then(|| PathBuf::from(path))

@@ -20,6 +20,7 @@ mod traced_photo;
 mod view_buttons;
 
 pub use ask::ask;
+pub(super) use ask::typed;
 pub use inspector::Inspector;
 pub use layers_panel::layers_panel;
 pub use log_panel::{log_panel, notice};

@@ -25,6 +25,8 @@ pub struct MeasuredStep {
 pub struct EffortFile {
     /// Its name.
     pub name: String,
+    /// Where it is.
+    pub path: PathBuf,
     /// The times.
     pub effort: Effort,
     /// What was noticed while reading.
@@ -102,6 +104,7 @@ impl State {
                 self.say(Severity::Note, &format!("{name}: times of steps"));
                 self.distributions.effort = Some(EffortFile {
                     name,
+                    path: path.to_owned(),
                     effort,
                     warnings,
                 });

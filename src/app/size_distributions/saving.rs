@@ -6,31 +6,32 @@ use std::sync::Arc;
 use super::DistributionCommand;
 use super::computing::Computed;
 use crate::app::command::Command;
-use crate::app::state::{HeldBack, Severity, State};
+use crate::app::state::{Severity, State};
 use crate::app::work::{Done, Task};
 use crate::exports::{self, ComparisonReport, FigureContents, FigureFormat, FittedDistribution};
 use crate::fault::Fault;
+use crate::files::{self, Kind};
 use crate::formats::FileError;
 
 impl State {
     /// Writes the figure; asks before a file is replaced.
     pub(super) fn save_figure(&mut self, path: PathBuf) {
         let command = DistributionCommand::SaveFigure(path.clone());
-        if self.may_write(&path, command) {
-            self.start_saving_figure(path);
+        if self.may_save(&path, command) {
+            self.start_saving_figure(path, false);
         }
     }
 
     /// Writes the report; asks before a file is replaced.
     pub(super) fn save_report(&mut self, path: PathBuf) {
         let command = DistributionCommand::SaveReport(path.clone());
-        if self.may_write(&path, command) {
-            self.start_saving_report(path);
+        if self.may_save(&path, command) {
+            self.start_saving_report(path, false);
         }
     }
 
     /// Whether the file can be written now; else asks, or says why not.
-    fn may_write(&mut self, path: &Path, command: DistributionCommand) -> bool {
+    fn may_save(&mut self, path: &Path, command: DistributionCommand) -> bool {
         self.asking = None;
         if self.is_busy(Task::SaveDistributions) {
             return false;
@@ -40,50 +41,46 @@ impl State {
             self.say(Severity::Error, text);
             return false;
         }
-        if path.exists() {
-            let command = Command::Distributions(command);
-            self.held_back = Some(HeldBack::Replace(Box::new(command)));
-            return false;
-        }
-        true
+        let command = Command::Distributions(command);
+        self.may_write(path, Kind::Result, &self.read(), command)
     }
 
     /// Goes on once a file may be replaced.
     pub(in crate::app) fn replace_distributions(&mut self, command: DistributionCommand) {
         match command {
-            DistributionCommand::SaveFigure(path) => self.start_saving_figure(path),
-            DistributionCommand::SaveReport(path) => self.start_saving_report(path),
+            DistributionCommand::SaveFigure(path) => self.start_saving_figure(path, true),
+            DistributionCommand::SaveReport(path) => self.start_saving_report(path, true),
             _ => {}
         }
     }
 
-    fn start_saving_figure(&mut self, path: PathBuf) {
-        self.write(path, |computed, path| {
+    fn start_saving_figure(&mut self, path: PathBuf, replace: bool) {
+        self.write(path, replace, |computed, path| {
             FigureFormat::of(path)?.bytes(&contents(computed))
         });
     }
 
-    fn start_saving_report(&mut self, path: PathBuf) {
-        self.write(path, |computed, _| report(computed).map(String::into_bytes));
+    fn start_saving_report(&mut self, path: PathBuf, replace: bool) {
+        self.write(path, replace, |computed, _| {
+            report(computed).map(String::into_bytes)
+        });
     }
 
     fn write(
         &mut self,
         path: PathBuf,
+        replace: bool,
         bytes: impl FnOnce(&Computed, &Path) -> Result<Vec<u8>, Fault> + Send + 'static,
     ) {
         let Some(computed) = self.distributions.computed.clone() else {
             return;
         };
+        let read = self.read();
         self.start(Task::SaveDistributions, move |progress| {
             progress.stage("drawing and writing");
             let computed: Arc<Computed> = computed;
-            let written = bytes(&computed, &path).and_then(|bytes| {
-                exports::write_whole(&path, &bytes).map_err(|error| {
-                    let what = format!("it cannot be written ({error})");
-                    Fault::new(what, "choose a folder that may be written to")
-                })
-            });
+            let written = bytes(&computed, &path)
+                .and_then(|bytes| files::write(&path, &bytes, Kind::Result, &read, replace));
             Done::SavedDistributions(match written {
                 Ok(()) => Ok(path),
                 Err(fault) => Err(FileError::new(&path, fault).to_string()),

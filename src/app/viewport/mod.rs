@@ -16,7 +16,7 @@ use super::frame_times::{FrameTimes, Phase};
 use super::open_flight::OpenFlight;
 use super::state::{PictureRequest, State};
 use super::work::{Done, Task};
-use crate::exports;
+use crate::files::{self, Kind, marked_png};
 use crate::render::{Background, Gpu, Renderer, Show, View};
 use graphics::{Graphics, Uploaded};
 use mouse::mouse;
@@ -127,9 +127,10 @@ impl Viewport {
 
     /// Draws a picture that was asked for, and has it written.
     pub fn take_picture(&mut self, state: &mut State) {
-        let Some(request) = state.picture.take() else {
+        let Some((request, replace)) = state.picture.take() else {
             return;
         };
+        let read = state.read();
         let (Some(graphics), Some(open)) = (&mut self.graphics, &state.open) else {
             state.apply(Command::Report(
                 "no picture: there is no graphics device".to_owned(),
@@ -173,9 +174,9 @@ impl Viewport {
                 picture
                     .write_to(&mut bytes, image::ImageFormat::Png)
                     .map_err(|error| error.to_string())?;
-                exports::write_whole(&path, bytes.get_ref()).map_err(|error| {
-                    format!("it cannot be written ({error}); choose another place")
-                })
+                let bytes = marked_png(bytes.into_inner());
+                files::write(&path, &bytes, Kind::Result, &read, replace)
+                    .map_err(|fault| fault.to_string())
             };
             let written = write().map_err(|what| format!("{}: {what}", path.display()));
             Done::Picture(written.map(|()| path))

@@ -6,8 +6,12 @@
 //! somebody else put there or changed, which is left alone and makes the export stop before it writes
 //! anything; or nothing. For the pictures of a photo the list also keeps what they were made from, so
 //! that an export that is started again makes only those that are missing or out of date.
+//!
+//! The list also says which flight it is of: an export of another one would take its pictures away, so
+//! that has to be asked for. A file that the flight was read from is never written over, nor taken
+//! away, whatever the list says of it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::fs;
 use std::io;
@@ -16,8 +20,9 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::checksum;
-use crate::exports::atomic::write_whole;
+use super::whose::FlightOfExport;
 use crate::fault::Fault;
+use crate::files::{Inputs, is_unfinished, write_whole};
 use crate::jobs::Progress;
 
 /// The list's file.
@@ -58,6 +63,9 @@ impl std::error::Error for ExportError {}
 struct List {
     /// Says that the list is ours.
     program: String,
+    /// Which flight it is of; lists of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    flight: Option<FlightOfExport>,
     /// By path below the folder, with slashes.
     files: BTreeMap<String, Entry>,
 }
@@ -77,19 +85,44 @@ struct Entry {
 
 const PROGRAM: &str = "fragscale export for Split-Desktop, format 1";
 
+/// What of others an export may replace, besides its own files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Replace {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// The export of another flight.
+    OtherFlight,
+    /// That, and files that are in the way.
+    Anything,
+}
+
+/// The flight that the list in a folder is of, if it has one that says so.
+pub(super) fn flight_of(folder: &Path) -> Option<FlightOfExport> {
+    let bytes = fs::read(folder.join(LIST)).ok()?;
+    let list: List = serde_json::from_slice(&bytes).ok()?;
+    list.flight.filter(|_| list.program == PROGRAM)
+}
+
 /// A folder that is exported to.
-pub(super) struct ExportFolder {
+pub(super) struct ExportFolder<'a> {
     folder: PathBuf,
     list: List,
+    /// What the flight was read from.
+    read: &'a Inputs,
+    replace: Replace,
     /// Checksums of the planned files that are there.
     present: BTreeMap<String, String>,
 }
 
-impl ExportFolder {
+impl<'a> ExportFolder<'a> {
     /// Opens or makes the folder for these files (paths below it, with slashes). Nothing is written
-    /// where one of them is there already and is not ours.
+    /// where one of them was read, or is there already, is not ours and may not be replaced.
     pub(super) fn open(
         folder: &Path,
+        flight: &FlightOfExport,
+        read: &'a Inputs,
+        replace: Replace,
         planned: &[String],
         progress: &Progress,
     ) -> Result<Self, ExportError> {
@@ -98,28 +131,43 @@ impl ExportFolder {
             ExportError::new(path, Fault::new(what, "choose another folder"))
         };
         let list_path = folder.join(LIST);
-        let list = match fs::read(&list_path) {
+        let empty = List {
+            program: PROGRAM.to_owned(),
+            flight: None,
+            files: BTreeMap::new(),
+        };
+        let mut list = match fs::read(&list_path) {
             Ok(bytes) => serde_json::from_slice::<List>(&bytes)
                 .ok()
                 .filter(|list| list.program == PROGRAM)
+                .or_else(|| (replace == Replace::Anything).then_some(empty))
                 .ok_or_else(|| not_ours(&list_path, "it is no list of an export"))?,
-            Err(e) if e.kind() == io::ErrorKind::NotFound => List {
-                program: PROGRAM.to_owned(),
-                files: BTreeMap::new(),
-            },
+            Err(e) if e.kind() == io::ErrorKind::NotFound => empty,
             Err(e) => return Err(cannot(&list_path, "read", &e)),
         };
+        let before = list.flight.replace(flight.clone());
+        if let Some(before) = before.filter(|before| !before.is(flight))
+            && replace == Replace::Nothing
+        {
+            let before = before.in_words();
+            let what = format!("it holds the export of another flight, {before}");
+            let remedy = "choose another folder, or say that it may be replaced (--force)";
+            return Err(ExportError::new(folder, Fault::new(what, remedy)));
+        }
         let mut opened = Self {
             folder: folder.to_owned(),
             list,
+            read,
+            replace,
             present: BTreeMap::new(),
         };
+        opened.refuse_what_was_read(LIST)?;
         progress.stage("checking what is there");
         for (done, name) in planned.iter().enumerate() {
             progress
                 .advance(done as u64, planned.len() as u64)
                 .map_err(|fault| ExportError::new(folder, fault))?;
-            if let Some(sum) = opened.check_ours(name, progress)? {
+            if let Some(sum) = opened.check(name, progress)? {
                 opened.present.insert(name.clone(), sum);
             }
         }
@@ -130,12 +178,59 @@ impl ExportFolder {
             }
         }
         fs::create_dir_all(folder).map_err(|e| cannot(folder, "made", &e))?;
+        opened.remove_unfinished(planned);
         Ok(opened)
+    }
+
+    /// Takes away what an export that was killed had not finished. Where that fails nothing is lost but
+    /// room on the disk.
+    fn remove_unfinished(&self, planned: &[String]) {
+        let below = planned.iter().filter_map(|name| name.rsplit_once('/'));
+        let mut folders: BTreeSet<PathBuf> =
+            below.map(|(below, _)| self.folder.join(below)).collect();
+        folders.insert(self.folder.clone());
+        for folder in folders {
+            for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+                let path = entry.path();
+                let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+                if is_file && is_unfinished(&path) && self.read.named(&path).is_none() {
+                    let _ = fs::remove_file(path);
+                }
+            }
+        }
+    }
+
+    /// A file that the flight was read from stays, whoever wrote it.
+    fn refuse_what_was_read(&self, name: &str) -> Result<(), ExportError> {
+        let path = self.folder.join(name);
+        let Some(read) = self.read.named(&path) else {
+            return Ok(());
+        };
+        let read = read.display();
+        let what = format!("the flight was read from it ({read}), so it is not written over");
+        let remedy = "choose another folder";
+        Err(ExportError::new(&path, Fault::new(what, remedy)))
     }
 
     /// The folder itself.
     pub(super) fn path(&self) -> &Path {
         &self.folder
+    }
+
+    /// The checksum of a file that is there and ours; `None` where there is none, or one of others
+    /// that may be replaced.
+    fn check(&self, name: &str, progress: &Progress) -> Result<Option<String>, ExportError> {
+        self.refuse_what_was_read(name)?;
+        let ours = self.check_ours(name, progress);
+        if ours.is_err() && self.replace == Replace::Anything {
+            let path = self.folder.join(name);
+            // A folder stays in the way, and what is part of the reconstruction.
+            let is_file = fs::metadata(&path).is_ok_and(|metadata| metadata.is_file());
+            if is_file && self.read.on_the_way(&path).is_none() {
+                return Ok(None);
+            }
+        }
+        ours
     }
 
     /// The checksum of a file that is there and ours; `None` where there is none.
@@ -188,6 +283,12 @@ impl ExportFolder {
             let entry = self.list.files.get(name);
             let sum = entry.map(|entry| entry.sha256.clone()).unwrap_or_default();
             if self.present.get(name) != Some(&sum) {
+                let path = self.folder.join(name);
+                let is_new =
+                    !self.present.contains_key(name) && fs::symlink_metadata(&path).is_ok();
+                if is_new && self.replace != Replace::Anything {
+                    return Err(not_ours(&path, "it was put there meanwhile"));
+                }
                 self.write_file(name, bytes)?;
                 self.present.insert(name.clone(), sum);
             }
@@ -207,7 +308,8 @@ impl ExportFolder {
             // A list from elsewhere could name anything; ours names no file outside.
             let is_inside = name.split('/').all(|part| !["", ".", ".."].contains(&part))
                 && !name.contains(['\\', ':']);
-            if is_inside && matches!(self.check_ours(&name, progress), Ok(Some(_))) {
+            let was_read = self.read.named(&self.folder.join(&name)).is_some();
+            if is_inside && !was_read && matches!(self.check_ours(&name, progress), Ok(Some(_))) {
                 let path = self.folder.join(&name);
                 fs::remove_file(&path).map_err(|e| {
                     let what = format!("the file of an earlier export cannot be removed ({e})");
@@ -231,6 +333,7 @@ impl ExportFolder {
     }
 
     fn write_file(&self, name: &str, bytes: &[u8]) -> Result<(), ExportError> {
+        self.refuse_what_was_read(name)?;
         let path = self.folder.join(name);
         write_whole(&path, bytes).map_err(|e| {
             let what = format!("it cannot be written ({e})");
@@ -244,17 +347,38 @@ fn not_ours(path: &Path, what: &str) -> ExportError {
     let what = format!("{what} and is not from fragscale, so it is not written over");
     ExportError::new(
         path,
-        Fault::new(what, "move it away, or choose another folder"),
+        Fault::new(
+            what,
+            "move it away, or choose another folder (--force replaces it)",
+        ),
     )
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::sync::LazyLock;
 
-    fn open(folder: &Path, planned: &[&str]) -> Result<ExportFolder, ExportError> {
+    use super::*;
+    use crate::exports::other_flight_in;
+
+    static NOTHING_READ: LazyLock<Inputs> = LazyLock::new(Inputs::default);
+
+    fn open(folder: &Path, planned: &[&str]) -> Result<ExportFolder<'static>, ExportError> {
+        let read = &NOTHING_READ;
+        open_for("flight.toml", read, Replace::Nothing, folder, planned)
+    }
+
+    fn open_for<'a>(
+        flight: &str,
+        read: &'a Inputs,
+        replace: Replace,
+        folder: &Path,
+        planned: &[&str],
+    ) -> Result<ExportFolder<'a>, ExportError> {
         let planned: Vec<String> = planned.iter().map(|&name| name.to_owned()).collect();
-        ExportFolder::open(folder, &planned, &Progress::default())
+        let flight = FlightOfExport::new("a flight", Path::new(flight), folder);
+        let progress = Progress::default();
+        ExportFolder::open(folder, &flight, read, replace, &planned, &progress)
     }
 
     fn file(name: &str, text: &str) -> (String, Vec<u8>) {
@@ -361,5 +485,89 @@ mod tests {
             .remove_others(&planned, &Progress::default())
             .unwrap();
         assert!(victim.exists());
+    }
+
+    /// Files of others go only when that is said; one that was read never.
+    #[test]
+    fn what_was_read_is_never_written_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        for name in ["read.csv", "foreign.csv", "part of it"] {
+            fs::write(at(name), name).unwrap();
+        }
+        fs::create_dir(at("folder")).unwrap();
+        let read = Inputs::of([at("read.csv")]).with_opened(&[at("part of it")]);
+        for (name, without, with) in [
+            ("read.csv", false, false),
+            ("foreign.csv", false, true),
+            ("part of it", false, false),
+            ("folder", false, false),
+            ("new.csv", true, true),
+        ] {
+            for (replace, may) in [
+                (Replace::Nothing, without),
+                (Replace::OtherFlight, without),
+                (Replace::Anything, with),
+            ] {
+                let opened = open_for("f", &read, replace, folder.path(), &[name]);
+                assert_eq!(opened.is_ok(), may, "{name} {replace:?}");
+            }
+        }
+        // Nor is it taken away, where it is the file of an earlier export.
+        let mut export = open(folder.path(), &["ours.txt"]).unwrap();
+        export.write(&[file("ours.txt", "1")], None).unwrap();
+        let read = Inputs::of([at("ours.txt")]);
+        let flight = "flight.toml";
+        let mut next = open_for(flight, &read, Replace::Nothing, folder.path(), &[]).unwrap();
+        next.remove_others(&[], &Progress::default()).unwrap();
+        assert!(at("ours.txt").exists());
+    }
+
+    #[test]
+    fn the_export_of_another_flight_stays() {
+        let parent = tempfile::tempdir().unwrap();
+        let at = |name: &str| parent.path().join(name).to_str().unwrap().to_owned();
+        for name in ["first.toml", "second.toml"] {
+            fs::write(at(name), "").unwrap();
+        }
+        let folder = parent.path().join("export");
+        let other = |flight: &str| other_flight_in(&folder, "x", Path::new(flight));
+        let export = |flight: &str, replace| {
+            let mut export = open_for(flight, &NOTHING_READ, replace, &folder, &["a"])?;
+            export.write(&[file("a", flight)], None)?;
+            export.remove_others(&["a".to_owned()], &Progress::default())
+        };
+        assert_eq!(other(&at("first.toml")), None);
+        export(&at("first.toml"), Replace::Nothing).unwrap();
+        export(&at("./first.toml"), Replace::Nothing).unwrap();
+        assert_eq!(other(&at("first.toml")), None);
+        let error = export(&at("second.toml"), Replace::Nothing).unwrap_err();
+        let said = error.to_string();
+        assert!(said.contains("another flight, 'a flight'"), "{said}");
+        assert!(other(&at("second.toml")).unwrap().contains("first.toml"));
+        assert!(
+            fs::read_to_string(folder.join("a"))
+                .unwrap()
+                .ends_with("first.toml")
+        );
+        export(&at("second.toml"), Replace::OtherFlight).unwrap();
+        assert!(export(&at("first.toml"), Replace::Nothing).is_err());
+    }
+
+    #[test]
+    fn what_a_killed_export_left_goes() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("photos")).unwrap();
+        for name in [
+            ".fragscale-ab12.part",
+            "photos/.fragscale-x.part",
+            "photos/b.part",
+        ] {
+            fs::write(at(name), "half").unwrap();
+        }
+        open(folder.path(), &["photos/a.jpg"]).unwrap();
+        let left = fs::read_dir(at("photos")).unwrap().count();
+        assert_eq!((left, at(".fragscale-ab12.part").exists()), (1, false));
     }
 }

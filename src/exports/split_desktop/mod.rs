@@ -28,6 +28,7 @@ mod objects;
 mod pictures;
 mod plan;
 mod sheet;
+mod whose;
 
 use std::fmt;
 use std::fs;
@@ -36,15 +37,18 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-pub use folder::ExportError;
+pub use folder::{ExportError, Replace};
+pub use whose::other_flight_in;
 
 use self::folder::ExportFolder;
 use self::footprints::Footprints;
 use self::objects::PhotoObject;
 use self::pictures::PictureSource;
 use self::plan::PhotoNames;
+use self::whose::FlightOfExport;
 use crate::exports::{ScaleReport, scales_csv};
 use crate::fault::Fault;
+use crate::files::Inputs;
 use crate::flight::{Evidence, Flight, FlightSettings, Judged, Limits, Outcome};
 use crate::jobs::Progress;
 use crate::scale::ViewFacts;
@@ -86,6 +90,12 @@ pub struct ExportRequest<'a> {
     pub crs: Option<&'a str>,
     /// The files that the flight was read from.
     pub inputs: &'a [PathBuf],
+    /// The same with the photos and whatever was opened on the way: nothing of it is written over.
+    pub read: &'a Inputs,
+    /// The flight's own file or folder, by which an export is known as that of this flight.
+    pub source: &'a Path,
+    /// What of others may be replaced.
+    pub replace: Replace,
     /// What was noticed on the way.
     pub warnings: &'a [String],
 }
@@ -117,8 +127,9 @@ impl fmt::Display for ExportSummary {
 /// photos and can cancel; what is written until then stays good, and the same call goes on from it.
 ///
 /// # Errors
-/// Where the folder cannot be written, holds files of others by the same names (nothing is written
-/// then), no photo is selected, or the work was cancelled.
+/// Where the folder cannot be written, holds the export of another flight or files of others by the
+/// same names that may not be replaced, or files that the flight was read from (nothing is written
+/// then); no photo is selected, or the work was cancelled.
 pub fn export_for_split_desktop(
     dir: &Path,
     request: &ExportRequest<'_>,
@@ -148,7 +159,9 @@ pub fn export_for_split_desktop(
         .iter()
         .filter_map(|&index| pictures[index].as_ref().ok());
     planned.extend(of_photos.flat_map(PhotoNames::all));
-    let folder = ExportFolder::open(dir, &planned, progress)?;
+    let flight = FlightOfExport::new(&request.flight.parts().name, request.source, dir);
+    let (read, replace) = (request.read, request.replace);
+    let folder = ExportFolder::open(dir, &flight, read, replace, &planned, progress)?;
 
     let (mut folder, done) =
         make_pictures(folder, request, &chosen, &pictures, &objects, progress)?;
@@ -228,14 +241,14 @@ enum Done {
 }
 
 /// Makes the pictures of the chosen photos, a few at once; what became of them in their order.
-fn make_pictures(
-    folder: ExportFolder,
-    request: &ExportRequest<'_>,
+fn make_pictures<'a>(
+    folder: ExportFolder<'a>,
+    request: &ExportRequest<'a>,
     chosen: &[usize],
     pictures: &[Result<PhotoNames, String>],
     objects: &[Vec<PhotoObject<'_>>],
     progress: &Progress,
-) -> Result<(ExportFolder, Vec<Done>), ExportError> {
+) -> Result<(ExportFolder<'a>, Vec<Done>), ExportError> {
     progress.stage("exporting photos");
     let work = Mutex::new(Work {
         folder,
@@ -289,20 +302,20 @@ fn make_pictures(
 }
 
 /// Shared by the workers.
-struct Work {
-    folder: ExportFolder,
+struct Work<'a> {
+    folder: ExportFolder<'a>,
     done: Vec<Option<Done>>,
     finished: u64,
     failed: Option<ExportError>,
 }
 
-fn lock<'a>(work: &'a Mutex<Work>) -> std::sync::MutexGuard<'a, Work> {
+fn lock<'a, 'b>(work: &'a Mutex<Work<'b>>) -> std::sync::MutexGuard<'a, Work<'b>> {
     work.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Makes the pictures of one photo if they are not there; they are written one photo at a time.
 fn one_photo(
-    work: &Mutex<Work>,
+    work: &Mutex<Work<'_>>,
     request: &ExportRequest<'_>,
     index: usize,
     names: &PhotoNames,

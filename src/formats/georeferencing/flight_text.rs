@@ -16,7 +16,7 @@ impl Georeferenced {
     /// relative to `target`. The sixteen numbers of the transform read back to the bit. A `surface`
     /// is taken as it is: it has to be in the world already.
     ///
-    /// Write it with `exports::write_whole`.
+    /// Write it with `files::write`.
     ///
     /// # Errors
     /// Where the folder of `target` does not exist, a path is not Unicode, or `target` would hide the

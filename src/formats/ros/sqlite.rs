@@ -48,6 +48,7 @@ pub(super) fn read(
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY
         | OpenFlags::SQLITE_OPEN_URI
         | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    crate::files::note_opened(path);
     let file = Connection::open_with_flags(uri, flags).map_err(damaged)?;
     let mut query = file.prepare(MESSAGES).map_err(damaged)?;
     let mut rows = query.query([]).map_err(damaged)?;

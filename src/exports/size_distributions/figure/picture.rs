@@ -13,6 +13,7 @@ use super::layout::{Layout, TEXT, WIDTH};
 use super::pen::{FINE, Pen, of_plotters};
 use crate::exports::markup::escaped;
 use crate::fault::Fault;
+use crate::files::{SVG_MARK, marked_png};
 use crate::picture::reduced;
 
 /// What a figure is written as.
@@ -83,7 +84,7 @@ pub fn figure_svg(contents: &FigureContents) -> Result<String, Fault> {
     let body = drawn.split_once('\n').map_or("", |(_, body)| body);
     Ok(format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" \
-         viewBox=\"0 0 {width} {height}\" role=\"img\">\n<title>{}</title>\n{body}",
+         viewBox=\"0 0 {width} {height}\" role=\"img\">\n{SVG_MARK}<title>{}</title>\n{body}",
         width / FINE,
         height / FINE,
         escaped(&spoken(contents)),
@@ -119,7 +120,7 @@ pub fn figure_png(contents: &FigureContents) -> Result<Vec<u8>, Fault> {
             let what = format!("the figure cannot be encoded ({e})");
             Fault::new(what, "report it: this is a defect")
         })?;
-    Ok(bytes)
+    Ok(marked_png(bytes))
 }
 
 /// The same for both pictures: text is measured with the font of the PNG.

@@ -17,6 +17,7 @@ use table::{
 use super::{figure_of_comparison, figure_svg, method_name};
 use crate::exports::markup::escaped;
 use crate::fault::Fault;
+use crate::files::HTML_MARK;
 use crate::fragmentation::{
     Comparison, Fit, MethodComparison, MethodCurve, PERCENT_ERROR, Repeatability, SCALE_WARNING,
 };
@@ -59,7 +60,7 @@ pub fn comparison_report(report: &ComparisonReport<'_>) -> Result<String, Fault>
         .collect();
     Ok(format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
-         <meta name=\"viewport\" content=\"width=device-width\"/>\n<title>{title}: size distributions\
+         {HTML_MARK}<meta name=\"viewport\" content=\"width=device-width\"/>\n<title>{title}: size distributions\
          </title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n{}<figure>\n{figure}\
          </figure>\n{}{}{methods}{}{}{}<p class=\"small\">fragscale {}</p>\n</body>\n</html>\n",
         compared(report),

@@ -5,6 +5,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+/// How the name of a file or folder that is not finished begins and ends.
+const UNFINISHED_NAME: (&str, &str) = (".fragscale-", ".part");
+
 /// The temporary file or folder that is being written, so that an interrupt can take it away.
 static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
 
@@ -13,7 +16,7 @@ static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
 ///
 /// # Errors
 /// What the system says, for instance that the folder is missing or the disk is full.
-pub fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
+pub(crate) fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
     // A device or a pipe cannot be replaced by a file.
     if fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir()) {
         return fs::OpenOptions::new()
@@ -28,8 +31,8 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
         _ => Path::new("."),
     };
     let mut file = tempfile::Builder::new()
-        .prefix(".fragscale-")
-        .suffix(".part")
+        .prefix(UNFINISHED_NAME.0)
+        .suffix(UNFINISHED_NAME.1)
         .tempfile_in(folder)?;
     set_unfinished(Some(file.path().to_owned()));
     let result = file.write_all(contents).and_then(|()| {
@@ -58,8 +61,8 @@ pub fn make_folder_whole<E: From<io::Error>>(
         _ => Path::new("."),
     };
     let part = tempfile::Builder::new()
-        .prefix(".fragscale-")
-        .suffix(".part")
+        .prefix(UNFINISHED_NAME.0)
+        .suffix(UNFINISHED_NAME.1)
         .tempdir_in(parent)?;
     set_unfinished(Some(part.path().to_owned()));
     let result = fill(part.path()).and_then(|()| {
@@ -73,6 +76,12 @@ pub fn make_folder_whole<E: From<io::Error>>(
     });
     set_unfinished(None);
     result
+}
+
+/// Whether a file is named like one that fragscale has not finished: a killed process leaves it.
+pub fn is_unfinished(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    name.starts_with(UNFINISHED_NAME.0) && name.ends_with(UNFINISHED_NAME.1)
 }
 
 /// Takes away what an interrupted write would leave.

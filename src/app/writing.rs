@@ -1,0 +1,98 @@
+//! What may be written from the window: the rule is that of the commands (`files::overwrite`). Before a
+//! file is replaced she is asked, and her answer counts as `--force`; what was read for what is on the
+//! screen is not written over whatever she answers.
+
+use std::path::Path;
+
+use super::command::Command;
+use super::panels::typed;
+use super::state::{HeldBack, Severity, State};
+use crate::exports;
+use crate::files::{self, Inputs, Kind, Standing};
+use crate::formats::FileError;
+
+impl State {
+    /// Everything that was read for what is on the screen.
+    pub(super) fn read(&self) -> Inputs {
+        let mut read = Inputs::default();
+        if let Some(open) = &self.open {
+            read.extend(&open.read);
+            let form = &open.georeferencing.form;
+            for list in [&form.positions, &form.control_points] {
+                if let Some(path) = typed(list) {
+                    read.add(&path);
+                }
+            }
+        }
+        let sources = &self.distributions.history.now().sources;
+        let tables = sources.iter().filter_map(|source| source.path.as_deref());
+        let times = self.distributions.effort.as_ref();
+        for path in tables.chain(times.map(|times| times.path.as_path())) {
+            read.add(path);
+        }
+        read
+    }
+
+    /// The same for saving the flight to `path`: where it was opened it may be saved, but the bundled
+    /// one stays as it came.
+    pub(super) fn read_beside(&self, path: &Path) -> Inputs {
+        let read = self.read();
+        let Some(open) = self.open.as_ref().filter(|open| !open.bundled) else {
+            return read;
+        };
+        let files = [open.origin.flight_file(), open.opened_file.as_deref()];
+        let own = files.into_iter().flatten();
+        match own.into_iter().any(|own| files::is_same_file(own, path)) {
+            true => read.without(path),
+            false => read,
+        }
+    }
+
+    /// Whether a file can be written now; else says why not, or asks.
+    pub(super) fn may_write(
+        &mut self,
+        path: &Path,
+        kind: Kind,
+        read: &Inputs,
+        command: Command,
+    ) -> bool {
+        let there = match files::standing(path, kind, read) {
+            Standing::Free if !path.is_file() => return true,
+            Standing::Free => "It is empty.",
+            Standing::Ours => "fragscale wrote it.",
+            Standing::Foreign if kind == Kind::Flight => {
+                "It is no flight file that fragscale wrote."
+            }
+            Standing::Foreign => "It is no result that fragscale wrote.",
+            Standing::Read(_) | Standing::ReadFolder(_) | Standing::Folder => {
+                if let Err(fault) = files::may_write(path, kind, read, true) {
+                    let error = FileError::new(path, fault);
+                    self.say(Severity::Error, &error.to_string());
+                }
+                return false;
+            }
+        };
+        let path = path.display();
+        let question = format!("There is a file already: {path}. {there}");
+        self.held_back = Some(HeldBack::Replace(Box::new(command), question));
+        false
+    }
+
+    /// Whether a folder can be exported to now; else asks.
+    pub(super) fn may_export(&mut self, folder: &Path) -> bool {
+        let Some(open) = &self.open else {
+            return false;
+        };
+        let name = &open.flight.parts().name;
+        let Some(other) = exports::other_flight_in(folder, name, open.origin.file()) else {
+            return true;
+        };
+        let question = format!(
+            "{} holds the export of another flight, {other}. Its pictures and tables would go.",
+            folder.display()
+        );
+        let command = Box::new(Command::Export(folder.to_owned()));
+        self.held_back = Some(HeldBack::Replace(command, question));
+        false
+    }
+}

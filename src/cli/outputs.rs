@@ -1,0 +1,118 @@
+//! Where the answers of commands go: standard output or a file, which is written by one rule
+//! (`files::overwrite`), looked at before the work begins and again when it is written.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::fault::Fault;
+use crate::files::{self, Inputs, Kind};
+use crate::formats::FileError;
+
+/// `--force`.
+#[derive(Debug, Clone, Copy, Args)]
+pub(super) struct Force {
+    /// Replace files that fragscale did not write. Files that are read are never written over.
+    #[arg(long)]
+    pub(super) force: bool,
+}
+
+/// `-o` of a command whose answer goes to standard output without it.
+#[derive(Debug, Clone, Args)]
+pub(super) struct OutputArguments {
+    /// Write to this file instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    force: Force,
+}
+
+impl OutputArguments {
+    /// The outputs of a command that reads these files or folders.
+    pub(super) fn outputs<P: AsRef<Path>>(
+        &self,
+        inputs: impl IntoIterator<Item = P>,
+    ) -> Result<Outputs<'_>, String> {
+        Outputs::new(self.force, inputs).answer(self.output.as_deref())
+    }
+}
+
+/// The files that a command writes.
+#[derive(Debug)]
+pub(super) struct Outputs<'a> {
+    force: bool,
+    inputs: Inputs,
+    /// Where the answer goes; `None` is standard output.
+    answer: Option<&'a Path>,
+    all: Vec<(&'a Path, Kind)>,
+}
+
+impl<'a> Outputs<'a> {
+    /// None yet, of a command that reads these files or folders.
+    pub(super) fn new<P: AsRef<Path>>(
+        Force { force }: Force,
+        inputs: impl IntoIterator<Item = P>,
+    ) -> Self {
+        Self {
+            force,
+            inputs: Inputs::of(inputs),
+            answer: None,
+            all: Vec::new(),
+        }
+    }
+
+    fn answer(mut self, path: Option<&'a Path>) -> Result<Self, String> {
+        self.answer = path;
+        match path {
+            Some(path) => self.and(path, Kind::Result),
+            None => Ok(self),
+        }
+    }
+
+    /// One more file. An error where it may not be written, or is one of the others.
+    pub(super) fn and(mut self, path: &'a Path, kind: Kind) -> Result<Self, String> {
+        self.check(path, kind)?;
+        let place = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let twice = |other: &Path| place(other) == place(path) || files::is_same_file(other, path);
+        if self.all.iter().any(|(other, _)| twice(other)) && !is_device(path) {
+            let fault = Fault::new("two results would go into it", "name a file for each");
+            return Err(FileError::new(path, fault).to_string());
+        }
+        self.all.push((path, kind));
+        Ok(self)
+    }
+
+    /// More that was read. An error where an output is among it.
+    pub(super) fn read(&mut self, inputs: &Inputs) -> Result<(), String> {
+        self.inputs.extend(inputs);
+        let mut all = self.all.iter();
+        all.try_for_each(|(path, kind)| self.check(path, *kind))
+    }
+
+    fn check(&self, path: &Path, kind: Kind) -> Result<(), String> {
+        files::may_write(path, kind, &self.inputs, self.force)
+            .map_err(|fault| FileError::new(path, fault).to_string())
+    }
+
+    /// Writes a file whole or not at all.
+    pub(super) fn write(&self, path: &Path, bytes: &[u8], kind: Kind) -> Result<(), String> {
+        files::write(path, bytes, kind, &self.inputs, self.force)
+            .map_err(|fault| FileError::new(path, fault).to_string())
+    }
+
+    /// Writes the answer where it goes; what is left is for standard output.
+    pub(super) fn deliver(&self, text: String) -> Result<String, String> {
+        match self.answer {
+            None => Ok(text),
+            Some(path) => {
+                self.write(path, text.as_bytes(), Kind::Result)?;
+                Ok(String::new())
+            }
+        }
+    }
+}
+
+/// Whether one result after the other can go into it.
+fn is_device(path: &Path) -> bool {
+    path.metadata().is_ok_and(|metadata| !metadata.is_file())
+}

@@ -1,0 +1,163 @@
+//! What tells a file that fragscale wrote: how its text begins, or a mark where its format has a place
+//! for one that changes nothing else. The tables that other programs read have no such place; they are
+//! known by their head.
+
+/// The first line of a flight file that fragscale made.
+pub const FLIGHT_MARK: &str = "# Written by fragscale.\n";
+
+/// Inside a figure, after the first tag.
+pub const SVG_MARK: &str = "<!-- Written by fragscale. -->\n";
+
+/// In the head of a page.
+pub const HTML_MARK: &str = "<meta name=\"generator\" content=\"fragscale\"/>\n";
+
+/// A `tEXt` chunk of PNG (its specification, section 11.3.3.2): length, type, keyword and text, CRC.
+const PNG_MARK: &[u8] = b"\0\0\0\x12tEXtSoftware\0fragscale\xf4\x7d\x57\xef";
+
+/// Where the first chunk of a PNG ends: the signature, and IHDR, which always comes first.
+const PNG_HEAD: usize = 8 + 25;
+
+/// How much of a file is looked at.
+pub(super) const LOOKED_AT: u64 = 4096;
+
+/// What is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A flight file: what a person has set is in it, so no result takes its place.
+    Flight,
+    /// Anything that can be made again from what was read: tables, figures, pictures, reports.
+    Result,
+}
+
+impl Kind {
+    /// Of a file that fragscale wrote, told by its beginning; `None` of any other.
+    pub(super) fn of(beginning: &[u8]) -> Option<Self> {
+        if beginning.starts_with(FLIGHT_MARK.trim_end().as_bytes()) {
+            return Some(Self::Flight);
+        }
+        (is_png(beginning) || is_text(beginning)).then_some(Self::Result)
+    }
+}
+
+/// A PNG with a mark that says who wrote it; anything else as it is.
+pub fn marked_png(mut bytes: Vec<u8>) -> Vec<u8> {
+    if bytes.starts_with(b"\x89PNG") && bytes.len() > PNG_HEAD {
+        bytes.splice(PNG_HEAD..PNG_HEAD, PNG_MARK.iter().copied());
+    }
+    bytes
+}
+
+fn is_png(beginning: &[u8]) -> bool {
+    beginning.starts_with(b"\x89PNG")
+        && (beginning.get(PNG_HEAD..)).is_some_and(|rest| rest.starts_with(PNG_MARK))
+}
+
+fn is_text(beginning: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(beginning);
+    let first = text.lines().next().unwrap_or_default();
+    let begins = |start: &str| text.starts_with(start);
+    let has = |part: &str| text.contains(part);
+    let (svg, html) = (SVG_MARK.trim_end(), HTML_MARK.trim_end());
+    begins("<svg ") && has(svg)
+        || begins("<!DOCTYPE html>") && has(html)
+        || is_csv(first)
+        || is_table(first)
+        // The scales of a flight.
+        || begins("{\"flight\":") && has(",\"world_unit\":\"")
+        // Fitted functions, one or several.
+        || (begins("{\"model\":\"") || begins("[{\"curve\":\"") || begins("[{\"model\":\""))
+            && has("\"weighted\":")
+            && has("\"standard_errors\":{")
+        // A comparison.
+        || begins("{\"unit\":\"") && has("\"model\":\"") && has("\"envelope_percent\":")
+        // An analysis of variance.
+        || begins("{\"between\":{\"df\":")
+        // Times.
+        || begins("{\"unit\":\"min\",\"columns\":[")
+}
+
+/// The heads of our CSV files.
+fn is_csv(first: &str) -> bool {
+    // Scales, by photo.
+    first.starts_with("photo,width_px,height_px,top_px_per_")
+        // Fitted functions.
+        || first == "curve,model,quantity,unit,value,standard_error,band_low,band_high"
+        // A comparison.
+        || first.starts_with("method,size_")
+            && first.ends_with(",mean_percent_passing,standard_deviation,trials")
+        // An analysis of variance, perhaps with a column in front.
+        || first.ends_with(
+            "source,degrees_of_freedom,sum_of_squares,mean_square,f,critical_f,p,note",
+        )
+        // Times.
+        || first.starts_with("step,") && first.ends_with(",total_min,average_min")
+        // Of the window's frames.
+        || first.starts_with("start_s,logic,panels,upload,draw,commands,")
+}
+
+/// The first lines of our tables for people.
+fn is_table(first: &str) -> bool {
+    let has = |part: &str| first.contains(part);
+    // Scales.
+    has(": scales of the ") && has(" in pixels per ")
+        // Fitted functions.
+        || has(" fitted to ") && has(" points") && has("; sizes in ")
+        // A comparison.
+        || has(", the reference: ") && first.ends_with(" percentage points")
+        // An analysis of variance.
+        || first.starts_with("source ") && has("  sum of squares  ") && has("  critical F  ")
+        // Times.
+        || first.starts_with("step (minutes)  ") && first.ends_with("  average")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mark_leaves_a_png_whole() {
+        let image = image::RgbImage::from_pixel(3, 2, image::Rgb([1, 2, 3]));
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+        let plain = bytes.into_inner();
+        assert_eq!(Kind::of(&plain), None);
+        let marked = marked_png(plain.clone());
+        assert_eq!(Kind::of(&marked), Some(Kind::Result));
+        assert_eq!(image::load_from_memory(&marked).unwrap().to_rgb8(), image);
+        assert_eq!(
+            marked_png(b"\xff\xd8 a photo".to_vec()),
+            b"\xff\xd8 a photo"
+        );
+        assert_eq!(marked_png(b"\x89PNG".to_vec()), b"\x89PNG");
+    }
+
+    /// What people have beside a flight is none of ours.
+    #[test]
+    fn files_of_others_are_not_taken_for_ours() {
+        for text in [
+            "",
+            "\n",
+            "format = 1\nname = \"a\"\n",
+            "photo,x,y,z,omega,phi,kappa\n",
+            "photo,width_px,height_px\n",
+            "method,size_mm,passing\n",
+            "step,trial 1,trial 2\n",
+            "source,degrees\n",
+            "{\"flight\":\"a\"}",
+            "{\"model\":\"pinhole\",\"width\":1}",
+            "{\"unit\":\"m\"}",
+            "[{\"cameras\": {}}]",
+            "<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>",
+            "<!DOCTYPE html>\n<html><head></head></html>",
+            "NVM_V3\n",
+            "ply\nformat ascii 1.0\n",
+        ] {
+            assert_eq!(Kind::of(text.as_bytes()), None, "{text}");
+        }
+        assert_eq!(Kind::of(b"\xff\xd8\xff\xe1"), None);
+        assert_eq!(
+            Kind::of(format!("{FLIGHT_MARK}format = 1\n").as_bytes()),
+            Some(Kind::Flight)
+        );
+    }
+}

@@ -1,0 +1,24 @@
+//! Files as such: which were read, what may be written over, and writing whole.
+//!
+//! ```text
+//! overwrite   what may be written over; every file that goes out is written here
+//! inputs      the files that were read, known by identity and not by name
+//! recording   which files are opened on the way
+//! marks       what tells a file that fragscale wrote
+//! atomic      files and folders that are there whole or not at all
+//! ```
+//!
+//! The one place of the lower floors that knows paths.
+
+mod atomic;
+mod inputs;
+mod marks;
+mod overwrite;
+mod recording;
+
+pub(crate) use atomic::write_whole;
+pub use atomic::{is_unfinished, make_folder_whole, remove_unfinished};
+pub use inputs::{Inputs, is_same_file};
+pub use marks::{FLIGHT_MARK, HTML_MARK, Kind, SVG_MARK, marked_png};
+pub use overwrite::{Standing, may_write, standing, write};
+pub use recording::{Recording, note_opened};

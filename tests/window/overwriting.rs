@@ -1,0 +1,197 @@
+//! What was read for what is on the screen is not written over, whatever is typed or answered; a file of
+//! somebody else's goes only when she says so.
+
+use std::fs;
+use std::path::Path;
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use fragscale::app::Command;
+use fragscale::app::size_distributions::{DistributionCommand, Page};
+use fragscale::app::state::PictureRequest;
+
+use crate::desk::{Desk, copy, flight};
+use crate::own_frame::{model, positions};
+
+const NO: &str = "never written over";
+
+fn apply(desk: &mut Desk, command: Command) {
+    desk.harness.state_mut().apply(command);
+    desk.settle();
+}
+
+/// Says so, asks nothing, and leaves the file as it was.
+#[track_caller]
+fn refused(desk: &mut Desk, command: Command, path: &Path, words: &str) {
+    let before = fs::read(path).expect("the file");
+    desk.harness.state_mut().apply(Command::DismissNotice);
+    apply(desk, command);
+    let state = desk.harness.state().state();
+    let said = state.notice.as_ref().map(|line| line.text.clone());
+    let said = said.unwrap_or_default();
+    assert!(said.contains(words), "{}: {said:?}", path.display());
+    assert!(state.held_back.is_none());
+    assert_eq!(fs::read(path).expect("the file"), before);
+}
+
+fn picture(path: &Path) -> Command {
+    Command::Picture(PictureRequest {
+        path: path.to_owned(),
+        size: [64, 48],
+        transparent: false,
+        corner_rays: false,
+    })
+}
+
+#[test]
+fn a_flight_is_saved_over_no_file_that_it_was_read_from() {
+    let folder = copy("tests/windrow");
+    let at = |name: &str| folder.path().join(name);
+    fs::hard_link(at("pile.ply"), at("hard.toml")).expect("a link");
+    let mut names = vec![at("pile.ply"), at("poses.csv"), at("ost.yaml")];
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("poses.csv", at("soft.toml")).expect("a link");
+        names.extend([at("soft.toml"), at("hard.toml")]);
+    }
+    let mut desk = Desk::new(Some(folder.path()));
+    for name in &names {
+        refused(&mut desk, Command::SaveAs(name.clone()), name, NO);
+        refused(&mut desk, picture(name), name, NO);
+        let report = DistributionCommand::SaveReport(name.clone());
+        apply(&mut desk, Command::Distributions(report));
+        assert!(desk.harness.state().state().held_back.is_none());
+    }
+    refused(
+        &mut desk,
+        picture(&at("flight.toml")),
+        &at("flight.toml"),
+        NO,
+    );
+
+    // Where it was opened it is saved, without a question.
+    desk.fill("Ground elevation", "0.5");
+    desk.press(Modifiers::COMMAND, Key::S);
+    let text = fs::read_to_string(at("flight.toml")).expect("the flight");
+    assert!(text.contains("ground = 0.5"), "{text}");
+    // Over another's flight when she says so.
+    fs::write(at("second.toml"), "mine").expect("written");
+    apply(&mut desk, Command::SaveAs(at("second.toml")));
+    assert!(desk.says("It is no flight file that fragscale wrote"));
+    desk.click(Role::Button, "Keep the file");
+    assert_eq!(fs::read(at("second.toml")).expect("a file"), b"mine");
+    apply(&mut desk, Command::SaveAs(at("second.toml")));
+    desk.click(Role::Button, "Replace it");
+    let text = fs::read_to_string(at("second.toml")).expect("the flight");
+    assert!(text.contains("ground = 0.5"), "{text}");
+    // Now it is of that file, and goes back to where it came from when she says so.
+    refused(
+        &mut desk,
+        picture(&at("second.toml")),
+        &at("second.toml"),
+        NO,
+    );
+    apply(&mut desk, Command::SaveAs(at("flight.toml")));
+    assert!(desk.says("There is a file already"));
+    desk.click(Role::Button, "Replace it");
+    assert!(desk.logged("flight.toml: saved"));
+}
+
+#[test]
+fn the_bundled_flight_stays_as_it_came() {
+    let sample = flight("assets/sample");
+    let mut desk = Desk::new(Some(&sample));
+    let own = sample.join("flight.toml");
+    refused(&mut desk, Command::SaveAs(own.clone()), &own, NO);
+    let photo = sample.join("photos/IMG_0004.jpg");
+    refused(&mut desk, picture(&photo), &photo, NO);
+    refused(&mut desk, Command::SaveAs(photo.clone()), &photo, NO);
+}
+
+#[test]
+fn an_export_into_another_flights_folder_is_asked_for() {
+    let (first, second) = (copy("tests/windrow"), copy("tests/windrow"));
+    let out = first.path().join("out");
+    let mut desk = Desk::new(Some(first.path()));
+    apply(&mut desk, Command::ChooseAll(true));
+    apply(&mut desk, Command::Export(out.clone()));
+    assert!(
+        desk.logged("open scales.html"),
+        "{:?}",
+        desk.harness.state().state().log
+    );
+    let list = || fs::read_to_string(out.join("export.json")).expect("the list");
+    let before = list();
+    // Its own again, without a question.
+    apply(&mut desk, Command::Export(out.clone()));
+    assert!(desk.harness.state().state().held_back.is_none());
+
+    apply(&mut desk, Command::Open(second.path().to_owned()));
+    apply(&mut desk, Command::ChooseAll(true));
+    apply(&mut desk, Command::Export(out.clone()));
+    assert!(desk.says("holds the export of another flight, 'Windrow'"));
+    desk.click(Role::Button, "Keep the export");
+    assert_eq!(list(), before);
+    apply(&mut desk, Command::Export(out.clone()));
+    desk.click(Role::Button, "Replace it");
+    assert_ne!(list(), before);
+    // Her yes was for that export, not for what somebody else put there.
+    fs::write(out.join("scales.csv"), "mine").expect("written");
+    apply(&mut desk, Command::Export(out.clone()));
+    assert!(desk.logged("was changed since it was exported"));
+    assert_eq!(fs::read(out.join("scales.csv")).expect("a file"), b"mine");
+}
+
+#[test]
+fn a_georeferenced_flight_is_saved_over_no_list_that_it_was_fitted_to() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let package = folder.path().join("model");
+    fs::create_dir(&package).expect("a folder");
+    model(&package);
+    let list = folder.path().join("list.csv");
+    fs::write(&list, positions()).expect("written");
+    let mut desk = Desk::new(Some(&package));
+    desk.click(Role::Button, "File");
+    desk.click(Role::Button, "Georeference…");
+    desk.click(Role::RadioButton, "List of positions");
+    desk.fill("File of the positions", list.to_str().expect("UTF-8"));
+    desk.fill("Coordinate system", "EPSG:32632");
+    desk.click(Role::Button, "Fit to what is known");
+    let save = |path: &Path| Command::SaveGeoreferenced {
+        path: path.to_owned(),
+        keep_surface: false,
+    };
+    refused(&mut desk, save(&list), &list, NO);
+    let images = package.join("images.txt");
+    refused(&mut desk, save(&images), &images, "read as a whole");
+}
+
+#[test]
+fn a_figure_takes_the_place_of_no_table_that_was_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let table = folder.path().join("sizes.csv");
+    let text = "method,size_mm,percent_passing\nsieve,10,5\nsieve,20,30\nsieve,40,70\nsieve,80,99\n\
+                cloud,10,6\ncloud,20,33\ncloud,40,74\ncloud,80,99.5\n";
+    fs::write(&table, text).expect("written");
+    let times = folder.path().join("times.csv");
+    fs::write(&times, "step,object,cloud\nflight,12,10\nspheres,3,0\n").expect("written");
+    let mut desk = Desk::new(None);
+    apply(&mut desk, Command::Page(Page::SizeDistributions));
+    let add = DistributionCommand::Add(vec![table.clone()]);
+    apply(&mut desk, Command::Distributions(add));
+    let add = DistributionCommand::AddEffort(times.clone());
+    apply(&mut desk, Command::Distributions(add));
+    for path in [&table, &times] {
+        let figure = DistributionCommand::SaveFigure(path.clone());
+        refused(&mut desk, Command::Distributions(figure), path, NO);
+        let report = DistributionCommand::SaveReport(path.clone());
+        refused(&mut desk, Command::Distributions(report), path, NO);
+    }
+    // A figure over a figure: she is asked, and told whose it is.
+    let figure = folder.path().join("a.svg");
+    let save = || Command::Distributions(DistributionCommand::SaveFigure(figure.clone()));
+    apply(&mut desk, save());
+    apply(&mut desk, save());
+    assert!(desk.says("fragscale wrote it"));
+    desk.click(Role::Button, "Keep the file");
+}
