@@ -16,10 +16,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Modules and their floors. `fault` is the cellar: a sentence that every floor can say.
-const FLOORS: [(&str, i32); 19] = [
+const FLOORS: [(&str, i32); 20] = [
     ("fault", -1),
     ("geometry", 0),
     ("jobs", 0),
+    ("raster", 0),
     ("units", 0),
     ("camera", 1),
     ("geodesy", 1),

@@ -8,12 +8,14 @@ mod agreement;
 mod canvas;
 mod decode;
 mod encode;
+mod jpeg;
 mod mask;
 mod overlay;
 mod reduce;
 mod resample;
 mod scale_bar;
 mod text;
+mod tiff_photo;
 mod undistort;
 
 pub use agreement::{Agreement, Flip};
