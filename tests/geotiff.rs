@@ -78,7 +78,12 @@ fn compare_all(folder: &Path) -> (usize, usize) {
             Err(what) => wrong.push(format!("{}: {what}", file.display())),
         }
     }
-    assert!(wrong.is_empty(), "{}\n{} wrong", wrong.join("\n"), wrong.len());
+    assert!(
+        wrong.is_empty(),
+        "{}\n{} wrong",
+        wrong.join("\n"),
+        wrong.len()
+    );
     (exact, refused)
 }
 

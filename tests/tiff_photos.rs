@@ -34,7 +34,12 @@ fn compare(tif: &Path) -> Result<Option<(u8, f64)>, String> {
     if image.dimensions() != expected.dimensions() {
         return Err(format!("{:?}", image.dimensions()));
     }
-    let off = || image.iter().zip(expected.iter()).map(|(a, b)| a.abs_diff(*b));
+    let off = || {
+        image
+            .iter()
+            .zip(expected.iter())
+            .map(|(a, b)| a.abs_diff(*b))
+    };
     let worst = off().max().unwrap_or_default();
     let mean = off().map(f64::from).sum::<f64>() / image.len() as f64;
     // What is shared is shared by few: on average decoders agree.
@@ -63,7 +68,12 @@ fn compare_all(folder: &Path) -> (usize, usize, usize) {
             Err(what) => wrong.push(format!("{}: {what}", file.display())),
         }
     }
-    assert!(wrong.is_empty(), "{}\n{} wrong", wrong.join("\n"), wrong.len());
+    assert!(
+        wrong.is_empty(),
+        "{}\n{} wrong",
+        wrong.join("\n"),
+        wrong.len()
+    );
     (equal, near, refused)
 }
 

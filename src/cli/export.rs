@@ -1,6 +1,7 @@
 //! `fragscale export`: the folder for Split-Desktop.
 
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use clap::{Args, ValueEnum};
 
@@ -33,8 +34,13 @@ enum Selection {
     Trusted,
 }
 
-/// Opens, computes, judges, exports.
-pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result<Answer, String> {
+/// Opens, computes, judges, exports. `left_out` becomes what makes it fail all the same: photos that could
+/// not be exported because their files are damaged.
+pub(super) fn export(
+    arguments: &ExportArguments,
+    left_out: &OnceLock<String>,
+    progress: &Progress,
+) -> Result<Answer, String> {
     let opened = arguments.flight.open(progress)?;
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
@@ -80,6 +86,17 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
         progress,
     )
     .map_err(|error| error.to_string())?;
+    if summary.damaged > 0 {
+        let fault = Fault::new(
+            format!(
+                "{} of {} photos are not exported, because their files are damaged",
+                summary.damaged, summary.photos
+            ),
+            "give whole copies of them and export again: what is there stays",
+        );
+        // Set once, here.
+        let _ = left_out.set(FileError::new(&arguments.to, fault).to_string());
+    }
     let report = ScaleReport::new(flight, &outcomes, unit).of_photos(&selected);
     let mut warnings = opened.warnings;
     warnings.extend(summary.warnings.iter().cloned());

@@ -25,6 +25,7 @@ use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
@@ -251,15 +252,19 @@ pub fn run() -> ExitCode {
     if std::env::var_os("FRAGSCALE_BACKTRACE").is_none() {
         std::panic::set_hook(Box::new(|_| {}));
     }
+    let left_out = Arc::new(OnceLock::new());
     let (output, work): (Option<PathBuf>, Work) = match command {
         Command::Scales(arguments) => (
             arguments.output.clone(),
             Box::new(move |progress| scales(&arguments, progress)),
         ),
-        Command::Export(arguments) => (
-            None,
-            Box::new(move |progress| export::export(&arguments, progress)),
-        ),
+        Command::Export(arguments) => {
+            let left_out = Arc::clone(&left_out);
+            (
+                None,
+                Box::new(move |progress| export::export(&arguments, &left_out, progress)),
+            )
+        }
         Command::Check(arguments) => (
             None,
             Box::new(move |progress| check::check(&arguments, progress)),
@@ -296,6 +301,10 @@ pub fn run() -> ExitCode {
     };
     for warning in answer.warnings {
         say(&format!("warning: {}", one_line(&warning)));
+    }
+    if let Some(message) = left_out.get() {
+        print(&answer.text);
+        return fail(message);
     }
     match output {
         None => print(&answer.text),

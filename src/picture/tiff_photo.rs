@@ -10,6 +10,7 @@
 use std::io::{Cursor, Read, Seek};
 
 use image::RgbImage;
+use tiff::decoder::ifd::Value;
 use tiff::tags::Tag;
 
 use super::decode::check_size;
@@ -68,6 +69,12 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Option<(RgbImage, Option<Vec<u8>>)>
         }
         _ => return Ok(None),
     };
+    if layout.compression == Compression::Jpeg && layout.samples_a_chunk() == 2 {
+        return Err(Fault::new(
+            "its JPEGs are of two colours (grey with transparency), which is not supported",
+            "save it without the transparency",
+        ));
+    }
     let is_rgb = photometric == Photometric::Rgb || photometric == Photometric::YCbCr;
     let tags = file.tags();
     let icc = tags.get_tag_u8_vec(Tag::IccProfile).ok();
@@ -232,11 +239,14 @@ impl YCbCr {
     fn of<R: Read + Seek>(file: &mut TiffFile<R>) -> Self {
         let mut fractions = |tag| -> Option<Vec<f32>> {
             let tag = Tag::from_u16_exhaustive(tag);
-            let numbers = file.tags().find_tag(tag).ok()??.into_u32_vec().ok()?;
-            let pairs = numbers.as_chunks::<2>().0.iter();
-            let fractions = pairs.map(|&[above, below]| above as f32 / below as f32);
-            let fractions: Vec<f32> = fractions.collect();
-            fractions.iter().all(|f| f.is_finite()).then_some(fractions)
+            let Value::List(values) = file.tags().find_tag(tag).ok()?? else {
+                return None;
+            };
+            let fraction = |value| match value {
+                Value::Rational(above, below) if below > 0 => Some(above as f32 / below as f32),
+                _ => None,
+            };
+            values.into_iter().map(fraction).collect()
         };
         let parts = match fractions(YCBCR_COEFFICIENTS).as_deref() {
             Some(&[red, green, blue]) if green > 0.0 => [red, green, blue],

@@ -149,7 +149,8 @@ fn read(decoder: impl Read, expected: usize) -> Result<Vec<u8>, Fault> {
 fn lzw(stored: &[u8], expected: usize) -> Result<Vec<u8>, Fault> {
     // The clear code with which all data begin, from the lowest bit: before TIFF 6.0.
     if matches!(stored, [0, second, ..] if second & 1 == 1) {
-        let what = "it is compressed with old-style LZW (from before TIFF 6.0), which is not supported";
+        let what =
+            "it is compressed with old-style LZW (from before TIFF 6.0), which is not supported";
         return Err(Fault::new(what, super::REMEDY));
     }
     let mut decoder = Configuration::with_tiff_size_switch(BitOrder::Msb, 8).build();

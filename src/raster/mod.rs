@@ -197,7 +197,9 @@ impl<R: Read + Seek> TiffFile<R> {
         let mut bytes = layout
             .compression
             .unpacked(stored, expected)
-            .map_err(|fault| Fault::new(format!("tile or strip {index}: {}", fault.what), REMEDY))?;
+            .map_err(|fault| {
+                Fault::new(format!("tile or strip {index}: {}", fault.what), REMEDY)
+            })?;
         let row_bytes = usize::try_from(row_bytes).unwrap_or(usize::MAX).max(1);
         let samples = layout.samples_a_chunk();
         let number_bytes = usize::from(layout.bits / 8);
@@ -282,7 +284,12 @@ impl Layout {
             // The specification's default.
             [] => Some((2, 2)),
             [across, down] => Some((short(*across as u32)?, short(*down as u32)?)),
-            _ => return Err(Fault::new("its YCbCrSubSampling is not two numbers", REMEDY)),
+            _ => {
+                return Err(Fault::new(
+                    "its YCbCrSubSampling is not two numbers",
+                    REMEDY,
+                ));
+            }
         };
         let layout = Self {
             width,
@@ -315,7 +322,10 @@ impl Layout {
         }
         let refuse = |what: String| {
             let remedy = "export it again, with LZW or deflate";
-            Err(Fault::new(format!("{what}, which is not supported"), remedy))
+            Err(Fault::new(
+                format!("{what}, which is not supported"),
+                remedy,
+            ))
         };
         if fill_order != 1 {
             return refuse(format!("its bits are in FillOrder {fill_order}"));

@@ -22,9 +22,9 @@ import rasterio
 from PIL import Image
 
 # Levels that a pixel may be off; rows of chunks are upsampled on their own.
-JPEG = 3
-SHARED_COLOUR_JPEG = 80
-FIXED_POINT = 2
+JPEG = 2
+SHARED_COLOUR_JPEG = 16
+FIXED_POINT = 1
 
 
 def picture(height, width, bands, dtype, rng):
@@ -93,8 +93,11 @@ def by_gdal(path, rnd, **fixed):
     if d["overviews"]:
         with rasterio.open(path, "r+") as file:
             file.build_overviews([2, 4])
-    if d["compress"] in ("WEBP", "LERC"):
-        word = {"WEBP": "WebP", "LERC": "LERC"}[d["compress"]]
+    refused = {"WEBP": "WebP", "LERC": "LERC"}
+    if d["bands"] == 2 and d["interleave"] == "PIXEL":
+        # No decoder of JPEG that fragscale has knows two components.
+        refused["JPEG"] = "two colours"
+    if word := refused.get(d["compress"]):
         path.with_suffix(".txt").write_text(f"refused {word}\n")
     else:
         finish(path, off)

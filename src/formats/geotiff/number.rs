@@ -39,7 +39,9 @@ impl Number {
             (NumberKind::Float, 64) => return Ok(Self::F64),
             (NumberKind::Float, _) => "floating-point numbers",
             (NumberKind::Other(5 | 6), _) => "complex numbers",
-            (NumberKind::Unsigned | NumberKind::Signed | NumberKind::Other(4), _) => "whole numbers",
+            (NumberKind::Unsigned | NumberKind::Signed | NumberKind::Other(4), _) => {
+                "whole numbers"
+            }
             (NumberKind::Other(_), _) => "numbers of an unknown kind",
         };
         Err(Fault::new(

@@ -83,7 +83,8 @@ pub(super) fn check(bytes: &[u8]) -> Result<(), Fault> {
                 let scan = scan.ok_or_else(|| broken_header(at))?;
                 let mut bits = Bits::new(bytes, at);
                 let walked = scan.walk(&mut frame.components, &mut bits);
-                walked.map_err(|(damage, place)| damaged(damage, place))?;
+                let is_end = bytes.len() - bits.at().min(bytes.len()) < 2;
+                walked.map_err(|(damage, place)| damaged(damage, is_end, place))?;
                 note(&scan, &mut frame.components);
                 at = bits.at();
             }
@@ -111,15 +112,17 @@ fn finished(frame: Option<&Frame>, has_marker: bool) -> Result<(), Fault> {
     }
 }
 
-fn damaged(damage: Damage, (done, all): Place) -> Fault {
+/// Of a scan; `is_end` where the file ends there.
+fn damaged(damage: Damage, is_end: bool, (done, all): Place) -> Fault {
     let percent = 100 * done / all.max(1);
-    Fault::new(
-        format!(
-            "the JPEG is damaged, noticed at {percent} % of its picture: its compressed data are not whole, {}",
+    let what = match (damage, is_end) {
+        (Damage::Early, true) => format!("the JPEG is cut off at {percent} % of its picture"),
+        _ => format!(
+            "the JPEG is damaged, noticed at {percent} % of its picture: {}",
             damage.in_words()
         ),
-        REMEDY,
-    )
+    };
+    Fault::new(what, REMEDY)
 }
 
 fn broken_header(at: usize) -> Fault {
@@ -171,15 +174,26 @@ fn start_of_frame(segment: &[u8], progressive: bool) -> Option<Frame> {
         return None;
     };
     let entries = segment.get(6..)?.as_chunks::<3>().0;
-    let entries = entries.get(..usize::from(count)).filter(|e| !e.is_empty())?;
-    let sampling = |[_, sampling, _]: &[u8; 3]| (u32::from(sampling >> 4), u32::from(sampling & 15));
+    let entries = entries
+        .get(..usize::from(count))
+        .filter(|e| !e.is_empty())?;
+    let sampling =
+        |[_, sampling, _]: &[u8; 3]| (u32::from(sampling >> 4), u32::from(sampling & 15));
     let across_most = entries.iter().map(|entry| sampling(entry).0).max()?;
     let down_most = entries.iter().map(|entry| sampling(entry).1).max()?;
     let valid = entries.iter().map(sampling);
-    if width == 0 || height == 0 || !valid.clone().all(|(h, v)| (1..=4).contains(&h) && (1..=4).contains(&v)) {
+    if width == 0
+        || height == 0
+        || !valid
+            .clone()
+            .all(|(h, v)| (1..=4).contains(&h) && (1..=4).contains(&v))
+    {
         return None;
     }
-    let mcus = (width.div_ceil(8 * across_most), height.div_ceil(8 * down_most));
+    let mcus = (
+        width.div_ceil(8 * across_most),
+        height.div_ceil(8 * down_most),
+    );
     let component = |entry: &[u8; 3]| {
         let (across, down) = sampling(entry);
         let padded = (mcus.0 * across, mcus.1 * down);
@@ -194,7 +208,11 @@ fn start_of_frame(segment: &[u8], progressive: bool) -> Option<Frame> {
                 (height * down).div_ceil(down_most).div_ceil(8),
             ),
             padded,
-            set: if progressive { vec![0; blocks] } else { Vec::new() },
+            set: if progressive {
+                vec![0; blocks]
+            } else {
+                Vec::new()
+            },
             stored: vec![None; 64],
         }
     };
@@ -250,7 +268,12 @@ fn start_of_scan<'a>(segment: &[u8], frame: &Frame, tables: &'a Tables) -> Optio
 fn note(scan: &Scan<'_>, components: &mut [Component]) {
     for part in &scan.parts {
         if let Some(component) = components.get_mut(part.component) {
-            for stored in component.stored.iter_mut().take(scan.last + 1).skip(scan.first) {
+            for stored in component
+                .stored
+                .iter_mut()
+                .take(scan.last + 1)
+                .skip(scan.first)
+            {
                 *stored = Some(scan.low);
             }
         }

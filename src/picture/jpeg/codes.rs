@@ -18,14 +18,14 @@ pub(super) enum Damage {
 }
 
 impl Damage {
-    /// Behind "its compressed data are damaged:".
+    /// In the words of an error.
     pub(super) fn in_words(self) -> &'static str {
         match self {
-            Self::Early => "they end too early",
-            Self::Code => "they hold a code that does not exist",
+            Self::Early => "its compressed data end too early",
+            Self::Code => "its compressed data hold a code that does not exist",
             Self::Block => "a block has more than 64 numbers",
             Self::Range => "a block is brighter or darker than can be",
-            Self::Leftover => "they go on behind the last block",
+            Self::Leftover => "its compressed data go on behind the last block",
             Self::Restart => "a restart marker is missing",
         }
     }
@@ -114,7 +114,11 @@ impl<'a> Bits<'a> {
             return Err(Damage::Early);
         }
         if length == 0 {
-            return Err(if self.count < 16 { Damage::Early } else { Damage::Code });
+            return Err(if self.count < 16 {
+                Damage::Early
+            } else {
+                Damage::Code
+            });
         }
         self.count -= u32::from(length);
         Ok(symbol)
