@@ -23,7 +23,7 @@
 //! F1  camera/   surface/         intrinsics, distortion, pose | triangulation, ray casting
 //!     fragmentation/             size distributions
 //!     geodesy/  georeference/    coordinate systems | a frame of its own brought to the world
-//! F0  geometry/ units.rs jobs.rs fault.rs files/
+//! F0  geometry/ raster/ units.rs jobs.rs fault.rs files/
 //! ```
 //!
 //! F0 to F3 take no paths (`files/` apart), write no log, know no clock and no f32: they return data and typed
@@ -55,6 +55,7 @@ pub mod geometry;
 pub mod georeference;
 pub mod jobs;
 pub mod picture;
+pub mod raster;
 #[cfg(feature = "render")]
 pub mod render;
 pub mod sample;

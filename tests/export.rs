@@ -597,10 +597,11 @@ fn a_missing_or_broken_photo_is_in_the_sheet_with_its_sentence() {
         "in",
     ]);
     let stderr = String::from_utf8(output.stderr).expect("UTF-8");
-    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    assert_eq!(output.status.code(), Some(1), "{stderr}");
     for sentence in [
         "IMG_0001.jpg: no pictures: the photo file is missing",
-        "IMG_0002.jpg: no pictures: the JPEG is cut off",
+        "IMG_0002.jpg: no pictures: the JPEG is cut off at 4",
+        "1 of 9 photos are not exported, because their files are damaged",
     ] {
         assert!(stderr.contains(sentence), "{stderr}");
     }

@@ -21,6 +21,7 @@ const FLOORS: [(&str, i32); 20] = [
     ("files", 0),
     ("geometry", 0),
     ("jobs", 0),
+    ("raster", 0),
     ("units", 0),
     ("camera", 1),
     ("geodesy", 1),

@@ -139,18 +139,29 @@ impl State {
                     continue;
                 };
                 let camera = flight.camera(photo);
-                // What is wrong with a photo is said where it is looked at, and in its verdict.
-                let Ok(large) = read_photo(path) else {
-                    continue;
-                };
                 let image = flight.parts().image;
-                let plane = undistorted(&large, camera, THUMBNAIL);
-                let thumbnail = Thumbnail {
-                    flight: number,
-                    photo: index,
-                    small: color_image(&as_scaled(&large, camera, image, ROW_THUMBNAIL)),
-                    image: PhotoImage::new(&plane.convert()),
-                    colours: Colours::of_photo(&flight, index, &large),
+                let thumbnail = match read_photo(path) {
+                    Ok(large) => Thumbnail {
+                        flight: number,
+                        photo: index,
+                        small: Some(color_image(&as_scaled(
+                            &large,
+                            camera,
+                            image,
+                            ROW_THUMBNAIL,
+                        ))),
+                        image: Some(PhotoImage::new(
+                            &undistorted(&large, camera, THUMBNAIL).convert(),
+                        )),
+                        colours: Colours::of_photo(&flight, index, &large),
+                    },
+                    Err(why) => Thumbnail {
+                        flight: number,
+                        photo: index,
+                        small: None,
+                        image: None,
+                        colours: Colours::Unreadable(why),
+                    },
                 };
                 // Waits until the window has taken some; a cancelled job gives up.
                 if !offer(&send, thumbnail, progress) {

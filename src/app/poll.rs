@@ -327,12 +327,14 @@ impl State {
         if open.number != flight || photo >= open.thumbnails.len() {
             return;
         }
-        open.thumbnails[photo] = Some(self.context.load_texture(
-            format!("thumbnail {photo}"),
-            small,
-            egui::TextureOptions::LINEAR,
-        ));
-        open.images[photo] = Some(Arc::new(image));
+        if let Some(small) = small {
+            let options = egui::TextureOptions::LINEAR;
+            let texture = self
+                .context
+                .load_texture(format!("thumbnail {photo}"), small, options);
+            open.thumbnails[photo] = Some(texture);
+        }
+        open.images[photo] = image.map(Arc::new);
         let is_known = open.colours[photo].is_some();
         let doubt = colours.doubt().filter(|_| !is_known);
         let said = doubt.map(|doubt| format!("photo '{}': {doubt}", open.name(photo)));

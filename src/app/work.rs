@@ -208,9 +208,9 @@ pub struct Thumbnail {
     /// Which photo.
     pub photo: usize,
     /// For the table.
-    pub small: ColorImage,
+    pub small: Option<ColorImage>,
     /// For the viewport.
-    pub image: PhotoImage,
+    pub image: Option<PhotoImage>,
     /// How its colours compare with the surface's.
     pub colours: Colours,
 }

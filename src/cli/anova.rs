@@ -65,7 +65,7 @@ pub(super) fn anova(arguments: &AnovaArguments) -> Result<Answer, String> {
         ScalesFormat::Json => exports::anova_json(&report).map_err(|e| e.to_string())?,
     };
     let text = outputs.deliver(text)?;
-    Ok(Answer { text, warnings })
+    Ok(Answer::new(text, warnings))
 }
 
 fn report(arguments: &AnovaArguments) -> Result<(AnovaReport, Vec<String>), String> {

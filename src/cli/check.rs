@@ -27,7 +27,7 @@ pub(super) fn check(arguments: &CheckArguments, progress: &Progress) -> Result<A
     let mut text = String::from("colours of photo and surface (r is 1 where they match)\n");
     if parts.surface.colors().is_empty() {
         text.push_str("the surface has no colours\n");
-        return Ok(Answer { text, warnings });
+        return Ok(Answer::new(text, warnings));
     }
     let at = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
     let colours =
@@ -35,7 +35,7 @@ pub(super) fn check(arguments: &CheckArguments, progress: &Progress) -> Result<A
     for (photo, colours) in parts.photos.iter().zip(&colours) {
         let name = &photo.name;
         let said = match colours {
-            Colours::Not(why) => why.clone(),
+            Colours::Not(why) | Colours::Unreadable(why) => why.clone(),
             Colours::Compared(Agreement {
                 points,
                 correlation,
@@ -47,5 +47,5 @@ pub(super) fn check(arguments: &CheckArguments, progress: &Progress) -> Result<A
         // Writing into a text does not fail.
         let _ = writeln!(text, "{name}  {said}");
     }
-    Ok(Answer { text, warnings })
+    Ok(Answer::new(text, warnings))
 }

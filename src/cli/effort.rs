@@ -31,5 +31,5 @@ pub(super) fn effort(arguments: &EffortArguments) -> Result<Answer, String> {
         ScalesFormat::Json => exports::effort_json(&effort).map_err(|e| e.to_string())?,
     };
     let text = outputs.deliver(text)?;
-    Ok(Answer { text, warnings })
+    Ok(Answer::new(text, warnings))
 }

@@ -36,7 +36,8 @@ enum Selection {
     Trusted,
 }
 
-/// Opens, computes, judges, exports.
+/// Opens, computes, judges, exports. It fails at its end where photos could not be exported because
+/// their files are damaged; the others are.
 pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result<Answer, String> {
     let opened = arguments.flight.open(progress)?;
     let path = &arguments.flight.flight;
@@ -92,6 +93,16 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
         progress,
     )
     .map_err(|error| error.to_string())?;
+    let failed = (summary.damaged > 0).then(|| {
+        let fault = Fault::new(
+            format!(
+                "{} of {} photos are not exported, because their files are damaged",
+                summary.damaged, summary.photos
+            ),
+            "give whole copies of them and export again: what is there stays",
+        );
+        FileError::new(&arguments.to, fault).to_string()
+    });
     let report = ScaleReport::new(flight, &outcomes, unit)
         .with_evidence(&evidence)
         .of_photos(&selected);
@@ -99,11 +110,8 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
     warnings.extend(summary.warnings.iter().cloned());
     warnings.extend(super::notes_of(&report));
     Ok(Answer {
-        text: format!(
-            "{}: {summary}
-",
-            arguments.to.display()
-        ),
+        text: format!("{}: {summary}\n", arguments.to.display()),
         warnings,
+        failed,
     })
 }

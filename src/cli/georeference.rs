@@ -98,13 +98,11 @@ pub(super) fn georeference(
             .map_err(|error| error.to_string())?;
         outputs.write(target, text.as_bytes(), Kind::Flight)?;
     }
-    Ok(Answer {
-        text: match arguments.format {
-            GeoreferenceFormat::Table => table(&result),
-            GeoreferenceFormat::Json => format!("{}\n", value(&result)),
-        },
-        warnings: result.warnings,
-    })
+    let text = match arguments.format {
+        GeoreferenceFormat::Table => table(&result),
+        GeoreferenceFormat::Json => format!("{}\n", value(&result)),
+    };
+    Ok(Answer::new(text, result.warnings))
 }
 
 /// A line a known position, then what follows from them.

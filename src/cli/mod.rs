@@ -217,6 +217,19 @@ struct Answer {
     text: String,
     /// To standard error, one line each.
     warnings: Vec<String>,
+    /// Why the command fails although it did what it could: one line.
+    failed: Option<String>,
+}
+
+impl Answer {
+    /// Of a command that did what it was asked.
+    fn new(text: String, warnings: Vec<String>) -> Self {
+        Self {
+            text,
+            warnings,
+            failed: None,
+        }
+    }
 }
 
 /// What a command does, on the job's thread.
@@ -280,7 +293,11 @@ pub fn run() -> ExitCode {
     for warning in answer.warnings {
         say(&format!("warning: {}", one_line(&warning)));
     }
-    print(&answer.text)
+    let printed = print(&answer.text);
+    match answer.failed {
+        Some(message) => fail(&message),
+        None => printed,
+    }
 }
 
 /// Opens the window, with a flight where one is named.
@@ -319,7 +336,7 @@ fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, St
     let text = outputs.deliver(text)?;
     let mut warnings = opened.all_warnings();
     warnings.extend(notes_of(&report));
-    Ok(Answer { text, warnings })
+    Ok(Answer::new(text, warnings))
 }
 
 /// What fell back or failed, a line a photo.
@@ -343,10 +360,7 @@ fn info(arguments: &InfoArguments, progress: &Progress) -> Result<Answer, String
         InfoFormat::Json => format!("{value}\n"),
         InfoFormat::Text => info_text(&value),
     };
-    Ok(Answer {
-        text,
-        warnings: Vec::new(),
-    })
+    Ok(Answer::new(text, Vec::new()))
 }
 
 fn sample(arguments: &SampleArguments, progress: &Progress) -> Result<Answer, String> {
@@ -374,10 +388,8 @@ fn sample(arguments: &SampleArguments, progress: &Progress) -> Result<Answer, St
     let folder = &arguments.folder;
     sample::make(folder, &options, progress)
         .map_err(|fault| FileError::new(folder, fault).to_string())?;
-    Ok(Answer {
-        text: format!("{}: a simulated flight\n", folder.display()),
-        warnings: Vec::new(),
-    })
+    let text = format!("{}: a simulated flight\n", folder.display());
+    Ok(Answer::new(text, Vec::new()))
 }
 
 /// The top level of an `info` value, a line each; of lists how long they are.

@@ -138,7 +138,7 @@ pub(super) fn compare(arguments: &CompareArguments, progress: &Progress) -> Resu
     };
     write_all(pending, &outputs)?;
     let text = outputs.deliver(text)?;
-    Ok(Answer { text, warnings })
+    Ok(Answer::new(text, warnings))
 }
 
 /// What is compared, and how it came from what was read.

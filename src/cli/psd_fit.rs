@@ -157,5 +157,5 @@ pub(super) fn fit(arguments: &FitArguments) -> Result<Answer, String> {
     };
     write_all(figures, &outputs)?;
     let text = outputs.deliver(text)?;
-    Ok(Answer { text, warnings })
+    Ok(Answer::new(text, warnings))
 }

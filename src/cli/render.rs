@@ -206,10 +206,7 @@ pub(super) fn render(arguments: &RenderArguments, progress: &Progress) -> Result
             FileError::new(&arguments.output, fault).to_string()
         })?;
     outputs.write(&arguments.output, &marked_png(bytes), Kind::Result)?;
-    Ok(Answer {
-        text: String::new(),
-        warnings: opened.warnings,
-    })
+    Ok(Answer::new(String::new(), opened.all_warnings()))
 }
 
 /// Opens the graphics device and draws.

@@ -111,13 +111,17 @@ pub enum Colours {
     Compared(Agreement),
     /// Why they were not, in words.
     Not(String),
+    /// The photo's file is damaged or not readable, with the reason.
+    Unreadable(String),
 }
 
 impl Colours {
-    /// What they say against the photo.
+    /// What they, or the file that they were to be read from, say against the photo.
     pub fn doubt(&self) -> Option<Doubt> {
-        let Self::Compared(agreement) = self else {
-            return None;
+        let agreement = match self {
+            Self::Compared(agreement) => agreement,
+            Self::Unreadable(why) => return Some(Doubt::FileUnreadable(why.clone())),
+            Self::Not(_) => return None,
         };
         let Agreement {
             points,
@@ -180,7 +184,7 @@ pub fn compare_colours(
                 .and_then(|bytes| decode(&bytes).map_err(|fault| FileError::new(path, fault)))
             {
                 Ok(pixels) => Colours::of_photo(flight, index, &pixels),
-                Err(error) => Colours::Not(error.to_string()),
+                Err(error) => Colours::Unreadable(error.fault.to_string()),
             },
         });
     }
@@ -194,7 +198,10 @@ pub fn with_colours<'a>(
 ) -> Vec<Evidence> {
     let mut evidence = evidence.to_vec();
     for (evidence, colours) in evidence.iter_mut().zip(colours) {
-        evidence.doubts.extend(colours.and_then(Colours::doubt));
+        // A file whose header cannot be read is doubted for that already.
+        let is_known = matches!(evidence.file, PhotoFileState::Unreadable(_));
+        let doubt = colours.and_then(Colours::doubt).filter(|_| !is_known);
+        evidence.doubts.extend(doubt);
     }
     evidence
 }

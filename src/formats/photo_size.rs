@@ -1,11 +1,11 @@
 //! The size of an image file in pixels, from its header alone.
 
-use std::io::{BufRead, Seek};
+use std::io::{BufRead, Seek, SeekFrom};
 
 use image::{ImageFormat, ImageReader};
-use tiff::decoder::Decoder;
 
 use crate::fault::Fault;
+use crate::raster::TiffFile;
 
 /// Width and height of a JPEG, PNG or TIFF as its pixels are stored (an EXIF orientation turns
 /// nothing: packages calibrate the stored pixels).
@@ -23,10 +23,11 @@ pub(super) fn read(input: impl BufRead + Seek) -> Result<(u32, u32), Fault> {
         .with_guessed_format()
         .map_err(|e| unreadable(&e))?;
     if reader.format() == Some(ImageFormat::Tiff) {
-        // Aerial photos have colours (YCbCr) that `image` cannot show, but a size all the same.
-        return Decoder::new(reader.into_inner())
-            .and_then(|mut decoder| decoder.dimensions())
-            .map_err(|e| unreadable(&e));
+        // The same image of the file as is decoded later.
+        let mut input = reader.into_inner();
+        let size = input.seek(SeekFrom::End(0)).map_err(|e| unreadable(&e))?;
+        input.rewind().map_err(|e| unreadable(&e))?;
+        return TiffFile::open(input, size)?.size();
     }
     reader.into_dimensions().map_err(|e| unreadable(&e))
 }

@@ -4,6 +4,8 @@ use std::io::Cursor;
 
 use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits, RgbImage};
 
+use super::jpeg::{self, Jpeg};
+use super::tiff_photo;
 use crate::fault::Fault;
 
 /// The most pixels that a photo may have: twice the largest aerial sensors of today.
@@ -57,36 +59,52 @@ pub fn decode(bytes: &[u8]) -> Result<RgbImage, Fault> {
 /// is NOT applied, because poses and calibrations are for the stored pixels.
 ///
 /// # Errors
-/// Where it is none of these, broken or cut off, or claims to be larger than photos are.
+/// Where it is none of these, damaged or cut off, or claims to be larger than photos are. A JPEG whose
+/// data are damaged in the middle is refused whole, because no one knows which of its pixels are right.
 pub fn decode_photo(bytes: &[u8]) -> Result<DecodedPhoto, Fault> {
-    let unreadable = |e: &dyn std::fmt::Display| {
-        Fault::new(
-            format!("it cannot be read as an image ({e})"),
-            "give a whole JPEG, PNG or TIFF",
-        )
+    let format = match image::guess_format(bytes) {
+        Ok(ImageFormat::Jpeg) => PhotoFormat::Jpeg,
+        Ok(ImageFormat::Png) => PhotoFormat::Png,
+        Ok(ImageFormat::Tiff) => PhotoFormat::Tiff,
+        _ if bytes.starts_with(b"II+\0") || bytes.starts_with(b"MM\0+") => PhotoFormat::Tiff,
+        _ => return Err(unreadable(&"no JPEG, PNG or TIFF")),
     };
+    match format {
+        PhotoFormat::Jpeg => {
+            let Jpeg { image, exif, icc } = jpeg::decode(bytes)?;
+            return Ok(DecodedPhoto {
+                image,
+                format,
+                exif,
+                icc,
+            });
+        }
+        PhotoFormat::Tiff => {
+            if let Some((image, icc)) = tiff_photo::decode(bytes)? {
+                return Ok(DecodedPhoto {
+                    image,
+                    format,
+                    exif: None,
+                    icc,
+                });
+            }
+        }
+        PhotoFormat::Png => {}
+    }
+    decode_by_image(bytes, format)
+}
+
+/// PNG, and the rarer kinds of TIFF. (PNG's checksums are judged; TIFF has none.)
+fn decode_by_image(bytes: &[u8], format: PhotoFormat) -> Result<DecodedPhoto, Fault> {
     let mut reader = ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
         .map_err(|e| unreadable(&e))?;
-    let format = match reader.format() {
-        Some(ImageFormat::Jpeg) => PhotoFormat::Jpeg,
-        Some(ImageFormat::Png) => PhotoFormat::Png,
-        Some(ImageFormat::Tiff) => PhotoFormat::Tiff,
-        _ => return Err(unreadable(&"no JPEG, PNG or TIFF")),
-    };
     let mut limits = Limits::default();
     limits.max_alloc = Some(MOST_BYTES);
     reader.limits(limits);
     let mut decoder = reader.into_decoder().map_err(|e| unreadable(&e))?;
     let (width, height) = decoder.dimensions();
     check_size(width, height, bytes.len() as u64)?;
-    if format == PhotoFormat::Jpeg && !has_end_of_image(bytes) {
-        // The decoder would fill the rest with grey and say nothing.
-        return Err(Fault::new(
-            "the JPEG is cut off: it has no end marker",
-            "copy the photo again",
-        ));
-    }
     // Metadata that cannot be read is no reason to refuse the pixels.
     let exif = decoder.exif_metadata().ok().flatten();
     let is_rgb = matches!(
@@ -103,8 +121,15 @@ pub fn decode_photo(bytes: &[u8]) -> Result<DecodedPhoto, Fault> {
     })
 }
 
+fn unreadable(error: &dyn std::fmt::Display) -> Fault {
+    Fault::new(
+        format!("it cannot be read as an image ({error})"),
+        "give a whole JPEG, PNG or TIFF",
+    )
+}
+
 /// Refuses sizes that no photo in a file of so many bytes has, before memory is taken for them.
-fn check_size(width: u32, height: u32, bytes: u64) -> Result<(), Fault> {
+pub(super) fn check_size(width: u32, height: u32, bytes: u64) -> Result<(), Fault> {
     let pixels = u64::from(width) * u64::from(height);
     let refuse = |why: &str, remedy: &str| {
         Err(Fault::new(
@@ -128,26 +153,6 @@ fn check_size(width: u32, height: u32, bytes: u64) -> Result<(), Fault> {
         );
     }
     Ok(())
-}
-
-/// Whether a JPEG's compressed data ends with its end marker (cameras may append more behind it; the
-/// end marker of a thumbnail inside its header does not count).
-fn has_end_of_image(bytes: &[u8]) -> bool {
-    // After the start marker come segments: FF, kind, length with itself. The scan is the last.
-    let mut at = 2;
-    while let Some(&[0xff, kind, high, low]) = bytes.get(at..at + 4) {
-        if kind == 0xff {
-            // A fill byte.
-            at += 1;
-            continue;
-        }
-        at += 2 + usize::from(u16::from_be_bytes([high, low]));
-        if kind == 0xda {
-            break;
-        }
-    }
-    let data = bytes.get(at..).unwrap_or_default();
-    data.windows(2).any(|pair| pair == [0xff, 0xd9])
 }
 
 #[cfg(test)]

@@ -51,6 +51,7 @@ use crate::fault::Fault;
 use crate::files::Inputs;
 use crate::flight::{Evidence, Flight, FlightSettings, Judged, Limits, Outcome};
 use crate::jobs::Progress;
+use crate::picture;
 use crate::scale::ViewFacts;
 use crate::units::LengthUnit;
 
@@ -109,6 +110,8 @@ pub struct ExportSummary {
     pub made: usize,
     /// Of them, whose pictures were there already and are still right.
     pub kept: usize,
+    /// Of them, whose pictures could not be made because their file is damaged, cut or unreadable.
+    pub damaged: usize,
     /// What to know, one sentence each; photos without pictures are among them.
     pub warnings: Vec<String>,
 }
@@ -177,15 +180,30 @@ pub fn export_for_split_desktop(
         .warnings
         .extend(of_chosen.filter_map(PhotoObject::warning));
     for (&index, done) in chosen.iter().zip(done) {
-        match done {
-            Done::Made => summary.made += 1,
-            Done::Kept => summary.kept += 1,
-            Done::Not(why) => pictures[index] = Err(why),
-        }
-        if let Err(why) = &pictures[index] {
-            let name = &request.flight.parts().photos[index].name;
-            summary.warnings.push(format!("{name}: {why}"));
-        }
+        let name = &request.flight.parts().photos[index].name;
+        let doubt = match done {
+            Done::Made(doubt) => {
+                summary.made += 1;
+                doubt
+            }
+            Done::Kept(doubt) => {
+                summary.kept += 1;
+                doubt
+            }
+            Done::Not(why) => {
+                pictures[index] = Err(why);
+                None
+            }
+            Done::Damaged(fault) => {
+                summary.damaged += 1;
+                pictures[index] = Err(format!("no pictures: {fault}"));
+                None
+            }
+        };
+        let whys = doubt.iter().chain(pictures[index].as_ref().err());
+        summary
+            .warnings
+            .extend(whys.map(|why| format!("{name}: {why}")));
     }
 
     progress.stage("writing the sheet");
@@ -235,9 +253,12 @@ pub fn export_for_split_desktop(
 
 /// What became of a photo's pictures.
 enum Done {
-    Made,
-    Kept,
+    /// With what is doubted about the photo.
+    Made(Option<String>),
+    Kept(Option<String>),
     Not(String),
+    /// Its file is not whole, or cannot be read.
+    Damaged(Fault),
 }
 
 /// Makes the pictures of the chosen photos, a few at once; what became of them in their order.
@@ -347,16 +368,30 @@ fn one_photo(
     let bytes = match fs::read(source.file) {
         Ok(bytes) => bytes,
         Err(e) => {
-            return Ok(Done::Not(format!(
-                "no pictures: the photo file cannot be read ({e})"
-            )));
+            let what = format!("the photo file cannot be read ({e})");
+            return Ok(Done::Damaged(Fault::new(what, "copy the photo again")));
         }
     };
     let fingerprint = source.fingerprint(&bytes);
-    if lock(work).folder.is_done(&names.all(), &fingerprint) {
-        return Ok(Done::Kept);
-    }
-    let files = match source.make(bytes) {
+    let camera = source.camera;
+    let is_done = lock(work).folder.is_done(&names.all(), &fingerprint);
+    let photo = match is_done {
+        true => None,
+        false => match picture::decode_photo(&bytes) {
+            Ok(photo) => Some(photo),
+            Err(fault) => return Ok(Done::Damaged(fault)),
+        },
+    };
+    // What was made before was as large as its camera.
+    let size = (photo.as_ref()).map_or((camera.width, camera.height), |p| p.image.dimensions());
+    let doubt = match pictures::doubt_about_size(&bytes, size) {
+        Ok(doubt) => doubt,
+        Err(fault) => return Ok(Done::Damaged(fault)),
+    };
+    let Some(photo) = photo else {
+        return Ok(Done::Kept(doubt));
+    };
+    let files = match source.make(photo, bytes) {
         Ok(files) => files,
         Err(fault) => return Ok(Done::Not(format!("no pictures: {fault}"))),
     };
@@ -366,7 +401,7 @@ fn one_photo(
         return Ok(Done::Not(String::new()));
     }
     work.folder.write(&files, Some(&fingerprint))?;
-    Ok(Done::Made)
+    Ok(Done::Made(doubt))
 }
 
 /// How many photos to work on at once: as many as there are cores and memory for.

@@ -27,7 +27,7 @@ const OVERLAY_SIDE: u32 = 1600;
 const THUMBNAIL_SIDE: u32 = 480;
 
 /// Raised when the same inputs are to give other pictures.
-const PICTURES_VERSION: u32 = 2;
+const PICTURES_VERSION: u32 = 3;
 
 /// What the pictures of a photo depend on.
 pub(super) struct PictureSource<'a> {
@@ -77,14 +77,17 @@ impl PictureSource<'_> {
         checksum::of_bytes(text.to_string().as_bytes())
     }
 
-    /// The files, with their names below the exported folder. The photo as shot is the file as it
+    /// The files, with their names below the exported folder, of a photo and its file's bytes. The photo as shot is the file as it
     /// is, where nothing is painted over; else it has, as an undistorted one has, the format, the EXIF and the colour profile of its file. (An EXIF
     /// orientation stays what it was, as the pixels do.)
     ///
     /// # Errors
-    /// Where the photo cannot be decoded or is of another size than its camera.
-    pub(super) fn make(&self, bytes: Vec<u8>) -> Result<Vec<(String, Vec<u8>)>, Fault> {
-        let photo = picture::decode_photo(&bytes)?;
+    /// Where the photo is of another size than its camera.
+    pub(super) fn make(
+        &self,
+        photo: DecodedPhoto,
+        bytes: Vec<u8>,
+    ) -> Result<Vec<(String, Vec<u8>)>, Fault> {
         let (width, height) = photo.image.dimensions();
         let camera = self.camera;
         if (width, height) != (camera.width, camera.height) {
@@ -138,5 +141,31 @@ impl PictureSource<'_> {
             photo.icc.as_deref(),
         )?;
         Ok((image, bytes))
+    }
+}
+
+/// What the photo's EXIF says against its size: `Ok` with a doubt where it was made smaller or turned.
+///
+/// # Errors
+/// Where it says another shape: what is missing of the photo, and where, no one knows.
+pub(super) fn doubt_about_size(bytes: &[u8], size: (u32, u32)) -> Result<Option<String>, Fault> {
+    let Some(said) = picture::size_in_exif(bytes, size) else {
+        return Ok(None);
+    };
+    let what = format!(
+        "its EXIF says {} x {}, it has {} x {} pixels",
+        said.width, said.height, size.0, size.1
+    );
+    match (said.same_shape, said.turned) {
+        (true, _) => Ok(Some(format!(
+            "{what}: it was made larger or smaller after it was taken"
+        ))),
+        (_, true) => Ok(Some(format!(
+            "{what}: it was turned after it was taken; its pose is for the pixels as they are only if it was made from them"
+        ))),
+        _ => Err(Fault::new(
+            format!("{what}: it was cropped or cut after it was taken"),
+            "give the photo as the camera wrote it, or correct its EXIF",
+        )),
     }
 }

@@ -1,33 +1,37 @@
-//! Elevation models as GeoTIFF: TIFF 6.0 and BigTIFF, decoded by the tiff crate, with the georeference
-//! of OGC 19-008r4 ([`georeference`]) and GDAL's tags.
+//! Elevation models as GeoTIFF: TIFF 6.0 and BigTIFF, taken apart by [`crate::raster`], with the
+//! georeference of OGC 19-008r4 ([`georeference`]) and GDAL's tags.
 //!
-//! - One band of numbers of 16 bits and more; each cell becomes a point at its middle (PixelIsArea),
-//!   or where the raster has it (PixelIsPoint). No faces: a cloud's surface is its triangulation.
+//! - Whole numbers of 8 to 64 bits, with and without a sign, and floating point of 32 and 64; each cell
+//!   becomes a point at its middle (PixelIsArea), or where the raster has it (PixelIsPoint). No faces: a
+//!   cloud's surface is its triangulation. Of several bands the first is taken, and a warning says so.
+//! - Half floats, complex numbers, numbers of odd bits and compressions that are not read (LERC, LZMA,
+//!   JPEG, WebP, JPEG XL) are refused by name: JPEG and WebP would change the elevations.
 //! - GDAL_NODATA (42113) is the value of cells without an elevation; so is NaN, a tile that is not
-//!   stored, and where nothing is declared, -9999, -32767, -32768 and what lies beyond 1e30.
+//!   stored, and where nothing is declared, -9999, -32767, -32768 and what lies beyond 1e30. So is a
+//!   cell that a mask in the file leaves out (a directory of NewSubfileType 4, as GDAL writes it).
 //! - GDAL_METADATA (42112) may have a scale and an offset for the values.
 //! - Of larger rasters than [`MOST_CELLS`] only every n-th cell is taken, and a warning says so.
-//! - A picture, georeferenced or not, is refused.
+//! - A picture, georeferenced or not, is refused. One band of bytes may be either: it is read, and a
+//!   warning says what it may be.
 
 mod georeference;
+mod number;
 
 use std::io::{Read, Seek};
 
-use tiff::ColorType;
-use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
+use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
 use super::cloud_file::CloudFile;
 use super::xml_document;
 use crate::fault::Fault;
 use crate::jobs::Progress;
+use crate::raster::{Compression, Layout, TiffFile};
 use georeference::Georeference;
+use number::Number;
 
 /// The most cells that become points.
 const MOST_CELLS: u64 = 25_000_000;
-
-/// How many bytes a byte of compressed data can stand for, at most (deflate).
-const MOST_PER_BYTE: u64 = 1100;
 
 /// GDAL's metadata, as XML.
 const GDAL_METADATA: u16 = 42_112;
@@ -43,40 +47,47 @@ pub(super) fn read(
     size: u64,
     progress: &Progress,
 ) -> Result<CloudFile, Fault> {
-    let mut limits = Limits::default();
-    let most = usize::try_from(size.saturating_mul(MOST_PER_BYTE).min(1 << 32));
-    limits.decoding_buffer_size = most.unwrap_or(limits.decoding_buffer_size);
-    limits.intermediate_buffer_size = limits.decoding_buffer_size;
-    let mut decoder = Decoder::new(input).map_err(broken)?.with_limits(limits);
+    let mut tiff = TiffFile::open(input, size)?;
     let mut file = CloudFile::default();
-    let georeference = Georeference::read(&mut decoder, &mut file)?;
-    let color = decoder.colortype().map_err(broken)?;
-    let Some(georeference) = georeference.filter(|_| matches!(color, ColorType::Gray(16..))) else {
-        return Err(match color {
-            ColorType::Gray(16..) => Fault::new(
-                "it has no georeferencing: where its cells are is not known",
-                "export it as GeoTIFF",
-            ),
-            _ => Fault::new(
-                "it is a picture, not an elevation model (one band of numbers of 16 bits or more)",
-                "give the DSM or DTM; photos belong into the photos' folder",
-            ),
-        });
+    let georeference = Georeference::read(tiff.tags(), &mut file)?;
+    let layout = tiff.layout()?;
+    if is_picture(&layout) || (georeference.is_none() && layout.bits <= 8) {
+        return Err(Fault::new(
+            "it is a picture, not an elevation model (one band of numbers)",
+            "give the DSM or DTM; photos belong into the photos' folder",
+        ));
+    }
+    let Some(georeference) = georeference else {
+        return Err(Fault::new(
+            "it has no georeferencing: where its cells are is not known",
+            "export it as GeoTIFF",
+        ));
     };
-    let cells = Cells::of(&mut decoder)?;
-    let step = step_for(cells.width, cells.height);
+    let cells = Cells::of(&mut tiff, layout)?;
+    if cells.number == Number::U8 {
+        let what = "its elevations are whole numbers from 0 to 255, as grey pictures have them: make sure that it is no shaded relief and no orthophoto";
+        file.warnings.push(what.to_owned());
+    }
+    let layout = &cells.layout;
+    if layout.samples > 1 {
+        file.warnings.push(format!(
+            "it has {} bands; the first is taken for the elevations",
+            layout.samples
+        ));
+    }
+    let step = step_for(layout.width, layout.height);
     if step > 1 {
         let (width, height) = georeference.cell();
         file.warnings.push(format!(
             "it has {} x {} cells; every {step}th in both directions is taken, {:.3} x {:.3} apart",
-            cells.width,
-            cells.height,
+            layout.width,
+            layout.height,
             width * f64::from(step),
             height * f64::from(step)
         ));
     }
     let mut missing = 0_u64;
-    cells.read(&mut decoder, step, progress, |column, row, z| match z {
+    cells.read(&mut tiff, step, progress, |column, row, z| match z {
         Some(z) => file.cloud.points.push(georeference.point(column, row, z)),
         None => missing += 1,
     })?;
@@ -94,8 +105,11 @@ pub(super) fn read(
     Ok(file)
 }
 
-fn broken(error: tiff::TiffError) -> Fault {
-    Fault::new(format!("it cannot be read as TIFF ({error})"), REMEDY)
+/// By what its numbers mean: colours of any kind, bytes in several bands (grey with transparency), and
+/// single bits. `PhotometricInterpretation` 0 and 1 are grey.
+fn is_picture(layout: &Layout) -> bool {
+    let bytes = Number::of(layout).ok() == Some(Number::U8);
+    layout.photometric > 1 || layout.bits == 1 || (bytes && layout.samples > 1)
 }
 
 /// Every how many cells one is taken.
@@ -110,12 +124,10 @@ fn step_for(width: u32, height: u32) -> u32 {
 
 /// The raster, and what its values mean.
 struct Cells {
-    width: u32,
-    height: u32,
-    /// Of a tile or strip, in cells.
-    chunk: (u32, u32),
-    /// Of each tile or strip, in the file; 0 where it is left out.
-    chunk_bytes: Vec<u64>,
+    layout: Layout,
+    number: Number,
+    /// Which cells count, in the same tiles or strips.
+    mask: Option<Layout>,
     /// Declared by the file.
     no_data: Option<f64>,
     scale: f64,
@@ -123,36 +135,35 @@ struct Cells {
 }
 
 impl Cells {
-    fn of<R: Read + Seek>(decoder: &mut Decoder<R>) -> Result<Self, Fault> {
-        let (width, height) = decoder.dimensions().map_err(broken)?;
-        let mut number = |tag| decoder.find_tag_unsigned::<u32>(tag).ok().flatten();
-        let tile = (number(Tag::TileWidth), number(Tag::TileLength));
-        let rows = number(Tag::RowsPerStrip).unwrap_or(height).min(height);
-        let (chunk, tag) = match (decoder.get_chunk_type(), tile) {
-            (ChunkType::Tile, (Some(across), Some(down))) => ((across, down), Tag::TileByteCounts),
-            (ChunkType::Tile, _) => return Err(Fault::new("its tiles have no size", REMEDY)),
-            (ChunkType::Strip, _) => ((width, rows), Tag::StripByteCounts),
-        };
-        if chunk.0 == 0 || chunk.1 == 0 {
-            return Err(Fault::new("its tiles have no size", REMEDY));
+    /// The tags of `tiff` are those of a mask afterwards, where it has one.
+    fn of<R: Read + Seek>(tiff: &mut TiffFile<R>, layout: Layout) -> Result<Self, Fault> {
+        let number = Number::of(&layout)?;
+        if let Compression::Jpeg | Compression::Other(_) = layout.compression {
+            return Err(Fault::new(
+                format!(
+                    "its compression is {}, which is not supported",
+                    layout.compression.name()
+                ),
+                "export it with deflate, LZW or zstd",
+            ));
         }
-        let chunk_bytes = decoder
-            .find_tag_unsigned_vec::<u64>(tag)
-            .map_err(broken)?
-            .unwrap_or_default();
-        let mut text = |tag| {
-            let value = decoder.find_tag(tag).ok().flatten();
-            value.and_then(|value| value.into_string().ok())
-        };
-        let no_data = text(Tag::GdalNodata);
+        let no_data = text(tiff.tags(), Tag::GdalNodata);
         let no_data = no_data.and_then(|text| text.trim_matches(['\0', ' ']).parse().ok());
-        let metadata = text(Tag::from_u16_exhaustive(GDAL_METADATA)).unwrap_or_default();
-        let (scale, offset) = scale_and_offset(&metadata);
+        let metadata = text(tiff.tags(), Tag::from_u16_exhaustive(GDAL_METADATA));
+        let (scale, offset) = scale_and_offset(&metadata.unwrap_or_default());
+        let mask = tiff.mask(&layout);
+        if let Some(mask) = &mask
+            && (mask.chunk != layout.chunk || mask.samples != 1 || !matches!(mask.bits, 1 | 8))
+        {
+            return Err(Fault::new(
+                "its mask lies in other tiles than its cells, which is not supported",
+                "export it with a nodata value instead of a mask",
+            ));
+        }
         Ok(Self {
-            width,
-            height,
-            chunk,
-            chunk_bytes,
+            layout,
+            number,
+            mask,
             no_data,
             scale,
             offset,
@@ -173,47 +184,40 @@ impl Cells {
     /// Hands over every `step`th cell: column, row, elevation.
     fn read<R: Read + Seek>(
         &self,
-        decoder: &mut Decoder<R>,
+        tiff: &mut TiffFile<R>,
         step: u32,
         progress: &Progress,
         mut take: impl FnMut(u32, u32, Option<f64>),
     ) -> Result<(), Fault> {
-        let across = self.width.div_ceil(self.chunk.0);
-        let down = self.height.div_ceil(self.chunk.1);
-        let chunks = u64::from(across) * u64::from(down);
-        if self.chunk_bytes.len() as u64 != chunks {
-            return Err(Fault::new(
-                format!(
-                    "it has {} tiles or strips instead of {chunks}",
-                    self.chunk_bytes.len()
-                ),
-                "copy or export it again",
-            ));
-        }
-        for (index, bytes) in (0_u32..).zip(&self.chunk_bytes) {
-            progress.advance(index.into(), chunks)?;
-            let first = (index % across * self.chunk.0, index / across * self.chunk.1);
-            let width = self.chunk.0.min(self.width - first.0);
-            let height = self.chunk.1.min(self.height - first.1);
-            let values = match bytes {
-                0 => None,
-                _ => Some(decoder.read_chunk(index).map_err(broken)?),
+        let layout = &self.layout;
+        // Of a planar raster the first plane's: the first band.
+        let chunks = layout.across().saturating_mul(layout.down());
+        let cell = layout.samples_a_chunk() * self.number.bytes();
+        let row_bytes = layout.chunk.0 as usize * cell;
+        for index in 0..chunks {
+            progress.advance(index.into(), chunks.into())?;
+            let ((left, top), (width, height)) = layout.extent(index);
+            let values = tiff.chunk(layout, index)?;
+            let mask = match (&self.mask, &values) {
+                (Some(mask), Some(_)) => Some((mask.bits, tiff.chunk(mask, index)?)),
+                _ => None,
             };
             // The first of the raster's every step-th that lies in the chunk, if one does.
             let from = |first: u32| first.checked_next_multiple_of(step).unwrap_or(u32::MAX);
-            let rows = from(first.1)..first.1 + height;
-            for row in rows.step_by(step as usize) {
-                let columns = from(first.0)..first.0 + width;
-                for column in columns.step_by(step as usize) {
-                    let place =
-                        (row - first.1) as usize * width as usize + (column - first.0) as usize;
-                    let elevation = match &values {
-                        Some(values) => self.elevation(value(values, place).ok_or_else(|| {
-                            Fault::new("a tile or strip is too short", "copy or export it again")
-                        })?),
-                        None => None,
+            for row in (from(top)..top + height).step_by(step as usize) {
+                let place = (row - top) as usize * row_bytes;
+                let values = values.as_deref().and_then(|values| values.get(place..));
+                for column in (from(left)..left + width).step_by(step as usize) {
+                    let (across, down) = ((column - left) as usize, (row - top) as usize);
+                    let counts = match &mask {
+                        Some((bits, mask)) => {
+                            is_set(mask.as_deref(), *bits, layout.chunk.0, across, down)
+                        }
+                        None => true,
                     };
-                    take(column, row, elevation);
+                    let value = values.filter(|_| counts);
+                    let value = value.and_then(|row| self.number.read(row.get(across * cell..)?));
+                    take(column, row, value.and_then(|value| self.elevation(value)));
                 }
             }
         }
@@ -221,20 +225,18 @@ impl Cells {
     }
 }
 
-fn value(values: &DecodingResult, place: usize) -> Option<f64> {
-    Some(match values {
-        DecodingResult::U8(v) => f64::from(*v.get(place)?),
-        DecodingResult::U16(v) => f64::from(*v.get(place)?),
-        DecodingResult::U32(v) => f64::from(*v.get(place)?),
-        DecodingResult::U64(v) => *v.get(place)? as f64,
-        DecodingResult::I8(v) => f64::from(*v.get(place)?),
-        DecodingResult::I16(v) => f64::from(*v.get(place)?),
-        DecodingResult::I32(v) => f64::from(*v.get(place)?),
-        DecodingResult::I64(v) => *v.get(place)? as f64,
-        DecodingResult::F16(v) => v.get(place)?.to_f64(),
-        DecodingResult::F32(v) => f64::from(*v.get(place)?),
-        DecodingResult::F64(v) => *v.get(place)?,
-    })
+/// Whether a cell of a mask's tile counts; none does where the tile is left out.
+fn is_set(mask: Option<&[u8]>, bits: u16, width: u32, across: usize, down: usize) -> bool {
+    let row_bytes = (width as usize * usize::from(bits)).div_ceil(8);
+    let byte = |at: usize| mask.and_then(|mask| mask.get(down * row_bytes + at));
+    match bits {
+        1 => byte(across / 8).is_some_and(|byte| byte >> (7 - across % 8) & 1 == 1),
+        _ => byte(across).is_some_and(|byte| *byte != 0),
+    }
+}
+
+fn text<R: Read + Seek>(tags: &mut Decoder<R>, tag: Tag) -> Option<String> {
+    tags.find_tag(tag).ok()??.into_string().ok()
 }
 
 /// `<GDALMetadata><Item name="SCALE" sample="0" role="scale">0.01</Item> ...`

@@ -174,7 +174,7 @@ fn pictures_and_bare_rasters_are_refused() {
     let refused = |bytes: Vec<u8>| read_bytes(&bytes).unwrap_err().what;
     assert!(refused(written::<RGB8>(2, &[7; 12], &bare)).contains("a picture"));
     assert!(refused(written::<RGB8>(2, &[7; 12], &utm())).contains("a picture"));
-    assert!(refused(written::<Gray8>(2, &[7; 4], &utm())).contains("a picture"));
+    assert!(refused(written::<Gray8>(2, &[7; 4], &bare)).contains("a picture"));
     assert!(refused(written::<Gray32Float>(3, &CELLS, &bare)).contains("no georeferencing"));
     bare.tie = Some(vec![1.0; 18]);
     assert!(refused(written::<Gray32Float>(3, &CELLS, &bare)).contains("3 control points"));
@@ -262,12 +262,13 @@ fn large_rasters_are_thinned() {
     assert_eq!(step_for(u32::MAX, u32::MAX), 858_994);
     // Steps go on across strips and keep to the raster's own grid.
     let bytes = written::<Gray32Float>(3, &CELLS, &utm());
-    let mut decoder = Decoder::new(Cursor::new(&bytes)).unwrap();
-    let cells = Cells::of(&mut decoder).unwrap();
+    let mut tiff = TiffFile::open(Cursor::new(&bytes), bytes.len() as u64).unwrap();
+    let layout = tiff.layout().unwrap();
+    let cells = Cells::of(&mut tiff, layout).unwrap();
     let mut taken = Vec::new();
     let progress = Progress::default();
     cells
-        .read(&mut decoder, 2, &progress, |column, row, z| {
+        .read(&mut tiff, 2, &progress, |column, row, z| {
             taken.push((column, row, z))
         })
         .unwrap();
