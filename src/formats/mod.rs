@@ -63,6 +63,7 @@ mod test_data;
 mod text_lines;
 mod trajectory;
 mod world_frame;
+mod unstated_surface;
 mod xml_document;
 mod xyz;
 
@@ -406,7 +407,7 @@ fn read_cloud_as(
     beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>,
     progress: &Progress,
 ) -> Result<CloudFile, Fault> {
-    match format {
+    let mut file = match format {
         CloudFormat::Ply => ply::read(input, progress),
         CloudFormat::Las => las::read(input, progress),
         CloudFormat::Obj => obj::read(input, size, progress),
@@ -418,7 +419,9 @@ fn read_cloud_as(
         CloudFormat::Stl => stl::read(input, size, progress),
         CloudFormat::Gltf => gltf::read(input, beside, progress),
         CloudFormat::GeoTiff => geotiff::read(input, size, progress),
-    }
+    }?;
+    file.crs = file.crs.filter(|crs| world_frame::is_stated(crs));
+    Ok(file)
 }
 
 /// Reads a camera's calibration.
@@ -441,7 +444,15 @@ pub fn read_camera(path: &Path) -> Result<Camera, FileError> {
 /// With the file and the place in it, and where `path` holds no reconstruction.
 pub fn read_project(path: &Path, progress: &Progress) -> Result<Project, FileError> {
     match detect(path)? {
-        Kind::Reconstruction(package, path) => package::read(package, &path, progress),
+        Kind::Reconstruction(package, path) => {
+            let mut project = package::read(package, &path, progress)?;
+            let found = &mut project.reconstruction;
+            for crs in [&mut found.crs, &mut found.preferred_crs] {
+                // An empty text states nothing.
+                *crs = crs.take().filter(|crs| world_frame::is_stated(crs));
+            }
+            Ok(project)
+        }
         other => Err(FileError::new(
             path,
             Fault::new(
