@@ -187,3 +187,133 @@ fn a_projects_own_map_comes_before_the_zone() {
     let outcomes = opened.flight.scales(&Progress::default()).unwrap();
     assert_eq!(outcomes[0].scale().unwrap().corners_on_surface(), 4);
 }
+
+/// The ground as ECEF coordinates in a LAZ, its system as PROJ writes EPSG:4978 in WKT 2.
+#[test]
+fn a_cloud_from_the_earths_centre_meets_poses_from_there() {
+    const SYSTEM: &str = r#"GEODCRS["WGS 84",DATUM["World Geodetic System 1984",ELLIPSOID["WGS 84",6378137,298.257223563,LENGTHUNIT["metre",1]]],PRIMEM["Greenwich",0,ANGLEUNIT["degree",0.0174532925199433]],CS[Cartesian,3],AXIS["(X)",geocentricX,ORDER[1],LENGTHUNIT["metre",1]],AXIS["(Y)",geocentricY,ORDER[2],LENGTHUNIT["metre",1]],AXIS["(Z)",geocentricZ,ORDER[3],LENGTHUNIT["metre",1]],ID["EPSG",4978]]"#;
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("cameras.xml"), cameras_xml()).unwrap();
+    let mut builder = las::Builder::from((1, 4));
+    builder.point_format = las::point::Format::new(6).unwrap();
+    builder.point_format.is_compressed = true;
+    builder.has_wkt_crs = true;
+    builder.vlrs.push(las::Vlr {
+        user_id: "LASF_Projection".to_owned(),
+        record_id: 2112,
+        description: String::new(),
+        data: SYSTEM.as_bytes().to_vec(),
+    });
+    let axis = las::Transform {
+        scale: 1e-4,
+        offset: 4e6,
+    };
+    builder.transforms = las::Vector {
+        x: axis,
+        y: axis,
+        z: axis,
+    };
+    let file = fs::File::create(folder.join("ground.laz")).unwrap();
+    let mut writer = las::Writer::new(file, builder.into_header().unwrap()).unwrap();
+    for (east, north) in [(-1e-3, -1e-3), (1e-3, -1e-3), (1e-3, 1e-3), (-1e-3, 1e-3)] {
+        let place = Geographic {
+            longitude: PLACE.longitude + east,
+            latitude: PLACE.latitude + north,
+            ..PLACE
+        };
+        let DVec3 { x, y, z } = ecef_from_geographic(place);
+        let gps_time = Some(0.0);
+        let point = las::Point {
+            x,
+            y,
+            z,
+            gps_time,
+            ..las::Point::default()
+        };
+        writer.write_point(point).unwrap();
+    }
+    writer.close().unwrap();
+    let text = "format = 1\nworld.unit = \"m\"\nsurface.file = \"ground.laz\"\nphotos.reconstruction = \"cameras.xml\"\n";
+    fs::write(folder.join("flight.toml"), text).unwrap();
+    let opened = open_flight(folder, &OpenOptions::default(), &Progress::default()).unwrap();
+    assert_eq!(opened.crs.as_deref(), Some("EPSG:32633"), "the zone");
+    let said = opened.warnings.join("\n");
+    assert!(
+        !said.contains("degrees") && said.contains("Earth's centre"),
+        "{said}"
+    );
+    let outcomes = opened.flight.scales(&Progress::default()).unwrap();
+    let top = outcomes[0].scale().unwrap().scale.top.unwrap();
+    assert!((top / 10.0 - 1.0).abs() < 1e-5, "{top}");
+}
+
+/// What states an empty system states none; flight.toml is told to leave it out.
+#[test]
+fn an_empty_system() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let point = |name: &str, x: i32| {
+        format!(
+            r#"{{"type": "Feature", "properties": {{"filename": "{name}", "xyz": [{x}, 0, 10], "opk": [0, 0, 0]}}, "geometry": null}}"#
+        )
+    };
+    let poses = format!(
+        r#"{{"type": "FeatureCollection", "world_crs": " ", "features": [{}]}}"#,
+        point("a.jpg", 0)
+    );
+    fs::write(folder.join("poses.geojson"), poses).unwrap();
+    let pile = "-50 -50 0\n50 -50 0\n50 50 0\n-50 50 0\n";
+    fs::write(folder.join("pile.xyz"), pile).unwrap();
+    let flight = |world: &str| {
+        let text = format!(
+            "format = 1\nworld.unit = \"m\"\n{world}surface.file = \"pile.xyz\"\nphotos.poses = \"poses.geojson\"\n\
+             [[camera]]\nwidth = 400\nheight = 300\nfx = 1000\nfy = 1000\ncx = 200\ncy = 150\n"
+        );
+        fs::write(folder.join("flight.toml"), text).unwrap();
+        open_flight(folder, &OpenOptions::default(), &Progress::default())
+    };
+    let opened = flight("").unwrap();
+    assert_eq!(opened.crs, None);
+    let said = opened.warnings.join("\n");
+    assert!(!said.contains("coordinate"), "{said}");
+    let error = flight("world.crs = \"\"\n").unwrap_err().to_string();
+    assert!(
+        error.contains("world.crs: the coordinate system is empty")
+            && error.contains("leave it out"),
+        "{error}"
+    );
+}
+
+/// Orthority's table of a drone's position and angles, quoted and between blanks, over a surface on a
+/// map. It was taken for a list of control points.
+#[test]
+fn orthoritys_angles_over_a_map() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("ground.xyz"), ground("EPSG:32633")).unwrap();
+    let up = PLACE.height + 100.0;
+    let table = format!(
+        "'filename' 'latitude' 'longitude' 'altitude' 'roll' 'pitch' 'yaw'\n\
+         'a b.jpg' {} {} {up} 0 0 0\n",
+        PLACE.latitude, PLACE.longitude
+    );
+    fs::write(folder.join("ext.csv"), table).unwrap();
+    let text = "format = 1\nworld.unit = \"m\"\nsurface.file = \"ground.xyz\"\nphotos.poses = \"ext.csv\"\n\
+        [[camera]]\nwidth = 400\nheight = 300\nfx = 1000\nfy = 1000\ncx = 200\ncy = 150\n";
+    fs::write(folder.join("flight.toml"), text).unwrap();
+    let opened = open_flight(folder, &OpenOptions::default(), &Progress::default()).unwrap();
+    assert_eq!(opened.crs.as_deref(), Some("EPSG:32633"));
+    assert_eq!(opened.flight.parts().photos[0].name, "a b.jpg");
+    let outcomes = opened.flight.scales(&Progress::default()).unwrap();
+    let scale = outcomes[0].scale().unwrap();
+    assert!((scale.scale.top.unwrap() / 10.0 - 1.0).abs() < 1e-5);
+    // As above: the image's top is true north.
+    let [left, right] = [0, 1].map(|corner| scale.corners[corner].point().unwrap());
+    let turn = (right.y - left.y).atan2(right.x - left.x).to_degrees();
+    let convergence = (-2.0_f64).to_radians().tan() * 48.0_f64.to_radians().sin();
+    assert!(
+        (turn - convergence.atan().to_degrees()).abs() < 2e-3,
+        "{turn}"
+    );
+}

@@ -156,7 +156,7 @@ impl OpenFlight {
 
     /// Brings surface and cameras into sight.
     fn fit(&mut self) {
-        let (low, high) = (self.surface_bounds.min, self.surface_bounds.max);
+        let (low, high) = (self.bulk_bounds.min, self.bulk_bounds.max);
         let corners = (0..8_u8).map(|corner| {
             let pick = |bit: u8, low: f64, high: f64| if corner & bit == 0 { low } else { high };
             DVec3::new(

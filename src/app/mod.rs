@@ -41,9 +41,10 @@ use std::sync::Arc;
 pub use command::Command;
 pub use state::State;
 
+use command::Asking;
 use frame_times::{FrameTimes, Phase};
 use panels::Inspector;
-use size_distributions::{Page, ResultTab};
+use size_distributions::{DistributionCommand, Page, PasteForm, ResultTab};
 use state::{HeldBack, Severity};
 use viewport::Viewport;
 
@@ -105,6 +106,39 @@ impl App {
         self.state.poll();
     }
 
+    /// A table that is pasted onto the page of size distributions, into no field: shown in its small
+    /// window first, where its unit and method can be said.
+    fn take_pasted_table(&mut self, context: &egui::Context) {
+        let is_wanted = self.state.page == Page::SizeDistributions
+            && self.state.held_back.is_none()
+            && self.state.asking.is_none()
+            && !context.egui_wants_keyboard_input();
+        if !is_wanted {
+            return;
+        }
+        // Taken away: the field that gets the keys now must not paste it once more.
+        let mut pasted = None;
+        context.input_mut(|input| {
+            input.events.retain(|event| match event {
+                egui::Event::Paste(text) => {
+                    pasted = Some(text.clone());
+                    false
+                }
+                _ => true,
+            });
+        });
+        if let Some(table) = pasted {
+            let form = PasteForm {
+                table,
+                refused: None,
+                ..self.state.distributions.paste.clone()
+            };
+            let fill = DistributionCommand::FillPaste(form);
+            self.state.apply(Command::Distributions(fill));
+            self.state.apply(Command::Ask(Some(Asking::PasteTable)));
+        }
+    }
+
     fn hold_back_closing(&mut self, context: &egui::Context) {
         let closes = context.input(|input| input.viewport().close_requested());
         let loses = self.state.is_changed() || self.state.work.is_writing();
@@ -127,6 +161,7 @@ impl eframe::App for App {
             let paths = dropped.iter().map(|file| file.path().to_owned());
             self.state.apply(Command::Drop(paths.collect()));
         }
+        self.take_pasted_table(context);
         self.state.poll();
         self.viewport.take_picture(&mut self.state);
         let title = self.state.title();

@@ -139,10 +139,12 @@ pub struct OpenFlight {
     pub geometry: Option<Arc<Geometry>>,
     /// Where coordinates are small.
     pub frame: LocalFrame,
-    /// Around surface and cameras.
+    /// Around surface and cameras, without the surface's outliers.
     pub bounds: Bounds,
     /// Around the surface alone.
     pub surface_bounds: Bounds,
+    /// Around the surface without outliers.
+    pub bulk_bounds: Bounds,
     /// How the viewport looks.
     pub looking: Looking,
     /// Where the mouse points on the surface.
@@ -170,6 +172,7 @@ impl OpenFlight {
             opened,
             outcomes,
             surface_bounds,
+            bulk_bounds,
             took: _,
             again_for: _,
         } = loaded;
@@ -180,7 +183,7 @@ impl OpenFlight {
             .map_or_else(|| opened.settings.clone(), |(_, file)| file.settings());
         let bundled = is_bundled(&opened.origin.suggested_file());
         let opened_file = opened.file.map(|(path, _)| path).filter(|_| !bundled);
-        let mut bounds = surface_bounds;
+        let mut bounds = bulk_bounds;
         for photo in &opened.flight.parts().photos {
             bounds.min = bounds.min.min(photo.pose.center);
             bounds.max = bounds.max.max(photo.pose.center);
@@ -222,6 +225,7 @@ impl OpenFlight {
             frame: LocalFrame::near(&surface_bounds),
             bounds,
             surface_bounds,
+            bulk_bounds,
             looking: Looking {
                 orbit: first_look(&bounds),
                 through: None,

@@ -422,13 +422,15 @@ fn open(
     let read = begun.elapsed();
     let at_path = |fault: Fault| not_opened(FileError::new(&path, fault));
     let outcomes = opened.flight.scales(progress).map_err(at_path)?;
-    let surface_bounds = opened.flight.parts().surface.bounds();
+    let surface = &opened.flight.parts().surface;
+    let (surface_bounds, bulk_bounds) = (surface.bounds(), surface.bulk_bounds());
     Ok(Loaded {
         path,
         options,
         opened,
         outcomes,
         surface_bounds,
+        bulk_bounds,
         took: [read, begun.elapsed().saturating_sub(read)],
         again_for,
     })

@@ -127,6 +127,8 @@ pub struct Loaded {
     pub outcomes: Vec<Outcome>,
     /// Around the surface.
     pub surface_bounds: Bounds,
+    /// Around the surface without outliers.
+    pub bulk_bounds: Bounds,
     /// How long reading took, and computing the scales.
     pub took: [Duration; 2],
     /// The number of the open flight that was read again with other surface options.

@@ -379,16 +379,18 @@ fn show(
     }
 }
 
-/// What the picture shall hold: the surface (some thousands of its vertices stand for all), the
-/// camera centres and the corner points.
+/// What the picture shall hold: the surface without outliers (some thousands of its vertices stand
+/// for all), the camera centres and the corner points.
 fn points_to_fit(parts: &FlightParts, outcomes: &[Outcome]) -> Vec<DVec3> {
     let vertices = parts.surface.vertices();
     let step = (vertices.len() / 20_000).max(1);
+    let bulk = parts.surface.bulk_bounds();
     let corners = outcomes.iter().filter_map(Outcome::scale);
     let corners = corners.flat_map(|scale| scale.corners.iter().filter_map(Corner::point));
     let centers = parts.photos.iter().map(|photo| photo.pose.center);
     vertices
         .step_by(step)
+        .filter(|&vertex| bulk.contains(vertex))
         .chain(corners)
         .chain(centers)
         .collect()

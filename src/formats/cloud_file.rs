@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::fault::Fault;
+use crate::geodesy::{Crs, CrsKind};
 use crate::geometry::Bounds;
 use crate::surface::Cloud;
 
@@ -45,14 +46,10 @@ impl CloudFile {
             return;
         }
         self.crs = Some(crs.to_owned());
-        self.set_geographic(
-            ["GEOGCS", "GEOGCRS", "GEODCRS"]
-                .iter()
-                .any(|word| crs.starts_with(word)),
-        );
+        self.set_geographic(counts_degrees(crs));
     }
 
-    /// Notes whether the coordinates are degrees.
+    /// Notes whether the coordinates are degrees, and says it.
     pub(super) fn set_geographic(&mut self, geographic: bool) {
         self.geographic = geographic;
         if geographic {
@@ -70,6 +67,19 @@ impl CloudFile {
         }
         Ok(())
     }
+}
+
+/// Whether coordinates in a system are degrees: as it is understood, else by its first word.
+pub(super) fn counts_degrees(crs: &str) -> bool {
+    if let Ok(crs) = Crs::understand(crs) {
+        return crs.kind() == CrsKind::Geographic;
+    }
+    let text: String = crs.split_whitespace().collect();
+    let text = text.to_ascii_uppercase();
+    let starts = |words: &[&str]| words.iter().any(|word| text.starts_with(word));
+    // A geodetic system of WKT 2 may count from the Earth's centre.
+    starts(&["GEOGCS", "GEOGCRS", "GEOGRAPHICCRS"])
+        || (starts(&["GEODCRS", "GEODETICCRS"]) && !text.contains("CS[CARTESIAN"))
 }
 
 /// The colour of points without one among points with colours.

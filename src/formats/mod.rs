@@ -56,6 +56,7 @@ mod realitycapture;
 mod reconstruction;
 mod ros;
 mod rounded_rotation;
+mod separated;
 mod size_distributions;
 mod stl;
 mod table;
@@ -63,6 +64,7 @@ mod table;
 mod test_data;
 mod text_lines;
 mod trajectory;
+mod unstated_surface;
 mod world_frame;
 mod xml_document;
 mod xyz;
@@ -251,7 +253,8 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         "tif" | "tiff" => Kind::Cloud(CloudFormat::GeoTiff),
         "yaml" | "yml" | "xml" => Kind::Camera,
         "json" if json_camera::is_camera(&String::from_utf8_lossy(text)) => Kind::Camera,
-        "csv" | "txt" if has_photo_column(text) || poses_opk::is_table(text) => Kind::Poses,
+        "csv" | "txt" | "tsv" if poses_csv::has_photo_column(text) => Kind::Poses,
+        "csv" | "txt" | "tsv" if poses_opk::is_table(text) => Kind::Poses,
         "csv" | "txt" if metashape::is_opk(&String::from_utf8_lossy(text)) => Kind::Poses,
         "log" | "txt" if open3d::is_log(&String::from_utf8_lossy(text)) => Kind::Poses,
         "geojson" | "json" if poses_opk::is_geojson(text) => Kind::Poses,
@@ -313,23 +316,6 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
         path,
         Fault::new(what, format!("supported are {SUPPORTED}")),
     ))
-}
-
-/// Whether the first line that is no comment names a column "photo".
-fn has_photo_column(start: &[u8]) -> bool {
-    let text = String::from_utf8_lossy(start);
-    let header = text
-        .lines()
-        .find(|line| !line.is_empty() && !line.starts_with('#'));
-    header.is_some_and(|header| {
-        let mut columns = header.split(',');
-        columns.any(|column| {
-            column
-                .trim()
-                .trim_matches('"')
-                .eq_ignore_ascii_case("photo")
-        })
-    })
 }
 
 /// Reads a cloud or mesh.
@@ -408,7 +394,7 @@ fn read_cloud_as(
     beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>,
     progress: &Progress,
 ) -> Result<CloudFile, Fault> {
-    match format {
+    let mut file = match format {
         CloudFormat::Ply => ply::read(input, progress),
         CloudFormat::Las => las::read(input, progress),
         CloudFormat::Obj => obj::read(input, size, progress),
@@ -420,7 +406,9 @@ fn read_cloud_as(
         CloudFormat::Stl => stl::read(input, size, progress),
         CloudFormat::Gltf => gltf::read(input, beside, progress),
         CloudFormat::GeoTiff => geotiff::read(input, size, progress),
-    }
+    }?;
+    file.crs = file.crs.filter(|crs| world_frame::is_stated(crs));
+    Ok(file)
 }
 
 /// Reads a camera's calibration.
@@ -443,7 +431,15 @@ pub fn read_camera(path: &Path) -> Result<Camera, FileError> {
 /// With the file and the place in it, and where `path` holds no reconstruction.
 pub fn read_project(path: &Path, progress: &Progress) -> Result<Project, FileError> {
     match detect(path)? {
-        Kind::Reconstruction(package, path) => package::read(package, &path, progress),
+        Kind::Reconstruction(package, path) => {
+            let mut project = package::read(package, &path, progress)?;
+            let found = &mut project.reconstruction;
+            for crs in [&mut found.crs, &mut found.preferred_crs] {
+                // An empty text states nothing.
+                *crs = crs.take().filter(|crs| world_frame::is_stated(crs));
+            }
+            Ok(project)
+        }
         other => Err(FileError::new(
             path,
             Fault::new(
@@ -478,6 +474,12 @@ fn read_trajectory(
 fn read_poses(path: &Path) -> Result<PosesFile, FileError> {
     let bytes = read_bytes(path)?;
     let at = |fault| FileError::new(path, fault);
+    let system = path.with_extension("prj");
+    let system = match system.is_file() {
+        true => Some(read_text(&system)?.trim().to_owned()),
+        false => None,
+    };
+    let system = system.filter(|crs| world_frame::is_stated(crs));
     let mut poses = if poses_opk::is_geojson(&bytes) {
         poses_opk::read_geojson(&bytes).map_err(at)?
     } else if let Ok(text) = text_from_bytes(&bytes)
@@ -489,14 +491,14 @@ fn read_poses(path: &Path) -> Result<PosesFile, FileError> {
     {
         open3d::read_log(text).map_err(at)?
     } else if poses_opk::is_table(&bytes) {
-        poses_opk::read_table(&bytes).map_err(at)?
+        poses_opk::read_table(&bytes, system.as_deref()).map_err(at)?
     } else {
         poses_csv::read(&bytes).map_err(at)?
     };
-    let system = path.with_extension("prj");
-    if poses.crs.is_none() && system.is_file() {
-        poses.crs = Some(read_text(&system)?.trim().to_owned()).filter(|crs| !crs.is_empty());
-    }
+    poses.crs = poses
+        .crs
+        .filter(|crs| world_frame::is_stated(crs))
+        .or(system);
     Ok(poses)
 }
 
@@ -519,6 +521,31 @@ mod tests {
             "{error}"
         );
         assert!(error.fault.remedy.contains("--gcp"), "{error}");
+    }
+
+    #[test]
+    fn tables_of_poses_are_no_control_points() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, start) in [
+            ("a.csv", "photo;x;y;z;tilt;pan\na;1,5;2;3;90;0\n"),
+            ("a.tsv", "photo\tx\ty\tz\ttilt\tpan\na\t1\t2\t3\t90\t0\n"),
+            (
+                "b.csv",
+                "filename,latitude,longitude,altitude,roll,pitch,yaw\n",
+            ),
+            (
+                "c.csv",
+                "'filename' 'x' 'y' 'z' 'omega' 'phi' 'kappa' 'camera'\n",
+            ),
+            (
+                "d.csv",
+                "\"filename\",\"x\",\"y\",\"z\",\"roll\",\"pitch\",\"yaw\"\n",
+            ),
+        ] {
+            let path = folder.path().join(name);
+            fs::write(&path, start).unwrap();
+            assert_eq!(detect(&path), Ok(Kind::Poses), "{start}");
+        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ use super::input::{FileError, read_text};
 use super::origin::FlightOrigin;
 use super::photo_files::{PhotoFile, PhotoFolder, fit_cameras_to_files, set_sizes_from_files};
 use super::size_distributions::no_flight_but_sizes;
+use super::unstated_surface::taken_to_be_in;
 use super::world_frame::{Frame, Known};
 use super::{CloudFile, Kind, Package, PoseLine, Reconstruction, detect, read_project, ros};
 use crate::camera::Camera;
@@ -634,10 +635,17 @@ impl Source {
         self.warn(surface_file, doubt.as_slice());
         self.warn(&path, poses_moved.as_slice());
         match surface {
-            Some(Frame::AsIs(_)) if poses_moved.is_some() => {
-                let world = world.in_words();
-                let said = format!("it states no coordinate system and is taken to be in {world}");
-                self.warn(surface_file, &[said]);
+            Some(Frame::AsIs(_)) if !self.poses_frame.is_as_it_is() => {
+                let centers = self.photos.iter().map(|photo| photo.pose.center);
+                let centers: Vec<DVec3> = centers.collect();
+                let said = taken_to_be_in(&world, &cloud.cloud.points, &centers);
+                // A package's own surface is in its package's frame, as long as that stays.
+                let said = match (said, self.surface_is_packages) {
+                    (Err(fault), true) => Some(fault.what),
+                    (Ok(_), true) if poses_moved.is_none() => None,
+                    (said, _) => Some(said.map_err(at_surface)?),
+                };
+                self.warn(surface_file, said.as_slice());
             }
             Some(_) => self.warn(surface_file, points_moved.as_slice()),
             None => {}

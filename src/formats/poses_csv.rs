@@ -2,15 +2,18 @@
 //!
 //! `photo`, `x`, `y`, `z` are always there; `camera` where there are several; the orientation is one
 //! of `qx,qy,qz,qw`, `omega,phi,kappa`, `yaw,pitch,roll` and `tilt,pan` (see `camera::Pose` for what
-//! each means). Lines that begin with # are comments. Fields may be quoted. Column names are
-//! compared without case and outer spaces; columns of other names are passed over with a warning.
+//! each means). Lines that begin with # are comments. Fields may be quoted; commas separate them, or
+//! what else a spreadsheet writes: semicolons, tabs (see `table`). Numbers with a decimal comma are
+//! read with a warning. Column names are compared without case and outer spaces; columns of other
+//! names are passed over with a warning.
 
 use std::collections::HashMap;
 
 use glam::DVec3;
 
 use super::input::text_from_bytes;
-use super::table::{self, without_spaced_quotes};
+use super::separated::Separator;
+use super::table::{NumberRepairs, Row, Table};
 use crate::camera::Pose;
 use crate::fault::Fault;
 
@@ -54,47 +57,22 @@ const ORIENTATIONS: [&[&str]; 4] = [
 /// With line and column: a missing column, a number that is not finite, a photo that is named twice,
 /// a quaternion without length, no photo at all.
 pub(super) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
-    let text = text_from_bytes(bytes)?;
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .flexible(true)
-        .trim(csv::Trim::All)
-        .has_headers(false)
-        .from_reader(text.as_bytes());
-    let mut records = reader
-        .records()
-        .map(|record| record.map(without_spaced_quotes));
-    let malformed = |error: csv::Error| {
-        let line = error.position().map_or(1, csv::Position::line);
-        Fault::at(
-            line,
-            format!("it is not a CSV table ({error})"),
-            "check its quotes",
-        )
-    };
-    let header = records
-        .next()
-        .transpose()
-        .map_err(malformed)?
-        .ok_or_else(|| {
-            Fault::new(
-                "it is empty",
-                "give a header line and a line for each photo",
-            )
-        })?;
-    let columns = Columns::find(line_of(text, &header), &header)?;
+    let text = without_comments(text_from_bytes(bytes)?);
+    if text.trim().is_empty() {
+        let remedy = "give a header line and a line for each photo";
+        return Err(Fault::new("it is empty", remedy));
+    }
+    let table = Table::read_even_empty(&text)?;
+    let columns = Columns::find(table.header_line(), table.header())?;
     let mut file = PosesFile {
-        warnings: columns.warnings(&header),
+        warnings: columns.warnings(table.header()),
         crs: None,
         lines: Vec::new(),
     };
     let mut seen: HashMap<String, u64> = HashMap::new();
-    for record in records {
-        let record = record.map_err(malformed)?;
-        if record.iter().all(str::is_empty) {
-            continue;
-        }
-        let line = columns.line(line_of(text, &record), &record)?;
+    let mut repairs = NumberRepairs::default();
+    for row in table.rows() {
+        let line = columns.line(&table, row, &mut repairs)?;
         if let Some(first) = seen.insert(line.photo.clone(), line.line) {
             return Err(Fault::at(
                 line.line,
@@ -110,18 +88,34 @@ pub(super) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
     if file.lines.is_empty() {
         return Err(Fault::new("it has no photos", "give a line for each photo"));
     }
+    file.warnings.extend(repairs.warnings());
     Ok(file)
 }
 
-/// The line, from 1, on which a record begins.
-fn line_of(text: &str, record: &csv::StringRecord) -> u64 {
-    table::line_of(text, record, |line| {
-        line.is_empty() || line.starts_with('#')
+/// Whether the first line that is no comment names a column "photo".
+pub(super) fn has_photo_column(start: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(start);
+    let mut lines = text.trim_start_matches('\u{feff}').lines();
+    let header = lines.find(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    header.is_some_and(|header| {
+        let columns = Separator::of(header).split(header);
+        columns.len() > 1
+            && columns
+                .iter()
+                .any(|name| name.eq_ignore_ascii_case("photo"))
     })
 }
 
+/// The text with empty lines in place of comments: here "#4" is one, too.
+fn without_comments(text: &str) -> String {
+    let lines = text.lines().flat_map(|line| {
+        let is_comment = line.starts_with('#');
+        [if is_comment { "" } else { line }, "\n"]
+    });
+    lines.collect()
+}
+
 struct Columns {
-    count: usize,
     photo: usize,
     camera: Option<usize>,
     position: [usize; 3],
@@ -130,7 +124,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn find(line: u64, header: &csv::StringRecord) -> Result<Self, Fault> {
+    fn find(line: u64, header: &[String]) -> Result<Self, Fault> {
         let find = |name: &str| {
             header
                 .iter()
@@ -182,7 +176,6 @@ impl Columns {
             }
         };
         Ok(Self {
-            count: header.len(),
             photo,
             camera: find("camera"),
             position,
@@ -194,46 +187,26 @@ impl Columns {
         })
     }
 
-    fn warnings(&self, header: &csv::StringRecord) -> Vec<String> {
-        let unused: Vec<&str> = header.iter().filter(|name| !is_known(name)).collect();
+    fn warnings(&self, header: &[String]) -> Vec<String> {
+        let unused = header.iter().map(String::as_str);
+        let unused: Vec<&str> = unused.filter(|name| !is_known(name)).collect();
         if unused.is_empty() {
             return Vec::new();
         }
         vec![format!("columns that are not used: {}", unused.join(", "))]
     }
 
-    fn line(&self, line: u64, record: &csv::StringRecord) -> Result<PoseLine, Fault> {
-        // A decimal comma, for one, shifts everything behind it.
-        if let Some(extra) = record
-            .iter()
-            .skip(self.count)
-            .find(|field| !field.is_empty())
-        {
-            return Err(Fault::at(
-                line,
-                format!(
-                    "it has {} fields for {} columns ('{extra}' is too many)",
-                    record.len(),
-                    self.count
-                ),
-                "write decimal points, and quote names with commas",
-            ));
-        }
-        let field = |column: usize, name: &str| {
-            record
-                .get(column)
-                .filter(|field| !field.is_empty())
-                .ok_or_else(|| Fault::at(line, format!("column {name} is empty"), "fill it in"))
-        };
-        let number = |column: usize, name: &str| {
-            let text = field(column, name)?;
-            text.parse::<f64>()
-                .ok()
-                .filter(|n| n.is_finite())
-                .ok_or_else(|| {
-                    let what = format!("column {name}: '{text}' is not a finite number");
-                    Fault::at(line, what, "correct it")
-                })
+    fn line(
+        &self,
+        table: &Table,
+        row: &Row,
+        repairs: &mut NumberRepairs,
+    ) -> Result<PoseLine, Fault> {
+        let line = row.line;
+        let empty = |name: &str| Fault::at(line, format!("column {name} is empty"), "fill it in");
+        let mut number = |column: usize, name: &str| {
+            let number = table.number(row, column, repairs)?;
+            number.ok_or_else(|| empty(name))
         };
         let [x, y, z] = self.position;
         let center = DVec3::new(number(x, "x")?, number(y, "y")?, number(z, "z")?);
@@ -264,13 +237,14 @@ impl Columns {
                 ));
             }
         };
+        let photo = row.cell(self.photo);
+        if photo.is_empty() {
+            return Err(empty("photo"));
+        }
+        let camera = self.camera.map(|column| row.cell(column));
         Ok(PoseLine {
-            photo: field(self.photo, "photo")?.to_owned(),
-            camera: self
-                .camera
-                .and_then(|column| record.get(column))
-                .filter(|name| !name.is_empty())
-                .map(str::to_owned),
+            photo: photo.to_owned(),
+            camera: camera.filter(|name| !name.is_empty()).map(str::to_owned),
             pose,
             line,
         })
@@ -323,6 +297,30 @@ mod tests {
         assert_eq!(file.lines[1].camera, None);
         assert_eq!(file.lines[1].pose.center, DVec3::new(4.0, 5.0, 6.0));
         assert_eq!(file.warnings, ["columns that are not used: battery"]);
+    }
+
+    #[test]
+    fn what_spreadsheets_write() {
+        let semicolons =
+            "# a\n\"photo\";x;y;z;qx;qy;qz;qw\n\"a;b.jpg\";350123,456;5000000,5;12;1;0;0;0,0\n";
+        let tabs =
+            "photo\tx\ty\tz\tqx\tqy\tqz\tqw\na;b.jpg\t350123.456\t5000000.5\t12\t1\t0\t0\t0\n";
+        let blanks = "photo x y z qx qy qz qw\na;b.jpg 350123.456 5000000.5 12 1 0 0 0\n";
+        for (text, repaired) in [(semicolons, 1), (tabs, 0), (blanks, 0)] {
+            assert!(has_photo_column(text.as_bytes()), "{text}");
+            let file = read(text.as_bytes()).unwrap();
+            assert_eq!(file.lines[0].photo, "a;b.jpg");
+            let center = DVec3::new(350_123.456, 5_000_000.5, 12.0);
+            assert_eq!(file.lines[0].pose.center, center);
+            assert_eq!(file.warnings.len(), repaired, "{:?}", file.warnings);
+        }
+        let said = read(semicolons.as_bytes()).unwrap().warnings.join("");
+        assert!(said.contains("decimal commas"), "{said}");
+        // 350 or 350 thousand? Nothing in the table tells.
+        let unclear = "photo;x;y;z;tilt;pan\na;350,123;1;2;90;0\n";
+        let fault = read(unclear.as_bytes()).unwrap_err();
+        assert!(fault.what.contains("thousands"), "{fault}");
+        assert!(!has_photo_column(b"photo\n") && !has_photo_column(b"x,y,photos\n"));
     }
 
     #[test]

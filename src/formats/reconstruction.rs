@@ -8,6 +8,7 @@ use crate::camera::{Camera, Distortion, Pose};
 use crate::geodesy::Geographic;
 use crate::geometry::{Similarity, median};
 use crate::surface::Cloud;
+use crate::units::LengthUnit;
 
 /// A posed photo of a reconstruction.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,6 +75,9 @@ pub struct Reconstruction {
     pub preferred_crs: Option<String>,
     /// Where the origin stands of a frame without `crs` whose axes are east, north and up there.
     pub enu_origin: Option<Geographic>,
+    /// The unit that the package states for a frame without `crs`: that of a local system, or what its
+    /// specification says. `None` where it states none.
+    pub unit: Option<LengthUnit>,
     /// Receivers' positions of photos, aligned or not; empty where the package keeps none.
     pub measured_positions: Vec<MeasuredPosition>,
     /// Cameras. Where `sizes_known` is false they have width = height = 0, and cx, cy count from

@@ -63,7 +63,7 @@ impl Row {
 }
 
 /// What was mended in numbers, to be said.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct NumberRepairs {
     decimal_commas: usize,
     first_line: u64,
@@ -82,7 +82,8 @@ impl NumberRepairs {
         }
     }
 
-    fn decimal_comma(&mut self, line: u64) {
+    /// Notes a decimal comma on this line.
+    pub(super) fn decimal_comma(&mut self, line: u64) {
         if self.decimal_commas == 0 {
             self.first_line = line;
         }
@@ -97,6 +98,17 @@ impl Table {
     /// Where there is no header or no line behind it, where quotes do not end, where a line has more
     /// fields than the header, and where it is larger than any measured table.
     pub fn read(text: &str) -> Result<Self, Fault> {
+        let table = Self::read_even_empty(text)?;
+        if table.rows.is_empty() {
+            let what = format!("it has no line below {}", table.columns_in_words());
+            let remedy = "give the numbers below the names of the columns";
+            return Err(Fault::at(table.header_line, what, remedy));
+        }
+        Ok(table)
+    }
+
+    /// As [`Table::read`], where it may have no line behind its header.
+    pub(super) fn read_even_empty(text: &str) -> Result<Self, Fault> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         if text.len() > LARGEST {
             return Err(too_large());
@@ -141,11 +153,6 @@ impl Table {
             decimal_comma: false,
             decimal_point: false,
         };
-        if table.rows.is_empty() {
-            let what = format!("it has no line below {}", table.columns_in_words());
-            let remedy = "give the numbers below the names of the columns";
-            return Err(Fault::at(table.header_line, what, remedy));
-        }
         table.look_for_decimal_signs();
         Ok(table)
     }
@@ -457,7 +464,7 @@ fn push(rows: &mut Vec<Row>, row: Row) -> Result<(), Fault> {
 }
 
 /// Quotes count for the csv crate only right behind a comma, but people put spaces there.
-pub(super) fn without_spaced_quotes(record: StringRecord) -> StringRecord {
+fn without_spaced_quotes(record: StringRecord) -> StringRecord {
     if !record.iter().any(|field| field.starts_with('"')) {
         return record;
     }
@@ -475,7 +482,7 @@ pub(super) fn without_spaced_quotes(record: StringRecord) -> StringRecord {
 
 /// The line, from 1, on which a record begins. The csv crate places it where its search began: in
 /// front of the lines that it `skips`.
-pub(super) fn line_of(text: &str, record: &StringRecord, skips: impl Fn(&str) -> bool) -> u64 {
+fn line_of(text: &str, record: &StringRecord, skips: impl Fn(&str) -> bool) -> u64 {
     let Some(position) = record.position() else {
         return 1;
     };
@@ -507,7 +514,7 @@ pub(super) fn split_number(cell: &str) -> (&str, &str) {
 
 /// Whether the one comma or point of a number may separate thousands: one to three digits in front, of
 /// which the first is no 0, and three behind.
-fn may_be_thousands(number: &str) -> bool {
+pub(super) fn may_be_thousands(number: &str) -> bool {
     let number = number.trim_start_matches(['+', '-']);
     let Some((whole, rest)) = number.split_once([',', '.']) else {
         return false;

@@ -25,6 +25,7 @@ use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::geodesy::{
     Crs, CrsKind, Geographic, ecef_from_geographic, enu_axes, geographic_from_ecef,
+    stated_unit_metres,
 };
 use crate::units::LengthUnit;
 
@@ -53,7 +54,7 @@ impl Frame {
         origin: Option<Geographic>,
         warnings: &mut Vec<String>,
     ) -> Result<Self, Fault> {
-        match (crs, origin) {
+        match (crs.filter(|crs| is_stated(crs)), origin) {
             (Some(crs), _) => Self::of_name(crs, is_geographic_wkt(crs), warnings),
             (None, Some(origin)) => Ok(Self::Enu(origin)),
             (None, None) => Ok(Self::AsIs(None)),
@@ -65,7 +66,7 @@ impl Frame {
     /// # Errors
     /// Where the system has to be understood, because it counts in degrees, and is not.
     pub(super) fn of_cloud(file: &CloudFile, warnings: &mut Vec<String>) -> Result<Self, Fault> {
-        match &file.crs {
+        match file.crs.as_deref().filter(|crs| is_stated(crs)) {
             Some(crs) => Self::of_name(crs, file.geographic, warnings),
             None if file.geographic => Self::of_name(WGS84, true, warnings),
             None => Ok(Self::AsIs(None)),
@@ -119,7 +120,9 @@ impl Frame {
     /// Where it is a unit that no flight can have: kilometres, links.
     pub(super) fn unit(&self) -> Result<Option<LengthUnit>, Fault> {
         match self {
-            Self::AsIs(_) => Ok(None),
+            Self::AsIs(None) => Ok(None),
+            // A local system may state one for all that.
+            Self::AsIs(Some(crs)) => Ok(stated_unit_metres(crs).and_then(LengthUnit::of_metres)),
             Self::Enu(_) => Ok(Some(LengthUnit::Metre)),
             Self::Named(crs) => match LengthUnit::of_metres(crs.unit_metres()) {
                 Some(unit) => Ok(Some(unit)),
@@ -402,6 +405,11 @@ impl Move<'_> {
             "check the coordinate systems, or name another as world.crs in a flight.toml",
         )
     }
+}
+
+/// Whether a text names a system at all: packages leave the text of a frame of their own empty.
+pub(super) fn is_stated(crs: &str) -> bool {
+    crs.contains(|c: char| c.is_alphanumeric())
 }
 
 /// Whether a WKT that is not understood is one of degrees: no map projection of them.

@@ -24,7 +24,8 @@ impl Definition {
         let text = text.trim_start_matches('\u{feff}').trim();
         let text = text.trim_matches(['\'', '"']).trim();
         if text.is_empty() {
-            return Err(Fault::new("the coordinate system is empty", REMEDY));
+            let remedy = "give it as \"EPSG:n\", or leave it out";
+            return Err(Fault::new("the coordinate system is empty", remedy));
         }
         if let Some(code) = text_of_epsg(text) {
             return Self::of_epsg_text(code);
@@ -269,6 +270,22 @@ impl Node<'_> {
         let dimension = self.child(&["CS"]).and_then(|cs| cs.word(1));
         self.keyword == "GEOCCS" || dimension == Some("3")
     }
+
+    /// Whether its coordinates are x, y, z from the Earth's centre: in WKT 2 only the axes of a
+    /// geodetic system say that.
+    fn is_geocentric(&self) -> bool {
+        let axes = self.child(&["CS"]).and_then(|cs| cs.word(0));
+        let is_geodetic = ["GEODCRS", "GEODETICCRS"].contains(&self.keyword.as_str());
+        self.keyword == "GEOCCS"
+            || (is_geodetic && axes.is_some_and(|axes| axes.eq_ignore_ascii_case("cartesian")))
+    }
+
+    /// The length of its unit in metres, where it says one: below itself or its first axis.
+    fn length_unit(&self) -> Option<f64> {
+        let unit = ["UNIT", "LENGTHUNIT"];
+        let on_axis = || self.child(&["AXIS"])?.child(&unit);
+        self.child(&unit).or_else(on_axis)?.number(1)
+    }
 }
 
 /// The seven parameters of an abridged transformation, in the order and units of TOWGS84; `None`
@@ -343,8 +360,7 @@ fn refuse_other_angles(horizontal: &Node) -> Result<(), Fault> {
         .and_then(|axis| axis.child(&unit));
     let factor = (horizontal.child(&unit).or(on_axis)).and_then(|unit| unit.number(1));
     let is_degree = |factor: f64| (factor / 1_f64.to_radians() - 1.0).abs() < 1e-9;
-    let is_geocentric = horizontal.keyword == "GEOCCS";
-    if is_geocentric || factor.is_none_or(is_degree) {
+    if horizontal.is_geocentric() || factor.is_none_or(is_degree) {
         return Ok(());
     }
     Err(Fault::new(
@@ -355,6 +371,9 @@ fn refuse_other_angles(horizontal: &Node) -> Result<(), Fault> {
 
 /// The PROJ string of a horizontal system.
 fn proj_of(horizontal: &Node) -> Result<ProjText, Fault> {
+    if horizontal.is_geocentric() {
+        return geocentric_proj_of(horizontal);
+    }
     let text = proj4wkt::wkt_to_projstring(&horizontal.to_text()).map_err(|e| {
         let name = horizontal.word(0).unwrap_or_default();
         Fault::new(
@@ -365,10 +384,65 @@ fn proj_of(horizontal: &Node) -> Result<ProjText, Fault> {
     Ok(ProjText::parse(&text))
 }
 
+/// The length in metres of the unit that a WKT states for a plane system, also for one that is tied to
+/// no place on the Earth (LOCAL_CS, ENGCRS) or not understood. `None` for other texts.
+pub fn stated_unit_metres(text: &str) -> Option<f64> {
+    fn of(node: &Node) -> Option<f64> {
+        match node.keyword.as_str() {
+            "LOCAL_CS" | "ENGCRS" | "ENGINEERINGCRS" | "PROJCS" | "PROJCRS" | "PROJECTEDCRS" => {
+                node.length_unit()
+            }
+            "COMPD_CS" | "COMPOUNDCRS" => node.nodes().find_map(of),
+            "BOUNDCRS" => node.child(&["SOURCECRS"])?.nodes().find_map(of),
+            _ => None,
+        }
+    }
+    let roots = Node::parse(text.trim()).ok()?;
+    let unit = roots.iter().find_map(of)?;
+    (unit.is_finite() && unit > 0.0).then_some(unit)
+}
+
+/// The datums that coincide with WGS 84 to what a survey can tell; letters and digits of their names.
+const GEOCENTRIC_DATUMS: [&str; 9] = [
+    "wgs84",
+    "wgs1984",
+    "worldgeodeticsystem1984",
+    "etrs89",
+    "europeanterrestrialreferencesystem1989",
+    "gda",
+    "geocentricdatumofaustralia",
+    "itrf",
+    "internationalterrestrialreferenceframe",
+];
+
+/// The PROJ string of a system that counts from the Earth's centre. proj4wkt takes those of WKT 2
+/// for longitudes and latitudes.
+fn geocentric_proj_of(system: &Node) -> Result<ProjText, Fault> {
+    let datum = system.child(&["DATUM", "ENSEMBLE", "GEODETICDATUM", "TRF"]);
+    let datum = datum.and_then(|datum| datum.word(0)).unwrap_or_default();
+    let letters = datum.chars().filter(char::is_ascii_alphanumeric);
+    let plain = letters.collect::<String>().to_ascii_lowercase();
+    let plain = plain.strip_prefix('d').unwrap_or(&plain);
+    if !GEOCENTRIC_DATUMS.iter().any(|name| plain.starts_with(name)) {
+        return Err(Fault::new(
+            format!("a geocentric system whose datum ('{datum}') is not known to be WGS 84"),
+            REMEDY,
+        ));
+    }
+    let unit = system.length_unit().unwrap_or(1.0);
+    let text = match unit == 1.0 {
+        true => "+proj=geocent +datum=WGS84 +units=m".to_owned(),
+        // Not by the datum's name, whose code says metres.
+        false => format!("+proj=geocent +ellps=GRS80 +to_meter={unit}"),
+    };
+    Ok(ProjText::parse(&text))
+}
+
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
 
+    use super::stated_unit_metres;
     use crate::geodesy::{Crs, CrsKind};
 
     const UTM33: &str = r#"PROJCS["WGS 84 / UTM zone 33N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",15],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1],AXIS["Easting",EAST],AXIS["Northing",NORTH],AUTHORITY["EPSG","32633"]]"#;
@@ -463,6 +537,31 @@ mod tests {
             (CrsKind::Geocentric, "the ellipsoid")
         );
         assert!(crs.same_as(&Crs::understand("ECEF").unwrap()));
+    }
+
+    #[test]
+    fn units_of_systems_without_a_place() {
+        let local = r#"LOCAL_CS["Local Coordinates (m)",LOCAL_DATUM["Local Datum",0],UNIT["metre",1,AUTHORITY["EPSG","9001"]]]"#;
+        assert_eq!(stated_unit_metres(local), Some(1.0));
+        let compound = format!(
+            r#"COMPD_CS["a",{},VERT_CS["h",VERT_DATUM["x",2005],UNIT["metre",1]]]"#,
+            local.replace("\"metre\",1,", "\"US survey foot\",0.304800609601219,")
+        );
+        assert_eq!(stated_unit_metres(&compound), Some(0.304_800_609_601_219));
+        let wkt2 = r#"ENGCRS["pit",EDATUM["pit"],CS[Cartesian,2],AXIS["x",east,ORDER[1],LENGTHUNIT["foot",0.3048]],AXIS["y",north,ORDER[2],LENGTHUNIT["foot",0.3048]]]"#;
+        assert_eq!(stated_unit_metres(wkt2), Some(0.3048));
+        assert_eq!(stated_unit_metres(UTM33), Some(1.0));
+        let silent = r#"LOCAL_CS["a",LOCAL_DATUM["b",0]]"#;
+        let degrees = r#"GEOGCS["WGS 84",DATUM["a",SPHEROID["b",1,2]],UNIT["degree",0.0174]]"#;
+        for none in [
+            silent,
+            degrees,
+            "",
+            "EPSG:32633",
+            "LOCAL_CS[\"a\",UNIT[\"m\",0]]",
+        ] {
+            assert_eq!(stated_unit_metres(none), None, "{none}");
+        }
     }
 
     /// The German shift of seven parameters, as TOWGS84 and as PROJ 9.5.1 writes it in WKT 2; the place

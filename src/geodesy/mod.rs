@@ -14,6 +14,7 @@ mod proj_text;
 mod wkt;
 
 pub use crs::{Crs, CrsKind};
+pub use definition::stated_unit_metres;
 pub use geocentric::{ecef_from_geographic, enu_axes, geographic_from_ecef};
 
 /// A place on WGS 84.

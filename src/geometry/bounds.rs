@@ -32,6 +32,11 @@ impl Bounds {
         self.min * 0.5 + self.max * 0.5
     }
 
+    /// Whether a point is inside, or on its sides.
+    pub fn contains(&self, point: DVec3) -> bool {
+        point.cmpge(self.min).all() && point.cmple(self.max).all()
+    }
+
     /// Its edge lengths.
     pub fn size(&self) -> DVec3 {
         self.max - self.min

@@ -5,6 +5,7 @@
 //! builds no more than the rays ask for, `mesh` for faces, which may overhang.
 
 mod blocks;
+mod bulk;
 mod cloud;
 mod delaunay;
 mod hull;
@@ -385,6 +386,12 @@ impl Surface {
             min: all.min.min(block.bounds.min),
             max: all.max.max(block.bounds.max),
         })
+    }
+
+    /// The box around its bulk: [`Self::bounds`] without the few vertices far away that sparse clouds
+    /// have. Without such it is [`Self::bounds`].
+    pub fn bulk_bounds(&self) -> Bounds {
+        bulk::bulk(self.vertices(), self.bounds())
     }
 
     /// The colour of each vertex (red, green, blue), in the order of [`Self::vertices`]; empty where

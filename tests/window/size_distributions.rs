@@ -290,6 +290,41 @@ fn a_table_is_pasted() {
     assert!(desk.says("Pasted table 1"));
 }
 
+/// Without a field that has the keys: onto the page itself.
+#[test]
+fn a_table_is_pasted_onto_the_page() {
+    let mut desk = Desk::new(None);
+    let table = "size_mm\tpassing\n1\t10\n2\t35\n4\t80\n8\t100\n";
+    // Another page has no use for it.
+    desk.harness.event(Event::Paste(table.to_owned()));
+    desk.settle();
+    assert!(!desk.shows(Role::Button, "Add table"));
+    desk.press(Modifiers::COMMAND, Key::Num2);
+    desk.harness.event(Event::Paste(table.to_owned()));
+    desk.settle();
+    assert_eq!(
+        desk.harness.state().state().distributions.paste.table,
+        table
+    );
+    desk.click(Role::Button, "Add table");
+    assert_eq!(
+        computed(&desk).set.curves[0].distribution.points()[1],
+        [2.0, 35.0]
+    );
+}
+
+/// She asked for the small window: what she pastes then goes into its field.
+#[test]
+fn the_field_for_a_table_has_the_keys() {
+    let mut desk = Desk::new(None);
+    desk.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::D);
+    desk.harness
+        .event(Event::Paste("size\tpassing\n".to_owned()));
+    desk.settle();
+    let page = &desk.harness.state().state().distributions;
+    assert_eq!(page.paste.table, "size\tpassing\n");
+}
+
 #[test]
 fn a_bad_table_is_refused_in_one_line() {
     let mut desk = Desk::new(None);

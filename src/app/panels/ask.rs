@@ -165,14 +165,7 @@ pub(super) fn path_field(
         info
     });
     let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
-    // She asked for this window, so what she types next belongs here.
-    let seen = ui.scope_id().with("seen");
-    let now = ui.ctx().cumulative_frame_nr();
-    let last: Option<u64> = ui.data(|data| data.get_temp(seen));
-    if last.is_none_or(|last| last + 1 < now) {
-        field.request_focus();
-    }
-    ui.data_mut(|data| data.insert_temp(seen, now));
+    takes_the_keys_at_first(ui, &field);
     ui.horizontal(|ui| {
         for (name, what, folder) in browse {
             let hover = "Choose in the desktop's own dialog";
@@ -183,6 +176,17 @@ pub(super) fn path_field(
     });
     ui.data_mut(|data| data.insert_temp(id, path.clone()));
     (path, entered)
+}
+
+/// She asked for this window, so what she types or pastes next belongs into this field of it.
+pub(super) fn takes_the_keys_at_first(ui: &egui::Ui, field: &egui::Response) {
+    let seen = ui.scope_id().with("seen");
+    let now = ui.ctx().cumulative_frame_nr();
+    let last: Option<u64> = ui.data(|data| data.get_temp(seen));
+    if last.is_none_or(|last| last + 1 < now) {
+        field.request_focus();
+    }
+    ui.data_mut(|data| data.insert_temp(seen, now));
 }
 
 /// Where something is written if nobody says otherwise: `name` beside the flight's file, without a

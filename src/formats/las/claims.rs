@@ -18,11 +18,19 @@ const LARGEST_CHUNK: u64 = 1 << 30;
 
 const REMEDY: &str = "copy or export it again";
 
-/// Checks the claims; leaves the input at its start. Returns the number of points.
+/// How many variable length records a header states, and how many there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct RecordCount {
+    pub(super) stated: u32,
+    pub(super) found: u32,
+}
+
+/// Checks the claims; leaves the input at its start.
 ///
 /// # Errors
-/// Where the file cannot hold what its header says.
-pub(super) fn check(input: &mut (impl Read + Seek)) -> Result<u64, Fault> {
+/// Where the file cannot hold what its header says. The number of variable length records alone is
+/// none: what lies between header and points tells it, and other programs read such files.
+pub(super) fn check(input: &mut (impl Read + Seek)) -> Result<RecordCount, Fault> {
     let unreadable = |e: &dyn std::fmt::Display| {
         Fault::new(format!("it cannot be read as LAS or LAZ ({e})"), REMEDY)
     };
@@ -47,6 +55,7 @@ pub(super) fn check(input: &mut (impl Read + Seek)) -> Result<u64, Fault> {
             REMEDY,
         ));
     }
+    let count = count_records(input, &header).map_err(|e| unreadable(&e))?;
     // The two highest bits of the point format mark compression.
     if header.point_data_record_format & 0xc0 == 0 {
         let room = (length - begin) / record;
@@ -58,10 +67,88 @@ pub(super) fn check(input: &mut (impl Read + Seek)) -> Result<u64, Fault> {
         }
     } else {
         // Also without a point: the decompressor reads the table all the same.
-        check_chunks(input, &header, record, length)?;
+        check_chunks(input, &header, count.found, record, length)?;
     }
     input.rewind().map_err(|e| unreadable(&e))?;
-    Ok(records)
+    Ok(count)
+}
+
+/// Who writes the records that matter here: the coordinate system, the compression.
+const KNOWN_USERS: [&[u8]; 3] = [b"LASF_Projection", b"LASF_Spec", b"laszip encoded"];
+
+/// Walks the variable length records between the header and the points. Too high a number ends where
+/// no whole record fits; behind too low a one only records of known users count, because there may
+/// be anything.
+fn count_records(
+    input: &mut (impl Read + Seek),
+    header: &raw::Header,
+) -> std::io::Result<RecordCount> {
+    let stated = header.number_of_variable_length_records;
+    let end = u64::from(header.offset_to_point_data);
+    let mut at = u64::from(header.header_size);
+    let mut found = 0;
+    // Two bytes, a user of 16, a number of two, the length of two, 32 bytes in words.
+    while at + 54 <= end {
+        let mut head = [0; 22];
+        input.seek(SeekFrom::Start(at))?;
+        input.read_exact(&mut head)?;
+        let user = head.get(2..18).unwrap_or_default();
+        let user = user.split(|&b| b == 0).next().unwrap_or_default();
+        at += 54 + u64::from(u16::from_le_bytes([head[20], head[21]]));
+        if at > end || (found >= stated && !KNOWN_USERS.contains(&user)) {
+            break;
+        }
+        found += 1;
+    }
+    Ok(RecordCount { stated, found })
+}
+
+/// A file whose header states another number of variable length records.
+#[derive(Debug)]
+pub(super) struct WithCount<R> {
+    inner: R,
+    /// The next byte.
+    at: u64,
+    count: [u8; 4],
+}
+
+/// Where that number stands in the header.
+const COUNT_AT: u64 = 100;
+
+impl<R> WithCount<R> {
+    /// `inner` is at its start.
+    pub(super) fn new(inner: R, count: u32) -> Self {
+        Self {
+            inner,
+            at: 0,
+            count: count.to_le_bytes(),
+        }
+    }
+}
+
+impl<R: Read> Read for WithCount<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let read = self.inner.read(buffer)?;
+        if self.at < COUNT_AT + 4 {
+            for (byte, place) in buffer.iter_mut().take(read).zip(self.at..) {
+                let index = place.checked_sub(COUNT_AT).map(usize::try_from);
+                if let Some(Ok(index)) = index
+                    && let Some(counted) = self.count.get(index)
+                {
+                    *byte = *counted;
+                }
+            }
+        }
+        self.at += read as u64;
+        Ok(read)
+    }
+}
+
+impl<R: Seek> Seek for WithCount<R> {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        self.at = self.inner.seek(to)?;
+        Ok(self.at)
+    }
 }
 
 /// The first extended variable length record, which begins at `start`: las takes the memory that it
@@ -91,12 +178,13 @@ fn check_extended(input: &mut (impl Read + Seek), start: u64, length: u64) -> Re
 fn check_chunks(
     input: &mut (impl Read + Seek),
     header: &raw::Header,
+    variable_records: u32,
     record: u64,
     length: u64,
 ) -> Result<(), Fault> {
     let damaged = |what: String| Fault::new(format!("its chunk table {what}"), REMEDY);
     let broken = |e: &dyn std::fmt::Display| damaged(format!("cannot be read ({e})"));
-    let vlr = laszip_record(input, header)?;
+    let vlr = laszip_record(input, header, variable_records)?;
     let begin = u64::from(header.offset_to_point_data);
 
     // Where the table is stands in front of the points, or at the end of a file that was written
@@ -147,7 +235,11 @@ fn check_chunks(
 }
 
 /// LASzip's variable length record, found by walking all of them.
-fn laszip_record(input: &mut (impl Read + Seek), header: &raw::Header) -> Result<LazVlr, Fault> {
+fn laszip_record(
+    input: &mut (impl Read + Seek),
+    header: &raw::Header,
+    count: u32,
+) -> Result<LazVlr, Fault> {
     let broken = |e: &dyn std::fmt::Display| {
         Fault::new(
             format!("its variable length records cannot be read ({e})"),
@@ -157,7 +249,7 @@ fn laszip_record(input: &mut (impl Read + Seek), header: &raw::Header) -> Result
     input
         .seek(SeekFrom::Start(header.header_size.into()))
         .map_err(|e| broken(&e))?;
-    for _ in 0..header.number_of_variable_length_records {
+    for _ in 0..count {
         let record = raw::Vlr::read_from(&mut *input, false).map_err(|e| broken(&e))?;
         let user = record.user_id.split(|&b| b == 0).next().unwrap_or_default();
         if user == LazVlr::USER_ID.as_bytes() && record.record_id == LazVlr::RECORD_ID {

@@ -20,7 +20,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use glam::DVec3;
 use las::PointDataBuilder;
 
-use super::cloud_file::{CloudFile, first_not_finite};
+use claims::{RecordCount, WithCount};
+
+use super::cloud_file::{CloudFile, counts_degrees, first_not_finite};
 use crate::fault::Fault;
 use crate::jobs::Progress;
 
@@ -40,8 +42,16 @@ pub(super) fn read(
 ) -> Result<CloudFile, Fault> {
     // Nothing outlives the closure that a panic could have left half-done.
     catch_unwind(AssertUnwindSafe(|| {
-        claims::check(&mut input)?;
-        decode(input, progress)
+        let count = claims::check(&mut input)?;
+        if count.found == count.stated {
+            return decode(input, progress);
+        }
+        let RecordCount { stated, found } = count;
+        let mut file = decode(WithCount::new(input, found), progress)?;
+        file.warnings.push(format!(
+            "its header states {stated} variable length records, and there are {found} in front of its points: these are read"
+        ));
+        Ok(file)
     }))
     .unwrap_or_else(|_| {
         Err(Fault::new(
@@ -67,10 +77,8 @@ fn decode(
         crs: crs(reader.header()),
         ..CloudFile::default()
     };
-    file.geographic = is_geographic(file.crs.as_deref(), reader.header());
-    if file.geographic {
-        file.warnings.push("its coordinates are degrees".to_owned());
-    }
+    let in_degrees = is_geographic(file.crs.as_deref(), reader.header());
+    file.set_geographic(in_degrees);
     let mut portion = PointDataBuilder::new().for_header(reader.header()).build();
     let portion_size = PORTION.min(PORTION_BYTES / portion.record_len().max(1) as u64);
     let mut wide_colors: Vec<[u16; 3]> = Vec::new();
@@ -134,10 +142,8 @@ fn crs(header: &las::Header) -> Option<String> {
 
 fn is_geographic(crs: Option<&str>, header: &las::Header) -> bool {
     match crs {
-        Some(crs) if !crs.starts_with("EPSG:") => ["GEOGCS", "GEOGCRS", "GEODCRS"]
-            .iter()
-            .any(|word| crs.starts_with(word)),
-        _ => {
+        Some(crs) => counts_degrees(crs),
+        None => {
             let keys = header.get_geotiff_crs().ok().flatten();
             // GTModelTypeGeoKey 2: a geographic system.
             keys.is_some_and(|k| k.get_gt_model_type_geo_key_value() == Some(2))
@@ -301,6 +307,102 @@ mod tests {
                 .what
                 .contains("not a finite number")
         );
+    }
+
+    /// The sample with these variable length records, and their number overwritten.
+    fn with_records(
+        records: &[las::Vlr],
+        compressed: bool,
+        stated: impl Fn(u32) -> u32,
+    ) -> Vec<u8> {
+        let mut builder = Builder::from((1, 4));
+        builder.point_format = las::point::Format::new(6).unwrap();
+        builder.point_format.is_compressed = compressed;
+        builder.has_wkt_crs = true;
+        builder.vlrs = records.to_vec();
+        let axis = Transform {
+            scale: 0.01,
+            offset: 0.0,
+        };
+        builder.transforms = Vector {
+            x: axis,
+            y: axis,
+            z: axis,
+        };
+        let header = builder.into_header().unwrap();
+        let mut writer = Writer::new(Cursor::new(Vec::new()), header).unwrap();
+        let (x, y, z) = (3_980_581.0, -11_903.0, 4_966_824.0);
+        for i in 0..10 {
+            let x = x + f64::from(i);
+            let point = Point {
+                x,
+                y,
+                z,
+                gps_time: Some(0.0),
+                ..Point::default()
+            };
+            writer.write_point(point).unwrap();
+        }
+        let mut bytes = writer.into_inner().unwrap().into_inner();
+        let count = u32::from_le_bytes(bytes[100..104].try_into().unwrap());
+        bytes[100..104].copy_from_slice(&stated(count).to_le_bytes());
+        bytes
+    }
+
+    fn wkt_record(wkt: &str) -> las::Vlr {
+        las::Vlr {
+            user_id: "LASF_Projection".to_owned(),
+            record_id: 2112,
+            description: String::new(),
+            data: wkt.as_bytes().to_vec(),
+        }
+    }
+
+    #[test]
+    fn a_wrong_count_of_records_is_said_and_mended() {
+        let records = [wkt_record("EPSG:32633")];
+        for compressed in [false, true] {
+            let read = |stated: &dyn Fn(u32) -> u32| {
+                let file = read_bytes(with_records(&records, compressed, stated)).unwrap();
+                assert_eq!(file.cloud.points.len(), 10);
+                assert_eq!(file.crs.as_deref(), Some("EPSG:32633"));
+                file.warnings.join("\n")
+            };
+            assert_eq!(read(&|count| count), "");
+            for wrong in [0, 9, u32::MAX] {
+                let said = read(&|_| wrong);
+                assert!(said.contains(&format!("states {wrong} variable")), "{said}");
+            }
+        }
+    }
+
+    /// WKT 2 as PROJ writes it for EPSG:4978, with its code and without, and WKT 1.
+    #[test]
+    fn positions_from_the_earths_centre_are_no_degrees() {
+        let wkt2 = r#"GEODCRS["WGS 84",ENSEMBLE["World Geodetic System 1984 ensemble",MEMBER["World Geodetic System 1984 (G2139)"],ELLIPSOID["WGS 84",6378137,298.257223563,LENGTHUNIT["metre",1]],ENSEMBLEACCURACY[2.0]],PRIMEM["Greenwich",0,ANGLEUNIT["degree",0.0174532925199433]],CS[Cartesian,3],AXIS["(X)",geocentricX,ORDER[1],LENGTHUNIT["metre",1]],AXIS["(Y)",geocentricY,ORDER[2],LENGTHUNIT["metre",1]],AXIS["(Z)",geocentricZ,ORDER[3],LENGTHUNIT["metre",1]]"#;
+        let wkt1 = r#"GEOCCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["metre",1],AUTHORITY["EPSG","4978"]]"#;
+        let texts = [
+            format!("{wkt2},ID[\"EPSG\",4978]]"),
+            format!("{wkt2}]"),
+            wkt1.to_owned(),
+        ];
+        for text in texts {
+            let bytes = with_records(&[wkt_record(&text)], true, |count| count);
+            let file = read_bytes(bytes).unwrap();
+            assert!(
+                !file.geographic && file.warnings.is_empty(),
+                "{:?}",
+                file.warnings
+            );
+            let crs = crate::geodesy::Crs::understand(file.crs.as_deref().unwrap()).unwrap();
+            assert_eq!(crs.kind(), crate::geodesy::CrsKind::Geocentric);
+        }
+        let degrees = with_records(&[wkt_record("EPSG:4326")], false, |count| count);
+        assert!(read_bytes(degrees).unwrap().geographic);
+        for empty in ["", " \0\0", "\0"] {
+            let bytes = with_records(&[wkt_record(empty)], false, |count| count);
+            assert_eq!(read_bytes(bytes).unwrap().crs, None);
+        }
     }
 
     proptest! {

@@ -5,8 +5,8 @@
 //!   identity where it is left out, or in old files 16 numbers, row by row: chunk to world. world =
 //!   scale R X + t.
 //! - Where `<reference>` is a geographic, projected or compound coordinate system, the world is its
-//!   geocentric (ECEF) frame; where it is LOCAL_CS, that local frame. Without a transform the chunk's
-//!   own frame is all there is.
+//!   geocentric (ECEF) frame; where it is LOCAL_CS, that local frame, in the unit that it states.
+//!   Without a transform the chunk's own frame is all there is, and has no unit.
 //! - Since Metashape 1.5 cameras belong to `<components>`, parts of the chunk that were aligned on
 //!   their own. Each has its transform; the chunk's is that of the active one. A component without
 //!   one is in a frame of its own, so it goes with no other.
@@ -19,8 +19,9 @@ use roxmltree::Node;
 use super::xml::{child, children, line, numbers, text};
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::geodesy::{Crs, CrsKind};
+use crate::geodesy::{Crs, CrsKind, stated_unit_metres};
 use crate::geometry::Similarity;
+use crate::units::LengthUnit;
 
 /// Semi-major axis in metres and inverse flattening of WGS 84.
 const WGS84: [f64; 2] = [6_378_137.0, 298.257_223_563];
@@ -28,8 +29,8 @@ const WGS84: [f64; 2] = [6_378_137.0, 298.257_223_563];
 /// The coordinate system of a chunk.
 #[derive(Debug)]
 pub(super) enum Reference {
-    /// None, or a local one.
-    Local,
+    /// None, or a local one, with the unit that it states.
+    Local { unit: Option<LengthUnit> },
     /// One on the Earth; `understood` is that, or why it is not.
     Earth {
         understood: Result<Box<Crs>, Fault>,
@@ -47,7 +48,8 @@ impl Reference {
         let compound_of_local = keyword == "COMPD_CS" && wkt.contains("LOCAL_CS[");
         let local = ["", "LOCAL_CS", "ENGCRS", "ENGINEERINGCRS"];
         if local.contains(&keyword.as_str()) || compound_of_local {
-            return Self::Local;
+            let unit = stated_unit_metres(wkt).and_then(LengthUnit::of_metres);
+            return Self::Local { unit };
         }
         Self::Earth {
             understood: Crs::understand(wkt).map(Box::new),
@@ -65,7 +67,7 @@ impl Reference {
     pub(super) fn understood(&self) -> Option<&Crs> {
         match self {
             Self::Earth { understood, .. } => understood.as_deref().ok(),
-            Self::Local => None,
+            Self::Local { .. } => None,
         }
     }
 
@@ -257,8 +259,18 @@ mod tests {
         );
         let grs80 = geographic.replace("298.257223563", "298.257222101");
         assert!(reference(&grs80).warnings().is_empty());
-        for none in ["", r#"LOCAL_CS["Local Coordinates (m)",UNIT["metre",1]]"#] {
-            assert!(matches!(reference(none), Reference::Local));
+        let local =
+            r#"LOCAL_CS["Local Coordinates (m)",LOCAL_DATUM["Local Datum",0],UNIT["metre",1]]"#;
+        for (text, stated) in [
+            ("", None),
+            (local, Some(LengthUnit::Metre)),
+            (
+                &local.replace("\"metre\",1", "\"foot\",0.3048"),
+                Some(LengthUnit::Foot),
+            ),
+            (r#"LOCAL_CS["a",LOCAL_DATUM["b",0]]"#, None),
+        ] {
+            assert!(matches!(reference(text), Reference::Local { unit } if unit == stated));
         }
         for broken in [
             "PROJCS",

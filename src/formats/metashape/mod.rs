@@ -284,7 +284,8 @@ fn add_photos<'a>(
 
 /// Says which frame the transform led to.
 fn name_world(found: &mut Reconstruction, reference: &Reference) {
-    if let Reference::Local = reference {
+    if let Reference::Local { unit } = reference {
+        found.unit = *unit;
         return;
     }
     // A chunk that was only scaled keeps the coordinate system of its photos' GPS.

@@ -24,6 +24,7 @@ use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::formats::fields::{Fields, shown};
 use crate::formats::poses_csv::{PoseLine, PosesFile};
+use crate::formats::separated::{Separator, unquoted};
 use crate::geometry::Bounds;
 
 const EXPORT: &str = "export it from Metashape again (Export Cameras, Omega Phi Kappa)";
@@ -124,12 +125,12 @@ fn read_line(number: u64, line: &str) -> Result<PoseLine, Fault> {
         if off > SAME_ROTATION {
             return Err(fields.fault(format!(
                 "the angles and r11 to r33 of '{}' differ by {off:.1e}: they are not Metashape's",
-                shown(photo)
+                shown(&photo)
             )));
         }
     }
     Ok(PoseLine {
-        photo: photo.to_owned(),
+        photo,
         camera: None,
         pose,
         line: number,
@@ -138,10 +139,10 @@ fn read_line(number: u64, line: &str) -> Result<PoseLine, Fault> {
 
 /// The name and what is behind it: up to the first tab, or comma, or as many numbers from the end as
 /// there are.
-fn split_name(line: &str) -> Option<(&str, &str)> {
-    let by = |separator: char| {
-        let (name, rest) = line.split_once(separator)?;
-        Some((name.trim().trim_matches('"'), rest))
+fn split_name(line: &str) -> Option<(String, &str)> {
+    let by = |sign: char| {
+        let (name, rest) = Separator::Sign(sign).first(line);
+        Some((name, rest.strip_prefix(sign)?))
     };
     let found = by('\t').or_else(|| by(',')).or_else(|| {
         let numbers = line.split_whitespace().rev();
@@ -153,7 +154,7 @@ fn split_name(line: &str) -> Option<(&str, &str)> {
         for _ in 0..count {
             name = name.rsplit_once(char::is_whitespace)?.0.trim_end();
         }
-        Some((name, line.get(name.len()..)?))
+        Some((unquoted(name), line.get(name.len()..)?))
     });
     found.filter(|(name, rest)| !name.is_empty() && !rest.trim().is_empty())
 }

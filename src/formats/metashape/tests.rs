@@ -716,9 +716,7 @@ fn angles_serve_as_the_poses_of_a_flight() {
     assert!((top - 1.0).abs() < 1e-9, "{top}");
     write("opk.txt", &opk("-64.71", "18.38"));
     // In degrees they are brought to the zone, which is not where this surface lies.
-    let opened = open().unwrap();
-    assert_eq!(opened.crs.as_deref(), Some("EPSG:32620"));
-    let said = opened.warnings.join("\n");
-    assert!(said.contains("are brought to EPSG:32620"), "{said}");
-    assert!(said.contains("two coordinate systems"), "{said}");
+    let error = open().unwrap_err().to_string();
+    let what = "ground.xyz: it states no coordinate system, and cannot be in the photos' (EPSG:32620)";
+    assert!(error.contains(what), "{error}");
 }

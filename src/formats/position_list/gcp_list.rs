@@ -23,6 +23,7 @@ use glam::{DVec2, DVec3};
 use super::geo_file::content;
 use super::{ControlPoint, ControlPoints, check_degrees, is_geographic};
 use crate::fault::Fault;
+use crate::formats::separated::Separator;
 
 /// Reads a gcp_list.txt whose first line says `crs`.
 pub(super) fn read(text: &str, crs: Option<String>) -> Result<ControlPoints, Fault> {
@@ -52,7 +53,9 @@ pub(super) fn read(text: &str, crs: Option<String>) -> Result<ControlPoints, Fau
                 points.add(position(0)?, name, Some((photo, pixel + 0.5)))?;
             }
             (3, 3) => points.add(position(0)?, None, None)?,
-            (4, _) | (5.., 0) => points.add(position(1)?, fields.first().copied(), None)?,
+            (4, _) | (5.., 0) => {
+                points.add(position(1)?, fields.first().map(String::as_str), None)?
+            }
             _ => {
                 return Err(Fault::at(
                     number,
@@ -71,18 +74,18 @@ pub(super) fn read(text: &str, crs: Option<String>) -> Result<ControlPoints, Fau
 }
 
 /// The fields: between tabs where there are enough of them, else between white space.
-fn split(line: &str) -> Vec<&str> {
-    let tabs = line.split('\t').map(str::trim).filter(|f| !f.is_empty());
-    let tabs: Vec<&str> = tabs.collect();
+fn split(line: &str) -> Vec<String> {
+    let mut tabs = Separator::Sign('\t').split(line);
+    tabs.retain(|field| !field.is_empty());
     if tabs.len() >= 4 {
         return tabs;
     }
-    line.split_whitespace().collect()
+    Separator::Blanks.split(line)
 }
 
 /// The photo and the point's name: a photo's name that holds blanks goes on to its ending.
-fn photo_and_name<'a>(fields: &[&'a str]) -> (String, Option<&'a str>) {
-    let ends = |field: &&str| {
+fn photo_and_name(fields: &[String]) -> (String, Option<&str>) {
+    let ends = |field: &String| {
         let field = field.to_ascii_lowercase();
         [".jpg", ".jpeg", ".png", ".tif", ".tiff", ".dng"]
             .iter()
@@ -90,12 +93,12 @@ fn photo_and_name<'a>(fields: &[&'a str]) -> (String, Option<&'a str>) {
     };
     let last = fields.iter().position(ends).unwrap_or(0);
     let photo = fields.get(..=last).unwrap_or_default().join(" ");
-    (photo, fields.get(last + 1).copied())
+    (photo, fields.get(last + 1).map(String::as_str))
 }
 
-fn number_at(fields: &[&str], place: usize, name: &str, line: u64) -> Result<f64, Fault> {
+fn number_at(fields: &[String], place: usize, name: &str, line: u64) -> Result<f64, Fault> {
     let remedy = "check the line: 'x y z pixel_x pixel_y image name', or 'name x y z'";
-    let field = fields.get(place).copied().unwrap_or_default();
+    let field = fields.get(place).map_or("", String::as_str);
     match field.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         _ => Err(Fault::at(

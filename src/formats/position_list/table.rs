@@ -6,8 +6,7 @@
 //! ```
 //!
 //! - The separator is the one of tab, semicolon and comma that the header holds most of, else white
-//!   space. Fields may be quoted. Where the separator is no comma, a comma in a number is a decimal
-//!   one.
+//!   space. Fields may be quoted. A comma in a number is a decimal one (see `separated`).
 //! - Column names are compared in small letters without blanks, punctuation and what stands in
 //!   brackets; of a name with a slash ("X/Easting") one part has to be known ([`Column::of`]). A
 //!   leading # belongs to no name. Columns of other names are passed over.
@@ -23,12 +22,14 @@ use glam::DVec3;
 use super::geo_file::leave_out_without_height;
 use super::{NamedPosition, PositionList, check_degrees, crs_from_text, is_crs, is_geographic};
 use crate::fault::Fault;
+use crate::formats::separated::{Numbers, Separator, unquoted};
 
 /// Reads a table.
 pub(super) fn read(text: &str) -> Result<PositionList, Fault> {
     let mut list = PositionList::default();
     let mut layout: Option<Layout> = None;
     let mut without_height = 0_usize;
+    let numbers = Numbers::of(text);
     for (line, number) in text.lines().zip(1..) {
         let line = line.trim_end();
         if line.trim().is_empty() {
@@ -56,7 +57,7 @@ pub(super) fn read(text: &str) -> Result<PositionList, Fault> {
         if comment.is_some() {
             continue;
         }
-        let Some(position) = layout.line(line, number)? else {
+        let Some(position) = layout.line(line, number, &numbers)? else {
             without_height += 1;
             continue;
         };
@@ -69,6 +70,7 @@ pub(super) fn read(text: &str) -> Result<PositionList, Fault> {
         return Err(no_header(1, text.lines().next().unwrap_or_default()));
     }
     leave_out_without_height(&mut list, without_height)?;
+    list.warnings.extend(numbers.warnings());
     Ok(list)
 }
 
@@ -87,8 +89,7 @@ fn crs_of_comment(comment: &str) -> Option<String> {
     let (key, value) = comment.split_once(':').unwrap_or(("", comment));
     let key = squeezed(key);
     if matches!(key.as_str(), "coordinatesystem" | "crs" | "srs") {
-        let value = value.trim().trim_matches('"');
-        return crs_from_text(value);
+        return crs_from_text(&unquoted(value));
     }
     is_crs(comment).then(|| crs_from_text(comment)).flatten()
 }
@@ -169,7 +170,7 @@ impl Column {
 
 /// Which column stands where.
 struct Layout {
-    separator: Option<char>,
+    separator: Separator,
     columns: Vec<Option<Column>>,
     is_degrees: bool,
 }
@@ -177,17 +178,13 @@ struct Layout {
 impl Layout {
     /// The layout that a header line states; `None` where it is no header.
     fn of(header: &str) -> Option<Self> {
-        let separator = ['\t', ';', ',']
-            .into_iter()
-            .map(|c| (header.matches(c).count(), c))
-            .max_by_key(|&(count, _)| count)
-            .and_then(|(count, c)| (count > 0).then_some(c));
+        let separator = Separator::of(header);
         let mut layout = Self {
             separator,
             columns: Vec::new(),
             is_degrees: false,
         };
-        layout.columns = layout
+        layout.columns = separator
             .split(header)
             .iter()
             .map(|field| Column::of(field))
@@ -228,51 +225,23 @@ impl Layout {
         warnings
     }
 
-    /// The fields of a line; a quoted one may hold the separator.
-    fn split(&self, line: &str) -> Vec<String> {
-        let mut fields = vec![String::new()];
-        let mut quoted = false;
-        for c in line.trim_end().chars() {
-            let ends = !quoted && self.separator.map_or(c.is_whitespace(), |s| s == c);
-            match fields.last_mut() {
-                _ if c == '"' => quoted = !quoted,
-                // Several blanks are one separator.
-                Some(field) if ends && self.separator.is_none() && field.is_empty() => {}
-                _ if ends => fields.push(String::new()),
-                Some(field) => field.push(c),
-                None => {}
-            }
-        }
-        fields.iter().map(|field| field.trim().to_owned()).collect()
-    }
-
     /// The place on one line; `None` where it has no height.
-    fn line(&self, text: &str, line: u64) -> Result<Option<NamedPosition>, Fault> {
-        let fields = self.split(text);
+    fn line(
+        &self,
+        text: &str,
+        line: u64,
+        numbers: &Numbers,
+    ) -> Result<Option<NamedPosition>, Fault> {
+        let fields = self.separator.split(text);
         let field = |column: Column| {
             let field = fields.get(self.place(column)?)?;
             (!field.is_empty()).then_some(field.as_str())
         };
         let number = |column: Column, text: &str| {
-            let decimal_comma = self.separator != Some(',')
-                && !text.contains('.')
-                && text.matches(',').count() == 1;
-            let number = if decimal_comma {
-                text.replace(',', ".").parse::<f64>()
-            } else {
-                text.parse::<f64>()
-            };
-            match number {
-                Ok(number) if number.is_finite() => Ok(number),
-                _ => {
-                    let shown: String = text.chars().take(40).collect();
-                    Err(Fault::at(
-                        line,
-                        format!("{column:?} is '{shown}', not a finite decimal number"),
-                        "write it as a decimal number",
-                    ))
-                }
-            }
+            numbers.read(text, line).map_err(|why| {
+                let remedy = "write it as a decimal number";
+                Fault::at(line, format!("{column:?} {why}"), remedy)
+            })
         };
         let needed = |column: Column| {
             let text = field(column).ok_or_else(|| {

@@ -8,6 +8,7 @@ use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
 use crate::formats::fields::shown;
 use crate::formats::reconstruction::Reconstruction;
+use crate::formats::separated::Separator;
 
 use super::{FILM, Lens, add, say_refused};
 
@@ -39,15 +40,8 @@ pub(in crate::formats) fn is_header(line: &str) -> bool {
 fn columns(line: &str) -> Vec<String> {
     let line = line.trim().trim_start_matches('#');
     let line = line.split('(').next().unwrap_or_default();
-    let clean = |name: &str| name.trim().trim_matches('"').to_ascii_lowercase();
-    line.split(delimiter(line)).map(clean).collect()
-}
-
-fn delimiter(line: &str) -> char {
-    [',', ';', '\t']
-        .into_iter()
-        .find(|c| line.contains(*c))
-        .unwrap_or(',')
+    let names = Separator::of(line).split(line).into_iter();
+    names.map(|name| name.to_ascii_lowercase()).collect()
 }
 
 /// Where a column stands, and its name.
@@ -57,7 +51,7 @@ type Column = (usize, &'static str);
 struct Header {
     line: u64,
     names: Vec<String>,
-    delimiter: char,
+    separator: Separator,
 }
 
 impl Header {
@@ -76,14 +70,14 @@ impl Header {
 }
 
 /// One line of the table.
-struct Row<'a> {
+struct Row {
     line: u64,
-    fields: Vec<&'a str>,
+    fields: Vec<String>,
 }
 
-impl Row<'_> {
+impl Row {
     fn number(&self, (column, name): Column) -> Result<f64, Fault> {
-        let text = self.fields.get(column).copied().unwrap_or_default();
+        let text = self.fields.get(column).map_or("", String::as_str);
         text.parse::<f64>()
             .ok()
             .filter(|n| n.is_finite())
@@ -114,7 +108,7 @@ pub(in crate::formats) fn read_csv(text: &str) -> Result<Reconstruction, Fault> 
     let header = Header {
         line,
         names: columns(titles),
-        delimiter: delimiter(titles),
+        separator: Separator::of(titles),
     };
     let is_opencv = header.optional(&["r00"]).is_some();
     let mut found = Reconstruction {
@@ -135,12 +129,9 @@ pub(in crate::formats) fn read_csv(text: &str) -> Result<Reconstruction, Fault> 
         if text.trim_start().starts_with('#') {
             continue;
         }
-        let fields = text
-            .split(header.delimiter)
-            .map(|field| field.trim().trim_matches('"'))
-            .collect();
+        let fields = header.separator.split(text);
         let row = Row { line, fields };
-        let photo = row.fields.get(name.0).copied().unwrap_or_default();
+        let photo = row.fields.get(name.0).map_or("", String::as_str);
         if photo.is_empty() {
             return Err(Fault::at(line, "a photo without name", EXPORT));
         }
@@ -182,7 +173,7 @@ fn coefficients(header: &Header) -> [Option<Column>; 6] {
 }
 
 /// How a row of one template is read.
-type Template = Box<dyn Fn(&Row<'_>) -> Result<Read, Fault>>;
+type Template = Box<dyn Fn(&Row) -> Result<Read, Fault>>;
 
 /// The program's own columns: centre, angles, the lens on film.
 fn own(header: &Header) -> Result<Template, Fault> {

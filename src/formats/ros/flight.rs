@@ -24,6 +24,7 @@ use crate::formats::camera_file;
 use crate::formats::reconstruction::{MeasuredPosition, PosedPhoto, Reconstruction};
 use crate::formats::trajectory::{NoPose, PosedFiles, Stamp, pose_photos, stamp_of};
 use crate::geodesy::Geographic;
+use crate::units::LengthUnit;
 
 /// The longest time between two fixes that a position is interpolated over, in nanoseconds:
 /// receivers send one a second.
@@ -67,6 +68,8 @@ impl Recording {
         let mut reconstruction = Reconstruction {
             package: "ros",
             sizes_known: true,
+            // REP 103.
+            unit: Some(LengthUnit::Metre),
             warnings: self.warnings(),
             ..Reconstruction::default()
         };

@@ -1,6 +1,7 @@
 //! The small window that a table is pasted into.
 
 use crate::app::command::Command;
+use crate::app::panels::ask::takes_the_keys_at_first;
 use crate::app::panels::field::combo_box;
 use crate::app::size_distributions::{DistributionCommand, PasteForm};
 use crate::app::state::State;
@@ -26,6 +27,7 @@ pub(in crate::app::panels) fn paste(state: &State, ui: &mut egui::Ui, commands: 
                 .desired_width(f32::INFINITY);
             let field = ui.add(field);
             named(&field, "Table", &form.table);
+            takes_the_keys_at_first(ui, &field);
             field.on_hover_text("Ctrl+V pastes what was copied elsewhere");
         });
     egui::Grid::new("paste").num_columns(2).show(ui, |ui| {
