@@ -153,6 +153,8 @@ struct Source {
     /// without a reconstruction.
     named_sizes: Vec<Option<(u32, u32)>>,
     may_be_reduced: bool,
+    /// The unit that the package states for its own frame.
+    package_unit: Option<LengthUnit>,
     /// The topic of a recording whose poses are taken.
     topic: Option<String>,
     cameras: Vec<Camera>,
@@ -182,6 +184,7 @@ impl Source {
             photo_folder_is_named: options.photos.is_some(),
             named_sizes: Vec::new(),
             may_be_reduced: false,
+            package_unit: None,
             topic: options.topic.clone(),
             cameras: Vec::new(),
             photos: Vec::new(),
@@ -247,6 +250,7 @@ impl Source {
                     reconstruction.crs = None;
                     reconstruction.preferred_crs = None;
                     reconstruction.enu_origin = None;
+                    reconstruction.unit = None;
                     source.package_surface_to_world = Some(similarity);
                 }
                 source
@@ -364,6 +368,7 @@ impl Source {
             .map(|photo| reconstruction.named_size(photo))
             .collect();
         self.may_be_reduced = reconstruction.may_be_reduced;
+        self.package_unit = reconstruction.unit;
         self.cameras = reconstruction.cameras;
         self.photos = reconstruction
             .photos
@@ -651,7 +656,7 @@ impl Source {
             None => {}
         }
         let Some(unit) = world.unit().map_err(at_poses)? else {
-            self.settings.unit_known = self.unit_is_stated;
+            self.take_package_unit();
             return Ok((cloud, world));
         };
         let stated = self.settings.unit;
@@ -670,6 +675,24 @@ impl Source {
             self.warn(surface_file, &[what]);
         }
         Ok((cloud, world))
+    }
+
+    /// The unit of a world without a coordinate system: what flight.toml says, else the package.
+    fn take_package_unit(&mut self) {
+        let settings = &mut self.settings;
+        match (self.unit_is_stated, self.package_unit) {
+            (false, unit) => {
+                settings.unit = unit.unwrap_or(settings.unit);
+                settings.unit_known = unit.is_some();
+            }
+            (true, Some(unit)) if unit != settings.unit => {
+                let path = self.file.clone();
+                let stated = settings.unit;
+                let what = format!("world.unit is {stated}, but the package counts in {unit}");
+                self.warn(&path, &[what]);
+            }
+            (true, _) => {}
+        }
     }
 
     fn warn(&mut self, path: &Path, warnings: &[String]) {

@@ -717,6 +717,7 @@ fn angles_serve_as_the_poses_of_a_flight() {
     write("opk.txt", &opk("-64.71", "18.38"));
     // In degrees they are brought to the zone, which is not where this surface lies.
     let error = open().unwrap_err().to_string();
-    let what = "ground.xyz: it states no coordinate system, and cannot be in the photos' (EPSG:32620)";
+    let what =
+        "ground.xyz: it states no coordinate system, and cannot be in the photos' (EPSG:32620)";
     assert!(error.contains(what), "{error}");
 }
