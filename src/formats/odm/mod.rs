@@ -11,7 +11,7 @@
 //! | `opensfm/reconstruction.json` | sparse points, each photo's camera; cameras and poses where the above are missing |
 //! | `opensfm/tracks.csv` | where photos show the sparse points |
 //! | `odm_georeferencing/{coords,proj}.txt`, `.../alignment_matrix.json`, `opensfm/geocoords_transformation.txt` | the frames (georeference.rs) |
-//! | `odm_georeferencing/odm_georeferenced_model.laz`, `.las` or `.ply` | the surface |
+//! | the dense clouds and the elevation model (surface.rs) | the surface |
 //! | `img_list.txt`, else `images.json` | which photos there were before the alignment |
 //! | `images/` | the photos |
 //!
@@ -24,21 +24,23 @@ mod georeference;
 mod poses;
 mod shots;
 mod submodels;
+mod surface;
 
 use std::collections::HashSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Deserialize;
 
 use crate::fault::Fault;
-use crate::formats::input::{FileError, text_from_bytes};
+use crate::formats::input::{FileError, read_bytes, text_from_bytes};
 use crate::formats::json::parse;
-use crate::formats::opensfm::OpenSfm;
+use crate::formats::opensfm::{self, OpenSfm};
 use crate::formats::reconstruction::{PosedPhoto, Project, Reconstruction};
 use cameras::with_cameras;
 pub(super) use georeference::crs_from_text;
 use georeference::{Frames, optional};
 use poses::{from_shots, from_sparse};
+use surface::surface;
 
 /// Whether a folder looks like an OpenDroneMap project that has poses, or submodels that have.
 pub(super) fn is_project(dir: &Path) -> bool {
@@ -64,6 +66,18 @@ pub(super) fn read_folder(dir: &Path) -> Result<Project, FileError> {
         }
     }
     read_one(dir)
+}
+
+/// How many photos a project places, from files of `most` bytes at most; `None` for submodels, whose
+/// photos overlap.
+pub(super) fn count_of_photos(dir: &Path, most: u64) -> Option<usize> {
+    let shots_file = dir.join("odm_report/shots.geojson");
+    if !shots_file.is_file() {
+        return opensfm::count_of_photos(&dir.join("opensfm/reconstruction.json"), most);
+    }
+    let is_small = shots_file.metadata().ok()?.len() <= most;
+    let bytes = is_small.then(|| read_bytes(&shots_file).ok()).flatten()?;
+    Some(shots::read(&bytes).ok()?.len())
 }
 
 /// Reads a project that has poses itself.
@@ -100,6 +114,12 @@ fn read_one(dir: &Path) -> Result<Project, FileError> {
     };
     let (cameras, photos) = with_cameras(dir, posed.shots, sparse, &mut warnings)?;
     warnings.extend(unaligned(dir, &photos));
+    // In another frame it would be a wrong one, and that is said.
+    let (surface, surface_note) = if posed.in_world {
+        surface(dir)
+    } else {
+        (None, None)
+    };
     Ok(Project {
         reconstruction: Reconstruction {
             package: "opendronemap",
@@ -114,7 +134,8 @@ fn read_one(dir: &Path) -> Result<Project, FileError> {
             warnings,
             ..Reconstruction::default()
         },
-        surface: surface(dir).filter(|_| posed.in_world),
+        surface,
+        surface_note,
         photos: Some(dir.join("images")).filter(|folder| folder.is_dir()),
     })
 }
@@ -128,14 +149,6 @@ fn with_tracks(dir: &Path, mut sparse: OpenSfm, warnings: &mut Vec<String>) -> R
         warnings.push(format!("no observations: {error}"));
     }
     sparse.reconstruction
-}
-
-fn surface(dir: &Path) -> Option<PathBuf> {
-    let model = dir.join("odm_georeferencing/odm_georeferenced_model");
-    ["laz", "las", "ply"]
-        .map(|extension| model.with_extension(extension))
-        .into_iter()
-        .find(|file| file.is_file())
 }
 
 /// A warning with the count of the photos that were there but are not aligned, if any.
