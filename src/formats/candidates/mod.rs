@@ -227,8 +227,13 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
 
 /// Whether `one` is a file that the folder `whole` stands for.
 fn is_part_of(one: &(Package, PathBuf), whole: &(Package, PathBuf)) -> bool {
-    let stands_for_files = matches!(whole.0, Package::Pix4d | Package::Ros);
-    stands_for_files && one.0 == whole.0 && one.1 != whole.1 && one.1.starts_with(&whole.1)
+    let stands_for_it = match whole.0 {
+        Package::Pix4d => true,
+        // A bag of ROS 1 is no part of a recording of ROS 2.
+        Package::Ros => one.1.extension().is_none_or(|end| end != "bag"),
+        _ => false,
+    };
+    stands_for_it && one.0 == whole.0 && one.1 != whole.1 && one.1.starts_with(&whole.1)
 }
 
 /// Whether `one` is a part, an earlier stage or an export of `whole`, by the places where the packages

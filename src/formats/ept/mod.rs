@@ -245,4 +245,4 @@ fn of_file(name: &str, fault: Fault) -> Fault {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

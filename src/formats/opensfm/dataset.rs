@@ -8,7 +8,7 @@
 //! | `reference_lla.json` | the frame's origin, where the reconstruction states none |
 //! | `image_list.txt` | which photos there were before the alignment |
 //! | `images/`; of a folder `opensfm` also `../images/` | the photos |
-//! | `reconstruction.topocentric.json`, `exported_geocoords.txt` | OpenDroneMap has put projected coordinates less an offset into `reconstruction.json` |
+//! | `reconstruction.topocentric.json`, `exported_geocoords.txt` | OpenDroneMap has put projected coordinates less an offset into `reconstruction.json`, unless the photos' positions say otherwise (frame/) |
 
 use std::collections::HashSet;
 use std::fs;

@@ -23,7 +23,7 @@
 //! own pose as well; one that does not has the rig camera's after its instance's. The world is
 //! east-north-up at `reference_lla` (WGS 84) where there was GPS, else arbitrary and the reference is
 //! 0, 0, 0; it names no coordinate system. OpenDroneMap writes another frame into the same file, which
-//! only the positions tell (frame.rs). gps_position is what the receiver said, east-north-up; a
+//! only the positions tell (frame/). gps_position is what the receiver said, east-north-up; a
 //! gps_dop of 999999 stands for a photo without GPS. Colours are 0 to 255, written as floats. Image
 //! points count in the photo as stored, whatever its EXIF orientation.
 
@@ -179,19 +179,9 @@ impl OpenSfm {
     /// Puts the reconstruction where it stands on the Earth, if it has a reference: that depends on
     /// which frame it is in, which nothing states. Warns where that is not what OpenSfM writes.
     fn place(&mut self, hint: Hint) {
-        let Some(origin) = self.reconstruction.enu_origin else {
+        let Some((frame, said)) = self.frame(hint) else {
             return;
         };
-        let photos = self.reconstruction.photos.iter();
-        let centers: HashMap<&str, DVec3> = photos
-            .map(|photo| (photo.name.as_str(), photo.pose.center))
-            .collect();
-        let pairs: Vec<(DVec3, DVec3)> = self
-            .measured
-            .iter()
-            .filter_map(|one| Some((one.position, *centers.get(one.photo.as_str())?)))
-            .collect();
-        let (frame, said) = frame_of(&pairs, origin, hint);
         let reconstruction = &mut self.reconstruction;
         reconstruction.warnings.extend(said);
         match frame {
@@ -204,6 +194,30 @@ impl OpenSfm {
                 reconstruction.crs = Some(crs);
             }
         }
+    }
+
+    /// The sentence that says so where the photos' positions tell that OpenDroneMap has put projected
+    /// coordinates less an offset into it.
+    pub(super) fn said_to_be_projected(&self) -> Option<String> {
+        match self.frame(Hint::None)? {
+            (Frame::Projected { .. }, said) => said,
+            _ => None,
+        }
+    }
+
+    /// The frame that it is in, with what there is to say; `None` where it has no reference.
+    fn frame(&self, hint: Hint) -> Option<(Frame, Option<String>)> {
+        let origin = self.reconstruction.enu_origin?;
+        let photos = self.reconstruction.photos.iter();
+        let centers: HashMap<&str, DVec3> = photos
+            .map(|photo| (photo.name.as_str(), photo.pose.center))
+            .collect();
+        let pairs: Vec<(DVec3, DVec3)> = self
+            .measured
+            .iter()
+            .filter_map(|one| Some((one.position, *centers.get(one.photo.as_str())?)))
+            .collect();
+        Some(frame_of(&pairs, origin, hint))
     }
 
     /// Adds the image points of a `tracks.csv`. Those of photos and points that the reconstruction

@@ -41,9 +41,6 @@ const NEGLIGIBLE: f64 = 1e-3;
 /// How sure the rejection of a reading must be.
 const CONFIDENCE: f64 = 0.999;
 
-/// How often photos that are far off are left out, at most.
-const ROUNDS: usize = 5;
-
 /// What other signs than the positions say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Hint {
@@ -245,25 +242,24 @@ impl Projection {
     }
 
     fn evidence(&self, pairs: &[Pair], of_enu: &Misfit, of_grid: &Misfit) -> Evidence {
-        let mut kept: Vec<&Pair> = pairs.iter().collect();
-        let Some(fit) = Fit::of(&kept) else {
+        let Some(fit) = Fit::of(&pairs.iter().collect::<Vec<_>>()) else {
             return Evidence::None;
         };
         let mut evidence = self.evidence_of(&fit, true);
         // A few photos that are far off must not hide what the others say.
-        for _ in 0..ROUNDS {
-            if !matches!(evidence, Evidence::None | Evidence::Neither) {
-                break;
-            }
-            let before = kept.len();
-            kept = without_outliers(kept);
-            if kept.len() == before || 2 * kept.len() < pairs.len() {
-                break;
-            }
-            let Some(fit) = Fit::of(&kept) else {
-                break;
+        if matches!(evidence, Evidence::None | Evidence::Neither) {
+            let better = if of_enu.distance <= of_grid.distance {
+                of_enu
+            } else {
+                of_grid
             };
-            evidence = self.evidence_of(&fit, false);
+            let kept = better.without_outliers(pairs);
+            if kept.len() < pairs.len()
+                && 2 * kept.len() > pairs.len()
+                && let Some(fit) = Fit::of(&kept)
+            {
+                evidence = self.evidence_of(&fit, false);
+            }
         }
         let is_near = |misfit: &Misfit| misfit.shift.length() <= MOST_SHIFT;
         match evidence {
@@ -375,28 +371,14 @@ impl Residuals {
     }
 }
 
-/// The photos that a fit over all leaves within three of their robust standard deviations.
-fn without_outliers(pairs: Vec<&Pair>) -> Vec<&Pair> {
-    let Some(residuals) = Residuals::of(&pairs) else {
-        return pairs;
-    };
-    let Some(middle) = median(&mut residuals.lengths.clone()) else {
-        return pairs;
-    };
-    // The median length of normal deviations in two axes is 1.1774 of their standard deviation.
-    let most = 3.0 * middle / 1.1774;
-    let all = pairs.into_iter().zip(residuals.lengths);
-    all.filter(|(_, length)| *length <= most)
-        .map(|(pair, _)| pair)
-        .collect()
-}
-
 /// How the camera centres lie to where a reading puts the measured positions.
 struct Misfit {
     /// The median over all photos.
     shift: DVec2,
-    /// The median distance beside that.
-    distance: Option<f64>,
+    /// How far each photo is off beside that.
+    distances: Vec<f64>,
+    /// Their median; 0 of none.
+    distance: f64,
 }
 
 impl Misfit {
@@ -409,15 +391,26 @@ impl Misfit {
             median(&mut off.iter().map(axis).collect::<Vec<f64>>()).unwrap_or_default()
         };
         let shift = DVec2::new(middle(|off| off.x), middle(|off| off.y));
-        let mut distances: Vec<f64> = off.iter().map(|off| off.distance(shift)).collect();
+        let distances: Vec<f64> = off.iter().map(|off| off.distance(shift)).collect();
         Self {
             shift,
-            distance: median(&mut distances),
+            distance: median(&mut distances.clone()).unwrap_or_default(),
+            distances,
         }
     }
 
+    /// The photos within four of their robust standard deviations.
+    fn without_outliers<'a>(&self, pairs: &'a [Pair]) -> Vec<&'a Pair> {
+        // The median length of normal deviations in two axes is 1.1774 of their standard deviation.
+        let most = 4.0 * self.distance / 1.1774;
+        let all = pairs.iter().zip(&self.distances);
+        all.filter(|(_, distance)| **distance <= most)
+            .map(|(pair, _)| pair)
+            .collect()
+    }
+
     fn in_words(&self) -> String {
-        let distance = self.distance.unwrap_or_default();
+        let distance = self.distance;
         let digits = if distance < 0.1 { 3 } else { 2 };
         let all = self.shift.length();
         if all > 1.0 && all > distance {

@@ -342,25 +342,36 @@ fn without_evidence_a_reference_in_whole_metres_is_doubted() {
 /// where the alignment is exact.
 #[test]
 fn an_offset_that_is_not_the_reference_is_found_or_said_to_be_missing() {
-    for site in &SITES {
-        let moved = |by: f64| -> Vec<[f64; 3]> {
-            let rows = site.projected.iter();
-            rows.map(|[x, y, z]| [x + by, y - by, *z]).collect()
-        };
-        // The reference is 0.000 1 degrees, 11.1 m, north of where it would be whole.
-        let elsewhere = Site {
-            latitude: site.latitude + 1e-4,
-            ..*site
-        };
-        let found = lone(&elsewhere, &moved(0.25), true);
-        assert_eq!((found.crs.clone(), found.enu_origin), (None, None));
-        assert!(
-            said(&found).contains("offset is not known"),
-            "{}",
-            said(&found)
-        );
-        assert!(said(&found).contains(site.crs) || site.crs == "EPSG:32632");
-    }
+    // The reference is 248941.37 6689455.81 in the zone, the offset 248931 6689459.
+    let site = Site {
+        latitude: -29.899988957247174,
+        longitude: -71.59999925090241,
+        crs: "EPSG:32719",
+        offset: [248_931.0, 6_689_459.0],
+        projected: [
+            [-48.6182, -49.5535, 40.0],
+            [11.3661, -47.1951, 41.0],
+            [73.4185, -47.7917, 40.0],
+            [67.3126, 45.1284, 42.0],
+            [7.351, 41.7699, 40.0],
+            [-51.6332, 39.4341, 39.0],
+        ],
+    };
+    let found = lone(&site, &site.projected, true);
+    assert_eq!(found.crs.as_deref(), Some(site.crs), "{}", said(&found));
+    assert!(said(&found).contains("EPSG:32719 less 248931 6689459"));
+    let [x, y, z] = site.projected[0];
+    let off = found.photos[0].pose.center - DVec3::new(248_931.0 + x, 6_689_459.0 + y, z);
+    assert!(off.length() < 1e-3, "{off}");
+    let moved = site.projected.map(|[x, y, z]| [x + 0.25, y - 0.25, z]);
+    let found = lone(&site, &moved, true);
+    assert_eq!((found.crs.clone(), found.enu_origin), (None, None));
+    assert!(
+        said(&found).contains("offset is not known"),
+        "{}",
+        said(&found)
+    );
+    assert!(said(&found).contains(site.crs), "{}", said(&found));
 }
 
 #[test]
