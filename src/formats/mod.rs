@@ -7,12 +7,14 @@
 mod blocks_exchange;
 mod bundler;
 mod camera_file;
+mod candidates;
 mod cloud_file;
 mod colmap;
 mod drone_photos;
 mod dropped;
 mod e57;
 mod effort_table;
+mod ept;
 mod evidence;
 mod fields;
 mod flight_poses;
@@ -73,6 +75,7 @@ use std::fs;
 use std::io::{BufRead, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 
+pub use candidates::{Candidate, candidates};
 pub use cloud_file::CloudFile;
 pub use dropped::Dropped;
 pub use effort_table::{effort_table, read_effort_table};
@@ -100,6 +103,8 @@ pub use size_distributions::{
 };
 pub use table::{NumberRepairs, Row, Table};
 pub use trajectory::TrajectoryFormat;
+
+use candidates::{Contents, only_below, several};
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
@@ -149,6 +154,8 @@ pub enum CloudFormat {
     Gltf,
     /// An elevation model.
     GeoTiff,
+    /// Entwine Point Tile: a folder of LAZ tiles, by its ept.json.
+    Ept,
 }
 
 impl Kind {
@@ -167,7 +174,7 @@ impl Kind {
 }
 
 /// Everything that can be opened, for messages.
-const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos; a CSV of size distributions";
+const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, EPT (ept.json), XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos; a CSV of size distributions";
 
 /// How many bytes of a file are looked at to tell its kind.
 const DETECTED_BY: usize = 4096;
@@ -225,6 +232,9 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
         .unwrap_or_default()
         .to_string_lossy()
         .to_ascii_lowercase();
+    if ept::is_header(text, &name) {
+        return Ok(Kind::Cloud(CloudFormat::Ept));
+    }
     let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
     if matches!(extension, "csv" | "txt" | "tum" | "kitti") {
         let whole = start.len() < DETECTED_BY;
@@ -276,8 +286,14 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
     if flight.is_file() {
         return Ok(Kind::Flight(flight));
     }
-    if let Some((package, path)) = package::of_folder(path) {
-        return Ok(Kind::Reconstruction(package, path));
+    let mut meant = Contents::of(path).meant;
+    match (meant.pop(), meant.is_empty()) {
+        (Some((package, path)), true) => return Ok(Kind::Reconstruction(package, path)),
+        (Some(last), false) => {
+            meant.push(last);
+            return Err(several(path, meant));
+        }
+        (None, _) => {}
     }
     let of_model = |part: &str| {
         [".bin", ".txt"]
@@ -296,17 +312,8 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
             ),
         ));
     }
-    let several = package::in_folder(path);
-    if !several.is_empty() {
-        let names = several.iter().filter_map(|(_, path)| path.file_name());
-        let names: Vec<_> = names.map(|name| name.to_string_lossy()).take(5).collect();
-        return Err(FileError::new(
-            path,
-            Fault::new(
-                format!("a folder with {} reconstructions in it", several.len()),
-                format!("open one of them: {}", names.join(", ")),
-            ),
-        ));
+    if let Some(error) = only_below(path) {
+        return Err(error);
     }
     let what = match fs::read_dir(path) {
         Ok(_) => "a folder with no flight.toml and no reconstruction in it".to_owned(),
@@ -406,10 +413,19 @@ fn read_cloud_as(
         CloudFormat::Stl => stl::read(input, size, progress),
         CloudFormat::Gltf => gltf::read(input, beside, progress),
         CloudFormat::GeoTiff => geotiff::read(input, size, progress),
+        CloudFormat::Ept => {
+            let mut header = Vec::new();
+            let read = input.take(MOST_HEADER).read_to_end(&mut header);
+            read.map_err(|e| Fault::new(format!("it cannot be read ({e})"), "check the disk"))?;
+            ept::read(&header, beside, progress)
+        }
     }?;
     file.crs = file.crs.filter(|crs| world_frame::is_stated(crs));
     Ok(file)
 }
+
+/// The most bytes of a header that are read.
+const MOST_HEADER: u64 = 16 << 20;
 
 /// Reads a camera's calibration.
 ///
@@ -431,12 +447,16 @@ pub fn read_camera(path: &Path) -> Result<Camera, FileError> {
 /// With the file and the place in it, and where `path` holds no reconstruction.
 pub fn read_project(path: &Path, progress: &Progress) -> Result<Project, FileError> {
     match detect(path)? {
-        Kind::Reconstruction(package, path) => {
-            let mut project = package::read(package, &path, progress)?;
+        Kind::Reconstruction(package, at) => {
+            let mut project = package::read(package, &at, progress)?;
             let found = &mut project.reconstruction;
             for crs in [&mut found.crs, &mut found.preferred_crs] {
                 // An empty text states nothing.
                 *crs = crs.take().filter(|crs| world_frame::is_stated(crs));
+            }
+            if path.is_dir() {
+                let said = Contents::of(path).sources_in_words(path);
+                found.warnings.extend(said);
             }
             Ok(project)
         }

@@ -66,6 +66,7 @@ pub(super) fn read_file(path: &Path) -> Result<Project, FileError> {
         reconstruction,
         surface,
         photos: Some(folder.to_owned()),
+        ..Project::default()
     })
 }
 

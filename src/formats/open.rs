@@ -143,6 +143,8 @@ struct Source {
     surface_up: UpAxis,
     /// Whether `surface` is what the package left, not what somebody named.
     surface_is_packages: bool,
+    /// What its package's reader says about the surface.
+    surface_note: Option<String>,
     /// The way of the package's frame to the world, where flight.toml says it.
     package_surface_to_world: Option<Similarity>,
     reconstruction_cloud: CloudFile,
@@ -178,6 +180,7 @@ impl Source {
             surface: options.surface.clone(),
             surface_up: UpAxis::Z,
             surface_is_packages: false,
+            surface_note: None,
             package_surface_to_world: None,
             reconstruction_cloud: CloudFile::default(),
             photo_folder: options.photos.clone(),
@@ -319,6 +322,8 @@ impl Source {
         if self.surface.is_none() {
             self.surface_is_packages = project.surface.is_some();
             self.surface = project.surface;
+            self.warn(path, project.surface_note.as_slice());
+            self.surface_note = project.surface_note;
         }
         self.photo_folder = self.photo_folder.take().or(project.photos);
         Ok(project.reconstruction)
@@ -538,8 +543,10 @@ impl Source {
         let (cloud, world) = self.bring_to_world(&surface_file, file, progress)?;
         let at_surface = |fault| FileError::new(&surface_file, fault);
         if cloud.cloud.points.is_empty() {
+            let looked = self.surface_note.map(|note| format!(": {note}"));
+            let looked = looked.unwrap_or_default();
             return Err(at_surface(Fault::new(
-                "it has no 3D points to make a surface of",
+                format!("it has no 3D points to make a surface of{looked}"),
                 "add its cloud or mesh: drop it on the window, or name it with --surface or as [surface] file in a flight.toml",
             )));
         }

@@ -1,22 +1,17 @@
 //! The packages whose reconstructions are read: how each is recognised, and which reader takes it.
 //!
-//! One line a package in each of the three places: a file is recognised by its name or its first
-//! bytes, a folder by what lies in it.
+//! One line a package in each of the places: a file is recognised by its name or its first bytes, a
+//! folder by what lies in it (candidates.rs).
 
-use std::fs;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::input::{FileError, read_bytes, read_text};
 use super::reconstruction::Project;
 use super::{
-    DETECTED_BY, blocks_exchange, bundler, colmap, drone_photos, json_packages, meshroom,
-    metashape, middlebury, nerfstudio, nvm, odm, open3d, opensfm, opf, pix4d, realitycapture, ros,
+    blocks_exchange, bundler, colmap, drone_photos, json_packages, meshroom, metashape, middlebury,
+    nerfstudio, nvm, odm, open3d, opensfm, opf, pix4d, realitycapture, ros,
 };
 use crate::jobs::Progress;
-
-/// How many files of a folder are looked into.
-const LOOKED_AT: usize = 200;
 
 /// What wrote a reconstruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,6 +72,29 @@ impl Package {
             Self::Nerfstudio => "nerfstudio's transforms",
             Self::Open3d => "an Open3D camera trajectory",
             Self::Middlebury => "Middlebury camera parameters",
+        }
+    }
+
+    /// Its name, for lists.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ContextCapture => "ContextCapture",
+            Self::Colmap => "COLMAP",
+            Self::Metashape => "Metashape",
+            Self::OpenDroneMap => "OpenDroneMap",
+            Self::Opf => "OPF",
+            Self::Pix4d => "Pix4D",
+            Self::RealityCaptureCsv => "RealityCapture's CSV",
+            Self::RealityCaptureXmp => "RealityCapture's XMP",
+            Self::VisualSfm => "VisualSFM",
+            Self::Photos => "photos alone",
+            Self::Ros => "ROS",
+            Self::OpenSfm => "OpenSfM",
+            Self::Bundler => "Bundler",
+            Self::Meshroom => "Meshroom",
+            Self::Nerfstudio => "nerfstudio",
+            Self::Open3d => "Open3D",
+            Self::Middlebury => "Middlebury",
         }
     }
 }
@@ -153,80 +171,6 @@ fn has(start: &[u8], word: &str) -> bool {
         .any(|window| window == word.as_bytes())
 }
 
-/// Recognises a folder.
-pub(super) fn of_folder(path: &Path) -> Option<(Package, PathBuf)> {
-    if odm::is_project(path) {
-        return Some((Package::OpenDroneMap, path.to_owned()));
-    }
-    if let Some(project) = opf::project_in(path) {
-        return Some((Package::Opf, project));
-    }
-    if realitycapture::has_sidecars(path) {
-        return Some((Package::RealityCaptureXmp, path.to_owned()));
-    }
-    if pix4d::has_params(path) {
-        return Some((Package::Pix4d, path.to_owned()));
-    }
-    if ros::is_recording_folder(path) {
-        return Some((Package::Ros, path.to_owned()));
-    }
-    if let Some(model) = colmap::model_folder(path) {
-        return Some((Package::Colmap, model));
-    }
-    let files = [
-        (Package::OpenSfm, opensfm::dataset_file(path)),
-        (Package::Bundler, bundler::bundle_of_folder(path)),
-        (Package::Nerfstudio, nerfstudio::transforms_of_folder(path)),
-        (Package::Meshroom, only_file(path, ".sfm")),
-        (Package::Middlebury, only_file(path, "_par.txt")),
-    ];
-    let found = |(package, file): (Package, Option<PathBuf>)| Some((package, file?));
-    if let Some(found) = files.into_iter().find_map(found) {
-        return Some(found);
-    }
-    match in_folder(path).as_slice() {
-        [] => {}
-        [only] => return Some(only.clone()),
-        // Which one is meant must be said.
-        _ => return None,
-    }
-    // Last, because beside a .p4d there may lie what another package made of the same photos, and
-    // beside what a package made there are often its photos.
-    if pix4d::is_bare_project(path) {
-        return Some((Package::Pix4d, path.to_owned()));
-    }
-    drone_photos::has_photos(path).then(|| (Package::Photos, path.to_owned()))
-}
-
-/// The reconstructions that lie as files in a folder that is none itself.
-pub(super) fn in_folder(folder: &Path) -> Vec<(Package, PathBuf)> {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut found: Vec<(Package, PathBuf)> = entries
-        .map(|entry| entry.path())
-        .filter(|path| path.is_file() && !drone_photos::is_photo(path))
-        .take(LOOKED_AT)
-        .filter_map(|path| {
-            let mut start = Vec::new();
-            let file = fs::File::open(&path).ok()?;
-            file.take(DETECTED_BY as u64).read_to_end(&mut start).ok()?;
-            of_file(&path, &start)
-        })
-        .collect();
-    found.sort_by(|(_, a), (_, b)| a.cmp(b));
-    found.dedup();
-    found
-}
-
-/// The file of a folder whose name ends so, where there is only one.
-fn only_file(folder: &Path, end: &str) -> Option<PathBuf> {
-    let entries = fs::read_dir(folder).ok()?.flatten();
-    let mut found = entries.map(|entry| entry.path()).filter(|path| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        name.to_ascii_lowercase().ends_with(end) && path.is_file()
-    });
-    found.next().filter(|_| found.next().is_none())
-}
-
 /// Reads what the package wrote.
 pub(super) fn read(
     package: Package,
@@ -268,46 +212,9 @@ pub(super) fn read(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::fs;
 
-    #[test]
-    fn folders_are_told_by_what_lies_in_them() {
-        for (file, package) in [
-            ("opensfm/reconstruction.json", Package::OpenSfm),
-            ("reconstruction.json", Package::OpenSfm),
-            ("reconstruction_example.json", Package::OpenSfm),
-            ("bundle/bundle.out", Package::Bundler),
-            ("transforms.json", Package::Nerfstudio),
-            ("cameras.sfm", Package::Meshroom),
-            ("templeR_par.txt", Package::Middlebury),
-            (
-                "submodels/submodel_0000/odm_report/shots.geojson",
-                Package::OpenDroneMap,
-            ),
-        ] {
-            let dir = tempfile::tempdir().unwrap();
-            let path = dir.path().join(file);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(&path, "[").unwrap();
-            let found = of_folder(dir.path());
-            assert_eq!(found.map(|(package, _)| package), Some(package), "{file}");
-        }
-        let dir = tempfile::tempdir().unwrap();
-        assert_eq!(of_folder(dir.path()), None);
-        // Under another name it is still the only one in the folder; of two neither is meant.
-        let model = dir.path().join("model.nvm");
-        fs::write(&model, "NVM_V3").unwrap();
-        fs::write(dir.path().join("notes.txt"), "1 2 3").unwrap();
-        assert_eq!(of_folder(dir.path()), Some((Package::VisualSfm, model)));
-        fs::write(dir.path().join("other.nvm"), "NVM_V3").unwrap();
-        assert_eq!(of_folder(dir.path()), None);
-        assert_eq!(in_folder(dir.path()).len(), 2);
-        let dir = tempfile::tempdir().unwrap();
-        for name in ["a_par.txt", "b_par.txt"] {
-            fs::write(dir.path().join(name), "").unwrap();
-        }
-        assert_eq!(of_folder(dir.path()), None);
-    }
+    use super::*;
 
     #[test]
     fn files_are_told_by_their_beginning_or_name() {

@@ -48,6 +48,9 @@ pub struct Project {
     pub reconstruction: Reconstruction,
     /// The file of the dense cloud or mesh, in the reconstruction's frame unless it says otherwise.
     pub surface: Option<PathBuf>,
+    /// Which of several surfaces that is, or where none was found: a sentence for whoever names no
+    /// other one.
+    pub surface_note: Option<String>,
     /// The folder of the photo files.
     pub photos: Option<PathBuf>,
 }

@@ -17,7 +17,9 @@ mod text;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::fmt::Display;
+use std::fs;
 use std::hash::Hash;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
@@ -87,6 +89,38 @@ pub(super) fn model_folder(dir: &Path) -> Option<PathBuf> {
     [dir.to_owned(), sparse.join("0"), sparse]
         .into_iter()
         .find(|folder| kind_of_model(folder).is_some())
+}
+
+/// The folders of all models that `dir` may stand for: itself, its `sparse` and what lies in that, of
+/// which `most` entries are looked at.
+pub(super) fn models_in(dir: &Path, most: usize) -> Vec<PathBuf> {
+    let sparse = dir.join("sparse");
+    let entries = fs::read_dir(&sparse).into_iter().flatten().flatten();
+    let mut parts: Vec<PathBuf> = entries.take(most).map(|entry| entry.path()).collect();
+    parts.sort_unstable();
+    let folders = [dir.to_owned(), sparse].into_iter().chain(parts);
+    folders
+        .filter(|folder| kind_of_model(folder).is_some())
+        .collect()
+}
+
+/// How many images a model has, where that is quick to tell: a binary one begins with it, a text says
+/// it in a comment.
+pub(super) fn count_of_images(folder: &Path) -> Option<usize> {
+    let kind = kind_of_model(folder)?;
+    let mut start = Vec::new();
+    let file = fs::File::open(folder.join(format!("images.{kind}"))).ok()?;
+    file.take(1024).read_to_end(&mut start).ok()?;
+    if kind == "bin" {
+        let count: [u8; 8] = start.get(..8)?.try_into().ok()?;
+        return usize::try_from(u64::from_le_bytes(count)).ok();
+    }
+    let text = String::from_utf8_lossy(&start);
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("# Number of images:"))?;
+    let number = line.split(':').nth(1)?.split(',').next()?;
+    number.trim().parse().ok()
 }
 
 /// Reads the COLMAP model in `dir`, or in the `sparse/0` or `sparse` of a project folder.

@@ -145,8 +145,8 @@ pub(super) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
     reconstruction.warnings = warnings;
     Ok(Project {
         reconstruction,
-        surface: None,
         photos: Some(folder),
+        ..Project::default()
     })
 }
 

@@ -20,7 +20,8 @@
 //! Which of the frames `reconstruction.json` is in depends on ODM's version. Where `shots.geojson`
 //! states the camera centres, the map that leads to them is the right one. Else the transformation
 //! file counts; else the offset, where `opensfm/reconstruction.topocentric.json` or
-//! `opensfm/exported_geocoords.txt` tells that this version writes projected coordinates.
+//! `opensfm/exported_geocoords.txt` tells that this version writes projected coordinates, or the
+//! photos' GPS positions do (opensfm/frame).
 
 use std::path::Path;
 
@@ -77,6 +78,11 @@ impl Frames {
                 .is_file()
                 || dir.join("opensfm/exported_geocoords.txt").is_file(),
         })
+    }
+
+    /// Takes it as known that `reconstruction.json` is in projected coordinates less the offset.
+    pub(super) fn set_projected(&mut self) {
+        self.is_projected = true;
     }
 
     /// Whether the cloud and the centres were moved onto another data set.

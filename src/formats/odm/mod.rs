@@ -11,7 +11,7 @@
 //! | `opensfm/reconstruction.json` | sparse points, each photo's camera; cameras and poses where the above are missing |
 //! | `opensfm/tracks.csv` | where photos show the sparse points |
 //! | `odm_georeferencing/{coords,proj}.txt`, `.../alignment_matrix.json`, `opensfm/geocoords_transformation.txt` | the frames (georeference.rs) |
-//! | `odm_georeferencing/odm_georeferenced_model.laz`, `.las` or `.ply` | the surface |
+//! | the dense clouds and the elevation model (surface.rs) | the surface |
 //! | `img_list.txt`, else `images.json` | which photos there were before the alignment |
 //! | `images/` | the photos |
 //!
@@ -24,21 +24,23 @@ mod georeference;
 mod poses;
 mod shots;
 mod submodels;
+mod surface;
 
 use std::collections::HashSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Deserialize;
 
 use crate::fault::Fault;
-use crate::formats::input::{FileError, text_from_bytes};
+use crate::formats::input::{FileError, read_bytes, text_from_bytes};
 use crate::formats::json::parse;
-use crate::formats::opensfm::OpenSfm;
+use crate::formats::opensfm::{self, OpenSfm};
 use crate::formats::reconstruction::{PosedPhoto, Project, Reconstruction};
 use cameras::with_cameras;
 pub(super) use georeference::crs_from_text;
 use georeference::{Frames, optional};
 use poses::{from_shots, from_sparse};
+use surface::surface;
 
 /// Whether a folder looks like an OpenDroneMap project that has poses, or submodels that have.
 pub(super) fn is_project(dir: &Path) -> bool {
@@ -66,6 +68,18 @@ pub(super) fn read_folder(dir: &Path) -> Result<Project, FileError> {
     read_one(dir)
 }
 
+/// How many photos a project places, from files of `most` bytes at most; `None` for submodels, whose
+/// photos overlap.
+pub(super) fn count_of_photos(dir: &Path, most: u64) -> Option<usize> {
+    let shots_file = dir.join("odm_report/shots.geojson");
+    if !shots_file.is_file() {
+        return opensfm::count_of_photos(&dir.join("opensfm/reconstruction.json"), most);
+    }
+    let is_small = shots_file.metadata().ok()?.len() <= most;
+    let bytes = is_small.then(|| read_bytes(&shots_file).ok()).flatten()?;
+    Some(shots::read(&bytes).ok()?.len())
+}
+
 /// Reads a project that has poses itself.
 fn read_one(dir: &Path) -> Result<Project, FileError> {
     let mut warnings = Vec::new();
@@ -77,14 +91,24 @@ fn read_one(dir: &Path) -> Result<Project, FileError> {
             warnings.push(format!("no sparse points: {error}"));
             None
         }
-        sparse => sparse?.map(|sparse| with_tracks(dir, sparse, &mut warnings)),
+        sparse => sparse?,
     };
+    let projected = sparse.as_ref().and_then(OpenSfm::said_to_be_projected);
+    let sparse = sparse.map(|sparse| with_tracks(dir, sparse, &mut warnings));
     let sparse = sparse.as_ref();
     if let Some(sparse) = sparse {
         let said = sparse.warnings.iter();
         warnings.extend(said.map(|warning| format!("opensfm/reconstruction.json: {warning}")));
     }
-    let frames = Frames::read(dir)?;
+    let mut frames = Frames::read(dir)?;
+    // Only where nothing else says it.
+    if shots.is_none()
+        && frames.world_from_sparse().is_none()
+        && let Some(said) = projected
+    {
+        frames.set_projected();
+        warnings.push(format!("opensfm/reconstruction.json: {said}"));
+    }
     let posed = match (shots, sparse) {
         (Some(shots), sparse) => from_shots(shots, sparse, &frames, &mut warnings)
             .map_err(|fault| FileError::new(&shots_file, fault))?,
@@ -100,6 +124,12 @@ fn read_one(dir: &Path) -> Result<Project, FileError> {
     };
     let (cameras, photos) = with_cameras(dir, posed.shots, sparse, &mut warnings)?;
     warnings.extend(unaligned(dir, &photos));
+    // In another frame it would be a wrong one, and that is said.
+    let (surface, surface_note) = if posed.in_world {
+        surface(dir)
+    } else {
+        (None, None)
+    };
     Ok(Project {
         reconstruction: Reconstruction {
             package: "opendronemap",
@@ -115,7 +145,8 @@ fn read_one(dir: &Path) -> Result<Project, FileError> {
             warnings,
             ..Reconstruction::default()
         },
-        surface: surface(dir).filter(|_| posed.in_world),
+        surface,
+        surface_note,
         photos: Some(dir.join("images")).filter(|folder| folder.is_dir()),
     })
 }
@@ -129,14 +160,6 @@ fn with_tracks(dir: &Path, mut sparse: OpenSfm, warnings: &mut Vec<String>) -> R
         warnings.push(format!("no observations: {error}"));
     }
     sparse.reconstruction
-}
-
-fn surface(dir: &Path) -> Option<PathBuf> {
-    let model = dir.join("odm_georeferencing/odm_georeferenced_model");
-    ["laz", "las", "ply"]
-        .map(|extension| model.with_extension(extension))
-        .into_iter()
-        .find(|file| file.is_file())
 }
 
 /// A warning with the count of the photos that were there but are not aligned, if any.
@@ -184,6 +207,8 @@ mod tests {
 
     use super::*;
     use crate::formats::test_data::shared_data;
+    use crate::formats::{OpenOptions, open_flight};
+    use crate::jobs::Progress;
 
     const CAMERAS: (&str, &str) = (
         "cameras.json",
@@ -262,6 +287,25 @@ mod tests {
         let center = moved.reconstruction.photos[0].pose.center;
         assert!((center - DVec3::new(500_001.0, 4_000_002.0, 50.0)).length() < 1e-9);
         assert!(moved.surface.is_some() && moved.reconstruction.warnings.is_empty());
+        // Else the photos' GPS positions tell: 2.4 degrees turned against east and north at the
+        // reference, whose place in the zone was computed outside.
+        let shots = r#"[{"cameras": {"v2 c": {"projection_type": "brown", "focal_x": 0.5, "focal_y": 0.5, "width": 400, "height": 200}},
+        "shots": {
+          "a.jpg": {"camera": "v2 c", "rotation": [3.141592653589793, 0, 0], "translation": [58.0315, -47.4984, 40], "gps_position": [-60, -45, 40]},
+          "b.jpg": {"camera": "v2 c", "rotation": [3.141592653589793, 0, 0], "translation": [-63.8877, -43.3249, 40], "gps_position": [62, -46, 40]},
+          "c.jpg": {"camera": "v2 c", "rotation": [3.141592653589793, 0, 0], "translation": [-55.9487, 49.4116, 42], "gps_position": [58, 47, 42]}},
+        "reference_lla": {"latitude": 60.20000079741062, "longitude": 17.80000682720282, "altitude": 0}}]"#;
+        let coords = (COORDS.0, "WGS84 UTM 33N\n655203 6676977\n");
+        let dir = project(&[CAMERAS, (SPARSE.0, shots), coords, CLOUD]);
+        let told = read_folder(dir.path()).unwrap();
+        let center = told.reconstruction.photos[0].pose.center;
+        let expected = DVec3::new(655_203.0 - 58.0315, 6_676_977.0 - 47.4984, 40.0);
+        assert!((center - expected).length() < 1e-6, "{center}");
+        assert!(told.surface.is_some());
+        let [said] = &told.reconstruction.warnings[..] else {
+            panic!("{:?}", told.reconstruction.warnings)
+        };
+        assert!(said.contains("EPSG:32633 less 655203 6676977"), "{said}");
         // Else the frames are not mixed.
         let dir = project(&[CAMERAS, SPARSE, TRACKS, COORDS, CLOUD]);
         let own = read_folder(dir.path()).unwrap();
@@ -269,6 +313,39 @@ mod tests {
         assert!((center - DVec3::new(1.0, 2.0, 50.0)).length() < 1e-9);
         assert_eq!((own.surface, own.reconstruction.crs), (None, None));
         assert!(own.reconstruction.warnings[0].contains("own frame"));
+    }
+
+    /// A cloud as tiles alone is the project's surface; where there is none, the error says where it
+    /// was looked for.
+    #[test]
+    fn tiles_are_a_surface_and_none_is_said() {
+        let open = |dir: &TempDir| {
+            let options = OpenOptions::default();
+            open_flight(dir.path(), &options, &Progress::default())
+        };
+        let no_points = SPARSE.1.replace(
+            r#""7": {"coordinates": [1, 2, 40], "color": [1, 2, 3]}"#,
+            "",
+        );
+        let dir = project(&[CAMERAS, (SPARSE.0, &no_points), SHOTS, COORDS]);
+        let error = open(&dir).unwrap_err().to_string();
+        for name in [
+            "odm_georeferenced_model.copc.laz",
+            "entwine_pointcloud/ept.json",
+            "odm_dem/dsm.tif",
+        ] {
+            assert!(error.contains(name), "{error}");
+        }
+        assert!(!error.contains('\n'));
+        let tiles = dir.path().join("entwine_pointcloud");
+        crate::formats::ept::tests::write(&tiles);
+        let opened = open(&dir).unwrap();
+        assert!(opened.inputs.contains(&tiles.join("ept.json")));
+        assert_eq!(opened.flight.parts().surface.vertices().count(), 6);
+        // Sparse points stand in, and that is said with the places.
+        let dir = project(&[CAMERAS, SPARSE, SHOTS, COORDS]);
+        let found = read_folder(dir.path()).unwrap();
+        assert!(found.surface.is_none() && found.surface_note.unwrap().contains("odm_dem/dsm.tif"));
     }
 
     #[test]

@@ -13,7 +13,8 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{is_odm_folder, read_one, surface};
+use super::surface::surface;
+use super::{is_odm_folder, read_one};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::formats::input::FileError;
@@ -62,11 +63,12 @@ pub(super) fn read(dir: &Path, submodels: &[PathBuf]) -> Result<Project, FileErr
     let mut own = Project::default();
     for (name, project) in projects {
         own.surface = own.surface.or(project.surface);
+        own.surface_note = own.surface_note.or(project.surface_note);
         own.photos = own.photos.or(project.photos);
         joined.add(&name, project.reconstruction);
     }
     let images = Some(dir.join("images")).filter(|folder| folder.is_dir());
-    let common = surface(dir);
+    let (common, note) = surface(dir);
     let mut reconstruction = joined.finish();
     reconstruction.crs = first;
     if submodels.len() > 1 {
@@ -78,10 +80,17 @@ pub(super) fn read(dir: &Path, submodels: &[PathBuf]) -> Result<Project, FileErr
             );
         }
         own.surface = None;
+        own.surface_note = None;
     }
+    let surface_note = if common.is_some() || own.surface.is_none() {
+        note
+    } else {
+        own.surface_note
+    };
     Ok(Project {
         reconstruction,
         surface: common.or(own.surface),
+        surface_note,
         photos: images.or(own.photos),
     })
 }

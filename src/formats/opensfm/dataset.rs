@@ -8,7 +8,7 @@
 //! | `reference_lla.json` | the frame's origin, where the reconstruction states none |
 //! | `image_list.txt` | which photos there were before the alignment |
 //! | `images/`; of a folder `opensfm` also `../images/` | the photos |
-//! | `reconstruction.topocentric.json`, `exported_geocoords.txt` | OpenDroneMap has put projected coordinates less an offset into `reconstruction.json` |
+//! | `reconstruction.topocentric.json`, `exported_geocoords.txt` | OpenDroneMap has put projected coordinates less an offset into `reconstruction.json`, unless the photos' positions say otherwise (frame/) |
 
 use std::collections::HashSet;
 use std::fs;
@@ -16,6 +16,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::OpenSfm;
+use super::frame::Hint;
 use crate::formats::input::{FileError, open_file, read_bytes, text_from_bytes};
 use crate::formats::photo_files::folder_of_photos;
 use crate::formats::reconstruction::{Project, Reconstruction};
@@ -71,22 +72,9 @@ pub(in crate::formats) fn read_file(path: &Path) -> Result<Project, FileError> {
     {
         warnings.push(format!("no observations: {error}"));
     }
+    file.reconstruction.warnings.append(&mut warnings);
+    file.place(hint(path));
     let mut reconstruction = file.reconstruction;
-    let is_projected = ["reconstruction.topocentric.json", "exported_geocoords.txt"]
-        .iter()
-        .any(|name| folder.join(name).is_file());
-    if is_projected
-        && path
-            .file_name()
-            .is_some_and(|name| name == "reconstruction.json")
-    {
-        reconstruction.enu_origin = None;
-        warnings.push(
-            "OpenDroneMap has put projected coordinates less an offset into it; open the project's \
-             folder to have them in the world"
-                .to_owned(),
-        );
-    }
     warnings.extend(unaligned(folder, &reconstruction));
     reconstruction.warnings.extend(warnings);
     let mut folders = vec![folder.join("images")];
@@ -96,9 +84,33 @@ pub(in crate::formats) fn read_file(path: &Path) -> Result<Project, FileError> {
     let photos = folder_of_photos(folders, &reconstruction);
     Ok(Project {
         reconstruction,
-        surface: None,
         photos,
+        ..Project::default()
     })
+}
+
+/// How many photos a `reconstruction.json` of `most` bytes at most places.
+pub(in crate::formats) fn count_of_photos(path: &Path, most: u64) -> Option<usize> {
+    let is_small = path.metadata().ok()?.len() <= most;
+    let bytes = is_small.then(|| read_bytes(path).ok()).flatten()?;
+    Some(OpenSfm::read(&bytes).ok()?.reconstruction.photos.len())
+}
+
+/// What the file's name and its neighbours say about its frame.
+fn hint(path: &Path) -> Hint {
+    let of_projection = ["reconstruction.topocentric.json", "exported_geocoords.txt"];
+    let name = path.file_name().unwrap_or_default();
+    if name == "reconstruction.topocentric.json" {
+        Hint::Topocentric
+    } else if name == "reconstruction.json"
+        && of_projection
+            .iter()
+            .any(|name| path.with_file_name(name).is_file())
+    {
+        Hint::Projected
+    } else {
+        Hint::None
+    }
 }
 
 /// The tracks that the reconstruction was made from.

@@ -22,12 +22,14 @@
 //! x_camera = R x_world + t, with camera axes x right, y down, z forward. A shot of a rig carries its
 //! own pose as well; one that does not has the rig camera's after its instance's. The world is
 //! east-north-up at `reference_lla` (WGS 84) where there was GPS, else arbitrary and the reference is
-//! 0, 0, 0; it names no coordinate system. gps_position is what the receiver said, in that frame; a
+//! 0, 0, 0; it names no coordinate system. OpenDroneMap writes another frame into the same file, which
+//! only the positions tell (frame/). gps_position is what the receiver said, east-north-up; a
 //! gps_dop of 999999 stands for a photo without GPS. Colours are 0 to 255, written as floats. Image
 //! points count in the photo as stored, whatever its EXIF orientation.
 
 pub(super) mod camera;
 mod dataset;
+mod frame;
 mod reference;
 mod rig;
 mod tracks;
@@ -35,7 +37,7 @@ mod tracks;
 use std::collections::HashMap;
 use std::fmt;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
 
@@ -43,9 +45,11 @@ use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::formats::json::{Object, parse};
 use crate::formats::reconstruction::{PosedPhoto, Reconstruction};
+use crate::geometry::Similarity;
 use crate::surface::Cloud;
 use camera::{CameraModel, usable_cameras};
-pub(super) use dataset::{dataset_file, read_file};
+pub(super) use dataset::{count_of_photos, dataset_file, read_file};
+use frame::{Frame, Hint, frame_of};
 use reference::{Measured, RawReference, enu_origin, measured_positions};
 use rig::{RawRigCamera, RawRigInstance, Rigs};
 
@@ -172,6 +176,50 @@ impl OpenSfm {
             self.reconstruction.measured_positions = positions;
         }
         Ok(())
+    }
+
+    /// Puts the reconstruction where it stands on the Earth, if it has a reference: that depends on
+    /// which frame it is in, which nothing states. Warns where that is not what OpenSfM writes.
+    fn place(&mut self, hint: Hint) {
+        let Some((frame, said)) = self.frame(hint) else {
+            return;
+        };
+        let reconstruction = &mut self.reconstruction;
+        reconstruction.warnings.extend(said);
+        match frame {
+            Frame::Topocentric => {}
+            Frame::Unknown => reconstruction.enu_origin = None,
+            Frame::Projected { crs, offset } => {
+                let offset = Similarity::new(1.0, DMat3::IDENTITY, offset.extend(0.0));
+                reconstruction.transform(&offset);
+                reconstruction.enu_origin = None;
+                reconstruction.crs = Some(crs);
+            }
+        }
+    }
+
+    /// The sentence that says so where the photos' positions tell that OpenDroneMap has put projected
+    /// coordinates less an offset into it.
+    pub(super) fn said_to_be_projected(&self) -> Option<String> {
+        match self.frame(Hint::None)? {
+            (Frame::Projected { .. }, said) => said,
+            _ => None,
+        }
+    }
+
+    /// The frame that it is in, with what there is to say; `None` where it has no reference.
+    fn frame(&self, hint: Hint) -> Option<(Frame, Option<String>)> {
+        let origin = self.reconstruction.enu_origin?;
+        let photos = self.reconstruction.photos.iter();
+        let centers: HashMap<&str, DVec3> = photos
+            .map(|photo| (photo.name.as_str(), photo.pose.center))
+            .collect();
+        let pairs: Vec<(DVec3, DVec3)> = self
+            .measured
+            .iter()
+            .filter_map(|one| Some((one.position, *centers.get(one.photo.as_str())?)))
+            .collect();
+        Some(frame_of(&pairs, origin, hint))
     }
 
     /// Adds the image points of a `tracks.csv`. Those of photos and points that the reconstruction

@@ -25,11 +25,12 @@ pub(super) struct RawReference {
     altitude: Option<f64>,
 }
 
-/// Where a receiver put a photo, in the reconstruction's frame.
+/// Where a receiver put a photo.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Measured {
-    photo: String,
-    position: DVec3,
+    pub(super) photo: String,
+    /// East, north and up at the reference, whatever frame the poses are in.
+    pub(super) position: DVec3,
 }
 
 impl Measured {

@@ -95,7 +95,7 @@ pub(super) fn is_bare_project(path: &Path) -> bool {
 }
 
 /// Where a project keeps its params.
-const PARAMS: &str = "1_initial/params";
+pub(super) const PARAMS: &str = "1_initial/params";
 
 fn is_params(path: &Path) -> bool {
     let params = Params::of_folder(path);
