@@ -7,6 +7,7 @@ use std::path::Path;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use fragscale::app::Command;
+use fragscale::app::command::Choice;
 use fragscale::app::size_distributions::{DistributionCommand, Page};
 use fragscale::app::state::PictureRequest;
 
@@ -113,7 +114,7 @@ fn an_export_into_another_flights_folder_is_asked_for() {
     let (first, second) = (copy("tests/windrow"), copy("tests/windrow"));
     let out = first.path().join("out");
     let mut desk = Desk::new(Some(first.path()));
-    apply(&mut desk, Command::ChooseAll(true));
+    apply(&mut desk, Command::ChooseAll(Choice::WithScale));
     apply(&mut desk, Command::Export(out.clone()));
     assert!(
         desk.logged("open scales.html"),
@@ -127,7 +128,7 @@ fn an_export_into_another_flights_folder_is_asked_for() {
     assert!(desk.harness.state().state().held_back.is_none());
 
     apply(&mut desk, Command::Open(second.path().to_owned()));
-    apply(&mut desk, Command::ChooseAll(true));
+    apply(&mut desk, Command::ChooseAll(Choice::WithScale));
     apply(&mut desk, Command::Export(out.clone()));
     assert!(desk.says("holds the export of another flight, 'Windrow'"));
     desk.click(Role::Button, "Keep the export");
