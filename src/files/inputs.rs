@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 type Identity = (u64, u64);
 
 #[cfg(unix)]
-#[expect(clippy::unnecessary_wraps, reason = "other systems have none")]
 fn identity(metadata: &fs::Metadata) -> Option<Identity> {
     use std::os::unix::fs::MetadataExt;
     Some((metadata.dev(), metadata.ino()))
@@ -36,6 +35,8 @@ pub struct Inputs {
     opened: Known,
     /// Folders that were read as a whole, with their links followed.
     folders: Vec<(PathBuf, PathBuf)>,
+    /// Files in these folders that were not.
+    apart: Vec<PathBuf>,
 }
 
 impl Inputs {
@@ -74,6 +75,7 @@ impl Inputs {
         self.named.extend(&other.named);
         self.opened.extend(&other.opened);
         self.folders.extend(other.folders.iter().cloned());
+        self.apart.extend(other.apart.iter().cloned());
     }
 
     /// The same without this one: the file that is saved where it was opened.
@@ -81,6 +83,7 @@ impl Inputs {
     pub fn without(mut self, path: &Path) -> Self {
         self.named.remove(path);
         self.opened.remove(path);
+        self.apart.extend(fs::canonicalize(path));
         self
     }
 
@@ -94,6 +97,9 @@ impl Inputs {
     pub fn on_the_way(&self, path: &Path) -> Option<&Path> {
         self.opened.find(path).or_else(|| {
             let real = fs::canonicalize(path).ok()?;
+            if self.apart.contains(&real) {
+                return None;
+            }
             let mut folders = self.folders.iter();
             let (_, named) = folders.find(|(folder, _)| real.starts_with(folder))?;
             Some(named)
@@ -205,6 +211,10 @@ mod tests {
             assert!(inputs.on_the_way(&at(name)).is_some(), "{name}");
             assert_eq!(inputs.named(&at(name)), None);
         }
+        // A flight.toml in the folder of its own reconstruction can be saved.
+        let saved = inputs.clone().without(&at("model/a"));
+        assert_eq!(saved.on_the_way(&at("model/a")), None);
+        assert!(saved.on_the_way(&at("model/deep/b")).is_some());
         for name in ["model2", "model/new"] {
             assert_eq!(inputs.on_the_way(&at(name)), None);
         }

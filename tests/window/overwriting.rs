@@ -98,6 +98,23 @@ fn a_flight_is_saved_over_no_file_that_it_was_read_from() {
     assert!(desk.logged("flight.toml: saved"));
 }
 
+/// The folder of a reconstruction is read as a whole; a flight.toml in it is saved all the same.
+#[test]
+fn a_flight_in_the_folder_of_its_reconstruction_is_saved() {
+    let folder = tempfile::tempdir().expect("a folder");
+    model(folder.path());
+    let own = folder.path().join("saved.toml");
+    let text = "format = 1\n[world]\nunit = \"m\"\nground = 11\n[photos]\nreconstruction = \".\"\n";
+    fs::write(&own, text).expect("written");
+    let mut desk = Desk::new(Some(&own));
+    desk.fill("Ground elevation", "12");
+    desk.press(Modifiers::COMMAND, Key::S);
+    let text = fs::read_to_string(&own).expect("the flight");
+    assert!(text.contains("ground = 12"), "{text}");
+    let images = folder.path().join("images.txt");
+    refused(&mut desk, picture(&images), &images, "read");
+}
+
 #[test]
 fn the_bundled_flight_stays_as_it_came() {
     let sample = flight("assets/sample");
