@@ -142,8 +142,12 @@ impl Known {
     }
 
     fn remove(&mut self, path: &Path) {
-        if let Some(identity) = fs::metadata(path).ok().as_ref().and_then(identity) {
+        let identity_of = |path: &Path| fs::metadata(path).ok().as_ref().and_then(identity);
+        if let Some(identity) = identity_of(path) {
             self.by_identity.remove(&identity);
+            // Its other names are paths to the same file.
+            self.by_path
+                .retain(|real, _| identity_of(real) != Some(identity));
         }
         if let Ok(real) = fs::canonicalize(path) {
             self.by_path.remove(&real);

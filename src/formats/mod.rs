@@ -312,6 +312,10 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
             ),
         ));
     }
+    if path.join(ept::HEADER).is_file() {
+        let fault = Fault::new("a folder of a cloud in tiles (EPT)", "open its ept.json");
+        return Err(FileError::new(path, fault));
+    }
     if let Some(error) = only_below(path) {
         return Err(error);
     }

@@ -14,6 +14,9 @@ use std::cell::Cell;
 use super::fields::shown;
 use super::table::{NumberRepairs, may_be_thousands, split_number};
 
+/// The separator shows in the first characters of a line.
+const LOOKED_AT: usize = 4096;
+
 /// What stands between the fields of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Separator {
@@ -26,7 +29,10 @@ pub(super) enum Separator {
 impl Separator {
     /// That of a line.
     pub(super) fn of(line: &str) -> Self {
-        let count = |sign: char| Self::Sign(sign).split(line).len() - 1;
+        // A whole file without a line break need not be looked through to tell.
+        let head: String = line.chars().take(LOOKED_AT).collect();
+        let bare = without_quoted(&head);
+        let count = |sign: char| bare.matches(sign).count();
         let mut most = (0, Self::Blanks);
         for sign in ['\t', ';', ','] {
             let found = count(sign);
@@ -104,6 +110,37 @@ impl Separator {
             }
         }
     }
+}
+
+/// A line with nothing in its quoted fields, whatever separates them.
+fn without_quoted(line: &str) -> String {
+    let is_between = |c: char| c.is_whitespace() || ",;:".contains(c);
+    let mut bare = String::with_capacity(line.len());
+    let mut rest = line;
+    let mut begins_field = true;
+    while let Some(c) = rest.chars().next() {
+        let behind = rest.get(c.len_utf8()..).unwrap_or_default();
+        // The quote that ends the field: none in front of it is doubled.
+        let undoubled = behind.replace([c, c].iter().collect::<String>().as_str(), "\0\0");
+        let end = undoubled.find(c).map(|end| end + c.len_utf8());
+        let end = end.filter(|&end| {
+            let after = behind.get(end..).and_then(|after| after.chars().next());
+            after.is_none_or(is_between)
+        });
+        if begins_field
+            && ['"', '\''].contains(&c)
+            && let Some(end) = end
+        {
+            bare.push(c);
+            rest = behind.get(end..).unwrap_or_default();
+            begins_field = false;
+            continue;
+        }
+        bare.push(c);
+        begins_field = is_between(c);
+        rest = behind;
+    }
+    bare
 }
 
 /// The numbers of a table: what shows which sign is the decimal one, and what was mended.

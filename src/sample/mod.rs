@@ -154,7 +154,13 @@ fn fill(
         (reconstruct(&scene, recipe, &look, &random, progress)?, name)
     };
     write_surface(&folder.join(name), surface, recipe, progress)?;
-    write_texts(folder, name, recipe, &shots)?;
+    write_texts(
+        folder,
+        name,
+        recipe,
+        &shots,
+        options.photos.then_some("photos"),
+    )?;
     let truth = truth::truth(&scene, &recipe.camera, &shots, recipe.origin)?;
     write(&folder.join("truth.json"), format!("{truth}\n").as_bytes())?;
     let sieved = sieved(&scene, recipe);
@@ -287,7 +293,14 @@ fn write_surface(
     write(path, &bytes.map_err(|e| Fault::new(e, "report this"))?)
 }
 
-fn write_texts(folder: &Path, surface: &str, recipe: &Recipe, shots: &[Shot]) -> Result<(), Fault> {
+/// Of the photos' folder where there are photos.
+fn write_texts(
+    folder: &Path,
+    surface: &str,
+    recipe: &Recipe,
+    shots: &[Shot],
+    photos: Option<&str>,
+) -> Result<(), Fault> {
     let report = |error: String| Fault::new(error, "report this");
     let rows: Vec<PoseRow> = shots
         .iter()
@@ -314,7 +327,7 @@ fn write_texts(folder: &Path, surface: &str, recipe: &Recipe, shots: &[Shot]) ->
         surface,
         camera: "ost.yaml",
         poses: "poses.csv",
-        photos: Some("photos"),
+        photos,
     };
     write(
         &folder.join("flight.toml"),

@@ -26,7 +26,7 @@ use crate::fault::Fault;
 use crate::jobs::Progress;
 
 /// The name of the file that stands for the whole.
-const HEADER: &str = "ept.json";
+pub(super) const HEADER: &str = "ept.json";
 
 /// The most tiles that are read: entwine puts some 100 000 points into each.
 const MOST_TILES: usize = 1_000_000;

@@ -161,6 +161,11 @@ fn it_is_opened_as_a_surface() {
     assert_eq!(detect(&path), Ok(Kind::Cloud(CloudFormat::Ept)));
     let found = read_cloud(&path, &Progress::default()).unwrap();
     assert_eq!(found.cloud.points.len(), 6);
+    let folder_error = detect(folder.path()).unwrap_err().to_string();
+    assert!(
+        folder_error.ends_with("open its ept.json"),
+        "{folder_error}"
+    );
     // Under another name it is told by its keys.
     let other = folder.path().join("pile.json");
     std::fs::rename(&path, &other).unwrap();

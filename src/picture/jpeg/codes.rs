@@ -153,7 +153,8 @@ impl<'a> Bits<'a> {
         self.fill();
         let rest = self.count % 8;
         self.count -= rest;
-        let padding = self.buffer >> self.count & ((1 << rest) - 1);
+        // Of 64 bits, which a shift by 64 would be of, none is a rest.
+        let padding = self.buffer.checked_shr(self.count).unwrap_or(0) & ((1 << rest) - 1);
         if padding != 0 && padding != (1 << rest) - 1 {
             return Err(Damage::Leftover);
         }
