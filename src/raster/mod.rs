@@ -3,10 +3,9 @@
 //! Written from TIFF 6.0 (Adobe, 1992), Adobe's Photoshop TIFF Technical Notes (2002: deflate) and
 //! Technical Note 3 (2005: the floating-point predictor), the BigTIFF proposal, and what libtiff 4.7
 //! writes where these are silent (zstd is 50000; a predictor belongs to LZW, deflate and zstd alone).
-//! The `tiff` crate reads the directories. The data are taken apart here, because that crate refuses
-//! whole tiles whose LZW data end with the tile's last byte and no end code behind what it asked for,
-//! knows no zstd without another copy of it, applies predictors that libtiff ignores, and cannot
-//! hand over YCbCr as it is stored.
+//! The `tiff` crate reads the directories. The data are taken apart here: that crate refuses whole LZW
+//! ("no lzw end code found"), has no zstd without a second copy of its library, applies predictors that
+//! libtiff ignores, turns WhiteIsZero around in elevations, and hands over no YCbCr as it is stored.
 //!
 //! - Compression: none, LZW, deflate (both numbers), PackBits, zstd; JPEG as it is stored, for whoever
 //!   can decode it. All others are refused by their names.

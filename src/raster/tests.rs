@@ -51,7 +51,7 @@ fn strips_of_each_compression() {
         let second = file.chunk(&layout, 1).unwrap().unwrap();
         let numbers: Vec<u16> = (10..20).map(|n| 1000 * n).collect();
         let expected: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
-        assert_eq!(second, expected, "{compression:?}");
+        assert_eq!(second, expected, "compression {:?}", layout.compression);
         assert!(file.chunk(&layout, 2).is_err());
     }
 }
