@@ -205,14 +205,14 @@ fn a_cloud_from_the_earths_centre_meets_poses_from_there() {
         description: String::new(),
         data: SYSTEM.as_bytes().to_vec(),
     });
-    let axis = las::Transform {
+    let axis = |offset| las::Transform {
         scale: 1e-4,
-        offset: 4e6,
+        offset,
     };
     builder.transforms = las::Vector {
-        x: axis,
-        y: axis,
-        z: axis,
+        x: axis(4.1e6),
+        y: axis(0.9e6),
+        z: axis(4.7e6),
     };
     let file = fs::File::create(folder.join("ground.laz")).unwrap();
     let mut writer = las::Writer::new(file, builder.into_header().unwrap()).unwrap();
