@@ -279,8 +279,7 @@ fn an_empty_system() {
     assert!(!said.contains("coordinate"), "{said}");
     let error = flight("world.crs = \"\"\n").unwrap_err().to_string();
     assert!(
-        error.contains("world.crs: the coordinate system is empty")
-            && error.contains("leave it out"),
+        error.contains("world.crs is empty") && error.contains("remove the key"),
         "{error}"
     );
 }

@@ -220,6 +220,9 @@ fn the_command_has_scale_objects_beside_the_scales() {
         fs::copy(sample().join(name), folder.path().join(name)).expect("a copy");
     }
     let toml = folder.path().join("flight.toml");
+    // The photos stay where they are.
+    let text = fs::read_to_string(&toml).expect("the flight");
+    fs::write(&toml, text.replace("folder = \"photos\"\n", "")).expect("written");
     let plain = common::scales_json(folder.path(), &["--unit", "in"]);
     let text = fs::read_to_string(&toml).expect("the flight");
     let object = format!(

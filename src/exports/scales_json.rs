@@ -11,8 +11,9 @@ struct Report<'a> {
     flight: &'a str,
     unit: &'a str,
     world_unit: &'a str,
-    /// Whether anybody states the world's unit; without one no number is a scale.
-    unit_known: bool,
+    /// False where nobody states the world's unit: then no number is a scale. Else left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit_known: Option<bool>,
     photos: Vec<Photo<'a>>,
 }
 
@@ -78,7 +79,7 @@ pub fn scales_json(report: &ScaleReport) -> serde_json::Result<String> {
         flight: &report.flight,
         unit: report.unit.symbol(),
         world_unit: report.world_unit.symbol(),
-        unit_known: report.unit_known,
+        unit_known: (!report.unit_known).then_some(false),
         photos: photos.collect(),
     })?;
     text.push('\n');

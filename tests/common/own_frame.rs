@@ -36,7 +36,10 @@ pub(crate) fn model(folder: &Path) {
 }
 
 /// Where the cameras stand in the world: 3 m to a unit, turned about x so that z is up.
-#[allow(dead_code, reason = "not every test binary brings the model to the world")]
+#[allow(
+    dead_code,
+    reason = "not every test binary brings the model to the world"
+)]
 pub(crate) fn positions() -> String {
     let mut list = "photo,x,y,z\n".to_owned();
     for (i, [x, y, z]) in CENTERS.iter().enumerate() {

@@ -25,6 +25,9 @@ from PIL import Image
 JPEG = 2
 SHARED_COLOUR_JPEG = 16
 FIXED_POINT = 1
+# With ReferenceBlackWhite libtiff cuts off the fractions of Y and Cb (Code2V in tif_color.c) before it
+# multiplies Cb by 1.772: just under 1 + 1.772 levels.
+FIXED_POINT_REFERENCES = 3
 
 
 def picture(height, width, bands, dtype, rng):
@@ -157,7 +160,7 @@ def by_hand(path, rnd, **fixed):
     struct.pack_into(order + "I", out, 4, len(out))
     out += struct.pack(order + "H", len(packed)) + b"".join(packed) + b"\0" * 4
     path.write_bytes(out)
-    finish(path, FIXED_POINT)
+    finish(path, FIXED_POINT_REFERENCES if references else FIXED_POINT)
     return d
 
 

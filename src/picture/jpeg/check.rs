@@ -31,12 +31,12 @@ struct Frame {
     mcus: (u32, u32),
 }
 
-/// Walks the JPEG. Kinds that are not known here (arithmetic codes, lossless, 12 bits) pass: the
+/// Walks the JPEG; whether an end marker stands behind its data. Kinds that are not known here (arithmetic codes, lossless, 12 bits) pass: the
 /// decoder refuses them by name.
 ///
 /// # Errors
 /// Where it is damaged or cut off, with how far it is whole.
-pub(super) fn check(bytes: &[u8]) -> Result<(), Fault> {
+pub(super) fn check(bytes: &[u8]) -> Result<bool, Fault> {
     let mut tables = Tables::default();
     let mut frame: Option<Frame> = None;
     let mut at = 2;
@@ -74,9 +74,9 @@ pub(super) fn check(bytes: &[u8]) -> Result<(), Fault> {
             0xc0..=0xc2 => match start_of_frame(segment, marker == 0xc2) {
                 Some(new) if frame.is_none() => frame = Some(new),
                 // 12 bits, or what the decoder will refuse.
-                _ => return Ok(()),
+                _ => return Ok(true),
             },
-            0xc3 | 0xc5..=0xcf => return Ok(()),
+            0xc3 | 0xc5..=0xcf => return Ok(true),
             0xda => {
                 let frame = frame.as_mut().ok_or_else(|| broken_header(at))?;
                 let scan = start_of_scan(segment, frame, &tables);
@@ -93,8 +93,8 @@ pub(super) fn check(bytes: &[u8]) -> Result<(), Fault> {
     }
 }
 
-/// At the end marker, or at the end of a file that has none.
-fn finished(frame: Option<&Frame>, has_marker: bool) -> Result<(), Fault> {
+/// At the end marker, or at the end of a file that has none; which of these it is.
+fn finished(frame: Option<&Frame>, has_marker: bool) -> Result<bool, Fault> {
     let Some(frame) = frame else {
         return Err(Fault::new("the JPEG ends within its header", REMEDY));
     };
@@ -104,7 +104,7 @@ fn finished(frame: Option<&Frame>, has_marker: bool) -> Result<(), Fault> {
         false => component.is_whole(),
     };
     match frame.components.iter().all(is_whole) {
-        true => Ok(()),
+        true => Ok(has_marker),
         false => Err(Fault::new(
             "the JPEG is cut off: it ends before its picture does",
             REMEDY,

@@ -39,12 +39,22 @@ pub(super) struct Jpeg {
 /// # Errors
 /// Where it is damaged or cut off, or of a kind that is not decoded.
 pub(super) fn decode(bytes: &[u8]) -> Result<Jpeg, Fault> {
+    // What the decoder does not know at all is said before the data are looked at.
+    headers(bytes)?;
+    let ended;
+    let bytes = match check::check(bytes)? {
+        true => bytes,
+        false => {
+            // zune-jpeg takes a progressive file without an end marker for one that is cut off.
+            ended = [bytes, &[0xff, 0xd9]].concat();
+            &ended[..]
+        }
+    };
     let mut decoder = headers(bytes)?;
     let space = decoder.input_colorspace();
     let is_grey = matches!(space, Some(ColorSpace::Luma | ColorSpace::LumaA));
     let exif = decoder.exif().cloned();
     let icc = decoder.icc_profile().filter(|_| !is_grey);
-    check::check(bytes)?;
     let options = options().jpeg_set_out_colorspace(ColorSpace::RGB);
     decoder.set_options(options);
     let (width, height) = size(&decoder)?;
