@@ -129,8 +129,9 @@ fn table(c: &mut Criterion) {
     let loaded = Loaded {
         path,
         options: OpenOptions::default(),
-        opened,
         outcomes,
+        bulk_bounds: opened.flight.parts().surface.bulk_bounds(),
+        opened,
         surface_bounds: Bounds::of(&vertices).expect("vertices"),
         took: [std::time::Duration::ZERO; 2],
         again_for: None,

@@ -2,6 +2,7 @@
 //! scales: where they stand, what their files say of themselves, whose size nobody has seen, whose
 //! colours are not those of the surface. Verdicts read it, and every front end asks here.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use super::photo_checks::photo_checks;
@@ -67,6 +68,12 @@ pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
 /// package names another size for them or is known to solve on reduced ones.
 fn doubt_sizes(flight: &Flight, files: &[PhotoFile], evidence: &mut [Evidence]) -> Vec<String> {
     let photos = &flight.parts().photos;
+    let found = photos.iter().zip(files).filter(|(photo, file)| {
+        let camera = flight.camera(photo);
+        let (width, height) = (camera.width, camera.height);
+        file.state == PhotoFileState::Found { width, height }
+    });
+    let fitted: HashSet<usize> = found.map(|(photo, _)| photo.camera).collect();
     let mut warnings = Vec::new();
     let mut unknown = Vec::new();
     for ((photo, file), evidence) in photos.iter().zip(files).zip(evidence) {
@@ -79,7 +86,9 @@ fn doubt_sizes(flight: &Flight, files: &[PhotoFile], evidence: &mut [Evidence]) 
             continue;
         }
         let original = file.named_size.filter(|named| *named != size);
-        if original.is_none() && !file.may_be_reduced {
+        // Of a camera that was fitted to other photos' files only this photo's own size is not known.
+        let is_fitted = fitted.contains(&photo.camera);
+        if original.is_none() && (is_fitted || !file.may_be_reduced) {
             unknown.push(size);
             continue;
         }

@@ -369,9 +369,14 @@ impl Source {
             self.warn(path, &said);
         }
         let photos = reconstruction.photos.iter();
-        self.named_sizes = photos
-            .map(|photo| reconstruction.named_size(photo))
-            .collect();
+        let named = photos.map(|photo| {
+            // The size that the package solved on is none beside it.
+            let camera = reconstruction.cameras.get(photo.camera)?;
+            let solved_on = (camera.width, camera.height);
+            let named = reconstruction.named_size(photo);
+            named.filter(|size| *size != solved_on)
+        });
+        self.named_sizes = named.collect();
         self.may_be_reduced = reconstruction.may_be_reduced;
         self.package_unit = reconstruction.unit;
         self.cameras = reconstruction.cameras;

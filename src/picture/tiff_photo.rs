@@ -30,12 +30,15 @@ enum Photometric {
     YCbCr,
 }
 
+/// A photo and its colour profile, where it has one.
+type PhotoWithProfile = (RgbImage, Option<Vec<u8>>);
+
 /// The photo and its colour profile; `None` where it is of a kind that is left to others (CMYK, single
 /// bits, floating point).
 ///
 /// # Errors
 /// Where it is damaged, cut off, or compressed in a way that is not read.
-pub(super) fn decode(bytes: &[u8]) -> Result<Option<(RgbImage, Option<Vec<u8>>)>, Fault> {
+pub(super) fn decode(bytes: &[u8]) -> Result<Option<PhotoWithProfile>, Fault> {
     let mut file = TiffFile::open(Cursor::new(bytes), bytes.len() as u64)?;
     let layout = file.layout()?;
     check_size(layout.width, layout.height, bytes.len() as u64)?;

@@ -17,7 +17,9 @@ fn written(compression: Written) -> Vec<u8> {
     bytes.into_inner()
 }
 
-fn open(bytes: &[u8]) -> Result<(TiffFile<Cursor<&[u8]>>, Layout), Fault> {
+type Opened<'a> = (TiffFile<Cursor<&'a [u8]>>, Layout);
+
+fn open(bytes: &[u8]) -> Result<Opened<'_>, Fault> {
     let mut file = TiffFile::open(Cursor::new(bytes), bytes.len() as u64)?;
     let layout = file.layout()?;
     Ok((file, layout))

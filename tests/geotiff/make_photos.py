@@ -160,7 +160,7 @@ def by_hand(path, rnd, **fixed):
     struct.pack_into(order + "I", out, 4, len(out))
     out += struct.pack(order + "H", len(packed)) + b"".join(packed) + b"\0" * 4
     path.write_bytes(out)
-    finish(path, FIXED_POINT_REFERENCES if references else FIXED_POINT)
+    finish(path, FIXED_POINT_REFERENCES if d["references"] else FIXED_POINT)
     return d
 
 
