@@ -355,6 +355,9 @@ fn a_transform_and_a_coordinate_system_make_ecef() {
     let found = read(&format!("{transform}{local}"));
     assert_eq!((found.crs, found.measured_positions.len()), (None, 0));
     assert!((found.photos[0].pose.center - t - DVec3::X).length() < 1e-8);
+    // The chunk's own frame is not that system.
+    let metre = crate::units::LengthUnit::Metre;
+    assert_eq!((found.unit, read(local).unit), (Some(metre), None));
 }
 
 #[test]
@@ -717,6 +720,7 @@ fn angles_serve_as_the_poses_of_a_flight() {
     write("opk.txt", &opk("-64.71", "18.38"));
     // In degrees they are brought to the zone, which is not where this surface lies.
     let error = open().unwrap_err().to_string();
-    let what = "ground.xyz: it states no coordinate system, and cannot be in the photos' (EPSG:32620)";
+    let what =
+        "ground.xyz: it states no coordinate system, and cannot be in the photos' (EPSG:32620)";
     assert!(error.contains(what), "{error}");
 }
