@@ -379,14 +379,20 @@ fn show(
     }
 }
 
+/// Corner points that lie farther outside of the surface, in its size, are near the horizon: a picture
+/// with them would show nothing else.
+const FAR: f64 = 2.0;
+
 /// What the picture shall hold: the surface without outliers (some thousands of its vertices stand
-/// for all), the camera centres and the corner points.
+/// for all), the camera centres and the corner points that are not near the horizon.
 fn points_to_fit(parts: &FlightParts, outcomes: &[Outcome]) -> Vec<DVec3> {
     let vertices = parts.surface.vertices();
     let step = (vertices.len() / 20_000).max(1);
     let bulk = parts.surface.bulk_bounds();
     let corners = outcomes.iter().filter_map(Outcome::scale);
     let corners = corners.flat_map(|scale| scale.corners.iter().filter_map(Corner::point));
+    let near = bulk.widened(FAR * bulk.size().max_element());
+    let corners = corners.filter(|&corner| near.contains(corner));
     let centers = parts.photos.iter().map(|photo| photo.pose.center);
     vertices
         .step_by(step)

@@ -37,6 +37,15 @@ impl Bounds {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
 
+    /// The box whose sides are so far outside of its own.
+    #[must_use]
+    pub fn widened(&self, by: f64) -> Self {
+        Self {
+            min: self.min - by,
+            max: self.max + by,
+        }
+    }
+
     /// Its edge lengths.
     pub fn size(&self) -> DVec3 {
         self.max - self.min
@@ -55,5 +64,8 @@ mod tests {
         assert_eq!(bounds.min, DVec3::new(-1.0, -2.0, 3.0));
         assert_eq!(bounds.size(), DVec3::new(2.0, 7.0, 0.0));
         assert_eq!(bounds.center(), DVec3::new(0.0, 1.5, 3.0));
+        let (corner, outside) = (DVec3::new(-1.0, -2.0, 3.0), DVec3::new(-1.0, -2.0, 3.1));
+        assert!(bounds.contains(corner) && !bounds.contains(outside));
+        assert!(bounds.widened(0.1).contains(outside));
     }
 }

@@ -355,6 +355,9 @@ fn a_transform_and_a_coordinate_system_make_ecef() {
     let found = read(&format!("{transform}{local}"));
     assert_eq!((found.crs, found.measured_positions.len()), (None, 0));
     assert!((found.photos[0].pose.center - t - DVec3::X).length() < 1e-8);
+    // The chunk's own frame is not that system.
+    let metre = crate::units::LengthUnit::Metre;
+    assert_eq!((found.unit, read(local).unit), (Some(metre), None));
 }
 
 #[test]

@@ -178,6 +178,7 @@ fn close(found: &Pose, expected: &Pose) -> bool {
 
 fn check(flight: &Reconstruction) {
     assert_eq!(flight.package, "ros");
+    assert_eq!(flight.unit, Some(crate::units::LengthUnit::Metre));
     let [camera] = &flight.cameras[..] else {
         panic!("{:?}", flight.cameras);
     };
