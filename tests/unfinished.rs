@@ -148,7 +148,7 @@ fn a_full_disk_leaves_the_file_that_was_there() {
     assert_eq!(fs::read(&path).expect("a file"), before);
     assert_eq!(
         files_below(folder.path()),
-        [path.clone()],
+        std::slice::from_ref(&path),
         "nothing beside it"
     );
     // With room again.

@@ -1,5 +1,5 @@
 //! What may be written over: never a file that was read, and a file that fragscale did not write only
-//! where somebody said so. Every file that goes out is written by [`write`]; the folder of an export,
+//! where somebody said so. Every file that goes out is written by [`write()`]; the folder of an export,
 //! which has a list of its own files, keeps the same rule with that list (`exports::split_desktop`).
 
 use std::fs;
