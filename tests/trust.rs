@@ -163,6 +163,27 @@ fn the_size_that_the_package_names_is_said() {
     assert!(doubt.to_string().contains("which have 5472 x 4104 px"));
 }
 
+/// OpenDroneMap lists the photos as they came in images.json.
+#[test]
+fn the_size_in_opendronemaps_list_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let below = folder.path().join("opensfm");
+    fs::create_dir(&below).expect("made");
+    opensfm(&below, (400, 300), "c");
+    let camera = r#"{"c": {"projection_type": "perspective", "width": 400, "height": 300, "focal": 0.8, "k1": 0, "k2": 0}}"#;
+    fs::write(folder.path().join("cameras.json"), camera).expect("written");
+    let listed = PHOTOS.map(|photo| {
+        format!(r#"{{"filename": "{photo}", "width": 4000, "height": 3000, "camera_make": "DJI"}}"#)
+    });
+    let list = format!("[{}]", listed.join(", "));
+    fs::write(folder.path().join("images.json"), list).expect("written");
+    let found = scales_json(folder.path(), &[]);
+    assert_eq!(found["photos"][0]["width"], 400);
+    let (csv, _) = run(0, &["scales", text_of(folder.path()), "--format", "csv"]);
+    let words = "for images of 400 px width, not for the photos, which have 4000 x 3000 px";
+    assert_eq!(csv.matches(words).count(), PHOTOS.len(), "{csv}");
+}
+
 #[test]
 fn a_photo_folder_that_cannot_be_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");

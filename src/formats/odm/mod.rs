@@ -134,6 +134,7 @@ fn read_one(dir: &Path) -> Result<Project, FileError> {
         reconstruction: Reconstruction {
             package: "opendronemap",
             may_be_reduced: true,
+            named_sizes: named_sizes(dir),
             crs: frames.crs.filter(|_| posed.in_world),
             cameras,
             photos,
@@ -160,6 +161,21 @@ fn with_tracks(dir: &Path, mut sparse: OpenSfm, warnings: &mut Vec<String>) -> R
         warnings.push(format!("no observations: {error}"));
     }
     sparse.reconstruction
+}
+
+/// The sizes of the photos as they came, where `images.json` has them (`opendm/photo.py`). Where it is
+/// broken [`unaligned`] says so; nothing else depends on it.
+fn named_sizes(dir: &Path) -> Vec<(String, (u32, u32))> {
+    #[derive(Deserialize)]
+    struct Image {
+        filename: String,
+        width: Option<u32>,
+        height: Option<u32>,
+    }
+    let images = optional(&dir.join("images.json"), parse::<Vec<Image>>);
+    let images = images.ok().flatten().unwrap_or_default();
+    let size_of = |image: Image| Some((image.filename, (image.width?, image.height?)));
+    images.into_iter().filter_map(size_of).collect()
 }
 
 /// A warning with the count of the photos that were there but are not aligned, if any.
