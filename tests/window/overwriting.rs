@@ -52,6 +52,8 @@ fn a_flight_is_saved_over_no_file_that_it_was_read_from() {
     let text = text.replace("ground = \"auto\"", "ground = 0.25");
     fs::write(at("flight.toml"), text).expect("written");
     fs::hard_link(at("pile.ply"), at("hard.toml")).expect("a link");
+    // Here from the beginning: a new file may get the number of the flight.toml that saving replaces.
+    fs::write(at("second.toml"), "mine").expect("written");
     let mut names = vec![at("pile.ply"), at("poses.csv"), at("ost.yaml")];
     #[cfg(unix)]
     {
@@ -80,7 +82,6 @@ fn a_flight_is_saved_over_no_file_that_it_was_read_from() {
     let text = fs::read_to_string(at("flight.toml")).expect("the flight");
     assert!(text.contains("ground = 0.5"), "{text}");
     // Over another's flight when she says so.
-    fs::write(at("second.toml"), "mine").expect("written");
     apply(&mut desk, Command::SaveAs(at("second.toml")));
     assert!(desk.says("It is no flight file that fragscale wrote"));
     desk.click(Role::Button, "Keep the file");
