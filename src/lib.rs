@@ -40,25 +40,17 @@
 //! - Pixels: continuous, (0, 0) at the outer corner of the top-left pixel, (W, H) at the opposite
 //!   one; the centre of the first pixel is (0.5, 0.5).
 
-#[cfg(feature = "app")]
-pub mod app;
-pub mod camera;
 pub mod cli;
-pub mod exports;
-pub mod fault;
-pub mod files;
-pub mod flight;
-pub mod formats;
-pub mod fragmentation;
-pub mod geodesy;
-pub mod geometry;
-pub mod georeference;
-pub mod jobs;
-pub mod picture;
-pub mod raster;
+
+#[cfg(feature = "app")]
+pub use fragscale_app as app;
+pub use fragscale_core::{
+    camera, fault, files, flight, geodesy, geometry, georeference, jobs, picture, raster, scale,
+    surface, units,
+};
+pub use fragscale_exports as exports;
+pub use fragscale_formats as formats;
+pub use fragscale_fragmentation as fragmentation;
 #[cfg(feature = "render")]
-pub mod render;
-pub mod sample;
-pub mod scale;
-pub mod surface;
-pub mod units;
+pub use fragscale_render as render;
+pub use fragscale_sample as sample;

@@ -178,7 +178,7 @@ pub fn sample_flight() -> Option<PathBuf> {
     let places = [
         Some(PathBuf::from(concat!(
             env!("CARGO_MANIFEST_DIR"),
-            "/assets/sample"
+            "/../../assets/sample"
         ))),
         beside.map(|folder| folder.join("assets/sample")),
         beside.map(|folder| folder.join("../share/fragscale/sample")),

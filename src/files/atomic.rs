@@ -16,7 +16,7 @@ static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
 ///
 /// # Errors
 /// What the system says, for instance that the folder is missing or the disk is full.
-pub(crate) fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
+pub fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
     // A device or a pipe cannot be replaced by a file.
     if fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir()) {
         return fs::OpenOptions::new()

@@ -16,7 +16,7 @@ mod marks;
 mod overwrite;
 mod recording;
 
-pub(crate) use atomic::write_whole;
+pub use atomic::write_whole;
 pub use atomic::{is_unfinished, make_folder_whole, remove_unfinished};
 pub use inputs::{Inputs, is_same_file};
 pub use marks::{FLIGHT_MARK, HTML_MARK, Kind, SVG_MARK, marked_png};

@@ -321,8 +321,8 @@ mod tests {
     use e57::{E57Writer, Quaternion, Translation};
 
     use super::*;
-    use crate::formats::test_data::shared_data;
     use crate::geometry::Bounds;
+    use fragscale_test_data::shared_data;
 
     fn read_bytes(bytes: &[u8]) -> Result<CloudFile, Fault> {
         read(Cursor::new(bytes.to_vec()), &Progress::default())

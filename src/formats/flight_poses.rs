@@ -158,7 +158,7 @@ mod tests {
     use image::RgbImage;
 
     use super::*;
-    use crate::formats::{OpenOptions, Opened, open_flight};
+    use crate::{OpenOptions, Opened, open_flight};
 
     const SENSOR: &str = "sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  \
         data: [0, -1, 0, 0.5, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\nresolution: [8, 6]\n\

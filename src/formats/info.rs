@@ -251,7 +251,7 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use crate::formats::Dropped;
+    use crate::Dropped;
 
     #[test]
     fn size_distributions_are_told_from_lists_of_points_and_poses() {

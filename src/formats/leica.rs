@@ -204,8 +204,8 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use crate::formats::test_data::shared_data;
     use crate::geometry::Bounds;
+    use fragscale_test_data::shared_data;
 
     fn pts(text: &str) -> Result<CloudFile, Fault> {
         read_pts(text.as_bytes(), text.len() as u64, &Progress::default())

@@ -111,7 +111,7 @@ mod tests {
     use glam::{DMat3, DVec2};
 
     use super::*;
-    use crate::formats::test_data::shared_data;
+    use fragscale_test_data::shared_data;
 
     /// Looks along world x with the image's right to world -y, from (5, 6, 7).
     const ONE: &str = "1\r\na.png 100 0.5 320 0 101 240 0 0 1 0 -1 0 0 0 -1 1 0 0 6 7 -5\r\n";

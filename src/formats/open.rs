@@ -776,7 +776,7 @@ fn camera_of(line: &PoseLine, names: &[Option<String>]) -> Result<usize, Fault> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::test_data::shared_data;
+    use fragscale_test_data::shared_data;
 
     /// Opens a flight over that surface, as the file has it or with `more` below [surface].
     fn opened(surface: &Path, more: &str) -> Opened {

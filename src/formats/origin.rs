@@ -210,9 +210,9 @@ pub(super) fn path_from(folder: &Path, path: &Path) -> Result<String, Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::{OpenOptions, Opened, open_flight};
     use crate::jobs::Progress;
     use crate::scale::Ground;
+    use crate::{OpenOptions, Opened, open_flight};
 
     fn open(path: &Path) -> Opened {
         open_flight(path, &OpenOptions::default(), &Progress::default()).unwrap()
@@ -223,7 +223,7 @@ mod tests {
     }
 
     fn fixture(name: &str) -> PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR"))
+        fragscale_test_data::repository()
             .join("tests/fixtures")
             .join(name)
     }
@@ -250,7 +250,7 @@ mod tests {
     /// A copy of a flight in another folder opens with the same scales, and keeps its comments.
     #[test]
     fn a_flight_saved_elsewhere_is_the_same_flight() {
-        let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample/flight.toml");
+        let sample = fragscale_test_data::repository().join("assets/sample/flight.toml");
         let opened = open(&sample);
         assert_eq!(opened.origin.flight_file(), Some(sample.as_path()));
         let there = tempfile::tempdir().unwrap();

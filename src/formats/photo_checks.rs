@@ -212,7 +212,7 @@ mod tests {
     use super::*;
     use crate::camera::{Camera, Distortion, Pose};
     use crate::flight::{FlightParts, PhotoFileState};
-    use crate::formats::photo_metadata::test_jpeg::{jpeg, packet, short, text};
+    use crate::photo_metadata::test_jpeg::{jpeg, packet, short, text};
     use crate::scale::{Ground, ImageKind};
     use crate::surface::{Cloud, Surface};
     use crate::units::LengthUnit;

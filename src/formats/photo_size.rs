@@ -39,7 +39,7 @@ mod tests {
     use image::RgbImage;
 
     use super::*;
-    use crate::formats::test_data::shared_data;
+    use fragscale_test_data::shared_data;
 
     #[test]
     fn jpeg_png_and_tiff() {

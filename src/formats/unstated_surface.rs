@@ -51,8 +51,8 @@ pub(super) fn taken_to_be_in(
 
 #[cfg(test)]
 mod tests {
-    use crate::formats::{OpenOptions, Opened, open_flight};
     use crate::jobs::Progress;
+    use crate::{OpenOptions, Opened, open_flight};
 
     /// A flight of one photo in UTM, over a cloud at this place that names no system.
     fn opened(east: f64, north: f64) -> Result<Opened, String> {

@@ -60,7 +60,7 @@ impl DistributionSet {
 #[allow(clippy::expect_used, reason = "in a test a panic is the report")]
 mod tests {
     use super::*;
-    use crate::fragmentation::Labels;
+    use crate::Labels;
 
     fn set(unit: LengthUnit, method: &str, points: [[f64; 2]; 2]) -> DistributionSet {
         let curve = LabelledDistribution {

@@ -282,7 +282,7 @@ impl DistributionSet {
 #[allow(clippy::expect_used, reason = "in a test a panic is the report")]
 mod tests {
     use super::*;
-    use crate::fragmentation::Labels;
+    use crate::Labels;
 
     /// ASTM E11, table 1: the sieves without those in common use in between are powers of the fourth root
     /// of 2 in mm, rounded, from 2^7 down; every third of R20 is 10^(3 k / 20), rounded; EN 933-2's basic

@@ -173,7 +173,7 @@ mod tests {
     use glam::DMat3;
 
     use super::*;
-    use crate::render::Projection;
+    use crate::Projection;
 
     #[test]
     fn lengths_are_round() {

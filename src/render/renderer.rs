@@ -376,7 +376,7 @@ fn without_margin(pixels: &RgbaImage, x: u32, y: u32) -> RgbaImage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::{Normals, Orbit};
+    use crate::{Normals, Orbit};
 
     /// A heap of 20 units with a grid under it, which reach over every seam; `cells` along an edge.
     fn heap(gpu: &Gpu, cells: u32) -> (Renderer, Orbit) {

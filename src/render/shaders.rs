@@ -63,12 +63,12 @@ mod tests {
         let naga::TypeInner::Struct { span, members } = &kind.inner else {
             panic!("Frame is no struct");
         };
-        assert_eq!(*span as usize, size_of::<crate::render::frame::Frame>());
+        assert_eq!(*span as usize, size_of::<crate::frame::Frame>());
         let offset = |name: &str| {
             let member = members.iter().find(|m| m.name.as_deref() == Some(name));
             member.unwrap().offset as usize
         };
-        use crate::render::frame::Frame;
+        use crate::frame::Frame;
         assert_eq!(offset("range"), std::mem::offset_of!(Frame, range));
         assert_eq!(offset("color_by"), std::mem::offset_of!(Frame, color_by));
         assert_eq!(offset("viridis"), std::mem::offset_of!(Frame, viridis));

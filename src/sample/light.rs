@@ -8,8 +8,8 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
 
-use crate::sample::material::Appearance;
-use crate::sample::noise::{hash, unit};
+use crate::material::Appearance;
+use crate::noise::{hash, unit};
 
 /// A lamp, or the sun: far away, so the same from everywhere, but as wide as it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -204,7 +204,7 @@ mod tests {
     fn radiance_is_finite_and_never_negative() {
         for light in [Light::sun(1.0, 0.6), Light::sun(1.0, 0.0), Light::lab()] {
             for i in 0..3000 {
-                let draw = |channel| crate::sample::noise::direction(i, channel);
+                let draw = |channel| crate::noise::direction(i, channel);
                 let appearance = Appearance {
                     sheen: unit(i, 4),
                     openness: unit(i, 5),
@@ -227,7 +227,7 @@ mod tests {
             let n = 20_000;
             let mut sum = 0.0;
             for i in 0..n {
-                let view = (DVec3::Z + crate::sample::noise::direction(i, 1)).normalize();
+                let view = (DVec3::Z + crate::noise::direction(i, 1)).normalize();
                 sum += 0.8 * reflected(&appearance, towards, view).0;
             }
             let reflectance = sum / n as f64 / towards.z;

@@ -3,7 +3,7 @@
 //! Noise after the EMVA 1288 standard's linear model: the variance of a signal of `e` electrons is
 //! `e + read_noise^2`. The transfer function is IEC 61966-2-1 (sRGB).
 
-use crate::sample::noise::{hash, unit};
+use crate::noise::{hash, unit};
 
 /// A camera's sensor and its development.
 #[derive(Clone, Copy, Debug, PartialEq)]

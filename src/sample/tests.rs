@@ -355,7 +355,7 @@ fn the_spheres_images_give_the_scale() {
 /// The bundled flight's text files are what the command makes today.
 #[test]
 fn the_bundled_flight_is_what_the_command_makes() {
-    let bundled = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
+    let bundled = fragscale_test_data::repository().join("assets/sample");
     let options = SampleOptions {
         seed: 1,
         true_mesh: false,

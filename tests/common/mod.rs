@@ -2,7 +2,7 @@
 
 #![allow(unreachable_pub, reason = "each test binary is a crate of its own")]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
 
 use serde_json::Value;
@@ -38,17 +38,5 @@ pub fn scale(photo: &Value, edge: &str) -> Option<f64> {
     photo["scale"][edge].as_f64()
 }
 
-/// A file below the shared real data, or `None`, said on the terminal.
-#[allow(dead_code, reason = "not every test binary uses real data")]
-pub fn shared_data(path: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("FRAGSCALE_TEST_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"),
-        PathBuf::from,
-    );
-    let found = root.join(path);
-    if found.exists() {
-        return Some(found);
-    }
-    println!("left out: no shared data ({path})");
-    None
-}
+#[allow(unused_imports, reason = "not every test binary uses real data")]
+pub use fragscale_test_data::shared_data;

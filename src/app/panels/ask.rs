@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use super::georeference::{georeference, save_georeferenced};
 use super::size_distributions::{add_distributions, add_effort, paste, save_figure, save_report};
-use crate::app::actions;
-use crate::app::command::{Asking, Command};
-use crate::app::open_flight::OpenFlight;
-use crate::app::state::{HeldBack, PictureRequest, State};
-use crate::app::work::DialogFor;
+use crate::actions;
+use crate::command::{Asking, Command};
+use crate::open_flight::OpenFlight;
+use crate::state::{HeldBack, PictureRequest, State};
+use crate::work::DialogFor;
 
 /// Draws the small window that is open, and the question before losing changes.
 pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) {
@@ -203,7 +203,7 @@ fn proposed(open: &OpenFlight, name: Option<&str>) -> PathBuf {
 }
 
 /// A path as typed, where it is one: without the quotes that file managers put around.
-pub(in crate::app) fn typed(path: &str) -> Option<PathBuf> {
+pub(crate) fn typed(path: &str) -> Option<PathBuf> {
     let path = path.trim().trim_matches(['"', '\'']);
     let path = path.strip_prefix("file://").unwrap_or(path);
     (!path.is_empty()).then(|| PathBuf::from(path))

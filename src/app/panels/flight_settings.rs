@@ -1,10 +1,10 @@
 //! The flight's settings; each change is computed at once and can be undone.
 
 use super::field::{combo_box, number_field};
-use crate::app::command::Command;
-use crate::app::state::State;
+use crate::command::Command;
 use crate::flight::FlightSettings;
 use crate::scale::{Ground, ImageKind};
+use crate::state::State;
 use crate::units::LengthUnit;
 
 /// Draws the page.

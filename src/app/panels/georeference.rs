@@ -3,13 +3,13 @@
 
 use super::ask::{path_field, typed};
 use super::residuals::residuals;
-use crate::app::command::{Asking, Command};
-use crate::app::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
-use crate::app::open_flight::{Measure, OpenFlight};
-use crate::app::state::State;
-use crate::app::work::{DialogFor, Task};
+use crate::command::{Asking, Command};
 use crate::formats::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds};
+use crate::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
+use crate::open_flight::{Measure, OpenFlight};
 use crate::picture::significant_digits;
+use crate::state::State;
+use crate::work::{DialogFor, Task};
 
 /// Draws the window's contents.
 pub(super) fn georeference(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

@@ -7,13 +7,13 @@ use glam::DVec2;
 use super::scale_objects::scale_objects;
 use super::traced_photo::{self, Dragged, PhotoPlace};
 use super::{or_dash, verdict_color, verdict_sign};
-use crate::app::actions;
-use crate::app::command::Command;
-use crate::app::open_flight::OpenFlight;
-use crate::app::state::State;
+use crate::actions;
+use crate::command::Command;
 use crate::flight::Outcome;
+use crate::open_flight::OpenFlight;
 use crate::picture::{BarEdge, ScaleBar, scale_bars, significant_digits};
 use crate::scale::{CornerOutcome, ImageKind, PhotoScale};
+use crate::state::State;
 
 /// The inspector keeps the photo's texture and how it is zoomed.
 #[derive(Default)]

@@ -1,10 +1,10 @@
 //! What the viewport shows, in one small panel.
 
 use super::field::combo_box;
-use crate::app::command::Command;
-use crate::app::layers::Layers;
-use crate::app::state::State;
+use crate::command::Command;
+use crate::layers::Layers;
 use crate::render::{ColorBy, Scope};
+use crate::state::State;
 
 /// Draws the switches.
 pub fn layers_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

@@ -1,9 +1,9 @@
 //! When a photo's scale is doubted: the limits of the verdict, on one page.
 
 use super::field::number_field;
-use crate::app::command::Command;
-use crate::app::state::State;
+use crate::command::Command;
 use crate::flight::Limits;
+use crate::state::State;
 
 /// Draws the page.
 pub(super) fn limits_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

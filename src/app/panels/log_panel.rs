@@ -1,7 +1,7 @@
 //! The log, which keeps every warning, and the last error over the viewport.
 
-use crate::app::command::Command;
-use crate::app::state::{LogLine, Severity, State};
+use crate::command::Command;
+use crate::state::{LogLine, Severity, State};
 
 /// Draws the log.
 pub fn log_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use crate::app::actions::{Action, MENUS, OPEN_SAMPLE};
-use crate::app::command::Command;
-use crate::app::preferences::Theme;
-use crate::app::state::State;
+use crate::actions::{Action, MENUS, OPEN_SAMPLE};
+use crate::command::Command;
+use crate::preferences::Theme;
+use crate::state::State;
 
 /// Draws the menu bar.
 pub fn menu_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

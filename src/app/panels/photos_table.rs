@@ -4,11 +4,11 @@ use egui_extras::{Column as Width, TableBuilder};
 
 use super::field::combo_box;
 use super::{or_dash, verdict_color, verdict_sign};
-use crate::app::command::Command;
-use crate::app::open_flight::OpenFlight;
-use crate::app::state::State;
-use crate::app::table::Column;
+use crate::command::Command;
 use crate::flight::Verdict;
+use crate::open_flight::OpenFlight;
+use crate::state::State;
+use crate::table::Column;
 
 /// The height of a row, which a thumbnail fits into.
 const ROW: f32 = 34.0;
@@ -164,7 +164,7 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
                     commands.push(Command::Select(Some(photo)));
                 }
                 if response.double_clicked() {
-                    commands.push(Command::Look(crate::app::command::Look::FitSelected));
+                    commands.push(Command::Look(crate::command::Look::FitSelected));
                 }
                 if response.hovered() {
                     hovered = Some(photo);

@@ -2,7 +2,7 @@
 
 use egui_extras::{Column as Width, TableBuilder};
 
-use crate::app::command::Command;
+use crate::command::Command;
 use crate::formats::{Georeferenced, PositionResidual};
 
 /// The height of a row.

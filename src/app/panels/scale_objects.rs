@@ -2,14 +2,14 @@
 
 use super::field::{number_field, text_field};
 use super::verdict_color;
-use crate::app::actions;
-use crate::app::command::Command;
-use crate::app::open_flight::OpenFlight;
-use crate::app::state::State;
-use crate::app::tracing::{Trace, Tracing};
+use crate::actions;
+use crate::command::Command;
 use crate::flight::{ComparedObject, ScaleObject, Verdict};
+use crate::open_flight::OpenFlight;
 use crate::picture::significant_digits;
 use crate::scale::{ScaleObjectKind, Traced};
+use crate::state::State;
+use crate::tracing::{Trace, Tracing};
 
 /// With points on less of the outline than this, degrees, the other side is a guess.
 const SHORT_ARC: f64 = 180.0;

@@ -1,10 +1,10 @@
 //! The first page: the sample flight, recent flights, and what can be opened.
 
 use super::menu_bar::short;
-use crate::app::actions;
-use crate::app::command::{Asking, Command};
-use crate::app::size_distributions::Page;
-use crate::app::state::State;
+use crate::actions;
+use crate::command::{Asking, Command};
+use crate::size_distributions::Page;
+use crate::state::State;
 
 /// Draws the start page.
 pub fn start_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

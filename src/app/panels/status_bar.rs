@@ -1,9 +1,9 @@
 //! The foot of the window: what is being done, where the mouse points, the last line of the log.
 
-use crate::app::actions;
-use crate::app::command::Command;
-use crate::app::open_flight::Measure;
-use crate::app::state::{Severity, State};
+use crate::actions;
+use crate::command::Command;
+use crate::open_flight::Measure;
+use crate::state::{Severity, State};
 
 /// Draws the status bar.
 pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

@@ -1,11 +1,11 @@
 //! What is done every day, one click each.
 
-use crate::app::actions;
-use crate::app::command::Command;
-use crate::app::panels::{verdict_color, verdict_sign};
-use crate::app::size_distributions::Page;
-use crate::app::state::State;
+use crate::actions;
+use crate::command::Command;
 use crate::flight::Verdict;
+use crate::panels::{verdict_color, verdict_sign};
+use crate::size_distributions::Page;
+use crate::state::State;
 use crate::units::LengthUnit;
 
 /// The units that scales are wanted in.

@@ -4,11 +4,11 @@
 use egui::{Color32, Pos2, Rect, Stroke, Vec2, vec2};
 use glam::DVec2;
 
-use crate::app::command::Command;
-use crate::app::open_flight::OpenFlight;
-use crate::app::tracing::{Trace, Tracing, rounded};
 use crate::camera::Camera;
+use crate::command::Command;
+use crate::open_flight::OpenFlight;
 use crate::scale::{ImageKind, ScaleObjectKind, Traced};
+use crate::tracing::{Trace, Tracing, rounded};
 
 /// Within this distance the mouse means a point, screen points.
 const REACH: f32 = 9.0;

@@ -1,9 +1,9 @@
 //! The buttons over the viewport: views, the look through a camera, the distance tool.
 
-use crate::app::actions::{self, Action};
-use crate::app::command::{Command, Look};
-use crate::app::open_flight::Measure;
-use crate::app::state::State;
+use crate::actions::{self, Action};
+use crate::command::{Command, Look};
+use crate::open_flight::Measure;
+use crate::state::State;
 
 /// Draws the buttons.
 pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

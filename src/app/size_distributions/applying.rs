@@ -1,12 +1,12 @@
 //! Applies what is done on the page of size distributions.
 
 use super::{DistributionCommand, Edit};
-use crate::app::command::Command;
-use crate::app::state::{Severity, State};
+use crate::command::Command;
+use crate::state::{Severity, State};
 
 impl State {
     /// Does what a command of the page says.
-    pub(in crate::app) fn apply_to_distributions(&mut self, command: DistributionCommand) {
+    pub(crate) fn apply_to_distributions(&mut self, command: DistributionCommand) {
         let now = self.distributions.history.now().clone();
         match command {
             DistributionCommand::Add(paths) => self.read_distributions(paths),
@@ -65,7 +65,7 @@ impl State {
     }
 
     /// Undo and redo on this page.
-    pub(in crate::app) fn undo_distributions(&mut self, command: &Command) {
+    pub(crate) fn undo_distributions(&mut self, command: &Command) {
         let before = self.distributions.history.now().clone();
         let moved = match command {
             Command::Undo => self.distributions.history.undo(),

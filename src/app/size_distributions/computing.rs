@@ -6,14 +6,14 @@ use std::sync::Arc;
 use super::Edit;
 use super::drawing::Drawing;
 use super::source::joined;
-use crate::app::state::{Severity, State};
-use crate::app::work::{Done, Task};
 use crate::fault::Fault;
 use crate::fragmentation::{
     Comparison, ComparisonOptions, DistributionSet, Fit, FitOptions, Labels, Percentile,
     Repeatability, compare, fit, repeatability,
 };
 use crate::jobs::Progress;
+use crate::state::{Severity, State};
+use crate::work::{Done, Task};
 
 /// How the reference is called where nobody has chosen one.
 const REFERENCES: [&str; 4] = ["sieve", "sieving", "reference", "known fragments"];
@@ -76,7 +76,7 @@ impl State {
     }
 
     /// Takes what was computed; a result that is outdated was cancelled before.
-    pub(in crate::app) fn take_fitted(&mut self, result: Result<Arc<Computed>, Fault>) {
+    pub(crate) fn take_fitted(&mut self, result: Result<Arc<Computed>, Fault>) {
         match result {
             Ok(computed) => self.distributions.computed = Some(computed),
             Err(fault) => {

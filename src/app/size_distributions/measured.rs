@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use crate::app::state::{Severity, State};
-use crate::app::work::{Done, Task};
 use crate::fault::Fault;
 use crate::formats;
 use crate::fragmentation::Effort;
+use crate::state::{Severity, State};
+use crate::work::{Done, Task};
 
 /// A step that the program did.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -47,7 +47,7 @@ pub fn effort(measured: &[MeasuredStep]) -> Result<Effort, Fault> {
 
 impl State {
     /// Notes how long a job took, where it was a step of the engineer's work that succeeded.
-    pub(in crate::app) fn measure(&mut self, done: &Done, took: Duration) {
+    pub(crate) fn measure(&mut self, done: &Done, took: Duration) {
         let on_screen = || self.open.as_ref().map(|open| &open.flight);
         let steps = match done {
             Done::Opened(loaded) => {
@@ -88,11 +88,7 @@ impl State {
     }
 
     /// Takes the times that were read.
-    pub(in crate::app) fn take_effort(
-        &mut self,
-        path: &Path,
-        read: Result<(Effort, Vec<String>), String>,
-    ) {
+    pub(crate) fn take_effort(&mut self, path: &Path, read: Result<(Effort, Vec<String>), String>) {
         match read {
             Err(why) => self.say(Severity::Error, &why),
             Ok((effort, warnings)) => {

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::source::Source;
 use super::{Page, PasteForm, ResultTab};
-use crate::app::command::Command;
-use crate::app::state::{Severity, State};
-use crate::app::work::{Done, Task};
+use crate::command::Command;
 use crate::formats::{self, DistributionColumns, Kind};
+use crate::state::{Severity, State};
+use crate::work::{Done, Task};
 
 /// What was read, or why not in a line.
 #[derive(Debug)]
@@ -69,13 +69,13 @@ fn pasted(form: &PasteForm, number: usize) -> Result<Source, String> {
 
 impl State {
     /// Whether there may be size distributions in what was dropped, so that it is looked at first.
-    pub(in crate::app) fn may_be_distributions(&self, paths: &[PathBuf]) -> bool {
+    pub(crate) fn may_be_distributions(&self, paths: &[PathBuf]) -> bool {
         paths.iter().any(|path| is_table(path))
     }
 
     /// Reads the size distributions in what was dropped; the rest is something of a flight. Tables that
     /// are dropped on their page are taken for what the page shows.
-    pub(in crate::app) fn read_dropped(&mut self, paths: Vec<PathBuf>) {
+    pub(crate) fn read_dropped(&mut self, paths: Vec<PathBuf>) {
         let here = self.page == Page::SizeDistributions && paths.iter().all(|path| is_table(path));
         if let [path] = paths.as_slice()
             && here
@@ -136,7 +136,7 @@ impl State {
     }
 
     /// Takes what was read.
-    pub(in crate::app) fn take_distributions(&mut self, read: Read) {
+    pub(crate) fn take_distributions(&mut self, read: Read) {
         match read {
             Read::Files { sources, of_flight } => {
                 if !sources.is_empty() {

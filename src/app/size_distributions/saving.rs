@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use super::DistributionCommand;
 use super::computing::Computed;
-use crate::app::command::Command;
-use crate::app::state::{Severity, State};
-use crate::app::work::{Done, Task};
+use crate::command::Command;
 use crate::exports::{self, ComparisonReport, FigureContents, FigureFormat, FittedDistribution};
 use crate::fault::Fault;
 use crate::files::{self, Kind};
 use crate::formats::FileError;
+use crate::state::{Severity, State};
+use crate::work::{Done, Task};
 
 impl State {
     /// Writes the figure; asks before a file is replaced.
@@ -46,7 +46,7 @@ impl State {
     }
 
     /// Goes on once a file may be replaced.
-    pub(in crate::app) fn replace_distributions(&mut self, command: DistributionCommand) {
+    pub(crate) fn replace_distributions(&mut self, command: DistributionCommand) {
         match command {
             DistributionCommand::SaveFigure(path) => self.start_saving_figure(path, true),
             DistributionCommand::SaveReport(path) => self.start_saving_report(path, true),

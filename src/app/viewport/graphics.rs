@@ -7,12 +7,12 @@ use eframe::egui_wgpu::RenderState;
 use egui::{Color32, Pos2, Rect, pos2};
 
 use super::Scene;
-use crate::app::open_flight::OpenFlight;
-use crate::app::panels::verdict_color;
-use crate::app::work::Geometry;
 use crate::flight::Outcome;
+use crate::open_flight::OpenFlight;
+use crate::panels::verdict_color;
 use crate::render::{Gpu, PhotoGeometry, PhotoLook, Renderer, Show, View};
 use crate::scale::ViewFacts;
+use crate::work::Geometry;
 
 /// How long the view must rest before everything is drawn.
 const REST: Duration = Duration::from_millis(250);

@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::Scene;
-use crate::app::command::{Command, Look};
-use crate::app::open_flight::OpenFlight;
+use crate::command::{Command, Look};
+use crate::open_flight::OpenFlight;
 
 pub(super) fn mouse(
     scene: &Scene,

@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, pos2, vec2};
 
 use super::Scene;
-use crate::app::open_flight::{Measure, OpenFlight};
+use crate::open_flight::{Measure, OpenFlight};
 use crate::picture::{Anchor, significant_digits};
 use crate::render::{Label, viridis};
 

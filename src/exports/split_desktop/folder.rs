@@ -359,7 +359,7 @@ mod tests {
     use std::sync::LazyLock;
 
     use super::*;
-    use crate::exports::other_flight_in;
+    use crate::other_flight_in;
 
     static NOTHING_READ: LazyLock<Inputs> = LazyLock::new(Inputs::default);
 

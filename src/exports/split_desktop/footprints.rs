@@ -8,11 +8,11 @@ use serde_json::{Value, json};
 
 use super::ExportRequest;
 use super::kml;
-use crate::exports::{ReportLine, ScaleReport};
 use crate::fault::Fault;
 use crate::geodesy::{Crs, CrsKind};
 use crate::scale::FootprintPoint;
 use crate::units::LengthUnit;
+use crate::{ReportLine, ScaleReport};
 
 /// The footprints of a flight on their way out.
 pub(super) struct Footprints<'a> {

@@ -4,9 +4,9 @@
 use std::fmt::Write;
 
 use super::footprints::PhotoFootprint;
-use crate::exports::ScaleReport;
-use crate::exports::markup::escaped;
+use crate::ScaleReport;
 use crate::flight::Verdict;
+use crate::markup::escaped;
 
 /// A placemark a photo, coloured by its verdict.
 pub(super) fn document<'a>(

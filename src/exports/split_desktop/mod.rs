@@ -46,7 +46,6 @@ use self::objects::PhotoObject;
 use self::pictures::PictureSource;
 use self::plan::PhotoNames;
 use self::whose::FlightOfExport;
-use crate::exports::{ScaleReport, scales_csv};
 use crate::fault::Fault;
 use crate::files::Inputs;
 use crate::flight::{Evidence, Flight, FlightSettings, Judged, Limits, Outcome};
@@ -54,6 +53,7 @@ use crate::jobs::Progress;
 use crate::picture;
 use crate::scale::ViewFacts;
 use crate::units::LengthUnit;
+use crate::{ScaleReport, scales_csv};
 
 /// What the pictures that are worked on at once may take, in bytes.
 const MEMORY: u64 = 2 << 30;

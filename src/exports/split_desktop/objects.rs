@@ -5,9 +5,9 @@ use glam::DVec2;
 
 use super::ExportRequest;
 use crate::camera::Camera;
-use crate::exports::markup::escaped;
 use crate::fault::Fault;
 use crate::flight::{ComparedObject, ScaleObject};
+use crate::markup::escaped;
 use crate::picture::significant_digits;
 use crate::scale::{ImageKind, Traced};
 use crate::units::LengthUnit;

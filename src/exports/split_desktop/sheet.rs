@@ -5,12 +5,12 @@ use std::fmt::Write;
 use super::objects::PhotoObject;
 use super::plan::PhotoNames;
 use super::{CheckedInput, ExportRequest};
-use crate::exports::markup::escaped;
-use crate::exports::{ReportLine, ScaleReport};
 use crate::flight::{Doubt, Judged, compare_names};
+use crate::markup::escaped;
 use crate::picture::significant_digits;
 use crate::scale::{Ground, ImageKind};
 use crate::units::LengthUnit;
+use crate::{ReportLine, ScaleReport};
 
 const STYLE: &str = include_str!("sheet.css");
 

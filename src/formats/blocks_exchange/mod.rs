@@ -46,11 +46,11 @@ use roxmltree::{Document, Node};
 
 use crate::camera::Camera;
 use crate::fault::Fault;
-use crate::formats::fields::shown;
-use crate::formats::reconstruction::{MeasuredPosition, Observation, PosedPhoto, Reconstruction};
-use crate::formats::xml_document::{line_of, parse};
+use crate::fields::shown;
 use crate::geodesy::Geographic;
+use crate::reconstruction::{MeasuredPosition, Observation, PosedPhoto, Reconstruction};
 use crate::surface::Cloud;
+use crate::xml_document::{line_of, parse};
 use system::System;
 
 const EXPORT: &str = "export the block from ContextCapture again";

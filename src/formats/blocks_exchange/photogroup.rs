@@ -5,8 +5,8 @@ use roxmltree::Node;
 
 use crate::camera::{Brown, Camera, Distortion};
 use crate::fault::Fault;
-use crate::formats::fields::shown;
-use crate::formats::polynomial_fisheye;
+use crate::fields::shown;
+use crate::polynomial_fisheye;
 
 use super::{child, fault, number, optional, text_of};
 

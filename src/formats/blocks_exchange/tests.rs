@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::camera::{Distortion, Pose};
-use crate::formats::test_data::shared_data;
+use fragscale_test_data::shared_data;
 
 fn shared() -> Option<String> {
     let path = shared_data("contextcapture-snippet/goodalepark_one_photo.xml")?;

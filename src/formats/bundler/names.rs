@@ -18,8 +18,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::fault::Fault;
-use crate::formats::input::{FileError, read_text};
-use crate::formats::photo_files::is_image;
+use crate::input::{FileError, read_text};
+use crate::photo_files::is_image;
 
 /// Where Bundler's script makes the list, of photos in the folder above.
 const PREPARE: &str = "prepare";

@@ -3,7 +3,7 @@ use std::fs;
 use proptest::prelude::*;
 
 use super::*;
-use crate::formats::test_data::shared_data;
+use fragscale_test_data::shared_data;
 
 /// Two registered cameras and one that is not. The first looks straight down from (1, 2, 10) with
 /// its top to north, which is the identity in these axes; the second is turned half about its view.

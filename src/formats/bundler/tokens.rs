@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::EXPORT;
 use crate::fault::Fault;
-use crate::formats::fields::shown;
+use crate::fields::shown;
 
 /// The words that are still to be read.
 pub(super) struct Tokens<'a> {

@@ -149,7 +149,7 @@ mod tests {
 
     use super::*;
     use crate::camera::{Brown, Fisheye};
-    use crate::formats::camera_file::yaml_tree::first_document;
+    use crate::camera_file::yaml_tree::first_document;
 
     /// EuRoC's cam0.
     const CAM0: &str = "#Default initialization for all cameras\nsensor_type: camera\n\
@@ -216,7 +216,7 @@ mod tests {
             ("radial-tangential", "radial_tangential"),
         ] {
             let text = CAM0.replacen(from, to, 1);
-            let found = crate::formats::camera_file::read(&text);
+            let found = crate::camera_file::read(&text);
             assert_eq!(found.as_ref(), Ok(&expected), "{to}");
         }
     }

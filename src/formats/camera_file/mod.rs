@@ -19,7 +19,7 @@ mod yaml_tree;
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
-use crate::formats::metashape;
+use crate::metashape;
 
 pub(super) use ros_camera::of_message as of_camera_info;
 
@@ -68,8 +68,8 @@ mod tests {
 
     use super::*;
     use crate::camera::{Brown, Distortion};
-    use crate::formats::test_data::shared_data;
-    use crate::formats::{read_text, text_from_bytes};
+    use crate::{read_text, text_from_bytes};
+    use fragscale_test_data::shared_data;
 
     const ROS: &str = "image_width: 64\nimage_height: 48\ncamera_name: nose\ncamera_matrix:\n  \
         rows: 3\n  cols: 3\n  data: [50.5, 0, 31.5, 0, 51., 23.5, 0, 0, 1]\n\

@@ -223,7 +223,7 @@ mod tests {
     use glam::{DVec2, DVec3};
 
     use super::*;
-    use crate::formats::camera_file::yaml_tree::{Node, first_document};
+    use crate::camera_file::yaml_tree::{Node, first_document};
 
     fn tree(text: &str) -> Node {
         first_document(text).unwrap()

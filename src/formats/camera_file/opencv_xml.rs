@@ -15,7 +15,7 @@ use std::collections::HashSet;
 use roxmltree::{Document, ParsingOptions};
 
 use crate::fault::Fault;
-use crate::formats::xml_document::end_of_tag;
+use crate::xml_document::end_of_tag;
 
 use super::yaml_tree::{Entry, MAX_DEPTH, MAX_NODES, Node, Value, quoted, too_deep, twice};
 

@@ -152,8 +152,8 @@ pub(super) fn from_tree(cameras: &[(&str, &Node)]) -> Result<Camera, Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::camera_file::read;
-    use crate::formats::test_data::shared_data;
+    use crate::camera_file::read;
+    use fragscale_test_data::shared_data;
 
     #[test]
     fn the_shared_cameras() {

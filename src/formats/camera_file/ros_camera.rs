@@ -125,7 +125,7 @@ fn whole_image(region: [u32; 4], size: (u32, u32)) -> Result<(), Fault> {
 ///
 /// # Errors
 /// Where it is no camera that fragscale can model.
-pub(in crate::formats) fn of_message(
+pub(crate) fn of_message(
     size: (u32, u32),
     region: [u32; 4],
     k: &[f64],

@@ -1,7 +1,7 @@
 use std::fs;
 
 use super::*;
-use crate::formats::{Kind, detect, read_project};
+use crate::{Kind, detect, read_project};
 
 /// A folder with these files.
 fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {

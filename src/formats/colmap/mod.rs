@@ -28,8 +28,8 @@ use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::surface::Cloud;
 
-use crate::formats::{FileError, Observation, PosedPhoto, Reconstruction};
-use crate::formats::{read_bytes, read_text};
+use crate::{FileError, Observation, PosedPhoto, Reconstruction};
+use crate::{read_bytes, read_text};
 
 /// An image of COLMAP's.
 #[derive(Debug, Clone, PartialEq)]

@@ -98,7 +98,7 @@ impl Model {
     /// Where COLMAP has no such model.
     pub(super) fn by_name(name: &str) -> Result<&'static Self, Fault> {
         MODELS.iter().find(|m| m.name == name).ok_or_else(|| {
-            let shown = crate::formats::fields::shown(name);
+            let shown = crate::fields::shown(name);
             Fault::new(format!("'{shown}' is no camera model of COLMAP"), EXPORT)
         })
     }

@@ -2,7 +2,7 @@ use std::fs;
 
 use super::*;
 use crate::camera::Camera;
-use crate::formats::test_data::shared_data;
+use fragscale_test_data::shared_data;
 
 const CAMERAS: &str = "7 PINHOLE 400 300 100 100 200 150\n";
 const IMAGES: &str = "3 0 1 0 0 0 0 10 7 b.jpg\n250 175 90 1 2 -1\n\

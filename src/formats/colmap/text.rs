@@ -25,7 +25,7 @@ use crate::fault::Fault;
 
 use super::models::Model;
 use super::{Image, Point, pose};
-use crate::formats::fields::{Fields, shown};
+use crate::fields::{Fields, shown};
 
 const EXPORT: &str =
     "export the model again (colmap model_converter --output_type TXT, or BIN, which is exact)";

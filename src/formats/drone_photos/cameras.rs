@@ -2,7 +2,7 @@
 //! source of the focal length.
 
 use crate::camera::Camera;
-use crate::formats::photo_metadata::{FocalCandidate, FocalSource, PhotoMetadata};
+use crate::photo_metadata::{FocalCandidate, FocalSource, PhotoMetadata};
 
 /// How far, as a part, focal lengths of one camera may differ before they are a zoom's.
 const SAME_FOCAL_LENGTH: f64 = 1e-3;

@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use crate::formats::input::{FileError, read_text};
-use crate::formats::photo_metadata::{Fix, HeightReference, PhotoMetadata};
-use crate::formats::position_list::mrk::{self, MrkEvent, number_of_photo};
 use crate::geodesy::{Geographic, ecef_from_geographic};
+use crate::input::{FileError, read_text};
+use crate::photo_metadata::{Fix, HeightReference, PhotoMetadata};
+use crate::position_list::mrk::{self, MrkEvent, number_of_photo};
 
 /// How far, in metres across the ground, a photo's own place may lie from the one that the .MRK has
 /// for its number. Beyond it the numbers are another flight's.

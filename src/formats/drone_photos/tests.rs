@@ -4,11 +4,11 @@ use exif::{Field, Tag};
 
 use super::*;
 use crate::camera::Pose;
-use crate::formats::detect;
-use crate::formats::photo_metadata::test_jpeg::{gps, jpeg, packet, short, text};
-use crate::formats::position_list::positions_of_photos;
-use crate::formats::test_data::shared_data;
-use crate::formats::{Kind, OpenOptions, Package, info, open_flight};
+use crate::detect;
+use crate::photo_metadata::test_jpeg::{gps, jpeg, packet, short, text};
+use crate::position_list::positions_of_photos;
+use crate::{Kind, OpenOptions, Package, info, open_flight};
+use fragscale_test_data::shared_data;
 
 fn exif() -> Vec<Field> {
     let camera = [

@@ -6,7 +6,7 @@ use ::las::{Builder, Color, Point, Transform, Vector, Writer};
 use glam::DVec3;
 
 use super::*;
-use crate::formats::{CloudFormat, Kind, detect, read_cloud};
+use crate::{CloudFormat, Kind, detect, read_cloud};
 
 const HEADER_JSON: &str = r#"{"bounds": [0, 0, 0, 8, 8, 8], "boundsConforming": [0, 0, 0, 8, 8, 8],
     "dataType": "laszip", "hierarchyType": "json", "points": 6, "span": 128, "version": "1.0.0",
@@ -144,7 +144,7 @@ fn what_is_wrong_is_named() {
 }
 
 /// Writes a whole EPT into a folder.
-pub(in crate::formats) fn write(folder: &Path) {
+pub(crate) fn write(folder: &Path) {
     for (name, bytes) in files() {
         let file = folder.join(name);
         std::fs::create_dir_all(file.parent().unwrap()).unwrap();

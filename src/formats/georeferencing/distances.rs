@@ -4,8 +4,8 @@ use glam::{DMat3, DQuat, DVec3};
 
 use super::marks::MarkedPoint;
 use super::{GeoreferenceRequest, Georeferenced, KnownEnds, LengthResidual};
+use crate::Reconstruction;
 use crate::fault::Fault;
-use crate::formats::Reconstruction;
 use crate::geometry::Similarity;
 use crate::georeference::scale_of_lengths;
 use crate::units::LengthUnit;

@@ -4,10 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use super::Georeferenced;
+use crate::FileError;
 use crate::fault::Fault;
 use crate::flight::{FlightFile, FlightSettings, ReconstructionFlight};
-use crate::formats::FileError;
-use crate::formats::origin::{folder_of, path_from, real};
+use crate::origin::{folder_of, path_from, real};
 use crate::scale::{Ground, ImageKind};
 use crate::surface::SurfaceOptions;
 

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use glam::{DVec2, DVec3};
 
+use crate::Reconstruction;
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
-use crate::formats::Reconstruction;
-use crate::formats::photo_files::PhotoFolder;
-use crate::formats::photo_names::PhotoNames;
-use crate::formats::position_list::ControlPoints;
 use crate::georeference::{Sight, Triangulated, triangulate};
+use crate::photo_files::PhotoFolder;
+use crate::photo_names::PhotoNames;
+use crate::position_list::ControlPoints;
 
 /// Marks that fit worse, in pixels, are pointed out.
 const POOR_PX: f64 = 10.0;

@@ -6,9 +6,9 @@ use glam::{DMat3, EulerRot};
 use super::*;
 use crate::camera::{Camera, Distortion, Pose};
 use crate::flight::FlightFile;
-use crate::formats::reconstruction::PosedPhoto;
-use crate::formats::test_data::shared_data;
 use crate::geodesy::Crs;
+use crate::reconstruction::PosedPhoto;
+use fragscale_test_data::shared_data;
 
 /// From the reconstruction's frame, whose z is nowhere near up, to UTM.
 fn truth() -> Similarity {
@@ -135,7 +135,7 @@ fn receivers_in_degrees() {
         }
         reconstruction
             .measured_positions
-            .push(crate::formats::MeasuredPosition {
+            .push(crate::MeasuredPosition {
                 photo: photo.name.clone(),
                 position: place,
             });

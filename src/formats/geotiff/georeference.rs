@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3};
 use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
+use crate::cloud_file::CloudFile;
 use crate::fault::Fault;
-use crate::formats::cloud_file::CloudFile;
 
 /// Keys of the directory.
 const MODEL_TYPE: u16 = 1024;

@@ -6,8 +6,8 @@ use tiff::encoder::colortype::{ColorType as Pixel, Gray8, Gray16, Gray32Float, G
 use tiff::encoder::{Compression, TiffEncoder, TiffValue};
 
 use super::*;
-use crate::formats::test_data::shared_data;
 use crate::geometry::Bounds;
+use fragscale_test_data::shared_data;
 
 fn read_bytes(bytes: &[u8]) -> Result<CloudFile, Fault> {
     read(Cursor::new(bytes), bytes.len() as u64, &Progress::default())

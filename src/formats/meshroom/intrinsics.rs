@@ -249,7 +249,7 @@ mod tests {
     use glam::{DVec2, DVec3};
 
     use super::*;
-    use crate::formats::json::parse;
+    use crate::json::parse;
 
     fn of(version: [u32; 3], fields: &str) -> Result<(Camera, Option<String>), String> {
         let json = format!(

@@ -243,7 +243,7 @@ mod tests {
     use serde::de::DeserializeOwned;
 
     use super::*;
-    use crate::formats::json::parse;
+    use crate::json::parse;
 
     fn of<T: DeserializeOwned>(json: &str) -> Option<T> {
         parse(json.as_bytes()).ok()

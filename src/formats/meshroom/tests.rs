@@ -3,7 +3,7 @@ use std::fs;
 use proptest::prelude::*;
 
 use super::*;
-use crate::formats::test_data::shared_data;
+use fragscale_test_data::shared_data;
 
 /// Two photos of a camera of f = 1000 px that look down from 10, one of them of a rig turned half about
 /// its view, one photo without a pose and a point; all in quotes, as boost writes.

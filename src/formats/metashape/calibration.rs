@@ -55,7 +55,7 @@ const KNOWN: [&str; 22] = [
 ///
 /// # Errors
 /// Where it is no calibration, or one of a camera that is not modelled.
-pub(in crate::formats) fn read(text: &str) -> Result<Camera, Fault> {
+pub(crate) fn read(text: &str) -> Result<Camera, Fault> {
     let document = super::xml::parse(text)?;
     let root = document.root_element();
     if root.tag_name().name() != "calibration" {

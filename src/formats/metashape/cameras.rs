@@ -24,7 +24,7 @@ use super::names::{Named, distinct_names};
 use super::xml::{EXPORT, attribute, child, children, is_off, line, numbers};
 use crate::camera::{Brown, Camera, Distortion, Pose};
 use crate::fault::Fault;
-use crate::formats::fields::shown;
+use crate::fields::shown;
 
 /// A `<sensor>`.
 pub(super) struct Sensor {

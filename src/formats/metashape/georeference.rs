@@ -228,7 +228,7 @@ pub(super) fn moved(similarity: &Similarity, pose: &Pose) -> Pose {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::metashape::xml::parse;
+    use crate::metashape::xml::parse;
 
     fn reference(wkt: &str) -> Reference {
         let wkt = wkt.replace('"', "&quot;");

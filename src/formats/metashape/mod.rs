@@ -45,8 +45,8 @@ use self::georeference::{Kept, Placing, Reference, moved};
 use self::points::TiePoints;
 use self::xml::{child, children, is_off, root_element};
 use crate::fault::Fault;
-use crate::formats::{MeasuredPosition, PosedPhoto, Reconstruction};
 use crate::geodesy::{Crs, geographic_from_ecef};
+use crate::{MeasuredPosition, PosedPhoto, Reconstruction};
 
 /// What to do where no photo can be used.
 const ALIGN: &str = "align the photos in Metashape, then export the cameras again";

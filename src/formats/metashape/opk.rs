@@ -22,10 +22,10 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::formats::fields::{Fields, shown};
-use crate::formats::poses_csv::{PoseLine, PosesFile};
-use crate::formats::separated::{Separator, unquoted};
+use crate::fields::{Fields, shown};
 use crate::geometry::Bounds;
+use crate::poses_csv::{PoseLine, PosesFile};
+use crate::separated::{Separator, unquoted};
 
 const EXPORT: &str = "export it from Metashape again (Export Cameras, Omega Phi Kappa)";
 
@@ -36,7 +36,7 @@ const SAME_ROTATION: f64 = 1e-5;
 const ONE_FLIGHT: f64 = 0.2;
 
 /// Whether a text begins as this one does: with comments that name its columns.
-pub(in crate::formats) fn is_opk(start: &str) -> bool {
+pub(crate) fn is_opk(start: &str) -> bool {
     let lines = start.trim_start_matches('\u{feff}').lines();
     lines
         .map(|line| line.trim().trim_matches('"'))
@@ -52,7 +52,7 @@ pub(in crate::formats) fn is_opk(start: &str) -> bool {
 /// # Errors
 /// With the line: a field that is missing or no number, angles and rotation that disagree, a photo
 /// that is named twice, no photo at all.
-pub(in crate::formats) fn read(text: &str) -> Result<PosesFile, Fault> {
+pub(crate) fn read(text: &str) -> Result<PosesFile, Fault> {
     let mut file = PosesFile {
         lines: Vec::new(),
         crs: None,
@@ -176,7 +176,7 @@ fn are_degrees(lines: &[PoseLine]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::test_data::shared_data;
+    use fragscale_test_data::shared_data;
 
     const HEAD: &str = "#Cameras (2)\r\n#PhotoID, X, Y, Z, Omega, Phi, Kappa\r\n";
 
@@ -265,7 +265,7 @@ mod tests {
         let Some(path) = shared_data("metashape-xml-potree/steele_opk.txt") else {
             return;
         };
-        let text = crate::formats::read_text(&path).unwrap();
+        let text = crate::read_text(&path).unwrap();
         assert!(is_opk(&text));
         let file = read(&text).unwrap();
         assert_eq!(

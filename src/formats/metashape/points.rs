@@ -23,8 +23,8 @@ use zip::ZipArchive;
 use super::georeference::Placing;
 use super::xml::children;
 use crate::fault::Fault;
-use crate::formats::ply::{number, read_vertices};
-use crate::formats::{Observation, Reconstruction};
+use crate::ply::{number, read_vertices};
+use crate::{Observation, Reconstruction};
 
 /// How large all files of a cloud may be, inflated, in bytes.
 const LARGEST: u64 = 1 << 30;

@@ -24,8 +24,8 @@ use super::points::TiePoints;
 use super::xml::{child, children, parse};
 use super::{ALIGN, has_aligned, one_of_chunks, paths_of, read_chunk, read_xml};
 use crate::fault::Fault;
-use crate::formats::input::{FileError, open_file, read_text, text_from_bytes};
-use crate::formats::reconstruction::Project;
+use crate::input::{FileError, open_file, read_text, text_from_bytes};
+use crate::reconstruction::Project;
 
 /// How large a document may be, inflated, in bytes: a frame of 100 000 photos with their metadata
 /// has 200 MB.
@@ -38,7 +38,7 @@ const COPY: &str = "copy the .psx together with its .files folder, or export the
 ///
 /// # Errors
 /// With the file and the place in it.
-pub(in crate::formats) fn read_project(path: &Path) -> Result<Project, FileError> {
+pub(crate) fn read_project(path: &Path) -> Result<Project, FileError> {
     let mut start = Vec::new();
     let read = open_file(path)?.take(4).read_to_end(&mut start);
     read.map_err(|e| unreadable(path, &e.to_string()))?;

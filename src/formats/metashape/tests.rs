@@ -5,12 +5,12 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::camera::{Agisoft, AgisoftProjection, Camera, Distortion};
-use crate::formats::test_data::shared_data;
-use crate::formats::{read_project as read_any, read_text};
 use crate::geodesy::{Geographic, ecef_from_geographic, enu_axes};
 use crate::geometry::{Ray, median};
 use crate::jobs::Progress;
 use crate::surface::{Cloud, Surface};
+use crate::{read_project as read_any, read_text};
+use fragscale_test_data::shared_data;
 
 /// A chunk with one sensor of 400 x 300 pixels whose calibration holds `lens`.
 fn document(lens: &str, cameras: &str, rest: &str) -> String {
@@ -668,7 +668,7 @@ fn the_exported_cameras_of_potree() {
         [-0.000_257_085_555_850_840_67, 0.005_266_309_532_673_387_4]
     );
     let calibration = path.with_file_name("steele_camcal.xml");
-    let camera = crate::formats::read_camera(&calibration).unwrap();
+    let camera = crate::read_camera(&calibration).unwrap();
     assert_eq!((camera.width, camera.height), (5280, 3956));
     assert!((camera.cy - (1978.0 - 40.405_046_106_437)).abs() < 1e-12);
     assert_eq!(camera.distortion.name(), "brown");
@@ -696,8 +696,8 @@ fn angles_serve_as_the_poses_of_a_flight() {
         "format = 1\n[world]\nunit = \"m\"\n[surface]\nfile = \"ground.xyz\"\n[[camera]]\nwidth = 100\nheight = 100\n\
          fx = 100.0\nfy = 100.0\ncx = 50.0\ncy = 50.0\n[photos]\nposes = \"opk.txt\"\n",
     );
-    let options = crate::formats::OpenOptions::default();
-    let open = || crate::formats::open_flight(folder.path(), &options, &Progress::default());
+    let options = crate::OpenOptions::default();
+    let open = || crate::open_flight(folder.path(), &options, &Progress::default());
     let opened = open().unwrap();
     let parts = opened.flight.parts();
     let center = parts.photos[1].pose.center;

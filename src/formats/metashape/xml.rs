@@ -7,7 +7,7 @@
 use roxmltree::{Document, Node, ParsingOptions};
 
 use crate::fault::Fault;
-use crate::formats::fields::{Fields, shown};
+use crate::fields::{Fields, shown};
 
 /// What to do about XML that is not as Agisoft writes it.
 pub(super) const EXPORT: &str = "export it from Metashape again (File > Export > Export Cameras)";

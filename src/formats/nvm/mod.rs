@@ -38,8 +38,8 @@ use glam::{DVec2, DVec3};
 use crate::camera::{Camera, Distortion, Pose, VisualSfm};
 use crate::fault::Fault;
 
-use crate::formats::fields::{Fields, shown};
-use crate::formats::{Observation, PosedPhoto, Reconstruction};
+use crate::fields::{Fields, shown};
+use crate::{Observation, PosedPhoto, Reconstruction};
 
 const SAVE: &str = "save the workspace from VisualSFM again (SfM > Save NV Match)";
 

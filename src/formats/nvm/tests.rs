@@ -2,7 +2,7 @@ use glam::DMat3;
 use proptest::prelude::*;
 
 use super::*;
-use crate::formats::test_data::shared_data;
+use fragscale_test_data::shared_data;
 
 /// Half a turn about x: a camera at z = 10 that looks down. The point (5, -2.5, 0) is seen 0.5 right
 /// and 0.25 below the axis; with f = 100 and r = 0 that is (50, 25) from the middle.

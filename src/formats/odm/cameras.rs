@@ -13,10 +13,10 @@ use super::georeference::optional;
 use super::shots::Shot;
 use crate::camera::Camera;
 use crate::fault::Fault;
-use crate::formats::input::FileError;
-use crate::formats::json::{Object, parse};
-use crate::formats::opensfm::camera::{CameraModel, usable_cameras};
-use crate::formats::reconstruction::{PosedPhoto, Reconstruction};
+use crate::input::FileError;
+use crate::json::{Object, parse};
+use crate::opensfm::camera::{CameraModel, usable_cameras};
+use crate::reconstruction::{PosedPhoto, Reconstruction};
 
 /// A camera's name as `cameras.json` writes it.
 fn plain(name: &str) -> &str {
@@ -139,8 +139,8 @@ mod tests {
     use tempfile::TempDir;
 
     use super::*;
-    use crate::formats::odm::shots;
-    use crate::formats::opensfm;
+    use crate::odm::shots;
+    use crate::opensfm;
 
     const TWO: &str = r#"{"c": {"focal": 0.5, "width": 400, "height": 200},
                           "d": {"focal": 0.75, "width": 400, "height": 200}}"#;

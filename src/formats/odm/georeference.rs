@@ -29,9 +29,9 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::formats::input::{FileError, read_bytes, text_from_bytes};
-use crate::formats::json::parse;
-use crate::formats::rounded_rotation::nearest_rotation;
+use crate::input::{FileError, read_bytes, text_from_bytes};
+use crate::json::parse;
+use crate::rounded_rotation::nearest_rotation;
 
 /// How far, in metres, a camera centre may lie from where `shots.geojson` states it. The right map
 /// agrees to rounding (1e-8 m), wrong ones are metres off.
@@ -257,7 +257,7 @@ fn parse_coords(text: &str) -> (Option<String>, Option<DVec2>) {
 
 /// "EPSG:n" where the text is that already or says UTM on WGS 84, else the text itself; `None` where
 /// it is empty.
-pub(in crate::formats) fn crs_from_text(text: &str) -> Option<String> {
+pub(crate) fn crs_from_text(text: &str) -> Option<String> {
     let text = text.lines().next()?.trim().trim_matches('\'').trim();
     if text.is_empty() {
         return None;

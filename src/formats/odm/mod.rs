@@ -32,10 +32,10 @@ use std::path::Path;
 use serde::Deserialize;
 
 use crate::fault::Fault;
-use crate::formats::input::{FileError, read_bytes, text_from_bytes};
-use crate::formats::json::parse;
-use crate::formats::opensfm::{self, OpenSfm};
-use crate::formats::reconstruction::{PosedPhoto, Project, Reconstruction};
+use crate::input::{FileError, read_bytes, text_from_bytes};
+use crate::json::parse;
+use crate::opensfm::{self, OpenSfm};
+use crate::reconstruction::{PosedPhoto, Project, Reconstruction};
 use cameras::with_cameras;
 pub(super) use georeference::crs_from_text;
 use georeference::{Frames, optional};
@@ -222,9 +222,9 @@ mod tests {
     use tempfile::TempDir;
 
     use super::*;
-    use crate::formats::test_data::shared_data;
-    use crate::formats::{OpenOptions, open_flight};
     use crate::jobs::Progress;
+    use crate::{OpenOptions, open_flight};
+    use fragscale_test_data::shared_data;
 
     const CAMERAS: (&str, &str) = (
         "cameras.json",
@@ -354,7 +354,7 @@ mod tests {
         }
         assert!(!error.contains('\n'));
         let tiles = dir.path().join("entwine_pointcloud");
-        crate::formats::ept::tests::write(&tiles);
+        crate::ept::tests::write(&tiles);
         let opened = open(&dir).unwrap();
         assert!(opened.inputs.contains(&tiles.join("ept.json")));
         assert_eq!(opened.flight.parts().surface.vertices().count(), 6);

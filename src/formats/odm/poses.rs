@@ -11,8 +11,8 @@ use std::collections::HashMap;
 use super::georeference::{Frames, Georeference};
 use super::shots::Shot;
 use crate::fault::Fault;
-use crate::formats::opensfm::checked;
-use crate::formats::reconstruction::{Observation, Reconstruction};
+use crate::opensfm::checked;
+use crate::reconstruction::{Observation, Reconstruction};
 use crate::surface::Cloud;
 
 /// Photos, points and observations in one frame.

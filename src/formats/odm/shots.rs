@@ -23,7 +23,7 @@ use serde::Deserialize;
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
-use crate::formats::json::parse;
+use crate::json::parse;
 
 /// An aligned photo whose camera is known by name at most.
 #[derive(Debug, Clone, PartialEq)]

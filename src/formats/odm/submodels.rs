@@ -17,8 +17,8 @@ use super::surface::surface;
 use super::{is_odm_folder, read_one};
 use crate::camera::Camera;
 use crate::fault::Fault;
-use crate::formats::input::FileError;
-use crate::formats::reconstruction::{Observation, PosedPhoto, Project, Reconstruction};
+use crate::input::FileError;
+use crate::reconstruction::{Observation, PosedPhoto, Project, Reconstruction};
 
 /// The submodels of a project's folder or of its folder `submodels`, sorted by name.
 pub(super) fn submodels_of(dir: &Path) -> Vec<PathBuf> {
@@ -194,7 +194,7 @@ mod tests {
     use tempfile::TempDir;
 
     use super::*;
-    use crate::formats::odm::read_folder;
+    use crate::odm::read_folder;
 
     /// A submodel of photos that look straight down, each with a point 10 below it on its axis.
     fn submodel(dir: &Path, name: &str, focal: f64, photos: &[(&str, f64)], zone: &str) {

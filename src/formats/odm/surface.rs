@@ -16,8 +16,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::formats::ept;
-use crate::formats::input::read_bytes;
+use crate::ept;
+use crate::input::read_bytes;
 
 /// The best first.
 const SURFACES: [&str; 6] = [

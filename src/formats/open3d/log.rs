@@ -14,15 +14,15 @@ use glam::{DMat3, DVec3};
 use super::NUMBERED;
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::formats::fields::Fields;
-use crate::formats::poses_csv::{PoseLine, PosesFile};
-use crate::formats::rounded_rotation::{from_row_major, rounded_rotation};
+use crate::fields::Fields;
+use crate::poses_csv::{PoseLine, PosesFile};
+use crate::rounded_rotation::{from_row_major, rounded_rotation};
 
 const WRITE: &str = "write the trajectory again with Open3D";
 
 /// Whether a text that begins so is a trajectory: whole numbers, then the four lines of a 4x4, of which
 /// the last is 0 0 0 1. (A cloud may begin with the count of its points as well.)
-pub(in crate::formats) fn is_log(start: &str) -> bool {
+pub(crate) fn is_log(start: &str) -> bool {
     let mut lines = start.lines().filter(|line| !line.trim().is_empty());
     let numbers = |line: &str| -> Option<Vec<f64>> {
         line.split_whitespace()
@@ -49,7 +49,7 @@ pub(in crate::formats) fn is_log(start: &str) -> bool {
 ///
 /// # Errors
 /// With the line: what is no number, no rotation, or breaks off.
-pub(in crate::formats) fn read_log(text: &str) -> Result<PosesFile, Fault> {
+pub(crate) fn read_log(text: &str) -> Result<PosesFile, Fault> {
     let mut lines = (1..)
         .zip(text.lines())
         .filter(|(_, line)| !line.trim().is_empty());

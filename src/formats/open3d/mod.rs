@@ -159,7 +159,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::formats::test_data::shared_data;
+    use fragscale_test_data::shared_data;
 
     /// One pose that looks along world x with the image's right to world -y, from (5, 6, 7).
     const ONE: &str = r#"{"class_name": "PinholeCameraParameters",

@@ -38,11 +38,11 @@ use serde::Deserialize;
 
 use crate::camera::{Brown, Camera, Distortion, Fisheye};
 use crate::fault::Fault;
-use crate::formats::json::Object;
+use crate::json::Object;
 
 /// A model as the JSON has it.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
-pub(in crate::formats) struct CameraModel {
+pub(crate) struct CameraModel {
     projection_type: Option<String>,
     width: Option<f64>,
     height: Option<f64>,
@@ -71,15 +71,15 @@ pub(in crate::formats) struct CameraModel {
 ///
 /// # Errors
 /// Where it is no JSON of that shape, or a camera cannot be used, naming it.
-pub(in crate::formats) fn read(json: &[u8]) -> Result<Vec<Camera>, Fault> {
-    let models: Object<CameraModel> = crate::formats::json::parse(json)?;
+pub(crate) fn read(json: &[u8]) -> Result<Vec<Camera>, Fault> {
+    let models: Object<CameraModel> = crate::json::parse(json)?;
     let cameras = models.0.into_iter();
     cameras.map(|(id, model)| model.camera(&id)).collect()
 }
 
 /// Turns models into cameras. One that cannot be used is an error where a photo needs it
 /// (`is_used`, by name), else it is left out with a warning.
-pub(in crate::formats) fn usable_cameras(
+pub(crate) fn usable_cameras(
     models: &Object<CameraModel>,
     is_used: impl Fn(&str) -> bool,
     warnings: &mut Vec<String>,
@@ -379,7 +379,7 @@ mod tests {
     fn an_unused_model_only_warns() {
         let json = br#"{"bad": {"projection_type": "dual"},
                         "good": {"focal": 1, "width": 2, "height": 2}}"#;
-        let models: Object<CameraModel> = crate::formats::json::parse(json).unwrap();
+        let models: Object<CameraModel> = crate::json::parse(json).unwrap();
         let mut warnings = Vec::new();
         let cameras = usable_cameras(&models, |id| id == "good", &mut warnings).unwrap();
         assert_eq!((cameras.len(), warnings.len()), (1, 1));

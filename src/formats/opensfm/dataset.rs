@@ -17,13 +17,13 @@ use std::path::{Path, PathBuf};
 
 use super::OpenSfm;
 use super::frame::Hint;
-use crate::formats::input::{FileError, open_file, read_bytes, text_from_bytes};
-use crate::formats::photo_files::folder_of_photos;
-use crate::formats::reconstruction::{Project, Reconstruction};
+use crate::input::{FileError, open_file, read_bytes, text_from_bytes};
+use crate::photo_files::folder_of_photos;
+use crate::reconstruction::{Project, Reconstruction};
 
 /// The `reconstruction.json` of a data set's folder, or of the `opensfm` folder in it; else the only
 /// `reconstruction_X.json` of the folder. Its report has the same name, but is no list.
-pub(in crate::formats) fn dataset_file(folder: &Path) -> Option<PathBuf> {
+pub(crate) fn dataset_file(folder: &Path) -> Option<PathBuf> {
     let begins_a_list = |file: &PathBuf| {
         let mut start = Vec::new();
         let read = open_file(file).map(|file| file.take(64).read_to_end(&mut start));
@@ -49,7 +49,7 @@ pub(in crate::formats) fn dataset_file(folder: &Path) -> Option<PathBuf> {
 ///
 /// # Errors
 /// Where the file itself cannot be used. What only adds to it is a warning where it is broken.
-pub(in crate::formats) fn read_file(path: &Path) -> Result<Project, FileError> {
+pub(crate) fn read_file(path: &Path) -> Result<Project, FileError> {
     let at = |fault| FileError::new(path, fault);
     let mut file = OpenSfm::read(&read_bytes(path)?).map_err(at)?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -90,7 +90,7 @@ pub(in crate::formats) fn read_file(path: &Path) -> Result<Project, FileError> {
 }
 
 /// How many photos a `reconstruction.json` of `most` bytes at most places.
-pub(in crate::formats) fn count_of_photos(path: &Path, most: u64) -> Option<usize> {
+pub(crate) fn count_of_photos(path: &Path, most: u64) -> Option<usize> {
     let is_small = path.metadata().ok()?.len() <= most;
     let bytes = is_small.then(|| read_bytes(path).ok()).flatten()?;
     Some(OpenSfm::read(&bytes).ok()?.reconstruction.photos.len())
@@ -148,7 +148,7 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use crate::formats::test_data::shared_data;
+    use fragscale_test_data::shared_data;
 
     const ONE: &str = r#"[{"cameras": {"c": {"focal": 1, "width": 200, "height": 400}},
         "shots": {"a.jpg": {"camera": "c", "rotation": [0, 0, 0], "translation": [0, 0, 0],

@@ -43,9 +43,9 @@ use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
 
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::formats::json::{Object, parse};
-use crate::formats::reconstruction::{PosedPhoto, Reconstruction};
 use crate::geometry::Similarity;
+use crate::json::{Object, parse};
+use crate::reconstruction::{PosedPhoto, Reconstruction};
 use crate::surface::Cloud;
 use camera::{CameraModel, usable_cameras};
 pub(super) use dataset::{count_of_photos, dataset_file, read_file};
@@ -386,7 +386,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::formats::test_data::shared_data;
+    use fragscale_test_data::shared_data;
 
     const SMALL: &str = r#"[
         {"cameras": {"v2 c": {"focal": 0.5, "width": 400, "height": 200}},

@@ -8,8 +8,8 @@
 use glam::DVec3;
 use serde::Deserialize;
 
-use crate::formats::reconstruction::MeasuredPosition;
 use crate::geodesy::{Geographic, ecef_from_geographic, enu_axes, geographic_from_ecef};
+use crate::reconstruction::MeasuredPosition;
 
 /// The dilution of precision that stands for a photo without GPS.
 const NO_GPS_DOP: f64 = 999_999.0;
@@ -94,7 +94,7 @@ pub(super) fn measured_positions(
 
 #[cfg(test)]
 mod tests {
-    use crate::formats::opensfm::OpenSfm;
+    use crate::opensfm::OpenSfm;
 
     fn file(shot: &str, reference: &str) -> OpenSfm {
         let json = format!(

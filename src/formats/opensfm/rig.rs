@@ -14,7 +14,7 @@ use serde::Deserialize;
 use super::pose_from;
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::formats::json::Object;
+use crate::json::Object;
 
 /// Where a camera sits on a rig.
 #[derive(Deserialize)]
@@ -81,7 +81,7 @@ impl Rigs {
 mod tests {
     use glam::{DMat3, DVec3};
 
-    use crate::formats::opensfm;
+    use crate::opensfm;
 
     const HALF: f64 = std::f64::consts::FRAC_PI_2;
 

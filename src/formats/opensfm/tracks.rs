@@ -18,7 +18,7 @@ use std::collections::HashMap;
 use glam::DVec2;
 
 use crate::fault::Fault;
-use crate::formats::reconstruction::{Observation, Reconstruction};
+use crate::reconstruction::{Observation, Reconstruction};
 
 /// The observations that photos of `reconstruction` made of points that `point_index` knows, by the
 /// track's name.
@@ -97,7 +97,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::formats::opensfm;
+    use crate::opensfm;
 
     fn portrait() -> Reconstruction {
         let json = br#"[{"cameras": {"c": {"focal": 1, "width": 200, "height": 400}},

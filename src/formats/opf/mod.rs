@@ -41,11 +41,11 @@ use serde::de::DeserializeOwned;
 
 use crate::camera::{Brown, Camera, Distortion, Pose};
 use crate::fault::Fault;
-use crate::formats::input::{FileError, read_bytes};
-use crate::formats::json;
-use crate::formats::polynomial_fisheye;
-use crate::formats::reconstruction::{MeasuredPosition, PosedPhoto, Project, Reconstruction};
 use crate::geodesy::Geographic;
+use crate::input::{FileError, read_bytes};
+use crate::json;
+use crate::polynomial_fisheye;
+use crate::reconstruction::{MeasuredPosition, PosedPhoto, Project, Reconstruction};
 use parts::{
     CalibratedCameras, CalibratedSensor, CameraList, InputCameras, Internals, ProjectFile,
     SceneFrame,

@@ -1,7 +1,7 @@
 //! The header of a PCD file: its lines up to and with `DATA`.
 
 use crate::fault::Fault;
-use crate::formats::fields::{Fields, shown};
+use crate::fields::{Fields, shown};
 
 const REMEDY: &str = "export it again as PCD 0.7";
 

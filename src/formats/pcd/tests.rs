@@ -3,7 +3,7 @@ use std::fs;
 use proptest::prelude::*;
 
 use super::*;
-use crate::formats::test_data::shared_data;
+use fragscale_test_data::shared_data;
 
 fn read_bytes(bytes: &[u8]) -> Result<CloudFile, Fault> {
     read(bytes, bytes.len() as u64, &Progress::default())

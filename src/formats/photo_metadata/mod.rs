@@ -331,6 +331,6 @@ mod crop_tests;
 #[cfg(test)]
 mod namespace_tests;
 #[cfg(test)]
-pub(in crate::formats) mod test_jpeg;
+pub(crate) mod test_jpeg;
 #[cfg(test)]
 mod tests;

@@ -6,13 +6,13 @@ use exif::experimental::Writer;
 use exif::{Field, In, Rational, Tag, Value};
 
 /// A segment with its marker and length.
-pub(in crate::formats) fn segment(marker: u8, payload: &[u8]) -> Vec<u8> {
+pub(crate) fn segment(marker: u8, payload: &[u8]) -> Vec<u8> {
     let length = u16::try_from(payload.len() + 2).unwrap().to_be_bytes();
     [&[0xff, marker][..], &length, payload].concat()
 }
 
 /// A JPEG's header up to the start of the scan.
-pub(in crate::formats) fn jpeg(size: (u16, u16), exif: &[Field], packets: &[&str]) -> Vec<u8> {
+pub(crate) fn jpeg(size: (u16, u16), exif: &[Field], packets: &[&str]) -> Vec<u8> {
     let mut bytes = vec![0xff, 0xd8];
     if !exif.is_empty() {
         bytes.extend(segment(
@@ -31,7 +31,7 @@ pub(in crate::formats) fn jpeg(size: (u16, u16), exif: &[Field], packets: &[&str
 }
 
 /// The TIFF of an EXIF block.
-pub(in crate::formats) fn tiff(fields: &[Field]) -> Vec<u8> {
+pub(crate) fn tiff(fields: &[Field]) -> Vec<u8> {
     let mut writer = Writer::new();
     for field in fields {
         writer.push_field(field);
@@ -50,23 +50,23 @@ fn field(tag: Tag, value: Value) -> Field {
 }
 
 /// A text field.
-pub(in crate::formats) fn text(tag: Tag, value: &str) -> Field {
+pub(crate) fn text(tag: Tag, value: &str) -> Field {
     field(tag, Value::Ascii(vec![value.as_bytes().to_vec()]))
 }
 
 /// A field of small whole numbers.
-pub(in crate::formats) fn short(tag: Tag, value: u16) -> Field {
+pub(crate) fn short(tag: Tag, value: u16) -> Field {
     field(tag, Value::Short(vec![value]))
 }
 
 /// A field of fractions.
-pub(in crate::formats) fn rationals(tag: Tag, values: &[(u32, u32)]) -> Field {
+pub(crate) fn rationals(tag: Tag, values: &[(u32, u32)]) -> Field {
     let rational = |&(num, denom): &(u32, u32)| Rational { num, denom };
     field(tag, Value::Rational(values.iter().map(rational).collect()))
 }
 
 /// 47 30' 0.36" north, 16 15' 0.18" west, 200.5 m above sea level: (-16.25005, 47.5001).
-pub(in crate::formats) fn gps() -> Vec<Field> {
+pub(crate) fn gps() -> Vec<Field> {
     vec![
         text(Tag::GPSLatitudeRef, "N"),
         rationals(Tag::GPSLatitude, &[(47, 1), (30, 1), (36, 100)]),
@@ -79,7 +79,7 @@ pub(in crate::formats) fn gps() -> Vec<Field> {
 
 /// An XMP packet around descriptions, with every maker's namespace and padding. `drone` is the prefix
 /// under which Autel writes DJI's.
-pub(in crate::formats) fn packet(descriptions: &str) -> String {
+pub(crate) fn packet(descriptions: &str) -> String {
     let padding = " ".repeat(200);
     format!(
         "<?xpacket begin=\"\u{feff}\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n\

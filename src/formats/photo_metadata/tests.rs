@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use super::test_jpeg::{gps, jpeg, packet, rationals, segment, short, text, tiff};
 use super::*;
 use crate::camera::Distortion;
-use crate::formats::test_data::shared_data;
+use fragscale_test_data::shared_data;
 
 pub(super) fn photo(bytes: Vec<u8>) -> PhotoMetadata {
     read(Cursor::new(bytes)).unwrap()

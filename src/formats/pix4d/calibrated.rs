@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::camera::{Brown, Camera, CameraError, Distortion, Pose};
 use crate::fault::Fault;
-use crate::formats::fields::Fields;
+use crate::fields::Fields;
 
 const EXPORT: &str = "let Pix4D write its params folder again (Process > Reoptimize)";
 

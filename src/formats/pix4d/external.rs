@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::formats::fields::Fields;
+use crate::fields::Fields;
 
 const EXPORT: &str = "let Pix4D write its params folder again (Process > Reoptimize)";
 

@@ -20,7 +20,7 @@
 
 use crate::camera::Camera;
 use crate::fault::Fault;
-use crate::formats::fields::Fields;
+use crate::fields::Fields;
 
 use super::calibrated::distortion;
 

@@ -48,9 +48,9 @@ use glam::{DVec2, DVec3};
 
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::formats::input::{FileError, read_text};
-use crate::formats::reconstruction::{PosedPhoto, Project, Reconstruction};
 use crate::geometry::median;
+use crate::input::{FileError, read_text};
+use crate::reconstruction::{PosedPhoto, Project, Reconstruction};
 use calibrated::Calibrated;
 use external::ProjectionMatrix;
 

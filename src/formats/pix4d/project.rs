@@ -4,9 +4,9 @@ use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::formats::input::read_text;
-use crate::formats::reconstruction::Reconstruction;
-use crate::formats::xml_document;
+use crate::input::read_text;
+use crate::reconstruction::Reconstruction;
+use crate::xml_document;
 
 /// The one .p4d of a folder.
 pub(super) fn file_in(folder: &Path) -> Option<PathBuf> {

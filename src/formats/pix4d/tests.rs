@@ -5,7 +5,7 @@ use std::fs;
 use proptest::prelude::*;
 
 use super::*;
-use crate::formats::test_data::shared_data;
+use fragscale_test_data::shared_data;
 
 /// The record of a photo, and the same photo in the external parameters, as Pix4D wrote them for a
 /// project over Nanjing (quoted in public code).

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::camera::Pose;
-use crate::formats::realitycapture;
+use crate::realitycapture;
 
 /// What the columns may be called: the photo, x, y, z, omega, phi, kappa.
 const COLUMNS: [&[&str]; 7] = [

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::formats::test_data::shared_data;
+use fragscale_test_data::shared_data;
 
 /// RealityScan's documentation: with yaw, pitch and roll 0 the camera looks down and its right is
 /// east; a yaw of 90 turns it clockwise, a pitch of 90 looks to the horizon.
@@ -37,7 +37,7 @@ fn the_three_shared_forms_agree() {
     let Some(folder) = shared_data("orthority-ngi-opk") else {
         return;
     };
-    let read = |name: &str| crate::formats::read_poses(&folder.join(name)).unwrap();
+    let read = |name: &str| crate::read_poses(&folder.join(name)).unwrap();
     let (csv, text) = (read("ngi_xyz_opk.csv"), read("camera_pos_ori.txt"));
     let geojson = read("ngi_ext_param.geojson");
     assert_eq!(

@@ -23,7 +23,7 @@ use glam::{DVec2, DVec3};
 use super::geo_file::content;
 use super::{ControlPoint, ControlPoints, check_degrees, is_geographic};
 use crate::fault::Fault;
-use crate::formats::separated::Separator;
+use crate::separated::Separator;
 
 /// Reads a gcp_list.txt whose first line says `crs`.
 pub(super) fn read(text: &str, crs: Option<String>) -> Result<ControlPoints, Fault> {

@@ -16,7 +16,7 @@ use glam::DVec3;
 
 use super::{NamedPosition, PositionList, check_degrees, is_geographic};
 use crate::fault::Fault;
-use crate::formats::fields::Fields;
+use crate::fields::Fields;
 
 /// Reads a geo.txt whose first line says `crs`.
 pub(super) fn read(text: &str, crs: Option<String>) -> Result<PositionList, Fault> {

@@ -22,21 +22,21 @@ use crate::fault::Fault;
 
 /// The lines of an .MRK.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(in crate::formats) struct MrkFile {
-    pub(in crate::formats) events: Vec<MrkEvent>,
+pub(crate) struct MrkFile {
+    pub(crate) events: Vec<MrkEvent>,
 }
 
 /// One exposure.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::formats) struct MrkEvent {
+pub(crate) struct MrkEvent {
     /// The number in the photo's name.
-    pub(in crate::formats) number: u32,
+    pub(crate) number: u32,
     /// Degrees east, degrees north, metres above the ellipsoid: the sensor's place.
-    pub(in crate::formats) position: DVec3,
+    pub(crate) position: DVec3,
     /// Standard deviations towards east, north and up, in metres, where they are there.
-    pub(in crate::formats) deviation: Option<DVec3>,
+    pub(crate) deviation: Option<DVec3>,
     /// As DJI's RtkFlag, where it is there.
-    pub(in crate::formats) quality: Option<u32>,
+    pub(crate) quality: Option<u32>,
 }
 
 /// Whether a line is one of an .MRK.
@@ -52,7 +52,7 @@ fn separator(c: char) -> bool {
 }
 
 /// Reads an .MRK.
-pub(in crate::formats) fn read(text: &str) -> Result<MrkFile, Fault> {
+pub(crate) fn read(text: &str) -> Result<MrkFile, Fault> {
     let mut file = MrkFile::default();
     for (line, number) in text.lines().zip(1..) {
         if !line.trim().is_empty() {
@@ -132,7 +132,7 @@ impl MrkFile {
 }
 
 /// The number in a photo's name that an .MRK calls it by: its last run of digits.
-pub(in crate::formats) fn number_of_photo(name: &str) -> Option<u32> {
+pub(crate) fn number_of_photo(name: &str) -> Option<u32> {
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let end = stem.trim_end_matches(|c: char| !c.is_ascii_digit());
     end.rsplit(|c: char| !c.is_ascii_digit())

@@ -22,7 +22,7 @@ use glam::DVec3;
 use super::geo_file::leave_out_without_height;
 use super::{NamedPosition, PositionList, check_degrees, crs_from_text, is_crs, is_geographic};
 use crate::fault::Fault;
-use crate::formats::separated::{Numbers, Separator, unquoted};
+use crate::separated::{Numbers, Separator, unquoted};
 
 /// Reads a table.
 pub(super) fn read(text: &str) -> Result<PositionList, Fault> {

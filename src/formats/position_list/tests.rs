@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::formats::test_data::shared_data;
+use fragscale_test_data::shared_data;
 
 fn positions(text: &str) -> PositionList {
     positions_from_text(text).unwrap()

@@ -6,9 +6,9 @@ use glam::{DMat3, DVec3};
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
-use crate::formats::fields::shown;
-use crate::formats::reconstruction::Reconstruction;
-use crate::formats::separated::Separator;
+use crate::fields::shown;
+use crate::reconstruction::Reconstruction;
+use crate::separated::Separator;
 
 use super::{FILM, Lens, add, say_refused};
 
@@ -21,7 +21,7 @@ const OPENCV: [&str; 13] = [
 
 /// Whether a line names the columns of a photo's position and RealityCapture's angles, or of its
 /// "OpenCV-compliant" pose.
-pub(in crate::formats) fn is_header(line: &str) -> bool {
+pub(crate) fn is_header(line: &str) -> bool {
     let columns = columns(line);
     let has = |names: &[&str]| {
         columns
@@ -97,7 +97,7 @@ impl Row {
 ///
 /// # Errors
 /// With the line: a missing column, a number that is not finite, a photo named twice; no photo.
-pub(in crate::formats) fn read_csv(text: &str) -> Result<Reconstruction, Fault> {
+pub(crate) fn read_csv(text: &str) -> Result<Reconstruction, Fault> {
     let mut lines = (1..)
         .zip(text.lines())
         .filter(|(_, line)| !line.trim().is_empty());
@@ -246,7 +246,7 @@ fn all<const N: usize>(numbers: [Result<f64, Fault>; N]) -> Result<[f64; N], Fau
 }
 
 /// The pose by heading, pitch and roll in degrees.
-pub(in crate::formats) fn pose(center: DVec3, [heading, pitch, roll]: [f64; 3]) -> Pose {
+pub(crate) fn pose(center: DVec3, [heading, pitch, roll]: [f64; 3]) -> Pose {
     let world_from_upright = DMat3::from_rotation_z(-heading.to_radians())
         * DMat3::from_rotation_x(pitch.to_radians())
         * DMat3::from_rotation_y(roll.to_radians());

@@ -40,7 +40,7 @@ mod sidecar;
 mod tests;
 
 use crate::camera::{Agisoft, AgisoftProjection, Brown, Camera, Distortion, Pose};
-use crate::formats::reconstruction::{PosedPhoto, Reconstruction};
+use crate::reconstruction::{PosedPhoto, Reconstruction};
 
 pub(super) use csv_file::{is_header, pose, read_csv};
 pub(super) use sidecar::{has_sidecars, read_folder};

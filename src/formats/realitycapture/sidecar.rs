@@ -9,10 +9,10 @@ use roxmltree::Node;
 
 use crate::camera::{Brown, Camera, Distortion, Pose};
 use crate::fault::Fault;
-use crate::formats::fields::Fields;
-use crate::formats::input::{FileError, open_file, read_text};
-use crate::formats::reconstruction::{Project, Reconstruction};
-use crate::formats::xml_document::{line_of, parse};
+use crate::fields::Fields;
+use crate::input::{FileError, open_file, read_text};
+use crate::reconstruction::{Project, Reconstruction};
+use crate::xml_document::{line_of, parse};
 
 use super::{FILM, Lens, add, say_refused};
 
@@ -26,7 +26,7 @@ const IMAGES: [&str; 6] = ["jpg", "jpeg", "png", "tif", "tiff", "dng"];
 const LOOKED_AT: usize = 10;
 
 /// Whether one of a folder's first sidecars is RealityCapture's.
-pub(in crate::formats) fn has_sidecars(folder: &Path) -> bool {
+pub(crate) fn has_sidecars(folder: &Path) -> bool {
     let files = files(folder);
     let sidecars = files.iter().filter(|path| has_end(path, &["xmp"]));
     sidecars.take(LOOKED_AT).any(|path| {
@@ -40,7 +40,7 @@ pub(in crate::formats) fn has_sidecars(folder: &Path) -> bool {
 ///
 /// # Errors
 /// Names the sidecar that cannot be read; where none has a pose.
-pub(in crate::formats) fn read_folder(folder: &Path) -> Result<Project, FileError> {
+pub(crate) fn read_folder(folder: &Path) -> Result<Project, FileError> {
     let files = files(folder);
     let mut found = Reconstruction {
         package: "realitycapture",

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::formats::input::FileError;
+use crate::input::FileError;
 
 /// A row that RealityCapture wrote, quoted by two importers.
 const CSV: &str = "#cameras 1\n#name,x,y,alt,heading,pitch,roll,f,px,py,k1,k2,k3,k4,t1,t2\n\

@@ -29,7 +29,7 @@ use super::compression::expanded;
 use super::message_bytes::ROS1;
 use super::parts::{Cut, Parts, read_array, read_bytes, skip_bytes};
 use crate::fault::Fault;
-use crate::formats::trajectory::Stamp;
+use crate::trajectory::Stamp;
 
 /// What every bag begins with.
 pub(super) const MAGIC: &[u8] = b"#ROSBAG V";

@@ -19,11 +19,11 @@ use std::collections::BTreeMap;
 use super::pose_source::{PoseSource, Wanted, pose_source};
 use super::recording::{CameraTopic, ImageTopic, Recording};
 use crate::camera::Camera;
+use crate::camera_file;
 use crate::fault::Fault;
-use crate::formats::camera_file;
-use crate::formats::reconstruction::{MeasuredPosition, PosedPhoto, Reconstruction};
-use crate::formats::trajectory::{NoPose, PosedFiles, Stamp, pose_photos, stamp_of};
 use crate::geodesy::Geographic;
+use crate::reconstruction::{MeasuredPosition, PosedPhoto, Reconstruction};
+use crate::trajectory::{NoPose, PosedFiles, Stamp, pose_photos, stamp_of};
 use crate::units::LengthUnit;
 
 /// The longest time between two fixes that a position is interpolated over, in nanoseconds:
@@ -38,7 +38,7 @@ impl Recording {
     ///
     /// # Errors
     /// Where images, their camera or their poses are missing, naming what.
-    pub(in crate::formats) fn reconstruction(&self) -> Result<Reconstruction, Fault> {
+    pub(crate) fn reconstruction(&self) -> Result<Reconstruction, Fault> {
         self.reconstruction_by(None)
     }
 
@@ -46,10 +46,7 @@ impl Recording {
     ///
     /// # Errors
     /// As [`Self::reconstruction`], and where that topic gives no poses of the camera.
-    pub(in crate::formats) fn reconstruction_by(
-        &self,
-        topic: Option<&str>,
-    ) -> Result<Reconstruction, Fault> {
+    pub(crate) fn reconstruction_by(&self, topic: Option<&str>) -> Result<Reconstruction, Fault> {
         let missing = match (self.images.is_empty(), self.cameras.is_empty()) {
             (true, true) => Some(
                 "neither images (sensor_msgs/Image, CompressedImage) nor a camera (sensor_msgs/CameraInfo)",
@@ -146,7 +143,7 @@ impl Recording {
     ///
     /// # Errors
     /// Where the recording has several cameras or no poses, or no file gets one.
-    pub(in crate::formats) fn pose_files(
+    pub(crate) fn pose_files(
         &self,
         files: &[String],
         topic: Option<&str>,

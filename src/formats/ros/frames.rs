@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::formats::trajectory::{NoPose, Stamp, Track};
+use crate::trajectory::{NoPose, Stamp, Track};
 
 /// All frames by their names.
 #[derive(Debug, Default)]

@@ -26,7 +26,7 @@ use super::RawMessage;
 use super::compression::{expanded, expanded_message};
 use super::parts::{Cut, Parts, read_array, read_bytes, skip_bytes};
 use crate::fault::Fault;
-use crate::formats::trajectory::Stamp;
+use crate::trajectory::Stamp;
 
 /// What every file begins with.
 pub(super) const MAGIC: [u8; 8] = [0x89, b'M', b'C', b'A', b'P', b'0', b'\r', b'\n'];

@@ -17,7 +17,7 @@
 use glam::DVec3;
 
 use crate::camera::Pose;
-use crate::formats::trajectory::Stamp;
+use crate::trajectory::Stamp;
 
 /// What is wrong with a message, to stand behind "it".
 pub(super) type Malformed = &'static str;

@@ -20,7 +20,7 @@
 use super::frames::{Link, Way};
 use super::recording::{PoseTopic, Recording};
 use crate::fault::Fault;
-use crate::formats::trajectory::{Stamp, Track};
+use crate::trajectory::{Stamp, Track};
 
 /// A camera's poses over time.
 #[derive(Debug, Clone)]

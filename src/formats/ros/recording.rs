@@ -7,14 +7,14 @@ use super::frames::Frames;
 use super::message_bytes::{Header, Malformed, Serialization};
 use super::messages::{CameraInfo, Message, decode, plain_type};
 use crate::camera::Pose;
-use crate::formats::trajectory::Stamp;
 use crate::geodesy::Geographic;
+use crate::trajectory::Stamp;
 
 /// A recording's topics, and the messages that a flight is made of.
 #[derive(Debug, Default)]
-pub(in crate::formats) struct Recording {
+pub(crate) struct Recording {
     /// In the order in which they come up.
-    pub(in crate::formats) topics: Vec<Topic>,
+    pub(crate) topics: Vec<Topic>,
     by_name: HashMap<String, usize>,
     /// Of CameraInfo, by the topic's index, like those below.
     pub(super) cameras: BTreeMap<usize, CameraTopic>,
@@ -31,11 +31,11 @@ pub(in crate::formats) struct Recording {
 
 /// A topic of a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(in crate::formats) struct Topic {
-    pub(in crate::formats) name: String,
+pub(crate) struct Topic {
+    pub(crate) name: String,
     /// As ROS 1 writes it: `package/Name`.
-    pub(in crate::formats) type_name: String,
-    pub(in crate::formats) messages: u64,
+    pub(crate) type_name: String,
+    pub(crate) messages: u64,
     encoding: String,
     /// How many messages could not be read, and why the first could not.
     malformed: Option<(u64, Malformed)>,
@@ -199,13 +199,13 @@ impl Recording {
     }
 
     /// Whether a topic gives poses.
-    pub(in crate::formats) fn gives_poses(&self, topic: &Topic) -> bool {
+    pub(crate) fn gives_poses(&self, topic: &Topic) -> bool {
         let index = self.by_name.get(&topic.name);
         index.is_some_and(|index| self.poses.contains_key(index) || self.tf.contains(index))
     }
 
     /// How many messages there are.
-    pub(in crate::formats) fn messages(&self) -> u64 {
+    pub(crate) fn messages(&self) -> u64 {
         self.topics.iter().map(|topic| topic.messages).sum()
     }
 
@@ -222,7 +222,7 @@ impl Recording {
     }
 
     /// What is to be said of the recording whatever is made of it.
-    pub(in crate::formats) fn warnings(&self) -> Vec<String> {
+    pub(crate) fn warnings(&self) -> Vec<String> {
         let mut warnings = self.file_warnings.clone();
         warnings.extend(self.not_read());
         for topic in &self.topics {
@@ -243,7 +243,7 @@ impl Recording {
     }
 
     /// Every pose that the recording holds, by topic or tf frame and stamp, for people to look at.
-    pub(in crate::formats) fn named_poses(&self) -> Vec<(String, Pose)> {
+    pub(crate) fn named_poses(&self) -> Vec<(String, Pose)> {
         let of_topics = self.poses.iter().flat_map(|(&index, topic)| {
             let name = self.name_of(index).trim_start_matches('/');
             let samples = topic.samples.iter();

@@ -21,7 +21,7 @@ use rusqlite::{Connection, OpenFlags, Row};
 use super::RawMessage;
 use super::compression::expanded_message;
 use crate::fault::Fault;
-use crate::formats::trajectory::Stamp;
+use crate::trajectory::Stamp;
 
 /// What every SQLite file begins with.
 pub(super) const MAGIC: &[u8] = b"SQLite format 3\0";

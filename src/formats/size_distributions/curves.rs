@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use super::names::{SizeText, SizeUnit};
 use crate::fault::Fault;
-use crate::formats::fields::shown;
-use crate::formats::table::NumberRepairs;
+use crate::fields::shown;
 use crate::fragmentation::{DistributionSet, LabelledDistribution, Labels, SizeDistribution};
+use crate::table::NumberRepairs;
 use crate::units::LengthUnit;
 
 /// Percentage points that rounding explains: percents are often written to one decimal.

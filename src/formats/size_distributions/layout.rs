@@ -3,7 +3,7 @@
 use super::DistributionColumns;
 use super::names::{PercentileColumn, Role, SizeText, SizeUnit, role};
 use crate::fault::Fault;
-use crate::formats::table::{Table, key};
+use crate::table::{Table, key};
 
 /// A layout, with the columns that matter.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! What the name of a column says that it holds.
 
-use crate::formats::table::split_number;
 use crate::fragmentation::SieveSeries;
+use crate::table::split_number;
 use crate::units::LengthUnit;
 
 /// A unit of sizes: `factor` of `unit` are one of it.

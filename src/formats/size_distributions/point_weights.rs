@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use crate::FileError;
 use crate::fault::Fault;
-use crate::formats::FileError;
-use crate::formats::table::{NumberRepairs, Table};
+use crate::table::{NumberRepairs, Table};
 
 /// Weights of points by their size.
 #[derive(Debug, Clone, PartialEq)]

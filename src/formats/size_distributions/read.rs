@@ -7,9 +7,9 @@ use super::curves::{RawCurve, RawPoint, Repairs, SizeReading, finish};
 use super::layout::{LabelColumns, Layout};
 use super::names::{SizeText, SizeUnit, sieve_mm};
 use crate::fault::Fault;
-use crate::formats::fields::shown;
-use crate::formats::table::{Row, Table};
+use crate::fields::shown;
 use crate::fragmentation::{DistributionSet, Labels};
+use crate::table::{Row, Table};
 
 /// Reads the curves of a table.
 pub(super) fn read(

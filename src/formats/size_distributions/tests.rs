@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::formats::test_data::shared_data;
 use crate::fragmentation::Labels;
+use fragscale_test_data::shared_data;
 
 type Points = Vec<[f64; 2]>;
 

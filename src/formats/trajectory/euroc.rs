@@ -24,8 +24,8 @@ use super::TrajectoryPose;
 use super::stamp::Stamp;
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::formats::fields::shown;
-use crate::formats::text_lines::TextLines;
+use crate::fields::shown;
+use crate::text_lines::TextLines;
 
 /// Whether a line is the header of a file of positions.
 pub(super) fn is_header(line: &str) -> bool {

@@ -19,8 +19,8 @@ use super::TrajectoryPose;
 use super::stamp::Stamp;
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::formats::fields::Fields;
-use crate::formats::text_lines::TextLines;
+use crate::fields::Fields;
+use crate::text_lines::TextLines;
 
 const REMEDY: &str = "write the 12 numbers of a 3x4 pose by rows on each line";
 

@@ -25,9 +25,9 @@ mod tum;
 use std::cmp::Ordering;
 use std::io::BufRead;
 
-pub(in crate::formats) use photos::{PosedFiles, pose_photos, stamp_of};
-pub(in crate::formats) use stamp::Stamp;
-pub(in crate::formats) use track::{NoPose, Track};
+pub(crate) use photos::{PosedFiles, pose_photos, stamp_of};
+pub(crate) use stamp::Stamp;
+pub(crate) use track::{NoPose, Track};
 
 use super::text_lines::TextLines;
 use crate::camera::Pose;
@@ -46,12 +46,12 @@ pub enum TrajectoryFormat {
 
 impl TrajectoryFormat {
     /// Whether the poses are those of a body that cameras are mounted on, not of a camera.
-    pub(in crate::formats) fn is_of_body(self) -> bool {
+    pub(crate) fn is_of_body(self) -> bool {
         self == Self::Euroc
     }
 
     /// What its poses leave open, for people.
-    pub(in crate::formats) fn caveat(self) -> &'static str {
+    pub(crate) fn caveat(self) -> &'static str {
         match self {
             Self::Tum => {
                 "a TUM trajectory does not say which axes move: they are taken for a camera's (x right, y down, z forward)"
@@ -68,25 +68,25 @@ impl TrajectoryFormat {
 
 /// A pose of a trajectory.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::formats) struct TrajectoryPose {
+pub(crate) struct TrajectoryPose {
     /// Its stamp as the file writes it (an exponent written out), or for KITTI the line's number,
     /// from 0, with six digits.
-    pub(in crate::formats) name: String,
+    pub(crate) name: String,
     /// The time, or for KITTI the line's number.
     key: Stamp,
     /// In the trajectory's frame.
-    pub(in crate::formats) pose: Pose,
+    pub(crate) pose: Pose,
 }
 
 /// A trajectory as its file has it.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::formats) struct Trajectory {
+pub(crate) struct Trajectory {
     /// What wrote it.
-    pub(in crate::formats) format: TrajectoryFormat,
+    pub(crate) format: TrajectoryFormat,
     /// In the file's order.
-    pub(in crate::formats) poses: Vec<TrajectoryPose>,
+    pub(crate) poses: Vec<TrajectoryPose>,
     /// What is wrong with the file's order, one sentence each.
-    pub(in crate::formats) warnings: Vec<String>,
+    pub(crate) warnings: Vec<String>,
 }
 
 impl Trajectory {
@@ -94,7 +94,7 @@ impl Trajectory {
     ///
     /// # Errors
     /// Where no file gets one.
-    pub(in crate::formats) fn pose_files(&self, files: &[String]) -> Result<PosedFiles, Fault> {
+    pub(crate) fn pose_files(&self, files: &[String]) -> Result<PosedFiles, Fault> {
         match self.format {
             TrajectoryFormat::Kitti => photos::pose_numbered(files, &self.poses),
             TrajectoryFormat::Tum | TrajectoryFormat::Euroc => {

@@ -10,11 +10,11 @@ use crate::fault::Fault;
 
 /// Image files with their poses, and what became of the others.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(in crate::formats) struct PosedFiles {
+pub(crate) struct PosedFiles {
     /// File name and pose, in the files' order.
-    pub(in crate::formats) photos: Vec<(String, Pose)>,
+    pub(crate) photos: Vec<(String, Pose)>,
     /// Files without a pose, counted.
-    pub(in crate::formats) warnings: Vec<String>,
+    pub(crate) warnings: Vec<String>,
 }
 
 /// What a file is called without its folder and extension.
@@ -24,7 +24,7 @@ fn stem(file: &str) -> &str {
 }
 
 /// The time that a file is named by: digits, perhaps with a point.
-pub(in crate::formats) fn stamp_of(file: &str) -> Option<Stamp> {
+pub(crate) fn stamp_of(file: &str) -> Option<Stamp> {
     let stem = stem(file);
     let is_plain = stem.bytes().all(|b| b.is_ascii_digit() || b == b'.');
     Stamp::parse(stem).filter(|_| is_plain)
@@ -34,7 +34,7 @@ pub(in crate::formats) fn stamp_of(file: &str) -> Option<Stamp> {
 ///
 /// # Errors
 /// Where no file gets one.
-pub(in crate::formats) fn pose_photos(
+pub(crate) fn pose_photos(
     files: &[String],
     span: Option<(Stamp, Stamp)>,
     pose_at: impl Fn(Stamp) -> Result<Pose, NoPose>,

@@ -12,12 +12,12 @@ const MOST_DIGITS: usize = 60;
 
 /// A point in time, in nanoseconds from the recording's own zero (mostly 1970).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(in crate::formats) struct Stamp(pub(in crate::formats) i64);
+pub(crate) struct Stamp(pub(crate) i64);
 
 impl Stamp {
     /// Reads a decimal number: seconds below 1e14, else nanoseconds; rounded to the nanosecond.
     /// `None` where it is no such number, or negative, or beyond the year 2262.
-    pub(in crate::formats) fn parse(text: &str) -> Option<Self> {
+    pub(crate) fn parse(text: &str) -> Option<Self> {
         let value: f64 = text.parse().ok()?;
         if !value.is_finite() {
             return None;
@@ -57,7 +57,7 @@ impl Stamp {
     }
 
     /// How many nanoseconds the two are apart.
-    pub(in crate::formats) fn apart(self, other: Self) -> u64 {
+    pub(crate) fn apart(self, other: Self) -> u64 {
         self.0.abs_diff(other.0)
     }
 }

@@ -4,8 +4,8 @@ use glam::{DMat3, DVec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::formats::test_data::shared_data;
-use crate::formats::{Kind, detect, open_file};
+use crate::{Kind, detect, open_file};
+use fragscale_test_data::shared_data;
 
 const TUM: &str = "# ground truth trajectory\n# timestamp tx ty tz qx qy qz qw\n\
     1305031098.6659 1.3563 0.6305 1.6380 0.6132 0.5962 -0.3311 -0.3986\n\

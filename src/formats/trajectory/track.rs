@@ -13,20 +13,20 @@ use super::stamp::Stamp;
 use crate::camera::Pose;
 
 /// The longest time between two samples that a pose is interpolated over, in nanoseconds.
-pub(in crate::formats) const LONGEST_GAP: u64 = 500_000_000;
+pub(crate) const LONGEST_GAP: u64 = 500_000_000;
 
 /// How far rounding may move a stamp, in nanoseconds: TUM's files have four decimals.
-pub(in crate::formats) const ROUNDING: u64 = 100_000;
+pub(crate) const ROUNDING: u64 = 100_000;
 
 /// Samples of a moving frame, in order of time.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(in crate::formats) struct Track {
+pub(crate) struct Track {
     samples: Vec<(Stamp, Pose)>,
 }
 
 /// Why there is no pose at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::formats) enum NoPose {
+pub(crate) enum NoPose {
     /// There is no sample at all.
     Empty,
     /// The first sample is later.
@@ -55,20 +55,20 @@ impl fmt::Display for NoPose {
 
 impl Track {
     /// Sorts the samples; of those with one stamp the first stays.
-    pub(in crate::formats) fn new(mut samples: Vec<(Stamp, Pose)>) -> Self {
+    pub(crate) fn new(mut samples: Vec<(Stamp, Pose)>) -> Self {
         samples.sort_by_key(|(stamp, _)| *stamp);
         samples.dedup_by_key(|(stamp, _)| *stamp);
         Self { samples }
     }
 
     /// The times of the first and of the last sample.
-    pub(in crate::formats) fn span(&self) -> Option<(Stamp, Stamp)> {
+    pub(crate) fn span(&self) -> Option<(Stamp, Stamp)> {
         Some((self.samples.first()?.0, self.samples.last()?.0))
     }
 
     /// How many samples can count between two times: from half a second, over which they are
     /// interpolated, before the first to as long after the last. All of them without times.
-    pub(in crate::formats) fn samples_around(&self, span: Option<(Stamp, Stamp)>) -> usize {
+    pub(crate) fn samples_around(&self, span: Option<(Stamp, Stamp)>) -> usize {
         let Some((first, last)) = span else {
             return self.samples.len();
         };
@@ -83,7 +83,7 @@ impl Track {
     ///
     /// # Errors
     /// Outside the samples, and in a gap that is too long.
-    pub(in crate::formats) fn at(&self, stamp: Stamp) -> Result<Pose, NoPose> {
+    pub(crate) fn at(&self, stamp: Stamp) -> Result<Pose, NoPose> {
         let next = self.samples.partition_point(|(other, _)| *other < stamp);
         let before = next.checked_sub(1).and_then(|i| self.samples.get(i));
         let after = self.samples.get(next);

@@ -21,8 +21,8 @@ use super::TrajectoryPose;
 use super::stamp::Stamp;
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::formats::fields::{Fields, shown};
-use crate::formats::text_lines::TextLines;
+use crate::fields::{Fields, shown};
+use crate::text_lines::TextLines;
 
 const REMEDY: &str = "write each line as: timestamp tx ty tz qx qy qz qw";
 

@@ -10,7 +10,7 @@
 
 use super::Anova;
 use crate::fault::Fault;
-use crate::fragmentation::{DistributionSet, LabelledDistribution, SizeDistribution};
+use crate::{DistributionSet, LabelledDistribution, SizeDistribution};
 
 /// Whether a method gives the same distribution in every trial.
 #[derive(Debug, Clone, PartialEq)]
@@ -152,7 +152,7 @@ fn unknown_at<'a>(
 #[allow(clippy::expect_used, reason = "in a test a panic is the report")]
 mod tests {
     use super::*;
-    use crate::fragmentation::Labels;
+    use crate::Labels;
     use crate::units::LengthUnit;
 
     fn curve(trial: &str, photo: &str, points: &[[f64; 2]]) -> LabelledDistribution {

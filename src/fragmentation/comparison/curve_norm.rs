@@ -6,8 +6,8 @@
 //! between the functions' topsizes: there the functions have kinks, which this rule does not mind at
 //! the end of an interval.
 
+use crate::Curve;
 use crate::fault::Fault;
-use crate::fragmentation::Curve;
 
 /// The sizes that functions are compared over, evenly in the logarithm of the size.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -140,7 +140,7 @@ fn integral(function: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
 #[allow(clippy::expect_used, reason = "in a test a panic is the report")]
 mod tests {
     use super::*;
-    use crate::fragmentation::{GatesGaudinSchuhmann, RosinRammler, Swebrec};
+    use crate::{GatesGaudinSchuhmann, RosinRammler, Swebrec};
 
     fn near(found: f64, expected: f64, relative: f64) {
         assert!(

@@ -1,7 +1,7 @@
 //! The mean of a method's trials, its spread, and the function fitted to it.
 
 use crate::fault::Fault;
-use crate::fragmentation::{Fit, FitOptions, Model, SizeDistribution, fit};
+use crate::{Fit, FitOptions, Model, SizeDistribution, fit};
 
 /// Sizes nearer to each other than this share are one: units that were converted differ by roundings.
 const SAME_SIZE: f64 = 1e-9;

@@ -278,7 +278,7 @@ fn rounded(size: f64) -> String {
 #[allow(clippy::expect_used, reason = "in a test a panic is the report")]
 mod tests {
     use super::*;
-    use crate::fragmentation::{LabelledDistribution, Labels, Swebrec};
+    use crate::{LabelledDistribution, Labels, Swebrec};
 
     /// Points of a Swebrec at sieves from 2 to 90 % of its topsize.
     fn curve(method: &str, trial: &str, [x50, xmax, b]: [f64; 3]) -> LabelledDistribution {

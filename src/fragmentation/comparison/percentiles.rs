@@ -1,7 +1,7 @@
 //! Shifts of the sizes that given percents pass, and whether they stay in the envelope.
 
+use crate::Curve;
 use crate::fault::Fault;
-use crate::fragmentation::Curve;
 
 /// What an envelope of sizes hides.
 pub const SCALE_WARNING: &str = "a wrong image scale moves every Pxx by the same percentage and hides inside of a 30 % envelope: \
@@ -104,7 +104,7 @@ pub(super) fn envelope(size: f64, percent: f64) -> [f64; 2] {
 #[allow(clippy::expect_used, reason = "in a test a panic is the report")]
 mod tests {
     use super::*;
-    use crate::fragmentation::Swebrec;
+    use crate::Swebrec;
 
     fn swebrec(x50: f64, xmax: f64, b: f64) -> Curve {
         Curve::Swebrec(Swebrec::new(x50, xmax, b).expect("a Swebrec"))

@@ -1,7 +1,7 @@
 //! Percent error of the passing at each size.
 
 use super::method_curve::{MeanPoint, mean_at};
-use crate::fragmentation::SizeDistribution;
+use crate::SizeDistribution;
 
 /// What a percent error is, for headers and notes of outputs.
 pub const PERCENT_ERROR: &str = "percent error = 100 (P - P reference) / P reference of the percent passing; above 0 \

@@ -6,7 +6,7 @@ use super::points::Points;
 use super::rosin_rammler::RosinRammlerCoordinates;
 use super::search::Optimum;
 use super::swebrec::SwebrecCoordinates;
-use crate::fragmentation::{Curve, Model};
+use crate::{Curve, Model};
 
 /// The most parameters that a function has.
 pub(super) const MOST: usize = 5;

@@ -9,7 +9,7 @@ use super::coordinates::{
 };
 use super::points::Points;
 use super::search::Optimum;
-use crate::fragmentation::{Curve, GatesGaudinSchuhmann};
+use crate::{Curve, GatesGaudinSchuhmann};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct GatesGaudinSchuhmannCoordinates {

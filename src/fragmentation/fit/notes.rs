@@ -4,7 +4,7 @@ use super::coordinates::{Coordinates, Family};
 use super::points::Points;
 use super::search::Optimum;
 use super::{FitOptions, FittedParameter};
-use crate::fragmentation::Curve;
+use crate::Curve;
 
 /// Other optima with a sum of at most this many times the least are told.
 const NEARLY: f64 = 1.01;

@@ -2,7 +2,7 @@
 
 use super::FitOptions;
 use crate::fault::Fault;
-use crate::fragmentation::{Model, SizeDistribution};
+use crate::{Model, SizeDistribution};
 
 /// Points with a weight above 0; at least as many as there are parameters, with a percent between 0
 /// and 100 among them.

@@ -7,7 +7,7 @@ use super::coordinates::{
 };
 use super::points::Points;
 use super::search::Optimum;
-use crate::fragmentation::{Curve, RosinRammler};
+use crate::{Curve, RosinRammler};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RosinRammlerCoordinates {

@@ -19,8 +19,8 @@ use super::coordinates::{
 };
 use super::points::Points;
 use super::search::Optimum;
-use crate::fragmentation::swebrec5::ln_exp_m1;
-use crate::fragmentation::{Curve, Swebrec, Swebrec5};
+use crate::swebrec5::ln_exp_m1;
+use crate::{Curve, Swebrec, Swebrec5};
 
 /// Bounds of ln(a / (1 - a)): a is 0 at the lower and 1 at the upper one, between them not nearer to
 /// either than 2e-16, the last step of 1 - a in an f64.

@@ -5,7 +5,7 @@
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::*;
-use crate::fragmentation::{GatesGaudinSchuhmann, RosinRammler, Swebrec, Swebrec5};
+use crate::{GatesGaudinSchuhmann, RosinRammler, Swebrec, Swebrec5};
 
 /// The sizes of a usual set of sieves.
 const SIEVES: [f64; 12] = [

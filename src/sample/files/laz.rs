@@ -118,9 +118,9 @@ fn utm_wkt(epsg: u16) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::read_back::written;
     use crate::formats::read_cloud;
     use crate::jobs::Progress;
-    use crate::sample::files::read_back::written;
 
     fn cloud() -> Cloud {
         let points = (0..70_000).map(|i| {

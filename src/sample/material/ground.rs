@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Appearance, Spot, between, bumped, mix, octaves, visible};
-use crate::sample::noise::{cells, fbm, hash, ridged, smoothstep, unit};
+use crate::noise::{cells, fbm, hash, ridged, smoothstep, unit};
 
 /// A kind of floor. Lengths that grow with the stones are given over [`Spot::size`].
 #[derive(Clone, Copy, Debug, PartialEq)]

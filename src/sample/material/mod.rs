@@ -5,7 +5,7 @@ mod rock;
 
 use glam::{DQuat, DVec3};
 
-use crate::sample::noise::{fbm, unit};
+use crate::noise::{fbm, unit};
 use ground::Ground;
 use rock::Rock;
 
@@ -52,7 +52,7 @@ pub(super) struct Appearance {
 }
 
 impl Appearance {
-    /// The same in the world's frame, for [`Light::shade`](crate::sample::light::Light::shade).
+    /// The same in the world's frame, for [`Light::shade`](crate::light::Light::shade).
     #[must_use]
     pub(super) fn turned(self, world_from_body: DQuat) -> Self {
         Self {
@@ -158,7 +158,7 @@ fn octaves(wave: f64, pixel: f64) -> f64 {
 /// How much of a texture of the given length is left when a pixel covers `pixel`: 1 when it is
 /// three pixels wide, 0 at one half.
 fn visible(length: f64, pixel: f64) -> f64 {
-    crate::sample::noise::smoothstep(0.5, 3.0, length / pixel.max(1e-9))
+    crate::noise::smoothstep(0.5, 3.0, length / pixel.max(1e-9))
 }
 
 /// The normal of a relief whose slope (height over length) has this gradient.
@@ -186,7 +186,7 @@ fn between(low: f64, high: f64, seed: u64, channel: u64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sample::noise::{direction, unit};
+    use crate::noise::{direction, unit};
 
     const ALL: [Material; 7] = [
         Material::gravel(),

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Appearance, Spot, between, bumped, mix, octaves, visible};
-use crate::sample::noise::{cells, direction, fbm, gradient_noise, hash, jitter, smoothstep, unit};
+use crate::noise::{cells, direction, fbm, gradient_noise, hash, jitter, smoothstep, unit};
 
 /// A kind of rock.
 #[derive(Clone, Copy, Debug, PartialEq)]

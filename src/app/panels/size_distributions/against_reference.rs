@@ -2,9 +2,9 @@
 
 use super::results::{sentence, warning};
 use super::table::{Table, fixed, number, signed};
-use crate::app::command::Command;
-use crate::app::size_distributions::Computed;
+use crate::command::Command;
 use crate::fragmentation::{Comparison, PERCENT_ERROR, SCALE_WARNING};
+use crate::size_distributions::Computed;
 
 /// Draws the tables, or why there are none.
 pub(super) fn show(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

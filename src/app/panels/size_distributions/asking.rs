@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use crate::app::command::Command;
-use crate::app::panels::ask::{path_field, typed};
-use crate::app::size_distributions::DistributionCommand;
-use crate::app::state::State;
-use crate::app::work::DialogFor;
+use crate::command::Command;
+use crate::panels::ask::{path_field, typed};
+use crate::size_distributions::DistributionCommand;
+use crate::state::State;
+use crate::work::DialogFor;
 
 /// Which file to add.
-pub(in crate::app::panels) fn add_distributions(
+pub(in crate::panels) fn add_distributions(
     state: &State,
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
@@ -25,11 +25,7 @@ pub(in crate::app::panels) fn add_distributions(
 }
 
 /// Which file has the times of steps.
-pub(in crate::app::panels) fn add_effort(
-    state: &State,
-    ui: &mut egui::Ui,
-    commands: &mut Vec<Command>,
-) {
+pub(in crate::panels) fn add_effort(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.label(
         "A table of the time that each step took: step, time and perhaps method and trial; or a column \
          of times for each trial. Minutes, where it says nothing else.",
@@ -41,7 +37,7 @@ pub(in crate::app::panels) fn add_effort(
 }
 
 /// Where the figure goes.
-pub(in crate::app::panels) fn save_figure(
+pub(in crate::panels) fn save_figure(
     state: &State,
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
@@ -59,7 +55,7 @@ pub(in crate::app::panels) fn save_figure(
 }
 
 /// Where the report goes.
-pub(in crate::app::panels) fn save_report(
+pub(in crate::panels) fn save_report(
     state: &State,
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
@@ -92,7 +88,7 @@ fn path(
 
 /// A name beside the first file that was added. The bundled flight's folder stays as it came.
 fn beside(state: &State, name: &str) -> String {
-    let bundled = crate::app::state::sample_flight();
+    let bundled = crate::state::sample_flight();
     let mut paths = state
         .distributions
         .sources()

@@ -3,12 +3,12 @@
 use egui::collapsing_header::CollapsingState;
 
 use super::plot::color;
-use crate::app::command::Command;
-use crate::app::size_distributions::drawing::MethodDrawing;
-use crate::app::size_distributions::{Computed, DistributionCommand};
-use crate::app::state::State;
+use crate::command::Command;
 use crate::fragmentation::LabelledDistribution;
 use crate::picture::significant_digits;
+use crate::size_distributions::drawing::MethodDrawing;
+use crate::size_distributions::{Computed, DistributionCommand};
+use crate::state::State;
 
 /// A trial of more photos is closed at first.
 const FEW: usize = 4;

@@ -2,10 +2,10 @@
 
 use super::results::{sentence, warning};
 use super::table::{Table, number};
-use crate::app::command::{Asking, Command};
-use crate::app::size_distributions::{DistributionCommand, measured};
-use crate::app::state::State;
+use crate::command::{Asking, Command};
 use crate::fragmentation::{Effort, TimeSum};
+use crate::size_distributions::{DistributionCommand, measured};
+use crate::state::State;
 
 /// Draws the tables.
 pub(super) fn effort(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

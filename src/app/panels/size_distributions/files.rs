@@ -1,10 +1,10 @@
 //! What was added to the page of size distributions.
 
-use crate::app::actions;
-use crate::app::command::Command;
-use crate::app::panels::tool_bar::action_button;
-use crate::app::size_distributions::DistributionCommand;
-use crate::app::state::State;
+use crate::actions;
+use crate::command::Command;
+use crate::panels::tool_bar::action_button;
+use crate::size_distributions::DistributionCommand;
+use crate::state::State;
 
 /// Draws the list of files and tables, with what was noticed while reading them.
 pub(super) fn files(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

@@ -2,10 +2,10 @@
 
 use super::results::{sentence, warning};
 use super::table::{Table, fixed, number};
-use crate::app::command::Command;
-use crate::app::size_distributions::Computed;
-use crate::app::size_distributions::computing::{FittedCurve, PERCENTILES};
+use crate::command::Command;
 use crate::fragmentation::{Labels, Percentile};
+use crate::size_distributions::Computed;
+use crate::size_distributions::computing::{FittedCurve, PERCENTILES};
 
 /// Draws the tables.
 pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

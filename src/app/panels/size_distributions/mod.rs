@@ -28,8 +28,8 @@ mod welcome;
 pub(super) use asking::{add_distributions, add_effort, save_figure, save_report};
 pub(super) use paste::paste;
 
-use crate::app::command::Command;
-use crate::app::state::State;
+use crate::command::Command;
+use crate::state::State;
 
 /// Draws the page.
 pub fn size_distributions(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

@@ -1,15 +1,15 @@
 //! The small window that a table is pasted into.
 
-use crate::app::command::Command;
-use crate::app::panels::ask::takes_the_keys_at_first;
-use crate::app::panels::field::combo_box;
-use crate::app::size_distributions::{DistributionCommand, PasteForm};
-use crate::app::state::State;
-use crate::app::work::Task;
+use crate::command::Command;
+use crate::panels::ask::takes_the_keys_at_first;
+use crate::panels::field::combo_box;
+use crate::size_distributions::{DistributionCommand, PasteForm};
+use crate::state::State;
 use crate::units::LengthUnit;
+use crate::work::Task;
 
 /// Draws the window's contents.
-pub(in crate::app::panels) fn paste(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+pub(in crate::panels) fn paste(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let before = &state.distributions.paste;
     let mut form = before.clone();
     ui.label(

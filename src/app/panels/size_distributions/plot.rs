@@ -9,13 +9,13 @@ use egui_plot::{
 };
 
 use super::log_axis;
-use crate::app::command::Command;
-use crate::app::size_distributions::drawing::{Area, Drawing, MethodDrawing};
-use crate::app::size_distributions::{Computed, DistributionCommand, PlotOf};
-use crate::app::state::State;
-use crate::app::work::Task;
+use crate::command::Command;
 use crate::exports::{Dash, Look, Marker};
 use crate::fragmentation::Labels;
+use crate::size_distributions::drawing::{Area, Drawing, MethodDrawing};
+use crate::size_distributions::{Computed, DistributionCommand, PlotOf};
+use crate::state::State;
+use crate::work::Task;
 
 /// Draws what is above the plot, and the plot.
 pub(super) fn plot(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

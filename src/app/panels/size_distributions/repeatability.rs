@@ -2,9 +2,9 @@
 
 use super::results::{sentence, warning};
 use super::table::{Table, number};
-use crate::app::command::Command;
-use crate::app::size_distributions::Computed;
+use crate::command::Command;
 use crate::fragmentation::{Anova, Repeatability};
+use crate::size_distributions::Computed;
 
 /// Draws the tables of each method.
 pub(super) fn show(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

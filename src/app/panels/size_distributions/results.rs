@@ -1,9 +1,9 @@
 //! The results beside the plot: their tabs, and the one that is shown.
 
 use super::{against_reference, effort, fits, repeatability};
-use crate::app::command::Command;
-use crate::app::size_distributions::{DistributionCommand, ResultTab};
-use crate::app::state::State;
+use crate::command::Command;
+use crate::size_distributions::{DistributionCommand, ResultTab};
+use crate::state::State;
 
 /// Draws the tabs and the results.
 pub(super) fn results(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

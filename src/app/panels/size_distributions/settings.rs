@@ -2,11 +2,11 @@
 
 use egui::{Grid, Ui};
 
-use crate::app::command::Command;
-use crate::app::panels::field::{combo_box, number_field};
-use crate::app::size_distributions::{DistributionCommand, Settings};
-use crate::app::state::State;
+use crate::command::Command;
 use crate::fragmentation::{Model, SieveSeries, Weighting};
+use crate::panels::field::{combo_box, number_field};
+use crate::size_distributions::{DistributionCommand, Settings};
+use crate::state::State;
 use crate::units::LengthUnit;
 
 /// The units that sizes are wanted in.

@@ -3,7 +3,7 @@
 
 use egui_extras::{Column, TableBuilder};
 
-use crate::app::command::Command;
+use crate::command::Command;
 use crate::picture::significant_digits;
 
 /// The height of a row.

@@ -1,8 +1,8 @@
 //! What can be brought to the page of size distributions, before anything was.
 
-use crate::app::actions;
-use crate::app::command::Command;
-use crate::app::state::State;
+use crate::actions;
+use crate::command::Command;
+use crate::state::State;
 
 /// Draws the page without data.
 pub(super) fn welcome(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -32,10 +32,7 @@ pub(super) fn welcome(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
             ui.weak(
                 "cumulative percent passing by size, of one or many methods, trials and photos",
             );
-            if state
-                .work
-                .is_running(crate::app::work::Task::ReadDistributions)
-            {
+            if state.work.is_running(crate::work::Task::ReadDistributions) {
                 ui.add_space(14.0);
                 ui.spinner();
             }

@@ -145,7 +145,7 @@ fn number(number: Option<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exports::size_distributions::comparison::test_comparison::comparison;
+    use crate::size_distributions::comparison::test_comparison::comparison;
 
     #[test]
     fn four_tables() {

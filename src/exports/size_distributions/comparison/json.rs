@@ -204,7 +204,7 @@ fn method(method: &MethodComparison) -> Method<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exports::size_distributions::comparison::test_comparison::comparison;
+    use crate::size_distributions::comparison::test_comparison::comparison;
 
     #[test]
     fn values_under_their_names() {

@@ -56,7 +56,7 @@ pub(super) mod test_comparison {
         found
     }
 
-    pub(in crate::exports::size_distributions) fn comparison() -> Comparison {
+    pub(in crate::size_distributions) fn comparison() -> Comparison {
         let residual =
             |size, reference, passing: Option<f64>, percent_error: Option<f64>| PercentError {
                 size,

@@ -2,12 +2,10 @@
 
 use std::fmt::Write as _;
 
-use crate::exports::size_distributions::text_table::{
-    aligned, or_dash, signed, significant, trimmed,
-};
 use crate::fragmentation::{
     Comparison, MethodComparison, MethodCurve, PERCENT_ERROR, SCALE_WARNING,
 };
+use crate::size_distributions::text_table::{aligned, or_dash, signed, significant, trimmed};
 
 /// The curves, then the percent errors, the norms and the percentiles of every method.
 pub fn comparison_text(comparison: &Comparison) -> String {
@@ -189,7 +187,7 @@ fn yes(is: bool) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exports::size_distributions::comparison::test_comparison::comparison;
+    use crate::size_distributions::comparison::test_comparison::comparison;
 
     #[test]
     fn everything_is_said() {

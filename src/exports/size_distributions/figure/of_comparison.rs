@@ -2,8 +2,8 @@
 
 use super::panels;
 use super::{Band, FigureContents, Look, Series, SizeAxis};
-use crate::exports::size_distributions::method_name;
 use crate::fragmentation::{Comparison, MeanPoint, MethodCurve};
+use crate::size_distributions::method_name;
 
 /// Measured means with the fitted functions, their spread over the trials, the envelope about the
 /// reference; below them the percent errors with their limits.

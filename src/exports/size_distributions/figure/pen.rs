@@ -12,8 +12,8 @@ use plotters::style::{
 };
 
 use super::{Dash, Marker};
-use crate::exports::markup::printable;
 use crate::fault::Fault;
+use crate::markup::printable;
 
 /// Plotters counts whole units only: with so many of them to a unit of the figure, a curve has no
 /// steps, and a picture that is reduced by some of them has smooth edges.

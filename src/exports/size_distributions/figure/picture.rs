@@ -11,9 +11,9 @@ use super::FigureContents;
 use super::draw::draw;
 use super::layout::{Layout, TEXT, WIDTH};
 use super::pen::{FINE, Pen, of_plotters};
-use crate::exports::markup::escaped;
 use crate::fault::Fault;
 use crate::files::{SVG_MARK, marked_png};
+use crate::markup::escaped;
 use crate::picture::reduced;
 
 /// What a figure is written as.

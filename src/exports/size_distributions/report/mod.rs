@@ -15,12 +15,12 @@ use table::{
 };
 
 use super::{figure_of_comparison, figure_svg, method_name};
-use crate::exports::markup::escaped;
 use crate::fault::Fault;
 use crate::files::HTML_MARK;
 use crate::fragmentation::{
     Comparison, Fit, MethodComparison, MethodCurve, PERCENT_ERROR, Repeatability, SCALE_WARNING,
 };
+use crate::markup::escaped;
 
 const STYLE: &str = include_str!("report.css");
 

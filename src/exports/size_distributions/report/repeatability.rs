@@ -1,9 +1,9 @@
 //! Whether the trials of a method agree: tables of variances, as in the paper's Tables II and III.
 
 use super::table::{Cell, NONE, heading, measured, names, notes, number, paragraph, table};
-use crate::exports::size_distributions::method_name;
 use crate::fault::Fault;
 use crate::fragmentation::{Anova, Repeatability};
+use crate::size_distributions::method_name;
 use crate::units::LengthUnit;
 
 /// The tables of all methods; nothing without any.

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::exports::markup::escaped;
-use crate::exports::size_distributions::text_table::{significant, trimmed};
+use crate::markup::escaped;
+use crate::size_distributions::text_table::{significant, trimmed};
 
 /// A cell that says nothing.
 pub(super) const NONE: &str = "\u{2013}";

@@ -3,10 +3,10 @@
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::*;
-use crate::exports::size_distributions::comparison::test_comparison::comparison;
 use crate::fragmentation::{
     DistributionSet, LabelledDistribution, Labels, SizeDistribution, repeatability,
 };
+use crate::size_distributions::comparison::test_comparison::comparison;
 use crate::units::LengthUnit;
 
 fn parsed(html: &str) -> Document<'_> {

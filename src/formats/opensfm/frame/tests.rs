@@ -3,8 +3,8 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
-use crate::formats::opensfm::dataset::read_file;
-use crate::formats::reconstruction::Reconstruction;
+use crate::opensfm::dataset::read_file;
+use crate::reconstruction::Reconstruction;
 
 /// Where the receivers were, east, north and up at the reference.
 const MEASURED: [[f64; 3]; 6] = [

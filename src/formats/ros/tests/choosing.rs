@@ -11,9 +11,9 @@ use super::{
 };
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::formats::reconstruction::Reconstruction;
-use crate::formats::{OpenOptions, Opened, info, open_flight};
 use crate::jobs::Progress;
+use crate::reconstruction::Reconstruction;
+use crate::{OpenOptions, Opened, info, open_flight};
 
 const STYLE: Style = Style::Ros1;
 
@@ -301,7 +301,7 @@ fn poses_of_photo_files_are_chosen_too() {
     let error = opened("other.toml").unwrap_err();
     assert!(error.contains(&format!("poses.csv: {what}")), "{error}");
     let colmap =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/colmap-text-points/sparse/0");
+        fragscale_test_data::repository().join("tests/fixtures/colmap-text-points/sparse/0");
     let error = open(&colmap, &there, Some("/slow")).unwrap_err();
     assert!(error.contains(what), "{error}");
     // Without a camera in the recording, the choice says what the camera is.

@@ -12,9 +12,9 @@ use proptest::prelude::*;
 use self::writing::{Entry, Out, Style, bag, db3, mcap};
 use super::*;
 use crate::camera::{Brown, Distortion, Pose};
-use crate::formats::reconstruction::Reconstruction;
-use crate::formats::test_data::shared_data;
-use crate::formats::{Kind, Package, detect};
+use crate::reconstruction::Reconstruction;
+use crate::{Kind, Package, detect};
+use fragscale_test_data::shared_data;
 
 fn entry(topic: &'static str, kind: &'static str, out: Out) -> Entry {
     let data = out.done();
@@ -268,7 +268,7 @@ fn one_flight_from_every_container() {
 }
 
 fn project(path: &Path) -> Result<Reconstruction, FileError> {
-    crate::formats::read_project(path, &Progress::default()).map(|project| project.reconstruction)
+    crate::read_project(path, &Progress::default()).map(|project| project.reconstruction)
 }
 
 #[test]

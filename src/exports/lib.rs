@@ -10,6 +10,9 @@ mod scales_table;
 mod size_distributions;
 mod split_desktop;
 
+use fragscale_core::{camera, fault, files, flight, geodesy, jobs, picture, scale, units};
+use fragscale_fragmentation as fragmentation;
+
 pub use report_object::{PointCloudScale, ReportObject};
 pub use scale_report::{ReportLine, ScaleReport};
 pub use scales_csv::scales_csv;

@@ -26,6 +26,13 @@ mod sieve;
 mod terrain;
 mod truth;
 
+#[cfg(test)]
+use fragscale_core::scale;
+use fragscale_core::{camera, fault, flight, geometry, jobs, surface, units};
+#[cfg(test)]
+use fragscale_formats as formats;
+use fragscale_fragmentation as fragmentation;
+
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -40,7 +47,6 @@ pub use scene::{Meeting, Scene, SceneCaster, Sphere, Thing};
 pub use sfm_cloud::CloudPlan;
 
 use crate::fault::Fault;
-use crate::files::make_folder_whole;
 use crate::geometry::Ray;
 use crate::jobs::Progress;
 use crate::surface::Cloud;
@@ -49,6 +55,7 @@ use files::flight::FlightText;
 use files::photo::{DjiGimbal, PhotoMetadata};
 use files::poses::{Orientation, PoseRow};
 use files::reference::openings_mm;
+use fragscale_core::files::make_folder_whole;
 use image_analysis::{Analysis, Outlined, PixelPlaces, Scale};
 use light::Light;
 use material::Material;

@@ -35,6 +35,14 @@ pub mod viewport;
 pub mod work;
 mod writing;
 
+use fragscale_core::{
+    camera, fault, files, flight, geometry, jobs, picture, scale, surface, units,
+};
+use fragscale_exports as exports;
+use fragscale_formats as formats;
+use fragscale_fragmentation as fragmentation;
+use fragscale_render as render;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 

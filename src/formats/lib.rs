@@ -62,14 +62,18 @@ mod separated;
 mod size_distributions;
 mod stl;
 mod table;
-#[cfg(test)]
-mod test_data;
 mod text_lines;
 mod trajectory;
 mod unstated_surface;
 mod world_frame;
 mod xml_document;
 mod xyz;
+
+use fragscale_core::{
+    camera, fault, files, flight, geodesy, geometry, georeference, jobs, picture, raster, scale,
+    surface, units,
+};
+use fragscale_fragmentation as fragmentation;
 
 use std::fs;
 use std::io::{BufRead, BufReader, Cursor, Read, Seek};

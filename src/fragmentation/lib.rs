@@ -33,6 +33,8 @@ mod sieve_series;
 mod swebrec;
 mod swebrec5;
 
+use fragscale_core::{fault, units};
+
 pub use anova::{Anova, Repeatability, Variation, repeatability};
 pub use comparison::{
     Comparison, ComparisonOptions, CurveNorm, Improvement, MeanPoint, MethodComparison,

@@ -46,6 +46,8 @@ mod tiles;
 mod view;
 mod words;
 
+use fragscale_core::{camera, fault, geometry, picture, scale, units};
+
 pub use colormap::viridis;
 pub use gpu::{Gpu, device_descriptor};
 pub use labels::{Label, Legend, ScaleBar};

@@ -1,0 +1,19 @@
+//! The core: what knows neither files' formats nor windows. Its floors are in the map of
+//! `src/lib.rs`, and `tests/floors.rs` holds them; the other members of the workspace are built on it.
+//!
+//! The root of this crate lies beside its modules, its manifest in `src/core/`.
+
+
+pub mod camera;
+pub mod fault;
+pub mod files;
+pub mod flight;
+pub mod geodesy;
+pub mod geometry;
+pub mod georeference;
+pub mod jobs;
+pub mod picture;
+pub mod raster;
+pub mod scale;
+pub mod surface;
+pub mod units;

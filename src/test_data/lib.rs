@@ -1,0 +1,51 @@
+//! Where tests find their files: those of the repository, and the real data beside it, which stay
+//! outside of it because their licences differ. Only tests and benchmarks use this crate.
+
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// The repository's top folder. Members lie two folders below it, so their own
+/// `CARGO_MANIFEST_DIR` does not say it.
+pub fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// A file or folder below `../shared/data` (or `FRAGSCALE_TEST_DATA`), or `None` where it is not
+/// there: the project's tests must pass without.
+///
+/// What was left out is written as a line into the file that `FRAGSCALE_LEFT_OUT` names, so that
+/// `tests/run` can say at the end how much was not tested: what a passing test prints is not shown.
+///
+/// # Panics
+/// Where it is missing and `FRAGSCALE_REQUIRE_DATA` is 1.
+#[expect(
+    clippy::print_stdout,
+    clippy::panic,
+    reason = "a test that checks nothing must say so"
+)]
+pub fn shared_data(path: &str) -> Option<PathBuf> {
+    let root = std::env::var_os("FRAGSCALE_TEST_DATA")
+        .map_or_else(|| repository().join("../shared/data"), PathBuf::from);
+    let found = root.join(path);
+    if found.exists() {
+        return Some(found);
+    }
+    assert!(
+        std::env::var_os("FRAGSCALE_REQUIRE_DATA").is_none_or(|value| value != "1"),
+        "FRAGSCALE_REQUIRE_DATA is 1, and {} is missing",
+        found.display()
+    );
+    println!("left out: no shared data ({path})");
+    if let Some(list) = std::env::var_os("FRAGSCALE_LEFT_OUT") {
+        let test = std::thread::current().name().unwrap_or("?").to_owned();
+        let line = format!("{test}: {path}\n");
+        OpenOptions::new()
+            .append(true)
+            .create(true)
+            .open(&list)
+            .and_then(|mut list| list.write_all(line.as_bytes()))
+            .unwrap_or_else(|e| panic!("{}: {e}", list.display()));
+    }
+    None
+}
