@@ -20,9 +20,9 @@ use fragscale::app::open_flight::OpenFlight;
 use fragscale::app::table::{Column, TableOrder};
 use fragscale::app::work::Loaded;
 use fragscale::flight::Limits;
-use fragscale::formats::{OpenOptions, Opened, open_flight};
 use fragscale::geometry::{Bounds, LocalFrame};
 use fragscale::jobs::Progress;
+use fragscale::opening::{OpenOptions, Opened, open_flight};
 use fragscale::render::{CloudGeometry, MeshGeometry, Normals};
 use fragscale::surface::{Cloud, Surface};
 

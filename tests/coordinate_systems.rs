@@ -13,9 +13,9 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use fragscale::formats::{OpenOptions, Opened, open_flight};
 use fragscale::geodesy::{Crs, Geographic, ecef_from_geographic, enu_axes};
 use fragscale::jobs::Progress;
+use fragscale::opening::{OpenOptions, Opened, open_flight};
 use glam::{DMat3, DVec3};
 
 /// In UTM zone 33 north, 2 degrees west of its central meridian.

@@ -21,8 +21,8 @@ use fragscale::exports::{
     ExportError, ExportRequest, ExportSummary, Replace, export_for_split_desktop,
 };
 use fragscale::flight::{Evidence, Judged, Limits, Outcome, PhotoFileState, Verdict, judge};
-use fragscale::formats::{OpenOptions, Opened, open_flight};
 use fragscale::jobs::Progress;
+use fragscale::opening::{OpenOptions, Opened, open_flight};
 use fragscale::scale::{ImageKind, ViewFacts};
 use fragscale::units::LengthUnit;
 use serde_json::Value;

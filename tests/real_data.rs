@@ -15,8 +15,9 @@ use std::fs;
 
 use common::{scale, scales_json, shared_data};
 use fragscale::camera::Pose;
-use fragscale::formats::{OpenOptions, Opened, open_flight, read_project};
+use fragscale::formats::read_project;
 use fragscale::jobs::Progress;
+use fragscale::opening::{OpenOptions, Opened, open_flight};
 use glam::{DMat3, DQuat, DVec3};
 use serde_json::Value;
 

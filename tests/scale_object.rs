@@ -16,8 +16,8 @@ use std::path::{Path, PathBuf};
 
 use fragscale::camera::Camera;
 use fragscale::flight::{ComparedObject, Flight, Outcome, Photo, ScaleObject};
-use fragscale::formats::{OpenOptions, open_flight};
 use fragscale::jobs::Progress;
+use fragscale::opening::{OpenOptions, open_flight};
 use fragscale::scale::{ImageKind, ScaleObjectKind, Traced};
 use glam::{DVec2, DVec3};
 use image::RgbImage;

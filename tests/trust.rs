@@ -21,8 +21,8 @@ use std::path::{Path, PathBuf};
 
 use common::{fragscale, scales_json};
 use fragscale::flight::{Doubt, Judged, Limits, Verdict, judge_all};
-use fragscale::formats::{OpenOptions, Opened, compare_colours, open_flight, with_colours};
 use fragscale::jobs::Progress;
+use fragscale::opening::{OpenOptions, Opened, compare_colours, open_flight, with_colours};
 use tempfile::TempDir;
 
 /// Of the cameras over the plane, metres.

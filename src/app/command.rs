@@ -14,8 +14,8 @@ use super::table::Column;
 use super::tracing::Trace;
 use super::work::{DialogFor, Task};
 use crate::flight::{FlightSettings, Limits, Verdict};
-use crate::formats::GeoreferenceRequest;
 use crate::geometry::Ray;
+use crate::opening::GeoreferenceRequest;
 use crate::units::LengthUnit;
 
 /// Which tab of the right panel is shown.

@@ -8,7 +8,8 @@ use super::open_flight::OpenFlight;
 use super::state::{Severity, State};
 use super::work::{Done, Task};
 use crate::files::{self, Kind};
-use crate::formats::{self, FileError, GeoreferenceRequest, Georeferenced};
+use crate::formats::{self, FileError};
+use crate::opening::{GeoreferenceRequest, Georeferenced};
 
 /// What the reconstruction's place in the world is known from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -151,7 +152,7 @@ impl State {
         open.georeferencing.outcome = None;
         let path = reconstruction.path.clone();
         self.start(Task::Georeference, move |progress| {
-            let result = formats::georeference(&path, &request, progress);
+            let result = opening::georeference(&path, &request, progress);
             Done::Georeferenced(
                 request.photos,
                 Box::new(result.map_err(|error| error.to_string())),

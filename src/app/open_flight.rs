@@ -17,10 +17,10 @@ use crate::flight::{
     ComparedObject, Flight, FlightSettings, Judged, Limits, Outcome, ScaleObject, Verdict,
     judge_all,
 };
-use crate::formats::{
+use crate::geometry::{Bounds, LocalFrame};
+use crate::opening::{
     Colours, FlightOrigin, FlightReconstruction, LookedUp, OpenOptions, PhotoFile, with_colours,
 };
-use crate::geometry::{Bounds, LocalFrame};
 use crate::render::{Orbit, PhotoImage};
 use crate::scale::{PhotoScale, ViewFacts};
 

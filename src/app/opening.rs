@@ -14,9 +14,10 @@ use crate::exports::{self, ExportRequest, Replace};
 use crate::fault::Fault;
 use crate::files::{self, Kind};
 use crate::flight::{Flight, FlightSettings, judge_all};
-use crate::formats::{self, Colours, Dropped, FileError, OpenOptions};
+use crate::formats::{self, FileError};
 use crate::geometry::LocalFrame;
 use crate::jobs::Progress;
+use crate::opening::{Colours, Dropped, OpenOptions};
 use crate::picture;
 use crate::render::{
     CloudBuffers, CloudGeometry, Gpu, LargePhoto, MeshBuffers, MeshGeometry, Normals, PhotoImage,
@@ -90,7 +91,7 @@ impl State {
                 let flight = flight.with_settings(&settings)?;
                 let outcomes = flight.scales(progress)?;
                 // Heights and laser ranges are held against the unit of now.
-                let looked_up = formats::look_up(&flight, &files);
+                let looked_up = opening::look_up(&flight, &files);
                 Ok((Arc::new(flight), outcomes, looked_up, settings))
             };
             Done::Scales(compute())
@@ -259,12 +260,12 @@ impl State {
         let source = open.origin.file().to_owned();
         self.start(Task::Export, move |progress| {
             // Those that the window has not come to yet.
-            let compared = formats::compare_colours(&flight, &photo_files, &colours, progress);
+            let compared = opening::compare_colours(&flight, &photo_files, &colours, progress);
             let colours = match compared {
                 Ok(colours) => colours,
                 Err(fault) => return Done::Exported(Err(fault.to_string())),
             };
-            let evidence = formats::with_colours(&looked_up, colours.iter().map(Some));
+            let evidence = opening::with_colours(&looked_up, colours.iter().map(Some));
             let judged = judge_all(&flight, &outcomes, Some(&views), &evidence, &limits);
             let request = ExportRequest {
                 flight: &flight,
@@ -418,7 +419,7 @@ fn open(
         })
     };
     let begun = Instant::now();
-    let opened = formats::open_flight(&path, &options, progress).map_err(not_opened)?;
+    let opened = opening::open_flight(&path, &options, progress).map_err(not_opened)?;
     let read = begun.elapsed();
     let at_path = |fault: Fault| not_opened(FileError::new(&path, fault));
     let outcomes = opened.flight.scales(progress).map_err(at_path)?;

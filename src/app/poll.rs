@@ -8,7 +8,7 @@ use super::picker::{Picked, Picker, Purpose};
 use super::state::{Severity, State};
 use super::work::{DialogFor, Done, Loaded, NotOpened, Task, Thumbnail};
 use crate::flight::Verdict;
-use crate::formats::OpenOptions;
+use crate::opening::OpenOptions;
 
 /// Thumbnails taken in one frame: uploading each takes a fraction of a millisecond.
 const THUMBNAILS_A_FRAME: usize = 8;

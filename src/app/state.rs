@@ -9,7 +9,7 @@ use super::preferences::Preferences;
 use super::size_distributions::{Page, SizeDistributions};
 use super::work::Work;
 use crate::fault::one_line;
-use crate::formats::OpenOptions;
+use crate::opening::OpenOptions;
 use crate::render::Gpu;
 
 /// How many lines the log keeps.

@@ -15,10 +15,10 @@ use super::size_distributions::Computed;
 use super::size_distributions::reading::Read;
 use crate::fault::Fault;
 use crate::flight::{ComparedObject, Flight, FlightSettings, Outcome, ScaleObject};
-use crate::formats::{Colours, FlightOrigin, Georeferenced, LookedUp, OpenOptions, Opened};
 use crate::fragmentation::Effort;
 use crate::geometry::Bounds;
 use crate::jobs::{Job, Progress};
+use crate::opening::{Colours, FlightOrigin, Georeferenced, LookedUp, OpenOptions, Opened};
 use crate::render::{CloudBuffers, LargePhoto, MeshBuffers, PhotoImage};
 use crate::scale::ViewFacts;
 

@@ -7,8 +7,9 @@ use clap::Args;
 use super::Answer;
 use super::flight_arguments::FlightArguments;
 use crate::fault::Fault;
-use crate::formats::{self, Colours, FileError};
+use crate::formats::{self, FileError};
 use crate::jobs::Progress;
+use crate::opening::Colours;
 use crate::picture::Agreement;
 
 #[derive(Debug, Args)]
@@ -31,7 +32,7 @@ pub(super) fn check(arguments: &CheckArguments, progress: &Progress) -> Result<A
     }
     let at = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
     let colours =
-        formats::compare_colours(flight, &opened.photo_files, &[], progress).map_err(at)?;
+        opening::compare_colours(flight, &opened.photo_files, &[], progress).map_err(at)?;
     for (photo, colours) in parts.photos.iter().zip(&colours) {
         let name = &photo.name;
         let said = match colours {

@@ -46,9 +46,9 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
     let outcomes = flight.scales(progress).map_err(in_flight)?;
     let views = flight.views(&outcomes, progress).map_err(in_flight)?;
     let limits = Limits::default();
-    let colours = formats::compare_colours(flight, &opened.photo_files, &[], progress);
+    let colours = opening::compare_colours(flight, &opened.photo_files, &[], progress);
     let colours = colours.map_err(in_flight)?;
-    let evidence = formats::with_colours(&opened.looked_up.evidence, colours.iter().map(Some));
+    let evidence = opening::with_colours(&opened.looked_up.evidence, colours.iter().map(Some));
     let judged = judge_all(flight, &outcomes, Some(&views), &evidence, &limits);
     let selected: Vec<bool> = judged
         .iter()

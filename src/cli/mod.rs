@@ -355,7 +355,7 @@ fn notes_of(report: &exports::ScaleReport) -> Vec<String> {
 }
 
 fn info(arguments: &InfoArguments, progress: &Progress) -> Result<Answer, String> {
-    let value = formats::info(&arguments.file, progress).map_err(|error| error.to_string())?;
+    let value = opening::info(&arguments.file, progress).map_err(|error| error.to_string())?;
     let text = match arguments.format {
         InfoFormat::Json => format!("{value}\n"),
         InfoFormat::Text => info_text(&value),

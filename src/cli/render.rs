@@ -14,9 +14,10 @@ use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::files::{Kind, marked_png};
 use crate::flight::{FlightParts, Outcome};
-use crate::formats::{self, FileError, Opened, PhotoFile};
+use crate::formats::{self, FileError};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
+use crate::opening::{Opened, PhotoFile};
 use crate::picture;
 use crate::render::{
     Background, CloudGeometry, ColorBy, Gpu, MOST_PIXELS, MeshGeometry, Normals, Orbit,

@@ -339,12 +339,12 @@ fn check_at_rest(state: &State) {
 
 /// The scales of a flight that is opened with these settings, with nothing done to it.
 fn fresh(path: &Path, settings: FlightSettings) -> Vec<Outcome> {
-    let options = fragscale::formats::OpenOptions {
+    let options = fragscale::opening::OpenOptions {
         settings: Some(settings),
-        ..fragscale::formats::OpenOptions::default()
+        ..fragscale::opening::OpenOptions::default()
     };
     let progress = fragscale::jobs::Progress::default();
-    let opened = fragscale::formats::open_flight(path, &options, &progress).expect("a flight");
+    let opened = fragscale::opening::open_flight(path, &options, &progress).expect("a flight");
     opened.flight.scales(&progress).expect("scales")
 }
 

@@ -4,9 +4,9 @@
 use super::ask::{path_field, typed};
 use super::residuals::residuals;
 use crate::command::{Asking, Command};
-use crate::formats::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds};
 use crate::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
 use crate::open_flight::{Measure, OpenFlight};
+use crate::opening::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds};
 use crate::picture::significant_digits;
 use crate::state::State;
 use crate::work::{DialogFor, Task};
