@@ -7,8 +7,8 @@ use glam::DVec2;
 use crate::camera::Camera;
 use crate::command::Command;
 use crate::open_flight::OpenFlight;
+use crate::open_flight::tracing::{Trace, Tracing, rounded};
 use crate::scale::{ImageKind, ScaleObjectKind, Traced};
-use crate::tracing::{Trace, Tracing, rounded};
 
 /// Within this distance the mouse means a point, screen points.
 const REACH: f32 = 9.0;

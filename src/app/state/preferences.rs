@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::layers::Layers;
 use crate::flight::Limits;
+use crate::state::layers::Layers;
 use crate::units::LengthUnit;
 
 /// How many recent flights are kept.

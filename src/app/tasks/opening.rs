@@ -7,8 +7,6 @@ use std::time::Instant;
 use image::RgbImage;
 use image::buffer::ConvertBuffer;
 
-use super::state::{Severity, State};
-use super::work::{DialogFor, Done, Geometry, Loaded, NotOpened, PreviewPicture, Task, Thumbnail};
 use crate::camera::Camera;
 use crate::exports::{self, ExportRequest, Replace};
 use crate::fault::Fault;
@@ -22,6 +20,10 @@ use crate::render::{
     CloudBuffers, CloudGeometry, Gpu, LargePhoto, MeshBuffers, MeshGeometry, Normals, PhotoImage,
 };
 use crate::scale::ImageKind;
+use crate::state::{Severity, State};
+use crate::tasks::work::{
+    DialogFor, Done, Geometry, Loaded, NotOpened, PreviewPicture, Task, Thumbnail,
+};
 
 /// The longer side of a thumbnail, pixels: for the table and the image planes in the viewport.
 const THUMBNAIL: u32 = 256;
@@ -37,7 +39,7 @@ const PREVIEW: u32 = 4096;
 
 impl State {
     /// Starts a task, or says why it cannot be started.
-    pub(super) fn start(
+    pub(crate) fn start(
         &mut self,
         task: Task,
         work: impl FnOnce(&Progress) -> Done + Send + 'static,

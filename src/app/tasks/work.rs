@@ -10,17 +10,17 @@ use std::time::{Duration, Instant};
 
 use egui::ColorImage;
 
-use super::georeferencing::PathField;
-use super::size_distributions::Computed;
-use super::size_distributions::reading::Read;
 use crate::fault::Fault;
 use crate::flight::{ComparedObject, Flight, FlightSettings, Outcome, ScaleObject};
 use crate::formats::{Colours, FlightOrigin, Georeferenced, LookedUp, OpenOptions, Opened};
 use crate::fragmentation::Effort;
 use crate::geometry::Bounds;
 use crate::jobs::{Job, Progress};
+use crate::open_flight::georeferencing::PathField;
 use crate::render::{CloudBuffers, LargePhoto, MeshBuffers, PhotoImage};
 use crate::scale::ViewFacts;
+use crate::size_distributions::Computed;
+use crate::size_distributions::reading::Read;
 
 /// What is being done. Of each task one job runs at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

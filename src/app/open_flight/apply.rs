@@ -2,15 +2,15 @@
 
 use glam::{DVec2, DVec3};
 
-use super::command::{Choice, Command, Look};
-use super::open_flight::{Measure, OpenFlight};
-use super::picker::Purpose;
-use super::table::Column;
+use crate::command::{Choice, Command, Look};
 use crate::flight::Verdict;
+use crate::open_flight::picker::Purpose;
+use crate::open_flight::table::Column;
+use crate::open_flight::{Measure, OpenFlight};
 
 impl OpenFlight {
     /// What concerns the flight on the screen alone.
-    pub(super) fn apply(&mut self, command: Command) {
+    pub(crate) fn apply(&mut self, command: Command) {
         match command {
             Command::Click(ray) => {
                 let purpose = if self.measure == Measure::Off {
@@ -83,7 +83,7 @@ impl OpenFlight {
         }
     }
 
-    pub(super) fn select(&mut self, photo: Option<usize>) {
+    pub(crate) fn select(&mut self, photo: Option<usize>) {
         let before = self.selected;
         self.selected = photo.filter(|&photo| photo < self.outcomes.len());
         if self.selected != before {
@@ -97,7 +97,7 @@ impl OpenFlight {
     }
 
     /// Moves down the table's rows; with nothing selected, to the first row.
-    pub(super) fn select_by(&mut self, rows: i32) {
+    pub(crate) fn select_by(&mut self, rows: i32) {
         let place = self
             .selected
             .and_then(|photo| self.shown.iter().position(|&shown| shown == photo));

@@ -1,19 +1,22 @@
 //! The selected photo: its picture with the scale bars of the paper's figure, its numbers, and every
 //! reason to doubt them.
 
+mod scale_objects;
+mod traced_photo;
+
 use egui::{Color32, Pos2, Rect, Sense, Stroke, Vec2, pos2, vec2};
 use glam::DVec2;
 
-use super::scale_objects::scale_objects;
-use super::traced_photo::{self, Dragged, PhotoPlace};
-use super::{or_dash, verdict_color, verdict_sign};
 use crate::actions;
 use crate::command::Command;
 use crate::flight::Outcome;
 use crate::open_flight::OpenFlight;
+use crate::panels::verdict::{or_dash, verdict_color, verdict_sign};
 use crate::picture::{BarEdge, ScaleBar, scale_bars, significant_digits};
 use crate::scale::{CornerOutcome, ImageKind, PhotoScale};
 use crate::state::State;
+use scale_objects::scale_objects;
+use traced_photo::{Dragged, PhotoPlace};
 
 /// The inspector keeps the photo's texture and how it is zoomed.
 #[derive(Default)]

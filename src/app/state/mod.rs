@@ -1,16 +1,20 @@
 //! What the window shows: everything that panels read. Only `State::apply` and `State::poll` change
 //! it.
 
+pub mod history;
+pub mod layers;
+pub mod preferences;
+
 use std::path::{Path, PathBuf};
 
-use super::command::{Asking, Command, Tab};
-use super::open_flight::OpenFlight;
-use super::preferences::Preferences;
-use super::size_distributions::{Page, SizeDistributions};
-use super::work::Work;
+use crate::command::{Asking, Command, Tab};
 use crate::fault::one_line;
 use crate::formats::OpenOptions;
+use crate::open_flight::OpenFlight;
 use crate::render::Gpu;
+use crate::size_distributions::{Page, SizeDistributions};
+use crate::tasks::work::Work;
+use preferences::Preferences;
 
 /// How many lines the log keeps.
 const LOG_LINES: usize = 2000;
@@ -164,9 +168,9 @@ impl State {
     /// Tells egui which theme is wanted.
     pub fn apply_theme(&self) {
         self.context.set_theme(match self.preferences.theme {
-            super::preferences::Theme::System => egui::ThemePreference::System,
-            super::preferences::Theme::Light => egui::ThemePreference::Light,
-            super::preferences::Theme::Dark => egui::ThemePreference::Dark,
+            crate::state::preferences::Theme::System => egui::ThemePreference::System,
+            crate::state::preferences::Theme::Light => egui::ThemePreference::Light,
+            crate::state::preferences::Theme::Dark => egui::ThemePreference::Dark,
         });
     }
 }

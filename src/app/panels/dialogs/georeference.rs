@@ -1,15 +1,15 @@
 //! The small window that brings a reconstruction to the world: what is known of its place, how well
 //! that fits, and where the flight that is made of it goes.
 
-use super::ask::{path_field, typed};
 use super::residuals::residuals;
 use crate::command::{Asking, Command};
 use crate::formats::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds};
-use crate::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
+use crate::open_flight::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
 use crate::open_flight::{Measure, OpenFlight};
+use crate::panels::path_field::{path_field, typed};
 use crate::picture::significant_digits;
 use crate::state::State;
-use crate::work::{DialogFor, Task};
+use crate::tasks::work::{DialogFor, Task};
 
 /// Draws the window's contents.
 pub(super) fn georeference(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

@@ -1,15 +1,15 @@
 //! The inspector's section of scale objects: tracing one, and what it says beside the point cloud.
 
-use super::field::{number_field, text_field};
-use super::verdict_color;
 use crate::actions;
 use crate::command::Command;
 use crate::flight::{ComparedObject, ScaleObject, Verdict};
 use crate::open_flight::OpenFlight;
+use crate::open_flight::tracing::{Trace, Tracing};
+use crate::panels::field::{number_field, text_field};
+use crate::panels::verdict::{or_dash, verdict_color};
 use crate::picture::significant_digits;
 use crate::scale::{ScaleObjectKind, Traced};
 use crate::state::State;
-use crate::tracing::{Trace, Tracing};
 
 /// With points on less of the outline than this, degrees, the other side is a guess.
 const SHORT_ARC: f64 = 180.0;
@@ -256,7 +256,7 @@ fn numbers(
     egui::Grid::new(title).num_columns(3).show(ui, |ui| {
         let sign = "In percent: how much larger the object's scale is. Where it is larger, fragments \
                     come out smaller with it.";
-        let found = |scale: Option<f64>| super::or_dash(scale.map(|scale| scale * factor), 5);
+        let found = |scale: Option<f64>| or_dash(scale.map(|scale| scale * factor), 5);
         let off = |share: Option<f64>| share.map(percent).unwrap_or_default();
         let edges = off(compared.beyond_edges());
         let hover = format!(

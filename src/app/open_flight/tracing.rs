@@ -2,13 +2,13 @@
 
 use glam::DVec2;
 
-use super::command::{Command, Tab};
-use super::open_flight::OpenFlight;
-use super::state::{Severity, State};
-use super::work::{Done, Task};
+use crate::command::{Command, Tab};
 use crate::fault::Fault;
 use crate::flight::{ComparedObject, ScaleObject};
+use crate::open_flight::OpenFlight;
 use crate::scale::{ScaleObjectKind, Traced};
+use crate::state::{Severity, State};
+use crate::tasks::work::{Done, Task};
 
 /// A step of tracing. Places are pixels of the photo as shot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,13 +46,13 @@ impl Tracing {
 }
 
 /// A place to a hundredth of a pixel: nobody points closer, and flight.toml stays readable.
-pub(super) fn rounded(pixel: DVec2) -> DVec2 {
+pub(crate) fn rounded(pixel: DVec2) -> DVec2 {
     (pixel * 100.0).round() / 100.0
 }
 
 impl State {
     /// Does a step of tracing.
-    pub(super) fn trace(&mut self, step: Trace) {
+    pub(crate) fn trace(&mut self, step: Trace) {
         let Some(open) = &mut self.open else {
             return;
         };
@@ -132,7 +132,7 @@ impl State {
     }
 
     /// Holds the scale objects against the surface.
-    pub(super) fn start_comparing(&mut self) {
+    pub(crate) fn start_comparing(&mut self) {
         let Some(open) = &self.open else {
             return;
         };
@@ -145,7 +145,7 @@ impl State {
     }
 
     /// Takes what [`Self::start_comparing`] found.
-    pub(super) fn take_compared(
+    pub(crate) fn take_compared(
         &mut self,
         compared: Result<Vec<(ScaleObject, ComparedObject)>, Fault>,
     ) {

@@ -1,17 +1,16 @@
 //! The flight that is open: what was read, what was computed, what the engineer has done with it.
 
+pub mod apply;
+pub mod georeferencing;
+pub mod picker;
+pub mod table;
+pub mod tracing;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::georeferencing::Georeferencing;
-use super::history::History;
-use super::picker::Picker;
-use super::state::sample_flight;
-use super::table::{Row, TableOrder};
-use super::tracing::Tracing;
-use super::work::{Geometry, Loaded, PreviewPicture};
 use crate::files::Inputs;
 use crate::flight::{
     ComparedObject, Flight, FlightSettings, Judged, Limits, Outcome, ScaleObject, Verdict,
@@ -23,6 +22,13 @@ use crate::formats::{
 use crate::geometry::{Bounds, LocalFrame};
 use crate::render::{Orbit, PhotoImage};
 use crate::scale::{PhotoScale, ViewFacts};
+use crate::state::history::History;
+use crate::state::sample_flight;
+use crate::tasks::work::{Geometry, Loaded, PreviewPicture};
+use georeferencing::Georeferencing;
+use picker::Picker;
+use table::{Row, TableOrder};
+use tracing::Tracing;
 
 /// What undo goes back over.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,12 +3,12 @@
 
 use std::path::{Path, PathBuf};
 
-use super::command::Command;
-use super::open_flight::OpenFlight;
-use super::state::{Severity, State};
-use super::work::{Done, Task};
+use crate::command::Command;
 use crate::files::{self, Kind};
 use crate::formats::{self, FileError, GeoreferenceRequest, Georeferenced};
+use crate::open_flight::OpenFlight;
+use crate::state::{Severity, State};
+use crate::tasks::work::{Done, Task};
 
 /// What the reconstruction's place in the world is known from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -124,7 +124,7 @@ impl OpenFlight {
 
 impl State {
     /// Types into the small window: a fit of what stood there before does not count any more.
-    pub(super) fn fill_georeference(&mut self, form: GeoreferenceForm) {
+    pub(crate) fn fill_georeference(&mut self, form: GeoreferenceForm) {
         let Some(open) = &mut self.open else {
             return;
         };
@@ -141,7 +141,7 @@ impl State {
     }
 
     /// Fits.
-    pub(super) fn start_georeference(&mut self, request: GeoreferenceRequest) {
+    pub(crate) fn start_georeference(&mut self, request: GeoreferenceRequest) {
         let Some(open) = &mut self.open else {
             return;
         };
@@ -160,7 +160,7 @@ impl State {
     }
 
     /// Writes the georeferenced flight and opens it; asks before a file is replaced.
-    pub(super) fn save_georeferenced(&mut self, path: PathBuf, keep_surface: bool) {
+    pub(crate) fn save_georeferenced(&mut self, path: PathBuf, keep_surface: bool) {
         if self.is_busy(Task::Save) {
             return;
         }
@@ -174,7 +174,7 @@ impl State {
     }
 
     /// The same once that is clear; with `replace` over a file that is there.
-    pub(super) fn start_saving_georeferenced(
+    pub(crate) fn start_saving_georeferenced(
         &mut self,
         path: PathBuf,
         keep_surface: bool,
