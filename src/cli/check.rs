@@ -7,9 +7,9 @@ use clap::Args;
 use super::Answer;
 use super::flight_arguments::FlightArguments;
 use crate::fault::Fault;
-use crate::formats::{self, FileError};
+use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::Colours;
+use crate::opening::{self, Colours};
 use crate::picture::Agreement;
 
 #[derive(Debug, Args)]

@@ -10,8 +10,9 @@ use super::{Answer, OutputUnit};
 use crate::exports::{self, ExportRequest, Replace, ScaleReport};
 use crate::fault::Fault;
 use crate::flight::{Limits, Verdict, judge_all};
-use crate::formats::{self, FileError};
+use crate::formats::FileError;
 use crate::jobs::Progress;
+use crate::opening;
 
 #[derive(Debug, Args)]
 pub(super) struct ExportArguments {

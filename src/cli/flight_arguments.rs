@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::formats::{self};
 use crate::jobs::Progress;
-use crate::opening::{OpenOptions, Opened};
+use crate::opening::{self, OpenOptions, Opened};
 
 #[derive(Debug, Args)]
 pub(super) struct FlightArguments {

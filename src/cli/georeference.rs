@@ -10,9 +10,9 @@ use super::Answer;
 use super::outputs::{Force, Outputs};
 use crate::fault::Fault;
 use crate::files::{Inputs, Kind, Recording};
-use crate::formats::{self, FileError};
+use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownKind};
+use crate::opening::{self, GeoreferenceRequest, Georeferenced, KnownDistance, KnownKind};
 
 #[derive(Debug, Args)]
 pub(super) struct GeoreferenceArguments {

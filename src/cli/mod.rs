@@ -38,8 +38,9 @@ use outputs::OutputArguments;
 use crate::exports;
 use crate::fault::one_line;
 use crate::files;
-use crate::formats::{self, FileError};
+use crate::formats::FileError;
 use crate::jobs::{Job, Progress};
+use crate::opening;
 use crate::sample::{self, Lens, Preset, SampleOptions};
 use crate::units::LengthUnit;
 
