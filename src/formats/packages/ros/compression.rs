@@ -1,7 +1,9 @@
 //! The compressed parts of recordings.
 
 use std::borrow::Cow;
-use std::io::{self, Read};
+use std::io;
+#[cfg(feature = "ros")]
+use std::io::Read;
 
 use crate::fault::Fault;
 
@@ -36,9 +38,7 @@ pub(super) fn expanded<'a>(
     }
     let expanded = match compression {
         "" | "none" => return Ok(Cow::Borrowed(data)),
-        "bz2" => all_of(bzip2::read::BzDecoder::new(data), size),
-        "lz4" => lz4::Decoder::new(data).and_then(|decoder| all_of(decoder, size)),
-        "zstd" => zstd::Decoder::with_buffer(data).and_then(|decoder| all_of(decoder, size)),
+        "bz2" | "lz4" | "zstd" => decoded(compression, data, size)?,
         other => {
             return Err(Fault::new(
                 format!("its chunks are compressed with '{other}'"),
@@ -63,21 +63,38 @@ pub(super) fn expanded_message(data: &[u8]) -> io::Result<Cow<'_, [u8]>> {
     if !data.starts_with(&ZSTD) {
         return Ok(Cow::Borrowed(data));
     }
-    let expanded = all_of(zstd::Decoder::with_buffer(data)?, LARGEST)?;
+    let expanded = decoded("zstd", data, LARGEST).map_err(io::Error::other)??;
     if expanded.len() as u64 > LARGEST {
         return Err(io::Error::other("too large"));
     }
     Ok(Cow::Owned(expanded))
 }
 
+/// `data` decompressed, at most one byte more than `size`.
+#[cfg(feature = "ros")]
+fn decoded(compression: &str, data: &[u8], size: u64) -> Result<io::Result<Vec<u8>>, Fault> {
+    Ok(match compression {
+        "bz2" => all_of(bzip2::read::BzDecoder::new(data), size),
+        "lz4" => lz4::Decoder::new(data).and_then(|decoder| all_of(decoder, size)),
+        _ => zstd::Decoder::with_buffer(data).and_then(|decoder| all_of(decoder, size)),
+    })
+}
+
+/// Refuses: the libraries were left out.
+#[cfg(not(feature = "ros"))]
+fn decoded(compression: &str, _: &[u8], _: u64) -> Result<io::Result<Vec<u8>>, Fault> {
+    Err(super::left_out(compression))
+}
+
 /// What a decoder brings, and of more than `size` bytes the first one too many.
+#[cfg(feature = "ros")]
 fn all_of(decoder: impl Read, size: u64) -> io::Result<Vec<u8>> {
     let mut expanded = Vec::new();
     decoder.take(size + 1).read_to_end(&mut expanded)?;
     Ok(expanded)
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "ros"))]
 mod tests {
     use std::io::Write;
 

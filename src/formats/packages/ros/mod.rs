@@ -28,6 +28,7 @@ mod messages;
 mod parts;
 mod pose_source;
 mod recording;
+#[cfg(feature = "ros")]
 mod sqlite;
 
 use std::fs;
@@ -54,6 +55,18 @@ struct RawMessage<'a> {
     data: &'a [u8],
 }
 
+/// What every SQLite file begins with.
+const SQLITE: &[u8] = b"SQLite format 3\0";
+
+/// Refuses what this build has no library for.
+#[cfg(not(feature = "ros"))]
+fn left_out(what: &str) -> Fault {
+    Fault::new(
+        format!("this fragscale was built without {what}"),
+        "build it with its default features, or with the feature ros",
+    )
+}
+
 /// What rosbag2 puts into a recording's folder.
 const METADATA: &str = "metadata.yaml";
 
@@ -61,7 +74,7 @@ const METADATA: &str = "metadata.yaml";
 pub fn is_recording(start: &[u8], name: &str) -> bool {
     start.starts_with(bag::MAGIC)
         || start.starts_with(&mcap::MAGIC)
-        || (start.starts_with(sqlite::MAGIC) && name.ends_with(".db3"))
+        || (start.starts_with(SQLITE) && name.ends_with(".db3"))
         || is_compressed(name)
 }
 
@@ -196,8 +209,11 @@ fn read_file(
         recording.take(&message);
         progress.advance(seen, size)
     };
-    if start.starts_with(sqlite::MAGIC) {
+    if start.starts_with(SQLITE) {
+        #[cfg(feature = "ros")]
         return sqlite::read(path, &mut take);
+        #[cfg(not(feature = "ros"))]
+        return Err(left_out("SQLite"));
     }
     let input = start.as_slice().chain(input);
     if start.starts_with(bag::MAGIC) {
@@ -212,5 +228,5 @@ fn read_file(
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "ros"))]
 mod tests;

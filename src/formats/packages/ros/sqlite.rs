@@ -23,9 +23,6 @@ use super::compression::expanded_message;
 use crate::fault::Fault;
 use crate::poses::trajectory::Stamp;
 
-/// What every SQLite file begins with.
-pub(super) const MAGIC: &[u8] = b"SQLite format 3\0";
-
 const MESSAGES: &str = "SELECT topics.name, topics.type, topics.serialization_format, \
     messages.timestamp, messages.data FROM messages JOIN topics ON messages.topic_id = topics.id \
     ORDER BY messages.id";
