@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::formats::{self};
 use crate::jobs::Progress;
 use crate::opening::{self, OpenOptions, Opened};
 

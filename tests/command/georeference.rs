@@ -1,21 +1,11 @@
 //! `fragscale georeference`: from a reconstruction in a frame of its own to scales in metres.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
-mod common;
-#[path = "common/own_frame.rs"]
-mod own_frame;
+use crate::own_frame;
 
 use std::fs;
 use std::path::Path;
 
-use common::{fragscale, scale, scales_json, stdout_of};
+use crate::common::{fragscale, scale, scales_json, stdout_of};
 use own_frame::{model, positions};
 use serde_json::Value;
 

@@ -1,16 +1,6 @@
 //! The red spheres of the sample flight, whose places the simulator knows: traced, they give the scale
 //! that they should.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
-mod common;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -223,14 +213,14 @@ fn the_command_has_scale_objects_beside_the_scales() {
     // The photos stay where they are.
     let text = fs::read_to_string(&toml).expect("the flight");
     fs::write(&toml, text.replace("folder = \"photos\"\n", "")).expect("written");
-    let plain = common::scales_json(folder.path(), &["--unit", "in"]);
+    let plain = crate::common::scales_json(folder.path(), &["--unit", "in"]);
     let text = fs::read_to_string(&toml).expect("the flight");
     let object = format!(
         "\n[[scale_object]]\nphoto = \"{}\"\nkind = \"sphere\"\nsize = {DIAMETER}\noutline = {outline:?}\n",
         photo.name
     );
     fs::write(&toml, text + &object).expect("written");
-    let mut with = common::scales_json(folder.path(), &["--unit", "in"]);
+    let mut with = crate::common::scales_json(folder.path(), &["--unit", "in"]);
     let found = with["photos"][1]["scale_objects"][0].take();
     let scale = found["scale"].as_f64().expect("a scale");
     // 0.0254 m are an inch.

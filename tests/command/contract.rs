@@ -1,20 +1,10 @@
 //! The command as the contract has it (sections 5 and 6): formats, exit status, one-line errors,
 //! files that are there whole or not at all.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
-mod common;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use common::{fragscale, scale, scales_json, stdout_of};
+use crate::common::{fragscale, scale, scales_json, stdout_of};
 use serde_json::Value;
 use tempfile::TempDir;
 

@@ -1,15 +1,5 @@
 //! Analyses of variance against NIST's certified answers, in the library and through the command.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
-mod common;
-
 use std::collections::BTreeMap;
 use std::fs;
 
@@ -28,7 +18,7 @@ struct Certified {
 }
 
 fn read(name: &str) -> Option<Certified> {
-    let path = common::shared_data(&format!("nist-anova/{name}.dat"))?;
+    let path = crate::common::shared_data(&format!("nist-anova/{name}.dat"))?;
     let text = fs::read_to_string(path).expect("a text");
     let (header, data): (Vec<_>, Vec<_>) = text.lines().enumerate().partition(|(at, _)| *at < 60);
     let numbers = |begin: &str| -> Vec<f64> {
@@ -149,7 +139,7 @@ fn path(file: &tempfile::NamedTempFile) -> &str {
 }
 
 fn json(arguments: &[&str]) -> Value {
-    serde_json::from_str(&common::stdout_of(arguments)).expect("JSON")
+    serde_json::from_str(&crate::common::stdout_of(arguments)).expect("JSON")
 }
 
 fn near(value: &Value, expected: f64) {
@@ -189,7 +179,7 @@ fn the_command_gives_one_table_and_one_a_size() {
     assert_eq!(found["per"][0]["differs"], true);
     assert_eq!(found["per"][1]["between"]["f"], 0.0);
     arguments.truncate(6);
-    let output = common::fragscale(&arguments);
+    let output = crate::common::fragscale(&arguments);
     let text = String::from_utf8(output.stdout).expect("UTF-8");
     assert!(
         text.contains("the groups of 'trial' do not differ at the 5 % level"),
@@ -211,7 +201,7 @@ fn the_command_takes_published_sums() {
     near(&found["between"]["f"], 1.9 / 9.0 / (1255.3 / 20.0));
     near(&found["critical_f"], 2.392_814_108_442_279);
     assert_eq!(found["differs"], false);
-    let text = common::stdout_of(&published);
+    let text = crate::common::stdout_of(&published);
     let line = text.lines().nth(1).expect("a line");
     let words: Vec<&str> = line.split_whitespace().collect();
     assert_eq!(
@@ -251,7 +241,7 @@ fn what_cannot_be_used_is_said_with_line_and_column() {
             "cannot be used with",
         ),
     ] {
-        let output = common::fragscale(&[&["anova", path(file)][..], more].concat());
+        let output = crate::common::fragscale(&[&["anova", path(file)][..], more].concat());
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(status), "{stderr}");
         assert!(stderr.contains(sentence), "{stderr}");

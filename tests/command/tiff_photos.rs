@@ -1,14 +1,6 @@
 //! Photos in TIFF files, pixel by pixel against what libtiff reads (`tests/geotiff/make_photos.py`). A
 //! folder with more of them is named in `FRAGSCALE_TEST_TIFF_PHOTOS`.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 

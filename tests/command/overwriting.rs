@@ -1,17 +1,7 @@
 //! What is read is never written over, by any of its names; what somebody else wrote only with
 //! `--force`; what fragscale wrote as often as it likes.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test a panic is the report"
-)]
-
-mod common;
-#[path = "common/own_frame.rs"]
-mod own_frame;
+use crate::own_frame;
 
 use std::collections::BTreeMap;
 use std::fs;

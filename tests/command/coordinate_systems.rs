@@ -1,14 +1,6 @@
 //! Poses from the Earth's centre over a surface on a map: the flight is brought to one system, and its
 //! scales are those of a closed form.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::unwrap_used,
-    missing_docs,
-    reason = "in a test a panic is the report"
-)]
-
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;

@@ -2,23 +2,12 @@
 //! with xdotool's keys and xclip as the other program. Left out, and said, where one of them is
 //! missing; `tests/run` installs them.
 
-#![cfg(all(feature = "app", target_os = "linux"))]
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    clippy::unwrap_used,
-    reason = "in a test a panic is the report"
-)]
-
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
-
-mod common;
 
 /// The longest that the window may take for an answer on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -183,9 +172,9 @@ fn a_copied_scale_reaches_another_program() {
     };
     // What the command line says of the first photo, which the window selects.
     let flight = sample().join("flight.toml");
-    let told = common::scales_json(&flight, &[]);
+    let told = crate::common::scales_json(&flight, &[]);
     let photo = &told["photos"][0];
-    let edges = ["top", "bottom"].map(|edge| common::scale(photo, edge).expect("a scale"));
+    let edges = ["top", "bottom"].map(|edge| crate::common::scale(photo, edge).expect("a scale"));
     screen.open(&flight);
     screen.until("a scale is copied", |screen| {
         screen.press("ctrl+shift+c");

@@ -1,22 +1,12 @@
 //! The export for Split-Desktop: what is written is read back and compared with what it should hold;
 //! interrupted, repeated and hindered exports.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
-mod common;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use common::{fragscale, stdout_of};
+use crate::common::{fragscale, stdout_of};
 use fragscale::exports::{
     ExportError, ExportRequest, ExportSummary, Replace, export_for_split_desktop,
 };
@@ -180,7 +170,7 @@ fn the_sample_is_exported_and_reads_back() {
     let csv = stdout_of(&["scales", flight, "--format", "csv"]);
     assert_eq!(text(&files, "scales.csv"), csv);
 
-    let scales = common::scales_json(&sample(), &[]);
+    let scales = crate::common::scales_json(&sample(), &[]);
     let sheet = text(&files, "scales.html");
     let features: Value = serde_json::from_str(text(&files, "footprints.geojson")).expect("JSON");
     assert_eq!(features["coordinates"], "local, in m");

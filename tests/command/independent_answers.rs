@@ -2,19 +2,9 @@
 //! the scales that an independent implementation (Python, from the contract alone; SciPy's Qhull for
 //! the triangulation, OpenCV for checks of the lenses) computed for it.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
-mod common;
-
 use std::path::Path;
 
-use common::scales_json;
+use crate::common::scales_json;
 use serde_json::Value;
 
 /// Numbers agree to a relative `tolerance` of `size`, everything else is equal.

@@ -1,19 +1,9 @@
 //! Flights that other software wrote (shared data outside the repository). Where it is absent each
 //! test says so and passes.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
-mod common;
-
 use std::fs;
 
-use common::{scale, scales_json, shared_data};
+use crate::common::{scale, scales_json, shared_data};
 use fragscale::camera::Pose;
 use fragscale::formats::read_project;
 use fragscale::jobs::Progress;

@@ -1,19 +1,9 @@
 //! `psd compare` as its user runs it: one command from a table to the figure, the report and JSON.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{fragscale, stdout_of};
+use crate::common::{fragscale, stdout_of};
 use serde_json::Value;
 use tempfile::TempDir;
 

@@ -1,14 +1,6 @@
 //! GeoTIFFs that GDAL wrote, cell by cell against what rasterio reads (`tests/geotiff/make.py`). A
 //! folder with more of them is named in `FRAGSCALE_TEST_GEOTIFFS`.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};

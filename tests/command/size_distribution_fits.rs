@@ -5,19 +5,9 @@
 //! the parameters, the best of 25 random starts (75 for five parameters), xmax at or above the largest
 //! size for Swebrec; for Gates-Gaudin-Schuhmann P = min(1, (x / xmax)^m).
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
-mod common;
-
 use std::path::Path;
 
-use common::{shared_data, stdout_of};
+use crate::common::{shared_data, stdout_of};
 use fragscale::fragmentation::{FitOptions, Model, SizeDistribution, fit};
 use serde_json::Value;
 
@@ -231,7 +221,7 @@ fn several_curves_are_an_array_and_one_that_cannot_be_fitted_is_said() {
     );
     let path = folder.path().join("t.csv");
     let path = path.to_str().expect("a UTF-8 path");
-    let output = common::fragscale(&["psd", "fit", path, "--format", "json"]);
+    let output = crate::common::fragscale(&["psd", "fit", path, "--format", "json"]);
     assert_eq!(output.status.code(), Some(0));
     let fits: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(fits.as_array().map(Vec::len), Some(1));
@@ -241,7 +231,7 @@ fn several_curves_are_an_array_and_one_that_cannot_be_fitted_is_said() {
         said.contains("warning: b: left out: 2 points for the 3 parameters"),
         "{said}"
     );
-    let output = common::fragscale(&["psd", "fit", path, "--model", "swebrec5"]);
+    let output = crate::common::fragscale(&["psd", "fit", path, "--model", "swebrec5"]);
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(said.contains("4 points for the 5 parameters"), "{said}");

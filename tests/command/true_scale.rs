@@ -1,20 +1,9 @@
 //! The scale core against lengths that somebody measured: a calibration board in photos, its poses
 //! and lens as OpenCV solved them, the pixels per metre as OpenCV's corner detection finds them.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    clippy::unwrap_used,
-    missing_docs,
-    reason = "in a test a panic is the report"
-)]
-
-mod common;
-
 use std::fs;
 
-use common::shared_data;
+use crate::common::shared_data;
 use fragscale::camera::Pose;
 use fragscale::formats::read_camera;
 use fragscale::geometry::Ray;

@@ -2,24 +2,14 @@
 //! were exchanged, files that cannot be read. Every scale here has an answer in closed form: nadir
 //! photos of a plane, whose scale is the focal length in pixels over the height.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
-mod common;
-#[path = "common/own_frame.rs"]
-mod own_frame;
+use crate::own_frame;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use common::{fragscale, scales_json};
+use crate::common::{fragscale, scales_json};
 use fragscale::flight::{Doubt, Judged, Limits, Verdict, judge_all};
 use fragscale::jobs::Progress;
 use fragscale::opening::{OpenOptions, Opened, compare_colours, open_flight, with_colours};
@@ -140,7 +130,7 @@ fn scales_for_reduced_photos_say_so() {
     let report = scales_json(&model, &["--photo-folder", text_of(&photos), "--unit", "m"]);
     for photo in report["photos"].as_array().expect("photos") {
         assert_eq!(photo["width"], 4000);
-        let top = common::scale(photo, "top").expect("a scale");
+        let top = crate::common::scale(photo, "top").expect("a scale");
         assert!(
             (top / (FOCAL * 4000.0 / HEIGHT) - 1.0).abs() < 1e-9,
             "{top}"
@@ -411,7 +401,7 @@ fn an_unreadable_photo_is_left_out_of_a_bundler_flight() {
         .collect();
     assert_eq!(names, ["a.jpg", "c.jpg"]);
     for photo in photos {
-        let top = common::scale(photo, "top").expect("a scale");
+        let top = crate::common::scale(photo, "top").expect("a scale");
         assert!((top / (320.0 / HEIGHT) - 1.0).abs() < 1e-9, "{top}");
     }
 }

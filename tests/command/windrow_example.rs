@@ -10,20 +10,10 @@
 //!
 //! `FRAGSCALE_REGENERATE=1 cargo test --test windrow` writes the files anew.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
-mod common;
-
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use common::{scale, scales_json};
+use crate::common::{scale, scales_json};
 use glam::DVec3;
 
 /// Where the profile bends: (x, z), metres.

@@ -1,15 +1,5 @@
 //! The paper's Table I through the command.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test or a benchmark a panic is the report"
-)]
-
-mod common;
-
 use std::fs;
 
 use serde_json::{Value, json};
@@ -31,7 +21,7 @@ const WIDE: &str = "step,scale object,point cloud\nflight,12.5,10\nset up,1800 s
 #[test]
 fn totals_and_averages_of_rows_and_columns() {
     let file = written(WIDE);
-    let text = common::stdout_of(&["effort", path(&file), "--format", "json"]);
+    let text = crate::common::stdout_of(&["effort", path(&file), "--format", "json"]);
     let found: Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(found["unit"], "min");
     assert_eq!(found["columns"], json!(["scale object", "point cloud"]));
@@ -44,7 +34,7 @@ fn totals_and_averages_of_rows_and_columns() {
     assert_eq!(found["column_sums"][1]["average"], 27.5);
     assert_eq!(found["all"]["total"], 99.0);
     assert_eq!(found["average_column_total"], 49.5);
-    let text = common::stdout_of(&["effort", path(&file)]);
+    let text = crate::common::stdout_of(&["effort", path(&file)]);
     assert!(text.contains("1 time is missing, in no total and no average: 'spheres' of"));
 }
 
@@ -52,9 +42,9 @@ fn totals_and_averages_of_rows_and_columns() {
 #[test]
 fn its_own_table_is_read_again() {
     let file = written(WIDE);
-    let csv = common::stdout_of(&["effort", path(&file), "--format", "csv"]);
+    let csv = crate::common::stdout_of(&["effort", path(&file), "--format", "csv"]);
     let again = written(&csv);
-    let output = common::fragscale(&["effort", path(&again), "--format", "csv"]);
+    let output = crate::common::fragscale(&["effort", path(&again), "--format", "csv"]);
     assert_eq!(String::from_utf8_lossy(&output.stdout), csv);
     let warnings = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(
@@ -66,7 +56,7 @@ fn its_own_table_is_read_again() {
 #[test]
 fn a_time_that_is_none_is_said_with_line_and_column() {
     let file = written("step,cloud\nflight,10\nset up,soon\n");
-    let output = common::fragscale(&["effort", path(&file)]);
+    let output = crate::common::fragscale(&["effort", path(&file)]);
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1));
     assert!(

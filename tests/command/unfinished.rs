@@ -1,23 +1,12 @@
 //! What a full disk or a killed process leaves: whole files or none.
 
-#![cfg(unix)]
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    missing_docs,
-    reason = "in a test a panic is the report"
-)]
-
-mod common;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use common::stdout_of;
+use crate::common::stdout_of;
 
 /// One test at a time: the moments of kills are fractions of a run that has the machine for itself.
 fn alone() -> MutexGuard<'static, ()> {
