@@ -221,6 +221,8 @@ pub fn read_poses(path: &Path) -> Result<PosesFile, FileError> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]

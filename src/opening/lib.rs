@@ -38,3 +38,6 @@ pub use info::info;
 pub use open::{FlightReconstruction, OpenOptions, Opened, open_flight};
 pub use origin::FlightOrigin;
 pub use photo_files::PhotoFile;
+
+#[cfg(test)]
+mod tests;

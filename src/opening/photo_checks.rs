@@ -212,10 +212,10 @@ mod tests {
     use super::*;
     use crate::camera::{Camera, Distortion, Pose};
     use crate::flight::{FlightParts, PhotoFileState};
-    use crate::formats::photos::photo_metadata::test_jpeg::{jpeg, packet, short, text};
     use crate::scale::{Ground, ImageKind};
     use crate::surface::{Cloud, Surface};
     use crate::units::LengthUnit;
+    use fragscale_test_data::jpeg::{jpeg, packet, short, text};
 
     /// A camera 50 m above a level square, straight down; 24 mm on 43.27 mm of film at 5000 px.
     fn flight(name: &str, fx: f64, unit: LengthUnit) -> Flight {

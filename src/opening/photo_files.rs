@@ -235,7 +235,7 @@ mod tests {
         }
         let mut warnings = Vec::new();
         let files = PhotoFolder::new(Some(folder.path()));
-        let of_photos = files.files_of(&photos);
+        let of_photos = files_of(&files, &photos);
         fit_cameras_to_files(&files, &of_photos, &mut cameras, &mut photos, &mut warnings);
         let [camera] = cameras;
         (camera, photos, warnings)

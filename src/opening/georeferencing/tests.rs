@@ -6,7 +6,7 @@ use glam::{DMat3, EulerRot};
 use super::*;
 use crate::camera::{Camera, Distortion, Pose};
 use crate::flight::FlightFile;
-use crate::formats::packages::reconstruction::PosedPhoto;
+use crate::formats::PosedPhoto;
 use crate::geodesy::Crs;
 use fragscale_test_data::shared_data;
 

@@ -2,9 +2,9 @@
 
 use exif::{Field, Tag};
 
-use super::test_jpeg::{jpeg, packet, rationals, short};
 use super::tests::photo;
 use super::{FocalSource, PhotoMetadata};
+use fragscale_test_data::jpeg::{jpeg, packet, rationals, short};
 
 /// A photo of the size with DJI's designed lens for 5472 x 3648 and its calibrated one.
 fn of_a_phantom(size: (u16, u16), exif: &[Field]) -> PhotoMetadata {

@@ -331,6 +331,4 @@ mod crop_tests;
 #[cfg(test)]
 mod namespace_tests;
 #[cfg(test)]
-pub mod test_jpeg;
-#[cfg(test)]
 mod tests;

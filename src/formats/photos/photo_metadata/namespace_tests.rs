@@ -3,9 +3,9 @@
 use exif::Tag;
 use glam::DVec3;
 
-use super::test_jpeg::{gps, jpeg, packet, text};
 use super::tests::{DOWN, EAST, assert_looks, photo, with_xmp};
 use super::{Angles, PhotoMetadata};
+use fragscale_test_data::jpeg::{gps, jpeg, packet, text};
 
 const NORTH: DVec3 = DVec3::Y;
 

@@ -3,9 +3,9 @@ use std::io::Cursor;
 use exif::{Field, Tag};
 use proptest::prelude::*;
 
-use super::test_jpeg::{gps, jpeg, packet, rationals, segment, short, text, tiff};
 use super::*;
 use crate::camera::Distortion;
+use fragscale_test_data::jpeg::{gps, jpeg, packet, rationals, segment, short, text, tiff};
 use fragscale_test_data::shared_data;
 
 pub(super) fn photo(bytes: Vec<u8>) -> PhotoMetadata {

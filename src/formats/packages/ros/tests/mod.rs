@@ -9,77 +9,21 @@ use std::path::Path;
 use glam::{DMat3, DVec3};
 use proptest::prelude::*;
 
-use self::writing::{Entry, Out, Style, bag, db3, mcap};
+use self::writing::{bag, db3, mcap};
 use super::*;
 use crate::Kind;
 use crate::Package;
 use crate::camera::{Brown, Distortion, Pose};
 use crate::detect;
 use crate::packages::reconstruction::Reconstruction;
+use fragscale_test_data::ros::{
+    D, Entry, Out, Style, camera_info, entry, image, image_of, mount, turned,
+};
 use fragscale_test_data::shared_data;
-
-fn entry(topic: &'static str, kind: &'static str, out: Out) -> Entry {
-    let data = out.done();
-    Entry { topic, kind, data }
-}
-
-/// x y z and a turn about z, as messages write poses.
-fn turned(out: Out, center: [f64; 3], degrees: f64) -> Out {
-    let half = degrees.to_radians() / 2.0;
-    out.f64s(&center).f64s(&[0.0, 0.0, half.sin(), half.cos()])
-}
 
 fn tf(style: Style, ms: u32, parent: &str, child: &str, center: [f64; 3], degrees: f64) -> Entry {
     let out = Out::new(style).u32(1).header(ms, parent).text(child);
     entry("/tf", "tf2_msgs/TFMessage", turned(out, center, degrees))
-}
-
-/// The camera looks down, its top forward: half a turn about (1, -1, 0).
-fn mount(style: Style) -> Entry {
-    let s = 0.5_f64.sqrt();
-    let out = Out::new(style)
-        .u32(1)
-        .header(0, "base_link")
-        .text("cam_optical");
-    let out = out.f64s(&[0.1, 0.0, -0.2, s, -s, 0.0, 0.0]);
-    entry("/tf_static", "tf2_msgs/TFMessage", out)
-}
-
-const D: [f64; 5] = [-0.2, 0.1, 0.001, -0.002, 0.03];
-
-fn camera_info(style: Style) -> Entry {
-    let out = Out::new(style)
-        .header(100, "cam_optical")
-        .u32(480)
-        .u32(640)
-        .text("plumb_bob");
-    let out = out
-        .u32(5)
-        .f64s(&D)
-        .f64s(&[500.0, 0.0, 319.5, 0.0, 510.0, 239.5, 0.0, 0.0, 1.0]);
-    let out = out.f64s(&[7.0; 21]).u32(0).u32(0);
-    let out = out.u32(0).u32(0).u32(0).u32(0).byte(0);
-    entry("/cam/camera_info", "sensor_msgs/CameraInfo", out)
-}
-
-fn image_of(style: Style, topic: &'static str, ms: u32, encoding: &str, size: [u32; 2]) -> Entry {
-    let out = Out::new(style)
-        .header(ms, "cam_optical")
-        .u32(size[1])
-        .u32(size[0]);
-    let out = out
-        .text(encoding)
-        .byte(0)
-        .u32(3)
-        .u32(3)
-        .byte(1)
-        .byte(2)
-        .byte(3);
-    entry(topic, "sensor_msgs/Image", out)
-}
-
-fn image(style: Style, ms: u32) -> Entry {
-    image_of(style, "/cam/image_raw", ms, "rgb8", [640, 480])
 }
 
 fn compressed(style: Style, ms: u32) -> Entry {
@@ -161,16 +105,9 @@ fn flown(entries: &[Entry]) -> Result<Reconstruction, Fault> {
     of_bag(&bag(entries, "none")).unwrap().reconstruction()
 }
 
-/// Where the base is at a time, worked out by hand.
 fn expected(t: f64) -> Pose {
-    let turn = DMat3::from_rotation_z((100.0 * t).to_radians());
-    let base = DVec3::new(1000.0 + 2.0 * t, 2000.0, 0.0);
-    // Right is the base's -y, down its -x, forward its -z.
-    let axes = DMat3::from_cols(DVec3::NEG_Y, DVec3::NEG_X, DVec3::NEG_Z);
-    Pose {
-        rotation: turn * axes,
-        center: base + turn * DVec3::new(0.1, 0.0, -0.2),
-    }
+    let (rotation, center) = fragscale_test_data::ros::expected(t);
+    Pose { rotation, center }
 }
 
 fn close(found: &Pose, expected: &Pose) -> bool {

@@ -1,18 +1,23 @@
 //! JPEG headers with EXIF and XMP for tests: no pixels, because none are read.
 
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test file that cannot be made fails the test"
+)]
+
 use std::io::Cursor;
 
 use exif::experimental::Writer;
 use exif::{Field, In, Rational, Tag, Value};
 
 /// A segment with its marker and length.
-pub(crate) fn segment(marker: u8, payload: &[u8]) -> Vec<u8> {
+pub fn segment(marker: u8, payload: &[u8]) -> Vec<u8> {
     let length = u16::try_from(payload.len() + 2).unwrap().to_be_bytes();
     [&[0xff, marker][..], &length, payload].concat()
 }
 
 /// A JPEG's header up to the start of the scan.
-pub(crate) fn jpeg(size: (u16, u16), exif: &[Field], packets: &[&str]) -> Vec<u8> {
+pub fn jpeg(size: (u16, u16), exif: &[Field], packets: &[&str]) -> Vec<u8> {
     let mut bytes = vec![0xff, 0xd8];
     if !exif.is_empty() {
         bytes.extend(segment(
@@ -31,7 +36,7 @@ pub(crate) fn jpeg(size: (u16, u16), exif: &[Field], packets: &[&str]) -> Vec<u8
 }
 
 /// The TIFF of an EXIF block.
-pub(crate) fn tiff(fields: &[Field]) -> Vec<u8> {
+pub fn tiff(fields: &[Field]) -> Vec<u8> {
     let mut writer = Writer::new();
     for field in fields {
         writer.push_field(field);
@@ -50,23 +55,23 @@ fn field(tag: Tag, value: Value) -> Field {
 }
 
 /// A text field.
-pub(crate) fn text(tag: Tag, value: &str) -> Field {
+pub fn text(tag: Tag, value: &str) -> Field {
     field(tag, Value::Ascii(vec![value.as_bytes().to_vec()]))
 }
 
 /// A field of small whole numbers.
-pub(crate) fn short(tag: Tag, value: u16) -> Field {
+pub fn short(tag: Tag, value: u16) -> Field {
     field(tag, Value::Short(vec![value]))
 }
 
 /// A field of fractions.
-pub(crate) fn rationals(tag: Tag, values: &[(u32, u32)]) -> Field {
+pub fn rationals(tag: Tag, values: &[(u32, u32)]) -> Field {
     let rational = |&(num, denom): &(u32, u32)| Rational { num, denom };
     field(tag, Value::Rational(values.iter().map(rational).collect()))
 }
 
 /// 47 30' 0.36" north, 16 15' 0.18" west, 200.5 m above sea level: (-16.25005, 47.5001).
-pub(crate) fn gps() -> Vec<Field> {
+pub fn gps() -> Vec<Field> {
     vec![
         text(Tag::GPSLatitudeRef, "N"),
         rationals(Tag::GPSLatitude, &[(47, 1), (30, 1), (36, 100)]),
@@ -79,7 +84,7 @@ pub(crate) fn gps() -> Vec<Field> {
 
 /// An XMP packet around descriptions, with every maker's namespace and padding. `drone` is the prefix
 /// under which Autel writes DJI's.
-pub(crate) fn packet(descriptions: &str) -> String {
+pub fn packet(descriptions: &str) -> String {
     let padding = " ".repeat(200);
     format!(
         "<?xpacket begin=\"\u{feff}\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n\
