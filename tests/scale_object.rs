@@ -13,6 +13,7 @@ mod common;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use fragscale::camera::Camera;
 use fragscale::flight::{ComparedObject, Flight, Outcome, Photo, ScaleObject};
@@ -30,7 +31,7 @@ fn sample() -> PathBuf {
 }
 
 /// The flight with its scales, and the centres of its spheres.
-fn flight() -> (Flight, Vec<Outcome>, Vec<DVec3>) {
+fn flight() -> (Arc<Flight>, Vec<Outcome>, Vec<DVec3>) {
     let progress = Progress::default();
     let opened = open_flight(&sample(), &OpenOptions::default(), &progress).expect("opens");
     let outcomes = opened.flight.scales(&progress).expect("scales");

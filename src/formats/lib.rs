@@ -83,7 +83,7 @@ pub use candidates::{Candidate, candidates};
 pub use cloud_file::CloudFile;
 pub use dropped::Dropped;
 pub use effort_table::{effort_table, read_effort_table};
-pub use evidence::{Colours, LookedUp, compare_colours, look_up, with_colours};
+pub use evidence::{Colours, compare_all_colours, compare_colours, look_up};
 pub use georeferencing::{
     GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind, LengthResidual,
     PositionResidual, georeference,
