@@ -2,12 +2,12 @@
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
-use super::command::{Asking, Choice, Command, Look};
-use super::size_distributions::{DistributionCommand, Page};
-use super::state::State;
-use super::tracing::Trace;
-use super::work::DialogFor;
+use crate::command::{Asking, Choice, Command, Look};
+use crate::open_flight::tracing::Trace;
 use crate::scale::ScaleObjectKind;
+use crate::size_distributions::{DistributionCommand, Page};
+use crate::state::State;
+use crate::tasks::work::DialogFor;
 
 /// What an entry of the menu does.
 #[derive(Debug, Clone, Copy)]

@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use super::command::{Asking, Command};
-use super::open_flight::OpenFlight;
-use super::size_distributions::Page;
-use super::state::{HeldBack, PictureRequest, Severity, State, sample_flight};
-use super::work::Task;
+use crate::command::{Asking, Command};
 use crate::exports::Replace;
 use crate::files::{self, Kind};
+use crate::open_flight::OpenFlight;
 use crate::render::MOST_PIXELS;
+use crate::size_distributions::Page;
+use crate::state::{HeldBack, PictureRequest, Severity, State, sample_flight};
+use crate::tasks::work::Task;
 
 impl State {
     /// Does what a command says.
@@ -169,7 +169,7 @@ impl State {
     }
 
     /// Goes on with what was held back.
-    pub(super) fn go_on(&mut self, held_back: HeldBack) {
+    pub(crate) fn go_on(&mut self, held_back: HeldBack) {
         match held_back {
             HeldBack::Quit => self.quit(),
             HeldBack::Leave(command) => self.go(*command),
@@ -220,7 +220,7 @@ impl State {
     }
 
     /// Undo, redo, and what they go over.
-    pub(super) fn edit_settings(&mut self, command: &Command) {
+    pub(crate) fn edit_settings(&mut self, command: &Command) {
         if self.is_opening() && self.reads_other {
             // What is changed now would go with this flight, or its reading would stop the other's.
             let text = "another flight is being opened; change settings when it is there";
@@ -357,7 +357,7 @@ impl State {
     }
 
     /// Whether a task of this kind still writes; then says so.
-    pub(super) fn is_busy(&mut self, task: Task) -> bool {
+    pub(crate) fn is_busy(&mut self, task: Task) -> bool {
         let busy = self.work.is_running(task);
         if busy {
             let text = format!(

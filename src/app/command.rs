@@ -5,17 +5,17 @@ use std::path::PathBuf;
 
 use glam::{DVec2, DVec3};
 
-use super::georeferencing::GeoreferenceForm;
-use super::layers::Layers;
-use super::preferences::Theme;
-use super::size_distributions::{DistributionCommand, Page};
-use super::state::PictureRequest;
-use super::table::Column;
-use super::tracing::Trace;
-use super::work::{DialogFor, Task};
 use crate::flight::{FlightSettings, Limits, Verdict};
 use crate::formats::GeoreferenceRequest;
 use crate::geometry::Ray;
+use crate::open_flight::georeferencing::GeoreferenceForm;
+use crate::open_flight::table::Column;
+use crate::open_flight::tracing::Trace;
+use crate::size_distributions::{DistributionCommand, Page};
+use crate::state::PictureRequest;
+use crate::state::layers::Layers;
+use crate::state::preferences::Theme;
+use crate::tasks::work::{DialogFor, Task};
 use crate::units::LengthUnit;
 
 /// Which tab of the right panel is shown.

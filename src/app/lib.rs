@@ -2,12 +2,13 @@
 //! to trust and why, and takes the others along.
 //!
 //! ```text
-//! panels/, viewport   read the State, send Commands
+//! panels/, viewport/  read the State, send Commands
 //! actions             menu entry, shortcut and tooltip in one
-//! apply               the one function that applies a Command; apply_to_flight its second half
-//! tracing             outlines of scale objects, point by point
-//! opening -> work     long work as jobs; poll takes their results
-//! picker              rays of the mouse on a thread of their own
+//! apply               the one function that applies a Command
+//! open_flight/        the flight on the screen, and what commands do to it alone
+//! tasks/              long work as jobs; poll takes their results
+//! state/              everything that panels read
+//! size_distributions/ the other page
 //! ```
 //!
 //! So a test is a list of commands, undo is a list of states, and no frame does work that grows with
@@ -15,24 +16,15 @@
 
 pub mod actions;
 pub mod apply;
-pub mod apply_to_flight;
 pub mod command;
 pub mod frame_times;
-pub mod georeferencing;
-pub mod history;
-pub mod layers;
 pub mod open_flight;
-pub mod opening;
 pub mod panels;
-pub mod picker;
 pub mod poll;
-pub mod preferences;
 pub mod size_distributions;
 pub mod state;
-pub mod table;
-pub mod tracing;
+pub mod tasks;
 pub mod viewport;
-pub mod work;
 mod writing;
 
 use fragscale_core::{

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::command::Command;
-use super::open_flight::{Measure, OpenFlight, Preview};
-use super::picker::{Picked, Picker, Purpose};
-use super::state::{Severity, State};
-use super::work::{DialogFor, Done, Loaded, NotOpened, Task, Thumbnail};
+use crate::command::Command;
 use crate::flight::Verdict;
 use crate::formats::OpenOptions;
+use crate::open_flight::picker::{Picked, Picker, Purpose};
+use crate::open_flight::{Measure, OpenFlight, Preview};
+use crate::state::{Severity, State};
+use crate::tasks::work::{DialogFor, Done, Loaded, NotOpened, Task, Thumbnail};
 
 /// Thumbnails taken in one frame: uploading each takes a fraction of a millisecond.
 const THUMBNAILS_A_FRAME: usize = 8;
@@ -223,7 +223,7 @@ impl State {
 
     /// Where neither scales nor the file are on their way any more, a change of the settings that
     /// was not computed goes.
-    pub(super) fn take_back_settings(&mut self) {
+    pub(crate) fn take_back_settings(&mut self) {
         let on_the_way = self.work.is_running(Task::Scales) || self.work.is_running(Task::Open);
         if let Some(open) = &mut self.open
             && !on_the_way

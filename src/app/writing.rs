@@ -4,16 +4,16 @@
 
 use std::path::Path;
 
-use super::command::Command;
-use super::panels::typed;
-use super::state::{HeldBack, Severity, State};
+use crate::command::Command;
 use crate::exports;
 use crate::files::{self, Inputs, Kind, Standing};
 use crate::formats::FileError;
+use crate::panels::typed;
+use crate::state::{HeldBack, Severity, State};
 
 impl State {
     /// Everything that was read for what is on the screen.
-    pub(super) fn read(&self) -> Inputs {
+    pub(crate) fn read(&self) -> Inputs {
         let mut read = Inputs::default();
         if let Some(open) = &self.open {
             read.extend(&open.read);
@@ -35,7 +35,7 @@ impl State {
 
     /// The same for saving the flight to `path`: where it was opened it may be saved, but the bundled
     /// one stays as it came.
-    pub(super) fn read_beside(&self, path: &Path) -> Inputs {
+    pub(crate) fn read_beside(&self, path: &Path) -> Inputs {
         let read = self.read();
         let Some(open) = self.open.as_ref().filter(|open| !open.bundled) else {
             return read;
@@ -49,7 +49,7 @@ impl State {
     }
 
     /// Whether a file can be written now; else says why not, or asks.
-    pub(super) fn may_write(
+    pub(crate) fn may_write(
         &mut self,
         path: &Path,
         kind: Kind,
@@ -79,7 +79,7 @@ impl State {
     }
 
     /// Whether a folder can be exported to now; else asks.
-    pub(super) fn may_export(&mut self, folder: &Path) -> bool {
+    pub(crate) fn may_export(&mut self, folder: &Path) -> bool {
         let Some(open) = &self.open else {
             return false;
         };

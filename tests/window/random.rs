@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use fragscale::app::command::{Asking, Choice, Look, Tab};
-use fragscale::app::layers::Layers;
+use fragscale::app::open_flight::table::Column;
+use fragscale::app::open_flight::tracing::Trace;
 use fragscale::app::open_flight::{Measure, OpenFlight};
-use fragscale::app::preferences::Theme;
 use fragscale::app::state::PictureRequest;
-use fragscale::app::table::Column;
-use fragscale::app::tracing::Trace;
-use fragscale::app::work::Task;
+use fragscale::app::state::layers::Layers;
+use fragscale::app::state::preferences::Theme;
+use fragscale::app::tasks::work::Task;
 use fragscale::app::{Command, State};
 use fragscale::flight::{FlightSettings, Limits, Outcome, Verdict};
 use fragscale::geometry::Ray;

@@ -9,7 +9,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use fragscale::app::Command;
 use fragscale::app::size_distributions::{Computed, DistributionCommand, Page, Settings};
-use fragscale::app::work::Task;
+use fragscale::app::tasks::work::Task;
 use fragscale::fragmentation::{FitOptions, Model, Weighting, fit};
 use fragscale::units::LengthUnit;
 use tempfile::TempDir;

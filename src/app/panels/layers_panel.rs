@@ -2,9 +2,9 @@
 
 use super::field::combo_box;
 use crate::command::Command;
-use crate::layers::Layers;
 use crate::render::{ColorBy, Scope};
 use crate::state::State;
+use crate::state::layers::Layers;
 
 /// Draws the switches.
 pub fn layers_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use crate::actions::{Action, MENUS, OPEN_SAMPLE};
 use crate::command::Command;
-use crate::preferences::Theme;
 use crate::state::State;
+use crate::state::preferences::Theme;
 
 /// Draws the menu bar.
 pub fn menu_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

@@ -3,12 +3,12 @@
 use egui_extras::{Column as Width, TableBuilder};
 
 use super::field::combo_box;
-use super::{or_dash, verdict_color, verdict_sign};
+use super::verdict::{or_dash, verdict_color, verdict_sign};
 use crate::command::Command;
 use crate::flight::Verdict;
 use crate::open_flight::OpenFlight;
+use crate::open_flight::table::Column;
 use crate::state::State;
-use crate::table::Column;
 
 /// The height of a row, which a thumbnail fits into.
 const ROW: f32 = 34.0;

@@ -1,9 +1,9 @@
 //! What is done every day, one click each.
 
+use super::verdict::{verdict_color, verdict_sign};
 use crate::actions;
 use crate::command::Command;
 use crate::flight::Verdict;
-use crate::panels::{verdict_color, verdict_sign};
 use crate::size_distributions::Page;
 use crate::state::State;
 use crate::units::LengthUnit;

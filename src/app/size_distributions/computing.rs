@@ -13,7 +13,7 @@ use crate::fragmentation::{
 };
 use crate::jobs::Progress;
 use crate::state::{Severity, State};
-use crate::work::{Done, Task};
+use crate::tasks::work::{Done, Task};
 
 /// How the reference is called where nobody has chosen one.
 const REFERENCES: [&str; 4] = ["sieve", "sieving", "reference", "known fragments"];

@@ -7,7 +7,7 @@ use crate::fault::Fault;
 use crate::formats;
 use crate::fragmentation::Effort;
 use crate::state::{Severity, State};
-use crate::work::{Done, Task};
+use crate::tasks::work::{Done, Task};
 
 /// A step that the program did.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -28,8 +28,8 @@ pub use computing::Computed;
 pub use measured::{EffortFile, MeasuredStep};
 pub use source::Source;
 
-use super::history::History;
 use crate::fragmentation::{Labels, Model, SieveSeries, Weighting};
+use crate::state::history::History;
 use crate::units::LengthUnit;
 
 /// Which page the window shows.

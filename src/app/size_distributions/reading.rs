@@ -8,7 +8,7 @@ use super::{Page, PasteForm, ResultTab};
 use crate::command::Command;
 use crate::formats::{self, DistributionColumns, Kind};
 use crate::state::{Severity, State};
-use crate::work::{Done, Task};
+use crate::tasks::work::{Done, Task};
 
 /// What was read, or why not in a line.
 #[derive(Debug)]

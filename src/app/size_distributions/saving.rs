@@ -11,7 +11,7 @@ use crate::fault::Fault;
 use crate::files::{self, Kind};
 use crate::formats::FileError;
 use crate::state::{Severity, State};
-use crate::work::{Done, Task};
+use crate::tasks::work::{Done, Task};
 
 impl State {
     /// Writes the figure; asks before a file is replaced.

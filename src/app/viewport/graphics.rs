@@ -12,7 +12,7 @@ use crate::open_flight::OpenFlight;
 use crate::panels::verdict_color;
 use crate::render::{Gpu, PhotoGeometry, PhotoLook, Renderer, Show, View};
 use crate::scale::ViewFacts;
-use crate::work::Geometry;
+use crate::tasks::work::Geometry;
 
 /// How long the view must rest before everything is drawn.
 const REST: Duration = Duration::from_millis(250);

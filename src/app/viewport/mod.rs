@@ -11,13 +11,13 @@ use eframe::egui_wgpu::RenderState;
 use egui::{Align2, FontId, Pos2, Rect, Sense, vec2};
 use glam::DVec2;
 
-use super::command::{Command, Look};
-use super::frame_times::{FrameTimes, Phase};
-use super::open_flight::OpenFlight;
-use super::state::{PictureRequest, State};
-use super::work::{Done, Task};
+use crate::command::{Command, Look};
 use crate::files::{self, Kind, marked_png};
+use crate::frame_times::{FrameTimes, Phase};
+use crate::open_flight::OpenFlight;
 use crate::render::{Background, Gpu, Renderer, Show, View};
+use crate::state::{PictureRequest, State};
+use crate::tasks::work::{Done, Task};
 use graphics::{Graphics, Uploaded};
 use mouse::mouse;
 use words::{distance, legend, write};

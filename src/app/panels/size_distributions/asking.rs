@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use crate::command::Command;
-use crate::panels::ask::{path_field, typed};
+use crate::panels::path_field::{path_field, typed};
 use crate::size_distributions::DistributionCommand;
 use crate::state::State;
-use crate::work::DialogFor;
+use crate::tasks::work::DialogFor;
 
 /// Which file to add.
 pub(in crate::panels) fn add_distributions(

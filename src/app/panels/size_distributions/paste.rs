@@ -1,12 +1,12 @@
 //! The small window that a table is pasted into.
 
 use crate::command::Command;
-use crate::panels::ask::takes_the_keys_at_first;
 use crate::panels::field::combo_box;
+use crate::panels::path_field::takes_the_keys_at_first;
 use crate::size_distributions::{DistributionCommand, PasteForm};
 use crate::state::State;
+use crate::tasks::work::Task;
 use crate::units::LengthUnit;
-use crate::work::Task;
 
 /// Draws the window's contents.
 pub(in crate::panels) fn paste(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

@@ -15,7 +15,7 @@ use crate::fragmentation::Labels;
 use crate::size_distributions::drawing::{Area, Drawing, MethodDrawing};
 use crate::size_distributions::{Computed, DistributionCommand, PlotOf};
 use crate::state::State;
-use crate::work::Task;
+use crate::tasks::work::Task;
 
 /// Draws what is above the plot, and the plot.
 pub(super) fn plot(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

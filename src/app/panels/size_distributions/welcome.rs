@@ -32,7 +32,10 @@ pub(super) fn welcome(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
             ui.weak(
                 "cumulative percent passing by size, of one or many methods, trials and photos",
             );
-            if state.work.is_running(crate::work::Task::ReadDistributions) {
+            if state
+                .work
+                .is_running(crate::tasks::work::Task::ReadDistributions)
+            {
                 ui.add_space(14.0);
                 ui.spinner();
             }

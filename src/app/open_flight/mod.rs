@@ -1,0 +1,424 @@
+//! The flight that is open: what was read, what was computed, what the engineer has done with it.
+
+pub mod apply;
+pub mod georeferencing;
+pub mod picker;
+pub mod table;
+pub mod tracing;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use crate::files::Inputs;
+use crate::flight::{
+    ComparedObject, Flight, FlightSettings, Judged, Limits, Outcome, ScaleObject, Verdict,
+    judge_all,
+};
+use crate::formats::{
+    Colours, FlightOrigin, FlightReconstruction, LookedUp, OpenOptions, PhotoFile, with_colours,
+};
+use crate::geometry::{Bounds, LocalFrame};
+use crate::render::{Orbit, PhotoImage};
+use crate::scale::{PhotoScale, ViewFacts};
+use crate::state::history::History;
+use crate::state::sample_flight;
+use crate::tasks::work::{Geometry, Loaded, PreviewPicture};
+use georeferencing::Georeferencing;
+use picker::Picker;
+use table::{Row, TableOrder};
+use tracing::Tracing;
+
+/// What undo goes back over.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Edit {
+    /// The flight's settings.
+    pub settings: FlightSettings,
+    /// Which photos are chosen for export.
+    pub chosen: Vec<bool>,
+}
+
+/// The selected photo in the inspector.
+#[derive(Debug)]
+pub struct Preview {
+    /// Which photo.
+    pub photo: usize,
+    /// Its pixels, undistorted as its scale assumes, or why it cannot be shown.
+    pub picture: Result<PreviewPicture, String>,
+    /// Counted, so that textures know a new one.
+    pub number: u64,
+}
+
+/// The distance tool.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Measure {
+    /// Clicks select photos.
+    #[default]
+    Off,
+    /// Waits for the first point.
+    First,
+    /// Has one.
+    Second(DVec3),
+    /// Has both; the next click begins anew.
+    Both(DVec3, DVec3),
+}
+
+/// How the viewport looks at the flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Looking {
+    /// The free view.
+    pub orbit: Orbit,
+    /// The photo whose camera is looked through.
+    pub through: Option<usize>,
+    /// How much of that photo lies over the view, 0 to 1.
+    pub blend: f64,
+    /// The viewport's size in pixels, once it was drawn.
+    pub size: Option<DVec2>,
+    /// Whether the engineer has turned the view: until then it shows everything, however the window
+    /// is laid out.
+    pub turned: bool,
+}
+
+/// A flight on the screen.
+pub struct OpenFlight {
+    /// Counted, so that results for an earlier flight are told from those for this one.
+    pub number: u64,
+    /// What the user named.
+    pub path: PathBuf,
+    /// The surface and photos that were named beside it.
+    pub options: OpenOptions,
+    /// With the settings of now, once they are computed.
+    pub flight: Arc<Flight>,
+    /// Of each photo.
+    pub photo_files: Arc<Vec<PhotoFile>>,
+    /// The world's coordinate system where the files state one.
+    pub crs: Option<String>,
+    /// The files read.
+    pub inputs: Vec<PathBuf>,
+    /// These, the photos and whatever was opened on the way: nothing of it is written over.
+    pub read: Inputs,
+    /// What was noticed while reading.
+    pub warnings: Vec<String>,
+    /// What was looked up of the photos with the settings that it is computed with.
+    pub looked_up: LookedUp,
+    /// How the colours of each photo compare with the surface's, once known.
+    pub colours: Vec<Option<Colours>>,
+    /// The flight.toml that it was opened from: it may be saved there.
+    pub opened_file: Option<PathBuf>,
+    /// Where it came from, and where it is saved.
+    pub origin: FlightOrigin,
+    /// The reconstruction that it was made of, if any.
+    pub reconstruction: Option<FlightReconstruction>,
+    /// Bringing that to the world.
+    pub georeferencing: Georeferencing,
+    /// Whether it is the flight that comes with the program, which stays as it came.
+    pub bundled: bool,
+    /// The settings in that file.
+    pub saved: FlightSettings,
+    /// The settings that the flight and its outcomes were computed with: those of now, but for the
+    /// moment until a change is computed. Its scale objects count for nothing.
+    pub computed: FlightSettings,
+    /// The settings and choices of now, with those before.
+    pub history: History<Edit>,
+    /// Of each photo.
+    pub outcomes: Arc<Vec<Outcome>>,
+    /// Of each photo, once known.
+    pub views: Option<Arc<Vec<Option<ViewFacts>>>>,
+    /// Of each photo.
+    pub judged: Vec<Judged>,
+    /// Whether the photos to export have been proposed: once, after the first verdicts.
+    pub proposed: bool,
+    /// The selected photo.
+    pub selected: Option<usize>,
+    /// How the table is sorted and filtered.
+    pub order: TableOrder,
+    /// The rows that follow from it.
+    pub shown: Vec<usize>,
+    /// Small textures for the table.
+    pub thumbnails: Vec<Option<egui::TextureHandle>>,
+    /// Small pictures for the viewport.
+    pub images: Vec<Option<Arc<PhotoImage>>>,
+    /// The selected photo.
+    pub preview: Option<Preview>,
+    /// What the viewport draws.
+    pub geometry: Option<Arc<Geometry>>,
+    /// Where coordinates are small.
+    pub frame: LocalFrame,
+    /// Around surface and cameras, without the surface's outliers.
+    pub bounds: Bounds,
+    /// Around the surface alone.
+    pub surface_bounds: Bounds,
+    /// Around the surface without outliers.
+    pub bulk_bounds: Bounds,
+    /// How the viewport looks.
+    pub looking: Looking,
+    /// Where the mouse points on the surface.
+    pub hover: Option<DVec3>,
+    /// The photo that the mouse is over in the table.
+    pub hovered_photo: Option<usize>,
+    /// The distance tool.
+    pub measure: Measure,
+    /// Rays of the mouse.
+    pub picker: Option<Picker>,
+    /// The scale object that is being traced on the selected photo.
+    pub tracing: Option<Tracing>,
+    /// How large the next scale objects are, as typed: a sphere, a bar.
+    pub trace_sizes: [Option<f64>; 2],
+    /// The scale objects with what the point cloud says beside them, once known.
+    pub compared: Vec<(ScaleObject, ComparedObject)>,
+}
+
+impl OpenFlight {
+    /// Shows a flight that was just read.
+    pub fn new(number: u64, loaded: Loaded, limits: &Limits) -> Self {
+        let Loaded {
+            path,
+            options,
+            opened,
+            outcomes,
+            surface_bounds,
+            bulk_bounds,
+            took: _,
+            again_for: _,
+        } = loaded;
+        let count = outcomes.len();
+        let saved = opened
+            .file
+            .as_ref()
+            .map_or_else(|| opened.settings.clone(), |(_, file)| file.settings());
+        let bundled = is_bundled(&opened.origin.suggested_file());
+        let opened_file = opened.file.map(|(path, _)| path).filter(|_| !bundled);
+        let mut bounds = bulk_bounds;
+        for photo in &opened.flight.parts().photos {
+            bounds.min = bounds.min.min(photo.pose.center);
+            bounds.max = bounds.max.max(photo.pose.center);
+        }
+        let mut open = Self {
+            number,
+            path,
+            options,
+            flight: Arc::new(opened.flight),
+            photo_files: Arc::new(opened.photo_files),
+            crs: opened.crs,
+            inputs: opened.inputs,
+            read: opened.read,
+            warnings: opened.warnings,
+            looked_up: opened.looked_up,
+            colours: vec![None; count],
+            bundled,
+            opened_file,
+            georeferencing: Georeferencing::new(opened.origin.photo_folder()),
+            reconstruction: opened.reconstruction,
+            origin: opened.origin,
+            saved,
+            computed: opened.settings.clone(),
+            history: History::new(Edit {
+                settings: opened.settings,
+                chosen: vec![false; count],
+            }),
+            outcomes: Arc::new(outcomes),
+            views: None,
+            judged: Vec::new(),
+            proposed: false,
+            selected: (count > 0).then_some(0),
+            order: TableOrder::default(),
+            shown: Vec::new(),
+            thumbnails: vec![None; count],
+            images: vec![None; count],
+            preview: None,
+            geometry: None,
+            frame: LocalFrame::near(&surface_bounds),
+            bounds,
+            surface_bounds,
+            bulk_bounds,
+            looking: Looking {
+                orbit: first_look(&bounds),
+                through: None,
+                blend: 0.5,
+                size: None,
+                turned: false,
+            },
+            hover: None,
+            hovered_photo: None,
+            measure: Measure::Off,
+            picker: None,
+            tracing: None,
+            trace_sizes: [None; 2],
+            compared: Vec::new(),
+        };
+        open.judge(limits);
+        open
+    }
+
+    /// Lets it go. Millions of points take longer to free than a frame may: a thread does it.
+    pub fn let_go(self: Box<Self>) {
+        // Where there is no thread, it is freed here.
+        let _ = std::thread::Builder::new()
+            .name("let go".to_owned())
+            .spawn(move || drop(self));
+    }
+
+    /// The settings of now.
+    pub fn settings(&self) -> FlightSettings {
+        self.history.now().settings.clone()
+    }
+
+    /// Whether the scales on the screen are those of the settings of now.
+    pub fn is_computed(&self) -> bool {
+        let now = &self.history.now().settings;
+        now.gives_the_scales_of(&self.computed)
+    }
+
+    /// Whether something would be lost if it were closed.
+    pub fn is_changed(&self) -> bool {
+        self.settings() != self.saved || self.origin.has_other_files()
+    }
+
+    /// Takes a change of the settings back that will not be computed: what is on the screen must be
+    /// what the settings say.
+    pub fn take_back_settings(&mut self) {
+        if !self.is_computed() {
+            let mut edit = self.history.now().clone();
+            edit.settings = FlightSettings {
+                scale_objects: edit.settings.scale_objects,
+                ..self.computed.clone()
+            };
+            self.history.replace(edit);
+            self.arrange();
+        }
+    }
+
+    /// The photo's name.
+    pub fn name(&self, photo: usize) -> &str {
+        let photos = &self.flight.parts().photos;
+        photos.get(photo).map_or("", |photo| photo.name.as_str())
+    }
+
+    /// The photo's scale, where it has one.
+    pub fn scale(&self, photo: usize) -> Option<&PhotoScale> {
+        self.outcomes.get(photo)?.scale()
+    }
+
+    /// How the photo looks at the surface, once known.
+    pub fn view(&self, photo: usize) -> Option<&ViewFacts> {
+        self.views.as_ref()?.get(photo)?.as_ref()
+    }
+
+    /// What the table knows of a photo; `None` where there is no such photo.
+    pub fn row(&self, photo: usize) -> Option<Row<'_>> {
+        Some(Row {
+            photo: self.flight.parts().photos.get(photo)?,
+            outcome: self.outcomes.get(photo)?,
+            view: self.view(photo),
+            judged: self.judged.get(photo)?,
+            verdict: self.verdict(photo),
+            chosen: self.history.now().chosen.get(photo).copied()?,
+        })
+    }
+
+    /// Judges all photos anew, and sorts and filters the table.
+    pub fn judge(&mut self, limits: &Limits) {
+        let views = self.views.as_ref().map(|views| views.as_slice());
+        let colours = self.colours.iter().map(Option::as_ref);
+        let evidence = with_colours(&self.looked_up.evidence, colours);
+        self.judged = judge_all(&self.flight, &self.outcomes, views, &evidence, limits);
+        if self.views.is_some() && !self.proposed {
+            // What can be trusted is proposed for export; the rest waits for the engineer.
+            self.proposed = true;
+            let verdicts = self.judged.iter().map(|judged| judged.verdict);
+            let proposal: Vec<bool> = verdicts.map(|verdict| verdict == Verdict::Trust).collect();
+            self.history.each(|edit| edit.chosen.clone_from(&proposal));
+        }
+        self.arrange();
+    }
+
+    /// Takes what a photo's colours say. One that they speak against is no longer proposed for export.
+    pub fn take_colours(&mut self, photo: usize, colours: Colours, limits: &Limits) {
+        let speaks_against = colours.doubt().is_some();
+        let before = self.judged.get(photo).map(|judged| judged.verdict);
+        if let Some(place) = self.colours.get_mut(photo) {
+            *place = Some(colours);
+        }
+        if !speaks_against {
+            return;
+        }
+        self.judge(limits);
+        if self.proposed && before == Some(Verdict::Trust) {
+            self.history.each(|edit| {
+                if let Some(chosen) = edit.chosen.get_mut(photo) {
+                    *chosen = false;
+                }
+            });
+            self.arrange();
+        }
+    }
+
+    /// What was noticed while reading and what was looked up, one sentence each.
+    pub fn all_warnings(&self) -> Vec<String> {
+        let looked_up = self.looked_up.warnings_of(&self.path);
+        self.warnings.iter().cloned().chain(looked_up).collect()
+    }
+
+    /// The photo's scale, where its numbers mean something: the unit is known.
+    pub fn scale_to_type(&self, photo: usize) -> Option<&PhotoScale> {
+        self.scale(photo).filter(|_| self.flight.parts().unit_known)
+    }
+
+    /// Sorts and filters the table.
+    pub fn arrange(&mut self) {
+        let rows: Vec<Row<'_>> = (0..self.outcomes.len())
+            .filter_map(|photo| self.row(photo))
+            .collect();
+        self.shown = self.order.shown(&rows);
+    }
+
+    /// What to do with a photo's scale; `None` while nothing speaks against it, but its footprint was
+    /// not looked at yet.
+    pub fn verdict(&self, photo: usize) -> Option<Verdict> {
+        let verdict = self.judged.get(photo)?.verdict;
+        (verdict != Verdict::Trust || self.views.is_some()).then_some(verdict)
+    }
+
+    /// How many photos have this verdict.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        let photos = 0..self.judged.len();
+        photos
+            .filter(|&photo| self.verdict(photo) == Some(verdict))
+            .count()
+    }
+
+    /// How many photos are chosen for export.
+    pub fn chosen_count(&self) -> usize {
+        self.history.now().chosen.iter().filter(|&&c| c).count()
+    }
+
+    /// The elevation of the ground: as set, or where a ray needed it, or the surface's middle.
+    pub fn ground(&self) -> f64 {
+        match self.settings().ground {
+            crate::scale::Ground::At(z) => z,
+            crate::scale::Ground::Auto => {
+                let mut used: Vec<f64> = self
+                    .outcomes
+                    .iter()
+                    .filter_map(|outcome| outcome.scale()?.ground)
+                    .collect();
+                crate::geometry::median(&mut used).unwrap_or(self.surface_bounds.min.z)
+            }
+        }
+    }
+}
+
+/// From the south and well above: a pile is flat, and its footprints are what one looks for.
+fn first_look(bounds: &Bounds) -> Orbit {
+    let mut orbit = Orbit::new(bounds);
+    orbit.pitch = 0.9;
+    orbit
+}
+
+/// Whether a flight.toml is that of the bundled flight, however its path is written.
+fn is_bundled(file: &Path) -> bool {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    let folder = file.parent().and_then(real);
+    folder.is_some() && folder == sample_flight().as_deref().and_then(real)
+}

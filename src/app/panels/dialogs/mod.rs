@@ -1,0 +1,338 @@
+//! Small windows beside the work: where to open, save or export, keys, about. None of them blocks;
+//! only the question before unsaved changes are lost does.
+
+mod georeference;
+mod residuals;
+
+use std::path::PathBuf;
+
+use crate::actions;
+use crate::command::{Asking, Command};
+use crate::open_flight::OpenFlight;
+use crate::panels::path_field::{path_field, typed};
+use crate::panels::size_distributions::{
+    add_distributions, add_effort, paste, save_figure, save_report,
+};
+use crate::state::{HeldBack, PictureRequest, State};
+use crate::tasks::work::DialogFor;
+use georeference::{georeference, save_georeferenced};
+
+/// Draws the small window that is open, and the question before losing changes.
+pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) {
+    if let Some(asking) = state.asking {
+        let title = match asking {
+            Asking::Open => "Open a flight",
+            Asking::Add => "Add surface or photos",
+            Asking::Export => "Export for Split-Desktop",
+            Asking::Georeference => "Georeference",
+            Asking::SaveGeoreferenced => "Save georeferenced flight",
+            Asking::SaveAs => "Save flight",
+            Asking::Picture => "Save picture",
+            Asking::AddDistributions => "Add size distributions",
+            Asking::PasteTable => "Paste table",
+            Asking::AddEffort => "Add times of steps",
+            Asking::SaveFigure => "Save figure",
+            Asking::SaveReport => "Save report",
+            Asking::Keys => "Keys and mouse",
+            Asking::About => "About fragscale",
+        };
+        let mut stays = true;
+        egui::Window::new(title)
+            .open(&mut stays)
+            .collapsible(false)
+            .resizable(false)
+            .pivot(egui::Align2::CENTER_CENTER)
+            .default_pos(context.content_rect().center())
+            .show(context, |ui| {
+                let wide = asking == Asking::Georeference;
+                ui.set_max_width(if wide { 540.0 } else { 460.0 });
+                match asking {
+                    Asking::Open => open(state, ui, commands),
+                    Asking::Add => add(state, ui, commands),
+                    Asking::Export => export(state, ui, commands),
+                    Asking::Georeference => georeference(state, ui, commands),
+                    Asking::SaveGeoreferenced => save_georeferenced(state, ui, commands),
+                    Asking::SaveAs => save_as(state, ui, commands),
+                    Asking::Picture => picture(state, ui, commands),
+                    Asking::AddDistributions => add_distributions(state, ui, commands),
+                    Asking::PasteTable => paste(state, ui, commands),
+                    Asking::AddEffort => add_effort(state, ui, commands),
+                    Asking::SaveFigure => save_figure(state, ui, commands),
+                    Asking::SaveReport => save_report(state, ui, commands),
+                    Asking::Keys => keys(ui),
+                    Asking::About => about(ui),
+                }
+            });
+        let escape = context.input(|input| input.key_pressed(egui::Key::Escape));
+        if !stays || escape {
+            commands.push(Command::Ask(None));
+        }
+    }
+    if state.held_back.is_some() {
+        confirm(state, context, commands);
+    }
+}
+
+fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) {
+    let modal = egui::Modal::new(egui::Id::unique("unsaved")).show(context, |ui| {
+        ui.set_width(360.0);
+        match &state.held_back {
+            Some(HeldBack::Replace(command, question)) => {
+                replace(command, question, ui, commands);
+            }
+            _ if state.is_changed() => unsaved(state, ui, commands),
+            _ => writing(ui, commands),
+        }
+    });
+    if modal.should_close() {
+        commands.push(Command::Keep);
+    }
+}
+
+fn unsaved(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.heading("Unsaved changes");
+    if let Some(open) = &state.open {
+        ui.label(format!(
+            "The settings of {} have changed since they were saved.",
+            open.flight.parts().name
+        ));
+    }
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if ui.button("Save them").clicked() {
+            commands.push(Command::SaveFirst);
+        }
+        if ui.button("Discard changes").clicked() {
+            commands.push(Command::Discard);
+        }
+        if ui.button("Stay here").clicked() {
+            commands.push(Command::Keep);
+        }
+    });
+}
+
+fn writing(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.heading("Still writing");
+    ui.label("Files are being written. An export that is stopped goes on where it was next time.");
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if ui.button("Stop and quit").clicked() {
+            commands.push(Command::Discard);
+        }
+        if ui.button("Stay here").clicked() {
+            commands.push(Command::Keep);
+        }
+    });
+}
+
+fn replace(command: &Command, question: &str, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let what = match command {
+        Command::Export(_) => "export",
+        _ => "file",
+    };
+    ui.heading(format!("Replace the {what}?"));
+    ui.label(question);
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if ui.button("Replace it").clicked() {
+            commands.push(Command::Discard);
+        }
+        if ui.button(format!("Keep the {what}")).clicked() {
+            commands.push(Command::Keep);
+        }
+    });
+}
+
+/// Where something is written if nobody says otherwise: `name` beside the flight's file, without a
+/// name that file. The bundled flight stays as it came: what is made of it goes to where the program
+/// was started.
+fn proposed(open: &OpenFlight, name: Option<&str>) -> PathBuf {
+    let file = open.origin.suggested_file();
+    let start = match name {
+        _ if open.bundled => PathBuf::from(name.unwrap_or("sample-flight.toml")),
+        Some(name) => file.with_file_name(name),
+        None => file,
+    };
+    std::path::absolute(&start).unwrap_or(start)
+}
+
+fn open(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.label(
+        "A flight.toml, a file or folder that a photogrammetry package wrote, or a folder of photos \
+         with positions and angles in them:",
+    );
+    let browse = [
+        ("Browse for a file…", DialogFor::Open, false),
+        ("Browse for a folder…", DialogFor::Open, true),
+    ];
+    let (path, entered) = path_field(state, ui, "", &browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Open flight"));
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::Open(path));
+    }
+}
+
+fn add(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let name = match (&state.tried, &state.open) {
+        (Some((path, _)), _) => path.display().to_string(),
+        (None, Some(open)) => open.flight.parts().name.clone(),
+        (None, None) => return,
+    };
+    ui.label(format!(
+        "For {name}: a cloud or mesh to be its surface, or the folder of its photos. It can also be \
+         dropped on this window."
+    ));
+    let browse = [
+        ("Browse for a surface…", DialogFor::Add, false),
+        ("Browse for a folder of photos…", DialogFor::Add, true),
+    ];
+    let (path, entered) = path_field(state, ui, "", &browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Add it"));
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::Add(path));
+    }
+}
+
+fn export(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    let unit = state.preferences.unit();
+    let chosen = open.chosen_count();
+    ui.label(format!(
+        "{chosen} of {} photos are chosen; scales in pixels per {unit}. The folder gets scales.csv, \
+         scales.html to print and type from, the undistorted photos, overlays, and footprints as \
+         GeoJSON.",
+        open.outcomes.len()
+    ));
+    let start = proposed(open, Some("split-desktop"));
+    let browse = [("Browse…", DialogFor::Export, true)];
+    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
+    ui.separator();
+    let path = typed(&path).filter(|_| chosen > 0);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Export now"));
+    let button = button.on_hover_text("An interrupted export goes on where it stopped");
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::Export(path));
+    }
+    if chosen == 0 {
+        ui.weak("Choose photos first: the boxes in the table.");
+    }
+}
+
+fn save_as(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    ui.label(
+        "The flight's settings and where its files are; the files themselves stay as they are.",
+    );
+    let start = proposed(open, None);
+    let browse = [("Browse…", DialogFor::SaveAs, false)];
+    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Save flight"));
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::SaveAs(path));
+    }
+}
+
+fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    let id = ui.scope_id().with("picture options");
+    let mut options: (u32, u32, bool, bool) = ui
+        .data(|data| data.get_temp(id))
+        .unwrap_or((1920, 1080, false, false));
+    ui.horizontal(|ui| {
+        ui.label("Size");
+        for (side, name) in [(&mut options.0, "Width"), (&mut options.1, "Height")] {
+            let field = egui::DragValue::new(side).range(16..=16384).suffix(" px");
+            let field = ui.add(field);
+            let label = format!("Picture {}", name.to_lowercase());
+            field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, &label));
+            field.on_hover_text(format!("{name} of the picture in pixels"));
+        }
+    });
+    ui.horizontal(|ui| {
+        ui.radio_value(&mut options.2, false, "White background");
+        ui.radio_value(&mut options.2, true, "Transparent");
+    });
+    ui.horizontal(|ui| {
+        ui.radio_value(&mut options.3, false, "What the viewport shows");
+        ui.radio_value(&mut options.3, true, "The corner-ray figure");
+    });
+    ui.data_mut(|data| data.insert_temp(id, options));
+    let start = proposed(open, Some("figure.png"));
+    let browse = [("Browse…", DialogFor::Picture, false)];
+    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Write picture"));
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::Picture(PictureRequest {
+            path,
+            size: [options.0, options.1],
+            transparent: options.2,
+            corner_rays: options.3,
+        }));
+    }
+}
+
+fn keys(ui: &mut egui::Ui) {
+    egui::Grid::new("keys")
+        .striped(true)
+        .num_columns(2)
+        .show(ui, |ui| {
+            for (what, how) in [
+                ("Turn the view", "drag with the left button"),
+                (
+                    "Move the view",
+                    "drag with the right or middle button, or Shift and left",
+                ),
+                ("Come closer to the cursor", "wheel, or pinch"),
+                ("Turn around a place", "double click on it"),
+                ("Select a photo", "click its camera or its footprint"),
+            ] {
+                ui.label(what);
+                ui.label(how);
+                ui.end_row();
+            }
+            for action in actions::all() {
+                if let Some(shortcut) = action.shortcut {
+                    ui.label(action.label.trim_end_matches('…'));
+                    ui.label(ui.ctx().format_shortcut(&shortcut));
+                    ui.end_row();
+                }
+            }
+        });
+}
+
+fn about(ui: &mut egui::Ui) {
+    ui.label(format!("fragscale {}", env!("CARGO_PKG_VERSION")));
+    ui.label(
+        "Image scales for blast fragmentation photos: the rays of the four image corners meet the \
+         triangulated point cloud of the pile, and the distances between the corner points give \
+         the scale.",
+    );
+    ui.add_space(6.0);
+    ui.label("After Bamford, Esmaeili & Schoellig (2017), Point-Cloud-Based Aerial Fragmentation Analysis for Application in the Minerals Industry.");
+    ui.add_space(6.0);
+    ui.weak("MIT OR Apache-2.0");
+}

@@ -1,0 +1,413 @@
+//! The selected photo: its picture with the scale bars of the paper's figure, its numbers, and every
+//! reason to doubt them.
+
+mod scale_objects;
+mod traced_photo;
+
+use egui::{Color32, Pos2, Rect, Sense, Stroke, Vec2, pos2, vec2};
+use glam::DVec2;
+
+use crate::actions;
+use crate::command::Command;
+use crate::flight::Outcome;
+use crate::open_flight::OpenFlight;
+use crate::panels::verdict::{or_dash, verdict_color, verdict_sign};
+use crate::picture::{BarEdge, ScaleBar, scale_bars, significant_digits};
+use crate::scale::{CornerOutcome, ImageKind, PhotoScale};
+use crate::state::State;
+use scale_objects::scale_objects;
+use traced_photo::{Dragged, PhotoPlace};
+
+/// The inspector keeps the photo's texture and how it is zoomed.
+#[derive(Default)]
+pub struct Inspector {
+    /// Flight, photo and number of the preview that the texture shows.
+    shown: Option<(u64, usize, u64)>,
+    texture: Option<egui::TextureHandle>,
+    /// How many times the photo is larger than fitted, at least 1.
+    zoom: f32,
+    /// The place of the photo (0 to 1 each way) in the middle of its frame.
+    middle: Vec2,
+    /// The point of a scale object that the mouse moves.
+    dragged: Option<Dragged>,
+}
+
+impl Inspector {
+    /// Draws the page.
+    pub fn show(&mut self, state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+        let Some(open) = &state.open else {
+            return;
+        };
+        let Some(row) = open.selected.and_then(|photo| open.row(photo)) else {
+            ui.weak("Select a photo in the table or in the viewport.");
+            return;
+        };
+        let photo = open.selected.unwrap_or(0);
+        ui.horizontal(|ui| {
+            ui.add(egui::Label::new(egui::RichText::new(&row.photo.name).strong()).truncate());
+            if let Some(verdict) = row.verdict {
+                let text = format!("{} {verdict}", verdict_sign(verdict));
+                ui.colored_label(verdict_color(verdict, ui.visuals()), text);
+            }
+            if !open.is_computed() {
+                ui.weak("computing…");
+            }
+        });
+        self.take_texture(open, ui);
+        self.picture(state, open, photo, ui, commands);
+        egui::ScrollArea::vertical().show(ui, |ui| {
+            if let Some(scale) = open.scale_to_type(photo) {
+                scales(state, open, scale, ui, commands);
+            }
+            if row.judged.doubts.is_empty() {
+                ui.weak(if open.views.is_some() {
+                    "No reason for doubt was found."
+                } else {
+                    "Looking for reasons for doubt…"
+                });
+            } else {
+                ui.strong("Reasons for doubt");
+                for doubt in &row.judged.doubts {
+                    let text = format!("• {doubt}");
+                    let color = verdict_color(row.judged.verdict, ui.visuals());
+                    ui.add(egui::Label::new(egui::RichText::new(text).color(color)).wrap());
+                }
+            }
+            scale_objects(state, open, photo, ui, commands);
+            if let Outcome::Scale(scale) = row.outcome {
+                corners(open, scale, ui);
+            }
+            facts(open, photo, ui);
+        });
+    }
+
+    fn take_texture(&mut self, open: &OpenFlight, ui: &egui::Ui) {
+        let wanted = open
+            .preview
+            .as_ref()
+            .filter(|preview| Some(preview.photo) == open.selected)
+            .map(|preview| (open.number, preview.photo, preview.number));
+        if wanted == self.shown {
+            return;
+        }
+        self.shown = wanted;
+        self.dragged = None;
+        self.zoom = 1.0;
+        self.middle = vec2(0.5, 0.5);
+        self.texture = open
+            .preview
+            .as_ref()
+            .filter(|_| wanted.is_some())
+            .and_then(|preview| preview.picture.as_ref().ok())
+            .map(|picture| {
+                let pixels = egui::ImageData::Color(picture.large.clone());
+                let options = egui::TextureOptions::LINEAR;
+                ui.ctx().load_texture("photo", pixels, options)
+            });
+    }
+
+    /// The photo, zoomed, with the bars of its scale.
+    fn picture(
+        &mut self,
+        state: &State,
+        open: &OpenFlight,
+        photo: usize,
+        ui: &mut egui::Ui,
+        commands: &mut Vec<Command>,
+    ) {
+        let posed = &open.flight.parts().photos[photo];
+        let camera = open.flight.camera(posed);
+        let aspect = camera.width as f32 / camera.height as f32;
+        let width = ui.available_width();
+        let height = (width / aspect).min(ui.available_height() * 0.5).max(80.0);
+        let (frame, response) =
+            ui.allocate_exact_size(vec2(width, height), Sense::click_and_drag());
+        response.widget_info(|| {
+            let label = format!("Photo {} with its scale", posed.name);
+            egui::WidgetInfo::labeled(egui::Role::Image, true, label)
+        });
+        let painter = ui.painter().with_clip_rect(frame);
+        painter.rect_filled(frame, 2.0, ui.visuals().extreme_bg_color);
+        // The photo fitted into the frame, then zoomed around its middle.
+        let fitted = if frame.width() / frame.height() > aspect {
+            vec2(frame.height() * aspect, frame.height())
+        } else {
+            vec2(frame.width(), frame.width() / aspect)
+        };
+        let size = fitted * self.zoom;
+        let image = open.flight.parts().image;
+        let on_screen = |middle: Vec2, size: Vec2| PhotoPlace {
+            rect: Rect::from_min_size(frame.center() - middle * size, size),
+            camera,
+            image,
+        };
+        let shown = on_screen(self.middle, size);
+        let taken = traced_photo::mouse(
+            open,
+            photo,
+            &shown,
+            &mut self.dragged,
+            ui,
+            &response,
+            commands,
+        );
+        let is_traced = open.tracing.is_some();
+        self.turn_wheel(&response, ui, size, frame, taken, is_traced);
+        let size = fitted * self.zoom;
+        let half_seen = (frame.size() / size / 2.0).min(vec2(0.5, 0.5));
+        self.middle = self.middle.clamp(half_seen, Vec2::splat(1.0) - half_seen);
+        let shown = on_screen(self.middle, size);
+        let place = shown.rect;
+        match (&self.texture, open.preview.as_ref()) {
+            (Some(texture), _) => {
+                let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+                painter.image(texture.id(), place, whole, Color32::WHITE);
+            }
+            (None, Some(preview)) if preview.photo == photo && preview.picture.is_err() => {
+                if let Err(reason) = &preview.picture {
+                    message(&painter, frame, reason, ui);
+                }
+            }
+            _ => {
+                // The thumbnail stands in until the photo is read.
+                if let Some(Some(texture)) = open.thumbnails.get(photo) {
+                    let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+                    painter.image(texture.id(), place, whole, Color32::from_gray(140));
+                }
+            }
+        }
+        // Nothing else lies over what is traced.
+        if let Some(scale) = open.scale_to_type(photo).filter(|_| !is_traced) {
+            let unit = state.preferences.unit();
+            let world = open.flight.parts().unit;
+            let to_screen = |pixel: DVec2| shown.to_screen(pixel);
+            for bar in scale_bars(scale, camera.width, camera.height, unit, world) {
+                draw_bar(&painter, &bar, &to_screen);
+            }
+            for corner in &scale.corners {
+                let at = to_screen(corner.pixel)
+                    .clamp(frame.min + vec2(7.0, 7.0), frame.max - vec2(7.0, 7.0));
+                draw_corner(&painter, at, &corner.outcome);
+            }
+        }
+        traced_photo::draw(open, photo, &shown, self.dragged, &painter);
+        if is_traced {
+            // A tooltip would hide what is traced.
+            return;
+        }
+        let kind = match image {
+            ImageKind::Undistorted => "undistorted",
+            ImageKind::AsShot => "as shot",
+        };
+        response.on_hover_text(format!(
+            "{} × {} px, {kind}. Wheel zooms, dragging moves, a double click fits.",
+            camera.width, camera.height
+        ));
+    }
+
+    /// Zooms and moves the photo, unless the mouse is `taken`; while something is traced a double
+    /// click is two points.
+    fn turn_wheel(
+        &mut self,
+        response: &egui::Response,
+        ui: &egui::Ui,
+        size: Vec2,
+        frame: Rect,
+        taken: bool,
+        is_traced: bool,
+    ) {
+        if let Some(cursor) = response.hover_pos() {
+            let (scroll, pinch) =
+                ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let factor = (scroll * 0.005).exp() * pinch;
+            if factor != 1.0 {
+                let zoom = (self.zoom * factor).clamp(1.0, 40.0);
+                // What is under the cursor stays under it.
+                let offset = (cursor - frame.center()) / size;
+                self.middle += offset * (1.0 - self.zoom / zoom);
+                self.zoom = zoom;
+            }
+        }
+        if response.dragged() && !taken {
+            self.middle -= response.drag_delta() / size;
+        }
+        if response.double_clicked() && !is_traced {
+            self.zoom = 1.0;
+        }
+    }
+}
+
+fn message(painter: &egui::Painter, frame: Rect, text: &str, ui: &egui::Ui) {
+    let color = ui.visuals().error_fg_color;
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let galley = painter.layout(text.to_owned(), font, color, frame.width() - 20.0);
+    painter.galley(frame.center() - galley.size() / 2.0, galley, color);
+}
+
+fn draw_bar(painter: &egui::Painter, bar: &ScaleBar, to_screen: &impl Fn(DVec2) -> Pos2) {
+    let (from, to) = (to_screen(bar.from), to_screen(bar.to));
+    let tick = vec2(0.0, 5.0);
+    for (width, color) in [(4.0, Color32::from_black_alpha(180)), (2.0, Color32::WHITE)] {
+        let stroke = Stroke::new(width, color);
+        painter.line_segment([from, to], stroke);
+        for end in [from, to] {
+            painter.line_segment([end - tick, end + tick], stroke);
+        }
+    }
+    let (gap, anchor) = match bar.edge {
+        BarEdge::Top => (vec2(0.0, 7.0), egui::Align2::CENTER_TOP),
+        BarEdge::Bottom => (vec2(0.0, -7.0), egui::Align2::CENTER_BOTTOM),
+    };
+    let at = from.lerp(to, 0.5) + gap;
+    let text = format!("{}  {}", bar.edge.as_str(), bar.text);
+    let font = egui::FontId::proportional(13.0);
+    let galley = painter.layout_no_wrap(text, font, Color32::WHITE);
+    let place = anchor.anchor_size(at, galley.size());
+    painter.rect_filled(place.expand(2.0), 3.0, Color32::from_black_alpha(150));
+    painter.galley(place.min, galley, Color32::WHITE);
+}
+
+/// A disc for a corner on the surface, a triangle for one on the ground, a cross for none.
+fn draw_corner(painter: &egui::Painter, at: Pos2, outcome: &CornerOutcome) {
+    let outline = Stroke::new(1.5, Color32::from_black_alpha(200));
+    match outcome {
+        CornerOutcome::OnSurface { .. } => {
+            painter.circle(at, 5.0, Color32::from_rgb(64, 200, 110), outline);
+        }
+        CornerOutcome::OnGround { .. } => {
+            let points = vec![
+                at + vec2(0.0, -6.0),
+                at + vec2(6.0, 5.0),
+                at + vec2(-6.0, 5.0),
+            ];
+            let fill = Color32::from_rgb(255, 176, 32);
+            painter.add(egui::Shape::convex_polygon(points, fill, outline));
+        }
+        CornerOutcome::Nowhere | CornerOutcome::NoRay(_) => {
+            let stroke = Stroke::new(2.5, Color32::from_rgb(240, 60, 60));
+            for sign in [-1.0, 1.0] {
+                painter.line_segment(
+                    [at + vec2(-5.0, -5.0 * sign), at + vec2(5.0, 5.0 * sign)],
+                    stroke,
+                );
+            }
+        }
+    }
+}
+
+/// The scales of the four edges, big enough to type from.
+fn scales(
+    state: &State,
+    open: &OpenFlight,
+    scale: &PhotoScale,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let unit = state.preferences.unit();
+    let factor = unit.in_units_of(open.flight.parts().unit);
+    let shown = |scale: Option<f64>, digits: u8| or_dash(scale.map(|scale| scale * factor), digits);
+    ui.horizontal(|ui| {
+        for (name, value) in [("Top", scale.scale.top), ("Bottom", scale.scale.bottom)] {
+            ui.vertical(|ui| {
+                ui.weak(format!("{name}, px/{unit}"));
+                ui.label(egui::RichText::new(shown(value, 5)).size(22.0).strong());
+            });
+            ui.add_space(14.0);
+        }
+        let copy = ui.button("Copy");
+        copy.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, true, "Copy top and bottom scale")
+        });
+        if copy.on_hover_text(actions::COPY_SCALES.hover).clicked() {
+            commands.push(Command::CopyScales);
+        }
+    });
+    ui.horizontal(|ui| {
+        ui.label(format!("Left {}", shown(scale.scale.left, 5)));
+        ui.label(format!("Right {}", shown(scale.scale.right, 5)));
+        if let (Some(top), Some(bottom)) = (scale.scale.top, scale.scale.bottom) {
+            ui.label(format!(
+                "Top/bottom {}",
+                significant_digits(top / bottom, 4)
+            ));
+        }
+    });
+    ui.separator();
+}
+
+fn corners(open: &OpenFlight, scale: &PhotoScale, ui: &mut egui::Ui) {
+    let unit = open.flight.parts().unit;
+    ui.separator();
+    ui.strong(format!("Corner points, {unit}"));
+    egui::Grid::new("corners")
+        .striped(true)
+        .num_columns(5)
+        .show(ui, |ui| {
+            for heading in ["Corner", "x", "y", "z", "on"] {
+                ui.weak(heading);
+            }
+            ui.end_row();
+            for corner in &scale.corners {
+                ui.label(corner.name.as_str().replace('_', " "));
+                match corner.point() {
+                    Some(point) => {
+                        for value in point.to_array() {
+                            ui.label(format!("{value:.3}"));
+                        }
+                    }
+                    None => {
+                        for _ in 0..3 {
+                            ui.label("–");
+                        }
+                    }
+                }
+                let on = match corner.outcome {
+                    CornerOutcome::OnSurface { .. } => "surface",
+                    CornerOutcome::OnGround { .. } => "ground",
+                    CornerOutcome::Nowhere => "nothing",
+                    CornerOutcome::NoRay(_) => "no ray",
+                };
+                ui.label(on);
+                ui.end_row();
+            }
+        });
+}
+
+fn facts(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
+    let Some(view) = open.view(photo) else {
+        return;
+    };
+    let unit = open.flight.parts().unit;
+    ui.separator();
+    egui::Grid::new("facts").num_columns(2).show(ui, |ui| {
+        let below = if view.height_is_above_ground {
+            "Height above ground"
+        } else {
+            "Height above surface"
+        };
+        for (name, value) in [
+            (
+                below,
+                view.height.map(|height| format!("{height:.3} {unit}")),
+            ),
+            ("Tilt below horizon", Some(format!("{:.2}°", view.tilt))),
+            (
+                "Flattest corner ray",
+                view.flattest_corner.map(|angle| format!("{angle:.1}°")),
+            ),
+            (
+                "Off the corners' plane (rms)",
+                view.plane_distance
+                    .map(|distance| format!("{distance:.3} {unit}")),
+            ),
+            (
+                "Mean edge of the footprint",
+                view.footprint_size.map(|size| format!("{size:.3} {unit}")),
+            ),
+        ] {
+            ui.weak(name);
+            ui.label(value.unwrap_or_else(|| "–".to_owned()));
+            ui.end_row();
+        }
+    });
+}

@@ -1,0 +1,346 @@
+//! The inspector's section of scale objects: tracing one, and what it says beside the point cloud.
+
+use crate::actions;
+use crate::command::Command;
+use crate::flight::{ComparedObject, ScaleObject, Verdict};
+use crate::open_flight::OpenFlight;
+use crate::open_flight::tracing::{Trace, Tracing};
+use crate::panels::field::{number_field, text_field};
+use crate::panels::verdict::{or_dash, verdict_color};
+use crate::picture::significant_digits;
+use crate::scale::{ScaleObjectKind, Traced};
+use crate::state::State;
+
+/// With points on less of the outline than this, degrees, the other side is a guess.
+const SHORT_ARC: f64 = 180.0;
+
+/// A standard error above this share says little.
+const VAGUE: f64 = 0.02;
+
+/// Points that are further off the outline than this, pixels, are on something else.
+const FAR_OFF_PX: f64 = 2.0;
+
+/// Draws the section.
+pub(super) fn scale_objects(
+    state: &State,
+    open: &OpenFlight,
+    photo: usize,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    ui.separator();
+    let objects: Vec<(usize, &ScaleObject)> = open.objects_of(photo).collect();
+    let is_wanted = open.tracing.is_some() || !objects.is_empty();
+    egui::CollapsingHeader::new("Scale object")
+        .id_salt(("scale object", photo))
+        .default_open(is_wanted)
+        .open(open.tracing.is_some().then_some(true))
+        .show(ui, |ui| {
+            if open.tracing.is_some() {
+                being_traced(state, ui, commands);
+            } else {
+                for (action, kind) in [
+                    (actions::TRACE_SPHERE, ScaleObjectKind::Sphere),
+                    (actions::TRACE_BAR, ScaleObjectKind::Bar),
+                ] {
+                    begin(state, open, action, kind, ui, commands);
+                }
+            }
+            for ((place, object), number) in objects.into_iter().zip(1_usize..) {
+                card(state, open, place, object, number, ui, commands);
+            }
+        });
+}
+
+/// A row with the size that is known and the button that begins.
+fn begin(
+    state: &State,
+    open: &OpenFlight,
+    action: actions::Action,
+    kind: ScaleObjectKind,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let size = open.trace_size(kind);
+    let (name, label) = match kind {
+        ScaleObjectKind::Sphere => ("Diameter", "Diameter of the next sphere"),
+        ScaleObjectKind::Bar => ("Length", "Length of the next bar"),
+    };
+    ui.horizontal(|ui| {
+        let command = (action.command)(state);
+        let button = ui.add_enabled(command.is_some(), egui::Button::new(action.label));
+        let button = button.on_disabled_hover_text("Type its size first");
+        if button.on_hover_text(action.hover).clicked() {
+            commands.extend(command);
+        }
+        ui.label(name);
+        let text = size.map_or_else(String::new, |size| size.to_string());
+        let hover = "As it was measured, in the unit of the flight's world";
+        let typed = text_field(ui, label, hover, &text, 60.0);
+        ui.label(open.flight.parts().unit.symbol());
+        let number = typed.and_then(|typed| typed.trim().replace(',', ".").parse().ok());
+        if let Some(size) = number {
+            commands.push(Command::Trace(Trace::Size(kind, size)));
+        }
+    });
+}
+
+/// What can be done while the outline grows.
+fn being_traced(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    let Some(tracing) = &open.tracing else {
+        return;
+    };
+    ui.strong(next_step(tracing));
+    if let Some(so_far) = scale_so_far(state, open, tracing) {
+        ui.label(so_far);
+    }
+    ui.weak("The wheel zooms, dragging moves the photo or a point.");
+    ui.horizontal_wrapped(|ui| {
+        for (action, text) in [
+            (actions::FINISH_TRACING, "Done"),
+            (actions::REMOVE_POINT, "Last point back"),
+            (actions::GIVE_UP_TRACING, "Give up"),
+        ] {
+            let command = (action.command)(state);
+            let button = ui.add_enabled(command.is_some(), egui::Button::new(text));
+            let keys = action.shortcut.map(|keys| ui.ctx().format_shortcut(&keys));
+            let hover = format!("{} ({})", action.hover, keys.unwrap_or_default());
+            if button.on_hover_text(hover).clicked() {
+                commands.extend(command);
+            }
+        }
+    });
+}
+
+/// The scale that the points give already.
+fn scale_so_far(state: &State, open: &OpenFlight, tracing: &Tracing) -> Option<String> {
+    let parts = open.flight.parts();
+    let camera = open.flight.camera(parts.photos.get(open.selected?)?);
+    let size = open.trace_size(tracing.kind)?;
+    let traced = Traced::new(camera, tracing.kind, size, &tracing.outline).ok()?;
+    let unit = state.preferences.unit();
+    let scale = traced.scale(camera, parts.image)? * unit.in_units_of(parts.unit);
+    let error = match traced {
+        Traced::Sphere(sphere) => sphere.relative_error,
+        Traced::Bar(_) => None,
+    };
+    let error = error.map(|error| format!(" ± {:.1} %", error * 100.0));
+    Some(format!(
+        "{} px/{unit}{}",
+        significant_digits(scale, 4),
+        error.unwrap_or_default()
+    ))
+}
+
+/// What to do next.
+fn next_step(tracing: &Tracing) -> String {
+    match (tracing.kind, tracing.outline.len()) {
+        (ScaleObjectKind::Sphere, 0) => "Click points on the sphere's edge, all around".to_owned(),
+        (ScaleObjectKind::Sphere, count) if tracing.is_complete() => {
+            format!("{count} points; Enter when they go all around")
+        }
+        (ScaleObjectKind::Sphere, count) => format!("{count} of at least 3 points, better 8"),
+        (ScaleObjectKind::Bar, 0) => "Click one end of the bar".to_owned(),
+        (ScaleObjectKind::Bar, _) => "Click its other end".to_owned(),
+    }
+}
+
+/// A scale object with its numbers.
+fn card(
+    state: &State,
+    open: &OpenFlight,
+    place: usize,
+    object: &ScaleObject,
+    number: usize,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let world = open.flight.parts().unit;
+    let title = format!("{} {number}", object.kind.as_str());
+    egui::Frame::group(ui.style()).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.strong(format!("{number}: {}", object.kind.as_str()));
+            ui.label(object.kind.size_name());
+            let label = format!("Size of {title}");
+            let hover = "As it was measured, in the unit of the flight's world";
+            let typed = number_field(ui, &label, hover, object.size, world.symbol());
+            if let Some(size) = typed.filter(|&size| size > 0.0) {
+                commands.extend(open.change_object(place, |object| object.size = size));
+            }
+        });
+        match open.compared(object) {
+            None => {
+                ui.weak("computing…");
+            }
+            Some(ComparedObject {
+                traced: Err(fault), ..
+            }) => {
+                ui.colored_label(doubtful(ui), fault.to_string());
+            }
+            Some(compared) => numbers(state, open, compared, &title, ui, commands),
+        }
+        ui.horizontal(|ui| {
+            let mut mask = object.mask;
+            let label = "Mask in export";
+            let check = ui.checkbox(&mut mask, label);
+            check.widget_info(|| {
+                let label = format!("Mask {title} in export");
+                egui::WidgetInfo::selected(egui::Role::CheckBox, true, object.mask, label)
+            });
+            let hover = "Paint it blue in the exported photo, so that it is not taken for rock";
+            if check.on_hover_text(hover).changed() {
+                commands.extend(open.change_object(place, |object| object.mask = mask));
+            }
+            let delete = ui.button("Delete");
+            delete.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Delete {title}"))
+            });
+            if delete.clicked() {
+                let mut settings = open.settings();
+                settings.scale_objects.remove(place);
+                commands.push(Command::Set(settings));
+            }
+        });
+    });
+}
+
+fn doubtful(ui: &egui::Ui) -> egui::Color32 {
+    verdict_color(Verdict::Check, ui.visuals())
+}
+
+fn numbers(
+    state: &State,
+    open: &OpenFlight,
+    compared: &ComparedObject,
+    title: &str,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let Some(scale) = compared.scale else {
+        ui.colored_label(doubtful(ui), "the lens does not see it");
+        return;
+    };
+    let (unit, world) = (state.preferences.unit(), open.flight.parts().unit);
+    let factor = unit.in_units_of(world);
+    let in_unit = |scale: f64| significant_digits(scale * factor, 5);
+    let percent = |share: f64| format!("{:+.2} %", share * 100.0);
+    let error = match &compared.traced {
+        Ok(Traced::Sphere(sphere)) => sphere.relative_error,
+        _ => None,
+    };
+    ui.horizontal(|ui| {
+        ui.vertical(|ui| {
+            ui.weak(format!("Uniform scale, px/{unit}"));
+            ui.label(egui::RichText::new(in_unit(scale)).size(20.0).strong());
+        });
+        let copy = ui.button("Copy");
+        copy.widget_info(|| {
+            let label = format!("Copy the scale of {title}");
+            egui::WidgetInfo::labeled(egui::Role::Button, true, label)
+        });
+        let hover = "Copy the one scale that this object gives the whole photo";
+        if copy.on_hover_text(hover).clicked() {
+            commands.push(Command::Copy(significant_digits(scale * factor, 6)));
+        }
+    });
+    let place = compared.place;
+    let row = |ui: &mut egui::Ui, name: &str, hover: &str, value: String, off: String| {
+        ui.weak(name).on_hover_text(hover);
+        ui.label(value);
+        ui.label(off);
+        ui.end_row();
+    };
+    egui::Grid::new(title).num_columns(3).show(ui, |ui| {
+        let sign = "In percent: how much larger the object's scale is. Where it is larger, fragments \
+                    come out smaller with it.";
+        let found = |scale: Option<f64>| or_dash(scale.map(|scale| scale * factor), 5);
+        let off = |share: Option<f64>| share.map(percent).unwrap_or_default();
+        let edges = off(compared.beyond_edges());
+        let hover = format!(
+            "What Split-Desktop takes at its height in the photo: linear from the top to the bottom \
+             scale. {sign}"
+        );
+        row(ui, "Point cloud, on its row", &hover, found(place.between_edges), edges);
+        let around = off(compared.beyond_surroundings());
+        let hover = format!(
+            "Of the surface on a ring around it, half as large again: the median. {sign}"
+        );
+        row(
+            ui,
+            "Point cloud, around it",
+            &hover,
+            found(place.around),
+            around,
+        );
+        let under = off(compared.beyond_surface());
+        let hover = format!(
+            "Of the surface under its middle. Where the cloud shows the object itself, that is its \
+             near side. {sign}"
+        );
+        row(ui, "Point cloud, under it", &hover, found(place.on_surface), under);
+        match &compared.traced {
+            Ok(Traced::Sphere(sphere)) => {
+                let hover = "Standard error of the scale, from the scatter of the points";
+                let text = match error {
+                    Some(error) => format!("± {:.2} %", error * 100.0),
+                    None => "mark more than three points".to_owned(),
+                };
+                row(ui, "Standard error", hover, text, String::new());
+                let hover = "Of the points from the outline that is drawn, root mean square";
+                let text = format!("{:.2} px", sphere.rms);
+                row(ui, "Off the outline", hover, text, String::new());
+                let hover = "Of its centre from the camera's, along the view";
+                let text = format!("{} {world}", significant_digits(sphere.center.z, 5));
+                row(ui, "Depth", hover, text, String::new());
+            }
+            Ok(Traced::Bar(_)) => {
+                let length = place.length_on_surface;
+                let text = length.map(|length| {
+                    format!("{} {world}", significant_digits(length, 5))
+                });
+                let hover = "Between the places where the rays of its ends meet the surface. In \
+                             percent: how much longer that is than the bar.";
+                let off = off(compared.beyond_length());
+                let text = text.unwrap_or_else(|| "–".to_owned());
+                row(ui, "Length on the point cloud", hover, text, off);
+            }
+            Err(_) => {}
+        }
+    });
+    for doubt in doubts(&compared.traced) {
+        ui.colored_label(doubtful(ui), format!("• {doubt}"));
+    }
+    if matches!(compared.traced, Ok(Traced::Bar(_))) {
+        ui.weak("As if it lay parallel to the image; tilted, it looks shorter.");
+    }
+}
+
+/// What speaks against a sphere's scale.
+fn doubts(traced: &Result<Traced, crate::fault::Fault>) -> Vec<String> {
+    let Ok(Traced::Sphere(sphere)) = traced else {
+        return Vec::new();
+    };
+    let mut doubts = Vec::new();
+    if sphere.arc < SHORT_ARC {
+        doubts.push(format!(
+            "the points go only {:.0}° round the outline; mark some on its other side",
+            sphere.arc
+        ));
+    }
+    if sphere.rms > FAR_OFF_PX {
+        doubts.push(format!(
+            "the points are {:.1} px off a sphere's outline; are all on its edge?",
+            sphere.rms
+        ));
+    }
+    if let Some(error) = sphere.relative_error.filter(|&error| error > VAGUE) {
+        doubts.push(format!(
+            "the scale is only good to {:.0} %; mark more points",
+            error * 100.0
+        ));
+    }
+    doubts
+}

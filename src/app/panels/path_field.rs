@@ -1,0 +1,66 @@
+//! A field for a path, with the desktop's own dialog beside it.
+
+use std::path::PathBuf;
+
+use crate::command::Command;
+use crate::state::State;
+use crate::tasks::work::DialogFor;
+
+/// A path that is typed, or chosen in the desktop's dialog. Returns the text of now, and whether
+/// Enter was pressed in it.
+pub(super) fn path_field(
+    state: &State,
+    ui: &mut egui::Ui,
+    start: &str,
+    browse: &[(&str, DialogFor, bool)],
+    commands: &mut Vec<Command>,
+) -> (String, bool) {
+    // Kept until another flight is open.
+    let id = ui.scope_id().with((
+        "path",
+        state.open.as_ref().map(|open| open.origin.suggested_file()),
+    ));
+    let mut path: String = ui
+        .data(|data| data.get_temp(id))
+        .unwrap_or_else(|| start.to_owned());
+    if let Some(answered) = &state.answered {
+        path = answered.display().to_string();
+        commands.push(Command::TakeAnswer);
+    }
+    let field = ui.add(egui::TextEdit::singleline(&mut path).desired_width(440.0));
+    field.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Path");
+        info.current_text_value = Some(path.clone());
+        info
+    });
+    let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+    takes_the_keys_at_first(ui, &field);
+    ui.horizontal(|ui| {
+        for (name, what, folder) in browse {
+            let hover = "Choose in the desktop's own dialog";
+            if ui.button(*name).on_hover_text(hover).clicked() {
+                commands.push(Command::Browse(*what, *folder));
+            }
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(id, path.clone()));
+    (path, entered)
+}
+
+/// She asked for this window, so what she types or pastes next belongs into this field of it.
+pub(super) fn takes_the_keys_at_first(ui: &egui::Ui, field: &egui::Response) {
+    let seen = ui.scope_id().with("seen");
+    let now = ui.ctx().cumulative_frame_nr();
+    let last: Option<u64> = ui.data(|data| data.get_temp(seen));
+    if last.is_none_or(|last| last + 1 < now) {
+        field.request_focus();
+    }
+    ui.data_mut(|data| data.insert_temp(seen, now));
+}
+
+/// A path as typed, where it is one: without the quotes that file managers put around.
+pub(crate) fn typed(path: &str) -> Option<PathBuf> {
+    let path = path.trim().trim_matches(['"', '\'']);
+    let path = path.strip_prefix("file://").unwrap_or(path);
+    (!path.is_empty()).then(|| PathBuf::from(path))
+}

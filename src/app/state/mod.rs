@@ -1,0 +1,194 @@
+//! What the window shows: everything that panels read. Only `State::apply` and `State::poll` change
+//! it.
+
+pub mod history;
+pub mod layers;
+pub mod preferences;
+
+use std::path::{Path, PathBuf};
+
+use crate::command::{Asking, Command, Tab};
+use crate::fault::one_line;
+use crate::formats::OpenOptions;
+use crate::open_flight::OpenFlight;
+use crate::render::Gpu;
+use crate::size_distributions::{Page, SizeDistributions};
+use crate::tasks::work::Work;
+use preferences::Preferences;
+
+/// How many lines the log keeps.
+const LOG_LINES: usize = 2000;
+
+/// How grave a line of the log is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Severity {
+    /// Something was done.
+    Note,
+    /// Something to know before trusting a number.
+    Warning,
+    /// Something was not done.
+    Error,
+}
+
+/// A line of the log.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LogLine {
+    /// How grave it is.
+    pub severity: Severity,
+    /// What happened.
+    pub text: String,
+}
+
+/// What is held back until the engineer says that something may be lost.
+#[derive(Debug, Clone, PartialEq)]
+pub enum HeldBack {
+    /// Leaving the program.
+    Quit,
+    /// Another flight, or the start page.
+    Leave(Box<Command>),
+    /// Writing where there is something already, with what that is in a sentence.
+    Replace(Box<Command>, String),
+}
+
+/// The whole state of the window.
+pub struct State {
+    /// For clipboard, theme and window; also what wakes the window up.
+    pub context: egui::Context,
+    /// The window's graphics device, where there is one: jobs upload what the viewport draws.
+    pub gpu: Option<Gpu>,
+    /// Remembered from day to day.
+    pub preferences: Preferences,
+    /// The flight on the screen; `None` on the start page.
+    pub open: Option<Box<OpenFlight>>,
+    /// Which page is shown.
+    pub page: Page,
+    /// The size distributions, with or without a flight.
+    pub distributions: SizeDistributions,
+    /// Jobs under way.
+    pub work: Work,
+    /// What was said, oldest first.
+    pub log: Vec<LogLine>,
+    /// The last error, shown over the viewport until it is put away.
+    pub notice: Option<LogLine>,
+    /// The tab of the right panel.
+    pub tab: Tab,
+    /// Which small window is open.
+    pub asking: Option<Asking>,
+    /// What the desktop's dialog answered, for the small window to take over.
+    pub answered: Option<PathBuf>,
+    /// What waits for "discard".
+    pub held_back: Option<HeldBack>,
+    /// What goes on once the changes are saved.
+    pub after_saving: Option<HeldBack>,
+    /// Whether the window may close.
+    pub may_quit: bool,
+    /// The flight that could not be opened last, with what was named beside it.
+    pub tried: Option<(PathBuf, OpenOptions)>,
+    /// Whether the flight that is being read is another one than that on the screen.
+    pub reads_other: bool,
+    /// How many flights were opened.
+    pub opened: u64,
+    /// A picture of the viewport that was asked for, and whether it may replace a file of others; the
+    /// viewport draws it.
+    pub picture: Option<(PictureRequest, bool)>,
+}
+
+/// A picture of the viewport to be written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PictureRequest {
+    /// Where to.
+    pub path: PathBuf,
+    /// In pixels.
+    pub size: [u32; 2],
+    /// Without a background, or on white.
+    pub transparent: bool,
+    /// With the layers of the paper's figure.
+    pub corner_rays: bool,
+}
+
+impl State {
+    /// The start page.
+    pub fn new(context: egui::Context, preferences: Preferences) -> Self {
+        let state = Self {
+            work: Work::new(context.clone()),
+            context,
+            gpu: None,
+            preferences,
+            open: None,
+            page: Page::default(),
+            distributions: SizeDistributions::default(),
+            log: Vec::new(),
+            notice: None,
+            tab: Tab::default(),
+            asking: None,
+            answered: None,
+            held_back: None,
+            after_saving: None,
+            may_quit: false,
+            tried: None,
+            reads_other: false,
+            opened: 0,
+            picture: None,
+        };
+        state.apply_theme();
+        state
+    }
+
+    /// Writes a line into the log; an error is shown over the viewport as well.
+    pub fn say(&mut self, severity: Severity, text: &str) {
+        let line = LogLine {
+            severity,
+            text: one_line(text),
+        };
+        if severity == Severity::Error {
+            self.notice = Some(line.clone());
+        }
+        if self.log.len() == LOG_LINES {
+            self.log.remove(0);
+        }
+        self.log.push(line);
+    }
+
+    /// Whether the flight's settings are not saved.
+    pub fn is_changed(&self) -> bool {
+        self.open.as_ref().is_some_and(|open| open.is_changed())
+    }
+
+    /// The window's title.
+    pub fn title(&self) -> String {
+        match &self.open {
+            None => "fragscale".to_owned(),
+            Some(open) => {
+                let mark = if open.is_changed() { "*" } else { "" };
+                format!("{}{mark} – fragscale", open.flight.parts().name)
+            }
+        }
+    }
+
+    /// Tells egui which theme is wanted.
+    pub fn apply_theme(&self) {
+        self.context.set_theme(match self.preferences.theme {
+            crate::state::preferences::Theme::System => egui::ThemePreference::System,
+            crate::state::preferences::Theme::Light => egui::ThemePreference::Light,
+            crate::state::preferences::Theme::Dark => egui::ThemePreference::Dark,
+        });
+    }
+}
+
+/// The bundled flight: beside the program's sources, or beside the installed program.
+pub fn sample_flight() -> Option<PathBuf> {
+    let beside = std::env::current_exe().ok();
+    let beside = beside.as_deref().and_then(Path::parent);
+    let places = [
+        Some(PathBuf::from(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../assets/sample"
+        ))),
+        beside.map(|folder| folder.join("assets/sample")),
+        beside.map(|folder| folder.join("../share/fragscale/sample")),
+    ];
+    places
+        .into_iter()
+        .flatten()
+        .find(|folder| folder.join("flight.toml").is_file())
+}

@@ -1,0 +1,4 @@
+//! Long work of the window.
+
+pub mod opening;
+pub mod work;

@@ -1,0 +1,5 @@
+//! The graphics device: asking for it, making pipelines on it, reading pictures back.
+
+pub(crate) mod gpu;
+pub(crate) mod pipeline;
+pub(crate) mod readback;

@@ -1,0 +1,39 @@
+//! Parts of a picture that is larger than a texture.
+
+use glam::{DMat4, DVec2, DVec4};
+
+/// A part of a picture, in pixels of the whole.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Part {
+    /// Its top left pixel in the whole.
+    pub(crate) origin: [u32; 2],
+    pub(crate) size: [u32; 2],
+    /// The whole's size.
+    pub(crate) of: [u32; 2],
+}
+
+impl Part {
+    pub(crate) fn whole(size: [u32; 2]) -> Self {
+        Self {
+            origin: [0, 0],
+            size,
+            of: size,
+        }
+    }
+
+    /// Clip space of the whole to that of the part.
+    pub(crate) fn crop(&self) -> DMat4 {
+        let of = pair(self.of) / pair(self.size);
+        let shift = pair(self.origin) * 2.0 / pair(self.size);
+        DMat4::from_cols(
+            DVec4::new(of.x, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, of.y, 0.0, 0.0),
+            DVec4::Z,
+            DVec4::new(of.x - shift.x - 1.0, 1.0 - of.y + shift.y, 0.0, 1.0),
+        )
+    }
+}
+
+pub(crate) fn pair([x, y]: [u32; 2]) -> DVec2 {
+    DVec2::new(f64::from(x), f64::from(y))
+}
