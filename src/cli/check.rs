@@ -48,9 +48,10 @@ pub(super) fn check(arguments: &CheckArguments, progress: &Progress) -> Result<A
                 ..
             }) => format!("r = {correlation:.2} at {points} points"),
         };
-        let of_pixels = photo.doubts.iter().filter(|doubt| {
-            doubt.is_of_colours() || matches!(doubt, Doubt::FileUnreadable(_))
-        });
+        let of_pixels = photo
+            .doubts
+            .iter()
+            .filter(|doubt| doubt.is_of_colours() || matches!(doubt, Doubt::FileUnreadable(_)));
         warnings.extend(of_pixels.map(|doubt| format!("photo '{name}': {doubt}")));
         // Writing into a text does not fail.
         let _ = writeln!(text, "{name}  {said}");

@@ -65,7 +65,8 @@ impl<'a> ScaleReport<'a> {
     /// The report of some of the photos, those that are `true` in `selected`, in the same order.
     #[must_use]
     pub fn of_photos(mut self, selected: &[bool]) -> Self {
-        self.photos.retain(|&photo| selected.get(photo) == Some(&true));
+        self.photos
+            .retain(|&photo| selected.get(photo) == Some(&true));
         self
     }
 
@@ -108,7 +109,18 @@ impl<'a> ScaleReport<'a> {
     }
 }
 
-impl PhotoLine<'_> {
+impl<'a> PhotoLine<'a> {
+    /// A photo by itself, in pixels per world unit, whether that is known or not.
+    pub fn of(photo: PhotoReview<'a>, index: usize) -> Self {
+        Self {
+            photo,
+            index,
+            unit: photo.unit,
+            to_type: false,
+            scale_objects: &[],
+        }
+    }
+
     /// Pixels per unit along the edges.
     pub fn scale(&self) -> EdgeScales {
         match self.to_type && !self.photo.unit_known {

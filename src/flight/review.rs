@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 use super::verdict::{Judged, judge};
 use super::{
-    ColoursFound, Doubt, Evidence, Flight, Limits, LookedUp, Outcome, Photo, PhotoFileState, Verdict,
+    ColoursFound, Doubt, Evidence, Flight, Limits, LookedUp, Outcome, Photo, PhotoFileState,
+    Verdict,
 };
 use crate::camera::Camera;
 use crate::fault::Fault;
@@ -106,6 +107,25 @@ impl Review {
         self.judge();
     }
 
+    /// Takes the scales of the same photos with other settings and what was looked up for these, and
+    /// judges again: footprints have to be looked at anew, but colours are what they were.
+    pub fn take_scales(
+        &mut self,
+        flight: Arc<Flight>,
+        outcomes: Vec<Outcome>,
+        mut looked_up: LookedUp,
+    ) {
+        let before = self.looked_up.evidence.iter_mut();
+        for (evidence, before) in looked_up.evidence.iter_mut().zip(before) {
+            evidence.colours = std::mem::take(&mut before.colours);
+        }
+        self.flight = flight;
+        self.outcomes = Arc::new(outcomes);
+        self.views = None;
+        self.looked_up = looked_up;
+        self.judge();
+    }
+
     /// Takes what the colours of photos say, each with its place in the flight, and judges again.
     pub fn take_colours(&mut self, found: impl IntoIterator<Item = (usize, ColoursFound)>) {
         let mut is_against = false;
@@ -140,7 +160,14 @@ impl Review {
                 let camera = self.flight.camera(photo);
                 let size = (camera.width, camera.height);
                 let evidence = self.looked_up.evidence.get(index).unwrap_or(&nothing);
-                judge(outcome, self.view(index), evidence, size, unit, &self.limits)
+                judge(
+                    outcome,
+                    self.view(index),
+                    evidence,
+                    size,
+                    unit,
+                    &self.limits,
+                )
             })
             .collect();
     }
@@ -187,7 +214,9 @@ impl Review {
     /// How many photos have this verdict; see [`PhotoReview::settled`].
     pub fn count_of(&self, verdict: Verdict) -> usize {
         let photos = self.photos();
-        photos.filter(|photo| photo.settled() == Some(verdict)).count()
+        photos
+            .filter(|photo| photo.settled() == Some(verdict))
+            .count()
     }
 
     /// What is known of a photo by its place in the flight; `None` where there is no such photo.

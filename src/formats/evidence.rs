@@ -8,9 +8,7 @@ use super::photo_checks::photo_checks;
 use super::photo_files::PhotoFile;
 use super::{FileError, read_bytes};
 use crate::fault::Fault;
-use crate::flight::{
-    ColoursFound, Doubt, Evidence, Flight, LookedUp, PhotoFileState, Review,
-};
+use crate::flight::{ColoursFound, Doubt, Evidence, Flight, LookedUp, PhotoFileState, Review};
 use crate::jobs::Progress;
 use crate::picture::{Agreement, Mismatch, decode};
 

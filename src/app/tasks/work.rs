@@ -11,8 +11,8 @@ use std::time::{Duration, Instant};
 use egui::ColorImage;
 
 use crate::fault::Fault;
-use crate::flight::{ComparedObject, Flight, FlightSettings, Outcome, ScaleObject};
-use crate::formats::{Colours, FlightOrigin, Georeferenced, LookedUp, OpenOptions, Opened};
+use crate::flight::{ComparedObject, Flight, FlightSettings, LookedUp, Outcome, ScaleObject};
+use crate::formats::{Colours, FlightOrigin, Georeferenced, OpenOptions, Opened};
 use crate::fragmentation::Effort;
 use crate::geometry::Bounds;
 use crate::jobs::{Job, Progress};

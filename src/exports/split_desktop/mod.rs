@@ -400,7 +400,9 @@ fn one_photo(
 
 /// How many photos to work on at once: as many as there are cores and memory for.
 fn at_once(request: &ExportRequest<'_>, chosen: &[usize]) -> usize {
-    let photos = chosen.iter().filter_map(|&index| request.review.photo(index));
+    let photos = chosen
+        .iter()
+        .filter_map(|&index| request.review.photo(index));
     let pixels = photos.map(|photo| u64::from(photo.camera.width) * u64::from(photo.camera.height));
     let of_photo = pixels.max().unwrap_or(1).max(1) * BYTES_A_PIXEL;
     let fit = usize::try_from(MEMORY / of_photo).unwrap_or(MOST_AT_ONCE);

@@ -41,26 +41,27 @@ pub(super) fn pictures(
     let names = file_names(&names).into_iter();
     names
         .enumerate()
-        .map(
-            |(index, (stem, extension))| match outcomes.get(index) {
-                Some(Outcome::Trouble(trouble)) => Err(format!("no pictures: {trouble}")),
-                // They would show bars of a length that nobody knows.
-                _ if !parts.unit_known => {
-                    Err("no pictures: the model's unit is not known".to_owned())
-                }
-                _ if request.from.photo_files.get(index).is_none_or(Option::is_none) => {
-                    Err("no pictures: the photo file is missing".to_owned())
-                }
-                _ => Ok(PhotoNames {
-                    photo: format!("photos/{stem}{extension}"),
-                    overlay: format!("overlays/{stem}.jpg"),
-                    thumbnail: format!("thumbnails/{stem}.jpg"),
-                    mask: objects
-                        .get(index)
-                        .is_some_and(|objects| objects.iter().any(PhotoObject::is_masked))
-                        .then(|| format!("masks/{stem}.png")),
-                }),
-            },
-        )
+        .map(|(index, (stem, extension))| match outcomes.get(index) {
+            Some(Outcome::Trouble(trouble)) => Err(format!("no pictures: {trouble}")),
+            // They would show bars of a length that nobody knows.
+            _ if !parts.unit_known => Err("no pictures: the model's unit is not known".to_owned()),
+            _ if request
+                .from
+                .photo_files
+                .get(index)
+                .is_none_or(Option::is_none) =>
+            {
+                Err("no pictures: the photo file is missing".to_owned())
+            }
+            _ => Ok(PhotoNames {
+                photo: format!("photos/{stem}{extension}"),
+                overlay: format!("overlays/{stem}.jpg"),
+                thumbnail: format!("thumbnails/{stem}.jpg"),
+                mask: objects
+                    .get(index)
+                    .is_some_and(|objects| objects.iter().any(PhotoObject::is_masked))
+                    .then(|| format!("masks/{stem}.png")),
+            }),
+        })
         .collect()
 }
