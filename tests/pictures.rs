@@ -19,10 +19,9 @@ use std::path::Path;
 
 use egui_kittest::image_snapshot;
 use fragscale::camera::{Camera, Distortion, Pose};
-use fragscale::formats::{self};
 use fragscale::geometry::{Bounds, LocalFrame};
 use fragscale::jobs::Progress;
-use fragscale::opening::OpenOptions;
+use fragscale::opening::{self, OpenOptions};
 use fragscale::render::{
     Background, CloudGeometry, ColorBy, Gpu, MeshGeometry, Normals, Orbit, PhotoGeometry,
     PhotoImage, PhotoLook, Projection, Renderer, Scope, Show, View,

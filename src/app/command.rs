@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use crate::flight::{FlightSettings, Limits, Verdict};
 use crate::geometry::Ray;
 use crate::open_flight::georeferencing::GeoreferenceForm;
-use crate::open_flight::table::Column;
+use crate::open_flight::table::SortBy;
 use crate::open_flight::tracing::Trace;
 use crate::opening::GeoreferenceRequest;
 use crate::size_distributions::{DistributionCommand, Page};
@@ -179,7 +179,7 @@ pub enum Command {
     /// Chooses many.
     ChooseAll(Choice),
     /// Sorts the table; the same column again turns it around.
-    Sort(Column),
+    Sort(SortBy),
     /// Shows only photos that hold this text.
     Filter(String),
     /// Shows only photos with this verdict.

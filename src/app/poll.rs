@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::command::Command;
-use crate::flight::Verdict;
+use crate::flight::{ColoursFound, Verdict};
 use crate::open_flight::picker::{Picked, Picker, Purpose};
 use crate::open_flight::{Measure, OpenFlight, Preview};
 use crate::opening::OpenOptions;
@@ -60,31 +60,22 @@ impl State {
                 }
             },
             Done::Scales(Ok((flight, outcomes, looked_up, settings))) => {
-                let limits = self.preferences.limits;
                 let Some(open) = &mut self.open else {
                     return;
                 };
-                let before = open.flight.parts();
+                let before = open.flight().parts();
                 let after = flight.parts();
                 let other_image = before.image != after.image;
                 // Of one reading of the file the points are the same.
                 let other_surface = before.surface.max_edge() != after.surface.max_edge();
-                open.flight = flight;
-                open.computed = settings;
-                open.outcomes = Arc::new(outcomes);
-                open.views = None;
-                open.compared.clear();
-                let said_before = open.looked_up.warnings.clone();
-                open.looked_up = looked_up;
-                let said = open
-                    .looked_up
-                    .warnings_of(&open.path)
-                    .zip(&open.looked_up.warnings);
+                let said_before = &open.review.looked_up().warnings;
+                let said = looked_up.warnings_of(open.path.display());
                 let new: Vec<String> = said
+                    .zip(&looked_up.warnings)
                     .filter(|(_, bare)| !said_before.contains(bare))
                     .map(|(warning, _)| warning)
                     .collect();
-                open.judge(&limits);
+                open.take_scales(flight, outcomes, looked_up, settings);
                 for warning in new {
                     self.say(Severity::Warning, &warning);
                 }
@@ -101,10 +92,8 @@ impl State {
             }
             Done::Compared(compared) => self.take_compared(compared),
             Done::Views(Ok(views)) => {
-                let limits = self.preferences.limits;
                 if let Some(open) = &mut self.open {
-                    open.views = Some(Arc::new(views));
-                    open.judge(&limits);
+                    open.take_views(views);
                 }
             }
             Done::Geometry(Ok(geometry)) => {
@@ -240,7 +229,7 @@ impl State {
             (Some(number), Some(before)) if number == before.number => {
                 // Scales of the flight before would come over those of this one.
                 self.work.cancel(Task::Scales);
-                Some(before).filter(|before| before.outcomes.len() == count)
+                Some(before).filter(|before| before.review.count() == count)
             }
             // She has gone on to another flight meanwhile.
             (Some(_), other) => {
@@ -274,7 +263,7 @@ impl State {
         let mut open = Box::new(OpenFlight::new(self.opened, loaded, &limits));
         if let Some(before) = again {
             open.keep_from(before);
-            open.judge(&limits);
+            open.arrange();
         }
         self.open = Some(open);
         self.start_picker();
@@ -293,9 +282,9 @@ impl State {
         }
         let sentence = format!(
             "{}: {} photos, {} without a scale",
-            open.flight.parts().name,
-            open.outcomes.len(),
-            open.count(Verdict::NoScale)
+            open.flight().parts().name,
+            open.review.count(),
+            open.review.count_of(Verdict::NoScale)
         );
         self.say(Severity::Note, &sentence);
     }
@@ -305,7 +294,7 @@ impl State {
             return;
         };
         open.hover = None;
-        let surface = open.flight.parts().surface.clone();
+        let surface = open.flight().parts().surface.clone();
         match Picker::new(surface, self.context.clone()) {
             Ok(picker) => open.picker = Some(picker),
             Err(fault) => self.say(Severity::Error, &fault.to_string()),
@@ -320,7 +309,6 @@ impl State {
             image,
             colours,
         } = thumbnail;
-        let limits = self.preferences.limits;
         let Some(open) = &mut self.open else {
             return;
         };
@@ -335,10 +323,12 @@ impl State {
             open.thumbnails[photo] = Some(texture);
         }
         open.images[photo] = image.map(Arc::new);
-        let is_known = open.colours[photo].is_some();
+        let evidence = open.review.looked_up().evidence.get(photo);
+        let is_known =
+            evidence.is_some_and(|evidence| evidence.colours != ColoursFound::NotCompared);
         let doubt = colours.doubt().filter(|_| !is_known);
         let said = doubt.map(|doubt| format!("photo '{}': {doubt}", open.name(photo)));
-        open.take_colours(photo, colours, &limits);
+        open.take_colours(photo, &colours);
         if let Some(said) = said {
             self.say(Severity::Warning, &said);
         }
@@ -409,7 +399,7 @@ impl OpenFlight {
     /// The photo that a click means: the camera next to the ray, else the photo that sees the place
     /// nearest to its middle.
     fn photo_at(&self, picked: &Picked) -> Option<usize> {
-        let photos = &self.flight.parts().photos;
+        let photos = &self.flight().parts().photos;
         // A camera is hit within this share of its distance: about ten pixels on the screen.
         let reach = 0.012;
         let camera = photos
@@ -432,7 +422,7 @@ impl OpenFlight {
             .iter()
             .enumerate()
             .filter_map(|(index, photo)| {
-                let camera = self.flight.camera(photo);
+                let camera = self.flight().camera(photo);
                 let pixel = camera.pixel_undistorted(photo.pose.camera_from_world(point))?;
                 let half =
                     glam::DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;

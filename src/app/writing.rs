@@ -83,7 +83,7 @@ impl State {
         let Some(open) = &self.open else {
             return false;
         };
-        let name = &open.flight.parts().name;
+        let name = &open.flight().parts().name;
         let Some(other) = exports::other_flight_in(folder, name, open.origin.file()) else {
             return true;
         };

@@ -13,7 +13,7 @@ use super::outputs::{Force, Outputs};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::files::{Kind, marked_png};
-use crate::flight::{FlightParts, Outcome};
+use crate::flight::{Limits, PhotoReview, Review};
 use crate::formats::{self, FileError};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
@@ -23,7 +23,7 @@ use crate::render::{
     Background, CloudGeometry, ColorBy, Gpu, MOST_PIXELS, MeshGeometry, Normals, Orbit,
     PhotoGeometry, PhotoImage, Renderer, Scope, Show, View,
 };
-use crate::scale::{Corner, CornerOutcome, Ground, PhotoScale, ViewFacts};
+use crate::scale::{Corner, CornerOutcome, Ground};
 
 /// Longer edge of the photo that is laid on the surface or over the view.
 const PHOTO_EDGE: u32 = 2048;
@@ -244,24 +244,23 @@ fn draw(
         ));
     }
     let gpu = Gpu::headless()?;
-    let outcomes = flight.scales(progress)?;
-    let views = flight.views(&outcomes, progress)?;
+    let looked_up = opened.looked_up.clone();
+    let limits = Limits::default();
+    let mut review = Review::of_scales(flight.clone(), looked_up, &limits, progress)?;
+    review.look(progress)?;
 
     let surface = &parts.surface;
     let bounds = surface.bounds();
     let frame = LocalFrame::near(&bounds);
-    let photos: Vec<PhotoGeometry> = parts
-        .photos
-        .iter()
-        .zip(&outcomes)
-        .zip(&views)
-        .map(|((photo, outcome), view)| {
-            let camera = flight.camera(photo);
-            PhotoGeometry::new(&frame, camera, &photo.pose, outcome.scale(), view.as_ref())
+    let photos: Vec<PhotoGeometry> = review
+        .photos()
+        .map(|photo| {
+            let pose = &photo.photo.pose;
+            PhotoGeometry::new(&frame, photo.camera, pose, photo.scale(), photo.view)
         })
         .collect();
     progress.stage("drawing");
-    let show = show(arguments, opened, &outcomes, selected, &bounds);
+    let show = show(arguments, &review, selected, &bounds);
     let mut renderer = Renderer::new(&gpu);
     renderer.start(&frame);
     let triangles = surface
@@ -282,15 +281,13 @@ fn draw(
     set_images(&mut renderer, opened, &show, progress)?;
 
     let size = DVec2::from(arguments.size.0.map(f64::from));
-    let view = match looked_through {
-        Some(index) => {
-            let photo = &parts.photos[index];
-            let scale = outcomes[index].scale();
-            let focus = depth_of(scale, views[index].as_ref()).unwrap_or(1.0);
-            View::of_photo(flight.camera(photo), &photo.pose, focus)
+    let view = match looked_through.and_then(|index| review.photo(index)) {
+        Some(photo) => {
+            let focus = depth_of(photo).unwrap_or(1.0);
+            View::of_photo(photo.camera, &photo.photo.pose, focus)
         }
         None => {
-            let points = points_to_fit(parts, &outcomes);
+            let points = points_to_fit(&review);
             orbit(&arguments.view, &points, &bounds, size).view()
         }
     };
@@ -307,15 +304,15 @@ fn needs_selected(arguments: &RenderArguments) -> Option<&'static str> {
 }
 
 /// How far a photo's footprint is away.
-fn depth_of(scale: Option<&PhotoScale>, view: Option<&ViewFacts>) -> Option<f64> {
+fn depth_of(photo: PhotoReview<'_>) -> Option<f64> {
     let distance = |outcome: &CornerOutcome| match *outcome {
         CornerOutcome::OnSurface { distance, .. } | CornerOutcome::OnGround { distance, .. } => {
             Some(distance)
         }
         CornerOutcome::Nowhere | CornerOutcome::NoRay(_) => None,
     };
-    let grid = view.iter().flat_map(|view| &view.footprint.grid);
-    let corners = scale.iter().flat_map(|scale| &scale.corners);
+    let grid = photo.view.into_iter().flat_map(|view| &view.footprint.grid);
+    let corners = photo.scale().into_iter().flat_map(|scale| &scale.corners);
     let mut distances: Vec<f64> = grid
         .filter_map(|sample| distance(&sample.outcome))
         .chain(corners.filter_map(|corner| distance(&corner.outcome)))
@@ -325,8 +322,7 @@ fn depth_of(scale: Option<&PhotoScale>, view: Option<&ViewFacts>) -> Option<f64>
 
 fn show(
     arguments: &RenderArguments,
-    opened: &Opened,
-    outcomes: &[Outcome],
+    review: &Review,
     selected: Option<usize>,
     bounds: &Bounds,
 ) -> Show {
@@ -335,7 +331,7 @@ fn show(
         item.map_or(Scope::None, |item| item.scope)
     };
     let shown = |name: &str| scope(name) != Scope::None;
-    let parts = opened.flight.parts();
+    let parts = review.flight().parts();
     let [width, height] = arguments.size.0.map(f64::from);
     Show {
         cloud: shown("cloud"),
@@ -356,7 +352,7 @@ fn show(
         ground: shown("ground").then(|| {
             // Under which photo, if the elevation is found anew for each? Under the first that
             // needed it, or else under everything.
-            let found = outcomes.iter().find_map(|outcome| outcome.scale()?.ground);
+            let found = review.photos().find_map(|photo| photo.scale()?.ground);
             match parts.ground {
                 Ground::At(z) => z,
                 Ground::Auto => found.unwrap_or(bounds.min.z),
@@ -386,11 +382,12 @@ const FAR: f64 = 2.0;
 
 /// What the picture shall hold: the surface without outliers (some thousands of its vertices stand
 /// for all), the camera centres and the corner points that are not near the horizon.
-fn points_to_fit(parts: &FlightParts, outcomes: &[Outcome]) -> Vec<DVec3> {
+fn points_to_fit(review: &Review) -> Vec<DVec3> {
+    let parts = review.flight().parts();
     let vertices = parts.surface.vertices();
     let step = (vertices.len() / 20_000).max(1);
     let bulk = parts.surface.bulk_bounds();
-    let corners = outcomes.iter().filter_map(Outcome::scale);
+    let corners = review.photos().filter_map(|photo| photo.scale());
     let corners = corners.flat_map(|scale| scale.corners.iter().filter_map(Corner::point));
     let near = bulk.widened(FAR * bulk.size().max_element());
     let corners = corners.filter(|&corner| near.contains(corner));

@@ -1,35 +1,16 @@
-//! What is looked up of a flight's photos, outside of the flight's own numbers, and speaks against their
-//! scales: where they stand, what their files say of themselves, whose size nobody has seen, whose
-//! colours are not those of the surface. Verdicts read it, and every front end asks here.
+//! Looks up what speaks against the scales of a flight's photos, outside of the flight's own numbers:
+//! where they stand, what their files say of themselves, whose size nobody has seen, whose colours are
+//! not those of the surface. Reviews are made of it, and every front end asks here.
 
 use std::collections::HashSet;
-use std::path::Path;
 
 use crate::fault::Fault;
-use crate::flight::{Doubt, Evidence, Flight, PhotoFileState};
-use crate::formats::{FileError, read_bytes};
+use crate::files::{FileError, read_bytes};
+use crate::flight::{ColoursFound, Doubt, Evidence, Flight, LookedUp, PhotoFileState, Review};
 use crate::jobs::Progress;
 use crate::photo_checks::photo_checks;
 use crate::photo_files::PhotoFile;
 use crate::picture::{Agreement, Mismatch, decode};
-
-/// What was looked up of a flight.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct LookedUp {
-    /// Of each photo.
-    pub evidence: Vec<Evidence>,
-    /// The same of the whole flight, a sentence each.
-    pub warnings: Vec<String>,
-}
-
-impl LookedUp {
-    /// The warnings with the flight's file in front.
-    pub fn warnings_of(&self, flight: &Path) -> impl Iterator<Item = String> {
-        let flight = flight.display().to_string();
-        let warnings = self.warnings.iter();
-        warnings.map(move |warning| format!("{flight}: {warning}"))
-    }
-}
 
 /// Looks up what the files' headers and the places of the photos say; `files` are parallel to the
 /// flight's photos. No photo is decoded: for colours see [`compare_colours`].
@@ -39,7 +20,7 @@ pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
         .iter()
         .map(|file| Evidence {
             file: file.state.clone(),
-            doubts: Vec::new(),
+            ..Evidence::default()
         })
         .collect();
     let mut warnings = Vec::new();
@@ -165,28 +146,28 @@ impl Colours {
     }
 }
 
-/// Compares the colours of the photos with those of the surface. Where `known` has a photo's already,
-/// its file is not read again.
+/// Compares the colours of the photos with those of the surface, of those that nobody has compared yet
+/// by `evidence`, whose lists are parallel to the flight's photos. Returns what was found now, each
+/// with its place in the flight.
 ///
 /// # Errors
 /// Where the work was cancelled.
 pub fn compare_colours(
     flight: &Flight,
     files: &[PhotoFile],
-    known: &[Option<Colours>],
+    evidence: &[Evidence],
     progress: &Progress,
-) -> Result<Vec<Colours>, Fault> {
+) -> Result<Vec<(usize, Colours)>, Fault> {
     let photos = &flight.parts().photos;
     let without_colours = flight.parts().surface.colors().is_empty();
     progress.stage("comparing colours");
-    let mut compared = Vec::with_capacity(photos.len());
-    for (index, file) in files.iter().enumerate() {
+    let mut compared = Vec::new();
+    for (index, (file, evidence)) in files.iter().zip(evidence).enumerate() {
         progress.advance(index as u64, photos.len() as u64)?;
-        if let Some(Some(known)) = known.get(index) {
-            compared.push(known.clone());
+        if evidence.colours != ColoursFound::NotCompared {
             continue;
         }
-        compared.push(match &file.path {
+        let colours = match &file.path {
             _ if without_colours => Colours::Not("the surface has no colours".to_owned()),
             None => Colours::Not("no image file".to_owned()),
             Some(path) => match read_bytes(path)
@@ -195,22 +176,24 @@ pub fn compare_colours(
                 Ok(pixels) => Colours::of_photo(flight, index, &pixels),
                 Err(error) => Colours::Unreadable(error.fault.to_string()),
             },
-        });
+        };
+        compared.push((index, colours));
     }
     Ok(compared)
 }
 
-/// The evidence with what the colours say besides; both are parallel to the flight's photos.
-pub fn with_colours<'a>(
-    evidence: &[Evidence],
-    colours: impl IntoIterator<Item = Option<&'a Colours>>,
-) -> Vec<Evidence> {
-    let mut evidence = evidence.to_vec();
-    for (evidence, colours) in evidence.iter_mut().zip(colours) {
-        // A file whose header cannot be read is doubted for that already.
-        let is_known = matches!(evidence.file, PhotoFileState::Unreadable(_));
-        let doubt = colours.and_then(Colours::doubt).filter(|_| !is_known);
-        evidence.doubts.extend(doubt);
-    }
-    evidence
+/// Compares the colours of the photos that nobody has compared yet, and tells the review.
+///
+/// # Errors
+/// Where the work was cancelled.
+pub fn compare_all_colours(
+    review: &mut Review,
+    files: &[PhotoFile],
+    progress: &Progress,
+) -> Result<(), Fault> {
+    let evidence = &review.looked_up().evidence;
+    let compared = compare_colours(review.flight(), files, evidence, progress)?;
+    let found = compared.into_iter();
+    review.take_colours(found.map(|(photo, colours)| (photo, colours.doubt().into())));
+    Ok(())
 }

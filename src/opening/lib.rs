@@ -29,7 +29,7 @@ use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
 
 pub use dropped::Dropped;
-pub use evidence::{Colours, LookedUp, compare_colours, look_up, with_colours};
+pub use evidence::{Colours, compare_all_colours, compare_colours, look_up};
 pub use georeferencing::{
     GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind, LengthResidual,
     PositionResidual, georeference,

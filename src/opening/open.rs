@@ -6,12 +6,13 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::camera::Camera;
-use crate::evidence::{LookedUp, look_up};
+use crate::evidence::{compare_all_colours, look_up};
 use crate::fault::Fault;
 use crate::files::{FileError, read_text};
 use crate::files::{Inputs, Recording};
 use crate::flight::{
-    CameraEntry, CameraSource, Flight, FlightFile, FlightParts, FlightSettings, Photo, PhotoSource,
+    CameraEntry, CameraSource, Flight, FlightFile, FlightParts, FlightSettings, Limits, LookedUp,
+    Photo, PhotoSource, Review,
 };
 use crate::flight_poses::{self, PhotosToPose};
 use crate::formats::packages::ros;
@@ -55,7 +56,7 @@ pub struct FlightReconstruction {
 #[derive(Debug)]
 pub struct Opened {
     /// Ready for scales.
-    pub flight: Flight,
+    pub flight: Arc<Flight>,
     /// What was noticed while reading, one sentence each, with the file in front where there is one.
     pub warnings: Vec<String>,
     /// The image file of each photo, in the order of the flight's photos.
@@ -82,8 +83,21 @@ impl Opened {
     /// What was noticed while reading and what was looked up, one sentence each with the file in front.
     pub fn all_warnings(&self) -> Vec<String> {
         let mut warnings = self.warnings.clone();
-        warnings.extend(self.looked_up.warnings_of(&self.origin.path));
+        warnings.extend(self.looked_up.warnings_of(self.origin.path.display()));
         warnings
+    }
+
+    /// Reviews the flight: with its footprints, and with the colours of its photos, which takes
+    /// longest, because every photo is read.
+    ///
+    /// # Errors
+    /// Where the surface cannot be met, or the work was cancelled.
+    pub fn review(&self, limits: &Limits, progress: &Progress) -> Result<Review, Fault> {
+        let (flight, looked_up) = (self.flight.clone(), self.looked_up.clone());
+        let mut review = Review::of_scales(flight, looked_up, limits, progress)?;
+        review.look(progress)?;
+        compare_all_colours(&mut review, &self.photo_files, progress)?;
+        Ok(review)
     }
 }
 
@@ -598,7 +612,7 @@ impl Source {
                 .map(|warning| format!("{file}: {warning}")),
         );
         Ok(Opened {
-            flight,
+            flight: Arc::new(flight),
             warnings: self.warnings,
             photo_files,
             looked_up,

@@ -264,7 +264,7 @@ mod tests {
         assert_eq!(
             scales(&copy),
             scales(&Opened {
-                flight: opened.flight.with_settings(&settings).unwrap(),
+                flight: opened.flight.with_settings(&settings).unwrap().into(),
                 ..open(&sample)
             })
         );

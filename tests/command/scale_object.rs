@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use fragscale::camera::Camera;
 use fragscale::flight::{ComparedObject, Flight, Outcome, Photo, ScaleObject};
@@ -20,7 +21,7 @@ fn sample() -> PathBuf {
 }
 
 /// The flight with its scales, and the centres of its spheres.
-fn flight() -> (Flight, Vec<Outcome>, Vec<DVec3>) {
+fn flight() -> (Arc<Flight>, Vec<Outcome>, Vec<DVec3>) {
     let progress = Progress::default();
     let opened = open_flight(&sample(), &OpenOptions::default(), &progress).expect("opens");
     let outcomes = opened.flight.scales(&progress).expect("scales");

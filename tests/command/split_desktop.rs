@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 
 use crate::common::{fragscale, stdout_of};
 use fragscale::exports::{
-    ExportError, ExportRequest, ExportSummary, Replace, export_for_split_desktop,
+    ExportError, ExportRequest, ExportSummary, Provenance, Replace, export_for_split_desktop,
 };
-use fragscale::flight::{Evidence, Judged, Limits, Outcome, PhotoFileState, Verdict, judge};
+use fragscale::flight::{Evidence, Limits, LookedUp, Outcome, PhotoFileState, Review, Verdict};
 use fragscale::jobs::Progress;
 use fragscale::opening::{OpenOptions, Opened, open_flight};
-use fragscale::scale::{ImageKind, ViewFacts};
+use fragscale::scale::ImageKind;
 use fragscale::units::LengthUnit;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -50,10 +50,7 @@ fn edit(path: &Path, from: &str, to: &str) {
 /// The sample, computed once a test.
 struct Computed {
     opened: Opened,
-    outcomes: Vec<Outcome>,
-    views: Vec<Option<ViewFacts>>,
-    evidence: Vec<Evidence>,
-    judged: Vec<Judged>,
+    review: Review,
     photo_files: Vec<Option<PathBuf>>,
     crs: Option<String>,
 }
@@ -62,27 +59,19 @@ impl Computed {
     fn new(flight: &Path) -> Self {
         let progress = Progress::default();
         let opened = open_flight(flight, &OpenOptions::default(), &progress).expect("opens");
-        let outcomes = opened.flight.scales(&progress).expect("scales");
-        let views = opened.flight.views(&outcomes, &progress).expect("views");
         let (width, height) = (1280, 720);
         let evidence = Evidence {
             file: PhotoFileState::Found { width, height },
-            doubts: Vec::new(),
+            ..Evidence::default()
         };
-        let judged = outcomes.iter().zip(&views).map(|(outcome, view)| {
-            let unit = Some(opened.settings.unit);
-            judge(
-                outcome,
-                view.as_ref(),
-                &evidence,
-                (1280, 720),
-                unit,
-                &Limits::default(),
-            )
-        });
+        let looked_up = LookedUp {
+            evidence: vec![evidence; opened.photo_files.len()],
+            warnings: Vec::new(),
+        };
+        let (flight, limits) = (opened.flight.clone(), Limits::default());
+        let mut review = Review::of_scales(flight, looked_up, &limits, &progress).expect("scales");
+        review.look(&progress).expect("views");
         Self {
-            judged: judged.collect(),
-            evidence: vec![evidence.clone(); outcomes.len()],
             photo_files: opened
                 .photo_files
                 .iter()
@@ -90,8 +79,7 @@ impl Computed {
                 .collect(),
             crs: opened.crs.clone(),
             opened,
-            outcomes,
-            views,
+            review,
         }
     }
 
@@ -102,22 +90,19 @@ impl Computed {
         progress: &Progress,
     ) -> Result<ExportSummary, ExportError> {
         let request = ExportRequest {
-            flight: &self.opened.flight,
-            outcomes: &self.outcomes,
-            views: &self.views,
-            evidence: &self.evidence,
-            judged: &self.judged,
-            photo_files: &self.photo_files,
+            review: &self.review,
+            from: &Provenance {
+                file: self.opened.origin.file(),
+                inputs: &self.opened.inputs,
+                read: &self.opened.read,
+                photo_files: &self.photo_files,
+                settings: &self.opened.settings,
+                crs: self.crs.as_deref(),
+                warnings: &self.opened.warnings,
+            },
             selected,
             unit: LengthUnit::Centimetre,
-            limits: &Limits::default(),
-            settings: &self.opened.settings,
-            crs: self.crs.as_deref(),
-            inputs: &self.opened.inputs,
-            read: &self.opened.read,
-            source: self.opened.origin.file(),
             replace: Replace::Nothing,
-            warnings: &self.opened.warnings,
         };
         export_for_split_desktop(to, &request, progress)
     }
@@ -529,9 +514,9 @@ fn only_trusted_photos_where_asked() {
         "trusted",
     ]);
     let trusted = Computed::new(&sample)
-        .judged
-        .iter()
-        .filter(|judged| judged.verdict == Verdict::Trust)
+        .review
+        .photos()
+        .filter(|photo| photo.verdict == Verdict::Trust)
         .count();
     assert!(
         (1..9).contains(&trusted),
@@ -619,7 +604,7 @@ fn a_flight_on_the_map_has_kml() {
     assert_eq!(features["coordinates"], "WGS 84 longitude, latitude");
     let at = &features["features"][0]["geometry"]["coordinates"][0][0];
     assert_eq!(at.as_array().expect("a position").len(), 2);
-    let Outcome::Scale(scale) = &computed.outcomes[0] else {
+    let Outcome::Scale(scale) = &computed.review.outcomes()[0] else {
         panic!("no scale");
     };
     let corner = scale.corners[0].point().expect("a point");

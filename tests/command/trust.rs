@@ -10,9 +10,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::common::{fragscale, scales_json};
-use fragscale::flight::{Doubt, Judged, Limits, Verdict, judge_all};
+use fragscale::flight::{Doubt, Limits, PhotoReview, Review, Verdict};
 use fragscale::jobs::Progress;
-use fragscale::opening::{OpenOptions, Opened, compare_colours, open_flight, with_colours};
+use fragscale::opening::{OpenOptions, Opened, open_flight};
 use tempfile::TempDir;
 
 /// Of the cameras over the plane, metres.
@@ -88,20 +88,10 @@ fn opened(path: &Path, photos: Option<&Path>) -> Result<Opened, String> {
     open_flight(path, &options, &Progress::default()).map_err(|error| error.to_string())
 }
 
-/// Verdicts as the export and the window come to them, and the top scales in pixels per world unit.
-fn judged(opened: &Opened) -> (Vec<Judged>, Vec<Option<f64>>) {
-    let progress = Progress::default();
-    let flight = &opened.flight;
-    let outcomes = flight.scales(&progress).expect("scales");
-    let views = flight.views(&outcomes, &progress).expect("views");
-    let colours = compare_colours(flight, &opened.photo_files, &[], &progress).expect("compared");
-    let evidence = with_colours(&opened.looked_up.evidence, colours.iter().map(Some));
-    let limits = Limits::default();
-    let judged = judge_all(flight, &outcomes, Some(&views), &evidence, &limits);
-    let tops = outcomes
-        .iter()
-        .map(|o| o.scale().and_then(|scale| scale.scale.top));
-    (judged, tops.collect())
+/// The review that the export makes, and the window piece by piece.
+fn review(opened: &Opened) -> Review {
+    let reviewed = opened.review(&Limits::default(), &Progress::default());
+    reviewed.expect("a review")
 }
 
 #[test]
@@ -144,12 +134,12 @@ fn the_size_that_the_package_names_is_said() {
     let folder = tempfile::tempdir().expect("a folder");
     let camera = "v2 dji fc6310 5472 4104 perspective 0.8";
     let opened = opened(&opensfm(folder.path(), (684, 513), camera), None).expect("opens");
-    let (judged, _) = judged(&opened);
+    let review = review(&opened);
     let doubt = Doubt::ReducedPhotos {
         size: (684, 513),
         original: Some((5472, 4104)),
     };
-    assert!(judged.iter().all(|judged| judged.doubts.contains(&doubt)));
+    assert!(review.photos().all(|photo| photo.doubts.contains(&doubt)));
     assert!(doubt.to_string().contains("which have 5472 x 4104 px"));
 }
 
@@ -326,25 +316,20 @@ fn two_hundred_flights_never_give_a_wrong_scale_in_silence() {
             }
             (_, found) => found.unwrap_or_else(|error| panic!("{what}: {error}")),
         };
-        let (judged, tops) = judged(&opened);
+        let review = review(&opened);
         let right = FOCAL * f64::from(photo_size.0) / HEIGHT;
-        for (index, (judged, top)) in judged.iter().zip(tops).enumerate() {
-            let top = top.expect("a scale");
+        for (index, photo) in review.photos().enumerate() {
+            let top = photo.edges(photo.unit).top.expect("a scale");
             let is_right = (top / right - 1.0).abs() < 1e-9;
             let is_there = is_named && (kind != "only the first" || index == 0);
             if is_there {
                 assert!(is_right, "{what}: {top}");
-                assert_eq!(
-                    judged.verdict,
-                    Verdict::Trust,
-                    "{what}: {:?}",
-                    judged.doubts
-                );
+                assert_eq!(photo.verdict, Verdict::Trust, "{what}: {:?}", photo.doubts);
                 continue;
             }
             // One photo of a camera tells the size of all, but this one's own is still not known.
-            assert_eq!(judged.verdict, Verdict::Check, "{what}");
-            let about_size = judged.doubts.iter().any(|doubt| {
+            assert_eq!(photo.verdict, Verdict::Check, "{what}");
+            let about_size = photo.doubts.iter().any(|doubt| {
                 matches!(
                     doubt,
                     Doubt::ReducedPhotos { .. }
@@ -352,7 +337,7 @@ fn two_hundred_flights_never_give_a_wrong_scale_in_silence() {
                         | Doubt::NoPhotoFolder { .. }
                 )
             });
-            assert!(about_size, "{what}: {:?}", judged.doubts);
+            assert!(about_size, "{what}: {:?}", photo.doubts);
             let said = opened.all_warnings().join("\n");
             assert!(
                 said.contains(" px") || said.contains("missing"),
@@ -457,11 +442,10 @@ fn a_model_without_a_unit_has_no_scale() {
         let unit_known = &scales_json(&path, &[])["unit_known"];
         assert_eq!(*unit_known == false, !known, "{unit_known}");
         let opened = opened(&path, None).expect("opens");
-        let (judged, _) = judged(&opened);
         // (The cameras look up at the plane: a doubt of its own.)
-        for judged in &judged {
-            assert_eq!(judged.verdict == Verdict::NoScale, !known, "{judged:?}");
-            assert_eq!(judged.doubts.contains(&Doubt::UnitUnknown), !known);
+        for photo in review(&opened).photos() {
+            assert_eq!(photo.verdict == Verdict::NoScale, !known, "{photo:?}");
+            assert_eq!(photo.doubts.contains(&Doubt::UnitUnknown), !known);
         }
     }
 }
@@ -492,19 +476,17 @@ fn swapped() -> TempDir {
 
 #[test]
 fn swapped_photos_are_not_trusted() {
-    let of_colours = |judged: &Judged| {
-        let mut doubts = judged.doubts.iter();
-        doubts.any(|doubt| matches!(doubt, Doubt::OtherColours { .. } | Doubt::Flipped { .. }))
-    };
+    let of_colours = |photo: &PhotoReview<'_>| photo.doubts.iter().any(Doubt::is_of_colours);
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
-    let (as_flown, _) = judged(&opened(&sample, None).expect("opens"));
+    let as_flown = review(&opened(&sample, None).expect("opens"));
+    let as_flown: Vec<PhotoReview<'_>> = as_flown.photos().collect();
     assert!(!as_flown.iter().any(of_colours), "{as_flown:?}");
     let folder = swapped();
-    let (judged, _) = judged(&opened(folder.path(), None).expect("opens"));
+    let review = review(&opened(folder.path(), None).expect("opens"));
     let swapped = [0, 2, 4, 8];
     let trusted = as_flown
         .iter()
-        .filter(|judged| judged.verdict == Verdict::Trust);
+        .filter(|photo| photo.verdict == Verdict::Trust);
     // Some of them would be trusted, or this would show nothing.
     assert!(
         swapped
@@ -512,13 +494,13 @@ fn swapped_photos_are_not_trusted() {
             .any(|&photo| as_flown[photo].verdict == Verdict::Trust)
     );
     let mut still_trusted = trusted.count();
-    for (index, (judged, as_flown)) in judged.iter().zip(&as_flown).enumerate() {
+    for (index, (photo, as_flown)) in review.photos().zip(&as_flown).enumerate() {
         let is_swapped = swapped.contains(&index);
         assert_eq!(
-            of_colours(judged),
+            of_colours(&photo),
             is_swapped,
             "photo {index}: {:?}",
-            judged.doubts
+            photo.doubts
         );
         let expected = match as_flown.verdict {
             Verdict::Trust if is_swapped => {
@@ -527,7 +509,7 @@ fn swapped_photos_are_not_trusted() {
             }
             other => other,
         };
-        assert_eq!(judged.verdict, expected, "photo {index}");
+        assert_eq!(photo.verdict, expected, "photo {index}");
     }
     // The sheet that is typed from says the same, and so does `check`.
     let to = folder.path().join("export");

@@ -48,7 +48,7 @@ pub fn effort(measured: &[MeasuredStep]) -> Result<Effort, Fault> {
 impl State {
     /// Notes how long a job took, where it was a step of the engineer's work that succeeded.
     pub(crate) fn measure(&mut self, done: &Done, took: Duration) {
-        let on_screen = || self.open.as_ref().map(|open| &open.flight);
+        let on_screen = || self.open.as_ref().map(|open| open.flight());
         let steps = match done {
             Done::Opened(loaded) => {
                 let Ok(loaded) = loaded.as_ref() else {

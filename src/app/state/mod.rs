@@ -160,7 +160,7 @@ impl State {
             None => "fragscale".to_owned(),
             Some(open) => {
                 let mark = if open.is_changed() { "*" } else { "" };
-                format!("{}{mark} – fragscale", open.flight.parts().name)
+                format!("{}{mark} – fragscale", open.flight().parts().name)
             }
         }
     }

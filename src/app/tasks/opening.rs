@@ -8,10 +8,10 @@ use image::RgbImage;
 use image::buffer::ConvertBuffer;
 
 use crate::camera::Camera;
-use crate::exports::{self, ExportRequest, Replace};
+use crate::exports::{self, ExportRequest, Provenance, Replace};
 use crate::fault::Fault;
 use crate::files::{self, Kind};
-use crate::flight::{Flight, FlightSettings, judge_all};
+use crate::flight::{Flight, FlightSettings};
 use crate::formats::{self, FileError};
 use crate::geometry::LocalFrame;
 use crate::jobs::Progress;
@@ -85,7 +85,7 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let (flight, settings) = (open.flight.clone(), open.settings());
+        let (flight, settings) = (open.flight().clone(), open.settings());
         let files = open.photo_files.clone();
         // Footprints under way go on: where these scales are cancelled, they are still wanted.
         self.start(Task::Scales, move |progress| {
@@ -105,7 +105,7 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let (flight, outcomes) = (open.flight.clone(), open.outcomes.clone());
+        let (flight, outcomes) = (open.flight().clone(), open.review.outcomes().clone());
         self.start(Task::Views, move |progress| {
             Done::Views(flight.views(&outcomes, progress))
         });
@@ -116,7 +116,7 @@ impl State {
         let (Some(open), Some(gpu)) = (&self.open, self.gpu.clone()) else {
             return;
         };
-        let (flight, frame) = (open.flight.clone(), open.frame);
+        let (flight, frame) = (open.flight().clone(), open.frame);
         self.start(Task::Geometry, move |progress| {
             Done::Geometry(geometry(&flight, &frame, &gpu, progress))
         });
@@ -128,7 +128,7 @@ impl State {
             return;
         };
         let (number, files) = (open.number, open.photo_files.clone());
-        let flight = open.flight.clone();
+        let flight = open.flight().clone();
         let send = self.work.thumbnail_sender();
         let context = self.context.clone();
         self.start(Task::Thumbnails, move |progress| {
@@ -186,7 +186,7 @@ impl State {
             return;
         };
         let file = open.photo_files.get(photo).cloned().unwrap_or_default();
-        let (flight, gpu) = (open.flight.clone(), self.gpu.clone());
+        let (flight, gpu) = (open.flight().clone(), self.gpu.clone());
         // egui refuses larger textures than the graphics device takes.
         let largest = self.context.input(|input| input.max_texture_side);
         let largest = u32::try_from(largest).map_or(PREVIEW, |largest| largest.min(PREVIEW));
@@ -241,51 +241,43 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let views = open.views.clone();
-        let Some(views) = views.filter(|_| open.is_computed()) else {
+        if !open.review.is_looked_at() || !open.is_computed() {
             self.say(
                 Severity::Error,
                 "scales and footprints are still being computed; export when they are there",
             );
             return;
-        };
-        let (flight, outcomes) = (open.flight.clone(), open.outcomes.clone());
+        }
+        let mut review = open.review.clone();
         let photo_files = open.photo_files.clone();
-        let files = photo_files.iter().map(|file| file.path.clone());
-        let files: Vec<Option<PathBuf>> = files.collect();
-        let (looked_up, colours) = (open.looked_up.evidence.clone(), open.colours.clone());
         let selected = open.history.now().chosen.clone();
-        let (unit, limits) = (self.preferences.unit(), self.preferences.limits);
+        let unit = self.preferences.unit();
         let settings = open.settings();
         let (crs, inputs) = (open.crs.clone(), open.inputs.clone());
         let warnings = open.all_warnings();
         let source = open.origin.file().to_owned();
         self.start(Task::Export, move |progress| {
             // Those that the window has not come to yet.
-            let compared = opening::compare_colours(&flight, &photo_files, &colours, progress);
-            let colours = match compared {
-                Ok(colours) => colours,
-                Err(fault) => return Done::Exported(Err(fault.to_string())),
-            };
-            let evidence = opening::with_colours(&looked_up, colours.iter().map(Some));
-            let judged = judge_all(&flight, &outcomes, Some(&views), &evidence, &limits);
+            let compared = opening::compare_all_colours(&mut review, &photo_files, progress);
+            if let Err(fault) = compared {
+                return Done::Exported(Err(fault.to_string()));
+            }
+            let files = photo_files.iter().map(|file| file.path.clone());
+            let files: Vec<Option<PathBuf>> = files.collect();
             let request = ExportRequest {
-                flight: &flight,
-                outcomes: &outcomes,
-                views: &views,
-                evidence: &evidence,
-                judged: &judged,
-                photo_files: &files,
+                review: &review,
+                from: &Provenance {
+                    file: &source,
+                    inputs: &inputs,
+                    read: &read,
+                    photo_files: &files,
+                    settings: &settings,
+                    crs: crs.as_deref(),
+                    warnings: &warnings,
+                },
                 selected: &selected,
                 unit,
-                limits: &limits,
-                settings: &settings,
-                crs: crs.as_deref(),
-                inputs: &inputs,
-                read: &read,
-                source: &source,
                 replace,
-                warnings: &warnings,
             };
             let exported = exports::export_for_split_desktop(&folder, &request, progress);
             Done::Exported(match exported {

@@ -11,12 +11,12 @@ use std::time::{Duration, Instant};
 use egui::ColorImage;
 
 use crate::fault::Fault;
-use crate::flight::{ComparedObject, Flight, FlightSettings, Outcome, ScaleObject};
+use crate::flight::{ComparedObject, Flight, FlightSettings, LookedUp, Outcome, ScaleObject};
 use crate::fragmentation::Effort;
 use crate::geometry::Bounds;
 use crate::jobs::{Job, Progress};
 use crate::open_flight::georeferencing::PathField;
-use crate::opening::{Colours, FlightOrigin, Georeferenced, LookedUp, OpenOptions, Opened};
+use crate::opening::{Colours, FlightOrigin, Georeferenced, OpenOptions, Opened};
 use crate::render::{CloudBuffers, LargePhoto, MeshBuffers, PhotoImage};
 use crate::scale::ViewFacts;
 use crate::size_distributions::Computed;

@@ -72,31 +72,24 @@ impl Graphics {
             self.renderer.set_mesh_buffers(mesh);
             (self.drawn, self.moved) = (None, None);
         }
-        let same_photos = same(uploaded.outcomes.as_ref(), Some(&open.outcomes))
-            && same(uploaded.views.as_ref(), open.views.as_ref());
+        let same_photos = same(uploaded.outcomes.as_ref(), Some(open.review.outcomes()))
+            && same(uploaded.views.as_ref(), open.review.views());
         if !same_photos {
-            uploaded.outcomes = Some(open.outcomes.clone());
-            uploaded.views.clone_from(&open.views);
-            let photos = open.flight.parts().photos.iter().enumerate();
-            let photos = photos.map(|(index, photo)| {
-                PhotoGeometry::new(
-                    &open.frame,
-                    open.flight.camera(photo),
-                    &photo.pose,
-                    open.scale(index),
-                    open.view(index),
-                )
+            uploaded.outcomes = Some(open.review.outcomes().clone());
+            uploaded.views = open.review.views().cloned();
+            let photos = open.review.photos().map(|photo| {
+                let pose = &photo.photo.pose;
+                PhotoGeometry::new(&open.frame, photo.camera, pose, photo.scale(), photo.view)
             });
             self.renderer.set_photos(photos.collect());
             uploaded.looks.clear();
             (self.drawn, self.moved) = (None, None);
         }
         let looks: Vec<PhotoLook> = open
-            .judged
-            .iter()
-            .enumerate()
-            .map(|(photo, _)| {
-                let color = match open.verdict(photo) {
+            .review
+            .photos()
+            .map(|photo| {
+                let color = match photo.settled() {
                     Some(verdict) => verdict_color(verdict, visuals),
                     None => visuals.text_color(),
                 };

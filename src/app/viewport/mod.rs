@@ -148,7 +148,7 @@ impl Viewport {
             layers = layers.corner_ray_figure();
         }
         let mut show = layers.show(Some(open.ground()));
-        show.unit = open.flight.parts().unit;
+        show.unit = open.flight().parts().unit;
         show.selected = if corner_rays { None } else { open.selected };
         show.photo_blend = blend(open);
         // Lines as thick as in a report's figure, whatever the size.
@@ -216,7 +216,7 @@ fn view(open: &OpenFlight) -> View {
     let through = open
         .looking
         .through
-        .and_then(|photo| Some((photo, open.flight.parts().photos.get(photo)?)));
+        .and_then(|photo| Some((photo, open.flight().parts().photos.get(photo)?)));
     match through {
         None => open.looking.orbit.view(),
         Some((index, photo)) => {
@@ -226,7 +226,7 @@ fn view(open: &OpenFlight) -> View {
                 .and_then(|view| view.height)
                 .unwrap_or(open.looking.orbit.distance);
             View::of_photo(
-                open.flight.camera(photo),
+                open.flight().camera(photo),
                 &photo.pose,
                 focus.abs().max(1e-6),
             )
@@ -243,7 +243,7 @@ fn blend(open: &OpenFlight) -> f64 {
 
 fn show(state: &State, open: &OpenFlight, ui: &egui::Ui, pixels_per_point: f64) -> Show {
     let mut show = state.preferences.layers.show(Some(open.ground()));
-    show.unit = open.flight.parts().unit;
+    show.unit = open.flight().parts().unit;
     show.selected = open.selected;
     show.hovered = open.hovered_photo;
     show.photo_blend = blend(open);
