@@ -3,7 +3,6 @@
 //!
 //! The root of this crate lies beside its modules, its manifest in `src/core/`.
 
-
 pub mod camera;
 pub mod fault;
 pub mod files;
