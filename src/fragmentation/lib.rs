@@ -10,6 +10,7 @@
 //! fit             least squares, covariance, percentiles with confidence bands
 //! comparison      methods against the reference: residuals, norms, envelopes, shifts
 //! anova           one-way analysis of variance
+//! analysis        all of it for a table of methods: sieves, merging, the reference, what is said
 //! effort          time that each step took
 //! ```
 //!
@@ -17,6 +18,7 @@
 //! (`Swebrec` and its like), which take and give shares 0 to 1. Sizes are in the unit of the set; no
 //! formula here knows a unit.
 
+mod analysis;
 mod anova;
 mod comparison;
 mod distribution;
@@ -28,8 +30,11 @@ mod joining;
 mod merging;
 mod sieve_series;
 
-use fragscale_core::{fault, units};
+use fragscale_core::{fault, jobs, units};
 
+pub use analysis::{
+    Analysis, AnalysisOptions, MARKED_PERCENTILES, PERCENTILES, SIGNIFICANCE, fit_each,
+};
 pub use anova::{Anova, Repeatability, Variation, repeatability};
 pub use comparison::{
     Comparison, ComparisonOptions, CurveNorm, Improvement, MeanPoint, MethodComparison,
