@@ -10,7 +10,7 @@ mod scales_table;
 mod size_distributions;
 mod split_desktop;
 
-use fragscale_core::{camera, fault, files, flight, geodesy, jobs, picture, scale, units};
+use fragscale_core::{camera, fault, files, flight, geodesy, jobs, numbers, picture, scale, units};
 use fragscale_fragmentation as fragmentation;
 
 pub use report_object::{PointCloudScale, ReportObject};

@@ -46,7 +46,7 @@ mod tiles;
 mod view;
 mod words;
 
-use fragscale_core::{camera, fault, geometry, picture, scale, units};
+use fragscale_core::{camera, fault, geometry, numbers, picture, scale, units};
 
 pub use colormap::viridis;
 pub use gpu::{Gpu, device_descriptor};

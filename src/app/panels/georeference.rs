@@ -6,8 +6,8 @@ use super::residuals::residuals;
 use crate::command::{Asking, Command};
 use crate::formats::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds};
 use crate::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
+use crate::numbers::significant_digits;
 use crate::open_flight::{Measure, OpenFlight};
-use crate::picture::significant_digits;
 use crate::state::State;
 use crate::work::{DialogFor, Task};
 

@@ -10,8 +10,9 @@ use super::{or_dash, verdict_color, verdict_sign};
 use crate::actions;
 use crate::command::Command;
 use crate::flight::Outcome;
+use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
-use crate::picture::{BarEdge, ScaleBar, scale_bars, significant_digits};
+use crate::picture::{BarEdge, ScaleBar, scale_bars};
 use crate::scale::{CornerOutcome, ImageKind, PhotoScale};
 use crate::state::State;
 

@@ -35,7 +35,7 @@ pub use view_buttons::{blend_slider, view_buttons};
 use super::command::{Command, Tab};
 use super::state::State;
 use crate::flight::Verdict;
-use crate::picture::significant_digits;
+use crate::numbers::significant_digits;
 
 /// The right panel: its tabs and the one that is shown.
 pub fn right_panel(

@@ -5,7 +5,7 @@ use egui::collapsing_header::CollapsingState;
 use super::plot::color;
 use crate::command::Command;
 use crate::fragmentation::LabelledDistribution;
-use crate::picture::significant_digits;
+use crate::numbers::significant_digits;
 use crate::size_distributions::drawing::MethodDrawing;
 use crate::size_distributions::{Computed, DistributionCommand};
 use crate::state::State;

@@ -2,7 +2,7 @@
 
 use super::{Band, Panel, Series, SizeAxis};
 use crate::fragmentation::{Fit, MARKED_PERCENTILES};
-use crate::picture::significant_digits;
+use crate::numbers::significant_digits;
 use crate::units::LengthUnit;
 
 /// Sizes at which a fitted function is drawn, across the whole axis.
