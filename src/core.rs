@@ -11,6 +11,7 @@ pub mod geodesy;
 pub mod geometry;
 pub mod georeference;
 pub mod jobs;
+pub mod numbers;
 pub mod picture;
 pub mod raster;
 pub mod scale;

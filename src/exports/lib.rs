@@ -11,7 +11,7 @@ mod scales_table;
 mod size_distributions;
 mod split_desktop;
 
-use fragscale_core::{camera, fault, files, flight, geodesy, jobs, picture, scale, units};
+use fragscale_core::{camera, fault, files, flight, geodesy, jobs, numbers, picture, scale, units};
 use fragscale_fragmentation as fragmentation;
 
 pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};

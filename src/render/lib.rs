@@ -22,7 +22,7 @@ mod scene;
 mod show;
 mod view;
 
-use fragscale_core::{camera, fault, geometry, picture, scale, units};
+use fragscale_core::{camera, fault, geometry, numbers, picture, scale, units};
 
 pub use device::gpu::{Gpu, device_descriptor};
 pub use furniture::colormap::viridis;

@@ -3,11 +3,11 @@
 
 use super::residuals::residuals;
 use crate::command::{Asking, Command};
+use crate::numbers::significant_digits;
 use crate::open_flight::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
 use crate::open_flight::{Measure, OpenFlight};
 use crate::opening::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds};
 use crate::panels::path_field::{path_field, typed};
-use crate::picture::significant_digits;
 use crate::state::State;
 use crate::tasks::work::{DialogFor, Task};
 
