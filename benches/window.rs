@@ -17,8 +17,8 @@ use std::sync::Arc;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use fragscale::app::open_flight::OpenFlight;
+use fragscale::app::open_flight::loading::Loaded;
 use fragscale::app::open_flight::table::{Column, TableOrder};
-use fragscale::app::tasks::work::Loaded;
 use fragscale::flight::Limits;
 use fragscale::formats::{OpenOptions, Opened, open_flight};
 use fragscale::geometry::{Bounds, LocalFrame};

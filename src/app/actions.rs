@@ -2,12 +2,11 @@
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
-use crate::command::{Asking, Choice, Command, Look};
+use crate::command::{Answers, Asking, Choice, Command, Dialog, ViewChange};
 use crate::open_flight::tracing::Trace;
 use crate::scale::ScaleObjectKind;
 use crate::size_distributions::{DistributionCommand, Page};
 use crate::state::State;
-use crate::tasks::work::DialogFor;
 
 /// What an entry of the menu does.
 #[derive(Debug, Clone, Copy)]
@@ -60,14 +59,22 @@ pub const OPEN_FILE: Action = Action {
     label: "Open file…",
     hover: "Choose a file with the desktop's own dialog",
     shortcut: None,
-    command: |_| Some(Command::Browse(DialogFor::Open, false)),
+    command: |_| {
+        Some(Command::Browse(
+            Dialog::file("Open a flight").answering(Answers::Open),
+        ))
+    },
 };
 /// See its `hover`.
 pub const OPEN_FOLDER: Action = Action {
     label: "Open folder…",
     hover: "Choose a folder with the desktop's own dialog",
     shortcut: None,
-    command: |_| Some(Command::Browse(DialogFor::Open, true)),
+    command: |_| {
+        Some(Command::Browse(
+            Dialog::folder("Open a flight's folder").answering(Answers::Open),
+        ))
+    },
 };
 /// See its `hover`.
 pub const ADD: Action = Action {
@@ -230,42 +237,42 @@ pub const TOP: Action = Action {
     label: "From above",
     hover: "Look straight down, north up",
     shortcut: keys(Modifiers::NONE, Key::T),
-    command: |state| on_pile(state, Command::Look(Look::Top)),
+    command: |state| on_pile(state, Command::View(ViewChange::Top)),
 };
 /// See its `hover`.
 pub const FRONT: Action = Action {
     label: "From the front",
     hover: "Look to the north, level",
     shortcut: keys(Modifiers::NONE, Key::F),
-    command: |state| on_pile(state, Command::Look(Look::Front)),
+    command: |state| on_pile(state, Command::View(ViewChange::Front)),
 };
 /// See its `hover`.
 pub const SIDE: Action = Action {
     label: "From the side",
     hover: "Look to the west, level",
     shortcut: keys(Modifiers::NONE, Key::S),
-    command: |state| on_pile(state, Command::Look(Look::Side)),
+    command: |state| on_pile(state, Command::View(ViewChange::Side)),
 };
 /// See its `hover`.
 pub const FIT: Action = Action {
     label: "Show everything",
     hover: "Bring the whole flight into sight",
     shortcut: keys(Modifiers::NONE, Key::Home),
-    command: |state| on_pile(state, Command::Look(Look::Fit)),
+    command: |state| on_pile(state, Command::View(ViewChange::Fit)),
 };
 /// See its `hover`.
 pub const FIT_SELECTED: Action = Action {
     label: "Show the selected photo",
     hover: "Bring the selected photo's camera and footprint into sight",
     shortcut: keys(Modifiers::NONE, Key::Period),
-    command: |state| with_photo(state, Command::Look(Look::FitSelected)),
+    command: |state| with_photo(state, Command::View(ViewChange::FitSelected)),
 };
 /// See its `hover`.
 pub const THROUGH: Action = Action {
     label: "Look through the camera",
     hover: "See the surface as the selected photo does, with the photo over it",
     shortcut: keys(Modifiers::NONE, Key::C),
-    command: |state| with_photo(state, Command::Look(Look::Through)),
+    command: |state| with_photo(state, Command::View(ViewChange::Through)),
 };
 /// See its `hover`.
 pub const MEASURE: Action = Action {

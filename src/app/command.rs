@@ -8,14 +8,13 @@ use glam::{DVec2, DVec3};
 use crate::flight::{FlightSettings, Limits, Verdict};
 use crate::formats::GeoreferenceRequest;
 use crate::geometry::Ray;
-use crate::open_flight::georeferencing::GeoreferenceForm;
+use crate::open_flight::georeferencing::{GeoreferenceForm, PathField};
 use crate::open_flight::table::Column;
 use crate::open_flight::tracing::Trace;
 use crate::size_distributions::{DistributionCommand, Page};
-use crate::state::PictureRequest;
 use crate::state::layers::Layers;
 use crate::state::preferences::Theme;
-use crate::tasks::work::{DialogFor, Task};
+use crate::tasks::work::Task;
 use crate::units::LengthUnit;
 
 /// Which tab of the right panel is shown.
@@ -64,6 +63,104 @@ pub enum Asking {
     About,
 }
 
+/// Where something is written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Destination {
+    /// The file or folder.
+    pub path: PathBuf,
+    /// Whether it may replace what is there: she was asked, and said so.
+    pub replace: bool,
+}
+
+/// Replaces nothing.
+impl From<PathBuf> for Destination {
+    fn from(path: PathBuf) -> Self {
+        Self {
+            path,
+            replace: false,
+        }
+    }
+}
+
+/// A picture of the viewport to be written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PictureRequest {
+    /// Where to.
+    pub to: Destination,
+    /// In pixels.
+    pub size: [u32; 2],
+    /// Without a background, or on white.
+    pub transparent: bool,
+    /// With the layers of the paper's figure.
+    pub corner_rays: bool,
+}
+
+/// The desktop's own dialog for a file or folder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Dialog {
+    /// What it says on top.
+    pub title: &'static str,
+    /// What is chosen in it.
+    pub chooses: Chooses,
+    /// What is done with that.
+    pub answers: Answers,
+}
+
+/// What is chosen in a dialog.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Chooses {
+    /// A file that is there.
+    File,
+    /// A folder.
+    Folder,
+    /// A file to write, with this name if nobody types another.
+    NewFile(&'static str),
+}
+
+/// What is done with what was chosen in a dialog.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Answers {
+    /// It is opened.
+    Open,
+    /// It stands in the field of the small window that is open.
+    Asking,
+    /// It stands in this field of georeferencing.
+    Georeference(PathField),
+}
+
+impl Dialog {
+    /// For a file, for the small window that is open.
+    pub const fn file(title: &'static str) -> Self {
+        Self {
+            title,
+            chooses: Chooses::File,
+            answers: Answers::Asking,
+        }
+    }
+
+    /// For a folder, for the small window that is open.
+    pub const fn folder(title: &'static str) -> Self {
+        Self {
+            chooses: Chooses::Folder,
+            ..Self::file(title)
+        }
+    }
+
+    /// For a file to write, for the small window that is open.
+    pub const fn new_file(title: &'static str, name: &'static str) -> Self {
+        Self {
+            chooses: Chooses::NewFile(name),
+            ..Self::file(title)
+        }
+    }
+
+    /// The same with another answer.
+    #[must_use]
+    pub const fn answering(self, answers: Answers) -> Self {
+        Self { answers, ..self }
+    }
+}
+
 /// Which photos a choice is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Choice {
@@ -75,9 +172,9 @@ pub enum Choice {
     None,
 }
 
-/// A turn of the free view, or leaving it.
+/// A change of the view: the free view is turned, or left.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Look {
+pub enum ViewChange {
     /// The mouse moved by these pixels: turn.
     Orbit(DVec2),
     /// The mouse moved by these pixels in a viewport of this size: move.
@@ -131,9 +228,9 @@ pub enum Command {
     /// Writes flight.toml.
     Save,
     /// Writes flight.toml at this place.
-    SaveAs(PathBuf),
+    SaveAs(Destination),
     /// Exports the chosen photos into this folder.
-    Export(PathBuf),
+    Export(Destination),
     /// Writes a picture of the viewport.
     Picture(PictureRequest),
     /// Types into the small window for georeferencing.
@@ -143,14 +240,14 @@ pub enum Command {
     /// Writes what was fitted as a flight.toml, and opens it.
     SaveGeoreferenced {
         /// Where to.
-        path: PathBuf,
+        to: Destination,
         /// Whether the surface's file is in the world already.
         keep_surface: bool,
     },
     /// Opens a small window that asks for a place, or closes it.
     Ask(Option<Asking>),
-    /// Opens the desktop's own dialog; for opening, `true` asks for a folder.
-    Browse(DialogFor, bool),
+    /// Opens the desktop's own dialog.
+    Browse(Dialog),
     /// Cancels a task.
     Cancel(Task),
     /// Leaves the program.
@@ -214,7 +311,7 @@ pub enum Command {
     DismissNotice,
 
     /// Turns or leaves the view.
-    Look(Look),
+    View(ViewChange),
     /// Begins or ends measuring.
     ToggleMeasure,
     /// A step of tracing a scale object on the selected photo.

@@ -19,10 +19,10 @@ use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
 use crate::picture;
 use crate::render::{
-    Background, CloudGeometry, ColorBy, Gpu, MOST_PIXELS, MeshGeometry, Normals, Orbit,
-    PhotoGeometry, PhotoImage, Renderer, Scope, Show, View,
+    Background, ColorBy, Gpu, MOST_PIXELS, Orbit, PhotoGeometry, PhotoImage, Renderer, Scope,
+    Shapes, Show, SurfaceBuffers, View, drawn_ground,
 };
-use crate::scale::{Corner, CornerOutcome, Ground, PhotoScale, ViewFacts};
+use crate::scale::Corner;
 
 /// Longer edge of the photo that is laid on the surface or over the view.
 const PHOTO_EDGE: u32 = 2048;
@@ -249,34 +249,17 @@ fn draw(
     let surface = &parts.surface;
     let bounds = surface.bounds();
     let frame = LocalFrame::near(&bounds);
-    let photos: Vec<PhotoGeometry> = parts
-        .photos
-        .iter()
-        .zip(&outcomes)
-        .zip(&views)
-        .map(|((photo, outcome), view)| {
-            let camera = flight.camera(photo);
-            PhotoGeometry::new(&frame, camera, &photo.pose, outcome.scale(), view.as_ref())
-        })
-        .collect();
-    progress.stage("drawing");
+    let photos = PhotoGeometry::of_flight(&frame, flight, &outcomes, Some(&views));
     let show = show(arguments, opened, &outcomes, selected, &bounds);
     let mut renderer = Renderer::new(&gpu);
     renderer.start(&frame);
-    let triangles = surface
-        .triangles()
-        .map_err(|error| Fault::new(error.to_string(), "check the surface file"))?;
-    let normals = Normals::of(&frame, surface.vertices(), &triangles);
-    let colors = surface.colors();
-    if show.cloud {
-        let cloud = CloudGeometry::new(&frame, surface.vertices(), colors, &normals);
-        renderer.set_cloud(Some(&cloud));
-    }
-    if show.mesh || show.wireframe {
-        let vertices = surface.vertices();
-        let mesh = MeshGeometry::new(&frame, vertices, colors, &normals, &triangles);
-        renderer.set_mesh(Some(&mesh));
-    }
+    let wanted = Shapes {
+        cloud: show.cloud,
+        mesh: show.mesh || show.wireframe,
+    };
+    let buffers = SurfaceBuffers::new(&gpu, &frame, surface, wanted, progress)?;
+    renderer.set_surface(Some(&buffers));
+    progress.stage("drawing");
     renderer.set_photos(photos);
     set_images(&mut renderer, opened, &show, progress)?;
 
@@ -284,9 +267,8 @@ fn draw(
     let view = match looked_through {
         Some(index) => {
             let photo = &parts.photos[index];
-            let scale = outcomes[index].scale();
-            let focus = depth_of(scale, views[index].as_ref()).unwrap_or(1.0);
-            View::of_photo(flight.camera(photo), &photo.pose, focus)
+            let (scale, facts) = (outcomes[index].scale(), views[index].as_ref());
+            View::through(flight.camera(photo), &photo.pose, scale, facts, 1.0)
         }
         None => {
             let points = points_to_fit(parts, &outcomes);
@@ -303,23 +285,6 @@ fn needs_selected(arguments: &RenderArguments) -> Option<&'static str> {
     }
     let of_one = |item: &&Item| item.name == "photo" || item.scope == Scope::Selected;
     arguments.show.iter().find(of_one).map(|item| item.name)
-}
-
-/// How far a photo's footprint is away.
-fn depth_of(scale: Option<&PhotoScale>, view: Option<&ViewFacts>) -> Option<f64> {
-    let distance = |outcome: &CornerOutcome| match *outcome {
-        CornerOutcome::OnSurface { distance, .. } | CornerOutcome::OnGround { distance, .. } => {
-            Some(distance)
-        }
-        CornerOutcome::Nowhere | CornerOutcome::NoRay(_) => None,
-    };
-    let grid = view.iter().flat_map(|view| &view.footprint.grid);
-    let corners = scale.iter().flat_map(|scale| &scale.corners);
-    let mut distances: Vec<f64> = grid
-        .filter_map(|sample| distance(&sample.outcome))
-        .chain(corners.filter_map(|corner| distance(&corner.outcome)))
-        .collect();
-    crate::geometry::median(&mut distances)
 }
 
 fn show(
@@ -352,15 +317,7 @@ fn show(
         outlines: scope("outlines"),
         fills: scope("fills"),
         flight_line: shown("line"),
-        ground: shown("ground").then(|| {
-            // Under which photo, if the elevation is found anew for each? Under the first that
-            // needed it, or else under everything.
-            let found = outcomes.iter().find_map(|outcome| outcome.scale()?.ground);
-            match parts.ground {
-                Ground::At(z) => z,
-                Ground::Auto => found.unwrap_or(bounds.min.z),
-            }
-        }),
+        ground: shown("ground").then(|| drawn_ground(parts.ground, outcomes, bounds)),
         axes: shown("axes"),
         scale_bar: shown("bar"),
         unit: parts.unit,

@@ -9,7 +9,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use fragscale::app::Command;
 use fragscale::app::size_distributions::{Computed, DistributionCommand, Page, Settings};
-use fragscale::app::tasks::work::Task;
+use fragscale::app::tasks::Task;
 use fragscale::fragmentation::{FitOptions, Model, Weighting, fit};
 use fragscale::units::LengthUnit;
 use tempfile::TempDir;
@@ -502,7 +502,7 @@ fn the_results_are_always_those_of_the_data_and_settings_of_now() {
                 Command::Distributions(DistributionCommand::Set(settings))
             }
             9 => Command::Redo,
-            10 => Command::Cancel(dice.one_of(&[Task::Fits, Task::ReadDistributions])),
+            10 => Command::Cancel(dice.one_of(&[Task::FITS, Task::READ_DISTRIBUTIONS])),
             _ => Command::Undo,
         };
         println!("{step}: {command:?}");

@@ -2,7 +2,9 @@
 
 pub mod apply;
 pub mod georeferencing;
+pub mod loading;
 pub mod picker;
+mod picking;
 pub mod table;
 pub mod tracing;
 
@@ -20,12 +22,12 @@ use crate::formats::{
     Colours, FlightOrigin, FlightReconstruction, LookedUp, OpenOptions, PhotoFile, with_colours,
 };
 use crate::geometry::{Bounds, LocalFrame};
-use crate::render::{Orbit, PhotoImage};
+use crate::render::{LargePhoto, Orbit, PhotoImage, SurfaceBuffers, drawn_ground};
 use crate::scale::{PhotoScale, ViewFacts};
+use crate::state::bundled::sample_flight;
 use crate::state::history::History;
-use crate::state::sample_flight;
-use crate::tasks::work::{Geometry, Loaded, PreviewPicture};
 use georeferencing::Georeferencing;
+use loading::Loaded;
 use picker::Picker;
 use table::{Row, TableOrder};
 use tracing::Tracing;
@@ -48,6 +50,15 @@ pub struct Preview {
     pub picture: Result<PreviewPicture, String>,
     /// Counted, so that textures know a new one.
     pub number: u64,
+}
+
+/// The selected photo, undistorted as its scale assumes.
+#[derive(Debug)]
+pub struct PreviewPicture {
+    /// For the inspector.
+    pub large: Arc<egui::ColorImage>,
+    /// For the viewport: over the look through the camera, and on the surface.
+    pub projected: Option<LargePhoto>,
 }
 
 /// The distance tool.
@@ -142,7 +153,7 @@ pub struct OpenFlight {
     /// The selected photo.
     pub preview: Option<Preview>,
     /// What the viewport draws.
-    pub geometry: Option<Arc<Geometry>>,
+    pub geometry: Option<Arc<SurfaceBuffers>>,
     /// Where coordinates are small.
     pub frame: LocalFrame,
     /// Around surface and cameras, without the surface's outliers.
@@ -395,17 +406,7 @@ impl OpenFlight {
 
     /// The elevation of the ground: as set, or where a ray needed it, or the surface's middle.
     pub fn ground(&self) -> f64 {
-        match self.settings().ground {
-            crate::scale::Ground::At(z) => z,
-            crate::scale::Ground::Auto => {
-                let mut used: Vec<f64> = self
-                    .outcomes
-                    .iter()
-                    .filter_map(|outcome| outcome.scale()?.ground)
-                    .collect();
-                crate::geometry::median(&mut used).unwrap_or(self.surface_bounds.min.z)
-            }
-        }
+        drawn_ground(self.settings().ground, &self.outcomes, &self.surface_bounds)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The buttons over the viewport: views, the look through a camera, the distance tool.
 
 use crate::actions::{self, Action};
-use crate::command::{Command, Look};
+use crate::command::{Command, ViewChange};
 use crate::open_flight::Measure;
 use crate::state::State;
 
@@ -56,7 +56,7 @@ pub fn blend_slider(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
             .on_hover_text("How much of the photo lies over the view")
             .changed()
         {
-            commands.push(Command::Look(Look::Blend(blend)));
+            commands.push(Command::View(ViewChange::Blend(blend)));
         }
         ui.label("photo");
     });

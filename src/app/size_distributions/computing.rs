@@ -1,8 +1,6 @@
 //! Fits, comparison and repeatability of everything that was added: a job, whenever data or settings
 //! change.
 
-use std::sync::Arc;
-
 use super::Edit;
 use super::drawing::Drawing;
 use super::source::joined;
@@ -12,8 +10,6 @@ use crate::fragmentation::{
     Repeatability, compare, fit, repeatability,
 };
 use crate::jobs::Progress;
-use crate::state::{Severity, State};
-use crate::tasks::work::{Done, Task};
 
 /// How the reference is called where nobody has chosen one.
 const REFERENCES: [&str; 4] = ["sieve", "sieving", "reference", "known fragments"];
@@ -59,34 +55,6 @@ pub struct FittedCurve {
 /// The percents passing whose sizes are told.
 pub const PERCENTILES: [f64; 5] = [10.0, 20.0, 50.0, 80.0, 90.0];
 
-impl State {
-    /// Computes anew what depends on the data and settings of now.
-    pub(super) fn start_computing(&mut self) {
-        self.distributions.problem = None;
-        if self.distributions.sources().is_empty() {
-            self.work.cancel(Task::Fits);
-            self.distributions.computed = None;
-            return;
-        }
-        let edit = self.distributions.history.now().clone();
-        let edition = self.distributions.edition;
-        self.start(Task::Fits, move |progress| {
-            Done::Fitted(compute(edition, edit, progress).map(Arc::new))
-        });
-    }
-
-    /// Takes what was computed; a result that is outdated was cancelled before.
-    pub(crate) fn take_fitted(&mut self, result: Result<Arc<Computed>, Fault>) {
-        match result {
-            Ok(computed) => self.distributions.computed = Some(computed),
-            Err(fault) => {
-                self.distributions.problem = Some(fault.to_string());
-                self.say(Severity::Error, &fault.to_string());
-            }
-        }
-    }
-}
-
 /// The methods of a set, in the order of its curves.
 pub fn methods(set: &DistributionSet) -> Vec<String> {
     let mut methods: Vec<String> = Vec::new();
@@ -109,7 +77,11 @@ fn reference(methods: &[String], chosen: Option<&String>) -> Option<String> {
     chosen.or_else(called).or(methods.first()).cloned()
 }
 
-fn compute(edition: u64, edit: Edit, progress: &Progress) -> Result<Computed, Fault> {
+/// Computes everything.
+///
+/// # Errors
+/// Where the curves cannot be brought together, or where it was cancelled.
+pub(crate) fn compute(edition: u64, edit: Edit, progress: &Progress) -> Result<Computed, Fault> {
     let settings = &edit.settings;
     let mut set = joined(&edit.sources, settings.unit)?;
     let mut notes = Vec::new();

@@ -34,7 +34,7 @@ pub(super) fn welcome(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
             );
             if state
                 .work
-                .is_running(crate::tasks::work::Task::ReadDistributions)
+                .is_running(crate::tasks::work::Task::READ_DISTRIBUTIONS)
             {
                 ui.add_space(14.0);
                 ui.spinner();
