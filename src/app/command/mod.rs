@@ -1,14 +1,22 @@
 //! What the engineer can do, as data: panels, the menu, shortcuts and tests all send these, and one
 //! function applies them.
 
+mod asking;
+mod destination;
+mod dialog;
+mod view_change;
+
 use std::path::PathBuf;
 
-use glam::{DVec2, DVec3};
+pub use asking::Asking;
+pub use destination::{Destination, PictureRequest};
+pub use dialog::{Answers, Chooses, Dialog};
+pub use view_change::ViewChange;
 
 use crate::flight::{FlightSettings, Limits, Verdict};
 use crate::formats::GeoreferenceRequest;
 use crate::geometry::Ray;
-use crate::open_flight::georeferencing::{GeoreferenceForm, PathField};
+use crate::open_flight::georeferencing::GeoreferenceForm;
 use crate::open_flight::table::Column;
 use crate::open_flight::tracing::Trace;
 use crate::size_distributions::{DistributionCommand, Page};
@@ -29,138 +37,6 @@ pub enum Tab {
     Limits,
 }
 
-/// A small window that asks for a place; beside the desktop's own dialog, which not every desktop
-/// has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Asking {
-    /// Which flight to open.
-    Open,
-    /// Which surface or photos the flight shall have.
-    Add,
-    /// Where the export goes.
-    Export,
-    /// What is known of the reconstruction's place in the world.
-    Georeference,
-    /// Where the georeferenced flight goes.
-    SaveGeoreferenced,
-    /// Where flight.toml goes.
-    SaveAs,
-    /// Where a picture goes, and how large it is.
-    Picture,
-    /// Which files of size distributions to add.
-    AddDistributions,
-    /// A table of size distributions.
-    PasteTable,
-    /// Which file has the times of steps.
-    AddEffort,
-    /// Where the figure of the size distributions goes.
-    SaveFigure,
-    /// Where the report on them goes.
-    SaveReport,
-    /// Which keys do what.
-    Keys,
-    /// What this program is.
-    About,
-}
-
-/// Where something is written.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Destination {
-    /// The file or folder.
-    pub path: PathBuf,
-    /// Whether it may replace what is there: she was asked, and said so.
-    pub replace: bool,
-}
-
-/// Replaces nothing.
-impl From<PathBuf> for Destination {
-    fn from(path: PathBuf) -> Self {
-        Self {
-            path,
-            replace: false,
-        }
-    }
-}
-
-/// A picture of the viewport to be written.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PictureRequest {
-    /// Where to.
-    pub to: Destination,
-    /// In pixels.
-    pub size: [u32; 2],
-    /// Without a background, or on white.
-    pub transparent: bool,
-    /// With the layers of the paper's figure.
-    pub corner_rays: bool,
-}
-
-/// The desktop's own dialog for a file or folder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Dialog {
-    /// What it says on top.
-    pub title: &'static str,
-    /// What is chosen in it.
-    pub chooses: Chooses,
-    /// What is done with that.
-    pub answers: Answers,
-}
-
-/// What is chosen in a dialog.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Chooses {
-    /// A file that is there.
-    File,
-    /// A folder.
-    Folder,
-    /// A file to write, with this name if nobody types another.
-    NewFile(&'static str),
-}
-
-/// What is done with what was chosen in a dialog.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Answers {
-    /// It is opened.
-    Open,
-    /// It stands in the field of the small window that is open.
-    Asking,
-    /// It stands in this field of georeferencing.
-    Georeference(PathField),
-}
-
-impl Dialog {
-    /// For a file, for the small window that is open.
-    pub const fn file(title: &'static str) -> Self {
-        Self {
-            title,
-            chooses: Chooses::File,
-            answers: Answers::Asking,
-        }
-    }
-
-    /// For a folder, for the small window that is open.
-    pub const fn folder(title: &'static str) -> Self {
-        Self {
-            chooses: Chooses::Folder,
-            ..Self::file(title)
-        }
-    }
-
-    /// For a file to write, for the small window that is open.
-    pub const fn new_file(title: &'static str, name: &'static str) -> Self {
-        Self {
-            chooses: Chooses::NewFile(name),
-            ..Self::file(title)
-        }
-    }
-
-    /// The same with another answer.
-    #[must_use]
-    pub const fn answering(self, answers: Answers) -> Self {
-        Self { answers, ..self }
-    }
-}
-
 /// Which photos a choice is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Choice {
@@ -170,42 +46,6 @@ pub enum Choice {
     Trusted,
     /// None.
     None,
-}
-
-/// A change of the view: the free view is turned, or left.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ViewChange {
-    /// The mouse moved by these pixels: turn.
-    Orbit(DVec2),
-    /// The mouse moved by these pixels in a viewport of this size: move.
-    Pan(DVec2, DVec2),
-    /// Come closer (factor < 1) to what is under the cursor, in a viewport of this size.
-    Zoom {
-        /// Where the mouse is.
-        cursor: DVec2,
-        /// Of the viewport.
-        size: DVec2,
-        /// Under 1 comes closer.
-        factor: f64,
-    },
-    /// The viewport has this size now, pixels.
-    Resized(DVec2),
-    /// Straight down.
-    Top,
-    /// To the north.
-    Front,
-    /// To the west.
-    Side,
-    /// Everything in sight.
-    Fit,
-    /// The selected photo's footprint and camera in sight.
-    FitSelected,
-    /// This point in the middle.
-    Center(DVec3),
-    /// Through the camera of the selected photo, or back.
-    Through,
-    /// How much of the photo lies over the view.
-    Blend(f64),
 }
 
 /// One thing to do.
