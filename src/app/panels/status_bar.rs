@@ -82,7 +82,7 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
                 let open = state.preferences.log_open;
                 egui::WidgetInfo::selected(egui::Role::Button, true, open, "Show log")
             });
-            if button.on_hover_text(actions::LOG.hover).clicked() {
+            if button.on_hover_text(actions::view::LOG.hover).clicked() {
                 commands.push(Command::ToggleLog);
             }
             if let Some(line) = state.log.last() {

@@ -26,13 +26,13 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         }
     };
     let through = open.looking.through.is_some();
-    button(actions::FIT, "Fit", false, ui);
-    button(actions::TOP, "Top", false, ui);
-    button(actions::FRONT, "Front", false, ui);
-    button(actions::SIDE, "Side", false, ui);
-    button(actions::THROUGH, "Through camera", through, ui);
+    button(actions::view::FIT, "Fit", false, ui);
+    button(actions::view::TOP, "Top", false, ui);
+    button(actions::view::FRONT, "Front", false, ui);
+    button(actions::view::SIDE, "Side", false, ui);
+    button(actions::view::THROUGH, "Through camera", through, ui);
     button(
-        actions::MEASURE,
+        actions::photo::MEASURE,
         "Measure",
         open.measure != Measure::Off,
         ui,
