@@ -20,9 +20,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use fragscale::formats::{OpenOptions, open_flight, read_cloud};
+use fragscale::formats::read_cloud;
 use fragscale::geometry::Ray;
 use fragscale::jobs::Progress;
+use fragscale::opening::{OpenOptions, open_flight};
 use fragscale::surface::{Cloud, Surface};
 use glam::DVec3;
 

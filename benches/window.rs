@@ -18,11 +18,12 @@ use std::sync::Arc;
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use fragscale::app::open_flight::OpenFlight;
 use fragscale::app::open_flight::loading::Loaded;
-use fragscale::app::open_flight::table::{Column, TableOrder};
+use fragscale::app::open_flight::table::{SortBy, TableOrder};
+use fragscale::exports::PHOTO_COLUMNS;
 use fragscale::flight::Limits;
-use fragscale::formats::{OpenOptions, Opened, open_flight};
 use fragscale::geometry::{Bounds, LocalFrame};
 use fragscale::jobs::Progress;
+use fragscale::opening::{OpenOptions, Opened, open_flight};
 use fragscale::render::{CloudGeometry, MeshGeometry, Normals};
 use fragscale::surface::{Cloud, Surface};
 
@@ -104,7 +105,7 @@ fn footprints(c: &mut Criterion) {
         (flight, outcomes)
     };
     group.bench_function("views, with the triangulation", |b| {
-        let views = |(flight, outcomes): (fragscale::flight::Flight, Vec<_>)| {
+        let views = |(flight, outcomes): (Arc<fragscale::flight::Flight>, Vec<_>)| {
             let views = flight.views(&outcomes, &progress).expect("views");
             (flight, views)
         };
@@ -116,6 +117,11 @@ fn footprints(c: &mut Criterion) {
         b.iter(|| flight.views(&outcomes, &progress));
     });
     group.finish();
+}
+
+fn column(name: &str) -> SortBy {
+    let column = PHOTO_COLUMNS.iter().find(|column| column.name == name);
+    SortBy::Column(column.expect("a column"))
 }
 
 fn table(c: &mut Criterion) {
@@ -138,13 +144,13 @@ fn table(c: &mut Criterion) {
     };
     let limits = Limits::default();
     let mut flight = OpenFlight::new(1, loaded, &limits);
-    flight.views = Some(Arc::new(views));
+    flight.take_views(views);
     let mut group = c.benchmark_group("5000 photos");
-    group.bench_function("judge", |b| b.iter(|| flight.judge(&limits)));
+    group.bench_function("judge", |b| b.iter(|| flight.take_limits(&limits)));
     for (name, by, text) in [
-        ("sort by name", Column::Name, ""),
-        ("sort by top scale", Column::Top, ""),
-        ("filter by reason", Column::Flight, "ground"),
+        ("sort by name", column("Photo"), ""),
+        ("sort by top scale", column("Top"), ""),
+        ("filter by reason", SortBy::Flight, "ground"),
     ] {
         flight.order = TableOrder {
             by,

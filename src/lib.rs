@@ -51,6 +51,7 @@ pub use fragscale_core::{
 pub use fragscale_exports as exports;
 pub use fragscale_formats as formats;
 pub use fragscale_fragmentation as fragmentation;
+pub use fragscale_opening as opening;
 #[cfg(feature = "render")]
 pub use fragscale_render as render;
 pub use fragscale_sample as sample;

@@ -19,9 +19,9 @@ use std::path::Path;
 
 use egui_kittest::image_snapshot;
 use fragscale::camera::{Camera, Distortion, Pose};
-use fragscale::formats::{self, OpenOptions};
 use fragscale::geometry::{Bounds, LocalFrame};
 use fragscale::jobs::Progress;
+use fragscale::opening::{self, OpenOptions};
 use fragscale::render::{
     Background, CloudGeometry, ColorBy, Gpu, MeshGeometry, Normals, Orbit, PhotoGeometry,
     PhotoImage, PhotoLook, Projection, Renderer, Scope, Show, View,
@@ -681,7 +681,7 @@ fn the_legend_of_scale_is_focal_length_over_depth() {
 fn corner_points_are_on_the_image_corners() {
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
     let progress = Progress::default();
-    let opened = formats::open_flight(&sample, &OpenOptions::default(), &progress).unwrap();
+    let opened = opening::open_flight(&sample, &OpenOptions::default(), &progress).unwrap();
     let flight = &opened.flight;
     let mut count = 0;
     for (photo, outcome) in flight

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use fragscale::formats::info;
+use fragscale::opening::info;
 use fragscale::jobs::Progress;
 use tempfile::TempDir;
 

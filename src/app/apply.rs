@@ -67,7 +67,7 @@ impl State {
             Command::Limits(limits) => {
                 self.preferences.limits = limits;
                 if let Some(open) = &mut self.open {
-                    open.judge(&limits);
+                    open.take_limits(&limits);
                 }
             }
             Command::Layers(layers) => self.preferences.layers = layers,
@@ -270,19 +270,15 @@ impl State {
         if !open.is_computed() {
             return None;
         }
-        let scale = open.scale_to_type(open.selected?)?;
-        let unit = self.preferences.unit();
-        let factor = unit.in_units_of(open.flight.parts().unit);
+        let photo = open.review.photo(open.selected?)?;
+        photo.scale_to_type()?;
+        let scale = photo.edges(self.preferences.unit());
         let shown = |scale: Option<f64>| {
             scale.map_or_else(
                 || "no scale".to_owned(),
-                |scale| crate::picture::significant_digits(scale * factor, 6),
+                |scale| crate::picture::significant_digits(scale, 6),
             )
         };
-        Some(format!(
-            "{}\t{}",
-            shown(scale.scale.top),
-            shown(scale.scale.bottom)
-        ))
+        Some(format!("{}\t{}", shown(scale.top), shown(scale.bottom)))
     }
 }

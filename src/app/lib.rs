@@ -34,6 +34,7 @@ use fragscale_core::{
 use fragscale_exports as exports;
 use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
+use fragscale_opening as opening;
 use fragscale_render as render;
 
 use std::path::PathBuf;

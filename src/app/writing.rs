@@ -86,7 +86,7 @@ impl State {
         let Some(open) = &self.open else {
             return false;
         };
-        let (folder, name) = (&to.path, &open.flight.parts().name);
+        let (folder, name) = (&to.path, &open.flight().parts().name);
         let other = exports::other_flight_in(folder, name, open.origin.file());
         let Some(other) = other.filter(|_| !to.replace) else {
             return true;

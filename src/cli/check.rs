@@ -7,8 +7,10 @@ use clap::Args;
 use super::Answer;
 use super::flight_arguments::FlightArguments;
 use crate::fault::Fault;
-use crate::formats::{self, Colours, FileError};
+use crate::flight::{Doubt, Limits, Review};
+use crate::formats::FileError;
 use crate::jobs::Progress;
+use crate::opening::{self, Colours};
 use crate::picture::Agreement;
 
 #[derive(Debug, Args)]
@@ -21,19 +23,24 @@ pub(super) struct CheckArguments {
 /// colours of the photos with those of the surface.
 pub(super) fn check(arguments: &CheckArguments, progress: &Progress) -> Result<Answer, String> {
     let opened = arguments.flight.open(progress)?;
-    let flight = &opened.flight;
-    let parts = flight.parts();
     let mut warnings = opened.all_warnings();
     let mut text = String::from("colours of photo and surface (r is 1 where they match)\n");
-    if parts.surface.colors().is_empty() {
+    if opened.flight.parts().surface.colors().is_empty() {
         text.push_str("the surface has no colours\n");
         return Ok(Answer::new(text, warnings));
     }
     let at = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
-    let colours =
-        formats::compare_colours(flight, &opened.photo_files, &[], progress).map_err(at)?;
-    for (photo, colours) in parts.photos.iter().zip(&colours) {
-        let name = &photo.name;
+    let (flight, looked_up) = (opened.flight.clone(), opened.looked_up);
+    let limits = Limits::default();
+    let mut review = Review::of_scales(flight, looked_up, &limits, progress).map_err(at)?;
+    let evidence = &review.looked_up().evidence;
+    let compared =
+        opening::compare_colours(&opened.flight, &opened.photo_files, evidence, progress);
+    let compared = compared.map_err(at)?;
+    let found = compared.iter();
+    review.take_colours(found.map(|(photo, colours)| (*photo, colours.doubt().into())));
+    for (photo, (_, colours)) in review.photos().zip(&compared) {
+        let name = photo.name();
         let said = match colours {
             Colours::Not(why) | Colours::Unreadable(why) => why.clone(),
             Colours::Compared(Agreement {
@@ -42,8 +49,11 @@ pub(super) fn check(arguments: &CheckArguments, progress: &Progress) -> Result<A
                 ..
             }) => format!("r = {correlation:.2} at {points} points"),
         };
-        let doubt = colours.doubt();
-        warnings.extend(doubt.map(|doubt| format!("photo '{name}': {doubt}")));
+        let of_pixels = photo
+            .doubts
+            .iter()
+            .filter(|doubt| doubt.is_of_colours() || matches!(doubt, Doubt::FileUnreadable(_)));
+        warnings.extend(of_pixels.map(|doubt| format!("photo '{name}': {doubt}")));
         // Writing into a text does not fail.
         let _ = writeln!(text, "{name}  {said}");
     }

@@ -7,10 +7,10 @@ use clap::{Args, ValueEnum};
 use super::flight_arguments::FlightArguments;
 use super::outputs::Force;
 use super::{Answer, OutputUnit};
-use crate::exports::{self, ExportRequest, Replace, ScaleReport};
+use crate::exports::{self, ExportRequest, Provenance, Replace, ScaleReport};
 use crate::fault::Fault;
-use crate::flight::{Limits, Verdict, judge_all};
-use crate::formats::{self, FileError};
+use crate::flight::{Limits, Verdict};
+use crate::formats::FileError;
 use crate::jobs::Progress;
 
 #[derive(Debug, Args)]
@@ -36,27 +36,21 @@ enum Selection {
     Trusted,
 }
 
-/// Opens, computes, judges, exports. It fails at its end where photos could not be exported because
+/// Opens, reviews, exports. It fails at its end where photos could not be exported because
 /// their files are damaged; the others are.
 pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result<Answer, String> {
     let opened = arguments.flight.open(progress)?;
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
-    let flight = &opened.flight;
-    let outcomes = flight.scales(progress).map_err(in_flight)?;
-    let views = flight.views(&outcomes, progress).map_err(in_flight)?;
-    let limits = Limits::default();
-    let colours = formats::compare_colours(flight, &opened.photo_files, &[], progress);
-    let colours = colours.map_err(in_flight)?;
-    let evidence = formats::with_colours(&opened.looked_up.evidence, colours.iter().map(Some));
-    let judged = judge_all(flight, &outcomes, Some(&views), &evidence, &limits);
-    let selected: Vec<bool> = judged
-        .iter()
-        .map(|judged| arguments.photos == Selection::All || judged.verdict == Verdict::Trust)
+    let review = opened.review(&Limits::default(), progress);
+    let review = review.map_err(in_flight)?;
+    let photos = review.photos();
+    let selected: Vec<bool> = photos
+        .map(|photo| arguments.photos == Selection::All || photo.verdict == Verdict::Trust)
         .collect();
     if !selected.contains(&true) {
         let fault = Fault::new(
-            format!("none of its {} photos is without doubt", judged.len()),
+            format!("none of its {} photos is without doubt", review.count()),
             "export all photos, and read the doubts in the sheet",
         );
         return Err(in_flight(fault));
@@ -70,21 +64,18 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
     let summary = exports::export_for_split_desktop(
         &arguments.to,
         &ExportRequest {
-            flight,
-            outcomes: &outcomes,
-            views: &views,
-            evidence: &evidence,
-            judged: &judged,
-            photo_files: &photo_files,
+            review: &review,
+            from: &Provenance {
+                file: opened.origin.file(),
+                inputs: &opened.inputs,
+                read: &opened.read,
+                photo_files: &photo_files,
+                settings: &opened.settings,
+                crs: opened.crs.as_deref(),
+                warnings: &opened.all_warnings(),
+            },
             selected: &selected,
             unit,
-            limits: &limits,
-            settings: &opened.settings,
-            crs: opened.crs.as_deref(),
-            inputs: &opened.inputs,
-            warnings: &opened.all_warnings(),
-            read: &opened.read,
-            source: opened.origin.file(),
             replace: match arguments.force.force {
                 true => Replace::Anything,
                 false => Replace::Nothing,
@@ -103,9 +94,7 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
         );
         FileError::new(&arguments.to, fault).to_string()
     });
-    let report = ScaleReport::new(flight, &outcomes, unit)
-        .with_evidence(&evidence)
-        .of_photos(&selected);
+    let report = ScaleReport::new(&review, unit).of_photos(&selected);
     let mut warnings = opened.all_warnings();
     warnings.extend(summary.warnings.iter().cloned());
     warnings.extend(super::notes_of(&report));

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::formats::{self, OpenOptions, Opened};
 use crate::jobs::Progress;
+use crate::opening::{self, OpenOptions, Opened};
 
 #[derive(Debug, Args)]
 pub(super) struct FlightArguments {
@@ -38,6 +38,6 @@ impl FlightArguments {
             topic: self.topic.clone(),
             settings: None,
         };
-        formats::open_flight(&self.flight, &options, progress).map_err(|error| error.to_string())
+        opening::open_flight(&self.flight, &options, progress).map_err(|error| error.to_string())
     }
 }

@@ -10,10 +10,9 @@ use super::Answer;
 use super::outputs::{Force, Outputs};
 use crate::fault::Fault;
 use crate::files::{Inputs, Kind, Recording};
-use crate::formats::{
-    self, FileError, GeoreferenceRequest, Georeferenced, KnownDistance, KnownKind,
-};
+use crate::formats::FileError;
 use crate::jobs::Progress;
+use crate::opening::{self, GeoreferenceRequest, Georeferenced, KnownDistance, KnownKind};
 
 #[derive(Debug, Args)]
 pub(super) struct GeoreferenceArguments {
@@ -90,7 +89,7 @@ pub(super) fn georeference(
     }
     let recording = Recording::start();
     let result =
-        formats::georeference(path, &request, progress).map_err(|error| error.to_string())?;
+        opening::georeference(path, &request, progress).map_err(|error| error.to_string())?;
     outputs.read(&Inputs::default().with_opened(&recording.files()))?;
     if let Some(target) = &arguments.output {
         let text = result

@@ -38,8 +38,10 @@ use outputs::OutputArguments;
 use crate::exports;
 use crate::fault::one_line;
 use crate::files;
-use crate::formats::{self, FileError};
+use crate::flight::{Limits, Review};
+use crate::formats::FileError;
 use crate::jobs::{Job, Progress};
+use crate::opening;
 use crate::sample::{self, Lens, Preset, SampleOptions};
 use crate::units::LengthUnit;
 
@@ -322,11 +324,11 @@ fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, St
     outputs.read(&opened.read)?;
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
-    let (flight, objects) = (&opened.flight, &opened.settings.scale_objects);
-    let outcomes = flight.scales(progress).map_err(in_flight)?;
-    let report = exports::ScaleReport::new(flight, &outcomes, arguments.unit.into())
-        .with_evidence(&opened.looked_up.evidence)
-        .with_scale_objects(flight, objects, &outcomes)
+    let (flight, looked_up) = (opened.flight.clone(), opened.looked_up.clone());
+    let review = Review::of_scales(flight, looked_up, &Limits::default(), progress);
+    let review = review.map_err(in_flight)?;
+    let report = exports::ScaleReport::new(&review, arguments.unit.into())
+        .with_scale_objects(&opened.settings.scale_objects)
         .map_err(in_flight)?;
     let text = match arguments.format {
         ScalesFormat::Table => exports::scales_table(&report),
@@ -340,22 +342,22 @@ fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, St
 }
 
 /// What fell back or failed, a line a photo.
-fn notes_of(report: &exports::ScaleReport) -> Vec<String> {
-    let noted = report.lines.iter().filter(|line| !line.notes.is_empty());
-    noted
-        .map(|line| {
-            let verdict = if line.has_top_and_bottom() {
-                ""
-            } else {
-                "no scale: "
+fn notes_of(report: &exports::ScaleReport<'_>) -> Vec<String> {
+    let notes = report.lines().map(|line| (line, line.photo.notes()));
+    notes
+        .filter(|(_, notes)| !notes.is_empty())
+        .map(|(line, notes)| {
+            let verdict = match line.has_top_and_bottom() {
+                true => "",
+                false => "no scale: ",
             };
-            format!("{}: {verdict}{}", line.photo, line.notes.join("; "))
+            format!("{}: {verdict}{}", line.photo.name(), notes.join("; "))
         })
         .collect()
 }
 
 fn info(arguments: &InfoArguments, progress: &Progress) -> Result<Answer, String> {
-    let value = formats::info(&arguments.file, progress).map_err(|error| error.to_string())?;
+    let value = opening::info(&arguments.file, progress).map_err(|error| error.to_string())?;
     let text = match arguments.format {
         InfoFormat::Json => format!("{value}\n"),
         InfoFormat::Text => info_text(&value),

@@ -13,10 +13,11 @@ use super::outputs::{Force, Outputs};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::files::{Kind, marked_png};
-use crate::flight::{FlightParts, Outcome};
-use crate::formats::{self, FileError, Opened, PhotoFile};
+use crate::flight::{Limits, Review};
+use crate::formats::{self, FileError};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
+use crate::opening::{Opened, PhotoFile};
 use crate::picture;
 use crate::render::{
     Background, ColorBy, Gpu, MOST_PIXELS, Orbit, PhotoGeometry, PhotoImage, Renderer, Scope,
@@ -243,14 +244,16 @@ fn draw(
         ));
     }
     let gpu = Gpu::headless()?;
-    let outcomes = flight.scales(progress)?;
-    let views = flight.views(&outcomes, progress)?;
+    let looked_up = opened.looked_up.clone();
+    let limits = Limits::default();
+    let mut review = Review::of_scales(flight.clone(), looked_up, &limits, progress)?;
+    review.look(progress)?;
 
     let surface = &parts.surface;
     let bounds = surface.bounds();
     let frame = LocalFrame::near(&bounds);
-    let photos = PhotoGeometry::of_flight(&frame, flight, &outcomes, Some(&views));
-    let show = show(arguments, opened, &outcomes, selected, &bounds);
+    let photos = PhotoGeometry::of_review(&frame, &review);
+    let show = show(arguments, &review, selected, &bounds);
     let mut renderer = Renderer::new(&gpu);
     renderer.start(&frame);
     let wanted = Shapes {
@@ -264,14 +267,10 @@ fn draw(
     set_images(&mut renderer, opened, &show, progress)?;
 
     let size = DVec2::from(arguments.size.0.map(f64::from));
-    let view = match looked_through {
-        Some(index) => {
-            let photo = &parts.photos[index];
-            let (scale, facts) = (outcomes[index].scale(), views[index].as_ref());
-            View::through(flight.camera(photo), &photo.pose, scale, facts, 1.0)
-        }
+    let view = match looked_through.and_then(|index| review.photo(index)) {
+        Some(photo) => View::through(&photo, 1.0),
         None => {
-            let points = points_to_fit(parts, &outcomes);
+            let points = points_to_fit(&review);
             orbit(&arguments.view, &points, &bounds, size).view()
         }
     };
@@ -289,8 +288,7 @@ fn needs_selected(arguments: &RenderArguments) -> Option<&'static str> {
 
 fn show(
     arguments: &RenderArguments,
-    opened: &Opened,
-    outcomes: &[Outcome],
+    review: &Review,
     selected: Option<usize>,
     bounds: &Bounds,
 ) -> Show {
@@ -299,7 +297,7 @@ fn show(
         item.map_or(Scope::None, |item| item.scope)
     };
     let shown = |name: &str| scope(name) != Scope::None;
-    let parts = opened.flight.parts();
+    let parts = review.flight().parts();
     let [width, height] = arguments.size.0.map(f64::from);
     Show {
         cloud: shown("cloud"),
@@ -317,7 +315,7 @@ fn show(
         outlines: scope("outlines"),
         fills: scope("fills"),
         flight_line: shown("line"),
-        ground: shown("ground").then(|| drawn_ground(parts.ground, outcomes, bounds)),
+        ground: shown("ground").then(|| drawn_ground(parts.ground, review.outcomes(), bounds)),
         axes: shown("axes"),
         scale_bar: shown("bar"),
         unit: parts.unit,
@@ -342,11 +340,12 @@ const FAR: f64 = 2.0;
 
 /// What the picture shall hold: the surface without outliers (some thousands of its vertices stand
 /// for all), the camera centres and the corner points that are not near the horizon.
-fn points_to_fit(parts: &FlightParts, outcomes: &[Outcome]) -> Vec<DVec3> {
+fn points_to_fit(review: &Review) -> Vec<DVec3> {
+    let parts = review.flight().parts();
     let vertices = parts.surface.vertices();
     let step = (vertices.len() / 20_000).max(1);
     let bulk = parts.surface.bulk_bounds();
-    let corners = outcomes.iter().filter_map(Outcome::scale);
+    let corners = review.photos().filter_map(|photo| photo.scale());
     let corners = corners.flat_map(|scale| scale.corners.iter().filter_map(Corner::point));
     let near = bulk.widened(FAR * bulk.size().max_element());
     let corners = corners.filter(|&corner| near.contains(corner));

@@ -2,6 +2,7 @@
 //! what is learnt from size distributions.
 
 mod markup;
+mod photo_columns;
 mod report_object;
 mod scale_report;
 mod scales_csv;
@@ -13,8 +14,9 @@ mod split_desktop;
 use fragscale_core::{camera, fault, files, flight, geodesy, jobs, picture, scale, units};
 use fragscale_fragmentation as fragmentation;
 
+pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};
 pub use report_object::{PointCloudScale, ReportObject};
-pub use scale_report::{ReportLine, ScaleReport};
+pub use scale_report::{PhotoLine, ScaleReport};
 pub use scales_csv::scales_csv;
 pub use scales_json::scales_json;
 pub use scales_table::scales_table;
@@ -26,5 +28,6 @@ pub use size_distributions::{
     figure_svg, fit_csv, fit_json, fit_table,
 };
 pub use split_desktop::{
-    ExportError, ExportRequest, ExportSummary, Replace, export_for_split_desktop, other_flight_in,
+    ExportError, ExportRequest, ExportSummary, Provenance, Replace, export_for_split_desktop,
+    other_flight_in,
 };

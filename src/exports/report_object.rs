@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use crate::fault::Fault;
-use crate::flight::{ComparedObject, Flight, Outcome, ScaleObject};
+use crate::flight::{ComparedObject, Review, ScaleObject};
 use crate::scale::Traced;
+use crate::units::LengthUnit;
 
 /// A scale object on a photo. Scales are in pixels per the report's unit, lengths in the world's;
 /// what is not known is `None`.
@@ -42,18 +43,18 @@ pub struct PointCloudScale {
 }
 
 impl ReportObject {
-    /// The scale objects of each photo of a flight, in their order; `factor` is the report's unit in
-    /// world units.
+    /// The scale objects of each photo of a flight, in their order; scales in pixels per `unit`.
     ///
     /// # Errors
     /// Where the surface cannot be met.
     pub(super) fn of_photos(
-        flight: &Flight,
+        review: &Review,
         objects: &[ScaleObject],
-        outcomes: &[Outcome],
-        factor: f64,
+        unit: LengthUnit,
     ) -> Result<Vec<Vec<Self>>, Fault> {
-        let compared = flight.compare_objects(objects, outcomes)?;
+        let flight = review.flight();
+        let factor = unit.in_units_of(flight.parts().unit);
+        let compared = flight.compare_objects(objects, review.outcomes())?;
         let both: Vec<(&ScaleObject, ComparedObject)> = objects.iter().zip(compared).collect();
         let photos = flight.parts().photos.iter();
         let of_photo = |name: &str| {

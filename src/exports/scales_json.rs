@@ -1,10 +1,13 @@
 //! Scales as JSON (contract, section 5). Numbers read back to the same f64. Photos with scale objects
-//! have these besides, as `scale_objects`.
+//! have these besides, as `scale_objects`. To add a key of a photo is to add a field of `Photo` and
+//! its value, below.
 
 use serde::Serialize;
 
 use super::ReportObject;
-use super::scale_report::ScaleReport;
+use super::scale_report::{PhotoLine, ScaleReport};
+use crate::camera::Camera;
+use crate::scale::{Corner, CornerName, CornerOutcome, PhotoScale};
 
 #[derive(Serialize)]
 struct Report<'a> {
@@ -24,9 +27,24 @@ struct Photo<'a> {
     height: u32,
     ground: Option<f64>,
     scale: Scale,
-    corners: Vec<Corner>,
+    corners: [CornerRay; 4],
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     scale_objects: &'a [ReportObject],
+}
+
+impl<'a> Photo<'a> {
+    fn new(line: &PhotoLine<'a>) -> Self {
+        let camera = line.photo.camera;
+        Self {
+            photo: line.photo.name(),
+            width: camera.width,
+            height: camera.height,
+            ground: line.ground(),
+            scale: Scale::new(line),
+            corners: corners(line.photo.scale(), camera),
+            scale_objects: line.scale_objects,
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -37,8 +55,20 @@ struct Scale {
     left: Option<f64>,
 }
 
+impl Scale {
+    fn new(line: &PhotoLine<'_>) -> Self {
+        let scale = line.scale();
+        Self {
+            top: scale.top,
+            right: scale.right,
+            bottom: scale.bottom,
+            left: scale.left,
+        }
+    }
+}
+
 #[derive(Serialize)]
-struct Corner {
+struct CornerRay {
     name: &'static str,
     pixel: [f64; 2],
     direction: Option<[f64; 3]>,
@@ -46,41 +76,39 @@ struct Corner {
     on: Option<&'static str>,
 }
 
+/// The corners in the contract's order; where nothing was computed, without rays.
+fn corners(scale: Option<&PhotoScale>, camera: &Camera) -> [CornerRay; 4] {
+    let mut corners = CornerName::ALL.map(|name| CornerRay {
+        name: name.as_str(),
+        pixel: name.pixel(camera).to_array(),
+        direction: None,
+        point: None,
+        on: None,
+    });
+    let computed: &[Corner] = scale.map_or(&[], |scale| &scale.corners);
+    for (corner, computed) in corners.iter_mut().zip(computed) {
+        corner.direction = computed.direction.map(|d| d.to_array());
+        corner.point = computed.point().map(|p| p.to_array());
+        corner.on = match computed.outcome {
+            CornerOutcome::OnSurface { .. } => Some("surface"),
+            CornerOutcome::OnGround { .. } => Some("ground"),
+            CornerOutcome::Nowhere | CornerOutcome::NoRay(_) => None,
+        };
+    }
+    corners
+}
+
 /// The report as JSON text with a line break at its end.
 ///
 /// # Errors
 /// Never with finite numbers, which is all that a report holds.
-pub fn scales_json(report: &ScaleReport) -> serde_json::Result<String> {
-    let photos = report.lines.iter().map(|line| Photo {
-        photo: &line.photo,
-        width: line.width,
-        height: line.height,
-        ground: line.ground,
-        scale: Scale {
-            top: line.scale.top,
-            right: line.scale.right,
-            bottom: line.scale.bottom,
-            left: line.scale.left,
-        },
-        corners: line
-            .corners
-            .iter()
-            .map(|corner| Corner {
-                name: corner.name.as_str(),
-                pixel: corner.pixel,
-                direction: corner.direction,
-                point: corner.point,
-                on: corner.on,
-            })
-            .collect(),
-        scale_objects: &line.scale_objects,
-    });
+pub fn scales_json(report: &ScaleReport<'_>) -> serde_json::Result<String> {
     let mut text = serde_json::to_string(&Report {
-        flight: &report.flight,
-        unit: report.unit.symbol(),
-        world_unit: report.world_unit.symbol(),
-        unit_known: (!report.unit_known).then_some(false),
-        photos: photos.collect(),
+        flight: report.flight(),
+        unit: report.unit().symbol(),
+        world_unit: report.world_unit().symbol(),
+        unit_known: (!report.unit_known()).then_some(false),
+        photos: report.lines().map(|line| Photo::new(&line)).collect(),
     })?;
     text.push('\n');
     Ok(text)

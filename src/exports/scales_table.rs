@@ -1,46 +1,32 @@
-//! Scales as a table for people.
+//! Scales as a table for people. Its columns are those of `photo_columns.rs`.
 
 use std::fmt::Write;
 
+use super::photo_columns::PHOTO_COLUMNS;
 use super::scale_report::ScaleReport;
 use crate::scale::ImageKind;
 
 /// The report as aligned text: six significant digits, notes below.
-pub fn scales_table(report: &ScaleReport) -> String {
-    let image = match report.image {
+pub fn scales_table(report: &ScaleReport<'_>) -> String {
+    let image = match report.image() {
         ImageKind::Undistorted => "undistorted images",
         ImageKind::AsShot => "photos as shot",
     };
     let mut text = format!(
         "{}: scales of the {image} in pixels per {}\n\n",
-        report.flight, report.unit
+        report.flight(),
+        report.unit()
     );
-    let head = [
-        "photo", "size", "top", "bottom", "left", "right", "corners", "",
-    ];
-    let mut rows = vec![head.map(str::to_owned)];
-    for line in &report.lines {
-        let number = |scale: Option<f64>| scale.map_or_else(|| "-".to_owned(), six_digits);
-        rows.push([
-            line.photo.clone(),
-            format!("{} x {}", line.width, line.height),
-            number(line.scale.top),
-            number(line.scale.bottom),
-            number(line.scale.left),
-            number(line.scale.right),
-            format!("{} of 4", line.corners_on_surface),
-            if line.notes.is_empty() {
-                ""
-            } else {
-                "see below"
-            }
-            .to_owned(),
-        ]);
+    let columns = || PHOTO_COLUMNS.iter().filter(|column| column.table.is_some());
+    let head = columns().filter_map(|column| column.table.map(str::to_owned));
+    let mut rows: Vec<Vec<String>> = vec![head.collect()];
+    for line in report.lines() {
+        rows.push(columns().map(|column| column.table_value(&line)).collect());
     }
-    let widths: Vec<usize> = (0..head.len())
+    let widths: Vec<usize> = (0..columns().count())
         .map(|column| {
-            let cells = rows.iter().map(|row| row[column].chars().count());
-            cells.max().unwrap_or(0)
+            let cells = rows.iter().filter_map(|row| row.get(column));
+            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
         })
         .collect();
     for row in &rows {
@@ -57,40 +43,17 @@ pub fn scales_table(report: &ScaleReport) -> String {
         text += line.trim_end();
         text.push('\n');
     }
-    let noted: Vec<_> = report
-        .lines
-        .iter()
-        .filter(|line| !line.notes.is_empty())
+    let noted: Vec<(&str, Vec<String>)> = report
+        .lines()
+        .map(|line| (line.photo.name(), line.photo.notes()))
+        .filter(|(_, notes)| !notes.is_empty())
         .collect();
     if !noted.is_empty() {
         text.push('\n');
     }
-    for line in noted {
+    for (photo, notes) in noted {
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "{}: {}", line.photo, line.notes.join("; "));
+        let _ = writeln!(text, "{photo}: {}", notes.join("; "));
     }
     text
-}
-
-/// A positive number with six significant digits.
-fn six_digits(number: f64) -> String {
-    let before = number.abs().log10().floor() as i32 + 1;
-    if !(-3..=6).contains(&before) {
-        return format!("{number:.5e}");
-    }
-    format!("{number:.*}", usize::try_from(6 - before).unwrap_or(0))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn digits() {
-        assert_eq!(six_digits(25.612_345_6), "25.6123");
-        assert_eq!(six_digits(0.001_234_567_8), "0.00123457");
-        assert_eq!(six_digits(123_456.7), "123457");
-        assert_eq!(six_digits(1.0), "1.00000");
-        assert_eq!(six_digits(1e9), "1.00000e9");
-    }
 }

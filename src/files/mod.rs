@@ -4,6 +4,7 @@
 //! overwrite   what may be written over; every file that goes out is written here
 //! inputs      the files that were read, known by identity and not by name
 //! recording   which files are opened on the way
+//! input       opening files: whole bytes, text, errors with the file's name
 //! marks       what tells a file that fragscale wrote
 //! atomic      files and folders that are there whole or not at all
 //! ```
@@ -11,6 +12,7 @@
 //! The one place of the lower floors that knows paths.
 
 mod atomic;
+mod input;
 mod inputs;
 mod marks;
 mod overwrite;
@@ -18,6 +20,7 @@ mod recording;
 
 pub use atomic::write_whole;
 pub use atomic::{is_unfinished, make_folder_whole, remove_unfinished};
+pub use input::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use inputs::{Inputs, is_same_file};
 pub use marks::{FLIGHT_MARK, HTML_MARK, Kind, SVG_MARK, marked_png};
 pub use overwrite::{Standing, may_write, standing, write};

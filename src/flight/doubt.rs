@@ -159,9 +159,20 @@ pub enum Doubt {
 
 impl Doubt {
     /// Whether the numbers of the scale are not those of the photo that the engineer has, for a reason
-    /// that no look at the flight can dispel: every list of scales has to say it.
+    /// that no look at the flight can dispel.
     pub fn is_of_the_number(&self) -> bool {
         matches!(self, Self::UnitUnknown | Self::ReducedPhotos { .. })
+    }
+
+    /// Whether the photo does not stand where one of this surface can, or does not show it: its scale
+    /// is that of something else.
+    pub fn is_of_the_pile(&self) -> bool {
+        matches!(self, Self::FarFromSurface { .. } | Self::UnderSurface) || self.is_of_colours()
+    }
+
+    /// Whether the photo's colours say it.
+    pub fn is_of_colours(&self) -> bool {
+        matches!(self, Self::OtherColours { .. } | Self::Flipped { .. })
     }
 }
 

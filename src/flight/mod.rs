@@ -2,12 +2,14 @@
 
 mod camera_entry;
 mod doubt;
+mod evidence;
 mod file;
 mod file_check;
 mod file_text;
 mod known_keys;
 mod name_order;
 mod placement;
+mod review;
 mod scale_object;
 #[cfg(test)]
 mod tests;
@@ -18,11 +20,13 @@ use std::sync::Arc;
 
 pub use camera_entry::{CameraEntry, CameraSource};
 pub use doubt::Doubt;
+pub use evidence::{ColoursFound, Evidence, LookedUp, PhotoFileState};
 pub use file::{FlightFile, PhotoSource, ReconstructionFlight};
 pub use name_order::compare_names;
 pub use placement::Placement;
+pub use review::{PhotoReview, Review};
 pub use scale_object::{ComparedObject, ScaleObject};
-pub use verdict::{Evidence, Judged, Limits, PhotoFileState, Verdict, judge, judge_all};
+pub use verdict::{Limits, Verdict};
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;

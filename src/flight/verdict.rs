@@ -8,8 +8,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::doubt::Doubt;
-use super::{Flight, Outcome};
+use super::{Doubt, Evidence, Outcome, PhotoFileState};
 use crate::scale::{CornerName, CornerOutcome, EdgeScales, ViewFacts};
 use crate::units::LengthUnit;
 
@@ -55,25 +54,6 @@ impl Default for Limits {
     }
 }
 
-/// What is known about a photo's image file.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub enum PhotoFileState {
-    /// The flight names no folder of image files.
-    #[default]
-    NotNamed,
-    /// There is a folder, but not this file in it.
-    Missing,
-    /// The file cannot be read, with the reason.
-    Unreadable(String),
-    /// Its size in pixels.
-    Found {
-        /// Width.
-        width: u32,
-        /// Height.
-        height: u32,
-    },
-}
-
 /// What to do with a photo's scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Verdict {
@@ -107,26 +87,17 @@ impl fmt::Display for Verdict {
 
 /// A photo's verdict with its reasons.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Judged {
+pub(super) struct Judged {
     /// What to do with its scale.
     pub verdict: Verdict,
     /// The gravest first.
     pub doubts: Vec<Doubt>,
 }
 
-/// What was looked up of one photo, outside of the flight's own numbers.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Evidence {
-    /// Its image file.
-    pub file: PhotoFileState,
-    /// What its place, its metadata and its colours say against it, the gravest first.
-    pub doubts: Vec<Doubt>,
-}
-
 /// Judges a photo: every reason for doubt, the gravest first, and what follows from them. `view` is
 /// `None` where the photo has no scale to look at; `camera` is its camera's image size; `unit` is the
 /// world's, `None` where nobody states it.
-pub fn judge(
+pub(super) fn judge(
     outcome: &Outcome,
     view: Option<&ViewFacts>,
     evidence: &Evidence,
@@ -180,7 +151,7 @@ pub fn judge(
             }
         }
     }
-    let found = evidence.doubts.iter().cloned();
+    let found = evidence.against().cloned();
     let (mut of_number, found): (Vec<Doubt>, Vec<Doubt>) = found.partition(Doubt::is_of_the_number);
     // Whether it is known already that the photos have another size.
     let is_reduced = of_number
@@ -220,31 +191,6 @@ pub fn judge(
 fn ratio(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     let (a, b) = (a?, b?);
     Some((a / b).max(b / a))
-}
-
-/// Judges every photo of a flight, in their order. `outcomes` and `views` are those of
-/// [`Flight::scales`] and [`Flight::views`]; without `views` nothing of them can raise a doubt.
-pub fn judge_all<'a>(
-    flight: &Flight,
-    outcomes: &[Outcome],
-    views: Option<&[Option<ViewFacts>]>,
-    evidence: impl IntoIterator<Item = &'a Evidence>,
-    limits: &Limits,
-) -> Vec<Judged> {
-    let parts = flight.parts();
-    let photos = parts.photos.iter();
-    photos
-        .zip(outcomes)
-        .zip(evidence)
-        .enumerate()
-        .map(|(index, ((photo, outcome), evidence))| {
-            let camera = flight.camera(photo);
-            let size = (camera.width, camera.height);
-            let view = views.and_then(|views| views.get(index)?.as_ref());
-            let unit = parts.unit_known.then_some(parts.unit);
-            judge(outcome, view, evidence, size, unit, limits)
-        })
-        .collect()
 }
 
 fn doubts_of_view(view: &ViewFacts, unit: LengthUnit, limits: &Limits) -> Vec<Doubt> {
@@ -300,7 +246,7 @@ mod tests {
     fn evidence(file: &PhotoFileState) -> Evidence {
         Evidence {
             file: file.clone(),
-            doubts: Vec::new(),
+            ..Evidence::default()
         }
     }
 
@@ -390,6 +336,7 @@ mod tests {
         let evidence = Evidence {
             file: missing,
             doubts: vec![Doubt::UnderSurface, found.clone()],
+            ..Evidence::default()
         };
         let unit = Some(LengthUnit::Metre);
         let judged = judge(&good(), Some(&view()), &evidence, SIZE, unit, &limits());

@@ -17,6 +17,11 @@ pub use crs::{Crs, CrsKind};
 pub use definition::stated_unit_metres;
 pub use geocentric::{ecef_from_geographic, enu_axes, geographic_from_ecef};
 
+/// Whether a text names a system at all: packages leave the text of a frame of their own empty.
+pub fn is_stated(crs: &str) -> bool {
+    crs.contains(|c: char| c.is_alphanumeric())
+}
+
 /// A place on WGS 84.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Geographic {

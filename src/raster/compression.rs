@@ -114,6 +114,14 @@ impl Compression {
             Self::Lzw => lzw(&stored, expected)?,
             Self::PackBits => pack_bits(&stored, expected),
             Self::Deflate => read(ZlibDecoder::new(&stored[..]), expected)?,
+            #[cfg(not(feature = "zstd"))]
+            Self::Zstd => {
+                return Err(Fault::new(
+                    "this fragscale was built without zstd",
+                    "build it with its default features, or export the file with deflate",
+                ));
+            }
+            #[cfg(feature = "zstd")]
             Self::Zstd => {
                 let decoder = zstd::stream::read::Decoder::new(&stored[..]);
                 let decoder = decoder.map_err(|e| broken(format!("its zstd is broken ({e})")))?;

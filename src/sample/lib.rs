@@ -32,6 +32,8 @@ use fragscale_core::{camera, fault, flight, geometry, jobs, surface, units};
 #[cfg(test)]
 use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
+#[cfg(test)]
+use fragscale_opening as opening;
 
 use std::fs;
 use std::io;

@@ -5,7 +5,8 @@ use serde_json::Value;
 use super::*;
 use crate::camera::Camera;
 use crate::flight::Outcome;
-use crate::formats::{DistributionColumns, OpenOptions, open_flight, read_size_distributions};
+use crate::formats::{DistributionColumns, read_size_distributions};
+use crate::opening::{OpenOptions, open_flight};
 use crate::scale::EdgeScales;
 
 fn options() -> SampleOptions {

@@ -1,6 +1,9 @@
 //! Where tests find their files: those of the repository, and the real data beside it, which stay
 //! outside of it because their licences differ. Only tests and benchmarks use this crate.
 
+pub mod jpeg;
+pub mod ros;
+
 use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -32,8 +32,8 @@ fn assert_told_and_usable(desk: &mut Desk, path: &Path) {
     let sentence = sentence(path);
     assert!(desk.says(&sentence), "not on the screen: {sentence}");
     assert!(desk.logged(&sentence), "not in the log: {sentence}");
-    assert_eq!(desk.open().flight.parts().name, "Windrow");
-    assert!(desk.open().views.is_some());
+    assert_eq!(desk.open().flight().parts().name, "Windrow");
+    assert!(desk.open().review.views().is_some());
     desk.click(Role::Row, "Photo IMG_0002.jpg");
     assert_eq!(desk.selected(), "IMG_0002.jpg");
     desk.press(Modifiers::NONE, Key::ArrowUp);
@@ -87,7 +87,7 @@ fn on_the_start_page_it_is_told_too() {
 #[test]
 fn a_failed_opening_leaves_no_half_computed_flight() {
     let mut desk = Desk::new(Some(&flight("tests/windrow")));
-    let all = desk.open().outcomes.clone();
+    let all = desk.open().review.outcomes().clone();
     let app = desk.harness.state_mut();
     let mut settings = app.state().open.as_ref().expect("a flight").settings();
     settings.image = fragscale::scale::ImageKind::AsShot;
@@ -96,9 +96,13 @@ fn a_failed_opening_leaves_no_half_computed_flight() {
     app.apply(Command::Discard);
     desk.settle();
     let open = desk.open();
-    assert_eq!(open.flight.parts().image, open.settings().image);
-    assert_ne!(open.outcomes, all, "the scales are those of the settings");
-    assert!(open.views.is_some());
+    assert_eq!(open.flight().parts().image, open.settings().image);
+    assert_ne!(
+        *open.review.outcomes(),
+        all,
+        "the scales are those of the settings"
+    );
+    assert!(open.review.views().is_some());
 }
 
 /// What is cancelled is taken back: settings and numbers never disagree.
@@ -138,5 +142,5 @@ fn footprints_come_after_a_cancelled_change() {
     app.apply(Command::Set(settings));
     app.apply(Command::Cancel(fragscale::app::tasks::Task::SCALES));
     desk.settle();
-    assert!(desk.open().views.is_some());
+    assert!(desk.open().review.views().is_some());
 }

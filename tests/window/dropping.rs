@@ -37,10 +37,10 @@ pub fn drop_on(desk: &mut Desk, paths: &[&Path]) {
 fn a_folder_is_opened_by_dropping_it() {
     let mut desk = Desk::new(None);
     drop_on(&mut desk, &[&flight("tests/windrow")]);
-    assert_eq!(desk.open().flight.parts().name, "Windrow");
+    assert_eq!(desk.open().flight().parts().name, "Windrow");
     assert_eq!(desk.rows().len(), 9);
     drop_on(&mut desk, &[&flight("tests/fixtures/nvm-points-photos")]);
-    assert_ne!(desk.open().flight.parts().name, "Windrow");
+    assert_ne!(desk.open().flight().parts().name, "Windrow");
 }
 
 /// A real flight over a lake shore, as OpenDroneMap left it: the photos lie where its own report says.
@@ -52,7 +52,7 @@ fn brighton_opens_by_dropping_its_folder() {
     let mut desk = Desk::new(None);
     drop_on(&mut desk, &[&folder]);
     let open = desk.open();
-    assert_eq!(open.outcomes.len(), 7);
+    assert_eq!(open.review.outcomes().len(), 7);
     assert_eq!(open.crs.as_deref(), Some("EPSG:32615"), "UTM zone 15 north");
     let surface = open.surface_bounds;
     for photo in 0..7 {
@@ -62,7 +62,7 @@ fn brighton_opens_by_dropping_its_folder() {
             let edge = edge.expect("an edge");
             assert!((54.0..63.0).contains(&edge), "{edge} px/m");
         }
-        let center = open.flight.parts().photos[photo].pose.center;
+        let center = open.flight().parts().photos[photo].pose.center;
         let above = center.z - surface.center().z;
         assert!((30.0..45.0).contains(&above), "{above} m above the shore");
         // What its middle shows is on the shore that was measured, or within a photo's size of it.

@@ -47,7 +47,7 @@ fn fit(desk: &mut Desk, folder: &Path) {
 
 #[track_caller]
 fn assert_scales(desk: &Desk) {
-    assert_eq!(desk.open().outcomes.len(), 5);
+    assert_eq!(desk.open().review.outcomes().len(), 5);
     for photo in 0..5 {
         let scale = desk.open().scale(photo).expect("a scale").scale;
         for edge in [scale.top, scale.right, scale.bottom, scale.left] {
@@ -219,7 +219,7 @@ fn a_measured_distance_gives_the_scale() {
     assert_scales(&desk);
     // Cameras above, now.
     let open = desk.open();
-    let center = open.flight.parts().photos[0].pose.center;
+    let center = open.flight().parts().photos[0].pose.center;
     assert!((center.z - open.surface_bounds.max.z - 30.0).abs() < 1e-6);
 }
 

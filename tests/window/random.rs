@@ -3,15 +3,15 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use fragscale::app::command::PictureRequest;
-use fragscale::app::command::{Asking, Choice, Tab, ViewChange};
-use fragscale::app::open_flight::table::Column;
+use fragscale::app::command::{Asking, Choice, PictureRequest, Tab, ViewChange};
+use fragscale::app::open_flight::table::SortBy;
 use fragscale::app::open_flight::tracing::Trace;
 use fragscale::app::open_flight::{Measure, OpenFlight};
 use fragscale::app::state::layers::Layers;
 use fragscale::app::state::preferences::Theme;
 use fragscale::app::tasks::Task;
 use fragscale::app::{Command, State};
+use fragscale::exports::PHOTO_COLUMNS;
 use fragscale::flight::{FlightSettings, Limits, Outcome, Verdict};
 use fragscale::geometry::Ray;
 use fragscale::render::{ColorBy, Scope};
@@ -208,17 +208,11 @@ fn command(dice: &mut Dice, state: &State, places: &Places) -> Command {
         43 | 44 => {
             Command::ChooseAll(dice.one_of(&[Choice::WithScale, Choice::Trusted, Choice::None]))
         }
-        45..=49 => Command::Sort(dice.one_of(&[
-            Column::Flight,
-            Column::Export,
-            Column::Name,
-            Column::Top,
-            Column::Bottom,
-            Column::Height,
-            Column::Tilt,
-            Column::Corners,
-            Column::Verdict,
-        ])),
+        45..=49 => {
+            let columns = PHOTO_COLUMNS.iter().map(SortBy::Column);
+            let all: Vec<SortBy> = columns.chain([SortBy::Flight, SortBy::Export]).collect();
+            Command::Sort(dice.one_of(&all))
+        }
         50 | 51 => Command::Filter(
             dice.one_of(&["", "", "000", "img_0005", "scale", "¿"])
                 .into(),
@@ -267,15 +261,15 @@ fn check(state: &State) {
     let Some(open) = &state.open else {
         return;
     };
-    let parts = open.flight.parts();
+    let parts = open.flight().parts();
     let count = parts.photos.len();
-    assert_eq!(open.outcomes.len(), count);
-    assert_eq!(open.judged.len(), count);
+    assert_eq!(open.review.outcomes().len(), count);
+    assert_eq!(open.review.photos().count(), count);
     assert_eq!(open.photo_files.len(), count);
     assert_eq!(open.thumbnails.len(), count);
     assert_eq!(open.images.len(), count);
     assert_eq!(open.history.now().chosen.len(), count);
-    assert!(open.views.as_ref().is_none_or(|views| views.len() == count));
+    assert!(open.review.views().is_none_or(|views| views.len() == count));
     assert!(open.selected.is_none_or(|photo| photo < count));
     let through = open.looking.through;
     assert!(through.is_none_or(|photo| Some(photo) == open.selected || photo < count));
@@ -283,10 +277,10 @@ fn check(state: &State) {
     let text = open.order.text.to_lowercase();
     let wanted: BTreeSet<usize> = (0..count)
         .filter(|&photo| {
-            let judged = &open.judged[photo];
+            let reviewed = open.review.photo(photo).expect("a photo");
             let wanted = open.order.verdict;
-            let verdict = wanted.is_none_or(|wanted| open.verdict(photo) == Some(wanted));
-            let doubts = judged.doubts.iter().map(ToString::to_string);
+            let verdict = wanted.is_none_or(|wanted| reviewed.settled() == Some(wanted));
+            let doubts = reviewed.doubts.iter().map(ToString::to_string);
             let named = parts.photos[photo].name.clone();
             let mut texts = doubts.chain([named]).map(|text| text.to_lowercase());
             verdict && texts.any(|words| words.contains(&text))
@@ -295,7 +289,7 @@ fn check(state: &State) {
     let shown: BTreeSet<usize> = open.shown.iter().copied().collect();
     assert_eq!(shown, wanted);
     assert_eq!(open.shown.len(), wanted.len(), "a photo twice");
-    if open.order.by == Column::Top {
+    if matches!(open.order.by, SortBy::Column(column) if column.name == "Top") {
         let tops: Vec<f64> = open
             .shown
             .iter()
@@ -318,7 +312,7 @@ fn check_at_rest(state: &State) {
     let Some(open) = &state.open else {
         return;
     };
-    let (parts, settings) = (open.flight.parts(), open.settings());
+    let (parts, settings) = (open.flight().parts(), open.settings());
     assert!(
         open.computed.gives_the_scales_of(&settings),
         "{:?}",
@@ -331,36 +325,36 @@ fn check_at_rest(state: &State) {
     assert_eq!(parts.image, settings.image);
     assert_eq!(parts.surface.max_edge(), settings.surface.max_edge);
     let log = &state.log[state.log.len().saturating_sub(20)..];
-    assert!(open.views.is_some(), "{log:#?}");
+    assert!(open.review.views().is_some(), "{log:#?}");
     assert!(open.proposed);
     let points = parts.surface.vertices().len();
     // Without a graphics device there is none.
     if let Some(geometry) = &open.geometry {
         assert_eq!(geometry.points, points);
     }
-    for (photo, outcome) in open.outcomes.iter().enumerate() {
+    for (photo, outcome) in open.review.outcomes().iter().enumerate() {
         let trouble = matches!(outcome, Outcome::Trouble(_));
         assert_eq!(trouble, parts.photos[photo].trouble.is_some());
     }
     if let Some(preview) = &open.preview {
-        assert!(preview.photo < open.outcomes.len());
+        assert!(preview.photo < open.review.outcomes().len());
     }
 }
 
 /// The scales of a flight that is opened with these settings, with nothing done to it.
 fn fresh(path: &Path, settings: FlightSettings) -> Vec<Outcome> {
-    let options = fragscale::formats::OpenOptions {
+    let options = fragscale::opening::OpenOptions {
         settings: Some(settings),
-        ..fragscale::formats::OpenOptions::default()
+        ..fragscale::opening::OpenOptions::default()
     };
     let progress = fragscale::jobs::Progress::default();
-    let opened = fragscale::formats::open_flight(path, &options, &progress).expect("a flight");
+    let opened = fragscale::opening::open_flight(path, &options, &progress).expect("a flight");
     opened.flight.scales(&progress).expect("scales")
 }
 
 /// However the settings got there, the numbers are those of a flight that is opened with them.
 fn assert_as_if_opened_anew(open: &OpenFlight) {
-    assert_eq!(*open.outcomes, fresh(&open.path, open.settings()));
+    assert_eq!(**open.review.outcomes(), fresh(&open.path, open.settings()));
 }
 
 #[test]
@@ -412,7 +406,10 @@ fn two_thousand_commands_leave_the_window_consistent() {
         .apply(Command::Open(first.path().to_owned()));
     desk.harness.state_mut().apply(Command::Discard);
     desk.settle();
-    let (settings, before) = (desk.open().settings(), desk.open().outcomes.clone());
+    let (settings, before) = (
+        desk.open().settings(),
+        desk.open().review.outcomes().clone(),
+    );
     for _ in 0..60 {
         let app = desk.harness.state_mut();
         let now = app.state().open.as_ref().expect("a flight").settings();
@@ -425,6 +422,6 @@ fn two_thousand_commands_leave_the_window_consistent() {
     }
     desk.settle();
     assert_eq!(desk.open().settings(), settings);
-    assert_eq!(desk.open().outcomes, before);
+    assert_eq!(*desk.open().review.outcomes(), before);
     check_at_rest(desk.harness.state().state());
 }

@@ -26,8 +26,8 @@ fn sphere(desk: &Desk) -> DVec3 {
     let text = fs::read_to_string(flight("assets/sample/truth.json")).expect("truth");
     let truth: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     let open = desk.open();
-    let photo = &open.flight.parts().photos[open.selected.expect("a photo")];
-    let camera = open.flight.camera(photo);
+    let photo = &open.flight().parts().photos[open.selected.expect("a photo")];
+    let camera = open.flight().camera(photo);
     let middle = DVec2::new(640.0, 360.0);
     let spheres = truth["spheres"].as_array().expect("spheres").iter();
     let seen = spheres.filter_map(|sphere| {
@@ -44,8 +44,8 @@ fn sphere(desk: &Desk) -> DVec3 {
 fn outline(desk: &Desk, points: u32) -> Vec<DVec2> {
     let center = sphere(desk);
     let open = desk.open();
-    let photo = &open.flight.parts().photos[open.selected.expect("a photo")];
-    let (camera, image) = (open.flight.camera(photo), open.flight.parts().image);
+    let photo = &open.flight().parts().photos[open.selected.expect("a photo")];
+    let (camera, image) = (open.flight().camera(photo), open.flight().parts().image);
     let share = (DIAMETER / 2.0).powi(2) / center.length_squared();
     let (along, across) = center.normalize().any_orthonormal_pair();
     let radius = DIAMETER / 2.0 * (1.0 - share).sqrt();
@@ -239,7 +239,7 @@ fn a_bar_is_two_clicks() {
 fn size_mask_and_deleting_are_changes_of_the_flight() {
     let (folder, mut desk) = sample();
     open_section(&mut desk);
-    let before = desk.open().outcomes.clone();
+    let before = desk.open().review.outcomes().clone();
     trace_sphere(&mut desk);
     let scale = |desk: &Desk| {
         let object = &objects(desk)[0];
@@ -255,7 +255,7 @@ fn size_mask_and_deleting_are_changes_of_the_flight() {
     desk.click(Role::CheckBox, "Mask sphere 1 in export");
     assert!(!objects(&desk)[0].mask);
     assert!(
-        std::sync::Arc::ptr_eq(&before, &desk.open().outcomes),
+        std::sync::Arc::ptr_eq(&before, desk.open().review.outcomes()),
         "no scale depends on it"
     );
     desk.press(Modifiers::COMMAND, Key::S);
@@ -284,7 +284,7 @@ fn the_outline_is_kept_in_pixels_as_shot() {
     desk.click(Role::Tab, "Photo");
     desk.click(Role::Button, "Delete sphere 1");
     trace_sphere(&mut desk);
-    assert_eq!(desk.open().flight.parts().image, ImageKind::AsShot);
+    assert_eq!(desk.open().flight().parts().image, ImageKind::AsShot);
     let as_shot = objects(&desk)[0].outline.clone();
     for (a, b) in undistorted.iter().zip(&as_shot) {
         assert!((*a - *b).length() < 0.05, "{a} and {b}");

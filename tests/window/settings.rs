@@ -18,7 +18,7 @@ const WINDROW: &str = "tests/windrow";
 
 /// The edge scales that the window shows, pixels per unit of the world.
 fn in_window(desk: &Desk) -> Vec<[Option<f64>; 4]> {
-    let outcomes = desk.open().outcomes.iter();
+    let outcomes = desk.open().review.outcomes().iter();
     outcomes
         .map(|outcome| match outcome {
             Outcome::Scale(scale) => {
@@ -76,19 +76,19 @@ fn page(name: &str) -> (TempDir, Desk) {
 #[track_caller]
 fn undo_to(desk: &mut Desk, before: &[Outcome]) {
     desk.press(Modifiers::COMMAND, Key::Z);
-    assert_eq!(*desk.open().outcomes, before);
+    assert_eq!(**desk.open().review.outcomes(), before);
     assert!(!desk.open().is_changed());
 }
 
 #[test]
 fn the_ground_is_where_it_is_typed() {
     let (folder, mut desk) = page(MISSES);
-    let before = desk.open().outcomes.to_vec();
+    let before = desk.open().review.outcomes().to_vec();
     desk.fill("Ground elevation", "-0,25");
     let wanted = from_command(folder.path(), "ground = 0.0764", "ground = -0.25");
     let now = in_window(&desk);
     assert_same(&now, &wanted);
-    assert_ne!(*desk.open().outcomes, before);
+    assert_ne!(**desk.open().review.outcomes(), before);
     undo_to(&mut desk, &before);
     desk.click(Role::RadioButton, "Median elevation under each photo");
     let wanted = from_command(folder.path(), "ground = 0.0764", "ground = \"auto\"");
@@ -99,7 +99,7 @@ fn the_ground_is_where_it_is_typed() {
 #[test]
 fn scales_can_be_for_the_photo_as_shot() {
     let (folder, mut desk) = page(WINDROW);
-    let before = desk.open().outcomes.to_vec();
+    let before = desk.open().review.outcomes().to_vec();
     desk.click(Role::RadioButton, "the photo as shot");
     let as_shot = "[photos]\n";
     let wanted = from_command(
@@ -108,14 +108,14 @@ fn scales_can_be_for_the_photo_as_shot() {
         "[scale]\nimage = \"as-shot\"\n[photos]\n",
     );
     assert_same(&in_window(&desk), &wanted);
-    assert_ne!(*desk.open().outcomes, before);
+    assert_ne!(**desk.open().review.outcomes(), before);
     undo_to(&mut desk, &before);
 }
 
 #[test]
 fn the_worlds_unit_changes_what_a_number_means() {
     let (folder, mut desk) = page(WINDROW);
-    let before = desk.open().outcomes.to_vec();
+    let before = desk.open().review.outcomes().to_vec();
     let shown = |desk: &Desk| -> f64 { desk.rows()[0].1[1].parse().expect("a number") };
     let in_metres = shown(&desk);
     desk.click(Role::ComboBox, "Unit of the world's coordinates");
@@ -131,14 +131,14 @@ fn the_worlds_unit_changes_what_a_number_means() {
 #[test]
 fn long_triangles_are_left_out() {
     let (folder, mut desk) = page(WINDROW);
-    let before = desk.open().outcomes.to_vec();
+    let before = desk.open().review.outcomes().to_vec();
     desk.click(Role::CheckBox, "Leave out long triangles, edges over");
     // Shorter than any edge of the lattice: only its vertices are left, and rays go past them.
     desk.fill("Longest triangle edge", "0.001");
     let with = "file = \"pile.ply\"\nmax_edge = 0.001";
     let wanted = from_command(folder.path(), "file = \"pile.ply\"", with);
     assert_same(&in_window(&desk), &wanted);
-    assert_ne!(*desk.open().outcomes, before);
+    assert_ne!(**desk.open().review.outcomes(), before);
     desk.press(Modifiers::COMMAND, Key::Z);
     undo_to(&mut desk, &before);
 }
@@ -146,8 +146,8 @@ fn long_triangles_are_left_out() {
 #[test]
 fn the_cloud_is_thinned_from_its_file() {
     let (folder, mut desk) = page(WINDROW);
-    let before = desk.open().outcomes.to_vec();
-    let points = |desk: &Desk| desk.open().flight.parts().surface.vertices().len();
+    let before = desk.open().review.outcomes().to_vec();
+    let points = |desk: &Desk| desk.open().flight().parts().surface.vertices().len();
     let all = points(&desk);
     desk.click(Role::Row, "Photo IMG_0003.jpg");
     desk.click(Role::CheckBox, "Thin the cloud, one point in each");
@@ -256,9 +256,9 @@ fn another_flight_waits_for_the_answer() {
         .apply(fragscale::app::Command::Open(other));
     desk.settle();
     assert_eq!(
-        desk.open().flight.parts().name,
+        desk.open().flight().parts().name,
         "Fixture tiltpan-xyz-feet-misses"
     );
     desk.click(Role::Button, "Discard changes");
-    assert_eq!(desk.open().flight.parts().name, "Windrow");
+    assert_eq!(desk.open().flight().parts().name, "Windrow");
 }

@@ -148,7 +148,7 @@ fn a_dropped_table_is_drawn_and_one_of_a_flight_goes_to_the_pile() {
     // With a flight that is dropped with it, both are there.
     let mut desk = Desk::new(None);
     drop_on(&mut desk, &[&path, &flight("tests/windrow")]);
-    assert_eq!(desk.open().flight.parts().name, "Windrow");
+    assert_eq!(desk.open().flight().parts().name, "Windrow");
     assert_eq!(computed(&desk).set.curves.len(), 7);
 
     // A list of poses is something of a flight, as ever.

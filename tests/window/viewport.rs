@@ -107,7 +107,7 @@ fn the_wheel_zooms_to_what_is_under_the_cursor() {
 #[test]
 fn a_click_selects_the_photo_whose_middle_is_there() {
     let mut desk = Desk::new(Some(&flight("tests/windrow")));
-    let flight = desk.open().flight.clone();
+    let flight = desk.open().flight().clone();
     let mut caster = flight.parts().surface.caster().expect("a caster");
     for photo in [8, 1, 3] {
         let posed = &flight.parts().photos[photo];
@@ -137,7 +137,7 @@ fn a_click_on_a_camera_selects_its_photo() {
     desk.press(Modifiers::NONE, Key::F);
     drag(&mut desk, vec2(40.0, 25.0));
     let centers: Vec<DVec3> = {
-        let photos = desk.open().flight.parts().photos.iter();
+        let photos = desk.open().flight().parts().photos.iter();
         photos.map(|photo| photo.pose.center).collect()
     };
     for photo in [6, 2] {
@@ -206,7 +206,7 @@ fn the_view_through_the_camera_is_the_photo() {
     let Measure::Second(point) = desk.open().measure else {
         panic!("{:?}", desk.open().measure);
     };
-    let flight = desk.open().flight.clone();
+    let flight = desk.open().flight().clone();
     let photo = &flight.parts().photos[5];
     let camera = flight.camera(photo);
     let pixel = camera

@@ -56,7 +56,7 @@ actions! {
         hover: "Choose for export the photos without any reason for doubt",
         shortcut: None,
         command: |state| {
-            let looked = state.open.as_ref()?.views.is_some();
+            let looked = state.open.as_ref()?.review.is_looked_at();
             looked.then_some(Command::ChooseAll(Choice::Trusted))
         },
     }

@@ -26,10 +26,8 @@ pub mod view;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
-use crate::command::{Answers, Asking, Choice, Command, Dialog, ViewChange};
-use crate::open_flight::tracing::Trace;
-use crate::scale::ScaleObjectKind;
-use crate::size_distributions::{DistributionCommand, Page};
+use crate::command::{Asking, Command};
+use crate::size_distributions::Page;
 use crate::state::State;
 
 /// What an entry of the menu does.

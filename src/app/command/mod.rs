@@ -14,11 +14,11 @@ pub use dialog::{Answers, Chooses, Dialog};
 pub use view_change::ViewChange;
 
 use crate::flight::{FlightSettings, Limits, Verdict};
-use crate::formats::GeoreferenceRequest;
 use crate::geometry::Ray;
 use crate::open_flight::georeferencing::GeoreferenceForm;
-use crate::open_flight::table::Column;
+use crate::open_flight::table::SortBy;
 use crate::open_flight::tracing::Trace;
+use crate::opening::GeoreferenceRequest;
 use crate::size_distributions::{DistributionCommand, Page};
 use crate::state::layers::Layers;
 use crate::state::preferences::Theme;
@@ -116,7 +116,7 @@ pub enum Command {
     /// Chooses many.
     ChooseAll(Choice),
     /// Sorts the table; the same column again turns it around.
-    Sort(Column),
+    Sort(SortBy),
     /// Shows only photos that hold this text.
     Filter(String),
     /// Shows only photos with this verdict.

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::command::{Choice, Command, ViewChange};
 use crate::flight::{ScaleObject, Verdict};
 use crate::open_flight::picker::Purpose;
-use crate::open_flight::table::Column;
+use crate::open_flight::table::SortBy;
 use crate::open_flight::{Measure, OpenFlight};
 
 impl OpenFlight {
@@ -33,13 +33,13 @@ impl OpenFlight {
                 self.arrange();
             }
             // Nothing is trusted before it was looked at.
-            Command::ChooseAll(Choice::Trusted) if self.views.is_none() => {}
+            Command::ChooseAll(Choice::Trusted) if !self.review.is_looked_at() => {}
             Command::ChooseAll(choice) => {
                 let mut edit = self.history.now().clone();
-                for (place, judged) in edit.chosen.iter_mut().zip(&self.judged) {
+                for (place, photo) in edit.chosen.iter_mut().zip(self.review.photos()) {
                     *place = match choice {
-                        Choice::WithScale => judged.verdict != Verdict::NoScale,
-                        Choice::Trusted => judged.verdict == Verdict::Trust,
+                        Choice::WithScale => photo.verdict != Verdict::NoScale,
+                        Choice::Trusted => photo.verdict == Verdict::Trust,
                         Choice::None => false,
                     };
                 }
@@ -53,7 +53,7 @@ impl OpenFlight {
                 } else if !self.order.descending {
                     self.order.descending = true;
                 } else {
-                    (self.order.by, self.order.descending) = (Column::Flight, false);
+                    (self.order.by, self.order.descending) = (SortBy::Flight, false);
                 }
                 self.arrange();
             }
@@ -96,7 +96,7 @@ impl OpenFlight {
 
     pub(crate) fn select(&mut self, photo: Option<usize>) {
         let before = self.selected;
-        self.selected = photo.filter(|&photo| photo < self.outcomes.len());
+        self.selected = photo.filter(|&photo| photo < self.review.count());
         if self.selected != before {
             // The points were on the other photo.
             self.tracing = None;
@@ -176,7 +176,7 @@ impl OpenFlight {
                 pick(4, low.z, high.z),
             )
         });
-        let photos = self.flight.parts().photos.iter();
+        let photos = self.flight().parts().photos.iter();
         let points: Vec<DVec3> = corners
             .chain(photos.map(|photo| photo.pose.center))
             .collect();
@@ -194,7 +194,7 @@ impl OpenFlight {
         let Some(photo) = self.selected else {
             return;
         };
-        let Some(posed) = self.flight.parts().photos.get(photo) else {
+        let Some(posed) = self.flight().parts().photos.get(photo) else {
             return;
         };
         let mut points = vec![posed.pose.center];

@@ -3,8 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::formats::Georeferenced;
 use crate::open_flight::OpenFlight;
+use crate::opening::Georeferenced;
 
 /// What the reconstruction's place in the world is known from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

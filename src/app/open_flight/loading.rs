@@ -5,9 +5,10 @@ use std::time::{Duration, Instant};
 
 use crate::fault::Fault;
 use crate::flight::{FlightSettings, Outcome};
-use crate::formats::{self, Dropped, FileError, OpenOptions, Opened};
+use crate::formats::FileError;
 use crate::geometry::Bounds;
 use crate::jobs::Progress;
+use crate::opening::{self, Dropped, OpenOptions, Opened};
 
 /// A flight with its scales.
 #[derive(Debug)]
@@ -102,7 +103,7 @@ pub(crate) fn load(
         })
     };
     let begun = Instant::now();
-    let opened = formats::open_flight(&path, &options, progress).map_err(not_opened)?;
+    let opened = opening::open_flight(&path, &options, progress).map_err(not_opened)?;
     let read = begun.elapsed();
     let at_path = |fault: Fault| not_opened(FileError::new(&path, fault));
     let outcomes = opened.flight.scales(progress).map_err(at_path)?;

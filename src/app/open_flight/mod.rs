@@ -13,15 +13,14 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use crate::exports::PhotoLine;
 use crate::files::Inputs;
 use crate::flight::{
-    ComparedObject, Flight, FlightSettings, Judged, Limits, Outcome, ScaleObject, Verdict,
-    judge_all,
-};
-use crate::formats::{
-    Colours, FlightOrigin, FlightReconstruction, LookedUp, OpenOptions, PhotoFile, with_colours,
+    ColoursFound, ComparedObject, Flight, FlightSettings, Limits, LookedUp, Outcome, Review,
+    ScaleObject, Verdict,
 };
 use crate::geometry::{Bounds, LocalFrame};
+use crate::opening::{Colours, FlightOrigin, FlightReconstruction, OpenOptions, PhotoFile};
 use crate::render::{LargePhoto, Orbit, PhotoImage, SurfaceBuffers, drawn_ground};
 use crate::scale::{PhotoScale, ViewFacts};
 use crate::state::bundled::sample_flight;
@@ -99,8 +98,9 @@ pub struct OpenFlight {
     pub path: PathBuf,
     /// The surface and photos that were named beside it.
     pub options: OpenOptions,
-    /// With the settings of now, once they are computed.
-    pub flight: Arc<Flight>,
+    /// The flight with its scales, doubts and verdicts: with the settings of now, once they are
+    /// computed.
+    pub review: Review,
     /// Of each photo.
     pub photo_files: Arc<Vec<PhotoFile>>,
     /// The world's coordinate system where the files state one.
@@ -111,10 +111,6 @@ pub struct OpenFlight {
     pub read: Inputs,
     /// What was noticed while reading.
     pub warnings: Vec<String>,
-    /// What was looked up of the photos with the settings that it is computed with.
-    pub looked_up: LookedUp,
-    /// How the colours of each photo compare with the surface's, once known.
-    pub colours: Vec<Option<Colours>>,
     /// The flight.toml that it was opened from: it may be saved there.
     pub opened_file: Option<PathBuf>,
     /// Where it came from, and where it is saved.
@@ -132,12 +128,6 @@ pub struct OpenFlight {
     pub computed: FlightSettings,
     /// The settings and choices of now, with those before.
     pub history: History<Edit>,
-    /// Of each photo.
-    pub outcomes: Arc<Vec<Outcome>>,
-    /// Of each photo, once known.
-    pub views: Option<Arc<Vec<Option<ViewFacts>>>>,
-    /// Of each photo.
-    pub judged: Vec<Judged>,
     /// Whether the photos to export have been proposed: once, after the first verdicts.
     pub proposed: bool,
     /// The selected photo.
@@ -209,14 +199,12 @@ impl OpenFlight {
             number,
             path,
             options,
-            flight: Arc::new(opened.flight),
+            review: Review::new(opened.flight, outcomes, opened.looked_up, limits),
             photo_files: Arc::new(opened.photo_files),
             crs: opened.crs,
             inputs: opened.inputs,
             read: opened.read,
             warnings: opened.warnings,
-            looked_up: opened.looked_up,
-            colours: vec![None; count],
             bundled,
             opened_file,
             georeferencing: Georeferencing::new(opened.origin.photo_folder()),
@@ -228,9 +216,6 @@ impl OpenFlight {
                 settings: opened.settings,
                 chosen: vec![false; count],
             }),
-            outcomes: Arc::new(outcomes),
-            views: None,
-            judged: Vec::new(),
             proposed: false,
             selected: (count > 0).then_some(0),
             order: TableOrder::default(),
@@ -258,8 +243,13 @@ impl OpenFlight {
             trace_sizes: [None; 2],
             compared: Vec::new(),
         };
-        open.judge(limits);
+        open.arrange();
         open
+    }
+
+    /// The flight, with the settings that it is computed with.
+    pub fn flight(&self) -> &Arc<Flight> {
+        self.review.flight()
     }
 
     /// Lets it go. Millions of points take longer to free than a frame may: a thread does it.
@@ -302,42 +292,56 @@ impl OpenFlight {
 
     /// The photo's name.
     pub fn name(&self, photo: usize) -> &str {
-        let photos = &self.flight.parts().photos;
+        let photos = &self.flight().parts().photos;
         photos.get(photo).map_or("", |photo| photo.name.as_str())
     }
 
     /// The photo's scale, where it has one.
     pub fn scale(&self, photo: usize) -> Option<&PhotoScale> {
-        self.outcomes.get(photo)?.scale()
+        self.review.photo(photo)?.scale()
     }
 
     /// How the photo looks at the surface, once known.
     pub fn view(&self, photo: usize) -> Option<&ViewFacts> {
-        self.views.as_ref()?.get(photo)?.as_ref()
+        self.review.photo(photo)?.view
     }
 
-    /// What the table knows of a photo; `None` where there is no such photo.
+    /// What the table knows of a photo, scales in pixels per world unit; `None` where there is no such
+    /// photo.
     pub fn row(&self, photo: usize) -> Option<Row<'_>> {
         Some(Row {
-            photo: self.flight.parts().photos.get(photo)?,
-            outcome: self.outcomes.get(photo)?,
-            view: self.view(photo),
-            judged: self.judged.get(photo)?,
-            verdict: self.verdict(photo),
+            line: PhotoLine::of(self.review.photo(photo)?, photo),
             chosen: self.history.now().chosen.get(photo).copied()?,
         })
     }
 
-    /// Judges all photos anew, and sorts and filters the table.
-    pub fn judge(&mut self, limits: &Limits) {
-        let views = self.views.as_ref().map(|views| views.as_slice());
-        let colours = self.colours.iter().map(Option::as_ref);
-        let evidence = with_colours(&self.looked_up.evidence, colours);
-        self.judged = judge_all(&self.flight, &self.outcomes, views, &evidence, limits);
-        if self.views.is_some() && !self.proposed {
-            // What can be trusted is proposed for export; the rest waits for the engineer.
+    /// Takes other limits.
+    pub fn take_limits(&mut self, limits: &Limits) {
+        self.review.take_limits(limits);
+        self.arrange();
+    }
+
+    /// Takes scales with other settings, those of `computed`.
+    pub fn take_scales(
+        &mut self,
+        flight: Arc<Flight>,
+        outcomes: Vec<Outcome>,
+        looked_up: LookedUp,
+        computed: FlightSettings,
+    ) {
+        self.review.take_scales(flight, outcomes, looked_up);
+        self.computed = computed;
+        self.compared.clear();
+        self.arrange();
+    }
+
+    /// Takes the footprints. What can be trusted then is proposed for export, once; the rest waits for
+    /// the engineer.
+    pub fn take_views(&mut self, views: Vec<Option<ViewFacts>>) {
+        self.review.take_views(views);
+        if !self.proposed {
             self.proposed = true;
-            let verdicts = self.judged.iter().map(|judged| judged.verdict);
+            let verdicts = self.review.photos().map(|photo| photo.verdict);
             let proposal: Vec<bool> = verdicts.map(|verdict| verdict == Verdict::Trust).collect();
             self.history.each(|edit| edit.chosen.clone_from(&proposal));
         }
@@ -345,58 +349,36 @@ impl OpenFlight {
     }
 
     /// Takes what a photo's colours say. One that they speak against is no longer proposed for export.
-    pub fn take_colours(&mut self, photo: usize, colours: Colours, limits: &Limits) {
-        let speaks_against = colours.doubt().is_some();
-        let before = self.judged.get(photo).map(|judged| judged.verdict);
-        if let Some(place) = self.colours.get_mut(photo) {
-            *place = Some(colours);
-        }
+    pub fn take_colours(&mut self, photo: usize, colours: &Colours) {
+        let found = ColoursFound::from(colours.doubt());
+        let speaks_against = found != ColoursFound::NothingAgainst;
+        let before = self.review.photo(photo).map(|photo| photo.verdict);
+        self.review.take_colours([(photo, found)]);
         if !speaks_against {
             return;
         }
-        self.judge(limits);
         if self.proposed && before == Some(Verdict::Trust) {
             self.history.each(|edit| {
                 if let Some(chosen) = edit.chosen.get_mut(photo) {
                     *chosen = false;
                 }
             });
-            self.arrange();
         }
+        self.arrange();
     }
 
     /// What was noticed while reading and what was looked up, one sentence each.
     pub fn all_warnings(&self) -> Vec<String> {
-        let looked_up = self.looked_up.warnings_of(&self.path);
+        let looked_up = self.review.looked_up().warnings_of(self.path.display());
         self.warnings.iter().cloned().chain(looked_up).collect()
-    }
-
-    /// The photo's scale, where its numbers mean something: the unit is known.
-    pub fn scale_to_type(&self, photo: usize) -> Option<&PhotoScale> {
-        self.scale(photo).filter(|_| self.flight.parts().unit_known)
     }
 
     /// Sorts and filters the table.
     pub fn arrange(&mut self) {
-        let rows: Vec<Row<'_>> = (0..self.outcomes.len())
+        let rows: Vec<Row<'_>> = (0..self.review.count())
             .filter_map(|photo| self.row(photo))
             .collect();
         self.shown = self.order.shown(&rows);
-    }
-
-    /// What to do with a photo's scale; `None` while nothing speaks against it, but its footprint was
-    /// not looked at yet.
-    pub fn verdict(&self, photo: usize) -> Option<Verdict> {
-        let verdict = self.judged.get(photo)?.verdict;
-        (verdict != Verdict::Trust || self.views.is_some()).then_some(verdict)
-    }
-
-    /// How many photos have this verdict.
-    pub fn count(&self, verdict: Verdict) -> usize {
-        let photos = 0..self.judged.len();
-        photos
-            .filter(|&photo| self.verdict(photo) == Some(verdict))
-            .count()
     }
 
     /// How many photos are chosen for export.
@@ -406,7 +388,8 @@ impl OpenFlight {
 
     /// The elevation of the ground: as set, or where a ray needed it, or the surface's middle.
     pub fn ground(&self) -> f64 {
-        drawn_ground(self.settings().ground, &self.outcomes, &self.surface_bounds)
+        let outcomes = self.review.outcomes();
+        drawn_ground(self.settings().ground, outcomes, &self.surface_bounds)
     }
 }
 

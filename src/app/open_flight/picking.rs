@@ -35,7 +35,7 @@ impl OpenFlight {
     /// The photo that a click means: the camera next to the ray, else the photo that sees the place
     /// nearest to its middle.
     fn photo_at(&self, picked: &Picked) -> Option<usize> {
-        let photos = &self.flight.parts().photos;
+        let photos = &self.flight().parts().photos;
         // A camera is hit within this share of its distance: about ten pixels on the screen.
         let reach = 0.012;
         let camera = photos
@@ -58,7 +58,7 @@ impl OpenFlight {
             .iter()
             .enumerate()
             .filter_map(|(index, photo)| {
-                let camera = self.flight.camera(photo);
+                let camera = self.flight().camera(photo);
                 let pixel = camera.pixel_undistorted(photo.pose.camera_from_world(point))?;
                 let half =
                     glam::DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;

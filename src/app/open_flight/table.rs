@@ -1,38 +1,24 @@
 //! Which photos the table shows, and in which order.
 
-use std::cmp::Ordering;
-
-use crate::flight::{Judged, Outcome, Photo, Verdict, compare_names};
-use crate::scale::{PhotoScale, ViewFacts};
+use crate::exports::{ColumnValue, PhotoColumn, PhotoLine};
+use crate::flight::Verdict;
 
 /// What the table can be sorted by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Column {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SortBy {
     /// The order of the flight.
     Flight,
     /// Whether the photo is chosen for export.
     Export,
-    /// The photo's name, numbers in it by value.
-    Name,
-    /// The scale at the top edge.
-    Top,
-    /// The scale at the bottom edge.
-    Bottom,
-    /// Height above the surface.
-    Height,
-    /// Tilt of the optical axis.
-    Tilt,
-    /// How many corners are on the surface.
-    Corners,
-    /// The verdict, best first.
-    Verdict,
+    /// A column of photos.
+    Column(&'static PhotoColumn),
 }
 
 /// How the table is sorted and filtered.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableOrder {
     /// Sorted by.
-    pub by: Column,
+    pub by: SortBy,
     /// Largest first.
     pub descending: bool,
     /// Only photos whose name or doubts hold this text, in whatever case.
@@ -44,7 +30,7 @@ pub struct TableOrder {
 impl Default for TableOrder {
     fn default() -> Self {
         Self {
-            by: Column::Flight,
+            by: SortBy::Flight,
             descending: false,
             text: String::new(),
             verdict: None,
@@ -55,39 +41,10 @@ impl Default for TableOrder {
 /// What the table knows of one photo.
 #[derive(Debug, Clone, Copy)]
 pub struct Row<'a> {
-    /// The photo.
-    pub photo: &'a Photo,
-    /// Its scale.
-    pub outcome: &'a Outcome,
-    /// How it looks at the surface, once that is known.
-    pub view: Option<&'a ViewFacts>,
-    /// Its verdict.
-    pub judged: &'a Judged,
-    /// Its verdict once everything was looked at.
-    pub verdict: Option<Verdict>,
+    /// The photo with everything that is known of it.
+    pub line: PhotoLine<'a>,
     /// Whether it is chosen for export.
     pub chosen: bool,
-}
-
-impl Row<'_> {
-    /// The scale at the top edge, pixels per world unit.
-    pub fn top(&self) -> Option<f64> {
-        self.outcome.scale()?.scale.top
-    }
-
-    /// The scale at the bottom edge, pixels per world unit.
-    pub fn bottom(&self) -> Option<f64> {
-        self.outcome.scale()?.scale.bottom
-    }
-
-    /// How many corners are on the surface.
-    pub fn corners(&self) -> Option<usize> {
-        self.outcome.scale().map(PhotoScale::corners_on_surface)
-    }
-
-    fn height(&self) -> Option<f64> {
-        self.view.and_then(|view| view.height)
-    }
 }
 
 impl TableOrder {
@@ -97,99 +54,114 @@ impl TableOrder {
         let wanted = self.text.trim().to_lowercase();
         let mut shown: Vec<usize> = (0..rows.len())
             .filter(|&place| {
-                let row = &rows[place];
-                self.verdict.is_none_or(|v| Some(v) == row.verdict)
+                let row = &rows[place].line.photo;
+                let doubts = || {
+                    row.doubts
+                        .iter()
+                        .map(|doubt| doubt.to_string().to_lowercase())
+                };
+                self.verdict.is_none_or(|v| Some(v) == row.settled())
                     && (wanted.is_empty()
-                        || row.photo.name.to_lowercase().contains(&wanted)
-                        || row
-                            .judged
-                            .doubts
-                            .iter()
-                            .any(|doubt| doubt.to_string().to_lowercase().contains(&wanted)))
+                        || row.name().to_lowercase().contains(&wanted)
+                        || doubts().any(|doubt| doubt.contains(&wanted)))
             })
             .collect();
-        shown.sort_by(|&a, &b| self.compare(&rows[a], &rows[b]));
-        if self.by == Column::Flight && self.descending {
-            shown.reverse();
+        match self.by {
+            SortBy::Flight if self.descending => shown.reverse(),
+            SortBy::Flight => {}
+            SortBy::Export => shown.sort_by(|&a, &b| {
+                let order = rows[b].chosen.cmp(&rows[a].chosen);
+                if self.descending {
+                    order.reverse()
+                } else {
+                    order
+                }
+            }),
+            SortBy::Column(column) => {
+                let values: Vec<ColumnValue<'_>> =
+                    rows.iter().map(|row| (column.value)(&row.line)).collect();
+                shown.sort_by(|&a, &b| values[a].compare(&values[b], self.descending));
+            }
         }
         shown
-    }
-
-    fn compare(&self, a: &Row<'_>, b: &Row<'_>) -> Ordering {
-        let turn = |order: Ordering| {
-            if self.descending {
-                order.reverse()
-            } else {
-                order
-            }
-        };
-        let number = |of: fn(&Row<'_>) -> Option<f64>| match (of(a), of(b)) {
-            (Some(a), Some(b)) => turn(a.total_cmp(&b)),
-            (Some(_), None) => Ordering::Less,
-            (None, Some(_)) => Ordering::Greater,
-            (None, None) => Ordering::Equal,
-        };
-        match self.by {
-            Column::Flight => Ordering::Equal,
-            Column::Export => turn(b.chosen.cmp(&a.chosen)),
-            Column::Name => turn(compare_names(&a.photo.name, &b.photo.name)),
-            Column::Top => number(|row| row.top()),
-            Column::Bottom => number(|row| row.bottom()),
-            Column::Height => number(|row| row.height()),
-            Column::Tilt => number(|row| row.view.map(|view| view.tilt)),
-            Column::Corners => number(|row| row.corners().map(|count| count as f64)),
-            Column::Verdict => turn(a.judged.verdict.cmp(&b.judged.verdict)),
-        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::camera::Pose;
-    use crate::flight::Doubt;
+    use std::sync::Arc;
+
     use glam::DVec3;
 
-    fn rows_of(names: &[&str]) -> Vec<(Photo, Outcome, Judged)> {
-        names
-            .iter()
-            .map(|name| {
-                let trouble = format!("trouble of {name}");
-                let photo = Photo {
-                    name: (*name).to_owned(),
-                    camera: 0,
-                    pose: Pose::from_tilt_pan(DVec3::Z, [90.0, 0.0]),
-                    trouble: None,
-                };
-                let judged = Judged {
-                    verdict: Verdict::NoScale,
-                    doubts: vec![Doubt::NoScale(trouble.clone())],
-                };
-                (photo, Outcome::Trouble(trouble), judged)
-            })
-            .collect()
+    use super::*;
+    use crate::camera::{Camera, Distortion, Pose};
+    use crate::exports::PHOTO_COLUMNS;
+    use crate::flight::{Flight, FlightParts, Limits, LookedUp, Outcome, Photo, Review};
+    use crate::scale::{Ground, ImageKind};
+    use crate::surface::{Cloud, Surface};
+    use crate::units::LengthUnit;
+
+    /// A review of photos that have no scale, each for its own reason.
+    fn review_of(names: &[&str]) -> Review {
+        let photo = |name: &&str| Photo {
+            name: (*name).to_owned(),
+            camera: 0,
+            pose: Pose::from_tilt_pan(DVec3::Z, [90.0, 0.0]),
+            trouble: Some(format!("trouble of {name}")),
+        };
+        let camera = Camera {
+            name: String::new(),
+            width: 100,
+            height: 100,
+            fx: 100.0,
+            fy: 100.0,
+            cx: 50.0,
+            cy: 50.0,
+            skew: 0.0,
+            distortion: Distortion::None,
+        };
+        let cloud = Cloud {
+            points: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+            ..Cloud::default()
+        };
+        let photos: Vec<Photo> = names.iter().map(photo).collect();
+        let troubles = photos.iter().filter_map(|photo| photo.trouble.clone());
+        let outcomes = troubles.map(Outcome::Trouble).collect();
+        let flight = Flight::new(FlightParts {
+            name: String::new(),
+            unit: LengthUnit::Metre,
+            unit_known: true,
+            ground: Ground::Auto,
+            image: ImageKind::Undistorted,
+            surface: Arc::new(Surface::new(cloud).unwrap()),
+            cameras: vec![camera],
+            photos,
+        });
+        let flight = Arc::new(flight.unwrap());
+        Review::new(flight, outcomes, LookedUp::default(), &Limits::default())
     }
 
     fn shown(names: &[&str], order: &TableOrder) -> Vec<usize> {
-        let owned = rows_of(names);
-        let rows: Vec<Row<'_>> = owned
-            .iter()
-            .map(|(photo, outcome, judged)| Row {
-                photo,
-                outcome,
-                view: None,
-                judged,
-                verdict: Some(judged.verdict),
+        let review = review_of(names);
+        let photos = review.photos().enumerate();
+        let rows: Vec<Row<'_>> = photos
+            .map(|(index, photo)| Row {
+                line: PhotoLine::of(photo, index),
                 chosen: false,
             })
             .collect();
         order.shown(&rows)
     }
 
+    fn by(name: &str) -> SortBy {
+        let column = PHOTO_COLUMNS.iter().find(|column| column.name == name);
+        SortBy::Column(column.expect("a column"))
+    }
+
     #[test]
     fn names_sort_by_the_numbers_in_them() {
         let order = TableOrder {
-            by: Column::Name,
+            by: by("Photo"),
             ..TableOrder::default()
         };
         assert_eq!(shown(&["b", "img_10", "IMG_9", "a"], &order), [3, 0, 2, 1]);
@@ -220,7 +192,7 @@ mod tests {
     fn missing_values_keep_the_order_of_the_flight() {
         for descending in [false, true] {
             let order = TableOrder {
-                by: Column::Top,
+                by: by("Top"),
                 descending,
                 ..TableOrder::default()
             };

@@ -14,7 +14,7 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
     };
     let now = open.settings();
     let mut set = |settings: FlightSettings| commands.push(Command::Set(settings));
-    let parts = open.flight.parts();
+    let parts = open.flight().parts();
     ui.heading(&parts.name);
     ui.weak(format!(
         "{} photos, {} points",

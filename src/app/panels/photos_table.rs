@@ -3,11 +3,12 @@
 use egui_extras::{Column as Width, TableBuilder};
 
 use super::field::combo_box;
-use super::verdict::{or_dash, verdict_color, verdict_sign};
+use super::verdict::{verdict_color, verdict_sign};
 use crate::command::Command;
-use crate::flight::Verdict;
+use crate::exports::{ColumnKind, PHOTO_COLUMNS, PhotoColumn, PhotoLine};
+use crate::flight::{PhotoReview, Verdict};
 use crate::open_flight::OpenFlight;
-use crate::open_flight::table::Column;
+use crate::open_flight::table::{Row, SortBy};
 use crate::state::State;
 
 /// The height of a row, which a thumbnail fits into.
@@ -19,39 +20,10 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         return;
     };
     filter(open, ui, commands);
-    let unit = state.preferences.unit();
-    let factor = unit.in_units_of(open.flight.parts().unit);
-    let unit_known = open.flight.parts().unit_known;
-    let columns = [
-        (Column::Export, "⬇".to_owned(), "Chosen for export"),
-        (Column::Name, "Photo".to_owned(), "Name of the photo's file"),
-        (Column::Top, "Top".to_owned(), "Scale at the top edge"),
-        (
-            Column::Bottom,
-            "Bottom".to_owned(),
-            "Scale at the bottom edge",
-        ),
-        (
-            Column::Verdict,
-            "Verdict".to_owned(),
-            "Whether to trust the scale",
-        ),
-        (
-            Column::Corners,
-            "On".to_owned(),
-            "How many of the four corners are on the surface",
-        ),
-        (
-            Column::Height,
-            "Height".to_owned(),
-            "Height of the camera above the surface below it, in the world's unit",
-        ),
-        (
-            Column::Tilt,
-            "Tilt °".to_owned(),
-            "Of the optical axis below the horizon; 90 looks straight down",
-        ),
-    ];
+    let columns: Vec<(&'static PhotoColumn, [f32; 2])> = PHOTO_COLUMNS
+        .iter()
+        .filter_map(|column| Some((column, column.width?)))
+        .collect();
     let selected_row = open
         .selected
         .and_then(|photo| open.shown.iter().position(|&shown| shown == photo));
@@ -62,44 +34,15 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         .striped(true)
         .sense(egui::Sense::click())
         .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
-        .column(Width::exact(24.0))
-        .column(
-            Width::initial(128.0)
-                .at_least(60.0)
-                .resizable(true)
-                .clip(true),
-        )
-        .column(
-            Width::initial(46.0)
-                .at_least(30.0)
-                .resizable(true)
-                .clip(true),
-        )
-        .column(
-            Width::initial(46.0)
-                .at_least(30.0)
-                .resizable(true)
-                .clip(true),
-        )
-        .column(
-            Width::initial(66.0)
-                .at_least(30.0)
-                .resizable(true)
-                .clip(true),
-        )
-        .column(
-            Width::initial(28.0)
-                .at_least(20.0)
-                .resizable(true)
-                .clip(true),
-        )
-        .column(
-            Width::initial(54.0)
-                .at_least(30.0)
-                .resizable(true)
-                .clip(true),
-        )
-        .column(Width::remainder().at_least(30.0).clip(true));
+        .column(Width::exact(24.0));
+    for (place, (_, [width, least])) in columns.iter().enumerate() {
+        // The last one takes what is left.
+        let column = match place + 1 == columns.len() {
+            true => Width::remainder(),
+            false => Width::initial(*width).resizable(true),
+        };
+        table = table.column(column.at_least(*least).clip(true));
+    }
     // The selected row comes into sight when the selection moves, not while she scrolls.
     if before != Some(selected_row)
         && let Some(row) = selected_row
@@ -109,22 +52,34 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     let mut hovered = None;
     table
         .header(22.0, |mut header| {
-            for (column, name, hover) in &columns {
+            header.col(|ui| {
+                let hover = "Chosen for export";
+                sort_button(open, SortBy::Export, "⬇", hover, ui, commands);
+            });
+            for (column, _) in &columns {
+                let by = SortBy::Column(column);
                 header.col(|ui| {
-                    sort_button(open, *column, name, hover, ui, commands);
+                    sort_button(open, by, column.name, column.hover, ui, commands);
                 });
             }
         })
         .body(|body| {
             body.rows(ROW, open.shown.len(), |mut row| {
                 let photo = open.shown[row.index()];
-                let Some(known) = open.row(photo) else {
+                let Some(Row { line, chosen }) = open.row(photo) else {
                     return;
                 };
+                // What is shown is typed.
+                let line = PhotoLine {
+                    unit: state.preferences.unit(),
+                    to_type: true,
+                    ..line
+                };
+                let name = line.photo.name();
                 row.set_selected(open.selected == Some(photo));
                 row.col(|ui| {
-                    let mut chosen = known.chosen;
-                    let label = format!("Export {}", known.photo.name);
+                    let mut chosen = chosen;
+                    let label = format!("Export {name}");
                     let check = ui.checkbox(&mut chosen, "");
                     check.widget_info(|| {
                         egui::WidgetInfo::selected(egui::Role::CheckBox, true, chosen, &label)
@@ -133,30 +88,20 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
                         commands.push(Command::Choose(photo, chosen));
                     }
                 });
-                row.col(|ui| {
-                    thumbnail(open, photo, ui);
-                    text(ui, known.photo.name.clone());
-                });
-                let scale = |scale: Option<f64>| or_dash(scale.map(|scale| scale * factor), 4);
-                row.col(|ui| text(ui, scale(known.top().filter(|_| unit_known))));
-                row.col(|ui| text(ui, scale(known.bottom().filter(|_| unit_known))));
-                row.col(|ui| verdict(known.verdict, &known.judged.doubts, ui));
-                row.col(|ui| {
-                    text(
-                        ui,
-                        known
-                            .corners()
-                            .map_or_else(|| "–".to_owned(), |count| format!("{count}/4")),
-                    );
-                });
-                row.col(|ui| text(ui, or_dash(known.view.and_then(|view| view.height), 4)));
-                row.col(|ui| {
-                    let tilt = known.view.map(|view| format!("{:.1}", view.tilt));
-                    text(ui, tilt.unwrap_or_else(|| "–".to_owned()));
-                });
+                for (column, _) in &columns {
+                    row.col(|ui| {
+                        if column.kind == ColumnKind::Name {
+                            thumbnail(open, photo, ui);
+                        }
+                        match column.kind {
+                            ColumnKind::Verdict => verdict(line.photo, ui),
+                            _ => text(ui, column.short_value(&line)),
+                        }
+                    });
+                }
                 let response = row.response();
                 response.widget_info(|| {
-                    let label = format!("Photo {}", known.photo.name);
+                    let label = format!("Photo {name}");
                     let selected = open.selected == Some(photo);
                     egui::WidgetInfo::selected(egui::Role::Row, true, selected, label)
                 });
@@ -216,19 +161,19 @@ fn filter(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             .response
             .on_hover_text("Show only photos with this verdict")
             .widget_info(|| combo_box("Filter by verdict", wanted));
-        ui.weak(format!("{} of {}", open.shown.len(), open.outcomes.len()));
+        ui.weak(format!("{} of {}", open.shown.len(), open.review.count()));
     });
 }
 
 fn sort_button(
     open: &OpenFlight,
-    column: Column,
+    by: SortBy,
     name: &str,
     hover: &str,
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
 ) {
-    let arrow = match (open.order.by == column, open.order.descending) {
+    let arrow = match (open.order.by == by, open.order.descending) {
         (true, false) => " ⏶",
         (true, true) => " ⏷",
         (false, _) => "",
@@ -244,7 +189,7 @@ fn sort_button(
         )
     });
     if button.clicked() {
-        commands.push(Command::Sort(column));
+        commands.push(Command::Sort(by));
     }
 }
 
@@ -272,16 +217,16 @@ fn text(ui: &mut egui::Ui, text: String) {
     ui.add(egui::Label::new(text).selectable(false).truncate());
 }
 
-fn verdict(verdict: Option<Verdict>, doubts: &[crate::flight::Doubt], ui: &mut egui::Ui) {
-    let Some(verdict) = verdict else {
+fn verdict(photo: PhotoReview<'_>, ui: &mut egui::Ui) {
+    let Some(verdict) = photo.settled() else {
         ui.weak("…").on_hover_text("Not looked at yet");
         return;
     };
     let words = format!("{} {verdict}", verdict_sign(verdict));
     let words = egui::RichText::new(words).color(verdict_color(verdict, ui.visuals()));
     let label = ui.add(egui::Label::new(words).selectable(false).truncate());
-    if !doubts.is_empty() {
-        let reasons: Vec<String> = doubts.iter().map(ToString::to_string).collect();
+    if !photo.doubts.is_empty() {
+        let reasons: Vec<String> = photo.doubts.iter().map(ToString::to_string).collect();
         label.on_hover_text(reasons.join("\n"));
     }
 }

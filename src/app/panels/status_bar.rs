@@ -25,7 +25,7 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
             ui.separator();
         }
         if let Some(open) = &state.open {
-            let unit = open.flight.parts().unit;
+            let unit = open.flight().parts().unit;
             if let Some(point) = open.hover {
                 let text = format!(
                     "x {:.3}  y {:.3}  z {:.3} {unit}",

@@ -63,7 +63,7 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             return;
         };
         for verdict in Verdict::ALL {
-            let count = open.count(verdict);
+            let count = open.review.count_of(verdict);
             let shown = open.order.verdict == Some(verdict);
             let text = format!("{} {count} {verdict}", verdict_sign(verdict));
             let text = egui::RichText::new(text).color(verdict_color(verdict, ui.visuals()));

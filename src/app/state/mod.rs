@@ -10,8 +10,8 @@ use std::path::PathBuf;
 
 use crate::command::{Asking, Command, PictureRequest, Tab};
 use crate::fault::one_line;
-use crate::formats::OpenOptions;
 use crate::open_flight::OpenFlight;
+use crate::opening::OpenOptions;
 use crate::render::Gpu;
 use crate::size_distributions::{Page, SizeDistributions};
 use crate::tasks::work::Work;
@@ -168,7 +168,7 @@ impl State {
             None => "fragscale".to_owned(),
             Some(open) => {
                 let mark = if open.is_changed() { "*" } else { "" };
-                format!("{}{mark} – fragscale", open.flight.parts().name)
+                format!("{}{mark} – fragscale", open.flight().parts().name)
             }
         }
     }

@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 
 use super::work::Task;
 use crate::fault::Fault;
-use crate::flight::{Flight, FlightSettings, Outcome};
-use crate::formats::{self, LookedUp};
+use crate::flight::{Flight, FlightSettings, LookedUp, Outcome};
 use crate::jobs::Progress;
+use crate::opening;
 use crate::render::{Shapes, SurfaceBuffers};
 use crate::state::{Severity, State};
 
@@ -35,7 +35,7 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let (flight, settings) = (open.flight.clone(), open.settings());
+        let (flight, settings) = (open.flight().clone(), open.settings());
         let files = open.photo_files.clone();
         // Footprints under way go on: where these scales are cancelled, they are still wanted.
         let work = move |progress: &Progress| {
@@ -43,7 +43,7 @@ impl State {
             let flight = flight.with_settings(&settings)?;
             let outcomes = flight.scales(progress)?;
             // Heights and laser ranges are held against the unit of now.
-            let looked_up = formats::look_up(&flight, &files);
+            let looked_up = opening::look_up(&flight, &files);
             Ok(Scales {
                 flight: Arc::new(flight),
                 outcomes,
@@ -60,14 +60,12 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let (flight, outcomes) = (open.flight.clone(), open.outcomes.clone());
+        let (flight, outcomes) = (open.flight().clone(), open.review.outcomes().clone());
         let work = move |progress: &Progress| flight.views(&outcomes, progress);
         self.start(Task::VIEWS, work, |state, views| match views {
             Ok(views) => {
-                let limits = state.preferences.limits;
                 if let Some(open) = &mut state.open {
-                    open.views = Some(Arc::new(views));
-                    open.judge(&limits);
+                    open.take_views(views);
                 }
             }
             Err(fault) => state.say(Severity::Error, &fault.to_string()),
@@ -79,7 +77,7 @@ impl State {
         let (Some(open), Some(gpu)) = (&self.open, self.gpu.clone()) else {
             return;
         };
-        let (flight, frame) = (open.flight.clone(), open.frame);
+        let (flight, frame) = (open.flight().clone(), open.frame);
         let work = move |progress: &Progress| {
             let surface = &flight.parts().surface;
             SurfaceBuffers::new(&gpu, &frame, surface, Shapes::BOTH, progress)
@@ -109,31 +107,22 @@ impl State {
             }
         };
         self.note_step("Computing scales", &flight.parts().name, took);
-        let limits = self.preferences.limits;
         let Some(open) = &mut self.open else {
             return;
         };
-        let before = open.flight.parts();
+        let before = open.flight().parts();
         let after = flight.parts();
         let other_image = before.image != after.image;
         // Of one reading of the file the points are the same.
         let other_surface = before.surface.max_edge() != after.surface.max_edge();
-        open.flight = flight;
-        open.computed = settings;
-        open.outcomes = Arc::new(outcomes);
-        open.views = None;
-        open.compared.clear();
-        let said_before = open.looked_up.warnings.clone();
-        open.looked_up = looked_up;
-        let said = open
-            .looked_up
-            .warnings_of(&open.path)
-            .zip(&open.looked_up.warnings);
+        let said_before = &open.review.looked_up().warnings;
+        let said = looked_up.warnings_of(open.path.display());
         let new: Vec<String> = said
+            .zip(&looked_up.warnings)
             .filter(|(_, bare)| !said_before.contains(bare))
             .map(|(warning, _)| warning)
             .collect();
-        open.judge(&limits);
+        open.take_scales(flight, outcomes, looked_up, settings);
         for warning in new {
             self.say(Severity::Warning, &warning);
         }

@@ -5,10 +5,9 @@ use std::time::Instant;
 
 use super::work::Task;
 use crate::command::Destination;
-use crate::exports::{self, ExportRequest, Replace};
-use crate::flight::judge_all;
-use crate::formats;
+use crate::exports::{self, ExportRequest, Provenance, Replace};
 use crate::jobs::Progress;
+use crate::opening;
 use crate::state::{Severity, State};
 
 impl Task {
@@ -36,21 +35,17 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let views = open.views.clone();
-        let Some(views) = views.filter(|_| open.is_computed()) else {
+        if !open.review.is_looked_at() || !open.is_computed() {
             self.say(
                 Severity::Error,
                 "scales and footprints are still being computed; export when they are there",
             );
             return;
-        };
-        let (flight, outcomes) = (open.flight.clone(), open.outcomes.clone());
+        }
+        let mut review = open.review.clone();
         let photo_files = open.photo_files.clone();
-        let files = photo_files.iter().map(|file| file.path.clone());
-        let files: Vec<Option<PathBuf>> = files.collect();
-        let (looked_up, colours) = (open.looked_up.evidence.clone(), open.colours.clone());
         let selected = open.history.now().chosen.clone();
-        let (unit, limits) = (self.preferences.unit(), self.preferences.limits);
+        let unit = self.preferences.unit();
         let settings = open.settings();
         let (crs, inputs) = (open.crs.clone(), open.inputs.clone());
         let warnings = open.all_warnings();
@@ -58,32 +53,29 @@ impl State {
         let work = move |progress: &Progress| {
             let begun = Instant::now();
             // Those that the window has not come to yet.
-            let compared = formats::compare_colours(&flight, &photo_files, &colours, progress);
-            let colours = compared.map_err(|fault| fault.to_string())?;
-            let evidence = formats::with_colours(&looked_up, colours.iter().map(Some));
-            let judged = judge_all(&flight, &outcomes, Some(&views), &evidence, &limits);
+            let compared = opening::compare_all_colours(&mut review, &photo_files, progress);
+            compared.map_err(|fault| fault.to_string())?;
+            let files = photo_files.iter().map(|file| file.path.clone());
+            let files: Vec<Option<PathBuf>> = files.collect();
             let request = ExportRequest {
-                flight: &flight,
-                outcomes: &outcomes,
-                views: &views,
-                evidence: &evidence,
-                judged: &judged,
-                photo_files: &files,
+                review: &review,
+                from: &Provenance {
+                    file: &source,
+                    inputs: &inputs,
+                    read: &read,
+                    photo_files: &files,
+                    settings: &settings,
+                    crs: crs.as_deref(),
+                    warnings: &warnings,
+                },
                 selected: &selected,
                 unit,
-                limits: &limits,
-                settings: &settings,
-                crs: crs.as_deref(),
-                inputs: &inputs,
-                read: &read,
-                source: &source,
                 replace,
-                warnings: &warnings,
             };
             let exported = exports::export_for_split_desktop(&folder, &request, progress);
             let summary = exported.map_err(|error| error.to_string())?;
             let sentence = format!("{}: {summary}", folder.display());
-            let name = flight.parts().name.clone();
+            let name = review.flight().parts().name.clone();
             Ok((sentence, summary.warnings, name, begun.elapsed()))
         };
         self.start(Task::EXPORT, work, |state, exported: Result<_, String>| {

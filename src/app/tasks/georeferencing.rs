@@ -5,10 +5,10 @@ use std::path::Path;
 
 use super::work::Task;
 use crate::command::{Command, Destination};
-use crate::files::{self, Kind};
-use crate::formats::{self, FileError, GeoreferenceRequest};
+use crate::files::{self, FileError, Kind};
 use crate::jobs::Progress;
 use crate::open_flight::georeferencing::GeoreferenceForm;
+use crate::opening::{self, GeoreferenceRequest};
 use crate::state::{Severity, State};
 
 impl Task {
@@ -45,7 +45,7 @@ impl State {
         open.georeferencing.outcome = None;
         let path = reconstruction.path.clone();
         let work = move |progress: &Progress| {
-            let result = formats::georeference(&path, &request, progress);
+            let result = opening::georeference(&path, &request, progress);
             (request.photos, result.map_err(|error| error.to_string()))
         };
         self.start(Task::GEOREFERENCE, work, |state, outcome| {

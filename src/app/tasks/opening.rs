@@ -70,7 +70,7 @@ impl State {
             (Some(number), Some(before)) if number == before.number => {
                 // Scales of the flight before would come over those of this one.
                 self.work.cancel(Task::SCALES);
-                Some(before).filter(|before| before.outcomes.len() == count)
+                Some(before).filter(|before| before.review.count() == count)
             }
             // She has gone on to another flight meanwhile.
             (Some(_), other) => {
@@ -104,7 +104,7 @@ impl State {
         let mut open = Box::new(OpenFlight::new(self.opened, loaded, &limits));
         if let Some(before) = again {
             open.keep_from(before);
-            open.judge(&limits);
+            open.arrange();
         }
         self.open = Some(open);
         self.start_picker();
@@ -123,9 +123,9 @@ impl State {
         }
         let sentence = format!(
             "{}: {} photos, {} without a scale",
-            open.flight.parts().name,
-            open.outcomes.len(),
-            open.count(Verdict::NoScale)
+            open.flight().parts().name,
+            open.review.count(),
+            open.review.count_of(Verdict::NoScale)
         );
         self.say(Severity::Note, &sentence);
     }
@@ -135,7 +135,7 @@ impl State {
             return;
         };
         open.hover = None;
-        let surface = open.flight.parts().surface.clone();
+        let surface = open.flight().parts().surface.clone();
         match Picker::new(surface, self.context.clone()) {
             Ok(picker) => open.picker = Some(picker),
             Err(fault) => self.say(Severity::Error, &fault.to_string()),

@@ -8,9 +8,11 @@ use image::buffer::ConvertBuffer;
 
 use super::work::Task;
 use crate::camera::Camera;
-use crate::formats::{self, Colours, FileError};
+use crate::flight::ColoursFound;
+use crate::formats::{self, FileError};
 use crate::jobs::Progress;
 use crate::open_flight::{Preview, PreviewPicture};
+use crate::opening::Colours;
 use crate::picture;
 use crate::render::{LargePhoto, PhotoImage};
 use crate::scale::ImageKind;
@@ -56,7 +58,7 @@ impl State {
             return;
         };
         let (number, files) = (open.number, open.photo_files.clone());
-        let flight = open.flight.clone();
+        let flight = open.flight().clone();
         let steps = self.work.steps_of_a_job();
         let context = self.context.clone();
         let work = move |progress: &Progress| {
@@ -115,7 +117,7 @@ impl State {
             return;
         };
         let file = open.photo_files.get(photo).cloned().unwrap_or_default();
-        let (flight, gpu) = (open.flight.clone(), self.gpu.clone());
+        let (flight, gpu) = (open.flight().clone(), self.gpu.clone());
         // egui refuses larger textures than the graphics device takes.
         let largest = self.context.input(|input| input.max_texture_side);
         let largest = u32::try_from(largest).map_or(PREVIEW, |largest| largest.min(PREVIEW));
@@ -164,7 +166,6 @@ impl State {
             image,
             colours,
         } = thumbnail;
-        let limits = self.preferences.limits;
         let Some(open) = &mut self.open else {
             return;
         };
@@ -179,10 +180,12 @@ impl State {
             open.thumbnails[photo] = Some(texture);
         }
         open.images[photo] = image.map(Arc::new);
-        let is_known = open.colours[photo].is_some();
+        let evidence = open.review.looked_up().evidence.get(photo);
+        let is_known =
+            evidence.is_some_and(|evidence| evidence.colours != ColoursFound::NotCompared);
         let doubt = colours.doubt().filter(|_| !is_known);
         let said = doubt.map(|doubt| format!("photo '{}': {doubt}", open.name(photo)));
-        open.take_colours(photo, colours, &limits);
+        open.take_colours(photo, &colours);
         if let Some(said) = said {
             self.say(Severity::Warning, &said);
         }

@@ -6,8 +6,9 @@ use super::work::Task;
 use crate::command::{Asking, Command, Destination};
 use crate::files::{self, Kind};
 use crate::flight::FlightSettings;
-use crate::formats::{FileError, FlightOrigin, OpenOptions};
+use crate::formats::FileError;
 use crate::jobs::Progress;
+use crate::opening::{FlightOrigin, OpenOptions};
 use crate::state::{Severity, State};
 
 impl Task {

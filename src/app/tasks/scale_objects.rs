@@ -69,10 +69,10 @@ impl State {
         let Some(size) = open.trace_size(tracing.kind) else {
             return;
         };
-        let Some(posed) = open.flight.parts().photos.get(photo) else {
+        let Some(posed) = open.flight().parts().photos.get(photo) else {
             return;
         };
-        let camera = open.flight.camera(posed);
+        let camera = open.flight().camera(posed);
         if let Err(fault) = Traced::new(camera, tracing.kind, size, &tracing.outline) {
             self.say(Severity::Error, &fault.to_string());
             return;
@@ -101,7 +101,7 @@ impl State {
             return;
         };
         let objects = open.settings().scale_objects;
-        let (flight, outcomes) = (open.flight.clone(), open.outcomes.clone());
+        let (flight, outcomes) = (open.flight().clone(), open.review.outcomes().clone());
         let work = move |_: &Progress| {
             let compared = flight.compare_objects(&objects, &outcomes)?;
             Ok(objects.into_iter().zip(compared).collect())

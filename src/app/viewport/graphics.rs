@@ -67,23 +67,21 @@ impl Graphics {
             self.renderer.set_surface(open.geometry.as_deref());
             (self.drawn, self.moved) = (None, None);
         }
-        let same_photos = same(uploaded.outcomes.as_ref(), Some(&open.outcomes))
-            && same(uploaded.views.as_ref(), open.views.as_ref());
+        let same_photos = same(uploaded.outcomes.as_ref(), Some(open.review.outcomes()))
+            && same(uploaded.views.as_ref(), open.review.views());
         if !same_photos {
-            uploaded.outcomes = Some(open.outcomes.clone());
-            uploaded.views.clone_from(&open.views);
-            let views = open.views.as_ref().map(|views| views.as_slice());
-            let photos = PhotoGeometry::of_flight(&open.frame, &open.flight, &open.outcomes, views);
+            uploaded.outcomes = Some(open.review.outcomes().clone());
+            uploaded.views = open.review.views().cloned();
+            let photos = PhotoGeometry::of_review(&open.frame, &open.review);
             self.renderer.set_photos(photos);
             uploaded.looks.clear();
             (self.drawn, self.moved) = (None, None);
         }
         let looks: Vec<PhotoLook> = open
-            .judged
-            .iter()
-            .enumerate()
-            .map(|(photo, _)| {
-                let color = match open.verdict(photo) {
+            .review
+            .photos()
+            .map(|photo| {
+                let color = match photo.settled() {
                     Some(verdict) => verdict_color(verdict, visuals),
                     None => visuals.text_color(),
                 };

@@ -146,7 +146,7 @@ impl Viewport {
             layers = layers.corner_ray_figure();
         }
         let mut show = layers.show(Some(open.ground()));
-        show.unit = open.flight.parts().unit;
+        show.unit = open.flight().parts().unit;
         show.selected = if corner_rays { None } else { open.selected };
         show.photo_blend = blend(open);
         // Lines as thick as in a report's figure, whatever the size.
@@ -194,19 +194,10 @@ impl Scene {
 }
 
 fn view(open: &OpenFlight) -> View {
-    let through = open
-        .looking
-        .through
-        .and_then(|photo| Some((photo, open.flight.parts().photos.get(photo)?)));
-    match through {
+    let through = open.looking.through;
+    match through.and_then(|photo| open.review.photo(photo)) {
         None => open.looking.orbit.view(),
-        Some((index, photo)) => View::through(
-            open.flight.camera(photo),
-            &photo.pose,
-            open.scale(index),
-            open.view(index),
-            open.looking.orbit.distance,
-        ),
+        Some(photo) => View::through(&photo, open.looking.orbit.distance),
     }
 }
 
@@ -219,7 +210,7 @@ fn blend(open: &OpenFlight) -> f64 {
 
 fn show(state: &State, open: &OpenFlight, ui: &egui::Ui, pixels_per_point: f64) -> Show {
     let mut show = state.preferences.layers.show(Some(open.ground()));
-    show.unit = open.flight.parts().unit;
+    show.unit = open.flight().parts().unit;
     show.selected = open.selected;
     show.hovered = open.hovered_photo;
     show.photo_blend = blend(open);

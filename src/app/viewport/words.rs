@@ -95,7 +95,7 @@ pub(super) fn distance(scene: &Scene, open: &OpenFlight, ui: &egui::Ui) {
         let text = format!(
             "{} {}",
             significant_digits(first.distance(second), 4),
-            open.flight.parts().unit
+            open.flight().parts().unit
         );
         let at = a.lerp(*b, 0.5);
         let galley = painter.layout_no_wrap(text, FontId::proportional(14.0), Color32::WHITE);

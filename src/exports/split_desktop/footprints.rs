@@ -12,7 +12,7 @@ use crate::fault::Fault;
 use crate::geodesy::{Crs, CrsKind};
 use crate::scale::FootprintPoint;
 use crate::units::LengthUnit;
-use crate::{ReportLine, ScaleReport};
+use crate::{PhotoLine, ScaleReport};
 
 /// The footprints of a flight on their way out.
 pub(super) struct Footprints<'a> {
@@ -24,8 +24,7 @@ pub(super) struct Footprints<'a> {
 
 /// One photo's footprint.
 pub(super) struct PhotoFootprint<'a> {
-    pub line: &'a ReportLine,
-    pub verdict: &'static str,
+    pub line: PhotoLine<'a>,
     /// One ring, closed, counterclockwise seen from above; empty where there is none. Longitude and
     /// latitude, or x, y, z.
     pub ring: Vec<Vec<f64>>,
@@ -37,8 +36,8 @@ pub(super) struct PhotoFootprint<'a> {
 
 impl<'a> Footprints<'a> {
     pub(super) fn new(request: &'a ExportRequest<'a>) -> Self {
-        let crs = request.crs;
-        let understood = crs.map(|crs| map_system(crs, request.flight.parts().unit));
+        let unit = request.review.flight().parts().unit;
+        let understood = request.from.crs.map(|crs| map_system(crs, unit));
         let (crs, warning) = match understood {
             None => (None, None),
             Some(Ok(system)) => (Some(system), None),
@@ -61,14 +60,12 @@ impl<'a> Footprints<'a> {
         self.warning.as_deref()
     }
 
-    /// `report` has a line for each of `chosen`.
     fn of_photos<'b>(
         &'b self,
-        report: &'b ScaleReport,
-        chosen: &'b [usize],
+        report: &'b ScaleReport<'_>,
     ) -> impl Iterator<Item = PhotoFootprint<'b>> {
-        report.lines.iter().zip(chosen).map(|(line, &index)| {
-            let view = self.request.views.get(index).and_then(Option::as_ref);
+        report.lines().map(|line| {
+            let view = line.photo.view;
             let outline = view.map_or(&[][..], |view| &view.footprint.outline);
             let ring: Vec<Vec<f64>> = outline
                 .iter()
@@ -79,11 +76,6 @@ impl<'a> Footprints<'a> {
                 .filter(|point| !point.outcome.is_on_surface());
             PhotoFootprint {
                 line,
-                verdict: self
-                    .request
-                    .judged
-                    .get(index)
-                    .map_or("", |judged| judged.verdict.as_str()),
                 is_complete: !outline.is_empty() && ring.len() == outline.len(),
                 ring: closed_ring(ring),
                 off_surface: off.count(),
@@ -103,29 +95,29 @@ impl<'a> Footprints<'a> {
     }
 
     /// A feature a photo.
-    pub(super) fn geojson(&self, report: &ScaleReport, chosen: &[usize]) -> String {
+    pub(super) fn geojson(&self, report: &ScaleReport<'_>) -> String {
         let features: Vec<Value> = self
-            .of_photos(report, chosen)
+            .of_photos(report)
             .map(|footprint| feature(&footprint, report))
             .collect();
         let coordinates = match self.is_on_maps() {
             true => "WGS 84 longitude, latitude".to_owned(),
-            false => format!("local, in {}", report.world_unit),
+            false => format!("local, in {}", report.world_unit()),
         };
         let value = json!({
             "type": "FeatureCollection",
-            "name": report.flight,
+            "name": report.flight(),
             "coordinates": coordinates,
-            "crs_of_flight": self.request.crs,
+            "crs_of_flight": self.request.from.crs,
             "features": features,
         });
         format!("{value}\n")
     }
 
     /// The same for map programs; `None` without longitude and latitude.
-    pub(super) fn kml(&self, report: &ScaleReport, chosen: &[usize]) -> Option<String> {
+    pub(super) fn kml(&self, report: &ScaleReport<'_>) -> Option<String> {
         self.is_on_maps()
-            .then(|| kml::document(report, self.of_photos(report, chosen)))
+            .then(|| kml::document(report, self.of_photos(report)))
     }
 }
 
@@ -150,8 +142,9 @@ fn map_system(crs: &str, unit: LengthUnit) -> Result<Crs, Fault> {
     Ok(crs)
 }
 
-fn feature(footprint: &PhotoFootprint<'_>, report: &ScaleReport) -> Value {
-    let line = footprint.line;
+fn feature(footprint: &PhotoFootprint<'_>, report: &ScaleReport<'_>) -> Value {
+    let PhotoLine { photo, .. } = footprint.line;
+    let scale = footprint.line.scale();
     let geometry = match footprint.ring.is_empty() {
         true => Value::Null,
         false => json!({ "type": "Polygon", "coordinates": [footprint.ring] }),
@@ -160,17 +153,17 @@ fn feature(footprint: &PhotoFootprint<'_>, report: &ScaleReport) -> Value {
         "type": "Feature",
         "geometry": geometry,
         "properties": {
-            "photo": line.photo,
-            "unit": format!("px/{}", report.unit),
-            "top": line.scale.top,
-            "right": line.scale.right,
-            "bottom": line.scale.bottom,
-            "left": line.scale.left,
-            "verdict": footprint.verdict,
-            "corners_on_surface": line.corners_on_surface,
+            "photo": photo.name(),
+            "unit": format!("px/{}", report.unit()),
+            "top": scale.top,
+            "right": scale.right,
+            "bottom": scale.bottom,
+            "left": scale.left,
+            "verdict": photo.verdict.as_str(),
+            "corners_on_surface": photo.corners_on_surface().unwrap_or(0),
             "outline_complete": footprint.is_complete,
             "outline_points_off_surface": footprint.off_surface,
-            "note": line.notes.join("; "),
+            "note": photo.notes().join("; "),
         },
     })
 }

@@ -10,14 +10,14 @@ use crate::markup::escaped;
 
 /// A placemark a photo, coloured by its verdict.
 pub(super) fn document<'a>(
-    report: &ScaleReport,
+    report: &ScaleReport<'_>,
     footprints: impl Iterator<Item = PhotoFootprint<'a>>,
 ) -> String {
     let mut text = String::from(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<kml xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n",
     );
     // Writing to a String cannot fail.
-    let _ = writeln!(text, "<name>{}</name>", escaped(&report.flight));
+    let _ = writeln!(text, "<name>{}</name>", escaped(report.flight()));
     for (index, verdict) in Verdict::ALL.into_iter().enumerate() {
         // aabbggrr
         let color = match verdict {
@@ -31,22 +31,22 @@ pub(super) fn document<'a>(
         );
     }
     for footprint in footprints.filter(|footprint| !footprint.ring.is_empty()) {
-        let line = footprint.line;
-        let style = Verdict::ALL
-            .iter()
-            .position(|verdict| verdict.as_str() == footprint.verdict)
-            .unwrap_or(1);
+        let photo = footprint.line.photo;
+        let scale = footprint.line.scale();
+        let mut verdicts = Verdict::ALL.iter();
+        let style = verdicts.position(|verdict| *verdict == photo.verdict);
+        let style = style.unwrap_or(1);
         let number =
             |scale: Option<f64>| scale.map_or_else(|| "none".to_owned(), |s| s.to_string());
-        let unit = report.unit;
+        let unit = report.unit();
         let mut description = format!(
             "top {} px/{unit}, bottom {} px/{unit}; {}; {} of 4 corners on the surface",
-            number(line.scale.top),
-            number(line.scale.bottom),
-            footprint.verdict,
-            line.corners_on_surface
+            number(scale.top),
+            number(scale.bottom),
+            photo.verdict,
+            photo.corners_on_surface().unwrap_or(0)
         );
-        for note in &line.notes {
+        for note in photo.notes() {
             description += &format!("; {note}");
         }
         let positions: Vec<String> = footprint
@@ -60,7 +60,7 @@ pub(super) fn document<'a>(
         let _ = writeln!(
             text,
             "<Placemark><name>{}</name><description>{}</description><styleUrl>#v{style}</styleUrl><Polygon><tessellate>1</tessellate><altitudeMode>clampToGround</altitudeMode><outerBoundaryIs><LinearRing><coordinates>{}</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark>",
-            escaped(&line.photo),
+            escaped(photo.name()),
             escaped(&description),
             positions.join(" ")
         );

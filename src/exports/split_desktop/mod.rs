@@ -48,10 +48,9 @@ use self::plan::PhotoNames;
 use self::whose::FlightOfExport;
 use crate::fault::Fault;
 use crate::files::Inputs;
-use crate::flight::{Evidence, Flight, FlightSettings, Judged, Limits, Outcome};
+use crate::flight::{FlightSettings, Review};
 use crate::jobs::Progress;
 use crate::picture;
-use crate::scale::ViewFacts;
 use crate::units::LengthUnit;
 use crate::{ScaleReport, scales_csv};
 
@@ -64,39 +63,36 @@ const BYTES_A_PIXEL: u64 = 12;
 /// The most photos that are worked on at once.
 const MOST_AT_ONCE: usize = 4;
 
-/// What to export. The lists are parallel to the flight's photos.
+/// What to export.
 #[derive(Debug, Clone, Copy)]
 pub struct ExportRequest<'a> {
-    /// The flight.
-    pub flight: &'a Flight,
-    /// Its scales.
-    pub outcomes: &'a [Outcome],
-    /// Its views.
-    pub views: &'a [Option<ViewFacts>],
-    /// What was looked up of its photos.
-    pub evidence: &'a [Evidence],
-    /// What `flight::judge` said.
-    pub judged: &'a [Judged],
-    /// The image files, where there are any.
-    pub photo_files: &'a [Option<PathBuf>],
-    /// Which photos are exported.
+    /// The flight with its scales, doubts and verdicts.
+    pub review: &'a Review,
+    /// What the flight was read from.
+    pub from: &'a Provenance<'a>,
+    /// Which photos are exported; parallel to the flight's photos.
     pub selected: &'a [bool],
     /// Scales are in pixels per this.
     pub unit: LengthUnit,
-    /// What `judged` was judged by.
-    pub limits: &'a Limits,
-    /// What the flight was opened with.
-    pub settings: &'a FlightSettings,
-    /// The coordinate system of the world: "EPSG:n" or WKT.
-    pub crs: Option<&'a str>,
+    /// What of others may be replaced.
+    pub replace: Replace,
+}
+
+/// What a flight was read from: the sheet names it, and nothing of it is written over.
+#[derive(Debug, Clone, Copy)]
+pub struct Provenance<'a> {
+    /// The flight's own file or folder, by which an export is known as that of this flight.
+    pub file: &'a Path,
     /// The files that the flight was read from.
     pub inputs: &'a [PathBuf],
     /// The same with the photos and whatever was opened on the way: nothing of it is written over.
     pub read: &'a Inputs,
-    /// The flight's own file or folder, by which an export is known as that of this flight.
-    pub source: &'a Path,
-    /// What of others may be replaced.
-    pub replace: Replace,
+    /// The image files, where there are any; parallel to the flight's photos.
+    pub photo_files: &'a [Option<PathBuf>],
+    /// What the flight was opened with.
+    pub settings: &'a FlightSettings,
+    /// The coordinate system of the world: "EPSG:n" or WKT.
+    pub crs: Option<&'a str>,
     /// What was noticed on the way.
     pub warnings: &'a [String],
 }
@@ -139,8 +135,9 @@ pub fn export_for_split_desktop(
     progress: &Progress,
 ) -> Result<ExportSummary, ExportError> {
     let at_dir = |fault| ExportError::new(dir, fault);
-    let count = request.flight.parts().photos.len();
-    let chosen: Vec<usize> = (0..count)
+    let flight = request.review.flight();
+    let parts = flight.parts();
+    let chosen: Vec<usize> = (0..parts.photos.len())
         .filter(|&index| request.selected.get(index) == Some(&true))
         .collect();
     if chosen.is_empty() {
@@ -162,9 +159,9 @@ pub fn export_for_split_desktop(
         .iter()
         .filter_map(|&index| pictures[index].as_ref().ok());
     planned.extend(of_photos.flat_map(PhotoNames::all));
-    let flight = FlightOfExport::new(&request.flight.parts().name, request.source, dir);
-    let (read, replace) = (request.read, request.replace);
-    let folder = ExportFolder::open(dir, &flight, read, replace, &planned, progress)?;
+    let whose = FlightOfExport::new(&parts.name, request.from.file, dir);
+    let (read, replace) = (request.from.read, request.replace);
+    let folder = ExportFolder::open(dir, &whose, read, replace, &planned, progress)?;
 
     let (mut folder, done) =
         make_pictures(folder, request, &chosen, &pictures, &objects, progress)?;
@@ -180,7 +177,7 @@ pub fn export_for_split_desktop(
         .warnings
         .extend(of_chosen.filter_map(PhotoObject::warning));
     for (&index, done) in chosen.iter().zip(done) {
-        let name = &request.flight.parts().photos[index].name;
+        let name = &parts.photos[index].name;
         let doubt = match done {
             Done::Made(doubt) => {
                 summary.made += 1;
@@ -207,9 +204,7 @@ pub fn export_for_split_desktop(
     }
 
     progress.stage("writing the sheet");
-    let report = ScaleReport::new(request.flight, request.outcomes, request.unit);
-    let report = report
-        .with_evidence(request.evidence)
+    let report = ScaleReport::new(request.review, request.unit)
         .of_photos(request.selected)
         .to_type_from();
     let csv = scales_csv(&report).map_err(|e| {
@@ -218,11 +213,10 @@ pub fn export_for_split_desktop(
             "report this",
         ))
     })?;
-    let inputs = checked_inputs(request.inputs, progress).map_err(at_dir)?;
+    let inputs = checked_inputs(request.from.inputs, progress).map_err(at_dir)?;
     let sheet = sheet::html(
         request,
         &report,
-        &chosen,
         &pictures,
         &objects,
         &inputs,
@@ -233,10 +227,10 @@ pub fn export_for_split_desktop(
         (plan::SHEET.to_owned(), sheet.into_bytes()),
         (
             plan::GEOJSON.to_owned(),
-            footprints.geojson(&report, &chosen).into_bytes(),
+            footprints.geojson(&report).into_bytes(),
         ),
     ];
-    if let Some(kml) = footprints.kml(&report, &chosen) {
+    if let Some(kml) = footprints.kml(&report) {
         files.push((plan::KML.to_owned(), kml.into_bytes()));
     }
     folder.write(&files, None)?;
@@ -343,9 +337,10 @@ fn one_photo(
     objects: &[PhotoObject<'_>],
     progress: &Progress,
 ) -> Result<Done, ExportError> {
-    let parts = request.flight.parts();
-    let (Some(Outcome::Scale(scale)), Some(Some(file))) =
-        (request.outcomes.get(index), request.photo_files.get(index))
+    let parts = request.review.flight().parts();
+    let photo = request.review.photo(index);
+    let scaled = photo.and_then(|photo| Some((photo.camera, photo.scale()?)));
+    let (Some((camera, scale)), Some(Some(file))) = (scaled, request.from.photo_files.get(index))
     else {
         return Ok(Done::Not(
             "no pictures: it has no scale or no file".to_owned(),
@@ -353,7 +348,7 @@ fn one_photo(
     };
     let source = PictureSource {
         file,
-        camera: request.flight.camera(&parts.photos[index]),
+        camera,
         image: parts.image,
         scale,
         unit: request.unit,
@@ -373,7 +368,6 @@ fn one_photo(
         }
     };
     let fingerprint = source.fingerprint(&bytes);
-    let camera = source.camera;
     let is_done = lock(work).folder.is_done(&names.all(), &fingerprint);
     let photo = match is_done {
         true => None,
@@ -406,11 +400,10 @@ fn one_photo(
 
 /// How many photos to work on at once: as many as there are cores and memory for.
 fn at_once(request: &ExportRequest<'_>, chosen: &[usize]) -> usize {
-    let parts = request.flight.parts();
-    let cameras = chosen
+    let photos = chosen
         .iter()
-        .map(|&index| request.flight.camera(&parts.photos[index]));
-    let pixels = cameras.map(|camera| u64::from(camera.width) * u64::from(camera.height));
+        .filter_map(|&index| request.review.photo(index));
+    let pixels = photos.map(|photo| u64::from(photo.camera.width) * u64::from(photo.camera.height));
     let of_photo = pixels.max().unwrap_or(1).max(1) * BYTES_A_PIXEL;
     let fit = usize::try_from(MEMORY / of_photo).unwrap_or(MOST_AT_ONCE);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);

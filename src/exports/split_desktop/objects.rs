@@ -31,8 +31,9 @@ pub(super) struct PhotoObject<'a> {
 pub(super) fn of_photos<'a>(
     request: &ExportRequest<'a>,
 ) -> Result<Vec<Vec<PhotoObject<'a>>>, Fault> {
-    let (flight, objects) = (request.flight, &request.settings.scale_objects);
-    let compared = flight.compare_objects(objects, request.outcomes)?;
+    let flight = request.review.flight();
+    let objects = &request.from.settings.scale_objects;
+    let compared = flight.compare_objects(objects, request.review.outcomes())?;
     let photos = &flight.parts().photos;
     let mut of_photos: Vec<Vec<PhotoObject<'a>>> = photos.iter().map(|_| Vec::new()).collect();
     for (object, compared) in objects.iter().zip(compared) {

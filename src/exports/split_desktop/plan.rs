@@ -34,31 +34,34 @@ pub(super) fn pictures(
     request: &ExportRequest<'_>,
     objects: &[Vec<PhotoObject<'_>>],
 ) -> Vec<Result<PhotoNames, String>> {
-    let photos = &request.flight.parts().photos;
+    let parts = request.review.flight().parts();
+    let outcomes = request.review.outcomes();
+    let photos = &parts.photos;
     let names: Vec<&str> = photos.iter().map(|photo| photo.name.as_str()).collect();
     let names = file_names(&names).into_iter();
     names
         .enumerate()
-        .map(
-            |(index, (stem, extension))| match request.outcomes.get(index) {
-                Some(Outcome::Trouble(trouble)) => Err(format!("no pictures: {trouble}")),
-                // They would show bars of a length that nobody knows.
-                _ if !request.flight.parts().unit_known => {
-                    Err("no pictures: the model's unit is not known".to_owned())
-                }
-                _ if request.photo_files.get(index).is_none_or(Option::is_none) => {
-                    Err("no pictures: the photo file is missing".to_owned())
-                }
-                _ => Ok(PhotoNames {
-                    photo: format!("photos/{stem}{extension}"),
-                    overlay: format!("overlays/{stem}.jpg"),
-                    thumbnail: format!("thumbnails/{stem}.jpg"),
-                    mask: objects
-                        .get(index)
-                        .is_some_and(|objects| objects.iter().any(PhotoObject::is_masked))
-                        .then(|| format!("masks/{stem}.png")),
-                }),
-            },
-        )
+        .map(|(index, (stem, extension))| match outcomes.get(index) {
+            Some(Outcome::Trouble(trouble)) => Err(format!("no pictures: {trouble}")),
+            // They would show bars of a length that nobody knows.
+            _ if !parts.unit_known => Err("no pictures: the model's unit is not known".to_owned()),
+            _ if request
+                .from
+                .photo_files
+                .get(index)
+                .is_none_or(Option::is_none) =>
+            {
+                Err("no pictures: the photo file is missing".to_owned())
+            }
+            _ => Ok(PhotoNames {
+                photo: format!("photos/{stem}{extension}"),
+                overlay: format!("overlays/{stem}.jpg"),
+                thumbnail: format!("thumbnails/{stem}.jpg"),
+                mask: objects
+                    .get(index)
+                    .is_some_and(|objects| objects.iter().any(PhotoObject::is_masked))
+                    .then(|| format!("masks/{stem}.png")),
+            }),
+        })
         .collect()
 }

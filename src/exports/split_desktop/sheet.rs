@@ -5,12 +5,12 @@ use std::fmt::Write;
 use super::objects::PhotoObject;
 use super::plan::PhotoNames;
 use super::{CheckedInput, ExportRequest};
-use crate::flight::{Doubt, Judged, compare_names};
+use crate::flight::compare_names;
 use crate::markup::escaped;
 use crate::picture::significant_digits;
 use crate::scale::{Ground, ImageKind};
 use crate::units::LengthUnit;
-use crate::{ReportLine, ScaleReport};
+use crate::{ColumnValue, PHOTO_COLUMNS, PhotoColumn, PhotoLine, ScaleReport};
 
 const STYLE: &str = include_str!("sheet.css");
 
@@ -25,36 +25,37 @@ const UNITS: [LengthUnit; 4] = [
 /// Digits of a scale: typing fewer than five would add an error, more would only add typing.
 const DIGITS: u8 = 5;
 
-/// The sheet of the `chosen` photos; `report` has a line for each of them, `pictures` and `objects` an
-/// entry for each photo of the flight.
+/// The sheet of the report's photos; `pictures` and `objects` have an entry for each photo of the
+/// flight.
 pub(super) fn html(
     request: &ExportRequest<'_>,
-    report: &ScaleReport,
-    chosen: &[usize],
+    report: &ScaleReport<'_>,
     pictures: &[Result<PhotoNames, String>],
     objects: &[Vec<PhotoObject<'_>>],
     inputs: &[CheckedInput],
     warnings: &[String],
 ) -> String {
-    let title = escaped(&report.flight);
+    let title = escaped(report.flight());
     let mut rows = String::new();
     // As Split-Desktop and every file manager list the image files: so the eye goes down both lists.
-    let mut lines: Vec<(&ReportLine, usize)> =
-        report.lines.iter().zip(chosen.iter().copied()).collect();
-    let listed = |(line, index): (&ReportLine, usize)| match pictures.get(index) {
+    let mut lines: Vec<PhotoLine<'_>> = report.lines().collect();
+    let listed = |line: &PhotoLine<'_>| match pictures.get(line.index) {
         Some(Ok(names)) => names.photo.clone(),
-        _ => line.photo.clone(),
+        _ => line.photo.name().to_owned(),
     };
-    lines.sort_by(|a, b| compare_names(&listed(*a), &listed(*b)));
-    for ((line, index), number) in lines.into_iter().zip(1_usize..) {
-        let judged = request.judged.get(index);
-        let picture = pictures.get(index).map_or(Err("no pictures"), |names| {
+    lines.sort_by(|a, b| compare_names(&listed(a), &listed(b)));
+    for (line, number) in lines.iter().zip(1_usize..) {
+        let picture = pictures.get(line.index);
+        let picture = picture.map_or(Err("no pictures"), |names| {
             names.as_ref().map_err(String::as_str)
         });
-        let objects = objects.get(index).map_or(&[][..], Vec::as_slice);
-        rows += &row(number, line, report, judged, picture, objects);
+        let objects = objects.get(line.index).map_or(&[][..], Vec::as_slice);
+        rows += &row(number, line, picture, objects);
     }
-    let (image, where_from) = match report.image {
+    let headings: String = scale_columns()
+        .filter_map(|column| Some(format!("<th>{}</th>", column.sheet?)))
+        .collect();
+    let (image, where_from) = match report.image() {
         ImageKind::Undistorted => (
             "the undistorted photos",
             "Open the photos in <b>photos/</b>, not the originals: the scales hold for the undistorted ones.",
@@ -64,9 +65,9 @@ pub(super) fn html(
             "The photos in <b>photos/</b> are copies of the originals.",
         ),
     };
-    let unit = report.unit;
-    let total = request.flight.parts().photos.len();
-    let all_warnings: Vec<&String> = request.warnings.iter().chain(warnings).collect();
+    let unit = report.unit();
+    let total = request.review.count();
+    let all_warnings: Vec<&String> = request.from.warnings.iter().chain(warnings).collect();
     let noticed = match all_warnings.len() {
         0 => String::new(),
         1 => " There is <b>1 warning</b>, at the end.".to_owned(),
@@ -79,24 +80,28 @@ pub(super) fn html(
          <p>Image scales for Split-Desktop in <b>pixels per {unit}</b>, of {image}. {where_from}</p>\n\
          <p class=\"small\">{} of {total} photos, in the order of their names.{noticed}</p>\n\
          <table class=\"photos\">\n<thead><tr><th>Photo with its scale</th><th>Name, verdict</th>\
-         <th>TOP scale</th><th>BOTTOM scale</th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n\
+         {headings}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n\
          {}{}{}</body>\n</html>\n",
-        chosen.len(),
+        lines.len(),
         warning_list(&all_warnings),
         settings(request),
         input_list(inputs),
     )
 }
 
+/// The columns that scales are typed from.
+fn scale_columns() -> impl Iterator<Item = &'static PhotoColumn> {
+    PHOTO_COLUMNS.iter().filter(|column| column.sheet.is_some())
+}
+
 fn row(
     number: usize,
-    line: &ReportLine,
-    report: &ScaleReport,
-    judged: Option<&Judged>,
+    line: &PhotoLine<'_>,
     picture: Result<&PhotoNames, &str>,
     objects: &[PhotoObject<'_>],
 ) -> String {
-    let name = escaped(&line.photo);
+    let photo = line.photo;
+    let (name, camera) = (escaped(photo.name()), photo.camera);
     let shown = match picture {
         Ok(names) => format!(
             "<a href=\"{}\"><img src=\"{}\" alt=\"{name} with its scale\"></a>",
@@ -109,30 +114,21 @@ fn row(
         format!(
             "<div class=\"small\">{} &middot; <span class=\"pixels\">{} &times; {} px</span></div>",
             escaped(&names.photo),
-            line.width,
-            line.height
+            camera.width,
+            camera.height
         )
     });
-    let mut reasons: Vec<String> = Vec::new();
-    let mut verdict = "";
-    if let Some(judged) = judged {
-        verdict = judged.verdict.as_str();
-        reasons.extend(judged.doubts.iter().map(Doubt::to_string));
-    }
-    let ground = line.ground.map_or_else(String::new, |z| {
-        format!(
-            ", ground at {} {}",
-            significant_digits(z, 6),
-            report.world_unit
-        )
-    });
+    let verdict = photo.verdict.as_str();
     let class = verdict.replace(' ', "-");
-    let reasons = match reasons.is_empty() {
+    let ground = line.ground().map_or_else(String::new, |z| {
+        format!(", ground at {} {}", significant_digits(z, 6), photo.unit)
+    });
+    let reasons = match photo.doubts.is_empty() {
         true => String::new(),
         false => {
-            let items: String = reasons
-                .iter()
-                .map(|reason| format!("<li>{}</li>", escaped(reason)))
+            let doubts = photo.doubts.iter();
+            let items: String = doubts
+                .map(|doubt| format!("<li>{}</li>", escaped(&doubt.to_string())))
                 .collect();
             format!("<ul class=\"reasons\">{items}</ul>")
         }
@@ -140,17 +136,21 @@ fn row(
     let objects: String = objects
         .iter()
         .map(|object| {
-            let sentence = object.sentence(report.unit, report.world_unit);
+            let sentence = object.sentence(line.unit, photo.unit);
             format!("<div class=\"small\">{sentence}</div>")
+        })
+        .collect();
+    let scales: String = scale_columns()
+        .map(|column| match (column.value)(line) {
+            ColumnValue::Number(scale) => scale_cell(scale, line.unit, camera.width),
+            _ => String::new(),
         })
         .collect();
     format!(
         "<tr><td class=\"picture\">{shown}</td><td><div class=\"name\">{number}. {name}</div>{file}\
          <div class=\"verdict {class}\">{verdict}</div>\
-         <div class=\"small\">{} of 4 corners on the surface{ground}</div>{reasons}{objects}</td>{}{}</tr>\n",
-        line.corners_on_surface,
-        scale_cell(line.scale.top, report.unit, line.width),
-        scale_cell(line.scale.bottom, report.unit, line.width),
+         <div class=\"small\">{} of 4 corners on the surface{ground}</div>{reasons}{objects}</td>{scales}</tr>\n",
+        photo.corners_on_surface().unwrap_or(0),
     )
 }
 
@@ -188,8 +188,8 @@ fn warning_list(warnings: &[&String]) -> String {
 
 /// What the scales and the verdicts depend on.
 fn settings(request: &ExportRequest<'_>) -> String {
-    let settings = request.settings;
-    let limits = request.limits;
+    let settings = request.from.settings;
+    let limits = request.review.limits();
     let unit = settings.unit;
     let ground = match settings.ground {
         Ground::Auto => "auto: for each photo the median elevation in its view".to_owned(),
@@ -216,7 +216,7 @@ fn settings(request: &ExportRequest<'_>) -> String {
         ),
         (
             "Coordinate system",
-            request.crs.unwrap_or("not stated").to_owned(),
+            request.from.crs.unwrap_or("not stated").to_owned(),
         ),
         ("Ground", ground),
         ("Image", image.to_owned()),

@@ -9,13 +9,21 @@ use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::package::{self, Package};
-use super::{
-    DETECTED_BY, FileError, bundler, colmap, drone_photos, nerfstudio, odm, opensfm, opf, pix4d,
-    realitycapture, ros,
-};
+use crate::FileError;
+use crate::detect::DETECTED_BY;
 use crate::fault::Fault;
 use crate::jobs::Progress;
+use crate::packages::bundler;
+use crate::packages::colmap;
+use crate::packages::drone_photos;
+use crate::packages::nerfstudio;
+use crate::packages::odm;
+use crate::packages::opensfm;
+use crate::packages::opf;
+use crate::packages::package::{self, Package};
+use crate::packages::pix4d;
+use crate::packages::realitycapture;
+use crate::packages::ros;
 
 /// How many entries of a folder are looked at.
 const LOOKED_AT: usize = 200;
@@ -69,7 +77,7 @@ impl Candidate {
 /// Reads at most some hundred entries of each folder, and counts photos only where that is quick.
 pub fn candidates(path: &Path) -> Vec<Candidate> {
     if !path.is_dir() {
-        let found = super::detect(path).ok();
+        let found = crate::detect(path).ok();
         return counted(found.and_then(of_kind).into_iter().collect());
     }
     let flight = path.join("flight.toml");
@@ -85,10 +93,10 @@ pub fn candidates(path: &Path) -> Vec<Candidate> {
     counted(found)
 }
 
-fn of_kind(kind: super::Kind) -> Option<Found> {
+fn of_kind(kind: crate::Kind) -> Option<Found> {
     match kind {
-        super::Kind::Flight(path) => Some((None, path)),
-        super::Kind::Reconstruction(package, path) => Some((Some(package), path)),
+        crate::Kind::Flight(path) => Some((None, path)),
+        crate::Kind::Reconstruction(package, path) => Some((Some(package), path)),
         _ => None,
     }
 }
@@ -98,16 +106,16 @@ type Found = (Option<Package>, PathBuf);
 
 /// What lies in a folder.
 #[derive(Debug, Default, PartialEq)]
-pub(super) struct Contents {
+pub(crate) struct Contents {
     /// The reconstructions of which one is meant.
-    pub(super) meant: Vec<(Package, PathBuf)>,
+    pub(crate) meant: Vec<(Package, PathBuf)>,
     /// What they were made of, or made beside: not meant themselves.
-    pub(super) sources: Vec<(Package, PathBuf)>,
+    pub(crate) sources: Vec<(Package, PathBuf)>,
 }
 
 impl Contents {
     /// Looks into a folder, not into its folders beyond where a package keeps its own files.
-    pub(super) fn of(folder: &Path) -> Self {
+    pub(crate) fn of(folder: &Path) -> Self {
         let mut found = laid_out(folder);
         let known: Vec<PathBuf> = found.iter().map(|(_, path)| path.clone()).collect();
         found.extend(in_files(folder, &known));
@@ -132,7 +140,7 @@ impl Contents {
     }
 
     /// A sentence about what was not taken beside the one that was; `None` where there is nothing.
-    pub(super) fn sources_in_words(&self, folder: &Path) -> Option<String> {
+    pub(crate) fn sources_in_words(&self, folder: &Path) -> Option<String> {
         let ([(package, _)], [_, ..]) = (self.meant.as_slice(), self.sources.as_slice()) else {
             return None;
         };
@@ -416,7 +424,7 @@ fn size(path: &Path, levels: usize, left: &mut usize) -> u64 {
 }
 
 /// Why a folder cannot be opened that holds `several` reconstructions.
-pub(super) fn several(folder: &Path, several: Vec<(Package, PathBuf)>) -> FileError {
+pub(crate) fn several(folder: &Path, several: Vec<(Package, PathBuf)>) -> FileError {
     let found = several.into_iter().map(|(p, path)| (Some(p), path));
     let what = format!(
         "several reconstructions ({})",
@@ -426,7 +434,7 @@ pub(super) fn several(folder: &Path, several: Vec<(Package, PathBuf)>) -> FileEr
 }
 
 /// Names what lies in the folders of a folder that holds nothing itself; `None` where there is nothing.
-pub(super) fn only_below(folder: &Path) -> Option<FileError> {
+pub(crate) fn only_below(folder: &Path) -> Option<FileError> {
     let found = below(folder);
     let remedy = match found.len() {
         0 => return None,

@@ -1,7 +1,9 @@
 use std::fs;
 
 use super::*;
-use crate::{Kind, detect, read_project};
+use crate::Kind;
+use crate::detect;
+use crate::read_project;
 
 /// A folder with these files.
 fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {

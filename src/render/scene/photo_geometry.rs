@@ -3,7 +3,7 @@
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
 use crate::camera::{Camera, Pose};
-use crate::flight::{Flight, Outcome};
+use crate::flight::{PhotoReview, Review};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::scale::{CornerOutcome, FootprintPoint, PhotoScale, ViewFacts};
 
@@ -93,21 +93,13 @@ impl PhotoGeometry {
         }
     }
 
-    /// Of all photos of a flight, in its order; `views` where they are known already.
-    pub fn of_flight(
-        frame: &LocalFrame,
-        flight: &Flight,
-        outcomes: &[Outcome],
-        views: Option<&[Option<ViewFacts>]>,
-    ) -> Vec<Self> {
-        let photos = flight.parts().photos.iter().zip(outcomes).enumerate();
-        photos
-            .map(|(index, (photo, outcome))| {
-                let view = views.and_then(|views| views.get(index)?.as_ref());
-                let camera = flight.camera(photo);
-                Self::new(frame, camera, &photo.pose, outcome.scale(), view)
-            })
-            .collect()
+    /// Of all photos of a review, in the flight's order.
+    pub fn of_review(frame: &LocalFrame, review: &Review) -> Vec<Self> {
+        let of = |photo: PhotoReview<'_>| {
+            let pose = &photo.photo.pose;
+            Self::new(frame, photo.camera, pose, photo.scale(), photo.view)
+        };
+        review.photos().map(of).collect()
     }
 
     /// Local coordinates to shares of the undistorted image: (u w, v w, w, 1) with w the depth along

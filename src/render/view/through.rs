@@ -1,29 +1,28 @@
 //! The look through the camera of a photo.
 
-use crate::camera::{Camera, Pose};
+use crate::flight::PhotoReview;
 use crate::geometry::median;
 use crate::scale::{CornerOutcome, PhotoScale, ViewFacts};
 use crate::view::View;
 
 impl View {
-    /// What an undistorted photo of a flight shows. Its scale bar is true at the median distance of
-    /// the footprint; at `otherwise`, world units, where it has none.
-    pub fn through(
-        camera: &Camera,
-        pose: &Pose,
-        scale: Option<&PhotoScale>,
-        facts: Option<&ViewFacts>,
-        otherwise: f64,
-    ) -> Self {
-        let grid = facts.iter().flat_map(|facts| &facts.footprint.grid);
-        let corners = scale.iter().flat_map(|scale| &scale.corners);
-        let outcomes = grid
-            .map(|sample| &sample.outcome)
-            .chain(corners.map(|corner| &corner.outcome));
-        let mut distances: Vec<f64> = outcomes.filter_map(distance).collect();
-        let focus = median(&mut distances).unwrap_or(otherwise);
-        Self::of_photo(camera, pose, focus)
+    /// What an undistorted photo shows. Its scale bar is true at the median distance of the
+    /// footprint; at `otherwise`, world units, where it has none.
+    pub fn through(photo: &PhotoReview<'_>, otherwise: f64) -> Self {
+        let focus = focus(photo.scale(), photo.view).unwrap_or(otherwise);
+        Self::of_photo(photo.camera, &photo.photo.pose, focus)
     }
+}
+
+/// The median distance of a footprint from its camera.
+fn focus(scale: Option<&PhotoScale>, view: Option<&ViewFacts>) -> Option<f64> {
+    let grid = view.into_iter().flat_map(|view| &view.footprint.grid);
+    let corners = scale.into_iter().flat_map(|scale| &scale.corners);
+    let outcomes = grid
+        .map(|sample| &sample.outcome)
+        .chain(corners.map(|corner| &corner.outcome));
+    let mut distances: Vec<f64> = outcomes.filter_map(distance).collect();
+    median(&mut distances)
 }
 
 fn distance(outcome: &CornerOutcome) -> Option<f64> {
@@ -38,7 +37,6 @@ fn distance(outcome: &CornerOutcome) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::Distortion;
     use crate::scale::{Corner, CornerName, EdgeScales};
     use glam::{DVec2, DVec3};
 
@@ -64,20 +62,7 @@ mod tests {
             scale: EdgeScales::default(),
             ground: None,
         };
-        let camera = Camera {
-            name: String::new(),
-            width: 400,
-            height: 300,
-            fx: 300.0,
-            fy: 300.0,
-            cx: 200.0,
-            cy: 150.0,
-            skew: 0.0,
-            distortion: Distortion::None,
-        };
-        let pose = Pose::from_tilt_pan(DVec3::ZERO, [90.0, 0.0]);
-        let view = View::through(&camera, &pose, Some(&scale), None, 7.0);
-        assert_eq!(view.focus, 20.0);
-        assert_eq!(View::through(&camera, &pose, None, None, 7.0).focus, 7.0);
+        assert_eq!(focus(Some(&scale), None), Some(20.0));
+        assert_eq!(focus(None, None), None);
     }
 }

@@ -112,8 +112,8 @@ mod tests {
     use glam::DMat3;
 
     use super::*;
-    use crate::formats::{OpenOptions, open_flight};
     use crate::jobs::Progress;
+    use crate::opening::{OpenOptions, open_flight};
 
     /// The poses that the program itself reads from a poses.csv.
     fn read(text: &str) -> Vec<(String, Pose)> {

@@ -3,9 +3,9 @@
 
 use super::residuals::residuals;
 use crate::command::{Answers, Asking, Command, Dialog};
-use crate::formats::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds};
 use crate::open_flight::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
 use crate::open_flight::{Measure, OpenFlight};
+use crate::opening::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds};
 use crate::panels::path_field::path_field;
 use crate::picture::significant_digits;
 use crate::state::State;

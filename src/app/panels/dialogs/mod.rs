@@ -94,7 +94,7 @@ fn unsaved(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if let Some(open) = &state.open {
         ui.label(format!(
             "The settings of {} have changed since they were saved.",
-            open.flight.parts().name
+            open.flight().parts().name
         ));
     }
     ui.add_space(8.0);
@@ -185,7 +185,7 @@ fn open(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 fn add(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let name = match (&state.tried, &state.open) {
         (Some((path, _)), _) => path.display().to_string(),
-        (None, Some(open)) => open.flight.parts().name.clone(),
+        (None, Some(open)) => open.flight().parts().name.clone(),
         (None, None) => return,
     };
     ui.label(format!(
@@ -223,7 +223,7 @@ fn export(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         "{chosen} of {} photos are chosen; scales in pixels per {unit}. The folder gets scales.csv, \
          scales.html to print and type from, the undistorted photos, overlays, and footprints as \
          GeoJSON.",
-        open.outcomes.len()
+        open.review.count()
     ));
     let start = proposed(open, Some("split-desktop"));
     let browse = [("Browse…", Dialog::folder("Export for Split-Desktop into"))];

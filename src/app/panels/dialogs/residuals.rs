@@ -3,7 +3,7 @@
 use egui_extras::{Column as Width, TableBuilder};
 
 use crate::command::Command;
-use crate::formats::{Georeferenced, PositionResidual};
+use crate::opening::{Georeferenced, PositionResidual};
 
 /// The height of a row.
 const ROW: f32 = 18.0;

@@ -9,11 +9,11 @@ use glam::DVec2;
 
 use crate::actions;
 use crate::command::Command;
-use crate::flight::Outcome;
+use crate::flight::PhotoReview;
 use crate::open_flight::OpenFlight;
 use crate::panels::verdict::{or_dash, verdict_color, verdict_sign};
 use crate::picture::{BarEdge, ScaleBar, scale_bars, significant_digits};
-use crate::scale::{CornerOutcome, ImageKind, PhotoScale};
+use crate::scale::{CornerOutcome, ImageKind, PhotoScale, ViewFacts};
 use crate::state::State;
 use scale_objects::scale_objects;
 use traced_photo::{Dragged, PhotoPlace};
@@ -38,14 +38,16 @@ impl Inspector {
         let Some(open) = &state.open else {
             return;
         };
-        let Some(row) = open.selected.and_then(|photo| open.row(photo)) else {
+        let reviewed = open
+            .selected
+            .and_then(|photo| Some((photo, open.review.photo(photo)?)));
+        let Some((photo, reviewed)) = reviewed else {
             ui.weak("Select a photo in the table or in the viewport.");
             return;
         };
-        let photo = open.selected.unwrap_or(0);
         ui.horizontal(|ui| {
-            ui.add(egui::Label::new(egui::RichText::new(&row.photo.name).strong()).truncate());
-            if let Some(verdict) = row.verdict {
+            ui.add(egui::Label::new(egui::RichText::new(reviewed.name()).strong()).truncate());
+            if let Some(verdict) = reviewed.settled() {
                 let text = format!("{} {verdict}", verdict_sign(verdict));
                 ui.colored_label(verdict_color(verdict, ui.visuals()), text);
             }
@@ -56,28 +58,30 @@ impl Inspector {
         self.take_texture(open, ui);
         self.picture(state, open, photo, ui, commands);
         egui::ScrollArea::vertical().show(ui, |ui| {
-            if let Some(scale) = open.scale_to_type(photo) {
-                scales(state, open, scale, ui, commands);
+            if reviewed.scale_to_type().is_some() {
+                scales(state, reviewed, ui, commands);
             }
-            if row.judged.doubts.is_empty() {
-                ui.weak(if open.views.is_some() {
+            if reviewed.doubts.is_empty() {
+                ui.weak(if reviewed.is_looked_at {
                     "No reason for doubt was found."
                 } else {
                     "Looking for reasons for doubt…"
                 });
             } else {
                 ui.strong("Reasons for doubt");
-                for doubt in &row.judged.doubts {
+                for doubt in reviewed.doubts {
                     let text = format!("• {doubt}");
-                    let color = verdict_color(row.judged.verdict, ui.visuals());
+                    let color = verdict_color(reviewed.verdict, ui.visuals());
                     ui.add(egui::Label::new(egui::RichText::new(text).color(color)).wrap());
                 }
             }
             scale_objects(state, open, photo, ui, commands);
-            if let Outcome::Scale(scale) = row.outcome {
-                corners(open, scale, ui);
+            if let Some(scale) = reviewed.scale() {
+                corners(reviewed, scale, ui);
             }
-            facts(open, photo, ui);
+            if let Some(view) = reviewed.view {
+                facts(reviewed, view, ui);
+            }
         });
     }
 
@@ -115,15 +119,17 @@ impl Inspector {
         ui: &mut egui::Ui,
         commands: &mut Vec<Command>,
     ) {
-        let posed = &open.flight.parts().photos[photo];
-        let camera = open.flight.camera(posed);
+        let Some(reviewed) = open.review.photo(photo) else {
+            return;
+        };
+        let camera = reviewed.camera;
         let aspect = camera.width as f32 / camera.height as f32;
         let width = ui.available_width();
         let height = (width / aspect).min(ui.available_height() * 0.5).max(80.0);
         let (frame, response) =
             ui.allocate_exact_size(vec2(width, height), Sense::click_and_drag());
         response.widget_info(|| {
-            let label = format!("Photo {} with its scale", posed.name);
+            let label = format!("Photo {} with its scale", reviewed.name());
             egui::WidgetInfo::labeled(egui::Role::Image, true, label)
         });
         let painter = ui.painter().with_clip_rect(frame);
@@ -135,7 +141,7 @@ impl Inspector {
             vec2(frame.width(), frame.width() / aspect)
         };
         let size = fitted * self.zoom;
-        let image = open.flight.parts().image;
+        let image = open.flight().parts().image;
         let on_screen = |middle: Vec2, size: Vec2| PhotoPlace {
             rect: Rect::from_min_size(frame.center() - middle * size, size),
             camera,
@@ -177,9 +183,9 @@ impl Inspector {
             }
         }
         // Nothing else lies over what is traced.
-        if let Some(scale) = open.scale_to_type(photo).filter(|_| !is_traced) {
+        if let Some(scale) = reviewed.scale_to_type().filter(|_| !is_traced) {
             let unit = state.preferences.unit();
-            let world = open.flight.parts().unit;
+            let world = reviewed.unit;
             let to_screen = |pixel: DVec2| shown.to_screen(pixel);
             for bar in scale_bars(scale, camera.width, camera.height, unit, world) {
                 draw_bar(&painter, &bar, &to_screen);
@@ -296,21 +302,14 @@ fn draw_corner(painter: &egui::Painter, at: Pos2, outcome: &CornerOutcome) {
 }
 
 /// The scales of the four edges, big enough to type from.
-fn scales(
-    state: &State,
-    open: &OpenFlight,
-    scale: &PhotoScale,
-    ui: &mut egui::Ui,
-    commands: &mut Vec<Command>,
-) {
+fn scales(state: &State, photo: PhotoReview<'_>, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let unit = state.preferences.unit();
-    let factor = unit.in_units_of(open.flight.parts().unit);
-    let shown = |scale: Option<f64>, digits: u8| or_dash(scale.map(|scale| scale * factor), digits);
+    let edges = photo.edges(unit);
     ui.horizontal(|ui| {
-        for (name, value) in [("Top", scale.scale.top), ("Bottom", scale.scale.bottom)] {
+        for (name, value) in [("Top", edges.top), ("Bottom", edges.bottom)] {
             ui.vertical(|ui| {
                 ui.weak(format!("{name}, px/{unit}"));
-                ui.label(egui::RichText::new(shown(value, 5)).size(22.0).strong());
+                ui.label(egui::RichText::new(or_dash(value, 5)).size(22.0).strong());
             });
             ui.add_space(14.0);
         }
@@ -326,9 +325,9 @@ fn scales(
         }
     });
     ui.horizontal(|ui| {
-        ui.label(format!("Left {}", shown(scale.scale.left, 5)));
-        ui.label(format!("Right {}", shown(scale.scale.right, 5)));
-        if let (Some(top), Some(bottom)) = (scale.scale.top, scale.scale.bottom) {
+        ui.label(format!("Left {}", or_dash(edges.left, 5)));
+        ui.label(format!("Right {}", or_dash(edges.right, 5)));
+        if let (Some(top), Some(bottom)) = (edges.top, edges.bottom) {
             ui.label(format!(
                 "Top/bottom {}",
                 significant_digits(top / bottom, 4)
@@ -338,8 +337,8 @@ fn scales(
     ui.separator();
 }
 
-fn corners(open: &OpenFlight, scale: &PhotoScale, ui: &mut egui::Ui) {
-    let unit = open.flight.parts().unit;
+fn corners(photo: PhotoReview<'_>, scale: &PhotoScale, ui: &mut egui::Ui) {
+    let unit = photo.unit;
     ui.separator();
     ui.strong(format!("Corner points, {unit}"));
     egui::Grid::new("corners")
@@ -376,11 +375,8 @@ fn corners(open: &OpenFlight, scale: &PhotoScale, ui: &mut egui::Ui) {
         });
 }
 
-fn facts(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
-    let Some(view) = open.view(photo) else {
-        return;
-    };
-    let unit = open.flight.parts().unit;
+fn facts(photo: PhotoReview<'_>, view: &ViewFacts, ui: &mut egui::Ui) {
+    let unit = photo.unit;
     ui.separator();
     egui::Grid::new("facts").num_columns(2).show(ui, |ui| {
         let below = if view.height_is_above_ground {

@@ -77,7 +77,7 @@ fn begin(
         let text = size.map_or_else(String::new, |size| size.to_string());
         let hover = "As it was measured, in the unit of the flight's world";
         let typed = text_field(ui, label, hover, &text, 60.0);
-        ui.label(open.flight.parts().unit.symbol());
+        ui.label(open.flight().parts().unit.symbol());
         let number = typed.and_then(|typed| typed.trim().replace(',', ".").parse().ok());
         if let Some(size) = number {
             commands.push(Command::Trace(Trace::Size(kind, size)));
@@ -117,8 +117,8 @@ fn being_traced(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 
 /// The scale that the points give already.
 fn scale_so_far(state: &State, open: &OpenFlight, tracing: &Tracing) -> Option<String> {
-    let parts = open.flight.parts();
-    let camera = open.flight.camera(parts.photos.get(open.selected?)?);
+    let parts = open.flight().parts();
+    let camera = open.flight().camera(parts.photos.get(open.selected?)?);
     let size = open.trace_size(tracing.kind)?;
     let traced = Traced::new(camera, tracing.kind, size, &tracing.outline).ok()?;
     let unit = state.preferences.unit();
@@ -158,7 +158,7 @@ fn card(
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
 ) {
-    let world = open.flight.parts().unit;
+    let world = open.flight().parts().unit;
     let title = format!("{} {number}", object.kind.as_str());
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.horizontal(|ui| {
@@ -223,7 +223,7 @@ fn numbers(
         ui.colored_label(doubtful(ui), "the lens does not see it");
         return;
     };
-    let (unit, world) = (state.preferences.unit(), open.flight.parts().unit);
+    let (unit, world) = (state.preferences.unit(), open.flight().parts().unit);
     let factor = unit.in_units_of(world);
     let in_unit = |scale: f64| significant_digits(scale * factor, 5);
     let percent = |share: f64| format!("{:+.2} %", share * 100.0);

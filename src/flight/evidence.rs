@@ -1,0 +1,84 @@
+//! What is looked up of a flight's photos, outside of the flight's own numbers: their files, and what
+//! speaks against their scales. A review is made of it; it is looked up where files can be read.
+
+use std::fmt::Display;
+
+use super::Doubt;
+
+/// What is known about a photo's image file.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum PhotoFileState {
+    /// The flight names no folder of image files.
+    #[default]
+    NotNamed,
+    /// There is a folder, but not this file in it.
+    Missing,
+    /// The file cannot be read, with the reason.
+    Unreadable(String),
+    /// Its size in pixels.
+    Found {
+        /// Width.
+        width: u32,
+        /// Height.
+        height: u32,
+    },
+}
+
+/// Whether a photo's colours, compared with those of the surface, speak against it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum ColoursFound {
+    /// Nobody has compared them yet.
+    #[default]
+    NotCompared,
+    /// They were compared, or cannot be: nothing speaks against the photo.
+    NothingAgainst,
+    /// They, or the file that they were to be read from, speak against it.
+    Against(Doubt),
+}
+
+impl From<Option<Doubt>> for ColoursFound {
+    fn from(doubt: Option<Doubt>) -> Self {
+        doubt.map_or(Self::NothingAgainst, Self::Against)
+    }
+}
+
+/// What was looked up of one photo.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Evidence {
+    /// Its image file.
+    pub file: PhotoFileState,
+    /// What its size, its place and its metadata say against it, the gravest first.
+    pub doubts: Vec<Doubt>,
+    /// What its colours say.
+    pub colours: ColoursFound,
+}
+
+impl Evidence {
+    /// All that speaks against the photo, the gravest first. A file whose header cannot be read is
+    /// doubted for that already, not for its colours once more.
+    pub fn against(&self) -> impl Iterator<Item = &Doubt> {
+        let of_colours = match (&self.colours, &self.file) {
+            (_, PhotoFileState::Unreadable(_)) => None,
+            (ColoursFound::Against(doubt), _) => Some(doubt),
+            (ColoursFound::NotCompared | ColoursFound::NothingAgainst, _) => None,
+        };
+        self.doubts.iter().chain(of_colours)
+    }
+}
+
+/// What was looked up of a flight.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LookedUp {
+    /// Of each photo.
+    pub evidence: Vec<Evidence>,
+    /// The same of the whole flight, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl LookedUp {
+    /// The warnings with the flight's name or file in front.
+    pub fn warnings_of(&self, flight: impl Display) -> impl Iterator<Item = String> {
+        let warnings = self.warnings.iter();
+        warnings.map(move |warning| format!("{flight}: {warning}"))
+    }
+}

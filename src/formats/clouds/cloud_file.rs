@@ -1,0 +1,106 @@
+//! What a cloud reader hands over.
+
+use glam::DVec3;
+
+use crate::fault::Fault;
+use crate::geodesy::{Crs, CrsKind};
+use crate::geometry::Bounds;
+use crate::surface::Cloud;
+
+/// A cloud as its file has it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CloudFile {
+    /// Points, colours, faces, in the file's own coordinates.
+    pub cloud: Cloud,
+    /// The coordinate system that the file states: "EPSG:n" or WKT.
+    pub crs: Option<String>,
+    /// Whether the file says that x and y are degrees: they are brought to a map before a surface is made of them.
+    pub geographic: bool,
+    /// What the reader had to assume, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl CloudFile {
+    /// Adds a point. Where only some points have colours, the others are grey.
+    pub(crate) fn push(&mut self, point: DVec3, color: Option<[u8; 3]>) {
+        let colors = &mut self.cloud.colors;
+        if color.is_some() && colors.is_empty() {
+            colors.resize(self.cloud.points.len(), GREY);
+        }
+        if color.is_some() || !colors.is_empty() {
+            colors.push(color.unwrap_or(GREY));
+        }
+        self.cloud.points.push(point);
+    }
+
+    /// Warns where coordinates that were stored as f32 are too large for the cloud's own extent:
+    /// UTM northings in f32 are rounded to half a metre.
+    pub(crate) fn warn_if_rounded(&mut self) {
+        self.warnings.extend(rounding(&self.cloud.points));
+    }
+
+    /// Notes a coordinate system as the file states it, and whether it is one of degrees.
+    pub(crate) fn set_crs(&mut self, crs: &str) {
+        let crs = crs.trim_matches(|c: char| c == '\0' || c.is_whitespace());
+        if crs.is_empty() {
+            return;
+        }
+        self.crs = Some(crs.to_owned());
+        self.set_geographic(counts_degrees(crs));
+    }
+
+    /// Notes whether the coordinates are degrees, and says it.
+    pub(crate) fn set_geographic(&mut self, geographic: bool) {
+        self.geographic = geographic;
+        if geographic {
+            self.warnings.push("its coordinates are degrees".to_owned());
+        }
+    }
+
+    /// Refuses a file of which nothing was left.
+    pub(crate) fn expect_points(&self) -> Result<(), Fault> {
+        if self.cloud.points.is_empty() {
+            return Err(Fault::new(
+                "it has no points",
+                "export points with x, y and z",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Whether coordinates in a system are degrees: as it is understood, else by its first word.
+pub(crate) fn counts_degrees(crs: &str) -> bool {
+    if let Ok(crs) = Crs::understand(crs) {
+        return crs.kind() == CrsKind::Geographic;
+    }
+    let text: String = crs.split_whitespace().collect();
+    let text = text.to_ascii_uppercase();
+    let starts = |words: &[&str]| words.iter().any(|word| text.starts_with(word));
+    // A geodetic system of WKT 2 may count from the Earth's centre.
+    starts(&["GEOGCS", "GEOGCRS", "GEOGRAPHICCRS"])
+        || (starts(&["GEODCRS", "GEODETICCRS"]) && !text.contains("CS[CARTESIAN"))
+}
+
+/// The colour of points without one among points with colours.
+const GREY: [u8; 3] = [128; 3];
+
+/// What to say about coordinates that were stored as f32 where that has rounded them noticeably.
+pub(crate) fn rounding(points: &[DVec3]) -> Option<String> {
+    let bounds = Bounds::of(points)?;
+    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let rounding = largest * f64::from(f32::EPSILON) / 2.0;
+    let size = bounds.size().max_element();
+    // A single place has no size to compare with.
+    (size > 0.0 && rounding > size * 1e-5).then(|| {
+        let digits = if rounding < 0.005 { 6 } else { 2 };
+        format!(
+            "its coordinates are 32-bit floats of up to {largest:.0}, which rounds them to about {rounding:.digits$}; export doubles, or subtract an offset"
+        )
+    })
+}
+
+/// The index, from 0, of the first point with a coordinate that is not a finite number.
+pub(crate) fn first_not_finite(points: &[DVec3]) -> Option<usize> {
+    points.iter().position(|point| !point.is_finite())
+}

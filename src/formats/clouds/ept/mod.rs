@@ -1,0 +1,248 @@
+//! Entwine Point Tile (EPT): a cloud cut into the tiles of an octree, as entwine and untwine write it
+//! and OpenDroneMap leaves it in `entwine_pointcloud`.
+//!
+//! Written from the "Entwine Point Tile" specification 1.0 and PDAL's documentation of `readers.ept`:
+//!
+//! ```text
+//! ept.json                       {bounds, dataType, hierarchyType, points, schema, span, srs, version}
+//! ept-hierarchy/0-0-0-0.json     {"D-X-Y-Z": count of points, or -1: see ept-hierarchy/D-X-Y-Z.json}
+//! ept-data/D-X-Y-Z.laz           the points of one tile
+//! ```
+//!
+//! A point is in one tile only: those of a deeper level add to those above, so all tiles together are
+//! the cloud. Of the data types only "laszip" is read; the others ("binary", "zstandard") are refused
+//! by name. `srs` names the coordinate system by its codes or as WKT; where it is empty, the tiles' own
+//! counts.
+
+use std::collections::HashSet;
+use std::io::Cursor;
+
+use serde::Deserialize;
+
+use crate::clouds::cloud_file::CloudFile;
+use crate::clouds::las;
+use crate::fault::Fault;
+use crate::jobs::Progress;
+use crate::text::json::{Object, parse};
+
+/// The name of the file that stands for the whole.
+pub(crate) const HEADER: &str = "ept.json";
+
+/// The most tiles that are read: entwine puts some 100 000 points into each.
+const MOST_TILES: usize = 1_000_000;
+
+const REMEDY: &str = "copy the whole folder, or export the cloud as LAZ";
+
+/// The data type that is read.
+const LASZIP: &str = "laszip";
+
+/// Whether a file that begins with `start` is the header of an EPT, by its name in lower case and its
+/// keys.
+pub(crate) fn is_header(start: &[u8], name: &str) -> bool {
+    let text = String::from_utf8_lossy(start);
+    let has = |key: &str| text.contains(&format!("\"{key}\""));
+    let begins = text.trim_start_matches('\u{feff}').trim_start();
+    begins.starts_with('{')
+        && name.ends_with(".json")
+        && (name == HEADER || (has("dataType") && has("hierarchyType")))
+}
+
+/// Why the tiles of this header cannot be read; `None` where they can.
+pub(crate) fn refusal(header: &[u8]) -> Option<String> {
+    match parse::<Header>(header) {
+        Ok(header) => header.check().err().map(|fault| fault.what),
+        Err(fault) => Some(fault.what),
+    }
+}
+
+#[derive(Deserialize)]
+struct Header {
+    #[serde(rename = "dataType")]
+    data_type: String,
+    #[serde(rename = "hierarchyType")]
+    hierarchy_type: Option<String>,
+    points: Option<u64>,
+    srs: Option<Srs>,
+}
+
+#[derive(Deserialize)]
+struct Srs {
+    authority: Option<String>,
+    horizontal: Option<Code>,
+    vertical: Option<Code>,
+    wkt: Option<String>,
+}
+
+/// A code of EPSG's, which some write as a number.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Code {
+    Text(String),
+    Number(u32),
+}
+
+impl Code {
+    fn number(&self) -> Option<u32> {
+        match self {
+            Self::Text(text) => text.trim().parse().ok(),
+            Self::Number(number) => Some(*number),
+        }
+    }
+}
+
+impl Srs {
+    /// "EPSG:n", "EPSG:n+m" with the heights', or WKT.
+    fn crs(&self) -> Option<String> {
+        let authority = self.authority.as_deref().unwrap_or("EPSG");
+        let number = |code: &Option<Code>| code.as_ref().and_then(Code::number);
+        if let Some(horizontal) = number(&self.horizontal)
+            && authority.eq_ignore_ascii_case("epsg")
+        {
+            return Some(match number(&self.vertical) {
+                Some(vertical) => format!("EPSG:{horizontal}+{vertical}"),
+                None => format!("EPSG:{horizontal}"),
+            });
+        }
+        self.wkt.clone().filter(|wkt| !wkt.trim().is_empty())
+    }
+}
+
+impl Header {
+    fn check(&self) -> Result<(), Fault> {
+        if self.data_type != LASZIP {
+            let what = format!(
+                "its tiles are of the data type \"{}\", and only \"{LASZIP}\" is read",
+                self.data_type
+            );
+            return Err(Fault::new(what, "export the cloud as LAZ"));
+        }
+        match self.hierarchy_type.as_deref() {
+            None | Some("json") => Ok(()),
+            Some(other) => {
+                let what =
+                    format!("its hierarchy is of the type \"{other}\", and only \"json\" is read");
+                Err(Fault::new(what, "export the cloud as LAZ"))
+            }
+        }
+    }
+}
+
+/// Reads all tiles as one cloud. `header` is the text of `ept.json`, `beside` reads a file by its path
+/// below the same folder.
+///
+/// # Errors
+/// Where the data type is another one, a file is missing or damaged (with its name), or there is no
+/// point.
+pub(crate) fn read(
+    header: &[u8],
+    beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>,
+    progress: &Progress,
+) -> Result<CloudFile, Fault> {
+    let header: Header = parse(header)?;
+    header.check()?;
+    let tiles = tiles(beside)?;
+    let mut whole = CloudFile::default();
+    for (done, tile) in tiles.iter().enumerate() {
+        progress.advance(done as u64, tiles.len() as u64)?;
+        let name = format!("ept-data/{tile}.laz");
+        let bytes = beside(&name).map_err(|fault| of_file(&name, fault))?;
+        // The fraction is that of the whole, and each tile's reading would count from its own start.
+        let of_tile = Progress::default();
+        let part =
+            las::read(Cursor::new(bytes), &of_tile).map_err(|fault| of_file(&name, fault))?;
+        add(&mut whole, part);
+    }
+    let found = whole.cloud.points.len() as u64;
+    if let Some(points) = header.points
+        && points != found
+    {
+        whole.warnings.push(format!(
+            "{HEADER} promises {points} points, its tiles hold {found}"
+        ));
+    }
+    if let Some(crs) = header.srs.as_ref().and_then(Srs::crs) {
+        whole.crs = Some(crs);
+    }
+    whole.expect_points()?;
+    Ok(whole)
+}
+
+/// Adds the points of a tile to those of the tiles before.
+fn add(whole: &mut CloudFile, part: CloudFile) {
+    let colors = part.cloud.colors;
+    if colors.is_empty() {
+        for point in part.cloud.points {
+            whole.push(point, None);
+        }
+    } else {
+        for (point, color) in part.cloud.points.into_iter().zip(colors) {
+            whole.push(point, Some(color));
+        }
+    }
+    whole.crs = whole.crs.take().or(part.crs);
+    whole.geographic |= part.geographic;
+    for warning in part.warnings {
+        if !whole.warnings.contains(&warning) {
+            whole.warnings.push(warning);
+        }
+    }
+}
+
+/// The keys of all tiles with points, coarse ones first.
+fn tiles(beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>) -> Result<Vec<String>, Fault> {
+    let root = "0-0-0-0".to_owned();
+    let mut seen = HashSet::from([root.clone()]);
+    let mut open = vec![root];
+    let mut tiles = Vec::new();
+    while let Some(next) = open.pop() {
+        let name = format!("ept-hierarchy/{next}.json");
+        let bytes = beside(&name).map_err(|fault| of_file(&name, fault))?;
+        let counts: Object<i64> = parse(&bytes).map_err(|fault| of_file(&name, fault))?;
+        for (key, count) in counts.0 {
+            let level = level(&key).ok_or_else(|| {
+                let what = format!("{name}: \"{key}\" is no key of a tile");
+                Fault::new(what, REMEDY)
+            })?;
+            if count > 0 {
+                tiles.push((level, key));
+            } else if count == -1 && seen.insert(key.clone()) {
+                open.push(key);
+            }
+            if tiles.len() + seen.len() > MOST_TILES {
+                let what = format!("it has more than {MOST_TILES} tiles");
+                return Err(Fault::new(what, "thin the cloud and export it as LAZ"));
+            }
+        }
+    }
+    tiles.sort();
+    // A key may stand in the file that refers to its own as well.
+    tiles.dedup();
+    Ok(tiles.into_iter().map(|(_, key)| key).collect())
+}
+
+/// The level of a key D-X-Y-Z, if it is one: keys become names of files.
+fn level(key: &str) -> Option<u32> {
+    let numbers: Option<Vec<u32>> = key
+        .split('-')
+        .map(|number| {
+            let plain = number.bytes().all(|byte| byte.is_ascii_digit());
+            number.parse().ok().filter(|_| plain)
+        })
+        .collect();
+    match numbers?[..] {
+        [level, _, _, _] => Some(level),
+        _ => None,
+    }
+}
+
+/// A fault of one of its files.
+fn of_file(name: &str, fault: Fault) -> Fault {
+    let place = fault
+        .line
+        .map(|line| format!(":{line}"))
+        .unwrap_or_default();
+    Fault::new(format!("{name}{place}: {}", fault.what), REMEDY)
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

@@ -1,0 +1,419 @@
+//! LAS and LAZ: ASPRS "LAS Specification 1.4 - R15" and the versions before it; LAZ is LASzip's
+//! compression of the same records.
+//!
+//! - Coordinates are integers with a scale and an offset in the header, so UTM values keep all
+//!   their digits: x = X * scale + offset.
+//! - Colours are 16 bits wide; many programs write 8-bit values into them all the same, which shows
+//!   in the largest value.
+//! - The coordinate system stands in a variable length record: WKT (OGC 01-009), or GeoTIFF keys, of
+//!   which 3072 (projected) or 2048 (geographic) hold an EPSG code.
+//!
+//! Decoding is done by the las crate, in portions, after [`claims`] has held the header against the
+//! file, so that a header that claims too much ends in an error instead of in memory. Its decompressor asserts on damaged data; that panic is caught here
+//! and becomes an error like any other.
+
+mod claims;
+
+use std::io::{Read, Seek};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use glam::DVec3;
+use las::PointDataBuilder;
+
+use claims::{RecordCount, WithCount};
+
+use crate::clouds::cloud_file::{CloudFile, counts_degrees, first_not_finite};
+use crate::fault::Fault;
+use crate::jobs::Progress;
+
+/// How many points are decoded at once: ten compressed chunks, so that all cores have work.
+const PORTION: u64 = 500_000;
+
+/// The most bytes of records that are decoded at once.
+const PORTION_BYTES: u64 = 64 << 20;
+
+/// Reads a LAS or LAZ file.
+///
+/// # Errors
+/// Where it is no such file, is cut off, or a coordinate is not finite.
+pub(crate) fn read(
+    mut input: impl Read + Seek + Send + Sync + 'static,
+    progress: &Progress,
+) -> Result<CloudFile, Fault> {
+    // Nothing outlives the closure that a panic could have left half-done.
+    catch_unwind(AssertUnwindSafe(|| {
+        let count = claims::check(&mut input)?;
+        if count.found == count.stated {
+            return decode(input, progress);
+        }
+        let RecordCount { stated, found } = count;
+        let mut file = decode(WithCount::new(input, found), progress)?;
+        file.warnings.push(format!(
+            "its header states {stated} variable length records, and there are {found} in front of its points: these are read"
+        ));
+        Ok(file)
+    }))
+    .unwrap_or_else(|_| {
+        Err(Fault::new(
+            "its compressed points are damaged",
+            "copy or export it again",
+        ))
+    })
+}
+
+fn decode(
+    input: impl Read + Seek + Send + Sync + 'static,
+    progress: &Progress,
+) -> Result<CloudFile, Fault> {
+    let broken = |error: las::Error| {
+        Fault::new(
+            format!("it cannot be read as LAS or LAZ ({error})"),
+            "copy or export it again",
+        )
+    };
+    let mut reader = las::Reader::new(input).map_err(broken)?;
+    let total = reader.header().number_of_points();
+    let mut file = CloudFile {
+        crs: crs(reader.header()),
+        ..CloudFile::default()
+    };
+    let in_degrees = is_geographic(file.crs.as_deref(), reader.header());
+    file.set_geographic(in_degrees);
+    let mut portion = PointDataBuilder::new().for_header(reader.header()).build();
+    let portion_size = PORTION.min(PORTION_BYTES / portion.record_len().max(1) as u64);
+    let mut wide_colors: Vec<[u16; 3]> = Vec::new();
+    loop {
+        progress.advance(file.cloud.points.len() as u64, total)?;
+        let read = reader.fill_points(portion_size, &mut portion).map_err(|error| {
+            let done = file.cloud.points.len();
+            Fault::new(
+                format!("it breaks off after about {done} of the {total} points that its header promises ({error})"),
+                "copy or export it again",
+            )
+        })?;
+        if read == 0 {
+            break;
+        }
+        let coordinates = portion.x().zip(portion.y()).zip(portion.z());
+        file.cloud
+            .points
+            .extend(coordinates.map(|((x, y), z)| DVec3::new(x, y, z)));
+        if let Some(colors) = portion.rgb() {
+            wide_colors.extend(colors.map(|(r, g, b)| [r, g, b]));
+        }
+    }
+    if let Some(index) = first_not_finite(&file.cloud.points) {
+        return Err(Fault::new(
+            format!("point {index} (counted from 0) has a coordinate that is not a finite number"),
+            "check the scale and offset in its header",
+        ));
+    }
+    let eight_bits = wide_colors.iter().flatten().all(|&channel| channel < 256);
+    let shift = if eight_bits { 0 } else { 8 };
+    file.cloud.colors = wide_colors
+        .iter()
+        .map(|color| color.map(|channel| (channel >> shift) as u8))
+        .collect();
+    Ok(file)
+}
+
+/// The coordinate system as "EPSG:n" or WKT.
+fn crs(header: &las::Header) -> Option<String> {
+    if let Some(wkt) = header.get_wkt_crs_bytes() {
+        let text = String::from_utf8_lossy(wkt);
+        let text = text.trim_matches(|c: char| c == '\0' || c.is_whitespace());
+        if !text.is_empty() {
+            return Some(text.to_owned());
+        }
+    }
+    let keys = header.get_geotiff_crs().ok()??;
+    // 32767 means "defined by other keys", 0 undefined.
+    let code = |key: Option<u16>| key.filter(|&code| code != 0 && code != 32_767);
+    let projected = keys.get_projected_crs_geo_key_value();
+    let code = match code(projected) {
+        // The base of a projection that is defined by parameters is not its own system.
+        None if projected.is_none() || keys.get_gt_model_type_geo_key_value() == Some(2) => {
+            code(keys.get_geodetic_crs_geo_key_value())?
+        }
+        of_projection => of_projection?,
+    };
+    Some(format!("EPSG:{code}"))
+}
+
+fn is_geographic(crs: Option<&str>, header: &las::Header) -> bool {
+    match crs {
+        Some(crs) => counts_degrees(crs),
+        None => {
+            let keys = header.get_geotiff_crs().ok().flatten();
+            // GTModelTypeGeoKey 2: a geographic system.
+            keys.is_some_and(|k| k.get_gt_model_type_geo_key_value() == Some(2))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use las::{Builder, Color, Point, Transform, Vector, Writer};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// A hundred points of a format and version, at UTM coordinates.
+    fn sample(format: u8, minor: u8, compressed: bool) -> Vec<u8> {
+        let mut builder = Builder::from((1, minor));
+        builder.point_format = las::point::Format::new(format).unwrap();
+        builder.point_format.is_compressed = compressed;
+        let axis = |offset| Transform {
+            scale: 0.001,
+            offset,
+        };
+        builder.transforms = Vector {
+            x: axis(500_000.0),
+            y: axis(5_000_000.0),
+            z: axis(0.0),
+        };
+        let (has_color, has_time, has_nir) = (
+            builder.point_format.has_color,
+            builder.point_format.has_gps_time,
+            builder.point_format.has_nir,
+        );
+        let mut writer =
+            Writer::new(Cursor::new(Vec::new()), builder.into_header().unwrap()).unwrap();
+        for i in 0..100_u16 {
+            let step = f64::from(i);
+            let point = Point {
+                x: 500_000.0 + step * 0.5,
+                y: 5_000_000.125 - step,
+                z: 161.001 + step,
+                color: has_color.then(|| Color::new(256 * i, 512, 65_535)),
+                gps_time: has_time.then_some(step),
+                nir: has_nir.then_some(7),
+                ..Point::default()
+            };
+            writer.write_point(point).unwrap();
+        }
+        writer.into_inner().unwrap().into_inner()
+    }
+
+    fn read_bytes(bytes: Vec<u8>) -> Result<CloudFile, Fault> {
+        read(Cursor::new(bytes), &Progress::default())
+    }
+
+    #[test]
+    fn every_point_format_without_waveforms() {
+        for compressed in [false, true] {
+            for (format, minor) in [
+                (0, 0),
+                (0, 1),
+                (1, 1),
+                (2, 2),
+                (3, 3),
+                (6, 4),
+                (7, 4),
+                (8, 4),
+            ] {
+                // LASzip starts at version 1.2 of the las crate's writer.
+                if compressed && minor < 2 {
+                    continue;
+                }
+                let file = read_bytes(sample(format, minor, compressed)).unwrap();
+                let last = *file.cloud.points.last().unwrap();
+                let expected = DVec3::new(500_049.5, 4_999_901.125, 260.001);
+                assert_eq!(file.cloud.points.len(), 100);
+                assert!((last - expected).length() < 1e-9, "format {format}: {last}");
+                if [2, 3, 7, 8].contains(&format) {
+                    assert_eq!(file.cloud.colors[99], [99, 2, 255], "format {format}");
+                } else {
+                    assert!(file.cloud.colors.is_empty());
+                }
+                assert_eq!(file.crs, None);
+            }
+        }
+    }
+
+    #[test]
+    fn truncation_is_an_error() {
+        for compressed in [false, true] {
+            let whole = sample(3, 2, compressed);
+            for end in (0..whole.len() - 60).step_by(7) {
+                let fault = read_bytes(whole[..end].to_vec());
+                assert!(
+                    fault.is_err(),
+                    "cut at {end} of {} (compressed: {compressed})",
+                    whole.len()
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_lying_count_is_an_error() {
+        for compressed in [false, true] {
+            let mut bytes = sample(3, 2, compressed);
+            // Number of point records, at byte 107 of headers before 1.4.
+            bytes[107..111].copy_from_slice(&4_000_000_000_u32.to_le_bytes());
+            let fault = read_bytes(bytes).unwrap_err();
+            assert!(compressed || fault.what.contains("4000000000"), "{fault}");
+        }
+    }
+
+    /// Found by the fuzzer: the las crate asked for 585 472 246 525 460 480 bytes, and the program was
+    /// ended.
+    #[test]
+    fn extended_records_that_claim_more_than_the_file_are_refused() {
+        for compressed in [false, true] {
+            let mut bytes = sample(6, 4, compressed);
+            let start = bytes.len() as u64;
+            // Of header 1.4: where the first one begins, and how many there are.
+            bytes[235..243].copy_from_slice(&start.to_le_bytes());
+            bytes[243..247].copy_from_slice(&1_u32.to_le_bytes());
+            let with_record = |claimed: u64| {
+                let mut record = [0; 60];
+                record[20..28].copy_from_slice(&claimed.to_le_bytes());
+                [&bytes[..], &record, b"abcde"].concat()
+            };
+            assert_eq!(read_bytes(with_record(5)).unwrap().cloud.points.len(), 100);
+            for claimed in [6, 585_472_246_525_460_480, u64::MAX] {
+                let fault = read_bytes(with_record(claimed)).unwrap_err();
+                assert!(fault.what.contains("extended variable length"), "{fault}");
+            }
+            bytes[235..243].copy_from_slice(&u64::MAX.to_le_bytes());
+            assert!(read_bytes(bytes).is_err());
+        }
+    }
+
+    /// Found by the fuzzer: 57 664 316 192 bytes were asked for, for the chunks of no point.
+    #[test]
+    fn a_lying_chunk_table_is_refused_without_points_too() {
+        let mut bytes = sample(3, 2, true);
+        bytes[107..111].fill(0);
+        let begin = u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
+        let place = u64::from_le_bytes(bytes[begin..begin + 8].try_into().unwrap()) as usize;
+        bytes[place + 4..place + 8].copy_from_slice(&u32::MAX.to_le_bytes());
+        let fault = read_bytes(bytes).unwrap_err();
+        assert!(fault.what.contains("4294967295 chunks"), "{fault}");
+    }
+
+    #[test]
+    fn scales_that_are_no_numbers_are_refused() {
+        let mut bytes = sample(0, 2, false);
+        // The x scale, at byte 131.
+        bytes[131..139].copy_from_slice(&f64::NAN.to_le_bytes());
+        assert!(
+            read_bytes(bytes)
+                .unwrap_err()
+                .what
+                .contains("not a finite number")
+        );
+    }
+
+    /// The sample with these variable length records, and their number overwritten.
+    fn with_records(
+        records: &[las::Vlr],
+        compressed: bool,
+        stated: impl Fn(u32) -> u32,
+    ) -> Vec<u8> {
+        let mut builder = Builder::from((1, 4));
+        builder.point_format = las::point::Format::new(6).unwrap();
+        builder.point_format.is_compressed = compressed;
+        builder.has_wkt_crs = true;
+        builder.vlrs = records.to_vec();
+        let axis = Transform {
+            scale: 0.01,
+            offset: 0.0,
+        };
+        builder.transforms = Vector {
+            x: axis,
+            y: axis,
+            z: axis,
+        };
+        let header = builder.into_header().unwrap();
+        let mut writer = Writer::new(Cursor::new(Vec::new()), header).unwrap();
+        let (x, y, z) = (3_980_581.0, -11_903.0, 4_966_824.0);
+        for i in 0..10 {
+            let x = x + f64::from(i);
+            let point = Point {
+                x,
+                y,
+                z,
+                gps_time: Some(0.0),
+                ..Point::default()
+            };
+            writer.write_point(point).unwrap();
+        }
+        let mut bytes = writer.into_inner().unwrap().into_inner();
+        let count = u32::from_le_bytes(bytes[100..104].try_into().unwrap());
+        bytes[100..104].copy_from_slice(&stated(count).to_le_bytes());
+        bytes
+    }
+
+    fn wkt_record(wkt: &str) -> las::Vlr {
+        las::Vlr {
+            user_id: "LASF_Projection".to_owned(),
+            record_id: 2112,
+            description: String::new(),
+            data: wkt.as_bytes().to_vec(),
+        }
+    }
+
+    #[test]
+    fn a_wrong_count_of_records_is_said_and_mended() {
+        let records = [wkt_record("EPSG:32633")];
+        for compressed in [false, true] {
+            let read = |stated: &dyn Fn(u32) -> u32| {
+                let file = read_bytes(with_records(&records, compressed, stated)).unwrap();
+                assert_eq!(file.cloud.points.len(), 10);
+                assert_eq!(file.crs.as_deref(), Some("EPSG:32633"));
+                file.warnings.join("\n")
+            };
+            assert_eq!(read(&|count| count), "");
+            for wrong in [0, 9, u32::MAX] {
+                let said = read(&|_| wrong);
+                assert!(said.contains(&format!("states {wrong} variable")), "{said}");
+            }
+        }
+    }
+
+    /// WKT 2 as PROJ writes it for EPSG:4978, with its code and without, and WKT 1.
+    #[test]
+    fn positions_from_the_earths_centre_are_no_degrees() {
+        let wkt2 = r#"GEODCRS["WGS 84",ENSEMBLE["World Geodetic System 1984 ensemble",MEMBER["World Geodetic System 1984 (G2139)"],ELLIPSOID["WGS 84",6378137,298.257223563,LENGTHUNIT["metre",1]],ENSEMBLEACCURACY[2.0]],PRIMEM["Greenwich",0,ANGLEUNIT["degree",0.0174532925199433]],CS[Cartesian,3],AXIS["(X)",geocentricX,ORDER[1],LENGTHUNIT["metre",1]],AXIS["(Y)",geocentricY,ORDER[2],LENGTHUNIT["metre",1]],AXIS["(Z)",geocentricZ,ORDER[3],LENGTHUNIT["metre",1]]"#;
+        let wkt1 = r#"GEOCCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["metre",1],AUTHORITY["EPSG","4978"]]"#;
+        let texts = [
+            format!("{wkt2},ID[\"EPSG\",4978]]"),
+            format!("{wkt2}]"),
+            wkt1.to_owned(),
+        ];
+        for text in texts {
+            let bytes = with_records(&[wkt_record(&text)], true, |count| count);
+            let file = read_bytes(bytes).unwrap();
+            assert!(
+                !file.geographic && file.warnings.is_empty(),
+                "{:?}",
+                file.warnings
+            );
+            let crs = crate::geodesy::Crs::understand(file.crs.as_deref().unwrap()).unwrap();
+            assert_eq!(crs.kind(), crate::geodesy::CrsKind::Geocentric);
+        }
+        let degrees = with_records(&[wkt_record("EPSG:4326")], false, |count| count);
+        assert!(read_bytes(degrees).unwrap().geographic);
+        for empty in ["", " \0\0", "\0"] {
+            let bytes = with_records(&[wkt_record(empty)], false, |count| count);
+            assert_eq!(read_bytes(bytes).unwrap().crs, None);
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(400))]
+
+        #[test]
+        fn no_damage_panics(at in 0..5000_usize, byte in any::<u8>(), compressed in any::<bool>()) {
+            let mut bytes = sample(3, 2, compressed);
+            let at = at % bytes.len();
+            bytes[at] = byte;
+            let _ = read_bytes(bytes);
+        }
+    }
+}

@@ -1,0 +1,370 @@
+//! Points as text: .xyz, .txt, .csv, .asc. There is no specification; this is what CloudCompare,
+//! PDAL, Agisoft, Pix4D and spreadsheets write.
+//!
+//! - One point a line; empty lines and lines that begin with `#` or `//` are passed over, but the
+//!   first line, or the first behind such marks, may name the columns.
+//! - The separator is found on the first line of numbers: comma, semicolon, tab or spaces. With
+//!   semicolons the decimal sign may be a comma.
+//! - Without names the columns are x y z, and where six or more stand and the next three are whole
+//!   numbers from 0 to 255, red green blue. With names they are found by name: x, y, z (also
+//!   easting, northing, elevation, height, altitude, or shorter; a unit may follow in brackets), red, green,
+//!   blue (also r, g, b). CloudCompare's Rf, Gf, Bf are colours from 0 to 1. Other named columns may
+//!   hold anything, or nothing.
+//! - A line with a single whole number right behind the names, or first of all, is a count and is
+//!   passed over.
+
+use std::io::BufRead;
+
+use glam::DVec3;
+
+use crate::clouds::cloud_file::CloudFile;
+use crate::fault::Fault;
+use crate::jobs::Progress;
+use crate::text::fields::shown;
+use crate::text::text_lines::TextLines;
+
+/// Reads points of a text of `size` bytes (for the progress).
+///
+/// # Errors
+/// Where a line has too few columns or something that is not a finite number, or the columns cannot
+/// be told.
+pub(crate) fn read(
+    input: impl BufRead,
+    size: u64,
+    progress: &Progress,
+) -> Result<CloudFile, Fault> {
+    let mut lines = TextLines::new(input);
+    let mut file = CloudFile::default();
+    let mut named: Option<Columns> = None;
+    let mut layout: Option<(Separator, Columns)> = None;
+    let mut fields = Vec::new();
+    loop {
+        if lines.line().is_multiple_of(65_536) {
+            progress.advance(lines.bytes(), size)?;
+        }
+        let line_number = lines.line() + 1;
+        let Some(line) = lines.next_line()? else {
+            break;
+        };
+        let line = line.trim();
+        let (text, is_comment) = match line.strip_prefix("//").or_else(|| line.strip_prefix('#')) {
+            Some(text) => (text.trim(), true),
+            None => (line, false),
+        };
+        if text.is_empty() || (is_comment && (layout.is_some() || named.is_some())) {
+            continue;
+        }
+        let (separator, columns) = match layout {
+            Some(known) => known,
+            None => {
+                let separator = Separator::of(text);
+                let wrong = separator.wrong_number(text, &mut fields, named.as_ref());
+                if let Some(word) = wrong {
+                    // Names, or a comment in words.
+                    let columns = Columns::of_names(&separator.split(text));
+                    if columns.is_none() && !is_comment {
+                        return Err(match named {
+                            Some(_) => not_a_number(line_number, word),
+                            None => unknown_columns(line_number, text),
+                        });
+                    }
+                    named = columns.or(named);
+                    continue;
+                }
+                // A comment of numbers, or a count.
+                if is_comment || fields.len() == 1 {
+                    continue;
+                }
+                let columns = named.unwrap_or_else(|| Columns::of_numbers(&fields));
+                layout = Some((separator, columns));
+                (separator, columns)
+            }
+        };
+        if let Some(word) = separator.wrong_number(text, &mut fields, named.as_ref()) {
+            return Err(not_a_number(line_number, word));
+        }
+        let Some((position, color)) = columns.pick(&fields) else {
+            let what = format!("it has {} columns, too few", fields.len());
+            return Err(Fault::at(
+                line_number,
+                what,
+                "give x, y and z on every line",
+            ));
+        };
+        if !position.is_finite() {
+            return Err(Fault::at(
+                line_number,
+                "a coordinate is not a finite number",
+                "correct or remove the line",
+            ));
+        }
+        file.cloud.points.push(position);
+        file.cloud.colors.extend(color);
+    }
+    if file.cloud.points.is_empty() {
+        return Err(Fault::new("it has no points", "give lines with x, y and z"));
+    }
+    Ok(file)
+}
+
+fn not_a_number(line: u64, word: &str) -> Fault {
+    let what = format!("'{}' is not a number", shown(word));
+    Fault::at(line, what, "correct or remove the line")
+}
+
+fn unknown_columns(line: u64, text: &str) -> Fault {
+    Fault::at(
+        line,
+        format!("the columns '{}' do not name x, y and z", shown(text)),
+        "name the columns x, y, z, or remove the line",
+    )
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Separator {
+    Comma,
+    /// The decimal sign may be a comma.
+    Semicolon,
+    Tab,
+    Spaces,
+}
+
+impl Separator {
+    fn of(line: &str) -> Self {
+        if line.contains(';') {
+            Self::Semicolon
+        } else if line.contains(',') {
+            Self::Comma
+        } else if line.contains('\t') {
+            Self::Tab
+        } else {
+            Self::Spaces
+        }
+    }
+
+    fn split(self, line: &str) -> Vec<&str> {
+        match self {
+            Self::Comma => line.split(',').map(str::trim).collect(),
+            Self::Semicolon => line.split(';').map(str::trim).collect(),
+            // Tabs are mixed with spaces often enough to be treated alike.
+            Self::Tab | Self::Spaces => line.split_ascii_whitespace().collect(),
+        }
+    }
+
+    /// The numbers of a line, NaN for the words that are none, and the first of those that matters:
+    /// where the columns are named, only the columns that are read do.
+    fn wrong_number<'a>(
+        self,
+        line: &'a str,
+        numbers: &mut Vec<f64>,
+        named: Option<&Columns>,
+    ) -> Option<&'a str> {
+        numbers.clear();
+        let mut wrong = None;
+        let mut push = |word: &'a str| {
+            let bare = word.trim_matches('"');
+            let number = if self == Self::Semicolon && bare.contains(',') {
+                bare.replace(',', ".").parse()
+            } else {
+                bare.parse()
+            };
+            let matters = named.is_none_or(|columns| columns.reads(numbers.len()));
+            if number.is_err() && matters && wrong.is_none() {
+                wrong = Some(word);
+            }
+            numbers.push(number.unwrap_or(f64::NAN));
+        };
+        match self {
+            Self::Comma | Self::Semicolon => {
+                let sign = if self == Self::Comma { ',' } else { ';' };
+                let line = line.strip_suffix(sign).unwrap_or(line);
+                line.split(sign).map(str::trim).for_each(&mut push);
+            }
+            Self::Tab | Self::Spaces => line.split_ascii_whitespace().for_each(&mut push),
+        }
+        wrong
+    }
+}
+
+/// A column's name without quotes, and without the unit of `X [m]` and `x(m)`.
+fn plain_name(name: &str) -> &str {
+    let name = name.trim_matches(['"', '\'']);
+    name.split(['[', '(']).next().unwrap_or_default().trim()
+}
+
+/// Where on a line the coordinates and colours stand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Columns {
+    position: [usize; 3],
+    color: Option<[usize; 3]>,
+    /// Colours from 0 to 1.
+    fractions: bool,
+    /// The angles of a camera: where they are named, words are photos' names, and this is no cloud.
+    angles: bool,
+}
+
+impl Columns {
+    fn of_names(names: &[&str]) -> Option<Self> {
+        let names: Vec<&str> = names.iter().map(|name| plain_name(name)).collect();
+        // The first alias that stands there: "x" before "e" of a line that has both.
+        let find = |aliases: &[&str]| {
+            let place = |alias: &&str| {
+                names
+                    .iter()
+                    .position(|name| name.eq_ignore_ascii_case(alias))
+            };
+            aliases.iter().find_map(place)
+        };
+        let position = [
+            find(&["x", "easting", "east", "e"])?,
+            find(&["y", "northing", "north", "n"])?,
+            find(&["z", "elevation", "height", "altitude", "elev", "alt", "h"])?,
+        ];
+        let color = |aliases: [&[&str]; 3]| {
+            let [red, green, blue] = aliases.map(find);
+            Some([red?, green?, blue?])
+        };
+        let fractions = color([&["rf"], &["gf"], &["bf"]]);
+        let whole = color([&["red", "r"], &["green", "g"], &["blue", "b"]]);
+        Some(Self {
+            position,
+            color: fractions.or(whole),
+            fractions: fractions.is_some(),
+            angles: find(&["omega", "yaw", "heading", "pitch"]).is_some(),
+        })
+    }
+
+    fn of_numbers(first: &[f64]) -> Self {
+        let is_channel = |n: &f64| n.fract() == 0.0 && (0.0..=255.0).contains(n);
+        let colors = first
+            .get(3..6)
+            .is_some_and(|three| three.iter().all(is_channel));
+        Self {
+            position: [0, 1, 2],
+            color: colors.then_some([3, 4, 5]),
+            fractions: false,
+            angles: false,
+        }
+    }
+
+    fn reads(&self, column: usize) -> bool {
+        let angles = self.angles;
+        angles
+            || self.position.contains(&column)
+            || self.color.is_some_and(|three| three.contains(&column))
+    }
+
+    fn pick(&self, fields: &[f64]) -> Option<(DVec3, Option<[u8; 3]>)> {
+        let three = |columns: [usize; 3]| {
+            let [a, b, c] = columns.map(|column| fields.get(column).copied());
+            Some([a?, b?, c?])
+        };
+        let position = DVec3::from_array(three(self.position)?);
+        let color = match self.color {
+            Some(columns) => {
+                let factor = if self.fractions { 255.0 } else { 1.0 };
+                // `as` saturates.
+                Some(three(columns)?.map(|channel| (channel * factor).round() as u8))
+            }
+            None => None,
+        };
+        Some((position, color))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn read_text(text: &str) -> Result<CloudFile, Fault> {
+        read(text.as_bytes(), text.len() as u64, &Progress::default())
+    }
+
+    fn points(text: &str) -> Vec<DVec3> {
+        read_text(text).unwrap().cloud.points
+    }
+
+    #[test]
+    fn separators_and_headers_are_found() {
+        let expected = [
+            DVec3::new(500_000.123_456, 2.5, -3.0),
+            DVec3::new(4.0, 5.0, 6e-3),
+        ];
+        for text in [
+            "500000.123456 2.5 -3\n4 5 6e-3\n",
+            "500000.123456\t2.5\t-3\r\n4\t5\t6e-3\r\n",
+            "X,Y,Z\n500000.123456,2.5,-3\n4,5,6e-3",
+            "x, y, z, intensity\n500000.123456, 2.5, -3, 7\n4, 5, 6e-3, 7",
+            "X  Y  Z\n500000.123456  2.5  -3\n  4  5  6e-3\n",
+            "name;Northing;Elevation;Easting\n1;2,5;-3;500000,123456\n2;5;0,006;4\n",
+            "\u{feff}\"x\",\"y\",\"z\"\n500000.123456,2.5,-3\n\n4,5,6e-3\n",
+            "# a comment in words\n# x y z\n500000.123456 2.5 -3\n# another\n4 5 6e-3\n",
+            "//X Y Z Rf Gf Bf\n2\n500000.123456 2.5 -3 0 0 1\n4 5 6e-3 1 0 0\n",
+            "2\n500000.123456 2.5 -3\n4 5 6e-3\n",
+            "500000.123456,2.5,-3,\n4,5,6e-3,\n",
+        ] {
+            assert_eq!(points(text), expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn other_named_columns_hold_anything() {
+        let expected = [DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0)];
+        for text in [
+            "label,x,y,z,class\nP1,1,2,3,rock\nP2,4,5,6,\n",
+            "E,N,H\n1,2,3\n4,5,6\n",
+            "n,e,h,z,y,x\n0,0,0,3,2,1\n0,0,0,6,5,4\n",
+            "X [m];Y [m];Z (m);time\n1,0;2,0;3,0;2024-05-01 10:00\n4;5;6;\n",
+            "\"x\",\"y\",\"z\"\n\"1\",\"2\",\"3\"\n\"4\",\"5\",\"6\"\n",
+            "//X Y Z R G B Scalar_field\n2\n1 2 3 4 5 6 nan\n4 5 6 7 8 9 nan\n",
+        ] {
+            assert_eq!(points(text), expected, "{text:?}");
+        }
+        let fault = |text: &str| read_text(text).unwrap_err();
+        for (text, line, word) in [
+            ("label,x,y,z\nP1,one,2,3\n", 2, "'one'"),
+            ("label,x,y,z\n1,1,2,3\n1,one,2,3\n", 3, "'one'"),
+            ("1 2 3 a\n", 1, "do not name"),
+            ("label,x,y,z,yaw\na.jpg,1,2,3,4\n", 2, "'a.jpg'"),
+        ] {
+            let fault = fault(text);
+            assert_eq!(fault.line, Some(line), "{fault}");
+            assert!(fault.what.contains(word), "{fault}");
+        }
+    }
+
+    #[test]
+    fn colours() {
+        let colors = |text: &str| read_text(text).unwrap().cloud.colors;
+        assert_eq!(
+            colors("1 2 3 255 0 17\n1 2 3 1 2 3\n"),
+            [[255, 0, 17], [1, 2, 3]]
+        );
+        // Normals are no colours.
+        assert!(colors("1 2 3 0.1 0.9 0\n").is_empty());
+        assert_eq!(colors("x,y,z,blue,green,red\n1,2,3,4,5,6\n"), [[6, 5, 4]]);
+        assert_eq!(colors("//X Y Z Rf Gf Bf\n1 2 3 1 0.5 0\n"), [[255, 128, 0]]);
+    }
+
+    #[test]
+    fn mistakes_are_placed() {
+        let fault = |text: &str| read_text(text).unwrap_err();
+        assert_eq!(fault("X,Y,X\n\n0, 0, 0\n").line, Some(1));
+        assert_eq!(fault("1 2 3\n4 5\n").line, Some(2));
+        assert_eq!(fault("1 2 3\n4 5 six\n").line, Some(2));
+        assert_eq!(fault("1 2 3\n4 5 nan\n").line, Some(2));
+        assert_eq!(fault("1 2 3\n4 5 1e999\n").line, Some(2));
+        assert!(fault("").what.contains("no points"));
+        assert!(fault("x,y,z\n").what.contains("no points"));
+        assert!(read(&[0xff, 0xfe, 0][..], 3, &Progress::default()).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_panics(text in "([xyz,; \t#0-9.e+-]{0,20}\n){0,20}") {
+            let _ = read_text(&text);
+        }
+    }
+}

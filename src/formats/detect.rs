@@ -1,0 +1,235 @@
+//! What kind a file or folder is: by its first bytes where they are distinctive, else by its name.
+
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use crate::cameras::json_camera;
+use crate::candidates::{Contents, only_below, several};
+use crate::clouds::ept;
+use crate::fault::Fault;
+use crate::files::{FileError, open_file};
+use crate::packages::package::{self, Package};
+use crate::packages::{metashape, open3d};
+use crate::poses::trajectory::{self, TrajectoryFormat};
+use crate::poses::{poses_csv, poses_opk};
+use crate::tables::size_distributions;
+
+/// What a file or folder holds.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Kind {
+    /// A flight.toml, at this path.
+    Flight(PathBuf),
+    /// Points, perhaps with faces.
+    Cloud(CloudFormat),
+    /// The calibration of a camera.
+    Camera,
+    /// The poses of photos: a poses.csv, or what packages write like it.
+    Poses,
+    /// Poses over time.
+    Trajectory(TrajectoryFormat),
+    /// A table of size distributions; see [`read_size_distributions`].
+    SizeDistributions,
+    /// Cameras and posed photos as this package wrote them, in this file or folder.
+    Reconstruction(Package, PathBuf),
+}
+
+/// A format of clouds and meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CloudFormat {
+    /// Stanford polygons.
+    Ply,
+    /// LAS or LAZ.
+    Las,
+    /// Wavefront.
+    Obj,
+    /// Points as text.
+    Xyz,
+    /// Laser scans, ASTM E2807.
+    E57,
+    /// The Point Cloud Library's.
+    Pcd,
+    /// Leica's points.
+    Pts,
+    /// Leica's scans.
+    Ptx,
+    /// Triangles for stereolithography.
+    Stl,
+    /// glTF 2.0 as JSON or as .glb.
+    Gltf,
+    /// An elevation model.
+    GeoTiff,
+    /// Entwine Point Tile: a folder of LAZ tiles, by its ept.json.
+    Ept,
+}
+
+impl Kind {
+    /// What it holds, for people.
+    pub fn in_words(&self) -> &'static str {
+        match self {
+            Self::Flight(_) => "a flight",
+            Self::Cloud(_) => "a cloud or mesh",
+            Self::Camera => "a camera calibration",
+            Self::Poses => "poses",
+            Self::Trajectory(_) => "a trajectory",
+            Self::SizeDistributions => "size distributions",
+            Self::Reconstruction(package, _) => package.in_words(),
+        }
+    }
+}
+
+/// Everything that can be opened, for messages.
+const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, EPT (ept.json), XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos; a CSV of size distributions";
+
+/// How many bytes of a file are looked at to tell its kind.
+pub(crate) const DETECTED_BY: usize = 4096;
+
+/// Tells what a file or folder holds: by its first bytes where they are distinctive, else by its
+/// name.
+///
+/// # Errors
+/// Where it is missing or of no known kind.
+pub fn detect(path: &Path) -> Result<Kind, FileError> {
+    if path.is_dir() {
+        return detect_folder(path);
+    }
+    let mut start = Vec::new();
+    open_file(path)?
+        .take(DETECTED_BY as u64)
+        .read_to_end(&mut start)
+        .map_err(|e| {
+            FileError::new(
+                path,
+                Fault::new(format!("it cannot be read ({e})"), "check the disk"),
+            )
+        })?;
+    if start.is_empty() {
+        return Err(FileError::new(
+            path,
+            Fault::new("it is empty", "export it again"),
+        ));
+    }
+    if let Some((package, path)) = package::of_file(path, &start) {
+        return Ok(Kind::Reconstruction(package, path));
+    }
+    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&start);
+    for (magic, kind) in [
+        (&b"LASF"[..], Kind::Cloud(CloudFormat::Las)),
+        (b"ply\n", Kind::Cloud(CloudFormat::Ply)),
+        (b"ply\r", Kind::Cloud(CloudFormat::Ply)),
+        (b"ASTM-E57", Kind::Cloud(CloudFormat::E57)),
+        (b"# .PCD", Kind::Cloud(CloudFormat::Pcd)),
+        (b"glTF", Kind::Cloud(CloudFormat::Gltf)),
+        (b"II*\0", Kind::Cloud(CloudFormat::GeoTiff)),
+        (b"MM\0*", Kind::Cloud(CloudFormat::GeoTiff)),
+        (b"II+\0", Kind::Cloud(CloudFormat::GeoTiff)),
+        (b"MM\0+", Kind::Cloud(CloudFormat::GeoTiff)),
+        (b"%YAML", Kind::Camera),
+        (b"<?xml", Kind::Camera),
+        (b"<opencv_storage", Kind::Camera),
+    ] {
+        if text.starts_with(magic) {
+            return Ok(kind);
+        }
+    }
+    let name = path
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase();
+    if ept::is_header(text, &name) {
+        return Ok(Kind::Cloud(CloudFormat::Ept));
+    }
+    let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
+    if matches!(extension, "csv" | "txt" | "tum" | "kitti") {
+        let whole = start.len() < DETECTED_BY;
+        let text = String::from_utf8_lossy(text);
+        if let Some(format) = trajectory::recognise(&text, whole, &name) {
+            return Ok(Kind::Trajectory(format));
+        }
+    }
+    if matches!(extension, "csv" | "txt" | "tsv") {
+        let whole = start.len() < DETECTED_BY;
+        if size_distributions::is_table(&String::from_utf8_lossy(text), whole) {
+            return Ok(Kind::SizeDistributions);
+        }
+    }
+    Ok(match extension {
+        "toml" => Kind::Flight(path.to_owned()),
+        "ply" => Kind::Cloud(CloudFormat::Ply),
+        "las" | "laz" => Kind::Cloud(CloudFormat::Las),
+        "obj" => Kind::Cloud(CloudFormat::Obj),
+        "e57" => Kind::Cloud(CloudFormat::E57),
+        "pcd" => Kind::Cloud(CloudFormat::Pcd),
+        "pts" => Kind::Cloud(CloudFormat::Pts),
+        "ptx" => Kind::Cloud(CloudFormat::Ptx),
+        "stl" => Kind::Cloud(CloudFormat::Stl),
+        "gltf" | "glb" => Kind::Cloud(CloudFormat::Gltf),
+        "tif" | "tiff" => Kind::Cloud(CloudFormat::GeoTiff),
+        "yaml" | "yml" | "xml" => Kind::Camera,
+        "json" if json_camera::is_camera(&String::from_utf8_lossy(text)) => Kind::Camera,
+        "csv" | "txt" | "tsv" if poses_csv::has_photo_column(text) => Kind::Poses,
+        "csv" | "txt" | "tsv" if poses_opk::is_table(text) => Kind::Poses,
+        "csv" | "txt" if metashape::is_opk(&String::from_utf8_lossy(text)) => Kind::Poses,
+        "log" | "txt" if open3d::is_log(&String::from_utf8_lossy(text)) => Kind::Poses,
+        "geojson" | "json" if poses_opk::is_geojson(text) => Kind::Poses,
+        "csv" | "txt" | "xyz" | "asc" => Kind::Cloud(CloudFormat::Xyz),
+        _ => {
+            return Err(FileError::new(
+                path,
+                Fault::new(
+                    "a file of no known kind",
+                    format!("supported are {SUPPORTED}"),
+                ),
+            ));
+        }
+    })
+}
+
+fn detect_folder(path: &Path) -> Result<Kind, FileError> {
+    let flight = path.join("flight.toml");
+    if flight.is_file() {
+        return Ok(Kind::Flight(flight));
+    }
+    let mut meant = Contents::of(path).meant;
+    match (meant.pop(), meant.is_empty()) {
+        (Some((package, path)), true) => return Ok(Kind::Reconstruction(package, path)),
+        (Some(last), false) => {
+            meant.push(last);
+            return Err(several(path, meant));
+        }
+        (None, _) => {}
+    }
+    let of_model = |part: &str| {
+        [".bin", ".txt"]
+            .iter()
+            .any(|end| path.join(format!("{part}{end}")).is_file())
+    };
+    let parts = ["cameras", "images", "points3D"];
+    if parts.into_iter().any(of_model)
+        && let Some(missing) = parts.into_iter().find(|part| !of_model(part))
+    {
+        return Err(FileError::new(
+            path,
+            Fault::new(
+                format!("a COLMAP model without {missing}.bin or {missing}.txt"),
+                "copy the whole model",
+            ),
+        ));
+    }
+    if path.join(ept::HEADER).is_file() {
+        let fault = Fault::new("a folder of a cloud in tiles (EPT)", "open its ept.json");
+        return Err(FileError::new(path, fault));
+    }
+    if let Some(error) = only_below(path) {
+        return Err(error);
+    }
+    let what = match fs::read_dir(path) {
+        Ok(_) => "a folder with no flight.toml and no reconstruction in it".to_owned(),
+        Err(e) => format!("a folder that cannot be read ({e})"),
+    };
+    Err(FileError::new(
+        path,
+        Fault::new(what, format!("supported are {SUPPORTED}")),
+    ))
+}

@@ -1,0 +1,276 @@
+//! Photos alone, as a reconstruction: where each was taken and which way its camera looked, as its
+//! EXIF and XMP say (`photo_metadata` is the specification of those). With a cloud this is a flight
+//! without any structure from motion.
+//!
+//! Positions are (degrees east, degrees north, metres up) in EPSG:4326; rotations take camera axes to
+//! east, north, up at the photo's own place. Photos that do not say where they were or which way the
+//! camera looked, or say it in a way that is not known, are left out and counted; those with a place
+//! alone still are measured positions.
+//! Photos of one maker, model, camera, size and source of the focal length share a camera.
+//!
+//! Beside photos of DJI's drones with RTK there may be a `*_Timestamp.MRK`: its places, which have
+//! more digits and heights above the ellipsoid, go before EXIF's for the photos whose numbers it
+//! names, if they agree within 20 m.
+//!
+//! The errors to be expected are said in warnings, because they are the scale's errors: the focal
+//! length's part as it is, and the height's part of the distance to the ground.
+
+mod cameras;
+mod marks;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+
+use crate::fault::Fault;
+use crate::files::FileError;
+use crate::jobs::Progress;
+use crate::packages::reconstruction::{MeasuredPosition, PosedPhoto, Project, Reconstruction};
+use crate::photos::photo_metadata::{self, Fix, HeightReference, MeasuredPlace, PhotoMetadata};
+use cameras::Cameras;
+
+/// The endings of photos, in small letters. TIFF files are elevation models as often, and their
+/// metadata are not looked into.
+const ENDINGS: [&str; 3] = ["jpg", "jpeg", "png"];
+
+/// How many photos a warning names.
+const NAMED: usize = 3;
+
+/// Whether a file is named like a photo.
+pub(crate) fn is_photo(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    let ending = ending.to_ascii_lowercase();
+    ENDINGS.contains(&ending.as_str()) && path.is_file()
+}
+
+/// Whether a folder has photos in it.
+pub(crate) fn has_photos(folder: &Path) -> bool {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries
+        .map(|entry| entry.path())
+        .any(|path| is_photo(&path))
+}
+
+/// The photos in a folder, by name.
+///
+/// # Errors
+/// Where it cannot be read.
+pub(crate) fn photos_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
+    let failed = |e: std::io::Error| {
+        let what = format!("a folder that cannot be read ({e})");
+        FileError::new(folder, Fault::new(what, "check its permissions"))
+    };
+    let mut photos = Vec::new();
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if is_photo(&path) {
+            photos.push(path);
+        }
+    }
+    photos.sort();
+    Ok(photos)
+}
+
+/// Reads a folder of photos, or one photo.
+///
+/// # Errors
+/// Where no photo says where it was taken and which way its camera looked.
+pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileError> {
+    let (folder, files) = if path.is_dir() {
+        (path.to_owned(), photos_in(path)?)
+    } else {
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        (folder, vec![path.to_owned()])
+    };
+    progress.stage(format!("reading the headers of {} photos", files.len()));
+    let mut photos = Vec::new();
+    let mut left_out = LeftOut::default();
+    for file in &files {
+        let name = file.file_name().unwrap_or_default();
+        let name = name.to_string_lossy().into_owned();
+        match photo_metadata::read_file(file) {
+            Ok(metadata) => photos.push((name, metadata)),
+            Err(error) => left_out.add("cannot be read", format!("{name}: {}", error.fault)),
+        }
+    }
+    let mut warnings = marks::correct(&folder, &mut photos)?;
+    let mut reconstruction = Reconstruction {
+        package: "photos",
+        crs: Some("EPSG:4326".to_owned()),
+        sizes_known: true,
+        ..Reconstruction::default()
+    };
+    let mut cameras = Cameras::default();
+    let mut posed = Vec::new();
+    for (name, metadata) in &photos {
+        let Some(place) = metadata.place else {
+            left_out.add("have no position", name.clone());
+            continue;
+        };
+        let place = place.place;
+        reconstruction.measured_positions.push(MeasuredPosition {
+            photo: name.clone(),
+            position: place,
+        });
+        let Some(orientation) = &metadata.orientation else {
+            left_out.add(no_orientation(metadata), name.clone());
+            continue;
+        };
+        if metadata.place.is_none_or(|place| place.height.is_none()) {
+            left_out.add("have a position without a height", name.clone());
+            continue;
+        }
+        let Some(camera) = cameras.of(metadata) else {
+            left_out.add("do not say their focal length", name.clone());
+            continue;
+        };
+        let center = DVec3::new(place.longitude, place.latitude, place.height);
+        reconstruction.photos.push(PosedPhoto {
+            name: name.clone(),
+            camera,
+            pose: orientation.pose(center),
+        });
+        posed.push(metadata);
+    }
+    if reconstruction.photos.is_empty() {
+        return Err(FileError::new(path, left_out.all(files.len())));
+    }
+    warnings.extend(left_out.sentences(files.len()));
+    warnings.extend(cameras.warnings(&posed));
+    warnings.extend(of_places(&posed));
+    warnings.extend(of_photos(&photos));
+    reconstruction.cameras = cameras.into_cameras();
+    reconstruction.warnings = warnings;
+    Ok(Project {
+        reconstruction,
+        photos: Some(folder),
+        ..Project::default()
+    })
+}
+
+/// Photos that are left out, by the reason.
+#[derive(Default)]
+struct LeftOut {
+    by_reason: BTreeMap<String, Vec<String>>,
+}
+
+impl LeftOut {
+    fn add(&mut self, reason: impl Into<String>, photo: String) {
+        self.by_reason.entry(reason.into()).or_default().push(photo);
+    }
+
+    fn sentences(&self, all: usize) -> impl Iterator<Item = String> {
+        self.by_reason.iter().map(move |(reason, photos)| {
+            let count = photos.len();
+            format!(
+                "{count} of {all} photos are left out, because they {reason} ({})",
+                named(photos)
+            )
+        })
+    }
+
+    /// Why nothing is left.
+    fn all(&self, all: usize) -> Fault {
+        let reasons = self.by_reason.iter().map(|(reason, photos)| {
+            format!("{} of {all} {reason} ({})", photos.len(), named(photos))
+        });
+        let reasons: Vec<String> = reasons.collect();
+        Fault::new(
+            format!(
+                "photos that do not say enough to place them: {}",
+                reasons.join(", ")
+            ),
+            "give the reconstruction that was made from them, or a poses.csv",
+        )
+    }
+}
+
+/// Why it is not known which way a photo's camera looked.
+fn no_orientation(photo: &PhotoMetadata) -> String {
+    match photo.unknown_angles.as_slice() {
+        [] => "do not say which way the camera looked".to_owned(),
+        uris => format!(
+            "have angles in the XMP namespace '{}', of which it is not known whether they are the camera's and how they count",
+            uris.join("', '")
+        ),
+    }
+}
+
+/// The first names, and dots for more.
+fn named(names: &[String]) -> String {
+    let dots = if names.len() > NAMED { ", ..." } else { "" };
+    let first: Vec<&str> = names.iter().take(NAMED).map(String::as_str).collect();
+    first.join(", ") + dots
+}
+
+/// What is to be said of the photos' places: their heights' reference, how far off they may be, and
+/// how high above the take-off they are.
+fn of_places(photos: &[&PhotoMetadata]) -> Vec<String> {
+    let places: Vec<MeasuredPlace> = photos.iter().filter_map(|photo| photo.place).collect();
+    let mut warnings = Vec::new();
+    let relative: Vec<f64> = photos.iter().filter_map(|p| p.relative_altitude).collect();
+    let above_take_off = range(&relative).map_or_else(String::new, |(low, high)| {
+        format!("; the photos say {low:.1} to {high:.1} m above the take-off")
+    });
+    let mut references: BTreeMap<HeightReference, usize> = BTreeMap::new();
+    for reference in places.iter().filter_map(|place| place.height) {
+        *references.entry(reference).or_default() += 1;
+    }
+    for (reference, count) in references {
+        warnings.push(format!(
+            "the heights of {count} photos {}{above_take_off}",
+            reference.in_words()
+        ));
+    }
+    let mut fixes: BTreeMap<Option<Fix>, Vec<Option<DVec3>>> = BTreeMap::new();
+    for place in &places {
+        fixes.entry(place.fix).or_default().push(place.deviation);
+    }
+    for (fix, deviations) in fixes {
+        let count = deviations.len();
+        let what = match fix {
+            Some(Fix::RtkFixed) => "RTK fixed: a few centimetres",
+            Some(Fix::RtkFloat) => "RTK float: decimetres to metres",
+            Some(Fix::Single) => "without corrections: some 2 m across and 5 m in height",
+            Some(Fix::Nothing) => "without a fix: not to be trusted",
+            None => "of unknown quality, most likely some 2 m across and 5 m in height",
+        };
+        let worst = deviations.iter().flatten().copied().reduce(DVec3::max);
+        let stated = worst.map_or_else(String::new, |worst| {
+            let across = worst.x.max(worst.y);
+            format!(
+                " (the receiver states up to {across:.2} m across, {:.2} m in height)",
+                worst.z
+            )
+        });
+        warnings.push(format!(
+            "the positions of {count} photos are {what}{stated}"
+        ));
+    }
+    warnings
+}
+
+fn range(values: &[f64]) -> Option<(f64, f64)> {
+    let first = *values.first()?;
+    let wider = |(low, high): (f64, f64), &value: &f64| (low.min(value), high.max(value));
+    Some(values.iter().fold((first, first), wider))
+}
+
+/// The photos' own warnings, each said once with the photos that it is about.
+fn of_photos(photos: &[(String, PhotoMetadata)]) -> Vec<String> {
+    let mut by_warning: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for (name, metadata) in photos {
+        for warning in &metadata.warnings {
+            by_warning.entry(warning).or_default().push(name.clone());
+        }
+    }
+    let sentence = |(warning, photos): (&str, Vec<String>)| {
+        format!("{} photos ({}): {warning}", photos.len(), named(&photos))
+    };
+    by_warning.into_iter().map(sentence).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,5 @@
+//! Photos: their size, what their metadata say, and which file belongs to which name.
+
+pub mod photo_folder;
+pub mod photo_metadata;
+pub mod photo_size;

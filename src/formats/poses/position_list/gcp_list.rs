@@ -1,0 +1,197 @@
+//! OpenDroneMap's `gcp_list.txt` (docs.opendronemap.org, "Ground Control Points"; `opendm/gcp.py`).
+//!
+//! The first line names the coordinate system ("EPSG:2180", a PROJ string, "WGS84 UTM 17N"), then a
+//! line a mark, separated by tabs or spaces:
+//!
+//! ```text
+//! x y z pixel_x pixel_y image_name [point_name] [extras...]
+//! ```
+//!
+//! x is the easting or the longitude, y the northing or the latitude. Where no point is named, marks
+//! with the same coordinates belong to one point. OpenSfM, which takes the pixels from there, counts
+//! from the centre of the top-left pixel (`features.normalized_image_coordinates` adds 0.5), so 0.5
+//! is added here. A photo's name may hold blanks where it ends
+//! like an image file, or where tabs separate.
+//!
+//! Beside it, lists of points without marks are in use: `name x y z`, or `x y z`. Lines that begin
+//! with # are comments.
+
+use std::collections::HashMap;
+
+use glam::{DVec2, DVec3};
+
+use super::geo_file::content;
+use super::{ControlPoint, ControlPoints, check_degrees, is_geographic};
+use crate::fault::Fault;
+use crate::text::separated::Separator;
+
+/// Reads a gcp_list.txt whose first line says `crs`.
+pub(super) fn read(text: &str, crs: Option<String>) -> Result<ControlPoints, Fault> {
+    let geographic = is_geographic(crs.as_deref());
+    let mut points = Points::default();
+    for (line, number) in content(text) {
+        let fields = split(line);
+        let position = |at: usize| -> Result<DVec3, Fault> {
+            let [x, y, z] = [(0, "x"), (1, "y"), (2, "z")]
+                .map(|(place, name)| number_at(&fields, at + place, name, number));
+            let position = DVec3::new(x?, y?, z?);
+            if geographic {
+                check_degrees(number, position)?;
+            }
+            Ok(position)
+        };
+        let numbers = fields
+            .iter()
+            .take_while(|field| field.parse::<f64>().is_ok());
+        match (fields.len(), numbers.count()) {
+            (6.., 5..) => {
+                let pixel = DVec2::new(
+                    number_at(&fields, 3, "the pixel's x", number)?,
+                    number_at(&fields, 4, "the pixel's y", number)?,
+                );
+                let (photo, name) = photo_and_name(fields.get(5..).unwrap_or_default());
+                points.add(position(0)?, name, Some((photo, pixel + 0.5)))?;
+            }
+            (3, 3) => points.add(position(0)?, None, None)?,
+            (4, _) | (5.., 0) => {
+                points.add(position(1)?, fields.first().map(String::as_str), None)?
+            }
+            _ => {
+                return Err(Fault::at(
+                    number,
+                    format!("a line of {} fields", fields.len()),
+                    "a line of a gcp_list.txt is 'x y z pixel_x pixel_y image name', one without mark 'name x y z'",
+                ));
+            }
+        }
+    }
+    let warnings = points.warnings();
+    Ok(ControlPoints {
+        crs,
+        points: points.points,
+        warnings,
+    })
+}
+
+/// The fields: between tabs where there are enough of them, else between white space.
+fn split(line: &str) -> Vec<String> {
+    let mut tabs = Separator::Sign('\t').split(line);
+    tabs.retain(|field| !field.is_empty());
+    if tabs.len() >= 4 {
+        return tabs;
+    }
+    Separator::Blanks.split(line)
+}
+
+/// The photo and the point's name: a photo's name that holds blanks goes on to its ending.
+fn photo_and_name(fields: &[String]) -> (String, Option<&str>) {
+    let ends = |field: &String| {
+        let field = field.to_ascii_lowercase();
+        [".jpg", ".jpeg", ".png", ".tif", ".tiff", ".dng"]
+            .iter()
+            .any(|ending| field.ends_with(ending))
+    };
+    let last = fields.iter().position(ends).unwrap_or(0);
+    let photo = fields.get(..=last).unwrap_or_default().join(" ");
+    (photo, fields.get(last + 1).map(String::as_str))
+}
+
+fn number_at(fields: &[String], place: usize, name: &str, line: u64) -> Result<f64, Fault> {
+    let remedy = "check the line: 'x y z pixel_x pixel_y image name', or 'name x y z'";
+    let field = fields.get(place).map_or("", String::as_str);
+    match field.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(Fault::at(
+            line,
+            format!("{name} is '{field}', not a finite number"),
+            remedy,
+        )),
+    }
+}
+
+/// What tells points apart.
+#[derive(PartialEq, Eq, Hash)]
+enum Key {
+    Name(String),
+    Place([u64; 3]),
+}
+
+#[derive(Default)]
+struct Points {
+    points: Vec<ControlPoint>,
+    by_key: HashMap<Key, usize>,
+    /// Points that were given two places, and how far apart these are at most.
+    moved: HashMap<usize, f64>,
+    /// Marks that stand twice.
+    repeated: usize,
+}
+
+impl Points {
+    fn add(
+        &mut self,
+        position: DVec3,
+        name: Option<&str>,
+        mark: Option<(String, DVec2)>,
+    ) -> Result<(), Fault> {
+        let key = match name {
+            Some(name) => Key::Name(name.to_owned()),
+            None => Key::Place(position.to_array().map(f64::to_bits)),
+        };
+        let next = self.points.len();
+        let index = *self.by_key.entry(key).or_insert(next);
+        if index == next {
+            self.points.push(ControlPoint {
+                name: name.map_or_else(|| format!("point {}", next + 1), str::to_owned),
+                position,
+                marks: Vec::new(),
+            });
+        }
+        let Some(point) = self.points.get_mut(index) else {
+            return Ok(());
+        };
+        let apart = point.position.distance(position);
+        if apart > 0.0 {
+            let farthest = self.moved.entry(index).or_default();
+            *farthest = farthest.max(apart);
+        }
+        let Some((photo, pixel)) = mark else {
+            return Ok(());
+        };
+        if point.marks.iter().any(|(other, _)| *other == photo) {
+            self.repeated += 1;
+        } else {
+            point.marks.push((photo, pixel));
+        }
+        Ok(())
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let mut moved: Vec<(usize, f64)> = self.moved.iter().map(|(&i, &d)| (i, d)).collect();
+        moved.sort_by_key(|&(index, _)| index);
+        for (index, apart) in moved {
+            let name = self.points.get(index).map_or("", |point| &point.name);
+            warnings.push(format!(
+                "control point '{name}' stands at places {apart} apart; its first one is taken"
+            ));
+        }
+        if self.repeated > 0 {
+            warnings.push(format!(
+                "{} marks of a point in a photo that has one of it already are left out",
+                self.repeated
+            ));
+        }
+        let mut by_place: HashMap<[u64; 2], &ControlPoint> = HashMap::new();
+        for point in &self.points {
+            let DVec3 { x, y, z } = point.position;
+            let Some(other) = by_place.insert([x, y].map(f64::to_bits), point) else {
+                continue;
+            };
+            warnings.push(format!(
+                "'{}' and '{}' have the same x and y, and heights {} and {z}: one of them is mistyped, or they are one point",
+                other.name, point.name, other.position.z
+            ));
+        }
+        warnings
+    }
+}

@@ -1,0 +1,277 @@
+//! Known places as data: where photos were taken, and ground control points with their marks in
+//! photos. For bringing a reconstruction in a frame of its own to the world.
+//!
+//! A list of photos' positions is one of
+//!
+//! - a table with a header line ([`table`]),
+//! - OpenDroneMap's `geo.txt` ([`geo_file`]),
+//! - DJI's `*_Timestamp.MRK` ([`mrk`]),
+//!
+//! a list of control points OpenDroneMap's `gcp_list.txt` ([`gcp_list`]) or a table. Which it is
+//! says the text itself: the first line of OpenDroneMap's files names a coordinate system, a table's
+//! first line names columns, and an .MRK has a week in brackets.
+
+mod gcp_list;
+mod geo_file;
+pub(crate) mod mrk;
+mod table;
+
+pub use mrk::number_of_photo;
+
+use std::collections::{BTreeSet, HashMap};
+use std::path::Path;
+
+use glam::{DVec2, DVec3};
+
+use crate::fault::Fault;
+use crate::files::{FileError, read_text};
+use crate::packages::drone_photos;
+use crate::packages::odm::crs_from_text;
+use crate::photos::photo_metadata;
+
+/// Where photos were taken, as a list beside them or their own headers say it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PositionList {
+    /// The coordinate system that the list states: "EPSG:n", a PROJ string or WKT; `None` where it
+    /// states none.
+    pub crs: Option<String>,
+    /// In the list's order; no name stands twice.
+    pub positions: Vec<NamedPosition>,
+    /// What the reader had to assume or leave out, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// The position of one photo.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedPosition {
+    /// The image file's name, as the list writes it; in an .MRK the number of the photo.
+    pub name: String,
+    /// In the list's `crs`: (easting, northing, height), or (degrees east, degrees north, metres up)
+    /// where that is one of longitude and latitude.
+    pub position: DVec3,
+    /// Standard deviations towards east, north and up, in metres, where the list states them.
+    pub accuracy: Option<DVec3>,
+}
+
+/// Ground control points.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ControlPoints {
+    /// The coordinate system that the list states, as in [`PositionList::crs`].
+    pub crs: Option<String>,
+    /// In the list's order; no name stands twice.
+    pub points: Vec<ControlPoint>,
+    /// What the reader had to assume or leave out, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// A surveyed point and where photos show it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ControlPoint {
+    /// What the list calls it; "point 1", ... where it calls it nothing.
+    pub name: String,
+    /// In the list's `crs`, as in [`NamedPosition::position`].
+    pub position: DVec3,
+    /// Photos' names, and the pixel in the photo as shot, (0, 0) at its outer corner. Empty where the
+    /// list has no marks.
+    pub marks: Vec<(String, DVec2)>,
+}
+
+/// Reads a list of photos' positions.
+///
+/// # Errors
+/// With the line: what is no such list, a number that is not finite, a name that stands twice.
+pub fn read_positions(path: &Path) -> Result<PositionList, FileError> {
+    positions_from_text(&read_text(path)?).map_err(|fault| FileError::new(path, fault))
+}
+
+/// Reads a list of ground control points, with or without marks.
+///
+/// # Errors
+/// With the line: what is no such list, a number that is not finite.
+pub fn read_control_points(path: &Path) -> Result<ControlPoints, FileError> {
+    control_points_from_text(&read_text(path)?).map_err(|fault| FileError::new(path, fault))
+}
+
+/// The positions that the photos in a folder carry in their EXIF and XMP; photos without one are
+/// left out and counted.
+///
+/// # Errors
+/// Where the folder cannot be read, or no photo has a position.
+pub fn positions_of_photos(folder: &Path) -> Result<PositionList, FileError> {
+    let mut list = PositionList {
+        crs: Some("EPSG:4326".to_owned()),
+        ..PositionList::default()
+    };
+    let files = drone_photos::photos_in(folder)?;
+    let mut references = BTreeSet::new();
+    for file in &files {
+        let Ok(metadata) = photo_metadata::read_file(file) else {
+            continue;
+        };
+        let Some((place, height)) = metadata
+            .place
+            .and_then(|place| Some((place, place.height?)))
+        else {
+            continue;
+        };
+        references.insert(height);
+        let name = file.file_name().unwrap_or_default();
+        list.positions.push(NamedPosition {
+            name: name.to_string_lossy().into_owned(),
+            position: DVec3::new(
+                place.place.longitude,
+                place.place.latitude,
+                place.place.height,
+            ),
+            accuracy: place.deviation,
+        });
+    }
+    if list.positions.is_empty() {
+        let what = match files.len() {
+            0 => "a folder without photos".to_owned(),
+            count => format!("none of its {count} photos says where and how high it was taken"),
+        };
+        let remedy = "give a list of positions, or control points";
+        return Err(FileError::new(folder, Fault::new(what, remedy)));
+    }
+    let without = files.len() - list.positions.len();
+    if without > 0 {
+        let all = files.len();
+        list.warnings.push(format!(
+            "{without} of {all} photos do not say where and how high they were taken"
+        ));
+    }
+    for reference in references {
+        list.warnings
+            .push(format!("the photos' heights {}", reference.in_words()));
+    }
+    Ok(list)
+}
+
+fn positions_from_text(text: &str) -> Result<PositionList, Fault> {
+    let list = match Shape::of(text)? {
+        Shape::Mrk => mrk::read(text)?.positions(),
+        Shape::Crs(crs) => geo_file::read(text, crs)?,
+        Shape::Table => table::read(text)?,
+    };
+    if list.positions.is_empty() {
+        return Err(Fault::new(
+            "it has no positions",
+            "give a line for each photo",
+        ));
+    }
+    once_each(list.positions.iter().map(|position| position.name.as_str()))?;
+    Ok(list)
+}
+
+fn control_points_from_text(text: &str) -> Result<ControlPoints, Fault> {
+    let list = match Shape::of(text)? {
+        Shape::Mrk => {
+            return Err(Fault::new(
+                "it holds the positions of photos (.MRK), not control points",
+                "give it as a list of positions",
+            ));
+        }
+        Shape::Crs(crs) => gcp_list::read(text, crs)?,
+        Shape::Table => {
+            let table = table::read(text)?;
+            once_each(table.positions.iter().map(|point| point.name.as_str()))?;
+            let point = |point: NamedPosition| ControlPoint {
+                name: point.name,
+                position: point.position,
+                marks: Vec::new(),
+            };
+            ControlPoints {
+                crs: table.crs,
+                points: table.positions.into_iter().map(point).collect(),
+                warnings: table.warnings,
+            }
+        }
+    };
+    if list.points.is_empty() {
+        return Err(Fault::new(
+            "it has no control points",
+            "give a line for each mark",
+        ));
+    }
+    Ok(list)
+}
+
+/// A name that stands twice is a fault: which of the two holds is not for us to say.
+fn once_each<'a>(names: impl Iterator<Item = &'a str>) -> Result<(), Fault> {
+    let mut seen: HashMap<&str, usize> = HashMap::new();
+    for (place, name) in names.enumerate() {
+        if let Some(first) = seen.insert(name, place) {
+            let (first, second) = (first + 1, place + 1);
+            return Err(Fault::new(
+                format!("'{name}' stands twice, as entry {first} and as entry {second}"),
+                "keep one line a name",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// What kind of list a text is.
+enum Shape {
+    Mrk,
+    /// OpenDroneMap's, with the coordinate system of its first line.
+    Crs(Option<String>),
+    Table,
+}
+
+impl Shape {
+    fn of(text: &str) -> Result<Self, Fault> {
+        let first = text.lines().find(|line| !line.trim().is_empty());
+        let first = first.ok_or_else(|| Fault::new("it is empty", "export it again"))?;
+        if mrk::is_mrk(first) {
+            return Ok(Self::Mrk);
+        }
+        if is_crs(first) {
+            return Ok(Self::Crs(crs_from_text(first)));
+        }
+        Ok(Self::Table)
+    }
+}
+
+/// Whether a line names a coordinate system as OpenDroneMap's lists do: "EPSG:4326", a PROJ string,
+/// "WGS84 UTM 17N", or WKT.
+fn is_crs(line: &str) -> bool {
+    let line = line.trim().to_ascii_lowercase();
+    let epsg = line.strip_prefix("epsg:");
+    epsg.is_some_and(|code| code.trim().parse::<u32>().is_ok())
+        || line.starts_with("+proj")
+        || line.starts_with("wgs84 utm")
+        || ["projcs[", "projcrs[", "geogcs[", "geogcrs[", "compd_cs["]
+            .iter()
+            .any(|start| line.starts_with(start))
+}
+
+/// Whether positions in that system are degrees. Where it is not known, no.
+fn is_geographic(crs: Option<&str>) -> bool {
+    crs.is_some_and(|crs| {
+        let crs = crs.to_ascii_lowercase();
+        matches!(crs.as_str(), "epsg:4326" | "epsg:4979" | "epsg:4258")
+            || crs.contains("+proj=longlat")
+            || crs.contains("+proj=latlong")
+            || crs.starts_with("geogc")
+    })
+}
+
+/// Refuses degrees that no place on the Earth has: most often, columns that are swapped.
+fn check_degrees(line: u64, position: DVec3) -> Result<(), Fault> {
+    let (longitude, latitude) = (position.x, position.y);
+    if longitude.abs() > 180.0 || latitude.abs() > 90.0 {
+        return Err(Fault::at(
+            line,
+            format!(
+                "longitude {longitude}, latitude {latitude} is no place in degrees: beyond 180 or 90"
+            ),
+            "check the order of the columns and the coordinate system",
+        ));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,286 @@
+//! A table of named places whose header line names the columns: what surveyors, Pix4D, Metashape and
+//! senseFly export, and what people make in a spreadsheet.
+//!
+//! ```text
+//! photo,longitude,latitude,height        fileName  latitude  longitude  altitude_wgs84 ...
+//! ```
+//!
+//! - The separator is the one of tab, semicolon and comma that the header holds most of, else white
+//!   space. Fields may be quoted. A comma in a number is a decimal one (see `separated`).
+//! - Column names are compared in small letters without blanks, punctuation and what stands in
+//!   brackets; of a name with a slash ("X/Easting") one part has to be known ([`Column::of`]). A
+//!   leading # belongs to no name. Columns of other names are passed over.
+//! - Degrees are decimal. Longitude and latitude go before easting and northing where both are there.
+//! - The coordinate system is that of a comment "# CoordinateSystem: ..." (Metashape) or "# EPSG:n"
+//!   in front of the header, else EPSG:4326 where the columns are longitude and latitude, else not
+//!   known. Other lines that begin with # are comments.
+//! - senseFly's geoinfo ("#Rev: sensefly/geoinfo/2") is such a table, with two heights: the one above
+//!   the ellipsoid is taken, because the receiver measures that one.
+
+use glam::DVec3;
+
+use super::geo_file::leave_out_without_height;
+use super::{NamedPosition, PositionList, check_degrees, crs_from_text, is_crs, is_geographic};
+use crate::fault::Fault;
+use crate::text::separated::{Numbers, Separator, unquoted};
+
+/// Reads a table.
+pub(super) fn read(text: &str) -> Result<PositionList, Fault> {
+    let mut list = PositionList::default();
+    let mut layout: Option<Layout> = None;
+    let mut without_height = 0_usize;
+    let numbers = Numbers::of(text);
+    for (line, number) in text.lines().zip(1..) {
+        let line = line.trim_end();
+        if line.trim().is_empty() {
+            continue;
+        }
+        let comment = line.trim_start().strip_prefix('#');
+        let Some(layout) = &layout else {
+            if let Some(comment) = comment
+                && let Some(crs) = crs_of_comment(comment)
+            {
+                list.crs = Some(crs);
+                continue;
+            }
+            match Layout::of(comment.unwrap_or(line)) {
+                Some(found) => {
+                    list.crs = found.crs(list.crs.take());
+                    list.warnings = found.warnings(list.crs.as_deref());
+                    layout = Some(found);
+                }
+                None if comment.is_some() => {}
+                None => return Err(no_header(number, line)),
+            }
+            continue;
+        };
+        if comment.is_some() {
+            continue;
+        }
+        let Some(position) = layout.line(line, number, &numbers)? else {
+            without_height += 1;
+            continue;
+        };
+        if is_geographic(list.crs.as_deref()) {
+            check_degrees(number, position.position)?;
+        }
+        list.positions.push(position);
+    }
+    if layout.is_none() {
+        return Err(no_header(1, text.lines().next().unwrap_or_default()));
+    }
+    leave_out_without_height(&mut list, without_height)?;
+    list.warnings.extend(numbers.warnings());
+    Ok(list)
+}
+
+fn no_header(line: u64, text: &str) -> Fault {
+    let shown: String = text.chars().take(60).collect();
+    Fault::at(
+        line,
+        format!("no header line that names the columns, and no coordinate system: '{shown}'"),
+        "put a line like 'photo,longitude,latitude,height' first (or 'EPSG:n', for OpenDroneMap's lists)",
+    )
+}
+
+/// The coordinate system that a comment in front of the header states.
+fn crs_of_comment(comment: &str) -> Option<String> {
+    let comment = comment.trim();
+    let (key, value) = comment.split_once(':').unwrap_or(("", comment));
+    let key = squeezed(key);
+    if matches!(key.as_str(), "coordinatesystem" | "crs" | "srs") {
+        return crs_from_text(&unquoted(value));
+    }
+    is_crs(comment).then(|| crs_from_text(comment)).flatten()
+}
+
+/// In small letters, without blanks and punctuation, and without what stands in brackets.
+fn squeezed(name: &str) -> String {
+    let end = name.find(['(', '[']).unwrap_or(name.len());
+    let name = name.get(..end).unwrap_or(name);
+    let letters = name.chars().filter(|c| c.is_alphanumeric() || *c == '/');
+    letters.flat_map(char::to_lowercase).collect()
+}
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Column {
+    Name,
+    Longitude,
+    Latitude,
+    X,
+    Y,
+    HeightAboveEllipsoid,
+    Height,
+    Accuracy,
+    AccuracyEast,
+    AccuracyNorth,
+    AccuracyHorizontal,
+    AccuracyUp,
+}
+
+impl Column {
+    fn of(header: &str) -> Option<Self> {
+        let name = squeezed(header);
+        if let Some(accuracy) = Self::of_accuracy(&name) {
+            return Some(accuracy);
+        }
+        name.split('/').find_map(|part| {
+            Some(match part {
+                "photo" | "photoname" | "image" | "imagename" | "imageid" | "name" | "label"
+                | "filename" | "file" | "sourcefile" | "pointname" | "point" | "pointid"
+                | "gcp" | "gcpname" | "gcplabel" | "id" => Self::Name,
+                "lon" | "long" | "lng" | "longitude" | "gpslongitude" => Self::Longitude,
+                "lat" | "latitude" | "gpslatitude" => Self::Latitude,
+                "x" | "easting" | "east" | "e" => Self::X,
+                "y" | "northing" | "north" | "n" => Self::Y,
+                "altitudewgs84"
+                | "ellh"
+                | "ellipsoidalheight"
+                | "ellipsoidheight"
+                | "heightellipsoidal"
+                | "heightaboveellipsoid"
+                | "altitudeellipsoidal" => Self::HeightAboveEllipsoid,
+                "alt" | "altitude" | "height" | "h" | "z" | "elevation" | "elev"
+                | "altitudeamsl" | "gpsaltitude" | "orthometricheight" => Self::Height,
+                _ => return None,
+            })
+        })
+    }
+
+    /// Columns that state a standard deviation. Metashape's "X_error" is a residual, and none.
+    fn of_accuracy(name: &str) -> Option<Self> {
+        let of = ["accuracy", "stddev", "std", "sd", "sigma", "acc"]
+            .into_iter()
+            .find(|word| name.starts_with(word) || name.ends_with(word))?;
+        let rest = name.replacen(of, "", 1);
+        Some(match rest.trim_matches('/') {
+            "" => Self::Accuracy,
+            "x" | "e" | "east" | "easting" | "lon" | "longitude" | "x/east" | "x/easting"
+            | "x/longitude" => Self::AccuracyEast,
+            "y" | "n" | "north" | "northing" | "lat" | "latitude" | "y/north" | "y/northing"
+            | "y/latitude" => Self::AccuracyNorth,
+            "h" | "xy" | "hor" | "horz" | "horizontal" | "gpsxy" => Self::AccuracyHorizontal,
+            "v" | "z" | "u" | "up" | "vert" | "vertical" | "alt" | "altitude" | "height"
+            | "hgt" | "z/altitude" | "gpsz" => Self::AccuracyUp,
+            _ => return None,
+        })
+    }
+}
+
+/// Which column stands where.
+struct Layout {
+    separator: Separator,
+    columns: Vec<Option<Column>>,
+    is_degrees: bool,
+}
+
+impl Layout {
+    /// The layout that a header line states; `None` where it is no header.
+    fn of(header: &str) -> Option<Self> {
+        let separator = Separator::of(header);
+        let mut layout = Self {
+            separator,
+            columns: Vec::new(),
+            is_degrees: false,
+        };
+        layout.columns = separator
+            .split(header)
+            .iter()
+            .map(|field| Column::of(field))
+            .collect();
+        let has = |column| layout.place(column).is_some();
+        let in_degrees = has(Column::Longitude) && has(Column::Latitude);
+        if !has(Column::Name) || !(in_degrees || has(Column::X) && has(Column::Y)) {
+            return None;
+        }
+        layout.is_degrees = in_degrees;
+        Some(layout)
+    }
+
+    fn place(&self, column: Column) -> Option<usize> {
+        self.columns.iter().position(|&c| c == Some(column))
+    }
+
+    /// The coordinate system, where comments stated `stated`.
+    fn crs(&self, stated: Option<String>) -> Option<String> {
+        stated.or_else(|| self.is_degrees.then(|| "EPSG:4326".to_owned()))
+    }
+
+    fn warnings(&self, crs: Option<&str>) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if crs.is_none() {
+            warnings
+                .push("the list states no coordinate system for its columns; give one".to_owned());
+        }
+        let above_ellipsoid = self.place(Column::HeightAboveEllipsoid).is_some();
+        if above_ellipsoid && self.place(Column::Height).is_some() {
+            warnings
+                .push("of the list's two heights the one above the ellipsoid is taken".to_owned());
+        } else if self.is_degrees && !above_ellipsoid && self.place(Column::Height).is_some() {
+            warnings.push(
+                "the list does not say whether its heights are above the ellipsoid or above sea level; they differ by up to 100 m".to_owned(),
+            );
+        }
+        warnings
+    }
+
+    /// The place on one line; `None` where it has no height.
+    fn line(
+        &self,
+        text: &str,
+        line: u64,
+        numbers: &Numbers,
+    ) -> Result<Option<NamedPosition>, Fault> {
+        let fields = self.separator.split(text);
+        let field = |column: Column| {
+            let field = fields.get(self.place(column)?)?;
+            (!field.is_empty()).then_some(field.as_str())
+        };
+        let number = |column: Column, text: &str| {
+            numbers.read(text, line).map_err(|why| {
+                let remedy = "write it as a decimal number";
+                Fault::at(line, format!("{column:?} {why}"), remedy)
+            })
+        };
+        let needed = |column: Column| {
+            let text = field(column).ok_or_else(|| {
+                Fault::at(
+                    line,
+                    format!("the line has no {column:?}"),
+                    "fill the columns that the header names",
+                )
+            })?;
+            number(column, text)
+        };
+        let name = field(Column::Name).ok_or_else(|| {
+            Fault::at(line, "the line has no name", "name the photo or the point")
+        })?;
+        let (x, y) = if self.is_degrees {
+            (needed(Column::Longitude)?, needed(Column::Latitude)?)
+        } else {
+            (needed(Column::X)?, needed(Column::Y)?)
+        };
+        let height = [Column::HeightAboveEllipsoid, Column::Height]
+            .into_iter()
+            .find_map(|column| Some(number(column, field(column)?)))
+            .transpose()?;
+        let accuracy = |columns: &[Column]| -> Result<Option<f64>, Fault> {
+            let found = columns.iter().find_map(|&c| Some(number(c, field(c)?)));
+            Ok(found.transpose()?.filter(|&accuracy| accuracy > 0.0))
+        };
+        let horizontal = [Column::AccuracyHorizontal, Column::Accuracy];
+        let east = accuracy(&[&[Column::AccuracyEast][..], &horizontal].concat())?;
+        let north = accuracy(&[&[Column::AccuracyNorth][..], &horizontal].concat())?;
+        let up = accuracy(&[Column::AccuracyUp, Column::Accuracy])?;
+        let accuracy = match (east, north, up) {
+            (Some(east), Some(north), Some(up)) => Some(DVec3::new(east, north, up)),
+            _ => None,
+        };
+        Ok(height.map(|height| NamedPosition {
+            name: name.to_owned(),
+            position: DVec3::new(x, y, height),
+            accuracy,
+        }))
+    }
+}

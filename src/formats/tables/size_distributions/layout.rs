@@ -1,0 +1,455 @@
+//! Which of the layouts a table has, told by the names of its columns.
+
+use super::DistributionColumns;
+use super::names::{PercentileColumn, Role, SizeText, SizeUnit, role};
+use crate::fault::Fault;
+use crate::tables::table::{Table, key};
+
+/// A layout, with the columns that matter.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Layout {
+    /// One line a point.
+    Long {
+        size: usize,
+        unit: Option<SizeUnit>,
+        passing: usize,
+    },
+    /// One column a curve.
+    Wide { size: usize, unit: Option<SizeUnit> },
+    /// One line a curve, a column each size.
+    SizesAsColumns(Vec<(usize, SizeText)>),
+    /// One line a curve, a column each percent.
+    Percentiles {
+        columns: Vec<(usize, f64)>,
+        unit: Option<SizeUnit>,
+    },
+}
+
+/// The columns that name a curve, and its weight.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct LabelColumns {
+    pub(super) method: Option<usize>,
+    pub(super) trial: Option<usize>,
+    pub(super) photo: Option<usize>,
+    pub(super) weight: Option<usize>,
+}
+
+impl LabelColumns {
+    /// Those that the user named, else those whose names say so; none of `taken`.
+    pub(super) fn of(
+        table: &Table,
+        columns: &DistributionColumns,
+        taken: &[usize],
+    ) -> Result<Self, Fault> {
+        let named =
+            |name: &Option<String>| name.as_deref().map(|name| table.column(name)).transpose();
+        let free = || {
+            let roles = table.header().iter().map(|name| role(name)).enumerate();
+            roles.filter(|(column, _)| !taken.contains(column))
+        };
+        let found = |wanted: Role| {
+            free()
+                .find(|(_, role)| *role == wanted)
+                .map(|(column, _)| column)
+        };
+        let photo = free().filter_map(|(column, role)| match role {
+            Role::Photo(place) => Some((place, column)),
+            _ => None,
+        });
+        let weights: Vec<usize> = free()
+            .filter(|(_, role)| *role == Role::Weight)
+            .map(|(column, _)| column)
+            .collect();
+        let weight = match (named(&columns.weight)?, &weights[..]) {
+            (Some(named), _) => Some(named),
+            (None, []) => None,
+            (None, [one]) => Some(*one),
+            (None, [one, two, ..]) => {
+                let what = format!(
+                    "columns '{}' and '{}' may both be what curves weigh",
+                    table.name(*one),
+                    table.name(*two)
+                );
+                let remedy = "name one of them (--weight)";
+                return Err(Fault::at(table.header_line(), what, remedy));
+            }
+        };
+        Ok(Self {
+            method: named(&columns.method)?.or(found(Role::Method)),
+            trial: named(&columns.trial)?.or(found(Role::Trial)),
+            photo: named(&columns.photo)?.or(photo.min().map(|(_, column)| column)),
+            weight,
+        })
+    }
+
+    pub(super) fn all(self) -> impl Iterator<Item = usize> {
+        [self.method, self.trial, self.photo, self.weight]
+            .into_iter()
+            .flatten()
+    }
+}
+
+impl Layout {
+    /// Whether the names of a table's columns say beyond doubt that it holds size distributions.
+    pub(super) fn is_sure(table: &Table) -> bool {
+        let places = [
+            "x",
+            "y",
+            "z",
+            "lon",
+            "lat",
+            "longitude",
+            "latitude",
+            "easting",
+            "northing",
+        ];
+        let header = table.header().iter().map(|name| key(name));
+        let coordinates = header
+            .filter(|name| places.contains(&name.as_str()))
+            .count();
+        let with_unit =
+            |(_, text): &(usize, SizeText)| text.number.is_some_and(|(_, unit)| unit.is_some());
+        let numeric = |column: usize| {
+            let mut rows = table.rows().iter();
+            rows.all(|row| {
+                let cell = row.cell(column);
+                cell.is_empty() || cell.starts_with(|c: char| c.is_ascii_digit())
+            })
+        };
+        match Self::of(table, &DistributionColumns::default()) {
+            Ok(Self::Long { passing, .. }) => {
+                let name = table
+                    .header()
+                    .get(passing)
+                    .map(|name| key(name))
+                    .unwrap_or_default();
+                coordinates < 2
+                    && ["passing", "passed", "finer"]
+                        .iter()
+                        .any(|word| name.contains(word))
+            }
+            Ok(Self::Wide { size, unit }) => {
+                let sure = matches!(
+                    table.header().get(size).map(|name| role(name)),
+                    Some(Role::Size(_))
+                );
+                sure && size == 0
+                    && unit.is_some()
+                    && coordinates == 0
+                    && (0..table.header().len()).all(numeric)
+            }
+            Ok(Self::SizesAsColumns(sizes)) => {
+                sizes.iter().filter(|size| with_unit(size)).count() >= 2
+            }
+            Ok(Self::Percentiles { columns, .. }) => {
+                columns.len() >= 3 && !has_all(table, &["x", "y", "z"])
+            }
+            Err(_) => false,
+        }
+    }
+
+    /// The layout of a table.
+    ///
+    /// # Errors
+    /// Where it has none of them, or more than one; the columns that there are are named.
+    pub(super) fn of(table: &Table, columns: &DistributionColumns) -> Result<Self, Fault> {
+        let found = Names::of(table);
+        let named =
+            |name: &Option<String>| name.as_deref().map(|name| table.column(name)).transpose();
+        match (named(&columns.size)?, named(&columns.passing)?) {
+            (size, Some(passing)) => {
+                found.refuse_other_percents(&[passing])?;
+                let size = match size {
+                    Some(size) => size,
+                    None => found.size(true)?.ok_or_else(|| found.no_sizes())?,
+                };
+                Ok(found.long(size, passing))
+            }
+            (Some(size), None) => found.with_sizes(size),
+            (None, None) => found.by_names(),
+        }
+    }
+}
+
+/// Whether a table has columns of all these names.
+fn has_all(table: &Table, names: &[&str]) -> bool {
+    let has = |name: &&str| table.header().iter().any(|column| key(column) == **name);
+    names.iter().all(has)
+}
+
+/// What the names of a table's columns say.
+struct Names<'a> {
+    table: &'a Table,
+    roles: Vec<Role>,
+    percentiles: Vec<(usize, PercentileColumn)>,
+    sizes: Vec<(usize, SizeText)>,
+}
+
+impl<'a> Names<'a> {
+    fn of(table: &'a Table) -> Self {
+        let header = || table.header().iter().enumerate();
+        Self {
+            table,
+            roles: header().map(|(_, name)| role(name)).collect(),
+            percentiles: header()
+                .filter_map(|(column, name)| Some((column, PercentileColumn::of(name)?)))
+                .collect(),
+            sizes: header()
+                .filter_map(|(column, name)| Some((column, SizeText::of_name(name)?)))
+                .collect(),
+        }
+    }
+
+    fn fault(&self, what: impl Into<String>, remedy: impl Into<String>) -> Fault {
+        Fault::at(self.table.header_line(), what, remedy)
+    }
+
+    /// The columns of a role.
+    fn with(&self, is: impl Fn(Role) -> bool) -> Vec<usize> {
+        let roles = self.roles.iter().enumerate();
+        roles
+            .filter(|(_, role)| is(**role))
+            .map(|(column, _)| column)
+            .collect()
+    }
+
+    /// The column of sizes; `anywhere`, also one that is only perhaps one, where it is not the first.
+    fn size(&self, anywhere: bool) -> Result<Option<usize>, Fault> {
+        let sure = self.with(|role| matches!(role, Role::Size(_)));
+        if let [one, two, ..] = sure[..] {
+            let what = format!(
+                "columns '{}' and '{}' may both be the sizes",
+                self.table.name(one),
+                self.table.name(two)
+            );
+            return Err(self.fault(what, "name one of them (--size)"));
+        }
+        let perhaps = self.with(|role| matches!(role, Role::PerhapsSize(_)));
+        let perhaps = perhaps.into_iter().find(|&column| anywhere || column == 0);
+        Ok(sure.first().copied().or(perhaps))
+    }
+
+    fn unit(&self, column: usize) -> Option<SizeUnit> {
+        match self.roles.get(column) {
+            Some(Role::Size(unit) | Role::PerhapsSize(unit)) => *unit,
+            // The user named it; its name may still end with a unit.
+            _ => {
+                let name = self.table.header().get(column)?;
+                match role(&format!("size {name}")) {
+                    Role::Size(unit) => unit,
+                    _ => None,
+                }
+            }
+        }
+    }
+
+    fn long(&self, size: usize, passing: usize) -> Layout {
+        Layout::Long {
+            size,
+            unit: self.unit(size),
+            passing,
+        }
+    }
+
+    fn wide(&self, size: usize) -> Result<Layout, Fault> {
+        let others: Vec<usize> = (0..self.roles.len())
+            .filter(|&column| column != size)
+            .collect();
+        self.refuse_other_percents(&others)?;
+        if others.is_empty() {
+            return Err(self.fault(
+                format!("there is no column beside '{}'", self.table.name(size)),
+                "give the percent passing in a column",
+            ));
+        }
+        Ok(Layout::Wide {
+            size,
+            unit: self.unit(size),
+        })
+    }
+
+    /// Refuses percents that are not cumulative percent passing.
+    fn refuse_other_percents(&self, columns: &[usize]) -> Result<(), Fault> {
+        for &column in columns {
+            let name = self.table.name(column);
+            match self.roles.get(column) {
+                Some(Role::Retained) => {
+                    return Err(self.fault(
+                        format!("column '{name}' is percent retained, not passing"),
+                        "give cumulative percent passing: 100 less the cumulative percent retained",
+                    ));
+                }
+                Some(Role::NotCumulative) => {
+                    return Err(self.fault(
+                        format!(
+                            "column '{name}' is the percent of each size class, not cumulative"
+                        ),
+                        "give cumulative percent passing: the sum of all smaller classes",
+                    ));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn no_sizes(&self) -> Fault {
+        self.fault(
+            format!(
+                "no column is called size among {}",
+                self.table.columns_in_words()
+            ),
+            "name the column of sizes (--size)",
+        )
+    }
+
+    /// The layout where the user named the sizes alone.
+    fn with_sizes(&self, size: usize) -> Result<Layout, Fault> {
+        if let Some((_, column)) = self.percentiles.iter().find(|(column, _)| *column == size) {
+            return self.percentiles_of(&column.set);
+        }
+        let passing = self.with(|role| role == Role::Passing);
+        match passing
+            .into_iter()
+            .filter(|&column| column != size)
+            .collect::<Vec<_>>()[..]
+        {
+            [passing] => Ok(self.long(size, passing)),
+            _ => self.wide(size),
+        }
+    }
+
+    fn percentiles_of(&self, set: &str) -> Result<Layout, Fault> {
+        let columns = || {
+            self.percentiles
+                .iter()
+                .filter(|(_, column)| column.set == set)
+        };
+        let unit = columns().find_map(|(_, column)| column.unit);
+        let columns: Vec<(usize, f64)> = columns()
+            .map(|(column, percentile)| (*column, percentile.percent))
+            .collect();
+        if let [(one, _)] = columns[..] {
+            let name = self.table.name(one);
+            let what = format!("column '{name}' is a single percentile");
+            return Err(self.fault(what, "give two or more, called alike"));
+        }
+        Ok(Layout::Percentiles { columns, unit })
+    }
+
+    /// The sets of two percentiles or more, without those of logarithms, by their first columns.
+    fn percentile_sets(&self) -> Vec<(usize, &str)> {
+        let mut sets: Vec<(usize, &str, usize)> = Vec::new();
+        for (column, percentile) in &self.percentiles {
+            if percentile.is_logarithm() {
+                continue;
+            }
+            match sets.iter_mut().find(|(_, set, _)| *set == percentile.set) {
+                Some((.., count)) => *count += 1,
+                None => sets.push((*column, &percentile.set, 1)),
+            }
+        }
+        let sets = sets.into_iter().filter(|(.., count)| *count > 1);
+        sets.map(|(column, set, _)| (column, set)).collect()
+    }
+
+    /// The layout where no column was named.
+    fn by_names(&self) -> Result<Layout, Fault> {
+        let names = self.table.header().iter().filter(|name| !name.is_empty());
+        if names.clone().all(|name| name.parse::<f64>().is_ok()) {
+            let what = format!(
+                "the first line names no columns: {}",
+                self.table.columns_in_words()
+            );
+            let remedy = "put a line like 'size_mm,percent_passing' first";
+            return Err(self.fault(what, remedy));
+        }
+        let passing = self.with(|role| role == Role::Passing);
+        let sets = self.percentile_sets();
+        let mut size = self.size(!passing.is_empty())?;
+        if passing.is_empty() && !sets.is_empty() {
+            // A sample's size, or a coordinate.
+            size = size.filter(|&column| matches!(self.roles.get(column), Some(Role::Size(_))));
+        }
+        let has_unit = |(_, text): &&(usize, SizeText)| {
+            text.sieve_mm.is_some() || text.number.is_some_and(|(_, unit)| unit.is_some())
+        };
+        let with_unit = self.sizes.iter().filter(has_unit).count();
+        // Bare numbers beside a column of sizes are the names of trials.
+        let by_sizes = with_unit >= 2 || (size.is_none() && self.sizes.len() >= 2);
+        match (size, &passing[..], by_sizes, &sets[..]) {
+            (Some(size), [passing], false, []) => Ok(self.long(size, *passing)),
+            (Some(_), [_], ..) | (Some(_), _, true, _) | (_, _, true, [_, ..]) => {
+                let what = format!(
+                    "it can be read in two ways, by {}",
+                    self.ways(size, &passing, by_sizes, &sets)
+                );
+                let remedy = "keep the columns of one of them, or name the sizes and the percent \
+                              passing (--size, --passing)";
+                Err(self.fault(what, remedy))
+            }
+            (Some(size), ..) => self.wide(size),
+            (None, _, true, []) => Ok(Layout::SizesAsColumns(self.sizes.clone())),
+            (None, _, false, [(_, set)]) => self.percentiles_of(set),
+            (None, _, false, [(one, _), (two, _), ..]) => {
+                let name = |column: &usize| self.table.name(*column);
+                let what = format!(
+                    "there are several sets of percentiles, one with '{}' and one with '{}'",
+                    name(one),
+                    name(two)
+                );
+                let remedy = format!("name a column of the one that holds (--size {})", name(one));
+                Err(self.fault(what, remedy))
+            }
+            (None, [_, ..], false, []) => Err(self.no_sizes()),
+            (None, [], false, []) => self.unnamed(),
+        }
+    }
+
+    /// The ways to read it, for the fault that there are two.
+    fn ways(
+        &self,
+        size: Option<usize>,
+        passing: &[usize],
+        by_sizes: bool,
+        sets: &[(usize, &str)],
+    ) -> String {
+        let name = |column: usize| format!("'{}'", self.table.name(column));
+        let mut ways = Vec::new();
+        match (size, passing) {
+            (Some(size), [passing]) => {
+                ways.push(format!("{} with {}", name(size), name(*passing)));
+            }
+            (Some(size), _) => ways.push(format!("the sizes in {}", name(size))),
+            _ => {}
+        }
+        if let (true, Some((column, _))) = (by_sizes, self.sizes.first()) {
+            ways.push(format!("columns of sizes like {}", name(*column)));
+        }
+        if let Some((column, _)) = sets.first() {
+            ways.push(format!("percentiles like {}", name(*column)));
+        }
+        ways.join(" and by ")
+    }
+
+    /// The layout of a table whose names say nothing: a corner left empty is over the sizes.
+    fn unnamed(&self) -> Result<Layout, Fault> {
+        let all: Vec<usize> = (0..self.roles.len()).collect();
+        self.refuse_other_percents(&all)?;
+        if self
+            .table
+            .header()
+            .first()
+            .is_some_and(|name| name.is_empty())
+        {
+            return self.wide(0);
+        }
+        Err(self.fault(
+            format!(
+                "no column is called size or passing among {}",
+                self.table.columns_in_words()
+            ),
+            "name the columns of sizes and of percent passing (--size, --passing)",
+        ))
+    }
+}

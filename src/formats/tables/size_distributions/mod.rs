@@ -1,0 +1,109 @@
+//! Size distributions as a table: what Split-Desktop's results, a sieve's protocol or a spreadsheet
+//! give. There is no standard; this is what is read.
+//!
+//! Layouts, told by the names of the columns (case, blanks and underscores do not matter):
+//!
+//! ```text
+//! size_mm,percent_passing                one line a point; columns method, trial, photo and
+//! 20,35.5                                weight (area, mass) are optional
+//!
+//! Size (mm);sieve;point cloud/1/a.jpg    one column a curve, called method/trial/photo;
+//! 20;35,5;                               a cell may be empty
+//!
+//! photo,10 mm,20 mm,40 mm                one line a curve, a column each size
+//! a.jpg,12,35.5,100
+//!
+//! label,D10,D50,D90                      one line a curve, a column each percent passing: D, P, x
+//! a.jpg,9,26,38                          or k; columns of one set end alike (D50_old is another
+//!                                        set), and those that end in psi or phi are logarithms
+//! ```
+//!
+//! - Percent passing is cumulative. Percent retained and percents of classes are refused. Where no
+//!   percent of the table is above 1 and the largest is above 0.5, they are shares of 1.
+//! - The unit of sizes stands in the name of their column, or behind each size; else the user states
+//!   it; else it is mm. Micrometres are read into mm. Sizes may be called by ASTM E11's names of
+//!   sieves ("No. 4", "3/8 in."); where one is, "2 in." is the sieve of 50 mm too.
+//! - Mended, and said: decimal commas; passing up to 100.05 % and falls of up to 0.05 %, which rounding
+//!   explains; a line twice; a size of 0 that nothing passes; the pan under the sieves.
+//! - For the text itself see [`Table`].
+
+mod curves;
+mod layout;
+mod names;
+mod point_weights;
+mod read;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+use layout::Layout;
+
+pub use point_weights::{PointWeights, read_point_weights};
+
+use crate::fault::Fault;
+use crate::files::FileError;
+use crate::fragmentation::DistributionSet;
+use crate::tables::table::{Table, read_bounded};
+use crate::units::LengthUnit;
+
+/// Which columns hold what. What is not named is found by its name.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct DistributionColumns {
+    /// Sizes. Named with `passing` the table has one line a point.
+    pub size: Option<String>,
+    /// Cumulative percent passing.
+    pub passing: Option<String>,
+    /// How it was measured.
+    pub method: Option<String>,
+    /// Which repetition.
+    pub trial: Option<String>,
+    /// Which photo.
+    pub photo: Option<String>,
+    /// Area or mass that the distribution stands for.
+    pub weight: Option<String>,
+    /// The unit of sizes, where the table does not state it.
+    pub unit: Option<LengthUnit>,
+}
+
+/// Whether a text, or the beginning of one, is such a table without a doubt. What may as well be a list
+/// of points or of places is not, nor is a table whose columns only the user can tell.
+pub(crate) fn is_table(start: &str, whole: bool) -> bool {
+    let complete = match whole {
+        true => Some(start),
+        false => start.rfind('\n').and_then(|end| start.get(..end)),
+    };
+    let table = complete.and_then(|text| Table::read(text).ok());
+    table.is_some_and(|table| Layout::is_sure(&table))
+}
+
+/// The fault of such a table where a flight is needed.
+pub fn no_flight_but_sizes() -> Fault {
+    Fault::new(
+        "it holds size distributions, not a flight",
+        "open it among the size distributions, or give it to 'fragscale psd'",
+    )
+}
+
+/// Reads size distributions from the text of a table, with what was mended or passed over.
+///
+/// # Errors
+/// With the line and the remedy.
+pub fn size_distributions(
+    text: &str,
+    columns: &DistributionColumns,
+) -> Result<(DistributionSet, Vec<String>), Fault> {
+    read::read(&Table::read(text)?, columns)
+}
+
+/// Reads size distributions from a file; see [`size_distributions`].
+///
+/// # Errors
+/// With the file, the line and the remedy.
+pub fn read_size_distributions(
+    path: &Path,
+    columns: &DistributionColumns,
+) -> Result<(DistributionSet, Vec<String>), FileError> {
+    let text = read_bounded(path)?;
+    size_distributions(&text, columns).map_err(|fault| FileError::new(path, fault))
+}

@@ -1,0 +1,325 @@
+//! What the name of a column says that it holds.
+
+use crate::fragmentation::SieveSeries;
+use crate::tables::table::split_number;
+use crate::units::LengthUnit;
+
+/// A unit of sizes: `factor` of `unit` are one of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SizeUnit {
+    pub(super) unit: LengthUnit,
+    /// 1 but for micrometres, which are 0.001 mm.
+    pub(super) factor: f64,
+}
+
+impl SizeUnit {
+    /// The unit of a word: "mm", "inches", "µm".
+    pub(super) fn of(word: &str) -> Option<Self> {
+        let word = word.trim().trim_end_matches('.').to_lowercase();
+        let unit = match word.as_str() {
+            "mm" | "millimetre" | "millimetres" | "millimeter" | "millimeters" => {
+                LengthUnit::Millimetre
+            }
+            "cm" | "centimetre" | "centimetres" | "centimeter" | "centimeters" => {
+                LengthUnit::Centimetre
+            }
+            "m" | "metre" | "metres" | "meter" | "meters" => LengthUnit::Metre,
+            "in" | "inch" | "inches" | "\"" | "″" => LengthUnit::Inch,
+            "ft" | "foot" | "feet" | "'" | "′" => LengthUnit::Foot,
+            "us-ft" => LengthUnit::UsSurveyFoot,
+            // The micro sign and the Greek letter.
+            "um" | "µm" | "μm" | "micron" | "microns" | "micrometre" | "micrometres"
+            | "micrometer" | "micrometers" => {
+                return Some(Self {
+                    unit: LengthUnit::Millimetre,
+                    factor: 0.001,
+                });
+            }
+            _ => return None,
+        };
+        Some(Self { unit, factor: 1.0 })
+    }
+}
+
+/// Which area or mass a curve stands for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Role {
+    /// Cumulative percent passing.
+    Passing,
+    /// Percent retained.
+    Retained,
+    /// Percent of each class of sizes.
+    NotCumulative,
+    /// Sizes, in a unit where the name states one.
+    Size(Option<SizeUnit>),
+    /// Sizes where no other column is called so: "sieve", "x".
+    PerhapsSize(Option<SizeUnit>),
+    /// How it was measured.
+    Method,
+    /// Which repetition.
+    Trial,
+    /// Which photo; the smaller the number, the surer.
+    Photo(usize),
+    /// Area or mass.
+    Weight,
+    /// Anything else.
+    Other,
+}
+
+/// The words of a name in small letters: "PercentPassing", "percent_passing" and "% passing" are the
+/// same; a quotation mark is inches.
+fn words(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut after_small = false;
+    for c in name.chars() {
+        let sign = match c {
+            '%' => "percent",
+            '"' | '″' => "in",
+            _ => "",
+        };
+        if !sign.is_empty() {
+            words.extend([sign.to_owned(), String::new()]);
+        } else if c.is_alphanumeric() {
+            if c.is_uppercase() && after_small {
+                words.push(String::new());
+            }
+            if let Some(word) = words.last_mut() {
+                word.extend(c.to_lowercase());
+            }
+        } else {
+            words.push(String::new());
+        }
+        after_small = c.is_lowercase();
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+/// Takes the unit that a name ends with off its words.
+fn take_unit(words: &mut Vec<String>) -> Option<SizeUnit> {
+    let mut unit = SizeUnit::of(words.last()?)?;
+    words.pop();
+    if unit.unit == LengthUnit::Foot && words.last().is_some_and(|word| word == "us") {
+        unit.unit = LengthUnit::UsSurveyFoot;
+        words.pop();
+    }
+    // "size in mm"
+    words.pop_if(|word| word == "in");
+    Some(unit)
+}
+
+/// A column called a size: of sieves or fragments, or, like a sample's or an image's, of something else.
+fn of_size_role(words: &[String], unit: Option<SizeUnit>) -> Role {
+    let known = [
+        "size",
+        "sizes",
+        "opening",
+        "openings",
+        "aperture",
+        "apertures",
+        "diameter",
+        "diameters",
+        "sieve",
+        "sieves",
+        "screen",
+        "particle",
+        "grain",
+        "fragment",
+        "rock",
+        "block",
+        "stone",
+        "nominal",
+        "sievesize",
+        "screensize",
+        "grainsize",
+        "particlesize",
+        "fragmentsize",
+        "square",
+        "hole",
+        "passing",
+        "of",
+        "the",
+        "min",
+        "max",
+        "lower",
+        "upper",
+    ];
+    match words.iter().all(|word| known.contains(&word.as_str())) {
+        true => Role::Size(unit),
+        false => Role::PerhapsSize(unit),
+    }
+}
+
+/// What the name of a column says.
+pub(super) fn role(name: &str) -> Role {
+    let mut words = words(name);
+    let percent = words.iter().any(|word| word == "percent");
+    let unit = match percent {
+        true => None,
+        false => take_unit(&mut words),
+    };
+    let joined = words.concat();
+    let any = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()));
+    let within = |list: &[&str]| list.iter().any(|part| joined.contains(part));
+    let of_size =
+        within(&["size", "opening", "aperture", "diameter"]) && !within(&["undersize", "oversize"]);
+    if of_size && unit.is_some() {
+        return of_size_role(&words, unit);
+    }
+    if within(&["retained", "oversize", "coarser", "residue"]) {
+        return Role::Retained;
+    }
+    let single = [
+        "individual",
+        "incremental",
+        "differential",
+        "frequency",
+        "density",
+        "histogram",
+        "perclass",
+        "inclass",
+    ];
+    if within(&single) {
+        return Role::NotCumulative;
+    }
+    let cumulative = [
+        "p",
+        "px",
+        "ppercent",
+        "pxpercent",
+        "fx",
+        "cdf",
+        "cum",
+        "cumulative",
+        "cumpercent",
+        "cumulativepercent",
+        "percentcumulative",
+        "percentcum",
+    ];
+    if within(&["passing", "passed", "finer", "undersize"])
+        || any(&["pass"])
+        || cumulative.contains(&joined.as_str())
+    {
+        return Role::Passing;
+    }
+    if within(&["fraction"]) {
+        return Role::NotCumulative;
+    }
+    if of_size {
+        return of_size_role(&words, unit);
+    }
+    let photos = [
+        "photo",
+        "photos",
+        "photoname",
+        "photofile",
+        "image",
+        "images",
+        "imagename",
+        "imagefile",
+        "picture",
+        "file",
+        "filename",
+        "label",
+        "sample",
+        "samplename",
+        "name",
+    ];
+    match joined.as_str() {
+        "sieve" | "sieves" | "screen" | "screens" | "x" | "d" => Role::PerhapsSize(unit),
+        "method" | "methods" | "technique" | "source" => Role::Method,
+        "trial" | "trials" | "trialnumber" | "trialno" | "run" | "repetition" | "replicate"
+        | "repeat" | "test" => Role::Trial,
+        name => match photos.iter().position(|photo| *photo == name) {
+            Some(place) => Role::Photo(place),
+            None if any(&["area", "areas", "mass", "masses", "weight", "weights"]) => Role::Weight,
+            None => Role::Other,
+        },
+    }
+}
+
+/// A column of sizes that a percent passes: "D50", "P80 (mm)", "x50".
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct PercentileColumn {
+    /// 0 to 100, neither included at 0.
+    pub(super) percent: f64,
+    pub(super) unit: Option<SizeUnit>,
+    /// What the columns of one set have in common: the letter and what follows the number.
+    pub(super) set: String,
+}
+
+impl PercentileColumn {
+    pub(super) fn of(name: &str) -> Option<Self> {
+        let name = name.trim().to_lowercase();
+        let letter = name.chars().next().filter(|c| "dpxk".contains(*c))?;
+        let rest = name.get(1..)?.trim_start_matches([' ', '_', '(']);
+        let digits = rest.find(|c: char| !c.is_ascii_digit() && c != '.');
+        let (number, suffix) = rest.split_at_checked(digits.unwrap_or(rest.len()))?;
+        let percent: f64 = number.parse().ok()?;
+        if !(percent > 0.0 && percent <= 100.0) {
+            return None;
+        }
+        let mut words = words(suffix);
+        let unit = take_unit(&mut words);
+        Some(Self {
+            percent,
+            unit,
+            set: format!("{letter} {}", words.join(" ")),
+        })
+    }
+
+    /// Whether its sizes are logarithms, on geologists' psi or phi scale.
+    pub(super) fn is_logarithm(&self) -> bool {
+        self.set
+            .split(' ')
+            .any(|word| matches!(word, "psi" | "phi"))
+    }
+}
+
+/// A size as the name of a column or as a cell: "10 mm", "0.5", "No. 4".
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SizeText {
+    /// The number with the unit behind it.
+    pub(super) number: Option<(f64, Option<SizeUnit>)>,
+    /// The opening, mm, of the sieve of ASTM E11 that is called so.
+    pub(super) sieve_mm: Option<f64>,
+}
+
+impl SizeText {
+    /// The size that the name of a column is; its decimal sign may be a comma.
+    pub(super) fn of_name(name: &str) -> Option<Self> {
+        let (number, rest) = split_number(name.trim());
+        let unit = SizeUnit::of(rest);
+        let number = number.replace(',', ".").parse::<f64>().ok();
+        let number = number.filter(|n| n.is_finite() && (unit.is_some() || rest.trim().is_empty()));
+        let sieve_mm = sieve_mm(name);
+        let found = number.is_some() || sieve_mm.is_some();
+        found.then_some(Self {
+            number: number.map(|number| (number, unit)),
+            sieve_mm,
+        })
+    }
+}
+
+/// The opening of the sieve of ASTM E11 with that designation: "No. 4", "#4", "3/8 in.", "3/8\"".
+pub(super) fn sieve_mm(name: &str) -> Option<f64> {
+    let squeezed = |text: &str| -> String {
+        let text = text.to_lowercase().replace('#', "no");
+        let text = text.replace(['"', '″'], "in").replace("inch", "in");
+        text.chars()
+            .filter(|c| c.is_alphanumeric() || *c == '/')
+            .collect()
+    };
+    let name = name.trim();
+    let is_named =
+        name.starts_with(['N', 'n', '#']) || name.to_lowercase().contains(['i', '"', '″']);
+    if !is_named {
+        return None;
+    }
+    let wanted = squeezed(name);
+    let sieves = SieveSeries::AstmE11.sieves();
+    let sieve = sieves
+        .iter()
+        .find(|sieve| squeezed(sieve.designation) == wanted);
+    sieve.map(|sieve| sieve.opening_mm)
+}

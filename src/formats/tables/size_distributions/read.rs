@@ -1,0 +1,400 @@
+//! The points of a table in each layout.
+
+use std::collections::{HashMap, HashSet};
+
+use super::DistributionColumns;
+use super::curves::{RawCurve, RawPoint, Repairs, SizeReading, finish};
+use super::layout::{LabelColumns, Layout};
+use super::names::{SizeText, SizeUnit, sieve_mm};
+use crate::fault::Fault;
+use crate::fragmentation::{DistributionSet, Labels};
+use crate::tables::table::{Row, Table};
+use crate::text::fields::shown;
+
+/// Reads the curves of a table.
+pub(super) fn read(
+    table: &Table,
+    columns: &DistributionColumns,
+) -> Result<(DistributionSet, Vec<String>), Fault> {
+    let mut reader = Reader {
+        table,
+        columns,
+        repairs: Repairs::default(),
+    };
+    let layout = Layout::of(table, columns)?;
+    let mut reading = SizeReading {
+        header: None,
+        given: columns.unit,
+        percentiles: false,
+    };
+    let curves = match layout {
+        Layout::Long {
+            size,
+            unit,
+            passing,
+        } => {
+            reading.header = unit;
+            reader.long(size, passing)?
+        }
+        Layout::Wide { size, unit } => {
+            reading.header = unit;
+            reader.wide(size)?
+        }
+        Layout::SizesAsColumns(sizes) => reader.sizes_as_columns(&sizes)?,
+        Layout::Percentiles { columns, unit } => {
+            reading.header = unit;
+            reading.percentiles = true;
+            reader.percentiles(&columns)?
+        }
+    };
+    if curves.is_empty() {
+        let remedy = "give sizes with their percent passing";
+        return Err(Fault::at(table.header_line(), "it has no points", remedy));
+    }
+    finish(curves, reading, reader.repairs)
+}
+
+/// What stands where a number is not known.
+fn is_missing(cell: &str) -> bool {
+    let cell = cell.to_lowercase();
+    matches!(cell.as_str(), "" | "na" | "n/a" | "nan" | "-" | "–" | "—")
+}
+
+struct Reader<'a> {
+    table: &'a Table,
+    columns: &'a DistributionColumns,
+    repairs: Repairs,
+}
+
+impl Reader<'_> {
+    /// A size in a cell; `None` for a sieve's pan.
+    fn size(&mut self, row: &Row, column: usize) -> Result<Option<SizeText>, Fault> {
+        let cell = row.cell(column);
+        let small = cell.to_lowercase();
+        if ["pan", "receiver", "bottom", "tray"]
+            .iter()
+            .any(|pan| small.starts_with(pan))
+        {
+            self.repairs.pan(row.line);
+            return Ok(None);
+        }
+        if is_missing(cell) {
+            let what = format!("column {} has no size", self.table.name(column));
+            return Err(Fault::at(
+                row.line,
+                what,
+                "fill it in, or leave the line out",
+            ));
+        }
+        let sieve_mm = sieve_mm(cell);
+        let number = self
+            .table
+            .number_and_rest(row, column, &mut self.repairs.numbers);
+        let number = match number {
+            // A name that is no number alone.
+            Err(_) if sieve_mm.is_some() => None,
+            Ok(Some((_, rest))) if sieve_mm.is_some() && SizeUnit::of(rest).is_none() => None,
+            found => found?,
+        };
+        let number = match number {
+            Some((number, "")) => Some((number, None)),
+            Some((number, rest)) => match SizeUnit::of(rest) {
+                Some(unit) => Some((number, Some(unit))),
+                None => return Err(self.table.no_number(row, column)),
+            },
+            None => None,
+        };
+        Ok(Some(SizeText { number, sieve_mm }))
+    }
+
+    /// A percent in a cell, with whether a percent sign stands behind it; `None` where it is not known.
+    fn percent(&mut self, row: &Row, column: usize) -> Result<Option<(f64, bool)>, Fault> {
+        if is_missing(row.cell(column)) {
+            return Ok(None);
+        }
+        let found = self
+            .table
+            .number_and_rest(row, column, &mut self.repairs.numbers)?;
+        match found {
+            None => Ok(None),
+            Some((percent, "")) => Ok(Some((percent, false))),
+            Some((percent, "%")) => Ok(Some((percent, true))),
+            Some(_) => Err(self.table.no_number(row, column)),
+        }
+    }
+
+    /// What the columns of labels say of a line.
+    fn labels(&self, row: &Row, columns: LabelColumns) -> Labels {
+        let cell = |column: Option<usize>| column.map_or("", |column| row.cell(column)).to_owned();
+        Labels {
+            method: cell(columns.method),
+            trial: cell(columns.trial),
+            photo: cell(columns.photo),
+        }
+    }
+
+    fn weight(&mut self, row: &Row, columns: LabelColumns) -> Result<Option<f64>, Fault> {
+        match columns.weight {
+            Some(column) if !is_missing(row.cell(column)) => {
+                self.table.number(row, column, &mut self.repairs.numbers)
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Says which columns nobody looked at.
+    fn say_unused(&mut self, used: &[usize]) {
+        let header = self.table.header().iter().enumerate();
+        let unused: Vec<String> = header
+            .filter(|(column, name)| !name.is_empty() && !used.contains(column))
+            .map(|(_, name)| shown(name))
+            .collect();
+        if unused.is_empty() {
+            return;
+        }
+        let (first, rest) = unused.split_at(unused.len().min(8));
+        let more = match rest.len() {
+            0 => String::new(),
+            more => format!(" and {more} others"),
+        };
+        let names = first.join(", ");
+        self.repairs
+            .said
+            .push(format!("columns that are not used: {names}{more}"));
+    }
+
+    fn long(&mut self, size: usize, passing: usize) -> Result<Vec<RawCurve>, Fault> {
+        let labels = LabelColumns::of(self.table, self.columns, &[size, passing])?;
+        let used: Vec<usize> = labels.all().chain([size, passing]).collect();
+        self.say_unused(&used);
+        let mut curves: Vec<RawCurve> = Vec::new();
+        let mut places: HashMap<Labels, usize> = HashMap::new();
+        for row in self.table.rows() {
+            let Some(size) = self.size(row, size)? else {
+                continue;
+            };
+            let Some((percent, percent_sign)) = self.percent(row, passing)? else {
+                let what = format!("column {} is empty", self.table.name(passing));
+                return Err(Fault::at(
+                    row.line,
+                    what,
+                    "fill it in, or leave the line out",
+                ));
+            };
+            let (name, weight) = (self.labels(row, labels), self.weight(row, labels)?);
+            let place = *places.entry(name.clone()).or_insert(curves.len());
+            if place == curves.len() {
+                curves.push(RawCurve {
+                    labels: name,
+                    weight,
+                    line: row.line,
+                    points: Vec::new(),
+                });
+            }
+            let Some(curve) = curves.get_mut(place) else {
+                continue;
+            };
+            if let (Some(before), Some(now)) = (curve.weight, weight)
+                && before != now
+            {
+                let what = format!(
+                    "its weight is {now}, where line {} has {before} for the same curve",
+                    curve.line
+                );
+                return Err(Fault::at(row.line, what, "give a curve one weight"));
+            }
+            curve.weight = curve.weight.or(weight);
+            curve.points.push(RawPoint {
+                line: row.line,
+                size,
+                percent,
+                percent_sign,
+            });
+        }
+        Ok(curves)
+    }
+
+    fn wide(&mut self, size: usize) -> Result<Vec<RawCurve>, Fault> {
+        let count = self.table.header().len();
+        let mut curves: Vec<(usize, RawCurve)> = (0..count)
+            .filter(|&column| column != size)
+            .map(|column| {
+                let curve = RawCurve {
+                    labels: self.labels_of_column(column, count == 2),
+                    weight: None,
+                    line: self.table.header_line(),
+                    points: Vec::new(),
+                };
+                (column, curve)
+            })
+            .collect();
+        for row in self.table.rows() {
+            if is_missing(row.cell(size)) && (0..row.len()).all(|c| is_missing(row.cell(c))) {
+                continue;
+            }
+            let Some(size) = self.size(row, size)? else {
+                continue;
+            };
+            let there = |place: &&mut (usize, RawCurve)| place.0 < row.len();
+            for (column, curve) in curves.iter_mut().take_while(there) {
+                if let Some((percent, percent_sign)) = self.percent(row, *column)? {
+                    curve.points.push(RawPoint {
+                        line: row.line,
+                        size,
+                        percent,
+                        percent_sign,
+                    });
+                }
+            }
+        }
+        let (full, empty): (Vec<_>, Vec<_>) = curves
+            .into_iter()
+            .partition(|(_, curve)| !curve.points.is_empty());
+        for (column, _) in empty {
+            let name = self.table.name(column);
+            self.repairs
+                .said
+                .push(format!("column {name} is empty and left out"));
+        }
+        if let Some((column, curve)) = full
+            .iter()
+            .find(|(_, curve)| full.len() > 1 && curve.labels == Labels::default())
+        {
+            let what = format!("column {} has no name", self.table.name(*column));
+            return Err(Fault::at(curve.line, what, "name the curve that it holds"));
+        }
+        Ok(full.into_iter().map(|(_, curve)| curve).collect())
+    }
+
+    /// What the name of a curve's column says: "method", "method/trial" or "method/trial/photo". A
+    /// curve that is `alone` and called percent passing has no name.
+    fn labels_of_column(&self, column: usize, alone: bool) -> Labels {
+        let name = self.table.header().get(column).map_or("", String::as_str);
+        let short = without_percent(name);
+        let name = if short.is_empty() && !alone {
+            name
+        } else {
+            short
+        };
+        let mut parts = name.splitn(3, '/').map(|part| part.trim().to_owned());
+        Labels {
+            method: parts.next().unwrap_or_default(),
+            trial: parts.next().unwrap_or_default(),
+            photo: parts.next().unwrap_or_default(),
+        }
+    }
+
+    fn sizes_as_columns(&mut self, sizes: &[(usize, SizeText)]) -> Result<Vec<RawCurve>, Fault> {
+        let taken: Vec<usize> = sizes.iter().map(|(column, _)| *column).collect();
+        self.a_line_a_curve(&taken, |reader, row| {
+            let mut points = Vec::new();
+            for &(column, size) in sizes.iter().take_while(|(column, _)| *column < row.len()) {
+                if let Some((percent, percent_sign)) = reader.percent(row, column)? {
+                    points.push(RawPoint {
+                        line: row.line,
+                        size,
+                        percent,
+                        percent_sign,
+                    });
+                }
+            }
+            Ok(points)
+        })
+    }
+
+    fn percentiles(&mut self, columns: &[(usize, f64)]) -> Result<Vec<RawCurve>, Fault> {
+        let taken: Vec<usize> = columns.iter().map(|(column, _)| *column).collect();
+        self.a_line_a_curve(&taken, |reader, row| {
+            let mut points = Vec::new();
+            for &(column, percent) in columns.iter().take_while(|(column, _)| *column < row.len()) {
+                if is_missing(row.cell(column)) {
+                    continue;
+                }
+                if let Some(size) = reader.size(row, column)? {
+                    points.push(RawPoint {
+                        line: row.line,
+                        size,
+                        percent,
+                        percent_sign: true,
+                    });
+                }
+            }
+            Ok(points)
+        })
+    }
+
+    /// The curves of a table with one line each. Lines that no column names are called by their place.
+    fn a_line_a_curve(
+        &mut self,
+        taken: &[usize],
+        mut points_of: impl FnMut(&mut Self, &Row) -> Result<Vec<RawPoint>, Fault>,
+    ) -> Result<Vec<RawCurve>, Fault> {
+        let labels = LabelColumns::of(self.table, self.columns, taken)?;
+        let used: Vec<usize> = labels.all().chain(taken.iter().copied()).collect();
+        self.say_unused(&used);
+        let nameless = [labels.method, labels.trial, labels.photo]
+            .iter()
+            .all(Option::is_none);
+        let several = self.table.rows().len() > 1;
+        if nameless && several {
+            let said = "no column names the curves: they are called by their lines";
+            self.repairs.said.push(said.to_owned());
+        }
+        let mut seen = HashSet::new();
+        let mut curves = Vec::new();
+        for row in self.table.rows() {
+            let points = points_of(self, row)?;
+            if points.is_empty() {
+                self.repairs.empty(row.line);
+                continue;
+            }
+            let mut name = self.labels(row, labels);
+            if nameless && several {
+                name.photo = format!("line {}", row.line);
+            } else if !seen.insert(name.clone()) {
+                self.repairs.same_name(row.line);
+                name.photo = format!("{} (line {})", name.photo, row.line);
+            }
+            curves.push(RawCurve {
+                labels: name,
+                weight: self.weight(row, labels)?,
+                line: row.line,
+                points,
+            });
+        }
+        Ok(curves)
+    }
+}
+
+/// A name without "(%)" and words for percent passing at its end.
+fn without_percent(name: &str) -> &str {
+    let mut name = name.trim();
+    loop {
+        let before = name;
+        for end in [
+            "(%)",
+            "[%]",
+            "%",
+            "passing",
+            "percent",
+            "cumulative",
+            "cum.",
+            "cum",
+        ] {
+            let start = name.len().saturating_sub(end.len());
+            if name
+                .get(start..)
+                .is_some_and(|found| found.eq_ignore_ascii_case(end))
+            {
+                let separators = [' ', '_', '-', ',', ';'];
+                name = name
+                    .get(..start)
+                    .unwrap_or_default()
+                    .trim_end_matches(separators);
+            }
+        }
+        if name == before {
+            return name;
+        }
+    }
+}

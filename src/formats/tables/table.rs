@@ -1,0 +1,654 @@
+//! A table of text with a header line: what spreadsheets save and what people paste.
+//!
+//! - The separator is a tab, a semicolon or a comma: the first of these that both the header and the
+//!   line behind it hold. Runs of blanks only where there is none. Fields may be quoted.
+//! - A byte order mark, empty lines and lines that begin with # are passed over (but not "#4": a digit
+//!   right behind it makes it a sieve's name).
+//! - A line may end early: what is missing is empty. What stands beyond the header's columns is a
+//!   fault, because a decimal comma may have shifted it there.
+//! - Numbers may have a decimal comma where the table shows that it is one and not a thousands
+//!   separator ([`Table::number`]).
+
+use std::path::Path;
+
+use csv::StringRecord;
+
+use crate::fault::Fault;
+use crate::files::{FileError, open_file, text_from_bytes};
+use crate::text::fields::shown;
+
+/// Larger files are no tables that people made or looked at.
+const LARGEST: usize = 16 << 20;
+
+/// More lines than anyone measures.
+const MOST_ROWS: usize = 500_000;
+
+/// More columns than anyone measures.
+const MOST_COLUMNS: usize = 10_000;
+
+/// A table in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    header: Vec<String>,
+    header_line: u64,
+    rows: Vec<Row>,
+    /// Whether some number is written with a comma, and some with a point, that can only be decimal.
+    decimal_comma: bool,
+    decimal_point: bool,
+}
+
+/// A line of a table, behind its header.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Where it stands, from 1.
+    pub line: u64,
+    cells: StringRecord,
+}
+
+impl Row {
+    /// What stands in a column, without blanks at its ends; empty where the line ends before it.
+    pub fn cell(&self, column: usize) -> &str {
+        self.cells.get(column).unwrap_or_default()
+    }
+
+    /// How many of the columns the line has, from the first on.
+    pub fn len(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Whether it has none.
+    pub fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+}
+
+/// What was mended in numbers, to be said.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct NumberRepairs {
+    decimal_commas: usize,
+    first_line: u64,
+}
+
+impl NumberRepairs {
+    /// One sentence for each kind of repair.
+    pub fn warnings(&self) -> Vec<String> {
+        match self.decimal_commas {
+            0 => Vec::new(),
+            count => vec![format!(
+                "decimal commas are read as decimal points ({count} {}, first on line {})",
+                if count == 1 { "number" } else { "numbers" },
+                self.first_line
+            )],
+        }
+    }
+
+    /// Notes a decimal comma on this line.
+    pub(crate) fn decimal_comma(&mut self, line: u64) {
+        if self.decimal_commas == 0 {
+            self.first_line = line;
+        }
+        self.decimal_commas += 1;
+    }
+}
+
+impl Table {
+    /// Reads a table.
+    ///
+    /// # Errors
+    /// Where there is no header or no line behind it, where quotes do not end, where a line has more
+    /// fields than the header, and where it is larger than any measured table.
+    pub fn read(text: &str) -> Result<Self, Fault> {
+        let table = Self::read_even_empty(text)?;
+        if table.rows.is_empty() {
+            let what = format!("it has no line below {}", table.columns_in_words());
+            let remedy = "give the numbers below the names of the columns";
+            return Err(Fault::at(table.header_line, what, remedy));
+        }
+        Ok(table)
+    }
+
+    /// As [`Table::read`], where it may have no line behind its header.
+    pub(crate) fn read_even_empty(text: &str) -> Result<Self, Fault> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if text.len() > LARGEST {
+            return Err(too_large());
+        }
+        if let Some(at) = text.find('\0') {
+            let line = 1 + text.get(..at).unwrap_or_default().matches('\n').count() as u64;
+            let what = "there is a byte 0: it is no text, or text in UTF-16";
+            return Err(Fault::at(line, what, "save it as CSV in UTF-8"));
+        }
+        let text = without_comments(text);
+        let mut records = match separator(&text) {
+            Some(separator) => separated_records(&text, separator)?,
+            None => blank_records(&text)?,
+        }
+        .into_iter();
+        let Some(header) = records.next() else {
+            let remedy = "give a line that names the columns, and the numbers below it";
+            return Err(Fault::new("it is empty", remedy));
+        };
+        if header.cells.len() > MOST_COLUMNS {
+            let what = format!("it has over {MOST_COLUMNS} columns");
+            return Err(Fault::at(header.line, what, "check that it is a table"));
+        }
+        let rows: Vec<Row> = records.collect();
+        for row in &rows {
+            let mut extra = row.cells.iter().skip(header.cells.len());
+            if let Some(extra) = extra.find(|cell| !cell.is_empty()) {
+                let what = format!(
+                    "it has {} fields for {} columns ('{}' is too many)",
+                    row.cells.len(),
+                    header.cells.len(),
+                    shown(extra)
+                );
+                let remedy = "write decimal points, and quote what holds the separator";
+                return Err(Fault::at(row.line, what, remedy));
+            }
+        }
+        let mut table = Self {
+            header: header.cells.iter().map(str::to_owned).collect(),
+            header_line: header.line,
+            rows,
+            decimal_comma: false,
+            decimal_point: false,
+        };
+        table.look_for_decimal_signs();
+        Ok(table)
+    }
+
+    /// Reads a table from a file.
+    ///
+    /// # Errors
+    /// As [`Table::read`], and where the file cannot be read or is no UTF-8 text.
+    pub fn read_file(path: &Path) -> Result<Self, FileError> {
+        let text = read_bounded(path)?;
+        Self::read(&text).map_err(|fault| FileError::new(path, fault))
+    }
+
+    /// The names of the columns.
+    pub fn header(&self) -> &[String] {
+        &self.header
+    }
+
+    /// Where the header stands, from 1.
+    pub fn header_line(&self) -> u64 {
+        self.header_line
+    }
+
+    /// The lines behind the header, at least one.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// The column that the user named: the name itself, else one that differs in case, blanks and
+    /// punctuation only.
+    ///
+    /// # Errors
+    /// Where there is none or several; the columns that there are are named.
+    pub fn column(&self, name: &str) -> Result<usize, Fault> {
+        let exact = |column: &String| column.trim() == name.trim();
+        let alike = |column: &String| !key(name).is_empty() && key(column) == key(name);
+        let places = |is: &dyn Fn(&String) -> bool| -> Vec<usize> {
+            let columns = self.header.iter().enumerate();
+            columns.filter(|(_, c)| is(c)).map(|(i, _)| i).collect()
+        };
+        let mut found = places(&exact);
+        if found.is_empty() {
+            found = places(&alike);
+        }
+        match found[..] {
+            [column] => Ok(column),
+            [] => Err(Fault::at(
+                self.header_line,
+                format!("there is no column '{}'", shown(name)),
+                format!("name one of {}", self.columns_in_words()),
+            )),
+            _ => Err(Fault::at(
+                self.header_line,
+                format!("{} columns are called '{}'", found.len(), shown(name)),
+                "give each column a name of its own",
+            )),
+        }
+    }
+
+    /// The names of the columns in one phrase, cut where there are many.
+    pub fn columns_in_words(&self) -> String {
+        let mut names: Vec<String> = (self.header.iter())
+            .take(12)
+            .map(|name| format!("'{}'", shown(name)))
+            .collect();
+        match self.header.len().saturating_sub(names.len()) {
+            0 => {}
+            more => names.push(format!("{more} others")),
+        }
+        names.join(", ")
+    }
+
+    /// The finite number in a column; `None` where the cell is empty. A decimal comma is read as a
+    /// point, and noted in `repairs`.
+    ///
+    /// # Errors
+    /// With line, column and value, where it is no number, or one whose comma or point may as well
+    /// separate thousands.
+    pub fn number(
+        &self,
+        row: &Row,
+        column: usize,
+        repairs: &mut NumberRepairs,
+    ) -> Result<Option<f64>, Fault> {
+        match self.number_and_rest(row, column, repairs)? {
+            Some((_, rest)) if !rest.is_empty() => Err(self.no_number(row, column)),
+            found => Ok(found.map(|(number, _)| number)),
+        }
+    }
+
+    /// As [`Table::number`], with what follows the number in its cell: a unit or a percent sign.
+    ///
+    /// # Errors
+    /// As [`Table::number`].
+    pub fn number_and_rest<'a>(
+        &self,
+        row: &'a Row,
+        column: usize,
+        repairs: &mut NumberRepairs,
+    ) -> Result<Option<(f64, &'a str)>, Fault> {
+        let cell = row.cell(column);
+        if cell.is_empty() {
+            return Ok(None);
+        }
+        let (number, rest) = split_number(cell);
+        let fault = |what: &str, remedy: &str| {
+            let name = self.name(column);
+            let what = format!("column {name}: '{}' {what}", shown(cell));
+            Err(Fault::at(row.line, what, remedy))
+        };
+        let plain = "write decimals with a point, and nothing between thousands";
+        let ambiguous = "may have a decimal sign or a separator of thousands";
+        let parsed = match (number.matches(',').count(), number.matches('.').count()) {
+            (0, 1) if self.decimal_comma && may_be_thousands(number) => {
+                return fault(ambiguous, plain);
+            }
+            (0, 0 | 1) => number.parse::<f64>(),
+            (1, 0) if may_be_thousands(number) && (self.decimal_point || !self.decimal_comma) => {
+                return fault(ambiguous, plain);
+            }
+            (1, 0) => {
+                repairs.decimal_comma(row.line);
+                number.replace(',', ".").parse::<f64>()
+            }
+            _ => return fault("has separators of thousands", plain),
+        };
+        match parsed {
+            Ok(number) if number.is_finite() => Ok(Some((number, rest.trim_start()))),
+            Ok(_) => fault("is not finite", "correct it"),
+            Err(_) => Err(self.no_number(row, column)),
+        }
+    }
+
+    /// The fault of a cell that is no number.
+    pub fn no_number(&self, row: &Row, column: usize) -> Fault {
+        let cell = shown(row.cell(column));
+        let what = format!("column {}: '{cell}' is not a number", self.name(column));
+        Fault::at(row.line, what, "correct it, or leave the line out")
+    }
+
+    /// What a column is called in messages.
+    pub fn name(&self, column: usize) -> String {
+        match self.header.get(column) {
+            Some(name) if !name.is_empty() => shown(name),
+            _ => format!("number {}", column + 1),
+        }
+    }
+
+    /// Looks for numbers whose comma or point can only be decimal.
+    fn look_for_decimal_signs(&mut self) {
+        for cell in self.rows.iter().flat_map(|row| row.cells.iter()) {
+            let (number, _) = split_number(cell);
+            let signs = [',', '.'].map(|sign| number.matches(sign).count());
+            if signs[0] + signs[1] == 1 && !may_be_thousands(number) {
+                self.decimal_comma |= signs[0] == 1;
+                self.decimal_point |= signs[1] == 1;
+            }
+        }
+    }
+}
+
+/// A name in small letters and digits, without blanks and punctuation.
+pub(crate) fn key(name: &str) -> String {
+    let letters = name.chars().filter(|c| c.is_alphanumeric());
+    letters.flat_map(char::to_lowercase).collect()
+}
+
+/// The whole text of a table's file, which is of a size that people measure.
+///
+/// # Errors
+/// Where it cannot be read, is too large, or is no UTF-8 text.
+pub(crate) fn read_bounded(path: &Path) -> Result<String, FileError> {
+    use std::io::Read;
+    let at = |fault| FileError::new(path, fault);
+    let mut bytes = Vec::new();
+    open_file(path)?
+        .take(LARGEST as u64 + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|e| {
+            let what = format!("it cannot be read to its end ({e})");
+            at(Fault::new(what, "check the disk"))
+        })?;
+    if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xd0\xcf\x11\xe0") {
+        let what = "it is a spreadsheet's own format or an archive, not text";
+        return Err(at(Fault::new(what, "save the sheet as CSV")));
+    }
+    if bytes.len() > LARGEST {
+        return Err(at(too_large()));
+    }
+    text_from_bytes(&bytes).map(str::to_owned).map_err(at)
+}
+
+fn too_large() -> Fault {
+    let what = format!("it is larger than {} MB", LARGEST >> 20);
+    Fault::new(what, "give the table alone")
+}
+
+/// Whether a line holds data or names: not empty, no comment. "#4" is a sieve's name.
+fn counts(line: &&str) -> bool {
+    let comment = line.strip_prefix('#');
+    let comment = comment.is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()));
+    !line.trim().is_empty() && !comment
+}
+
+/// The text with empty lines in place of those that do not count, so that lines keep their numbers.
+fn without_comments(text: &str) -> String {
+    let lines = text
+        .lines()
+        .flat_map(|line| [if counts(&line) { line } else { "" }, "\n"]);
+    lines.collect()
+}
+
+/// The separator of the header and the line behind it; `None` for blanks.
+fn separator(text: &str) -> Option<char> {
+    let mut lines = text.lines().filter(counts);
+    let (header, next) = (lines.next()?, lines.next());
+    let holds = |line: &str, separator: char| {
+        // A quotation mark counts at the beginning of a field; elsewhere it is inches.
+        let (mut quoted, mut begins) = (false, true);
+        line.chars().any(|c| {
+            quoted = if quoted { c != '"' } else { begins && c == '"' };
+            begins = !quoted && (c == separator || begins && c == ' ');
+            !quoted && c == separator
+        })
+    };
+    let separators = ['\t', ';', ','];
+    let in_both = |&c: &char| holds(header, c) && next.is_none_or(|next| holds(next, c));
+    let found = separators.into_iter().find(in_both);
+    found.or_else(|| separators.into_iter().find(|&c| holds(header, c)))
+}
+
+/// The records of a table with a separator.
+fn separated_records(text: &str, separator: char) -> Result<Vec<Row>, Fault> {
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(separator as u8)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .has_headers(false)
+        .from_reader(text.as_bytes());
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| {
+            let line = error.position().map_or(1, csv::Position::line);
+            let what = format!("it is not a table ({error})");
+            Fault::at(line, what, "check its quotes")
+        })?;
+        if record.iter().all(str::is_empty) {
+            continue;
+        }
+        let line = line_of(text, &record, str::is_empty);
+        let cells = without_spaced_quotes(record);
+        push(&mut rows, Row { line, cells })?;
+    }
+    Ok(rows)
+}
+
+/// The records of a table whose fields stand between blanks. In its header two blanks or more separate
+/// names where there are such; else what stands in brackets belongs to the name before it.
+fn blank_records(text: &str) -> Result<Vec<Row>, Fault> {
+    let mut rows: Vec<Row> = Vec::new();
+    for (line, number) in text.lines().zip(1..) {
+        if !counts(&line) {
+            continue;
+        }
+        let cells: StringRecord = match rows.is_empty() {
+            true => names_between_blanks(line).into_iter().collect(),
+            false => line.split_whitespace().collect(),
+        };
+        push(
+            &mut rows,
+            Row {
+                line: number,
+                cells,
+            },
+        )?;
+    }
+    Ok(rows)
+}
+
+fn names_between_blanks(header: &str) -> Vec<String> {
+    let header = header.trim();
+    if header.contains("  ") {
+        let names = header.split("  ").map(str::trim);
+        return names
+            .filter(|name| !name.is_empty())
+            .map(str::to_owned)
+            .collect();
+    }
+    let mut names: Vec<String> = Vec::new();
+    for word in header.split_whitespace() {
+        match names.last_mut() {
+            Some(name) if word.starts_with(['(', '[']) => {
+                name.push(' ');
+                name.push_str(word);
+            }
+            _ => names.push(word.to_owned()),
+        }
+    }
+    names
+}
+
+fn push(rows: &mut Vec<Row>, row: Row) -> Result<(), Fault> {
+    if rows.len() > MOST_ROWS {
+        let what = format!("it has over {MOST_ROWS} lines");
+        return Err(Fault::at(row.line, what, "give the table alone"));
+    }
+    rows.push(row);
+    Ok(())
+}
+
+/// Quotes count for the csv crate only right behind a comma, but people put spaces there.
+fn without_spaced_quotes(record: StringRecord) -> StringRecord {
+    if !record.iter().any(|field| field.starts_with('"')) {
+        return record;
+    }
+    let position = record.position().cloned();
+    let bare = |field: &str| {
+        let inner = field
+            .strip_prefix('"')
+            .and_then(|field| field.strip_suffix('"'));
+        inner.map_or_else(|| field.to_owned(), |inner| inner.replace("\"\"", "\""))
+    };
+    let mut record: StringRecord = record.iter().map(bare).collect();
+    record.set_position(position);
+    record
+}
+
+/// The line, from 1, on which a record begins. The csv crate places it where its search began: in
+/// front of the lines that it `skips`.
+fn line_of(text: &str, record: &StringRecord, skips: impl Fn(&str) -> bool) -> u64 {
+    let Some(position) = record.position() else {
+        return 1;
+    };
+    let begin = usize::try_from(position.byte()).unwrap_or(usize::MAX);
+    let rest = text.get(begin..).unwrap_or_default();
+    let skipped = rest.lines().take_while(|line| skips(line));
+    position.line() + skipped.count() as u64
+}
+
+/// A cell's number, with all its points and commas, and what follows it.
+pub(crate) fn split_number(cell: &str) -> (&str, &str) {
+    let bytes = cell.as_bytes();
+    let run = |from: usize, is: &dyn Fn(u8) -> bool| {
+        let rest = bytes.get(from..).unwrap_or_default();
+        from + rest.iter().take_while(|&&b| is(b)).count()
+    };
+    let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
+    let mut end = run(sign, &|b| b.is_ascii_digit() || b == b'.' || b == b',');
+    if end > sign && matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        let digits = end + 1 + sign;
+        let exponent = run(digits, &|b| b.is_ascii_digit());
+        if exponent > digits {
+            end = exponent;
+        }
+    }
+    cell.split_at_checked(end).unwrap_or((cell, ""))
+}
+
+/// Whether the one comma or point of a number may separate thousands: one to three digits in front, of
+/// which the first is no 0, and three behind.
+pub(crate) fn may_be_thousands(number: &str) -> bool {
+    let number = number.trim_start_matches(['+', '-']);
+    let Some((whole, rest)) = number.split_once([',', '.']) else {
+        return false;
+    };
+    let digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
+    (1..=3).contains(&whole.len())
+        && !whole.starts_with('0')
+        && digits(whole)
+        && rest.len() == 3
+        && digits(rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(text: &str) -> Result<(Vec<Option<f64>>, Vec<String>), Fault> {
+        let table = Table::read(text)?;
+        let mut repairs = NumberRepairs::default();
+        let numbers = table
+            .rows()
+            .iter()
+            .map(|row| table.number(row, 0, &mut repairs))
+            .collect::<Result<_, Fault>>()?;
+        Ok((numbers, repairs.warnings()))
+    }
+
+    #[test]
+    fn separators_comments_quotes_and_lines() {
+        for text in [
+            "\u{feff}# c\r\n\r\na,\"b, \"\"c\"\"\"\r\n# c\r\n1,\"2, x\"\r\n",
+            "\n\n\na;\"b, \"\"c\"\"\"\n\n1;\"2, x\"\n",
+            "\n\na\tb, \"c\"\n\n1\t2, x",
+        ] {
+            let table = Table::read(text).unwrap();
+            assert_eq!(table.header(), ["a", "b, \"c\""], "{text:?}");
+            assert_eq!(
+                (table.rows().len(), table.rows()[0].line),
+                (1, table.header_line() + 2)
+            );
+            assert_eq!(table.rows()[0].cell(1).replace(", ", ","), "2,x");
+            assert_eq!(table.rows()[0].cell(7), "");
+        }
+        let table = Table::read("a b  c (d)\n1   2\n").unwrap();
+        assert_eq!(
+            (table.header(), table.rows()[0].cell(1)),
+            (&["a b".into(), "c (d)".into()][..], "2")
+        );
+        let table = Table::read("a c (d)\n1\t2\n").unwrap();
+        assert_eq!(table.header(), ["a", "c (d)"]);
+        // Semicolons in a name, commas in every line; inches; a sieve's name is no comment.
+        let table = Table::read("a (b; c),d (\")\n1,2\n#4,5\n#no data\n").unwrap();
+        assert_eq!(table.header(), ["a (b; c)", "d (\")"]);
+        assert_eq!((table.rows()[1].cell(0), table.rows()[1].line), ("#4", 3));
+        assert_eq!(table.rows().len(), 2);
+    }
+
+    #[test]
+    fn columns_are_found_as_people_write_them() {
+        let table = Table::read("Step Time (s),who,Who,\n1,2,3\n").unwrap();
+        assert_eq!(table.column("step_time_s"), Ok(0));
+        assert_eq!(table.column("Who"), Ok(2));
+        let fault = table.column("WHO").unwrap_err();
+        assert_eq!(fault.what, "2 columns are called 'WHO'");
+        let fault = table.column("when").unwrap_err();
+        assert_eq!(
+            fault.to_string(),
+            "there is no column 'when'; name one of 'Step Time (s)', 'who', 'Who', ''"
+        );
+        assert_eq!(table.name(3), "number 4");
+        assert!(table.column("").is_ok());
+    }
+
+    #[test]
+    fn numbers_are_what_they_can_only_be() {
+        let (found, said) = numbers("a;b\n1;\n-2.5e-3;\n;x\n+.5;\n1.000;\n").unwrap();
+        assert_eq!(
+            found,
+            [Some(1.0), Some(-0.0025), None, Some(0.5), Some(1.0)]
+        );
+        assert!(said.is_empty(), "{said:?}");
+        let (found, said) = numbers("a;b\n0,125;\n1,5e1;\n1,000;\n").unwrap();
+        assert_eq!(found, [Some(0.125), Some(15.0), Some(1.0)]);
+        assert_eq!(
+            said,
+            ["decimal commas are read as decimal points (3 numbers, first on line 2)"]
+        );
+        for bad in [
+            "1,000",
+            "1,000,000",
+            "1.000,5",
+            "1.2.3",
+            "1 000",
+            "1'000",
+            "x",
+            "1x",
+            "-",
+            "1e",
+            "nan",
+            "inf",
+            "1e999",
+            ".",
+            ",",
+            "--1",
+            "1/2",
+        ] {
+            let fault = numbers(&format!("a;b\n2;\n{bad};\n")).unwrap_err();
+            assert_eq!(fault.line, Some(3), "{bad}");
+            assert!(
+                fault.what.starts_with(&format!("column a: '{bad}' ")),
+                "{fault}"
+            );
+        }
+        // A comma and a point that both can only be decimal: neither says what 1,000 is.
+        assert!(numbers("a;b\n1,5;2.5\n1,000;3\n").is_err());
+        assert!(numbers("a;b\n1,5;2\n1.000;3\n").is_err());
+    }
+
+    #[test]
+    fn what_stands_too_much_is_refused() {
+        let fault = Table::read("a,b\n1,2,\n1,2,3\n").unwrap_err();
+        assert_eq!(fault.line, Some(3));
+        assert!(
+            fault
+                .what
+                .contains("3 fields for 2 columns ('3' is too many)"),
+            "{fault}"
+        );
+        let wide = format!("{}\n1\n", "a,".repeat(10_001));
+        assert!(
+            Table::read(&wide)
+                .unwrap_err()
+                .what
+                .contains("over 10000 columns")
+        );
+    }
+}

@@ -1,0 +1,7 @@
+//! What readers of text share: fields and lines with their places, JSON, XML, separators.
+
+pub(crate) mod fields;
+pub(crate) mod json;
+pub(crate) mod separated;
+pub(crate) mod text_lines;
+pub(crate) mod xml_document;

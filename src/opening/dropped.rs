@@ -1,0 +1,71 @@
+//! Several files named at once: what is the flight, what its surface, what its photos.
+
+use std::path::{Path, PathBuf};
+
+use crate::OpenOptions;
+use crate::fault::Fault;
+use crate::files::FileError;
+use crate::formats::tables::size_distributions::no_flight_but_sizes;
+use crate::formats::{Kind, Package, detect};
+
+/// How several of them are called.
+const PHOTOS: &str = "folders of photos";
+
+/// What several paths are to each other.
+#[derive(Debug, Clone, Default)]
+pub struct Dropped {
+    /// The flight or reconstruction; `None` where only what belongs to one was named.
+    pub flight: Option<PathBuf>,
+    /// The surface and the folder of photos that were named beside it.
+    pub options: OpenOptions,
+}
+
+impl Dropped {
+    /// Looks what each path holds.
+    ///
+    /// # Errors
+    /// Where one holds nothing that is known, or two are the same part of a flight.
+    pub fn sort(paths: &[PathBuf]) -> Result<Self, FileError> {
+        let mut dropped = Self::default();
+        let mut photos = None;
+        for path in paths {
+            let (part, name) = match detect(path)? {
+                Kind::Cloud(_) => (&mut dropped.options.surface, "surfaces"),
+                Kind::Reconstruction(Package::Photos, _) => (&mut photos, PHOTOS),
+                Kind::Flight(_) | Kind::Reconstruction(..) => (&mut dropped.flight, "flights"),
+                Kind::SizeDistributions => {
+                    return Err(FileError::new(path, no_flight_but_sizes()));
+                }
+                kind @ (Kind::Camera | Kind::Poses | Kind::Trajectory(_)) => {
+                    return Err(no_part(path, &kind));
+                }
+            };
+            // One photo stands for the folder that it is in.
+            let path = match path.parent() {
+                Some(folder) if name == PHOTOS && path.is_file() => folder,
+                _ => path.as_path(),
+            };
+            if let Some(first) = part.replace(path.to_owned())
+                && (first != path || name != PHOTOS)
+            {
+                return Err(FileError::new(
+                    path,
+                    Fault::new(
+                        format!("it and {} are two {name}", first.display()),
+                        "open one flight at a time, with one surface",
+                    ),
+                ));
+            }
+        }
+        dropped.options.photos = photos;
+        Ok(dropped)
+    }
+}
+
+fn no_part(path: &Path, kind: &Kind) -> FileError {
+    let what = format!("it holds {}, not a flight", kind.in_words());
+    FileError::new(
+        path,
+        Fault::new(what, "name it in a flight.toml and open that"),
+    )
+}

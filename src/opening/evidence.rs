@@ -1,0 +1,199 @@
+//! Looks up what speaks against the scales of a flight's photos, outside of the flight's own numbers:
+//! where they stand, what their files say of themselves, whose size nobody has seen, whose colours are
+//! not those of the surface. Reviews are made of it, and every front end asks here.
+
+use std::collections::HashSet;
+
+use crate::fault::Fault;
+use crate::files::{FileError, read_bytes};
+use crate::flight::{ColoursFound, Doubt, Evidence, Flight, LookedUp, PhotoFileState, Review};
+use crate::jobs::Progress;
+use crate::photo_checks::photo_checks;
+use crate::photo_files::PhotoFile;
+use crate::picture::{Agreement, Mismatch, decode};
+
+/// Looks up what the files' headers and the places of the photos say; `files` are parallel to the
+/// flight's photos. No photo is decoded: for colours see [`compare_colours`].
+pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
+    let parts = flight.parts();
+    let mut evidence: Vec<Evidence> = files
+        .iter()
+        .map(|file| Evidence {
+            file: file.state.clone(),
+            ..Evidence::default()
+        })
+        .collect();
+    let mut warnings = Vec::new();
+    if !parts.unit_known {
+        warnings.push(Doubt::UnitUnknown.to_string());
+    }
+    warnings.extend(doubt_sizes(flight, files, &mut evidence));
+    let placement = flight.placement();
+    warnings.extend(placement.warnings(flight));
+    let of_places = placement.doubts(parts.unit);
+    let of_files = photo_checks(flight, files);
+    warnings.extend(of_files.iter().map(|(doubt, _)| doubt.to_string()));
+    let of_files = of_files.into_iter().flat_map(|(doubt, photos)| {
+        let each = photos.into_iter();
+        each.map(move |photo| (photo, doubt.clone()))
+    });
+    for (photo, doubt) in of_places.chain(of_files) {
+        if let Some(evidence) = evidence.get_mut(photo) {
+            evidence.doubts.push(doubt);
+        }
+    }
+    LookedUp { evidence, warnings }
+}
+
+/// Doubts scales for images that nobody may have: of photos whose files are not there, while the
+/// package names another size for them or is known to solve on reduced ones.
+fn doubt_sizes(flight: &Flight, files: &[PhotoFile], evidence: &mut [Evidence]) -> Vec<String> {
+    let photos = &flight.parts().photos;
+    let found = photos.iter().zip(files).filter(|(photo, file)| {
+        let camera = flight.camera(photo);
+        let (width, height) = (camera.width, camera.height);
+        file.state == PhotoFileState::Found { width, height }
+    });
+    let fitted: HashSet<usize> = found.map(|(photo, _)| photo.camera).collect();
+    let mut warnings = Vec::new();
+    let mut unknown = Vec::new();
+    for ((photo, file), evidence) in photos.iter().zip(files).zip(evidence) {
+        let camera = flight.camera(photo);
+        let size = (camera.width, camera.height);
+        if !matches!(
+            file.state,
+            PhotoFileState::Missing | PhotoFileState::NotNamed
+        ) {
+            continue;
+        }
+        let original = file.named_size.filter(|named| *named != size);
+        // Of a camera that was fitted to other photos' files only this photo's own size is not known.
+        let is_fitted = fitted.contains(&photo.camera);
+        if original.is_none() && (is_fitted || !file.may_be_reduced) {
+            unknown.push(size);
+            continue;
+        }
+        let doubt = Doubt::ReducedPhotos { size, original };
+        let said = doubt.to_string();
+        if !warnings.contains(&said) {
+            warnings.push(said);
+        }
+        evidence.doubts.push(doubt);
+    }
+    if let Some((width, height)) = unknown.first() {
+        warnings.push(format!(
+            "the size of {} of {} photos is not known, for their files are not: their scales are for images of the size of their camera ({width} x {height} px{})",
+            unknown.len(),
+            photos.len(),
+            match unknown.iter().all(|size| *size == (*width, *height)) {
+                true => "",
+                false => ", ...",
+            }
+        ));
+    }
+    warnings
+}
+
+/// Whether a photo's colours are those of the surface.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Colours {
+    /// They were compared.
+    Compared(Agreement),
+    /// Why they were not, in words.
+    Not(String),
+    /// The photo's file is damaged or not readable, with the reason.
+    Unreadable(String),
+}
+
+impl Colours {
+    /// What they, or the file that they were to be read from, say against the photo.
+    pub fn doubt(&self) -> Option<Doubt> {
+        let agreement = match self {
+            Self::Compared(agreement) => agreement,
+            Self::Unreadable(why) => return Some(Doubt::FileUnreadable(why.clone())),
+            Self::Not(_) => return None,
+        };
+        let Agreement {
+            points,
+            correlation,
+            flipped: (flipped, _),
+        } = *agreement;
+        Some(match agreement.mismatch()? {
+            Mismatch::Flipped(flip) => Doubt::Flipped {
+                correlation,
+                flipped,
+                points,
+                how: flip.in_words(),
+            },
+            Mismatch::Different => Doubt::OtherColours {
+                correlation,
+                points,
+            },
+        })
+    }
+
+    /// Of one photo of the flight, with its pixels as shot.
+    pub fn of_photo(flight: &Flight, photo: usize, pixels: &image::RgbImage) -> Self {
+        let parts = flight.parts();
+        let Some(posed) = parts.photos.get(photo) else {
+            return Self::Not("there is no such photo".to_owned());
+        };
+        let camera = flight.camera(posed);
+        match Agreement::of_photo(&parts.surface, camera, &posed.pose, pixels) {
+            Ok(agreement) => Self::Compared(agreement),
+            Err(why) => Self::Not(why.to_string()),
+        }
+    }
+}
+
+/// Compares the colours of the photos with those of the surface, of those that nobody has compared yet
+/// by `evidence`, whose lists are parallel to the flight's photos. Returns what was found now, each
+/// with its place in the flight.
+///
+/// # Errors
+/// Where the work was cancelled.
+pub fn compare_colours(
+    flight: &Flight,
+    files: &[PhotoFile],
+    evidence: &[Evidence],
+    progress: &Progress,
+) -> Result<Vec<(usize, Colours)>, Fault> {
+    let photos = &flight.parts().photos;
+    let without_colours = flight.parts().surface.colors().is_empty();
+    progress.stage("comparing colours");
+    let mut compared = Vec::new();
+    for (index, (file, evidence)) in files.iter().zip(evidence).enumerate() {
+        progress.advance(index as u64, photos.len() as u64)?;
+        if evidence.colours != ColoursFound::NotCompared {
+            continue;
+        }
+        let colours = match &file.path {
+            _ if without_colours => Colours::Not("the surface has no colours".to_owned()),
+            None => Colours::Not("no image file".to_owned()),
+            Some(path) => match read_bytes(path)
+                .and_then(|bytes| decode(&bytes).map_err(|fault| FileError::new(path, fault)))
+            {
+                Ok(pixels) => Colours::of_photo(flight, index, &pixels),
+                Err(error) => Colours::Unreadable(error.fault.to_string()),
+            },
+        };
+        compared.push((index, colours));
+    }
+    Ok(compared)
+}
+
+/// Compares the colours of the photos that nobody has compared yet, and tells the review.
+///
+/// # Errors
+/// Where the work was cancelled.
+pub fn compare_all_colours(
+    review: &mut Review,
+    files: &[PhotoFile],
+    progress: &Progress,
+) -> Result<(), Fault> {
+    let evidence = &review.looked_up().evidence;
+    let compared = compare_colours(review.flight(), files, evidence, progress)?;
+    let found = compared.into_iter();
+    review.take_colours(found.map(|(photo, colours)| (photo, colours.doubt().into())));
+    Ok(())
+}

@@ -1,0 +1,124 @@
+//! The scale alone, from known distances, in a frame that stays the package's own or is turned level.
+
+use glam::{DMat3, DQuat, DVec3};
+
+use super::marks::MarkedPoint;
+use super::{GeoreferenceRequest, Georeferenced, KnownEnds, LengthResidual};
+use crate::fault::Fault;
+use crate::formats::Reconstruction;
+use crate::geometry::Similarity;
+use crate::georeference::scale_of_lengths;
+use crate::units::LengthUnit;
+
+/// Fits the scale; `warnings` are what was said before.
+pub(super) fn by_distances(
+    reconstruction: &Reconstruction,
+    request: &GeoreferenceRequest,
+    marked: &[MarkedPoint],
+    mut warnings: Vec<String>,
+) -> Result<Georeferenced, Fault> {
+    if let Some(crs) = &request.crs {
+        return Err(Fault::new(
+            format!("distances give a scale, but no place in {crs}"),
+            "leave the coordinate system out, or give positions",
+        ));
+    }
+    let point = |name: &String| {
+        let found = marked.iter().find(|point| point.name == *name);
+        found.map(|point| point.found.point).ok_or_else(|| {
+            Fault::new(
+                format!("there is no triangulated control point '{name}' for a known distance"),
+                "give its marks in two photos (--gcp), or the point as x,y,z",
+            )
+        })
+    };
+    let mut lengths = Vec::new();
+    for distance in &request.distances {
+        let (name, a, b) = match &distance.ends {
+            KnownEnds::Points(a, b) => {
+                let shown = |p: &DVec3| format!("{},{},{}", p.x, p.y, p.z);
+                (format!("{} to {}", shown(a), shown(b)), *a, *b)
+            }
+            KnownEnds::Names(a, b) => (format!("{a} to {b}"), point(a)?, point(b)?),
+        };
+        lengths.push((name, a.distance(b), distance.metres));
+    }
+    let numbers: Vec<(f64, f64)> = lengths
+        .iter()
+        .map(|(_, length, known)| (*length, *known))
+        .collect();
+    let found = scale_of_lengths(&numbers)?;
+    let rotation = match request.level {
+        true => levelled(reconstruction)?,
+        false => DMat3::IDENTITY,
+    };
+    warnings.push(
+        if request.level {
+            "the scale is known, not the place: up is across the plane of the reconstruction's points, and north is not known"
+        } else {
+            "the scale is known, not the place: the axes stay as the package left them, and z may not be up (--level turns it up)"
+        }
+        .to_owned(),
+    );
+    Ok(Georeferenced {
+        similarity: Similarity::new(found.scale, rotation, DVec3::ZERO),
+        crs: None,
+        unit: LengthUnit::Metre,
+        heights: None,
+        positions: Vec::new(),
+        lengths: (lengths.into_iter())
+            .map(|(name, length, known)| LengthResidual {
+                name,
+                known,
+                fitted: length * found.scale,
+            })
+            .collect(),
+        rms: None,
+        scale_error: found.scale_error,
+        scale_interval: found.scale_interval,
+        turn_error_degrees: None,
+        warnings,
+    })
+}
+
+/// The least turn that brings the side of the reconstruction's points on which the cameras are up: the
+/// normal of their plane, from which the farthest points are dropped three times.
+fn levelled(reconstruction: &Reconstruction) -> Result<DMat3, Fault> {
+    let too_few = || {
+        Fault::new(
+            "the reconstruction has no plane of points to level by",
+            "leave the axes as they are (no --level), or give positions",
+        )
+    };
+    let mut points: Vec<DVec3> = reconstruction.cloud.points.clone();
+    let mut up = DVec3::Z;
+    for _ in 0..4 {
+        if points.len() < 3 {
+            return Err(too_few());
+        }
+        let mean = points.iter().sum::<DVec3>() / points.len() as f64;
+        let sum = (points.iter())
+            .map(|p| *p - mean)
+            .fold(nalgebra::Matrix3::zeros(), |sum, p| {
+                let p = nalgebra::Vector3::from(p.to_array());
+                sum + p * p.transpose()
+            });
+        let eigen = sum.symmetric_eigen();
+        let least = eigen.eigenvalues.imin();
+        let normal = eigen.eigenvectors.column(least);
+        up = DVec3::new(normal[0], normal[1], normal[2]).normalize_or_zero();
+        if up == DVec3::ZERO || !up.is_finite() {
+            return Err(too_few());
+        }
+        let spread = (eigen.eigenvalues[least].max(0.0) / points.len() as f64).sqrt();
+        let cameras = reconstruction
+            .photos
+            .iter()
+            .map(|photo| photo.pose.center - mean);
+        if cameras.sum::<DVec3>().dot(up) < 0.0 {
+            up = -up;
+        }
+        points.retain(|p| (*p - mean).dot(up).abs() <= 2.5 * spread);
+    }
+    Ok(DMat3::from_quat(DQuat::from_rotation_arc(up, DVec3::Z)))
+}

@@ -1,0 +1,466 @@
+//! A reconstruction in a frame of its own is brought to the world: by the positions that receivers
+//! measured for its photos, by ground control points, or, in scale alone, by known distances.
+//!
+//! The world is a projected coordinate system in metres or feet: the one that is asked for, else the
+//! one that the positions are in, else the zone of UTM that they lie in. One unit of its grid is taken
+//! for one unit of length: in UTM that is true to 0.04 % at the zone's middle and 0.1 % at its edges.
+
+mod distances;
+mod flight_text;
+mod known;
+mod marks;
+mod photo_names;
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use glam::DVec3;
+
+use self::known::World;
+use self::marks::MarkedPoint;
+use self::photo_names::PhotoNames;
+use crate::fault::Fault;
+use crate::files::FileError;
+use crate::formats::poses::position_list::{
+    NamedPosition, PositionList, positions_of_photos, read_control_points, read_positions,
+};
+use crate::formats::{Reconstruction, read_project};
+use crate::geometry::Similarity;
+use crate::georeference::{Pair, fit};
+use crate::jobs::Progress;
+use crate::units::LengthUnit;
+
+/// What is known about a reconstruction's place in the world.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct GeoreferenceRequest {
+    /// The folder of the photos: their own positions, where nothing else is given, and their sizes.
+    pub photos: Option<PathBuf>,
+    /// A list of the photos' positions.
+    pub positions: Option<PathBuf>,
+    /// Ground control points; with positions as well, those are only compared.
+    pub control_points: Option<PathBuf>,
+    /// Known distances, for the scale alone.
+    pub distances: Vec<KnownDistance>,
+    /// The coordinate system of the world, and of lists that state none.
+    pub crs: Option<String>,
+    /// With distances: whether to turn the plane of the reconstruction's points level.
+    pub level: bool,
+}
+
+/// A known distance between two points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KnownDistance {
+    /// The two points.
+    pub ends: KnownEnds,
+    /// In metres.
+    pub metres: f64,
+}
+
+/// Two points that have a known distance.
+#[derive(Debug, Clone, PartialEq)]
+pub enum KnownEnds {
+    /// In the reconstruction's frame.
+    Points(DVec3, DVec3),
+    /// Names of control points with marks.
+    Names(String, String),
+}
+
+impl FromStr for KnownDistance {
+    type Err = String;
+
+    /// Reads "x1,y1,z1 x2,y2,z2 12.5" or "name1 name2 12.5", the distance in metres.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let [a, b, metres] = words[..] else {
+            return Err("give two points and their distance, \"x1,y1,z1 x2,y2,z2 12.5\" or \"name1 name2 12.5\"".to_owned());
+        };
+        let metres = match metres.parse() {
+            Ok(metres) if metres > 0.0 && f64::is_finite(metres) => metres,
+            _ => return Err(format!("'{metres}' is no distance above 0 in metres")),
+        };
+        let point = |text: &str| {
+            let numbers: Result<Vec<f64>, _> = text.split(',').map(str::parse).collect();
+            let numbers: [f64; 3] = numbers.ok()?.try_into().ok()?;
+            Some(DVec3::from_array(numbers)).filter(|point| point.is_finite())
+        };
+        let ends = match (point(a), point(b)) {
+            (Some(a), Some(b)) => KnownEnds::Points(a, b),
+            (None, None) => KnownEnds::Names(a.to_owned(), b.to_owned()),
+            _ => return Err("give two points as x,y,z or two names".to_owned()),
+        };
+        Ok(Self { ends, metres })
+    }
+}
+
+/// What a known position belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum KnownKind {
+    /// The centre of a photo's camera.
+    Photo,
+    /// A ground control point.
+    ControlPoint,
+}
+
+/// How well a known position fits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PositionResidual {
+    /// The photo's name in the reconstruction, or the control point's.
+    pub name: String,
+    /// Which of the two.
+    pub kind: KnownKind,
+    /// Known less fitted, to the east, north and up, in the unit of the world.
+    pub residual: DVec3,
+    /// Whether it was used; else it is an outlier, or was only compared.
+    pub used: bool,
+    /// Of a control point: how far, in pixels, it projects from its marks (root mean square).
+    pub marks_px: Option<f64>,
+}
+
+/// How well a known distance fits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LengthResidual {
+    /// Its two ends.
+    pub name: String,
+    /// As known, in metres.
+    pub known: f64,
+    /// As fitted, in metres.
+    pub fitted: f64,
+}
+
+/// A reconstruction's way to the world.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Georeferenced {
+    /// From the reconstruction's frame to the world.
+    pub similarity: Similarity,
+    /// The coordinate system of the world; `None` where it is a local one.
+    pub crs: Option<String>,
+    /// The unit of the world.
+    pub unit: LengthUnit,
+    /// What the heights count from, in words; `None` where only the scale is known.
+    pub heights: Option<String>,
+    /// Known positions, in the reconstruction's or the list's order; empty with distances.
+    pub positions: Vec<PositionResidual>,
+    /// Known distances.
+    pub lengths: Vec<LengthResidual>,
+    /// The root of the mean squared length of the used residuals, in the unit of the world.
+    pub rms: Option<f64>,
+    /// The standard error of the scale, relative to it; `None` with one distance.
+    pub scale_error: Option<f64>,
+    /// Half the width of its 95 % interval, relative to it.
+    pub scale_interval: Option<f64>,
+    /// The standard error, in degrees, of the turn about the long axis of the positions.
+    pub turn_error_degrees: Option<f64>,
+    /// What was assumed or left out, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl Georeferenced {
+    /// How many known positions were used.
+    pub fn used(&self) -> usize {
+        self.positions
+            .iter()
+            .filter(|position| position.used)
+            .count()
+    }
+}
+
+/// Brings the reconstruction in a file or folder to the world.
+///
+/// # Errors
+/// With the file that is to blame: lists that cannot be read, photos that do not match, positions that
+/// are too few, on a line, or do not agree.
+pub fn georeference(
+    path: &Path,
+    request: &GeoreferenceRequest,
+    progress: &Progress,
+) -> Result<Georeferenced, FileError> {
+    progress.stage(format!("reading {}", path.display()));
+    let project = read_project(path, progress)?;
+    let photos = request.photos.clone().or(project.photos);
+    let request = GeoreferenceRequest {
+        photos,
+        ..request.clone()
+    };
+    let at = |fault| FileError::new(path, fault);
+    if let Some(crs) = &project.reconstruction.crs {
+        let crs = crs.split(['[', ',']).next().unwrap_or_default();
+        return Err(at(Fault::new(
+            format!("the reconstruction is in the world already ({crs})"),
+            "open it as it is",
+        )));
+    }
+    progress.stage("fitting");
+    let from_photos =
+        request.photos.is_some() && project.reconstruction.measured_positions.is_empty();
+    georeferenced(path, &project.reconstruction, from_photos, &request)
+}
+
+/// The same of a reconstruction that was read from `path`.
+fn georeferenced(
+    path: &Path,
+    reconstruction: &Reconstruction,
+    from_photos: bool,
+    request: &GeoreferenceRequest,
+) -> Result<Georeferenced, FileError> {
+    let mut warnings = reconstruction.warnings.clone();
+    let points = match &request.control_points {
+        Some(list) => Some(read_control_points(list)?),
+        None => None,
+    };
+    let mut marked: Vec<MarkedPoint> = Vec::new();
+    if let (Some(list), Some(points)) = (&request.control_points, &points) {
+        warnings.extend(
+            points
+                .warnings
+                .iter()
+                .map(|w| format!("{}: {w}", list.display())),
+        );
+        let photos = request.photos.as_deref();
+        marked = marks::triangulated(reconstruction, points, photos, &mut warnings)
+            .map_err(|fault| FileError::new(list, fault))?;
+    }
+    if !request.distances.is_empty() {
+        return distances::by_distances(reconstruction, request, &marked, warnings)
+            .map_err(|fault| FileError::new(path, fault));
+    }
+    let positions = match &request.positions {
+        Some(list) => Some((list.clone(), read_positions(list)?)),
+        None => of_receivers(path, reconstruction, from_photos, request)?,
+    };
+    let blamed = (request.control_points.as_ref())
+        .or(positions.as_ref().map(|(list, _)| list))
+        .map_or(path, PathBuf::as_path);
+    let blame = |fault| FileError::new(blamed, fault);
+    if let Some((list, positions)) = &positions {
+        warnings.extend(
+            positions
+                .warnings
+                .iter()
+                .map(|w| format!("{}: {w}", list.display())),
+        );
+    }
+    if points.is_none() && positions.is_none() {
+        return Err(FileError::new(
+            path,
+            Fault::new(
+                "nothing is known of its place in the world",
+                "give photos with positions in them (--photos), a list of positions (--positions), control points (--gcp) or a known distance (--distance)",
+            ),
+        ));
+    }
+    let stated = match &points {
+        Some(points) => points.crs.as_deref(),
+        None => positions.as_ref().and_then(|(_, list)| list.crs.as_deref()),
+    };
+    let all: Vec<DVec3> = match (&points, &positions) {
+        (Some(points), _) => points.points.iter().map(|point| point.position).collect(),
+        (None, Some((_, list))) => list.positions.iter().map(|p| p.position).collect(),
+        (None, None) => Vec::new(),
+    };
+    let world = World::new(request.crs.as_deref(), stated, &all, &mut warnings).map_err(blame)?;
+    let mut known: Vec<Known> = Vec::new();
+    if points.is_some() {
+        for point in &marked {
+            known.push(Known::of_point(point, &world).map_err(blame)?);
+        }
+    }
+    if let Some((list, positions)) = &positions {
+        let at_list = |fault| FileError::new(list, fault);
+        // A list of its own may be in a system of its own.
+        let world = world
+            .with_list(positions.crs.as_deref(), request.crs.as_deref())
+            .map_err(at_list)?;
+        let photos =
+            of_photos(reconstruction, positions, &world, &mut warnings).map_err(at_list)?;
+        known.extend(photos);
+    }
+    let mut result = by_positions(&known, points.is_some()).map_err(blame)?;
+    if points.is_some() && positions.is_some() {
+        warnings
+            .push("the control points decide; the photos' positions are only compared".to_owned());
+    }
+    result.heights = Some(world.heights().to_owned());
+    result.crs = world.name().map(str::to_owned);
+    result.unit = world.unit();
+    let far = result
+        .positions
+        .iter()
+        .filter(|p| !p.used && (p.kind == KnownKind::ControlPoint) == points.is_some());
+    let outliers = far.count();
+    if outliers > 0 {
+        warnings.push(format!(
+            "{outliers} known positions do not agree with the others and were left out of the fit"
+        ));
+    }
+    if let Some(turn) = result.turn_error_degrees.filter(|turn| *turn > 1.0) {
+        warnings.push(format!(
+            "the positions lie nearly on a line: the turn about it is known to {turn:.1} degrees only"
+        ));
+    }
+    if result.used() == 3 {
+        warnings.push("three known positions check each other hardly at all".to_owned());
+    }
+    result.warnings = warnings;
+    Ok(result)
+}
+
+/// The positions in the photos themselves, or those that the package kept of them.
+fn of_receivers(
+    path: &Path,
+    reconstruction: &Reconstruction,
+    from_photos: bool,
+    request: &GeoreferenceRequest,
+) -> Result<Option<(PathBuf, PositionList)>, FileError> {
+    if !reconstruction.measured_positions.is_empty() {
+        let of_photo = |measured: &crate::formats::MeasuredPosition| {
+            let place = measured.position;
+            NamedPosition {
+                name: measured.photo.clone(),
+                position: DVec3::new(place.longitude, place.latitude, place.height),
+                accuracy: None,
+            }
+        };
+        let list = PositionList {
+            crs: Some("EPSG:4326".to_owned()),
+            positions: reconstruction
+                .measured_positions
+                .iter()
+                .map(of_photo)
+                .collect(),
+            warnings: Vec::new(),
+        };
+        return Ok(Some((path.to_owned(), list)));
+    }
+    // With control points nobody asked for the photos' own.
+    let Some(folder) = request.photos.as_ref().filter(|_| from_photos) else {
+        return Ok(None);
+    };
+    if request.control_points.is_some() {
+        return Ok(None);
+    }
+    let list = positions_of_photos(folder)?;
+    Ok(Some((folder.clone(), list)))
+}
+
+/// A position that is known in both frames.
+struct Known {
+    name: String,
+    kind: KnownKind,
+    pair: Pair,
+    marks_px: Option<f64>,
+}
+
+impl Known {
+    fn of_point(point: &MarkedPoint, world: &World) -> Result<Self, Fault> {
+        Ok(Self {
+            name: point.name.clone(),
+            kind: KnownKind::ControlPoint,
+            pair: Pair {
+                source: point.found.point,
+                target: world.of(point.position)?,
+                accuracy: None,
+            },
+            marks_px: Some(point.found.rms_px()),
+        })
+    }
+}
+
+/// The listed positions of photos that are in the reconstruction.
+fn of_photos(
+    reconstruction: &Reconstruction,
+    list: &PositionList,
+    world: &World,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Known>, Fault> {
+    let named: Vec<&str> = list.positions.iter().map(|p| p.name.as_str()).collect();
+    let names = PhotoNames::new(
+        reconstruction.photos.iter().map(|p| p.name.as_str()),
+        &named,
+    );
+    let mut taken = vec![false; reconstruction.photos.len()];
+    let mut known = Vec::new();
+    for position in &list.positions {
+        let Some(index) = names.find(&position.name) else {
+            continue;
+        };
+        let Some(photo) = reconstruction.photos.get(index) else {
+            continue;
+        };
+        if std::mem::replace(&mut taken[index], true) {
+            return Err(Fault::new(
+                format!("photo '{}' has two positions in the list", photo.name),
+                "keep one",
+            ));
+        }
+        known.push(Known {
+            name: photo.name.clone(),
+            kind: KnownKind::Photo,
+            pair: Pair {
+                source: photo.pose.center,
+                target: world.of(position.position)?,
+                accuracy: (position.accuracy)
+                    .map(|a| (a.length_squared() / 3.0).sqrt() / world.unit().metres())
+                    .filter(|a| *a > 0.0),
+            },
+            marks_px: None,
+        });
+    }
+    let photos = reconstruction.photos.len();
+    if known.is_empty() {
+        let first = |name: Option<&str>| name.unwrap_or_default().to_owned();
+        return Err(Fault::new(
+            format!(
+                "none of its names is one of the reconstruction's photos: '{}' there, '{}' here",
+                first(reconstruction.photos.first().map(|p| p.name.as_str())),
+                first(named.first().copied()),
+            ),
+            "give the positions of these photos",
+        ));
+    }
+    if known.len() < photos {
+        warnings.push(format!(
+            "{} of {photos} photos have a known position",
+            known.len()
+        ));
+    }
+    warnings.extend(names.warning);
+    Ok(known)
+}
+
+/// Fits to the control points alone where they decide, else to all.
+fn by_positions(known: &[Known], points_decide: bool) -> Result<Georeferenced, Fault> {
+    let decides = |known: &&Known| !points_decide || known.kind == KnownKind::ControlPoint;
+    let pairs: Vec<Pair> = known
+        .iter()
+        .filter(decides)
+        .map(|known| known.pair)
+        .collect();
+    let found = fit(&pairs)?;
+    let mut used = found.used.iter();
+    let positions = known
+        .iter()
+        .map(|known| PositionResidual {
+            name: known.name.clone(),
+            kind: known.kind,
+            residual: known.pair.target - found.similarity.apply(known.pair.source),
+            used: decides(&known) && used.next().copied().unwrap_or_default(),
+            marks_px: known.marks_px,
+        })
+        .collect();
+    Ok(Georeferenced {
+        similarity: found.similarity,
+        crs: None,
+        unit: LengthUnit::Metre,
+        heights: None,
+        positions,
+        lengths: Vec::new(),
+        rms: Some(found.rms),
+        scale_error: Some(found.scale_error),
+        scale_interval: Some(found.scale_interval),
+        turn_error_degrees: Some(found.turn_error.to_degrees()),
+        warnings: Vec::new(),
+    })
+}
+
+#[cfg(test)]
+mod tests;

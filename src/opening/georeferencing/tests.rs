@@ -1,0 +1,529 @@
+use std::fmt::Write as _;
+use std::fs;
+
+use glam::{DMat3, EulerRot};
+
+use super::*;
+use crate::camera::{Camera, Distortion, Pose};
+use crate::flight::FlightFile;
+use crate::formats::PosedPhoto;
+use crate::geodesy::Crs;
+use fragscale_test_data::shared_data;
+
+/// From the reconstruction's frame, whose z is nowhere near up, to UTM.
+fn truth() -> Similarity {
+    let rotation = DMat3::from_euler(EulerRot::ZYX, 1.1, 2.2, -0.7);
+    Similarity::new(7.5, rotation, DVec3::new(435_250.5, 6_201_333.25, 412.0))
+}
+
+/// A camera over the middle of the flight that looks along `down` in the frame of the reconstruction.
+fn photo(index: u32, center_in_world: DVec3) -> PosedPhoto {
+    let truth = truth();
+    let back = truth.rotation.transpose();
+    let down = DMat3::from_cols(DVec3::X, -DVec3::Y, -DVec3::Z);
+    let tilt = DMat3::from_rotation_x(0.1 * f64::from(index % 5) - 0.2);
+    PosedPhoto {
+        name: format!("flight/IMG_{index:04}.JPG"),
+        camera: 0,
+        pose: Pose {
+            rotation: back * down * tilt,
+            center: back * (center_in_world - truth.translation) / truth.scale,
+        },
+    }
+}
+
+fn centers() -> Vec<DVec3> {
+    (0..12_u32)
+        .map(|i| {
+            let (column, row) = (f64::from(i % 4), f64::from(i / 4));
+            let rough = f64::from(i * 7 % 5) * 0.6;
+            DVec3::new(
+                435_200.0 + 12.0 * column,
+                6_201_300.0 + 15.0 * row,
+                460.0 + rough,
+            )
+        })
+        .collect()
+}
+
+fn reconstruction() -> Reconstruction {
+    let camera = Camera {
+        name: "1".to_owned(),
+        width: 4000,
+        height: 3000,
+        fx: 3000.0,
+        fy: 3000.0,
+        cx: 2000.0,
+        cy: 1500.0,
+        skew: 0.0,
+        distortion: Distortion::None,
+    };
+    Reconstruction {
+        package: "test",
+        cameras: vec![camera],
+        photos: (0..)
+            .zip(centers())
+            .map(|(index, center)| photo(index, center))
+            .collect(),
+        sizes_known: true,
+        ..Reconstruction::default()
+    }
+}
+
+fn run(request: &GeoreferenceRequest) -> Result<Georeferenced, FileError> {
+    georeferenced(Path::new("model"), &reconstruction(), false, request)
+}
+
+/// A file that is gone with the folder.
+struct List(tempfile::TempDir);
+
+impl List {
+    fn new(text: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("list.txt"), text).unwrap();
+        Self(folder)
+    }
+
+    fn path(&self) -> PathBuf {
+        self.0.path().join("list.txt")
+    }
+}
+
+fn assert_is_truth(found: &Similarity, tolerance: f64) {
+    let truth = truth();
+    assert!(
+        (found.scale / truth.scale - 1.0).abs() < tolerance,
+        "{}",
+        found.scale
+    );
+    for point in [DVec3::ZERO, DVec3::new(3.0, -4.0, 5.0)] {
+        let off = found.apply(point).distance(truth.apply(point));
+        assert!(off < 100.0 * tolerance, "{off}");
+    }
+}
+
+/// UTM 32N positions as they are: the similarity comes out, and the world is the list's.
+#[test]
+fn projected_positions() {
+    let mut text = "EPSG:32632\n".to_owned();
+    for (i, c) in centers().iter().enumerate() {
+        writeln!(text, "img_{i:04}.jpg {} {} {}", c.x, c.y, c.z).unwrap();
+    }
+    let list = List::new(&text);
+    let found = run(&GeoreferenceRequest {
+        positions: Some(list.path()),
+        ..GeoreferenceRequest::default()
+    })
+    .unwrap();
+    assert_is_truth(&found.similarity, 1e-8);
+    assert_eq!(found.crs.as_deref(), Some("EPSG:32632"));
+    assert_eq!((found.used(), found.unit), (12, LengthUnit::Metre));
+    assert_eq!(found.heights.as_deref(), Some("not said"));
+    assert_eq!(found.warnings, Vec::<String>::new());
+}
+
+/// Longitudes and latitudes of the receivers lead to their zone of UTM; and one that is a street off
+/// is left out.
+#[test]
+fn receivers_in_degrees() {
+    let utm = Crs::understand("EPSG:32632").unwrap();
+    let mut reconstruction = reconstruction();
+    for (index, (photo, center)) in reconstruction.photos.iter().zip(centers()).enumerate() {
+        let mut place = utm.to_geographic(center).unwrap();
+        if index == 4 {
+            place.latitude += 0.001;
+        }
+        reconstruction
+            .measured_positions
+            .push(crate::formats::MeasuredPosition {
+                photo: photo.name.clone(),
+                position: place,
+            });
+    }
+    let request = GeoreferenceRequest::default();
+    let found = georeferenced(Path::new("model"), &reconstruction, false, &request).unwrap();
+    assert_is_truth(&found.similarity, 1e-7);
+    assert_eq!(found.crs.as_deref(), Some("EPSG:32632"));
+    let out: Vec<&str> = found
+        .positions
+        .iter()
+        .filter(|p| !p.used)
+        .map(|p| p.name.as_str())
+        .collect();
+    assert_eq!(out, ["flight/IMG_0004.JPG"]);
+    assert!(
+        (found.positions[4].residual.y - 111.3).abs() < 1.0,
+        "{:?}",
+        found.positions[4]
+    );
+    assert!(
+        found.warnings[0].contains("1 known positions do not agree"),
+        "{:?}",
+        found.warnings
+    );
+    // Another zone is another world, 3 degrees turned.
+    let elsewhere = GeoreferenceRequest {
+        crs: Some("EPSG:32631".to_owned()),
+        ..request
+    };
+    let other = georeferenced(Path::new("model"), &reconstruction, false, &elsewhere).unwrap();
+    assert_eq!(other.crs.as_deref(), Some("EPSG:32631"));
+    let origin = utm.to_geographic(truth().apply(DVec3::ZERO)).unwrap();
+    let there = Crs::understand("EPSG:32631")
+        .unwrap()
+        .from_geographic(origin)
+        .unwrap();
+    // So far outside its zone a grid is 0.26 % too long, which heights are not.
+    let off = other.similarity.apply(DVec3::ZERO) - there;
+    assert!(off.truncate().length() < 0.05 && off.z.abs() < 0.2, "{off}");
+}
+
+/// Marks of points whose places are known, as their photos show them.
+fn marks(names: &[(&str, DVec3)], crs: &str) -> String {
+    let reconstruction = reconstruction();
+    let truth = truth();
+    let mut text = format!("{crs}\n");
+    for (name, world) in names {
+        let point = truth.rotation.transpose() * (*world - truth.translation) / truth.scale;
+        for photo in &reconstruction.photos {
+            let camera = &reconstruction.cameras[0];
+            let Some(pixel) = camera.pixel_as_shot(photo.pose.camera_from_world(point)) else {
+                continue;
+            };
+            if camera.contains(pixel) {
+                let (x, y, z) = (world.x, world.y, world.z);
+                writeln!(
+                    text,
+                    "{x} {y} {z} {} {} {} {name}",
+                    pixel.x,
+                    pixel.y,
+                    photo.name.rsplit('/').next().unwrap()
+                )
+                .unwrap();
+            }
+        }
+    }
+    text
+}
+
+const POINTS: [(&str, DVec3); 4] = [
+    ("p1", DVec3::new(435_205.0, 6_201_303.0, 411.0)),
+    ("p2", DVec3::new(435_233.0, 6_201_305.0, 413.5)),
+    ("p3", DVec3::new(435_231.0, 6_201_328.0, 409.0)),
+    ("p4", DVec3::new(435_207.0, 6_201_326.0, 412.0)),
+];
+
+#[test]
+fn control_points() {
+    let list = List::new(&marks(&POINTS, "EPSG:32632"));
+    let request = GeoreferenceRequest {
+        control_points: Some(list.path()),
+        ..GeoreferenceRequest::default()
+    };
+    let found = run(&request).unwrap();
+    // The list's pixels are centres of pixels or corners: at most half a pixel, 1 cm on the ground.
+    assert_is_truth(&found.similarity, 1e-3);
+    assert_eq!(found.used(), 4);
+    for position in &found.positions {
+        assert_eq!(position.kind, KnownKind::ControlPoint);
+        assert!(position.marks_px.unwrap() < 0.1, "{position:?}");
+    }
+    // Two are too few.
+    let list = List::new(&marks(&POINTS[..2], "EPSG:32632"));
+    let request = GeoreferenceRequest {
+        control_points: Some(list.path()),
+        ..request
+    };
+    let error = run(&request).unwrap_err();
+    assert_eq!(error.file, list.path());
+    assert!(
+        error.fault.what.contains("2 known positions are too few"),
+        "{error}"
+    );
+    // But one distance between them is enough for a scale.
+    let apart = POINTS[0].1.distance(POINTS[1].1);
+    let request = GeoreferenceRequest {
+        distances: vec![format!("p1 p2 {apart}").parse().unwrap()],
+        ..request
+    };
+    let found = run(&request).unwrap();
+    assert!((found.similarity.scale / 7.5 - 1.0).abs() < 1e-3);
+    assert_eq!(
+        (found.similarity.rotation, found.scale_error),
+        (DMat3::IDENTITY, None)
+    );
+    assert!((found.lengths[0].fitted - apart).abs() < 1e-9);
+    let request = GeoreferenceRequest {
+        distances: vec!["p1 p9 1".parse().unwrap()],
+        ..request
+    };
+    assert!(run(&request).unwrap_err().fault.what.contains("'p9'"));
+}
+
+/// A plane of points with some high above it, in a frame that stands on its head.
+#[test]
+fn a_distance_and_level() {
+    let mut reconstruction = reconstruction();
+    let back = truth().rotation.transpose();
+    for i in 0..400 {
+        let high = if i % 20 == 0 {
+            9.0
+        } else {
+            0.02 * f64::from(i % 3)
+        };
+        let world = DVec3::new(f64::from(i % 20), f64::from(i / 20), high - 6.0);
+        reconstruction.cloud.points.push(back * world);
+    }
+    let request = GeoreferenceRequest {
+        distances: vec![
+            "0,0,0 0,0,2 15".parse().unwrap(),
+            "0,0,0 0,4,0 30.3".parse().unwrap(),
+        ],
+        level: true,
+        ..GeoreferenceRequest::default()
+    };
+    let found = georeferenced(Path::new("model"), &reconstruction, false, &request).unwrap();
+    // By hand: (2 * 15 + 4 * 30.3) / (4 + 16).
+    assert!((found.similarity.scale - 7.56).abs() < 1e-12);
+    assert!(found.scale_error.unwrap() > 0.0);
+    let up = found.similarity.rotation * (back * DVec3::Z);
+    assert!(up.distance(DVec3::Z) < 0.01, "{up}");
+    assert_eq!(found.crs, None);
+    for text in [
+        "1,2,3 4,5,6",
+        "1,2,3 a 5",
+        "1,2,3 4,5,6 0",
+        "1,2,3 4,5,6 x",
+        "a b -1",
+    ] {
+        assert!(text.parse::<KnownDistance>().is_err(), "{text}");
+    }
+}
+
+#[test]
+fn what_is_refused() {
+    let sentence = |text: &str, crs: Option<&str>| {
+        let list = List::new(text);
+        let error = run(&GeoreferenceRequest {
+            positions: Some(list.path()),
+            crs: crs.map(str::to_owned),
+            ..GeoreferenceRequest::default()
+        })
+        .unwrap_err();
+        error.fault.to_string()
+    };
+    let nothing = run(&GeoreferenceRequest::default()).unwrap_err();
+    assert!(
+        nothing.to_string().starts_with("model: nothing is known"),
+        "{nothing}"
+    );
+    let strangers = "EPSG:32632\na.jpg 1 2 3\nb.jpg 2 3 4\n";
+    assert!(sentence(strangers, None).contains("none of its names"));
+    let twice = "photo,x,y,z\nIMG_0001.JPG,1,2,3\nx/IMG_0001.JPG,1,2,3\n";
+    assert!(sentence(twice, None).contains("has two positions"));
+    let two = "EPSG:32632\nIMG_0001.JPG 1 2 3\nIMG_0002.JPG 2 3 4\n";
+    assert!(sentence(two, None).contains("too few"));
+    assert!(sentence(two, Some("EPSG:4326")).contains("no projected"));
+    let mut all = "EPSG:32632\n".to_owned();
+    for (i, c) in centers().iter().enumerate() {
+        writeln!(all, "IMG_{i:04}.JPG {} {} {}", c.x, c.y, c.z).unwrap();
+    }
+    // At 55.95 degrees north.
+    let mercator = sentence(&all, Some("EPSG:3857"));
+    assert!(
+        mercator.contains("a metre of EPSG:3857 is 0.5"),
+        "{mercator}"
+    );
+    assert!(sentence(two, Some("somewhere")).contains("'somewhere'"));
+    let line = "EPSG:32632\nIMG_0000.JPG 435200 6201300 460\nIMG_0001.JPG 435212 6201300 460.6\nIMG_0002.JPG 435224 6201300 461.2\nIMG_0003.JPG 435236 6201300 460.6\n";
+    assert!(
+        sentence(line, None).contains("on a line"),
+        "{}",
+        sentence(line, None)
+    );
+}
+
+/// What is written as a flight.toml reads back to the bit and opens.
+#[test]
+fn the_flight_reads_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("model.nvm");
+    fs::write(&model, "NVM_V3\n").unwrap();
+    let mut text = "EPSG:32632\n".to_owned();
+    for (i, c) in centers().iter().enumerate() {
+        writeln!(text, "IMG_{i:04}.JPG {} {} {}", c.x, c.y, c.z).unwrap();
+    }
+    let list = List::new(&text);
+    let found = run(&GeoreferenceRequest {
+        positions: Some(list.path()),
+        ..GeoreferenceRequest::default()
+    })
+    .unwrap();
+    let target = folder.path().join("flight.toml");
+    let text = found.flight_text(&target, &model, None, None).unwrap();
+    let file = FlightFile::parse(&text).unwrap();
+    assert_eq!(file.crs(), Some("EPSG:32632"));
+    let crate::flight::PhotoSource::Reconstruction(path, Some(numbers)) = file.photo_source()
+    else {
+        panic!("{text}");
+    };
+    assert_eq!(path, "model.nvm");
+    assert_eq!(
+        numbers.map(f64::to_bits),
+        found.similarity.to_row_major().map(f64::to_bits)
+    );
+    let inside = found
+        .flight_text(&target, folder.path(), None, None)
+        .unwrap_err();
+    assert!(inside.fault.what.contains("in its stead"));
+}
+
+/// One scene as two packages solved it: the camera centres of COLMAP as the "positions" of
+/// VisualSFM's. The two agree to their own accuracy, and so do the points that both have.
+#[test]
+fn sceaux_in_two_frames() {
+    let (Some(nvm), Some(colmap)) = (
+        shared_data("sceaux-nvm/VisualSFM_example.nvm"),
+        shared_data("sceaux-colmap/bin"),
+    ) else {
+        return;
+    };
+    let progress = Progress::default();
+    let other = read_project(&colmap, &progress).unwrap().reconstruction;
+    let mut text = "photo,x,y,z\n".to_owned();
+    for photo in &other.photos {
+        let c = photo.pose.center;
+        writeln!(text, "{},{},{},{}", photo.name, c.x, c.y, c.z).unwrap();
+    }
+    let list = List::new(&text);
+    let request = GeoreferenceRequest {
+        positions: Some(list.path()),
+        ..GeoreferenceRequest::default()
+    };
+    let found = georeference(&nvm, &request, &progress).unwrap();
+    assert_eq!(found.positions.len(), 11);
+    // The same eleven centres by NumPy: their least-squares scale and RMS (the cameras span 11 units).
+    assert_eq!(found.used(), 11, "{found:?}");
+    assert!(
+        (found.similarity.scale - 0.998_477).abs() < 1e-5,
+        "{found:?}"
+    );
+    assert!((found.rms.unwrap() - 0.021_221).abs() < 1e-5, "{found:?}");
+    // The camera axes were not given, and turn into the other's.
+    let mut own = read_project(&nvm, &progress).unwrap().reconstruction;
+    own.transform(&found.similarity);
+    let last = |name: &str| name.rsplit('/').next().unwrap().to_owned();
+    for photo in &own.photos {
+        let same = other
+            .photos
+            .iter()
+            .find(|p| last(&p.name) == last(&photo.name))
+            .unwrap();
+        let off = photo
+            .pose
+            .rotation
+            .z_axis
+            .angle_between(same.pose.rotation.z_axis);
+        assert!(
+            off.to_degrees() < 1.0,
+            "{}: {}",
+            photo.name,
+            off.to_degrees()
+        );
+    }
+}
+
+/// The project's cameras and points in a frame of their own.
+fn brighton_of_its_own(stated: &Reconstruction) -> Reconstruction {
+    let mut own = stated.clone();
+    own.crs = None;
+    own.measured_positions.clear();
+    own.transform(&Similarity::new(
+        0.02,
+        DMat3::from_euler(EulerRot::XYZ, 1.0, 2.0, 3.0),
+        DVec3::new(-9_000.0, -100_000.0, 30.0),
+    ));
+    own
+}
+
+/// The positions in four of its photos (EXIF of a consumer's drone), against NumPy and PROJ: the scale
+/// of least squares, its standard error by the formula of `georeference::fit`, and that of the turn.
+#[test]
+fn brighton_by_four_receivers() {
+    let Some(folder) = shared_data("odm-brighton-0") else {
+        return;
+    };
+    let project = read_project(&folder, &Progress::default()).unwrap();
+    let own = brighton_of_its_own(&project.reconstruction);
+    let request = GeoreferenceRequest {
+        photos: Some(folder.join("images")),
+        ..GeoreferenceRequest::default()
+    };
+    let found = georeferenced(&folder, &own, true, &request).unwrap();
+    assert_eq!(found.crs.as_deref(), Some("EPSG:32615"));
+    assert_eq!((found.used(), found.positions.len()), (4, 4));
+    let scale = found.similarity.scale * 0.02;
+    assert!((scale - 1.041_871).abs() < 1e-4, "{scale}");
+    let error = found.scale_error.unwrap();
+    assert!((error - 0.013_945).abs() < 1e-4, "{error}");
+    let turn = found.turn_error_degrees.unwrap();
+    assert!((turn - 1.219).abs() < 0.02, "{turn}");
+    assert!(
+        found
+            .warnings
+            .iter()
+            .any(|w| w.contains("nearly on a line"))
+    );
+    assert!(
+        found.warnings.iter().any(|w| w.contains("4 of 7 photos")),
+        "{:?}",
+        found.warnings
+    );
+}
+
+/// OpenSfM's frame and what shots.geojson of the same project states of the photos.
+#[test]
+fn brighton_by_its_shots() {
+    let Some(folder) = shared_data("odm-brighton-0") else {
+        return;
+    };
+    let project = read_project(&folder, &Progress::default()).unwrap();
+    let stated = project.reconstruction;
+    let mut own = brighton_of_its_own(&stated);
+    let shots: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.join("odm_report/shots.geojson")).unwrap())
+            .unwrap();
+    let mut text = "photo,longitude,latitude,height\n".to_owned();
+    for feature in shots["features"].as_array().unwrap() {
+        let at = &feature["geometry"]["coordinates"];
+        let name = feature["properties"]["filename"].as_str().unwrap();
+        writeln!(text, "{name},{},{},{}", at[0], at[1], at[2]).unwrap();
+    }
+    let list = List::new(&text);
+    let request = GeoreferenceRequest {
+        positions: Some(list.path()),
+        ..GeoreferenceRequest::default()
+    };
+    let found = georeferenced(&folder, &own, false, &request).unwrap();
+    assert_eq!(found.crs.as_deref(), Some("EPSG:32615"));
+    assert_eq!(found.used(), stated.photos.len());
+    // OpenDroneMap's projection squeezes the plane by 0.9996 and leaves heights: centimetres here.
+    assert!(found.rms.unwrap() < 0.05, "{:?}", found.rms);
+    own.transform(&found.similarity);
+    for (a, b) in own.photos.iter().zip(&stated.photos) {
+        assert!(a.pose.center.distance(b.pose.center) < 0.1);
+        assert!(a.pose.rotation.z_axis.angle_between(b.pose.rotation.z_axis) < 1e-3);
+    }
+}
+
+#[test]
+fn pixels_outside_the_photo_are_refused() {
+    let text = "EPSG:32632\n435205 6201303 411 9000 10 IMG_0001.JPG p1\n435205 6201303 411 90 10 IMG_0002.JPG p1\n";
+    let list = List::new(text);
+    let request = GeoreferenceRequest {
+        control_points: Some(list.path()),
+        ..GeoreferenceRequest::default()
+    };
+    let error = run(&request).unwrap_err();
+    assert!(error.fault.what.contains("lies outside photo"), "{error}");
+}

@@ -1,0 +1,290 @@
+//! What the program understood of a file (contract, section 6), as JSON.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::camera::{Camera, Pose};
+use crate::flight::Flight;
+use crate::formats::packages::ros;
+use crate::formats::packages::ros::Recording;
+use crate::formats::poses::trajectory::Trajectory;
+use crate::formats::{
+    CloudFile, DistributionColumns, FileError, Kind, Package, PosesFile, Reconstruction, detect,
+    read_camera, read_cloud, read_poses, read_project, read_size_distributions, read_trajectory,
+};
+use crate::fragmentation::DistributionSet;
+use crate::geometry::Bounds;
+use crate::jobs::Progress;
+use crate::scale::ImageKind;
+use crate::{OpenOptions, open_flight};
+
+/// Reads any supported file or folder and says what it holds.
+///
+/// # Errors
+/// With the file and the place in it.
+pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
+    let kind = detect(path)?;
+    Ok(match kind {
+        Kind::Cloud(_) => cloud_info(&read_cloud(path, progress)?),
+        Kind::Camera => camera_info(&read_camera(path)?),
+        Kind::Poses => poses_info(&read_poses(path)?),
+        Kind::Trajectory(format) => trajectory_info(&read_trajectory(path, format, progress)?),
+        Kind::SizeDistributions => {
+            let (set, warnings) = read_size_distributions(path, &DistributionColumns::default())?;
+            distributions_info(&set, &warnings)
+        }
+        Kind::Reconstruction(Package::Ros, path) => recording_info(&ros::read(&path, progress)?),
+        Kind::Reconstruction(..) => {
+            reconstruction_info(&read_project(path, progress)?.reconstruction)
+        }
+        Kind::Flight(_) => {
+            let opened = open_flight(path, &OpenOptions::default(), progress)?;
+            flight_info(&opened.flight, &opened.warnings)
+        }
+    })
+}
+
+/// A cloud or mesh.
+fn cloud_info(file: &CloudFile) -> Value {
+    let bounds = Bounds::of(&file.cloud.points)
+        .map(|b| json!({"min": b.min.to_array(), "max": b.max.to_array()}));
+    json!({
+        "kind": "cloud",
+        "points": file.cloud.points.len(),
+        "faces": file.cloud.triangles.len(),
+        "colors": !file.cloud.colors.is_empty(),
+        "bounds": bounds,
+        "crs": file.crs,
+        "warnings": file.warnings,
+    })
+}
+
+/// A reconstruction in its own frame.
+fn reconstruction_info(reconstruction: &Reconstruction) -> Value {
+    let has_observations = !reconstruction.observations.is_empty();
+    let cameras: Vec<Value> = reconstruction
+        .cameras
+        .iter()
+        .map(|camera| {
+            let mut value = camera_value(camera);
+            if !reconstruction.sizes_known {
+                // What a package does not write is null, not 0.
+                value["width"] = Value::Null;
+                value["height"] = Value::Null;
+                if reconstruction.intrinsics_in_longer_sides {
+                    for name in ["fx", "fy", "skew"] {
+                        value[name] = Value::Null;
+                    }
+                }
+                if !reconstruction.principal_points_from_corner {
+                    value["cx"] = Value::Null;
+                    value["cy"] = Value::Null;
+                }
+            }
+            value
+        })
+        .collect();
+    let photos = reconstruction.photos.iter().map(|photo| {
+        let camera = reconstruction.cameras.get(photo.camera);
+        let camera = camera.map(|camera| camera.name.as_str());
+        photo_value(&photo.name, camera, &photo.pose)
+    });
+    json!({
+        "kind": "reconstruction",
+        "package": reconstruction.package,
+        "crs": reconstruction.crs,
+        "points": reconstruction.cloud.points.len(),
+        "observations": has_observations.then_some(reconstruction.observations.len()),
+        "median_reprojection_px": reconstruction.median_reprojection_px(),
+        "warnings": reconstruction.warnings,
+        "cameras": cameras,
+        "photos": photos.collect::<Vec<_>>(),
+    })
+}
+
+/// Size distributions, sizes in the file's unit.
+fn distributions_info(set: &DistributionSet, warnings: &[String]) -> Value {
+    let sizes = || {
+        let points = set
+            .curves
+            .iter()
+            .flat_map(|curve| curve.distribution.points());
+        points.map(|point| point[0])
+    };
+    let curves = set.curves.iter().map(|curve| {
+        let points = curve.distribution.points();
+        json!({
+            "method": curve.labels.method,
+            "trial": curve.labels.trial,
+            "photo": curve.labels.photo,
+            "weight": curve.weight,
+            "points": points.len(),
+            "smallest": points.first(),
+            "largest": points.last(),
+        })
+    });
+    json!({
+        "kind": "size-distributions",
+        "unit": set.unit.symbol(),
+        "curves": curves.collect::<Vec<_>>(),
+        "smallest_size": sizes().min_by(f64::total_cmp),
+        "largest_size": sizes().max_by(f64::total_cmp),
+        "warnings": warnings,
+    })
+}
+
+/// A camera's calibration.
+fn camera_info(camera: &Camera) -> Value {
+    let warnings: [&str; 0] = [];
+    json!({"kind": "camera", "cameras": [camera_value(camera)], "warnings": warnings})
+}
+
+/// The poses of photos.
+fn poses_info(file: &PosesFile) -> Value {
+    let photos = file
+        .lines
+        .iter()
+        .map(|line| photo_value(&line.photo, line.camera.as_deref(), &line.pose));
+    json!({
+        "kind": "poses",
+        "crs": file.crs,
+        "photos": photos.collect::<Vec<_>>(),
+        "warnings": file.warnings,
+    })
+}
+
+/// A trajectory: its stamps stand for photos, and no camera is known.
+fn trajectory_info(trajectory: &Trajectory) -> Value {
+    let poses = trajectory.poses.iter();
+    let photos = poses.map(|p| photo_value(&p.name, None, &p.pose));
+    let mut warnings = vec![trajectory.format.caveat()];
+    warnings.extend(trajectory.warnings.iter().map(String::as_str));
+    json!({
+        "kind": "poses",
+        "photos": photos.collect::<Vec<_>>(),
+        "warnings": warnings,
+    })
+}
+
+/// A ROS recording: what a reconstruction says where it is a flight, else its poses; in both cases its
+/// topics.
+fn recording_info(recording: &Recording) -> Value {
+    let mut value = match recording.reconstruction() {
+        Ok(reconstruction) => reconstruction_info(&reconstruction),
+        Err(fault) => {
+            let mut warnings = recording.warnings();
+            warnings.push(format!("it is no flight: {fault}"));
+            let poses = recording.named_poses();
+            let photos = poses
+                .iter()
+                .map(|(name, pose)| photo_value(name, None, pose));
+            json!({
+                "kind": "poses",
+                "photos": photos.collect::<Vec<_>>(),
+                "warnings": warnings,
+            })
+        }
+    };
+    let topics = recording.topics.iter().map(|topic| {
+        json!({
+            "name": topic.name,
+            "type": topic.type_name,
+            "messages": topic.messages,
+            "gives_poses": recording.gives_poses(topic),
+        })
+    });
+    value["messages"] = recording.messages().into();
+    value["topics"] = topics.collect();
+    value
+}
+
+/// A flight, opened with all its files: cameras at their photos' size, photos in the world.
+fn flight_info(flight: &Flight, warnings: &[String]) -> Value {
+    let parts = flight.parts();
+    let photos = parts
+        .photos
+        .iter()
+        .map(|photo| photo_value(&photo.name, Some(&flight.camera(photo).name), &photo.pose));
+    let image = match parts.image {
+        ImageKind::Undistorted => "undistorted",
+        ImageKind::AsShot => "as-shot",
+    };
+    json!({
+        "kind": "flight",
+        "flight": parts.name,
+        "world_unit": parts.unit.symbol(),
+        "image": image,
+        "surface_vertices": parts.surface.vertices().len(),
+        "cameras": parts.cameras.iter().map(camera_value).collect::<Vec<_>>(),
+        "photos": photos.collect::<Vec<_>>(),
+        "warnings": warnings,
+    })
+}
+
+fn camera_value(camera: &Camera) -> Value {
+    json!({
+        "name": camera.name,
+        "width": camera.width,
+        "height": camera.height,
+        "fx": camera.fx,
+        "fy": camera.fy,
+        "cx": camera.cx,
+        "cy": camera.cy,
+        "skew": camera.skew,
+        "distortion": camera.distortion.name(),
+        "coefficients": camera.distortion.coefficients(),
+    })
+}
+
+/// A photo with its centre and its rotation `world_from_camera`, row-major.
+fn photo_value(name: &str, camera: Option<&str>, pose: &Pose) -> Value {
+    json!({
+        "photo": name,
+        "camera": camera,
+        "center": pose.center.to_array(),
+        "rotation": pose.rotation.transpose().to_cols_array(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::Dropped;
+
+    #[test]
+    fn size_distributions_are_told_from_lists_of_points_and_poses() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            fs::write(&path, text).unwrap();
+            path
+        };
+        let long = file(
+            "long.csv",
+            "photo,size_cm,passing\na,1,20\na,2,40\nb,3,30\nb,4,50\n",
+        );
+        assert_eq!(detect(&long), Ok(Kind::SizeDistributions));
+        let said = info(&long, &Progress::default()).unwrap();
+        assert_eq!(said["kind"], "size-distributions");
+        assert_eq!(
+            (&said["unit"], &said["smallest_size"]),
+            (&json!("cm"), &json!(1.0))
+        );
+        assert_eq!(said["curves"][1]["photo"], "b");
+        assert_eq!(said["curves"][1]["largest"], json!([4.0, 50.0]));
+        let error = Dropped::sort(std::slice::from_ref(&long)).unwrap_err();
+        assert!(error.to_string().contains("fragscale psd"), "{error}");
+        let pasted = file(
+            "pasted.tsv",
+            "Size (in)\tsieve\tpoint cloud\n1\t2\t3\n2\t3\t4\n",
+        );
+        assert_eq!(detect(&pasted), Ok(Kind::SizeDistributions));
+        let poses = file("poses.csv", "photo,x,y,z,tilt,pan\na,1,2,3,90,0\n");
+        assert_eq!(detect(&poses), Ok(Kind::Poses));
+        let points = file("points.csv", "x,y,z,size\n1,2,3,4\n");
+        assert!(matches!(detect(&points), Ok(Kind::Cloud(_))));
+    }
+}

@@ -1,0 +1,43 @@
+//! Files become a flight in one world: what the user names is read by `formats/`, brought into one
+//! frame, and built into a [`Flight`](crate::flight::Flight).
+//!
+//! ```text
+//! open         the flight of a flight.toml, a package's folder, or loose files
+//! dropped      which of several files is what
+//! info         what a file holds, for `fragscale info`
+//! origin       from which files a flight came, and the flight.toml that says so
+//! world_frame  the coordinate system that surface and photos share
+//! ```
+
+mod dropped;
+mod evidence;
+mod flight_poses;
+mod georeferencing;
+mod info;
+mod open;
+mod origin;
+mod photo_checks;
+mod photo_files;
+mod unstated_surface;
+mod world_frame;
+
+use fragscale_core::{
+    camera, fault, files, flight, geodesy, geometry, georeference, jobs, picture, scale, surface,
+    units,
+};
+use fragscale_formats as formats;
+use fragscale_fragmentation as fragmentation;
+
+pub use dropped::Dropped;
+pub use evidence::{Colours, compare_all_colours, compare_colours, look_up};
+pub use georeferencing::{
+    GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind, LengthResidual,
+    PositionResidual, georeference,
+};
+pub use info::info;
+pub use open::{FlightReconstruction, OpenOptions, Opened, open_flight};
+pub use origin::FlightOrigin;
+pub use photo_files::PhotoFile;
+
+#[cfg(test)]
+mod tests;

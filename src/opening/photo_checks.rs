@@ -1,0 +1,379 @@
+//! A careful engineer's checks: what the photo files say about themselves against what the flight
+//! says about them. Each finding is a doubt with its numbers and the photos that it speaks against;
+//! none is an error, because metadata err as well.
+//!
+//! - The camera: photos of two devices under one calibration, a calibration named after another
+//!   model, a focal length over 5 % (or what the metadata's own error allows) from the metadata's.
+//! - The height: cameras above the surface below them against RelativeAltitude, which counts from the
+//!   take-off. A deviation over 5 % is said where the take-off would lie outside the levels of the
+//!   surface: a drone that rises from a quarry's floor is less high above the pile.
+//! - The distance: to the surface in the middle of the photo against the drone's laser.
+//!
+//! Only the headers of the files are read, of [`MOST_PHOTOS`] photos at most.
+
+use std::collections::BTreeSet;
+
+use glam::{DVec2, DVec3};
+
+use crate::flight::{Doubt, Flight, Photo};
+use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
+use crate::geometry::{Ray, median};
+use crate::photo_files::PhotoFile;
+
+/// How many photos are looked at, evenly over the flight.
+const MOST_PHOTOS: usize = 200;
+
+/// The deviation from which a sentence is due.
+const WORTH_SAYING: f64 = 0.05;
+
+/// How many of the surface's vertices are looked at for its levels.
+const MOST_VERTICES: usize = 10_000;
+
+/// The lowest flight, in metres, whose heights are compared: below it the barometer's own error is
+/// beyond 5 %.
+const LOWEST: f64 = 10.0;
+
+/// A finding and the photos that it speaks against, by their index.
+pub(crate) type Finding = (Doubt, Vec<usize>);
+
+/// A photo with its index and what its file says of itself.
+type Described<'a> = (usize, &'a Photo, PhotoMetadata);
+
+/// Compares a flight with its photo files, which are in the order of its photos.
+pub(crate) fn photo_checks(flight: &Flight, files: &[PhotoFile]) -> Vec<Finding> {
+    let photos = &flight.parts().photos;
+    let step = photos.len().div_ceil(MOST_PHOTOS).max(1);
+    let described: Vec<Described<'_>> = photos
+        .iter()
+        .zip(files)
+        .enumerate()
+        .step_by(step)
+        .filter_map(|(index, (photo, file))| {
+            let metadata = photo_metadata::read_file(file.path.as_deref()?).ok()?;
+            Some((index, photo, metadata))
+        })
+        .collect();
+    if described.is_empty() {
+        return Vec::new();
+    }
+    let mut findings = check_cameras(flight, &described);
+    findings.extend(check_distances(flight, &described));
+    findings
+}
+
+fn check_cameras(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let parts = flight.parts();
+    for (index, camera) in parts.cameras.iter().enumerate() {
+        let of_camera = described
+            .iter()
+            .filter(|(_, photo, _)| photo.camera == index)
+            .map(|(.., metadata)| metadata);
+        // All of its photos: those between the ones looked at are no better.
+        let mut found = |doubt: Doubt| {
+            let photos = parts.photos.iter().enumerate();
+            let its = photos.filter(|(_, photo)| photo.camera == index);
+            findings.push((doubt, its.map(|(photo, _)| photo).collect()));
+        };
+        let name = match camera.name.as_str() {
+            "" => "the camera".to_owned(),
+            name => format!("camera '{name}'"),
+        };
+        let devices: BTreeSet<(String, String)> = of_camera
+            .clone()
+            .filter_map(|m| Some((m.make.clone().unwrap_or_default(), m.model.clone()?)))
+            .collect();
+        if devices.len() > 1 {
+            found(Doubt::SeveralDevices {
+                camera: name.clone(),
+                devices: devices.into_iter().map(|(_, model)| model).collect(),
+            });
+        } else if let Some((make, model)) = devices.first()
+            && is_named_otherwise(&camera.name, make, model)
+        {
+            found(Doubt::OtherDevice {
+                camera: name.clone(),
+                device: format!("{make} {model}"),
+            });
+        }
+        let same_size = of_camera.filter(|m| m.size == (camera.width, camera.height));
+        let stated = same_size.filter_map(|m| m.focal.first());
+        let mut ratios: Vec<f64> = stated.clone().map(|stated| camera.fx / stated.fx).collect();
+        let (Some(ratio), Some(stated)) = (median(&mut ratios), stated.clone().next()) else {
+            continue;
+        };
+        if (ratio - 1.0).abs() > stated.relative_error.max(WORTH_SAYING) {
+            found(Doubt::FocalLength {
+                camera: name,
+                focal: camera.fx,
+                ratio,
+                source: stated.source.in_words(),
+                error: stated.relative_error,
+            });
+        }
+    }
+    findings
+}
+
+/// Whether a calibration's name has the maker's name in it, but not the model's.
+fn is_named_otherwise(name: &str, make: &str, model: &str) -> bool {
+    let (name, make, model) = (
+        name.to_lowercase(),
+        make.to_lowercase(),
+        model.to_lowercase(),
+    );
+    let make = make.split_whitespace().next().unwrap_or_default();
+    let model = model.strip_prefix(make).unwrap_or(&model).trim();
+    !make.is_empty() && !model.is_empty() && name.contains(make) && !name.contains(model)
+}
+
+fn check_distances(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding> {
+    let parts = flight.parts();
+    let metres = parts.unit.metres();
+    let mut findings = Vec::new();
+    if !parts.unit_known {
+        // No length to compare.
+        return findings;
+    }
+    // A surface that cannot be met says so when scales are asked of it.
+    let Ok(mut caster) = parts.surface.caster_for(described.len()) else {
+        return findings;
+    };
+    let all: Vec<usize> = (0..parts.photos.len()).collect();
+    let mut distance = |origin: DVec3, direction: DVec3| {
+        let direction = direction.normalize();
+        caster
+            .cast(&Ray { origin, direction })
+            .map(|hit| hit.t * metres)
+    };
+    let (mut above, mut ahead, mut take_offs) = (Vec::new(), Vec::new(), Vec::new());
+    for (_, photo, metadata) in described {
+        let pose = &photo.pose;
+        if let Some(stated) = metadata.relative_altitude.filter(|&h| h >= LOWEST)
+            && let Some(height) = distance(pose.center, DVec3::NEG_Z)
+        {
+            above.push((height, stated));
+            take_offs.push(pose.center.z - stated / metres);
+        }
+        if let Some(stated) = metadata.laser_range {
+            let camera = flight.camera(photo);
+            let middle = DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
+            let direction = pose.rotation * camera.direction_undistorted(middle);
+            if let Some(range) = distance(pose.center, direction) {
+                ahead.push((range, stated));
+            }
+        }
+    }
+    if let Some((above, stated)) = deviation(&above)
+        && !has_level(flight, &take_offs, WORTH_SAYING * stated / metres)
+    {
+        findings.push((Doubt::FlyingHeight { above, stated }, all.clone()));
+    }
+    if let Some((distance, stated)) = deviation(&ahead) {
+        findings.push((Doubt::LaserRange { distance, stated }, all));
+    }
+    findings
+}
+
+/// Whether the surface has the median of these levels, give or take `slack`; all in world units. The
+/// lowest and the highest hundredth of the surface are most often noise.
+fn has_level(flight: &Flight, levels: &[f64], slack: f64) -> bool {
+    let vertices = flight.parts().surface.vertices();
+    let step = vertices.len().div_ceil(MOST_VERTICES).max(1);
+    let mut heights: Vec<f64> = vertices.step_by(step).map(|vertex| vertex.z).collect();
+    heights.sort_by(f64::total_cmp);
+    let hundredth = heights.len() / 100;
+    let low = heights.get(hundredth);
+    let high = heights.get(heights.len().saturating_sub(hundredth + 1));
+    match (median(&mut levels.to_vec()), low, high) {
+        (Some(level), Some(low), Some(high)) => (low - slack..=high + slack).contains(&level),
+        _ => false,
+    }
+}
+
+/// The medians of what is and of what is stated; `None` where the median part by which they deviate is
+/// not worth saying.
+fn deviation(pairs: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let of =
+        |value: fn(&(f64, f64)) -> f64| median(&mut pairs.iter().map(value).collect::<Vec<f64>>());
+    let part = of(|(is, stated)| is / stated)? - 1.0;
+    let (is, stated) = (of(|pair| pair.0)?, of(|pair| pair.1)?);
+    (part.abs() > WORTH_SAYING).then_some((is, stated))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+    use std::sync::Arc;
+
+    use exif::Tag;
+
+    use super::*;
+    use crate::camera::{Camera, Distortion, Pose};
+    use crate::flight::{FlightParts, PhotoFileState};
+    use crate::scale::{Ground, ImageKind};
+    use crate::surface::{Cloud, Surface};
+    use crate::units::LengthUnit;
+    use fragscale_test_data::jpeg::{jpeg, packet, short, text};
+
+    /// A camera 50 m above a level square, straight down; 24 mm on 43.27 mm of film at 5000 px.
+    fn flight(name: &str, fx: f64, unit: LengthUnit) -> Flight {
+        let corner = |x, y| DVec3::new(x, y, 0.0);
+        let points = vec![
+            corner(-100.0, -100.0),
+            corner(100.0, -100.0),
+            corner(-100.0, 100.0),
+            corner(100.0, 100.0),
+        ];
+        let cloud = Cloud {
+            points,
+            ..Cloud::default()
+        };
+        let photo = |name: &str| Photo {
+            name: name.to_owned(),
+            camera: 0,
+            pose: Pose::from_tilt_pan(DVec3::new(1.0, 2.0, 50.0), [90.0, 0.0]),
+            trouble: None,
+        };
+        Flight::new(FlightParts {
+            name: "test".to_owned(),
+            unit,
+            unit_known: true,
+            ground: Ground::Auto,
+            image: ImageKind::Undistorted,
+            surface: Arc::new(Surface::new(cloud).unwrap()),
+            cameras: vec![Camera {
+                name: name.to_owned(),
+                width: 4000,
+                height: 3000,
+                fx,
+                fy: fx,
+                cx: 2000.0,
+                cy: 1500.0,
+                skew: 0.0,
+                distortion: Distortion::None,
+            }],
+            photos: vec![photo("a.jpg"), photo("b.jpg")],
+        })
+        .unwrap()
+    }
+
+    fn files(folder: &Path, models: [&str; 2], altitude: f64, range: f64) -> Vec<PhotoFile> {
+        let mut files = Vec::new();
+        for (name, model) in ["a.jpg", "b.jpg"].into_iter().zip(models) {
+            let path = folder.join(name);
+            let exif = [
+                text(Tag::Make, "DJI"),
+                text(Tag::Model, model),
+                short(Tag::FocalLengthIn35mmFilm, 24),
+            ];
+            let xmp = packet(&format!(
+                r#"<rdf:Description drone-dji:RelativeAltitude="{altitude:+}" drone-dji:LRFTargetDistance="{range}"/>"#
+            ));
+            fs::write(&path, jpeg((4000, 3000), &exif, &[&xmp])).unwrap();
+            files.push(PhotoFile {
+                path: Some(path),
+                state: PhotoFileState::Found {
+                    width: 4000,
+                    height: 3000,
+                },
+                ..PhotoFile::default()
+            });
+        }
+        files
+    }
+
+    #[test]
+    fn contradictions_are_said_with_their_numbers() {
+        let folder = tempfile::tempdir().unwrap();
+        let film = 24.0 / 1872.0_f64.sqrt() * 5000.0;
+        let check = |flight: &Flight, models, altitude, range| {
+            let found = photo_checks(flight, &files(folder.path(), models, altitude, range));
+            // Each of these speaks against all of its two photos.
+            assert!(found.iter().all(|(_, photos)| *photos == [0, 1]));
+            found
+                .iter()
+                .map(|(doubt, _)| doubt.to_string())
+                .collect::<Vec<_>>()
+        };
+        let good = flight("DJI FC1", film, LengthUnit::Metre);
+        assert_eq!(check(&good, ["FC1"; 2], 50.0, 50.0), [""; 0]);
+        // Within 5 %, and within the 5.1 % that 24 mm may be off.
+        let near = flight("", film * 1.045, LengthUnit::Metre);
+        assert_eq!(check(&near, ["FC1"; 2], 48.0, 52.0), [""; 0]);
+        for (flight, models, altitude, range, words) in [
+            (
+                flight("", film * 1.1, LengthUnit::Metre),
+                ["FC1"; 2],
+                50.0,
+                50.0,
+                "+10.0 % from the 2773.5 px",
+            ),
+            (
+                flight("v2 dji fc9", film, LengthUnit::Metre),
+                ["FC1"; 2],
+                50.0,
+                50.0,
+                "taken with a DJI FC1",
+            ),
+            (
+                flight("DJI FC1", film, LengthUnit::Metre),
+                ["FC1", "FC2"],
+                50.0,
+                50.0,
+                "2 devices (FC1, FC2)",
+            ),
+            (
+                flight("DJI FC1", film, LengthUnit::Metre),
+                ["FC1"; 2],
+                40.0,
+                50.0,
+                "50.0 m above the surface below them, but their photos say 40.0 m above the take-off (+25.0 %)",
+            ),
+            (
+                flight("DJI FC1", film, LengthUnit::Metre),
+                ["FC1"; 2],
+                50.0,
+                62.5,
+                "50.0 m away, but the drone's laser measured 62.5 m (-20.0 %)",
+            ),
+            // Feet: 15.24 m.
+            (
+                flight("DJI FC1", film, LengthUnit::Foot),
+                ["FC1"; 2],
+                15.24,
+                30.48,
+                "15.2 m away, but the drone's laser measured 30.5 m (-50.0 %)",
+            ),
+        ] {
+            let warnings = check(&flight, models, altitude, range);
+            assert_eq!(warnings.len(), 1, "{warnings:?}");
+            assert!(warnings[0].contains(words), "{words}: {warnings:?}");
+        }
+        // The pile under the cameras is 10 m high, and the drone rose from its foot: 40 m above the
+        // surface, 50 m above the take-off.
+        let on_pile = {
+            let mut points: Vec<DVec3> = good.parts().surface.vertices().collect();
+            for x in -9..=9 {
+                points.push(DVec3::new(f64::from(x), 0.0, 10.0));
+                points.push(DVec3::new(f64::from(x), 4.0, 10.0));
+            }
+            let cloud = Cloud {
+                points,
+                ..Cloud::default()
+            };
+            let parts = FlightParts {
+                surface: Arc::new(Surface::new(cloud).unwrap()),
+                ..good.parts().clone()
+            };
+            Flight::new(parts).unwrap()
+        };
+        assert_eq!(check(&on_pile, ["FC1"; 2], 50.0, 40.0), [""; 0]);
+        // Files that are not there are not spoken of here.
+        assert_eq!(
+            photo_checks(&good, &[PhotoFile::default(), PhotoFile::default()]),
+            []
+        );
+    }
+}

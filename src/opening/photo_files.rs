@@ -1,0 +1,278 @@
+//! The image files of a flight: where they are, and whether their cameras are for their size
+//! (contract, section 2, rule 7).
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+use crate::camera::Camera;
+use crate::fault::Fault;
+use crate::flight::{Photo, PhotoFileState};
+use crate::formats::Reconstruction;
+use crate::formats::photos::photo_folder::{PhotoFolder, size_of_file};
+
+/// How many missing files a warning names.
+const NAMED: usize = 3;
+
+/// The image file of a photo.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct PhotoFile {
+    /// Where it is, if it is there.
+    pub path: Option<PathBuf>,
+    /// What is known about it.
+    pub state: PhotoFileState,
+    /// The photo's size in pixels, where the package names one beside its camera's.
+    pub named_size: Option<(u32, u32)>,
+    /// Whether the photo's camera may be for a reduced copy of it, as the package is known to make.
+    pub may_be_reduced: bool,
+}
+
+/// The file of each photo and what is known about it, in their order.
+pub(crate) fn files_of(folder: &PhotoFolder<'_>, photos: &[Photo]) -> Vec<PhotoFile> {
+    let file_of = |photo: &Photo| {
+        if folder.folder.is_none() {
+            return PhotoFile::default();
+        }
+        let path = folder.find(&photo.name);
+        let state = match path.as_deref().map(size_of_file) {
+            None => PhotoFileState::Missing,
+            Some(Ok((width, height))) => PhotoFileState::Found { width, height },
+            Some(Err(fault)) => PhotoFileState::Unreadable(fault.to_string()),
+        };
+        PhotoFile {
+            path,
+            state,
+            ..PhotoFile::default()
+        }
+    };
+    photos.iter().map(file_of).collect()
+}
+
+/// Gives the cameras of a package that writes no image sizes those of their photos; `given` is what a
+/// flight.toml says. A photo whose file cannot be read, or is missing among others that are there, is
+/// left out, which is said in `warnings`.
+///
+/// # Errors
+/// Where no photo's size is known.
+pub(crate) fn set_sizes_from_files(
+    reconstruction: &mut Reconstruction,
+    folder: &PhotoFolder<'_>,
+    given: impl Fn(&str) -> Option<(u32, u32)>,
+    warnings: &mut Vec<String>,
+) -> Result<(), Fault> {
+    let mut left_out = Vec::new();
+    let mut sizes = Vec::with_capacity(reconstruction.cameras.len());
+    for (index, camera) in reconstruction.cameras.iter().enumerate() {
+        let photos = reconstruction.photos.iter();
+        let mut its = photos.filter(|photo| photo.camera == index).peekable();
+        let first = its.peek().map(|photo| photo.name.clone());
+        let mut why = None;
+        let size = given(&camera.name).or_else(|| {
+            its.find_map(|photo| match folder.size_of(&photo.name)? {
+                Ok(size) => Some(size),
+                Err(fault) => {
+                    why = Some(fault.to_string());
+                    None
+                }
+            })
+        });
+        sizes.push(size);
+        if let (None, Some(photo)) = (size, first) {
+            let why = why.unwrap_or_else(|| "there is no such image file".to_owned());
+            left_out.push((photo, why));
+        }
+    }
+    if !sizes.iter().any(Option::is_some) {
+        let (photo, why) = left_out.into_iter().next().unwrap_or_default();
+        return Err(Fault::new(
+            format!(
+                "the image size of '{photo}' is not known: this package writes none, and its file does not tell it ({why})"
+            ),
+            "give [photos] folder, or a [[camera]] table with width and height, in a flight.toml",
+        ));
+    }
+    for (photo, why) in left_out {
+        warnings.push(format!(
+            "photo '{photo}' is left out: the package writes no image size, and its file does not tell it ({why})"
+        ));
+    }
+    reconstruction.set_sizes(|camera| sizes.get(camera).copied().flatten());
+    Ok(())
+}
+
+/// Rescales each camera to the size of its photo files, where those have the same shape; photos of
+/// another shape get a trouble. What is done, and what files are missing, is said in `warnings`.
+pub(crate) fn fit_cameras_to_files(
+    folder: &PhotoFolder<'_>,
+    files: &[PhotoFile],
+    cameras: &mut [Camera],
+    photos: &mut [Photo],
+    warnings: &mut Vec<String>,
+) {
+    let Some(path) = folder.folder else {
+        return;
+    };
+    let mut missing = Vec::new();
+    let mut sizes = Vec::with_capacity(photos.len());
+    for (photo, file) in photos.iter().zip(files) {
+        sizes.push(match &file.state {
+            PhotoFileState::Found { width, height } => Some((*width, *height)),
+            PhotoFileState::Unreadable(fault) => {
+                warnings.push(format!(
+                    "photo '{}': {fault}; its size is not checked",
+                    photo.name
+                ));
+                None
+            }
+            PhotoFileState::Missing | PhotoFileState::NotNamed => {
+                missing.push(photo.name.as_str());
+                None
+            }
+        });
+    }
+    if !missing.is_empty() {
+        let dots = if missing.len() > NAMED { ", ..." } else { "" };
+        let names = missing
+            .iter()
+            .take(NAMED)
+            .copied()
+            .collect::<Vec<_>>()
+            .join(", ");
+        warnings.push(format!(
+            "{}: {} of {} image files are missing ({names}{dots}); their sizes are not checked",
+            path.display(),
+            missing.len(),
+            sizes.len()
+        ));
+    }
+    for (index, camera) in cameras.iter_mut().enumerate() {
+        let of_camera = photos
+            .iter()
+            .zip(&sizes)
+            .filter(|(photo, _)| photo.camera == index);
+        let Some(size) = most_common(of_camera.filter_map(|(_, size)| *size)) else {
+            continue;
+        };
+        let (width, height) = (camera.width, camera.height);
+        if size == (width, height) {
+            continue;
+        }
+        if let Ok(rescaled) = camera.rescaled(size.0, size.1) {
+            let name = match camera.name.as_str() {
+                "" => "the camera".to_owned(),
+                name => format!("camera '{name}'"),
+            };
+            warnings.push(format!(
+                "{name} is for {width} x {height}, its photos are {} x {}: its intrinsics are scaled to the photos' size",
+                size.0, size.1
+            ));
+            *camera = rescaled;
+        }
+    }
+    for (photo, size) in photos.iter_mut().zip(sizes) {
+        let Some(camera) = cameras.get(photo.camera) else {
+            continue;
+        };
+        if let Some((width, height)) = size
+            && (width, height) != (camera.width, camera.height)
+        {
+            let matter = match camera.rescaled(width, height) {
+                Err(error) => error.to_string(),
+                Ok(_) => format!(
+                    "the photo is {width} x {height}, other photos of its camera are {} x {}",
+                    camera.width, camera.height
+                ),
+            };
+            photo.trouble = Some(matter);
+        }
+    }
+}
+
+/// The most common size, of equals the first.
+fn most_common(sizes: impl Iterator<Item = (u32, u32)>) -> Option<(u32, u32)> {
+    let mut counts: HashMap<(u32, u32), (usize, usize)> = HashMap::new();
+    for (place, size) in sizes.enumerate() {
+        counts.entry(size).or_insert((0, place)).0 += 1;
+    }
+    counts
+        .into_iter()
+        .max_by_key(|&(_, (count, place))| (count, std::cmp::Reverse(place)))
+        .map(|(size, _)| size)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use image::RgbImage;
+
+    use super::*;
+    use crate::camera::{Distortion, Pose};
+
+    fn fit(camera: (u32, u32), files: &[(u32, u32)]) -> (Camera, Vec<Photo>, Vec<String>) {
+        let folder = tempfile::tempdir().unwrap();
+        let mut cameras = [Camera {
+            name: "c".to_owned(),
+            width: camera.0,
+            height: camera.1,
+            fx: 100.0,
+            fy: 100.0,
+            cx: 50.0,
+            cy: 25.0,
+            skew: 1.0,
+            distortion: Distortion::None,
+        }];
+        let mut photos: Vec<Photo> = (0..=files.len())
+            .map(|index| Photo {
+                name: format!("a/{index}.png"),
+                camera: 0,
+                pose: Pose::from_tilt_pan(DVec3::ZERO, [90.0, 0.0]),
+                trouble: None,
+            })
+            .collect();
+        // The last photo has no file.
+        for (index, (width, height)) in files.iter().enumerate() {
+            let path = folder.path().join(format!("{index}.png"));
+            RgbImage::new(*width, *height).save(path).unwrap();
+        }
+        let mut warnings = Vec::new();
+        let files = PhotoFolder::new(Some(folder.path()));
+        let of_photos = files_of(&files, &photos);
+        fit_cameras_to_files(&files, &of_photos, &mut cameras, &mut photos, &mut warnings);
+        let [camera] = cameras;
+        (camera, photos, warnings)
+    }
+
+    #[test]
+    fn the_camera_follows_the_files_for_all_its_photos() {
+        let (camera, photos, warnings) = fit((100, 50), &[(400, 200), (400, 200)]);
+        assert_eq!(
+            (camera.width, camera.height, camera.fx, camera.cy),
+            (400, 200, 400.0, 100.0)
+        );
+        assert!(photos.iter().all(|photo| photo.trouble.is_none()));
+        assert!(
+            warnings.iter().any(|w| w.contains("100 x 50")),
+            "{warnings:?}"
+        );
+        assert!(
+            warnings
+                .iter()
+                .any(|w| w.contains("1 of 3 image files are missing")),
+            "{warnings:?}"
+        );
+    }
+
+    #[test]
+    fn another_shape_is_trouble_for_that_photo() {
+        let (camera, photos, _) = fit((100, 50), &[(100, 50), (400, 300), (100, 50), (200, 100)]);
+        assert_eq!(camera.width, 100);
+        let troubled: Vec<bool> = photos.iter().map(|photo| photo.trouble.is_some()).collect();
+        assert_eq!(troubled, [false, true, false, true, false]);
+        assert!(
+            photos[1]
+                .trouble
+                .as_ref()
+                .unwrap()
+                .contains("another shape")
+        );
+    }
+}

@@ -1,0 +1,6 @@
+//! What packages and recordings wrote, opened as a flight.
+
+mod drone_photos;
+mod metashape;
+mod odm;
+mod ros_topics;

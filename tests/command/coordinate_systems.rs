@@ -1,0 +1,310 @@
+//! Poses from the Earth's centre over a surface on a map: the flight is brought to one system, and its
+//! scales are those of a closed form.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use fragscale::geodesy::{Crs, Geographic, ecef_from_geographic, enu_axes};
+use fragscale::jobs::Progress;
+use fragscale::opening::{OpenOptions, Opened, open_flight};
+use glam::{DMat3, DVec3};
+
+/// In UTM zone 33 north, 2 degrees west of its central meridian.
+const PLACE: Geographic = Geographic {
+    longitude: 13.0,
+    latitude: 48.0,
+    height: 400.0,
+};
+
+/// A Metashape cameras.xml with one photo straight down from 100 m, its top to true north, f = 1000 px.
+/// The chunk's own frame is the Earth's.
+fn cameras_xml() -> String {
+    let up = Geographic {
+        height: PLACE.height + 100.0,
+        ..PLACE
+    };
+    let (center, enu) = (ecef_from_geographic(up), enu_axes(PLACE));
+    // Columns: the image's right is east, its down is south, its forward is down.
+    let rotation = enu * DMat3::from_cols(DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z);
+    let (r, c) = (rotation.transpose(), center);
+    let row = |axis: usize| {
+        // Row `axis` of the 4x4 from the camera to the Earth.
+        let row = rotation.row(axis);
+        format!("{:.17} {:.17} {:.17} {:.9}", row.x, row.y, row.z, c[axis])
+    };
+    let matrix = format!("{} {} {} 0 0 0 1", row(0), row(1), row(2));
+    assert!(
+        (r * rotation - DMat3::IDENTITY)
+            .to_cols_array()
+            .iter()
+            .all(|d| d.abs() < 1e-12)
+    );
+    format!(
+        r#"<?xml version="1.0" encoding="UTF-8"?>
+<document version="2.0.0"><chunk label="Chunk 1" enabled="true">
+<sensors next_id="1"><sensor id="0" label="cam" type="frame"><resolution width="400" height="300"/>
+<calibration type="frame" class="adjusted"><resolution width="400" height="300"/><f>1000</f><cx>0</cx><cy>0</cy></calibration></sensor></sensors>
+<cameras next_id="1"><camera id="0" sensor_id="0" label="a.jpg"><transform>{matrix}</transform></camera></cameras>
+<reference>GEOGCS["WGS 84",DATUM["World Geodetic System 1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.01745329251994328],AUTHORITY["EPSG","4326"]]</reference>
+<transform><rotation locked="false">1 0 0 0 1 0 0 0 1</rotation><translation locked="false">0 0 0</translation><scale locked="false">1</scale></transform>
+</chunk></document>
+"#
+    )
+}
+
+/// Level ground 50 m around the place on the map of `crs`, as text without any system.
+fn ground(crs: &str) -> String {
+    let center = Crs::understand(crs)
+        .unwrap()
+        .from_geographic(PLACE)
+        .unwrap();
+    let mut text = String::new();
+    for (x, y) in [(-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0)] {
+        let _ = writeln!(text, "{} {} {}", center.x + x, center.y + y, PLACE.height);
+    }
+    text
+}
+
+fn open(folder: &Path, world: &str) -> Opened {
+    let text = format!(
+        "format = 1\n[world]\n{world}\n[surface]\nfile = \"ground.xyz\"\n[photos]\nreconstruction = \"cameras.xml\"\n"
+    );
+    fs::write(folder.join("flight.toml"), text).unwrap();
+    open_flight(folder, &OpenOptions::default(), &Progress::default()).unwrap()
+}
+
+#[test]
+fn poses_from_the_earths_centre_meet_a_surface_on_a_map() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("cameras.xml"), cameras_xml()).unwrap();
+    fs::write(folder.join("ground.xyz"), ground("EPSG:32633")).unwrap();
+    for world in ["unit = \"m\"\ncrs = \"EPSG:32633\"", "unit = \"m\""] {
+        let opened = open(folder, world);
+        assert_eq!(
+            opened.crs.as_deref(),
+            Some("EPSG:32633"),
+            "the photos' zone"
+        );
+        let outcomes = opened.flight.scales(&Progress::default()).unwrap();
+        let scale = outcomes[0].scale().unwrap();
+        assert_eq!(scale.corners_on_surface(), 4);
+        // Metres of the map are 0.9996 (1 + x^2 / 2 R^2) / (1 + h / R) of those on the ground, but the
+        // flying height, which is no length on the map, stays 100 m.
+        let top = scale.scale.top.unwrap();
+        assert!((top / 10.0 - 1.0).abs() < 1e-5, "{top}");
+        // The image's top is true north: on the map it is turned by the convergence, about
+        // -2 degrees times sin 48, clockwise.
+        let [left, right] = [0, 1].map(|corner| scale.corners[corner].point().unwrap());
+        let turn = (right.y - left.y).atan2(right.x - left.x).to_degrees();
+        let convergence = (-2.0_f64).to_radians().tan() * 48.0_f64.to_radians().sin();
+        assert!(
+            (turn - convergence.atan().to_degrees()).abs() < 2e-3,
+            "{turn}"
+        );
+        let said = opened.warnings.join("\n");
+        assert!(said.contains("are brought to EPSG:32633"), "{said}");
+    }
+}
+
+#[test]
+fn without_a_surface_on_a_map_lengths_stay_true_around_the_photos() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("cameras.xml"), cameras_xml()).unwrap();
+    let error = open_flight(
+        &folder.join("cameras.xml"),
+        &OpenOptions::default(),
+        &Progress::default(),
+    );
+    let error = error.unwrap_err().to_string();
+    assert!(
+        error.contains("it has no 3D points to make a surface of"),
+        "{error}"
+    );
+}
+
+#[test]
+fn the_map_must_count_in_the_flights_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("cameras.xml"), cameras_xml()).unwrap();
+    fs::write(folder.join("ground.xyz"), ground("EPSG:32633")).unwrap();
+    let text = "format = 1\n[world]\nunit = \"ft\"\ncrs = \"EPSG:32633\"\n[surface]\nfile = \"ground.xyz\"\n[photos]\nreconstruction = \"cameras.xml\"\n";
+    fs::write(folder.join("flight.toml"), text).unwrap();
+    let error = open_flight(folder, &OpenOptions::default(), &Progress::default());
+    let error = error.unwrap_err().to_string();
+    assert!(error.contains("which counts in m, not ft"), "{error}");
+}
+
+/// A cloud that the package names is in the frame of its poses, so `photos.transform` is for both.
+#[test]
+fn a_packages_own_cloud_goes_to_the_world_with_its_poses() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // Straight down from 11 on a plane at 1, f = 1000 px: 100 px a unit.
+    let frame =
+        r#"{"file_path": "a.jpg", "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,11],[0,0,0,1]]}"#;
+    let json = format!(
+        r#"{{"fl_x": 1000, "fl_y": 1000, "cx": 200, "cy": 150, "w": 400, "h": 300, "ply_file_path": "cloud.ply", "frames": [{frame}]}}"#
+    );
+    fs::write(folder.join("transforms.json"), json).unwrap();
+    let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nend_header\n-50 -50 1\n50 -50 1\n50 50 1\n-50 50 1\n";
+    fs::write(folder.join("cloud.ply"), ply).unwrap();
+    // Doubled: at a plane left at 1 it would be 1000 / 21.
+    let text = "format = 1\n[world]\nunit = \"m\"\n[photos]\nreconstruction = \"transforms.json\"\ntransform = [2,0,0,0, 0,2,0,0, 0,0,2,0, 0,0,0,1]\n";
+    fs::write(folder.join("flight.toml"), text).unwrap();
+    let opened = open_flight(folder, &OpenOptions::default(), &Progress::default()).unwrap();
+    let outcomes = opened.flight.scales(&Progress::default()).unwrap();
+    let top = outcomes[0].scale().unwrap().scale.top.unwrap();
+    assert!((top - 50.0).abs() < 1e-9, "{top}");
+}
+
+/// The map that the engineer chose in Metashape, although the frame is the Earth's.
+#[test]
+fn a_projects_own_map_comes_before_the_zone() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // ETRS89 / UTM zone 32N: the next zone, so the photos' own would be another one.
+    let map = r#"PROJCS["ETRS89 / UTM zone 32N",GEOGCS["ETRS89",DATUM["European_Terrestrial_Reference_System_1989",SPHEROID["GRS 1980",6378137,298.257222101]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1],AUTHORITY["EPSG","25832"]]"#;
+    let xml = cameras_xml();
+    let (before, rest) = xml.split_once("<reference>").unwrap();
+    let (_, after) = rest.split_once("</reference>").unwrap();
+    let xml = format!("{before}<reference>{map}</reference>{after}");
+    fs::write(folder.join("cameras.xml"), xml).unwrap();
+    fs::write(folder.join("ground.xyz"), ground("EPSG:25832")).unwrap();
+    let opened = open(folder, "unit = \"m\"");
+    assert_eq!(opened.crs.as_deref(), Some("EPSG:25832"));
+    let outcomes = opened.flight.scales(&Progress::default()).unwrap();
+    assert_eq!(outcomes[0].scale().unwrap().corners_on_surface(), 4);
+}
+
+/// The ground as ECEF coordinates in a LAZ, its system as PROJ writes EPSG:4978 in WKT 2.
+#[test]
+fn a_cloud_from_the_earths_centre_meets_poses_from_there() {
+    const SYSTEM: &str = r#"GEODCRS["WGS 84",DATUM["World Geodetic System 1984",ELLIPSOID["WGS 84",6378137,298.257223563,LENGTHUNIT["metre",1]]],PRIMEM["Greenwich",0,ANGLEUNIT["degree",0.0174532925199433]],CS[Cartesian,3],AXIS["(X)",geocentricX,ORDER[1],LENGTHUNIT["metre",1]],AXIS["(Y)",geocentricY,ORDER[2],LENGTHUNIT["metre",1]],AXIS["(Z)",geocentricZ,ORDER[3],LENGTHUNIT["metre",1]],ID["EPSG",4978]]"#;
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("cameras.xml"), cameras_xml()).unwrap();
+    let mut builder = las::Builder::from((1, 4));
+    builder.point_format = las::point::Format::new(6).unwrap();
+    builder.point_format.is_compressed = true;
+    builder.has_wkt_crs = true;
+    builder.vlrs.push(las::Vlr {
+        user_id: "LASF_Projection".to_owned(),
+        record_id: 2112,
+        description: String::new(),
+        data: SYSTEM.as_bytes().to_vec(),
+    });
+    let axis = |offset| las::Transform {
+        scale: 1e-4,
+        offset,
+    };
+    builder.transforms = las::Vector {
+        x: axis(4.1e6),
+        y: axis(0.9e6),
+        z: axis(4.7e6),
+    };
+    let file = fs::File::create(folder.join("ground.laz")).unwrap();
+    let mut writer = las::Writer::new(file, builder.into_header().unwrap()).unwrap();
+    for (east, north) in [(-1e-3, -1e-3), (1e-3, -1e-3), (1e-3, 1e-3), (-1e-3, 1e-3)] {
+        let place = Geographic {
+            longitude: PLACE.longitude + east,
+            latitude: PLACE.latitude + north,
+            ..PLACE
+        };
+        let DVec3 { x, y, z } = ecef_from_geographic(place);
+        let gps_time = Some(0.0);
+        let point = las::Point {
+            x,
+            y,
+            z,
+            gps_time,
+            ..las::Point::default()
+        };
+        writer.write_point(point).unwrap();
+    }
+    writer.close().unwrap();
+    let text = "format = 1\nworld.unit = \"m\"\nsurface.file = \"ground.laz\"\nphotos.reconstruction = \"cameras.xml\"\n";
+    fs::write(folder.join("flight.toml"), text).unwrap();
+    let opened = open_flight(folder, &OpenOptions::default(), &Progress::default()).unwrap();
+    assert_eq!(opened.crs.as_deref(), Some("EPSG:32633"), "the zone");
+    let said = opened.warnings.join("\n");
+    assert!(
+        !said.contains("degrees") && said.contains("Earth's centre"),
+        "{said}"
+    );
+    let outcomes = opened.flight.scales(&Progress::default()).unwrap();
+    let top = outcomes[0].scale().unwrap().scale.top.unwrap();
+    assert!((top / 10.0 - 1.0).abs() < 1e-5, "{top}");
+}
+
+/// What states an empty system states none; flight.toml is told to leave it out.
+#[test]
+fn an_empty_system() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let point = |name: &str, x: i32| {
+        format!(
+            r#"{{"type": "Feature", "properties": {{"filename": "{name}", "xyz": [{x}, 0, 10], "opk": [0, 0, 0]}}, "geometry": null}}"#
+        )
+    };
+    let poses = format!(
+        r#"{{"type": "FeatureCollection", "world_crs": " ", "features": [{}]}}"#,
+        point("a.jpg", 0)
+    );
+    fs::write(folder.join("poses.geojson"), poses).unwrap();
+    let pile = "-50 -50 0\n50 -50 0\n50 50 0\n-50 50 0\n";
+    fs::write(folder.join("pile.xyz"), pile).unwrap();
+    let flight = |world: &str| {
+        let text = format!(
+            "format = 1\nworld.unit = \"m\"\n{world}surface.file = \"pile.xyz\"\nphotos.poses = \"poses.geojson\"\n\
+             [[camera]]\nwidth = 400\nheight = 300\nfx = 1000\nfy = 1000\ncx = 200\ncy = 150\n"
+        );
+        fs::write(folder.join("flight.toml"), text).unwrap();
+        open_flight(folder, &OpenOptions::default(), &Progress::default())
+    };
+    let opened = flight("").unwrap();
+    assert_eq!(opened.crs, None);
+    let said = opened.warnings.join("\n");
+    assert!(!said.contains("coordinate"), "{said}");
+    let error = flight("world.crs = \"\"\n").unwrap_err().to_string();
+    assert!(
+        error.contains("world.crs is empty") && error.contains("remove the key"),
+        "{error}"
+    );
+}
+
+/// Orthority's table of a drone's position and angles, quoted and between blanks, over a surface on a
+/// map. It was taken for a list of control points.
+#[test]
+fn orthoritys_angles_over_a_map() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("ground.xyz"), ground("EPSG:32633")).unwrap();
+    let up = PLACE.height + 100.0;
+    let table = format!(
+        "'filename' 'latitude' 'longitude' 'altitude' 'roll' 'pitch' 'yaw'\n\
+         'a b.jpg' {} {} {up} 0 0 0\n",
+        PLACE.latitude, PLACE.longitude
+    );
+    fs::write(folder.join("ext.csv"), table).unwrap();
+    let text = "format = 1\nworld.unit = \"m\"\nsurface.file = \"ground.xyz\"\nphotos.poses = \"ext.csv\"\n\
+        [[camera]]\nwidth = 400\nheight = 300\nfx = 1000\nfy = 1000\ncx = 200\ncy = 150\n";
+    fs::write(folder.join("flight.toml"), text).unwrap();
+    let opened = open_flight(folder, &OpenOptions::default(), &Progress::default()).unwrap();
+    assert_eq!(opened.crs.as_deref(), Some("EPSG:32633"));
+    assert_eq!(opened.flight.parts().photos[0].name, "a b.jpg");
+    let outcomes = opened.flight.scales(&Progress::default()).unwrap();
+    let scale = outcomes[0].scale().unwrap();
+    assert!((scale.scale.top.unwrap() / 10.0 - 1.0).abs() < 1e-5);
+    // As above: the image's top is true north.
+    let [left, right] = [0, 1].map(|corner| scale.corners[corner].point().unwrap());
+    let turn = (right.y - left.y).atan2(right.x - left.x).to_degrees();
+    let convergence = (-2.0_f64).to_radians().tan() * 48.0_f64.to_radians().sin();
+    assert!(
+        (turn - convergence.atan().to_degrees()).abs() < 2e-3,
+        "{turn}"
+    );
+}

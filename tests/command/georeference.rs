@@ -1,0 +1,85 @@
+//! `fragscale georeference`: from a reconstruction in a frame of its own to scales in metres.
+
+use crate::own_frame;
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::{fragscale, scale, scales_json, stdout_of};
+use own_frame::{model, positions};
+use serde_json::Value;
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("UTF-8")
+}
+
+fn command<'a>(model: &'a Path, more: &[&'a str]) -> Vec<&'a str> {
+    [&["georeference", text(model)], more].concat()
+}
+
+/// 1000 px at 30 m are 33.3 px/m.
+#[test]
+fn known_positions_give_scales_in_metres() {
+    let folder = tempfile::tempdir().expect("a folder");
+    model(folder.path());
+    let (list, flight) = (
+        folder.path().join("list.csv"),
+        folder.path().join("world.toml"),
+    );
+    fs::write(&list, positions()).expect("written");
+    let arguments = [
+        "georeference",
+        text(folder.path()),
+        "--positions",
+        text(&list),
+        "--crs",
+        "EPSG:32632",
+        "--format",
+        "json",
+        "-o",
+        text(&flight),
+    ];
+    let said: Value = serde_json::from_str(&stdout_of(&arguments)).expect("JSON");
+    assert_eq!(
+        (&said["crs"], &said["unit"]),
+        (&"EPSG:32632".into(), &"m".into())
+    );
+    assert!((said["scale"].as_f64().expect("a number") - 3.0).abs() < 1e-9);
+    assert!(said["rms"].as_f64().expect("a number") < 1e-6);
+    let scales = scales_json(&flight, &[]);
+    let photos = scales["photos"].as_array().expect("photos");
+    assert_eq!((photos.len(), &scales["world_unit"]), (5, &"m".into()));
+    for photo in photos {
+        for edge in ["top", "bottom", "left", "right"] {
+            // In px/cm.
+            let scale = scale(photo, edge).expect("a scale");
+            assert!((scale - 1.0 / 3.0).abs() < 1e-6, "{scale}");
+        }
+    }
+}
+
+#[test]
+fn the_table_and_the_errors_are_lines() {
+    let folder = tempfile::tempdir().expect("a folder");
+    model(folder.path());
+    let list = folder.path().join("list.csv");
+    fs::write(&list, positions()).expect("written");
+    let table = stdout_of(&command(folder.path(), &["--positions", text(&list)]));
+    assert!(table.starts_with("position"), "{table}");
+    assert!(
+        table.contains("5 of 5 positions used, RMS 0.000 m\n"),
+        "{table}"
+    );
+    let scaled = stdout_of(&command(folder.path(), &["--distance", "0,0,0 -1,0,0 2.5"]));
+    assert!(scaled.contains("scale: 2.5 m to one"), "{scaled}");
+    // Exit status 1, one line, and no file.
+    let flight = folder.path().join("none.toml");
+    let output = fragscale(&command(folder.path(), &["-o", text(&flight)]));
+    assert_eq!(output.status.code(), Some(1));
+    let error = String::from_utf8(output.stderr).expect("UTF-8");
+    assert_eq!(error.lines().count(), 1, "{error}");
+    assert!(error.contains("nothing is known of its place"), "{error}");
+    assert!(!flight.exists());
+    let usage = fragscale(&command(folder.path(), &["--distance", "1 2"]));
+    assert_eq!(usage.status.code(), Some(2));
+}

@@ -1,0 +1,37 @@
+//! The command as a user runs it, file by file. One program, because each of its own would be linked
+//! anew after every change.
+
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    missing_docs,
+    reason = "in a test or a benchmark a panic is the report"
+)]
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/own_frame.rs"]
+mod own_frame;
+
+mod anova;
+#[cfg(all(feature = "app", target_os = "linux"))]
+mod clipboard;
+mod contract;
+mod coordinate_systems;
+mod effort;
+mod georeference;
+mod geotiff;
+mod independent_answers;
+mod overwriting;
+mod psd_compare;
+mod real_data;
+mod scale_object;
+mod size_distribution_fits;
+mod split_desktop;
+mod tiff_photos;
+mod true_scale;
+mod trust;
+#[cfg(unix)]
+mod unfinished;
+mod windrow_example;
