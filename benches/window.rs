@@ -17,8 +17,8 @@ use std::sync::Arc;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use fragscale::app::open_flight::OpenFlight;
+use fragscale::app::open_flight::loading::Loaded;
 use fragscale::app::open_flight::table::{SortBy, TableOrder};
-use fragscale::app::tasks::work::Loaded;
 use fragscale::exports::PHOTO_COLUMNS;
 use fragscale::flight::Limits;
 use fragscale::geometry::{Bounds, LocalFrame};

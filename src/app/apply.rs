@@ -1,15 +1,13 @@
 //! The one function that changes the state: it applies a command.
 
-use std::path::PathBuf;
-
 use crate::command::{Asking, Command};
-use crate::exports::Replace;
-use crate::files::{self, Kind};
-use crate::open_flight::OpenFlight;
-use crate::render::MOST_PIXELS;
+use crate::flight::FlightSettings;
+use crate::open_flight::{Edit, OpenFlight};
 use crate::size_distributions::Page;
-use crate::state::{HeldBack, PictureRequest, Severity, State, sample_flight};
-use crate::tasks::work::Task;
+use crate::state::bundled::sample_flight;
+use crate::state::history::History;
+use crate::state::{HeldBack, Leaving, Severity, State};
+use crate::tasks::Task;
 
 impl State {
     /// Does what a command says.
@@ -17,14 +15,21 @@ impl State {
         match command {
             Command::Drop(paths) if self.may_be_distributions(&paths) => self.read_dropped(paths),
             Command::Drop(paths) => self.apply(Command::DropFlight(paths)),
-            Command::Open(_)
-            | Command::DropFlight(_)
-            | Command::Add(_)
-            | Command::OpenSample
-            | Command::Close
-            | Command::Quit => {
-                self.leave(command);
-            }
+            Command::Open(path) => self.leave(Leaving::Read {
+                paths: vec![path],
+                added: false,
+            }),
+            Command::DropFlight(paths) => self.leave(Leaving::Read {
+                paths,
+                added: false,
+            }),
+            Command::Add(path) => self.leave(Leaving::Read {
+                paths: vec![path],
+                added: true,
+            }),
+            Command::OpenSample => self.leave(Leaving::Sample),
+            Command::Close => self.leave(Leaving::Close),
+            Command::Quit => self.leave(Leaving::Quit),
             Command::Discard => {
                 if let Some(held_back) = self.held_back.take() {
                     self.go_on(held_back);
@@ -38,22 +43,22 @@ impl State {
             }
             Command::Keep => self.held_back = None,
             Command::Save => self.save(),
-            Command::SaveAs(path) => self.save_as(path),
-            Command::Export(folder) => self.export(folder),
+            Command::SaveAs(to) => self.save_as(to),
+            Command::Export(to) => self.export(to),
             Command::Picture(request) => self.ask_picture(request),
             Command::FillGeoreference(form) => self.fill_georeference(form),
             Command::Georeference(request) => self.start_georeference(request),
-            Command::SaveGeoreferenced { path, keep_surface } => {
-                self.save_georeferenced(path, keep_surface);
+            Command::SaveGeoreferenced { to, keep_surface } => {
+                self.save_georeferenced(to, keep_surface);
             }
             Command::Ask(asking) => self.ask(asking),
-            Command::Browse(what, folder) => self.browse(what, folder),
+            Command::Browse(dialog) => self.browse(dialog),
             Command::Cancel(task) => {
-                if task.can_be_cancelled() && self.work.is_running(task) {
+                if task.can_be_cancelled && self.work.is_running(task) {
                     self.work.cancel(task);
-                    self.say(Severity::Note, &format!("{}: cancelled", task.in_words()));
+                    self.say(Severity::Note, &format!("{}: cancelled", task.in_words));
                     self.take_back_settings();
-                    if task == Task::Save {
+                    if task == Task::SAVE {
                         self.after_saving = None;
                     }
                 }
@@ -84,24 +89,22 @@ impl State {
             Command::Copy(text) => self.context.copy_text(text),
             Command::Report(text) => self.say(Severity::Error, &text),
             Command::TakeAnswer => self.answered = None,
-            Command::Undo | Command::Redo if self.page == Page::SizeDistributions => {
-                self.undo_distributions(&command);
+            Command::Undo if self.page == Page::SizeDistributions => {
+                self.undo_distributions(History::undo);
             }
-            Command::Set(_) | Command::Undo | Command::Redo => self.edit_settings(&command),
+            Command::Redo if self.page == Page::SizeDistributions => {
+                self.undo_distributions(History::redo);
+            }
+            Command::Undo => self.edit_settings(|history| {
+                history.undo();
+            }),
+            Command::Redo => self.edit_settings(|history| {
+                history.redo();
+            }),
+            Command::Set(settings) => self.set_settings(settings),
             Command::Trace(step) => self.trace(step),
-            Command::Select(_) | Command::SelectBy(_) => {
-                if let Some(open) = &mut self.open {
-                    let before = open.selected;
-                    match command {
-                        Command::Select(photo) => open.select(photo),
-                        Command::SelectBy(rows) => open.select_by(rows),
-                        _ => {}
-                    }
-                    if open.selected != before {
-                        self.load_preview();
-                    }
-                }
-            }
+            Command::Select(photo) => self.select(|open| open.select(photo)),
+            Command::SelectBy(rows) => self.select(|open| open.select_by(rows)),
             Command::Click(_)
             | Command::Hover(_)
             | Command::DoubleClick(_)
@@ -111,7 +114,7 @@ impl State {
             | Command::Sort(_)
             | Command::Filter(_)
             | Command::FilterVerdict(_)
-            | Command::Look(_)
+            | Command::View(_)
             | Command::ToggleMeasure => {
                 if let Some(open) = &mut self.open {
                     open.apply(command);
@@ -124,38 +127,32 @@ impl State {
     }
 
     /// Leaves the flight on the screen, unless something would be lost: then asks first.
-    fn leave(&mut self, command: Command) {
-        let quits = command == Command::Quit;
-        if self.is_changed() || (quits && self.work.is_writing()) {
-            self.held_back = Some(if quits {
-                HeldBack::Quit
-            } else {
-                HeldBack::Leave(Box::new(command))
-            });
+    fn leave(&mut self, leaving: Leaving) {
+        let writes = leaving == Leaving::Quit && self.work.is_writing();
+        if self.is_changed() || writes {
+            self.held_back = Some(HeldBack::Leave(leaving));
         } else {
-            self.go(command);
+            self.go(leaving);
         }
     }
 
-    fn go(&mut self, command: Command) {
+    fn go(&mut self, leaving: Leaving) {
         self.asking = None;
         self.after_saving = None;
-        if command != Command::Quit && command != Command::Close {
+        if matches!(leaving, Leaving::Read { .. } | Leaving::Sample) {
             self.page = Page::Pile;
         }
-        match command {
-            Command::Open(path) => self.start_opening(vec![path], false),
-            Command::DropFlight(paths) => self.start_opening(paths, false),
-            Command::Add(path) => self.start_opening(vec![path], true),
-            Command::OpenSample => match sample_flight() {
+        match leaving {
+            Leaving::Read { paths, added } => self.start_opening(paths, added),
+            Leaving::Sample => match sample_flight() {
                 Some(path) => self.start_opening(vec![path], false),
                 None => self.say(
                     Severity::Error,
                     "the bundled flight is not beside the program; make one with 'fragscale sample DIR'",
                 ),
             },
-            Command::Close => {
-                self.work.cancel(Task::Open);
+            Leaving::Close => {
+                self.work.cancel(Task::OPEN);
                 self.work.cancel_for_flight();
                 if let Some(open) = self.open.take() {
                     open.let_go();
@@ -163,26 +160,25 @@ impl State {
                 self.notice = None;
                 self.tried = None;
             }
-            Command::Quit => self.quit(),
-            _ => {}
+            Leaving::Quit => self.quit(),
         }
     }
 
     /// Goes on with what was held back.
     pub(crate) fn go_on(&mut self, held_back: HeldBack) {
         match held_back {
-            HeldBack::Quit => self.quit(),
-            HeldBack::Leave(command) => self.go(*command),
-            HeldBack::Replace(command, _) => match *command {
-                Command::SaveAs(path) => self.start_saving(path, true),
-                Command::Export(folder) => self.start_export(folder, Replace::OtherFlight),
-                Command::Picture(request) => self.picture = Some((request, true)),
-                Command::Distributions(command) => self.replace_distributions(command),
-                Command::SaveGeoreferenced { path, keep_surface } => {
-                    self.start_saving_georeferenced(path, keep_surface, true);
-                }
-                _ => {}
-            },
+            HeldBack::Leave(leaving) => self.go(leaving),
+            HeldBack::Replace { command, .. } => self.apply(*command),
+        }
+    }
+
+    fn select(&mut self, select: impl FnOnce(&mut OpenFlight)) {
+        if let Some(open) = &mut self.open {
+            let before = open.selected;
+            select(open);
+            if open.selected != before {
+                self.load_preview();
+            }
         }
     }
 
@@ -192,7 +188,7 @@ impl State {
         self.context.send_viewport_cmd(egui::ViewportCommand::Close);
     }
 
-    fn ask(&mut self, asking: Option<Asking>) {
+    pub(crate) fn ask(&mut self, asking: Option<Asking>) {
         let needs_flight = matches!(
             asking,
             Some(Asking::Export | Asking::SaveAs | Asking::Picture)
@@ -219,8 +215,17 @@ impl State {
         }
     }
 
+    /// Sets the flight's settings, as a step that can be undone.
+    pub(crate) fn set_settings(&mut self, settings: FlightSettings) {
+        self.edit_settings(|history| {
+            let mut edit = history.now().clone();
+            edit.settings = settings;
+            history.set(edit);
+        });
+    }
+
     /// Undo, redo, and what they go over.
-    pub(crate) fn edit_settings(&mut self, command: &Command) {
+    fn edit_settings(&mut self, change: impl FnOnce(&mut History<Edit>)) {
         if self.is_opening() && self.reads_other {
             // What is changed now would go with this flight, or its reading would stop the other's.
             let text = "another flight is being opened; change settings when it is there";
@@ -231,20 +236,7 @@ impl State {
             return;
         };
         let before = open.settings();
-        match command {
-            Command::Set(settings) => {
-                let mut edit = open.history.now().clone();
-                edit.settings = settings.clone();
-                open.history.set(edit);
-            }
-            Command::Undo => {
-                open.history.undo();
-            }
-            Command::Redo => {
-                open.history.redo();
-            }
-            _ => {}
-        }
+        change(&mut open.history);
         open.arrange();
         let now = open.settings();
         let objects_changed = now.scale_objects != before.scale_objects;
@@ -288,80 +280,5 @@ impl State {
             )
         };
         Some(format!("{}\t{}", shown(scale.top), shown(scale.bottom)))
-    }
-
-    /// Writes flight.toml where it was read, or asks where to.
-    fn save(&mut self) {
-        let Some(open) = &self.open else {
-            return;
-        };
-        match open.origin.flight_file() {
-            // The bundled flight stays as it came.
-            Some(path) if !open.bundled => {
-                let path = path.to_owned();
-                self.save_as(path);
-            }
-            _ => self.ask(Some(Asking::SaveAs)),
-        }
-    }
-
-    fn save_as(&mut self, path: PathBuf) {
-        self.asking = None;
-        if self.open.is_none() || self.is_busy(Task::Save) {
-            return;
-        }
-        let own = self.open.as_ref().filter(|open| !open.bundled);
-        let own = own.and_then(|open| open.origin.flight_file());
-        if own.is_some_and(|own| files::is_same_file(own, &path)) {
-            self.start_saving(path, true);
-            return;
-        }
-        let (read, command) = (self.read_beside(&path), Command::SaveAs(path.clone()));
-        if self.may_write(&path, Kind::Flight, &read, command) {
-            self.start_saving(path, false);
-        } else if self.held_back.is_none() {
-            // Not saved, and nothing to answer.
-            self.after_saving = None;
-        }
-    }
-
-    fn export(&mut self, folder: PathBuf) {
-        self.asking = None;
-        if !self.is_busy(Task::Export) && self.may_export(&folder) {
-            self.start_export(folder, Replace::Nothing);
-        }
-    }
-
-    fn ask_picture(&mut self, request: PictureRequest) {
-        self.asking = None;
-        let [width, height] = request.size.map(u64::from);
-        if self.open.is_none() || self.is_busy(Task::Picture) {
-            return;
-        }
-        if width * height > MOST_PIXELS {
-            let most = MOST_PIXELS / 1_000_000;
-            let text = format!(
-                "a picture of {width} x {height} pixels is too large; choose at most {most} million pixels"
-            );
-            self.say(Severity::Error, &text);
-            return;
-        }
-        let (read, command) = (self.read(), Command::Picture(request.clone()));
-        if self.may_write(&request.path, Kind::Result, &read, command) {
-            self.picture = Some((request, false));
-        }
-    }
-
-    /// Whether a task of this kind still writes; then says so.
-    pub(crate) fn is_busy(&mut self, task: Task) -> bool {
-        let busy = self.work.is_running(task);
-        if busy {
-            let text = format!(
-                "{}: the one before is still under way; wait for it",
-                task.in_words()
-            );
-            self.say(Severity::Error, &text);
-        }
-        busy
     }
 }

@@ -24,6 +24,7 @@ pub mod poll;
 pub mod size_distributions;
 pub mod state;
 pub mod tasks;
+mod typed;
 pub mod viewport;
 mod writing;
 
@@ -46,7 +47,7 @@ use command::Asking;
 use frame_times::{FrameTimes, Phase};
 use panels::Inspector;
 use size_distributions::{DistributionCommand, Page, PasteForm, ResultTab};
-use state::{HeldBack, Severity};
+use state::{HeldBack, Leaving, Severity};
 use viewport::Viewport;
 
 /// Under which name eframe keeps the preferences.
@@ -145,7 +146,7 @@ impl App {
         let loses = self.state.is_changed() || self.state.work.is_writing();
         if closes && loses && !self.state.may_quit {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            self.state.held_back = Some(HeldBack::Quit);
+            self.state.held_back = Some(HeldBack::Leave(Leaving::Quit));
         }
     }
 }

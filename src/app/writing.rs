@@ -4,12 +4,12 @@
 
 use std::path::Path;
 
-use crate::command::Command;
+use crate::command::{Command, Destination};
 use crate::exports;
 use crate::files::{self, Inputs, Kind, Standing};
 use crate::formats::FileError;
-use crate::panels::typed;
 use crate::state::{HeldBack, Severity, State};
+use crate::typed::typed;
 
 impl State {
     /// Everything that was read for what is on the screen.
@@ -48,14 +48,18 @@ impl State {
         }
     }
 
-    /// Whether a file can be written now; else says why not, or asks.
+    /// Whether a file can be written now; else says why not, or asks. `command` writes it.
     pub(crate) fn may_write(
         &mut self,
-        path: &Path,
+        to: &Destination,
         kind: Kind,
         read: &Inputs,
-        command: Command,
+        command: impl FnOnce(Destination) -> Command,
     ) -> bool {
+        if to.replace {
+            return true;
+        }
+        let path = &to.path;
         let there = match files::standing(path, kind, read) {
             Standing::Free if !path.is_file() => return true,
             Standing::Free => "It is empty.",
@@ -72,27 +76,41 @@ impl State {
                 return false;
             }
         };
-        let path = path.display();
-        let question = format!("There is a file already: {path}. {there}");
-        self.held_back = Some(HeldBack::Replace(Box::new(command), question));
+        let there = format!("There is a file already: {}. {there}", path.display());
+        self.ask_to_replace(to, there, command);
         false
     }
 
     /// Whether a folder can be exported to now; else asks.
-    pub(crate) fn may_export(&mut self, folder: &Path) -> bool {
+    pub(crate) fn may_export(&mut self, to: &Destination) -> bool {
         let Some(open) = &self.open else {
             return false;
         };
-        let name = &open.flight().parts().name;
-        let Some(other) = exports::other_flight_in(folder, name, open.origin.file()) else {
+        let (folder, name) = (&to.path, &open.flight().parts().name);
+        let other = exports::other_flight_in(folder, name, open.origin.file());
+        let Some(other) = other.filter(|_| !to.replace) else {
             return true;
         };
-        let question = format!(
+        let there = format!(
             "{} holds the export of another flight, {other}. Its pictures and tables would go.",
             folder.display()
         );
-        let command = Box::new(Command::Export(folder.to_owned()));
-        self.held_back = Some(HeldBack::Replace(command, question));
+        self.ask_to_replace(to, there, Command::Export);
         false
+    }
+
+    /// Holds back what would replace something: her answer sends it again, and it may.
+    fn ask_to_replace(
+        &mut self,
+        to: &Destination,
+        there: String,
+        command: impl FnOnce(Destination) -> Command,
+    ) {
+        let to = Destination {
+            path: to.path.clone(),
+            replace: true,
+        };
+        let command = Box::new(command(to));
+        self.held_back = Some(HeldBack::Replace { command, there });
     }
 }

@@ -13,17 +13,17 @@ use super::outputs::{Force, Outputs};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::files::{Kind, marked_png};
-use crate::flight::{Limits, PhotoReview, Review};
+use crate::flight::{Limits, Review};
 use crate::formats::{self, FileError};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
 use crate::opening::{Opened, PhotoFile};
 use crate::picture;
 use crate::render::{
-    Background, CloudGeometry, ColorBy, Gpu, MOST_PIXELS, MeshGeometry, Normals, Orbit,
-    PhotoGeometry, PhotoImage, Renderer, Scope, Show, View,
+    Background, ColorBy, Gpu, MOST_PIXELS, Orbit, PhotoGeometry, PhotoImage, Renderer, Scope,
+    Shapes, Show, SurfaceBuffers, View, drawn_ground,
 };
-use crate::scale::{Corner, CornerOutcome, Ground};
+use crate::scale::Corner;
 
 /// Longer edge of the photo that is laid on the surface or over the view.
 const PHOTO_EDGE: u32 = 2048;
@@ -252,40 +252,23 @@ fn draw(
     let surface = &parts.surface;
     let bounds = surface.bounds();
     let frame = LocalFrame::near(&bounds);
-    let photos: Vec<PhotoGeometry> = review
-        .photos()
-        .map(|photo| {
-            let pose = &photo.photo.pose;
-            PhotoGeometry::new(&frame, photo.camera, pose, photo.scale(), photo.view)
-        })
-        .collect();
-    progress.stage("drawing");
+    let photos = PhotoGeometry::of_review(&frame, &review);
     let show = show(arguments, &review, selected, &bounds);
     let mut renderer = Renderer::new(&gpu);
     renderer.start(&frame);
-    let triangles = surface
-        .triangles()
-        .map_err(|error| Fault::new(error.to_string(), "check the surface file"))?;
-    let normals = Normals::of(&frame, surface.vertices(), &triangles);
-    let colors = surface.colors();
-    if show.cloud {
-        let cloud = CloudGeometry::new(&frame, surface.vertices(), colors, &normals);
-        renderer.set_cloud(Some(&cloud));
-    }
-    if show.mesh || show.wireframe {
-        let vertices = surface.vertices();
-        let mesh = MeshGeometry::new(&frame, vertices, colors, &normals, &triangles);
-        renderer.set_mesh(Some(&mesh));
-    }
+    let wanted = Shapes {
+        cloud: show.cloud,
+        mesh: show.mesh || show.wireframe,
+    };
+    let buffers = SurfaceBuffers::new(&gpu, &frame, surface, wanted, progress)?;
+    renderer.set_surface(Some(&buffers));
+    progress.stage("drawing");
     renderer.set_photos(photos);
     set_images(&mut renderer, opened, &show, progress)?;
 
     let size = DVec2::from(arguments.size.0.map(f64::from));
     let view = match looked_through.and_then(|index| review.photo(index)) {
-        Some(photo) => {
-            let focus = depth_of(photo).unwrap_or(1.0);
-            View::of_photo(photo.camera, &photo.photo.pose, focus)
-        }
+        Some(photo) => View::through(&photo, 1.0),
         None => {
             let points = points_to_fit(&review);
             orbit(&arguments.view, &points, &bounds, size).view()
@@ -301,23 +284,6 @@ fn needs_selected(arguments: &RenderArguments) -> Option<&'static str> {
     }
     let of_one = |item: &&Item| item.name == "photo" || item.scope == Scope::Selected;
     arguments.show.iter().find(of_one).map(|item| item.name)
-}
-
-/// How far a photo's footprint is away.
-fn depth_of(photo: PhotoReview<'_>) -> Option<f64> {
-    let distance = |outcome: &CornerOutcome| match *outcome {
-        CornerOutcome::OnSurface { distance, .. } | CornerOutcome::OnGround { distance, .. } => {
-            Some(distance)
-        }
-        CornerOutcome::Nowhere | CornerOutcome::NoRay(_) => None,
-    };
-    let grid = photo.view.into_iter().flat_map(|view| &view.footprint.grid);
-    let corners = photo.scale().into_iter().flat_map(|scale| &scale.corners);
-    let mut distances: Vec<f64> = grid
-        .filter_map(|sample| distance(&sample.outcome))
-        .chain(corners.filter_map(|corner| distance(&corner.outcome)))
-        .collect();
-    crate::geometry::median(&mut distances)
 }
 
 fn show(
@@ -349,15 +315,7 @@ fn show(
         outlines: scope("outlines"),
         fills: scope("fills"),
         flight_line: shown("line"),
-        ground: shown("ground").then(|| {
-            // Under which photo, if the elevation is found anew for each? Under the first that
-            // needed it, or else under everything.
-            let found = review.photos().find_map(|photo| photo.scale()?.ground);
-            match parts.ground {
-                Ground::At(z) => z,
-                Ground::Auto => found.unwrap_or(bounds.min.z),
-            }
-        }),
+        ground: shown("ground").then(|| drawn_ground(parts.ground, review.outcomes(), bounds)),
         axes: shown("axes"),
         scale_bar: shown("bar"),
         unit: parts.unit,

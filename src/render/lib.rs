@@ -20,9 +20,12 @@ mod primitives;
 mod renderer;
 mod scene;
 mod show;
+mod surface_buffers;
 mod view;
 
-use fragscale_core::{camera, fault, geometry, numbers, picture, scale, units};
+use fragscale_core::{
+    camera, fault, flight, geometry, jobs, numbers, picture, scale, surface, units,
+};
 
 pub use device::gpu::{Gpu, device_descriptor};
 pub use furniture::colormap::viridis;
@@ -31,9 +34,11 @@ pub use primitives::mesh::MeshBuffers;
 pub use primitives::points::CloudBuffers;
 pub use primitives::surface::LargePhoto;
 pub use renderer::{Drawn, MOST_PIXELS, Renderer};
+pub use scene::ground::drawn_ground;
 pub use scene::photo_geometry::PhotoGeometry;
 pub use scene::photo_image::PhotoImage;
 pub use scene::{CloudGeometry, MeshGeometry, Normals};
 pub use show::{Background, ColorBy, PhotoLook, Scope, Show};
+pub use surface_buffers::{Shapes, SurfaceBuffers};
 pub use view::orbit::Orbit;
 pub use view::{Projection, View};

@@ -111,8 +111,8 @@ fn a_cancelled_change_is_taken_back() {
     let mut desk = Desk::new(Some(&flight("tests/windrow")));
     let before = desk.open().settings();
     for (task, thinning) in [
-        (fragscale::app::tasks::work::Task::Scales, None),
-        (fragscale::app::tasks::work::Task::Open, Some(0.3)),
+        (fragscale::app::tasks::Task::SCALES, None),
+        (fragscale::app::tasks::Task::OPEN, Some(0.3)),
     ] {
         let app = desk.harness.state_mut();
         let mut settings = before.clone();
@@ -140,7 +140,7 @@ fn footprints_come_after_a_cancelled_change() {
     let mut settings = app.state().open.as_ref().expect("a flight").settings();
     settings.image = fragscale::scale::ImageKind::AsShot;
     app.apply(Command::Set(settings));
-    app.apply(Command::Cancel(fragscale::app::tasks::work::Task::Scales));
+    app.apply(Command::Cancel(fragscale::app::tasks::Task::SCALES));
     desk.settle();
     assert!(desk.open().review.views().is_some());
 }

@@ -120,7 +120,7 @@ fn nothing_is_exported_while_the_numbers_are_computed() {
     let mut settings = app.state().open.as_ref().expect("a flight").settings();
     settings.image = fragscale::scale::ImageKind::AsShot;
     app.apply(Command::Set(settings));
-    app.apply(Command::Export(to.clone()));
+    app.apply(Command::Export(to.clone().into()));
     desk.settle();
     assert!(desk.says("still being computed"));
     assert!(!to.exists());

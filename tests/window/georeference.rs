@@ -6,7 +6,7 @@ use std::path::Path;
 
 use egui::accesskit::Role;
 use fragscale::app::Command;
-use fragscale::app::actions::GEOREFERENCE;
+use fragscale::app::actions::file::GEOREFERENCE;
 use fragscale::app::open_flight::Measure;
 use fragscale::geometry::Ray;
 use glam::DVec3;

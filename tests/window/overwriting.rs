@@ -8,8 +8,8 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use fragscale::app::Command;
 use fragscale::app::command::Choice;
+use fragscale::app::command::PictureRequest;
 use fragscale::app::size_distributions::{DistributionCommand, Page};
-use fragscale::app::state::PictureRequest;
 
 use crate::desk::{Desk, copy, flight};
 use crate::own_frame::{model, positions};
@@ -37,7 +37,7 @@ fn refused(desk: &mut Desk, command: Command, path: &Path, words: &str) {
 
 fn picture(path: &Path) -> Command {
     Command::Picture(PictureRequest {
-        path: path.to_owned(),
+        to: path.to_owned().into(),
         size: [64, 48],
         transparent: false,
         corner_rays: false,
@@ -62,9 +62,9 @@ fn a_flight_is_saved_over_no_file_that_it_was_read_from() {
     }
     let mut desk = Desk::new(Some(folder.path()));
     for name in &names {
-        refused(&mut desk, Command::SaveAs(name.clone()), name, NO);
+        refused(&mut desk, Command::SaveAs(name.clone().into()), name, NO);
         refused(&mut desk, picture(name), name, NO);
-        let report = DistributionCommand::SaveReport(name.clone());
+        let report = DistributionCommand::SaveReport(name.clone().into());
         apply(&mut desk, Command::Distributions(report));
         assert!(desk.harness.state().state().held_back.is_none());
     }
@@ -82,11 +82,11 @@ fn a_flight_is_saved_over_no_file_that_it_was_read_from() {
     let text = fs::read_to_string(at("flight.toml")).expect("the flight");
     assert!(text.contains("ground = 0.5"), "{text}");
     // Over another's flight when she says so.
-    apply(&mut desk, Command::SaveAs(at("second.toml")));
+    apply(&mut desk, Command::SaveAs(at("second.toml").into()));
     assert!(desk.says("It is no flight file that fragscale wrote"));
     desk.click(Role::Button, "Keep the file");
     assert_eq!(fs::read(at("second.toml")).expect("a file"), b"mine");
-    apply(&mut desk, Command::SaveAs(at("second.toml")));
+    apply(&mut desk, Command::SaveAs(at("second.toml").into()));
     desk.click(Role::Button, "Replace it");
     let text = fs::read_to_string(at("second.toml")).expect("the flight");
     assert!(text.contains("ground = 0.5"), "{text}");
@@ -97,7 +97,7 @@ fn a_flight_is_saved_over_no_file_that_it_was_read_from() {
         &at("second.toml"),
         NO,
     );
-    apply(&mut desk, Command::SaveAs(at("flight.toml")));
+    apply(&mut desk, Command::SaveAs(at("flight.toml").into()));
     assert!(desk.says("There is a file already"));
     desk.click(Role::Button, "Replace it");
     assert!(desk.logged("flight.toml: saved"));
@@ -126,10 +126,10 @@ fn the_bundled_flight_stays_as_it_came() {
     let sample = flight("assets/sample");
     let mut desk = Desk::new(Some(&sample));
     let own = sample.join("flight.toml");
-    refused(&mut desk, Command::SaveAs(own.clone()), &own, NO);
+    refused(&mut desk, Command::SaveAs(own.clone().into()), &own, NO);
     let photo = sample.join("photos/IMG_0004.jpg");
     refused(&mut desk, picture(&photo), &photo, NO);
-    refused(&mut desk, Command::SaveAs(photo.clone()), &photo, NO);
+    refused(&mut desk, Command::SaveAs(photo.clone().into()), &photo, NO);
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn an_export_into_another_flights_folder_is_asked_for() {
     let out = first.path().join("out");
     let mut desk = Desk::new(Some(first.path()));
     apply(&mut desk, Command::ChooseAll(Choice::WithScale));
-    apply(&mut desk, Command::Export(out.clone()));
+    apply(&mut desk, Command::Export(out.clone().into()));
     assert!(
         desk.logged("open scales.html"),
         "{:?}",
@@ -147,21 +147,21 @@ fn an_export_into_another_flights_folder_is_asked_for() {
     let list = || fs::read_to_string(out.join("export.json")).expect("the list");
     let before = list();
     // Its own again, without a question.
-    apply(&mut desk, Command::Export(out.clone()));
+    apply(&mut desk, Command::Export(out.clone().into()));
     assert!(desk.harness.state().state().held_back.is_none());
 
     apply(&mut desk, Command::Open(second.path().to_owned()));
     apply(&mut desk, Command::ChooseAll(Choice::WithScale));
-    apply(&mut desk, Command::Export(out.clone()));
+    apply(&mut desk, Command::Export(out.clone().into()));
     assert!(desk.says("holds the export of another flight, 'Windrow'"));
     desk.click(Role::Button, "Keep the export");
     assert_eq!(list(), before);
-    apply(&mut desk, Command::Export(out.clone()));
+    apply(&mut desk, Command::Export(out.clone().into()));
     desk.click(Role::Button, "Replace it");
     assert_ne!(list(), before);
     // Her yes was for that export, not for what somebody else put there.
     fs::write(out.join("scales.csv"), "mine").expect("written");
-    apply(&mut desk, Command::Export(out.clone()));
+    apply(&mut desk, Command::Export(out.clone().into()));
     assert!(desk.logged("was changed since it was exported"));
     assert_eq!(fs::read(out.join("scales.csv")).expect("a file"), b"mine");
 }
@@ -182,7 +182,7 @@ fn a_georeferenced_flight_is_saved_over_no_list_that_it_was_fitted_to() {
     desk.fill("Coordinate system", "EPSG:32632");
     desk.click(Role::Button, "Fit to what is known");
     let save = |path: &Path| Command::SaveGeoreferenced {
-        path: path.to_owned(),
+        to: path.to_owned().into(),
         keep_surface: false,
     };
     refused(&mut desk, save(&list), &list, NO);
@@ -206,14 +206,14 @@ fn a_figure_takes_the_place_of_no_table_that_was_read() {
     let add = DistributionCommand::AddEffort(times.clone());
     apply(&mut desk, Command::Distributions(add));
     for path in [&table, &times] {
-        let figure = DistributionCommand::SaveFigure(path.clone());
+        let figure = DistributionCommand::SaveFigure(path.clone().into());
         refused(&mut desk, Command::Distributions(figure), path, NO);
-        let report = DistributionCommand::SaveReport(path.clone());
+        let report = DistributionCommand::SaveReport(path.clone().into());
         refused(&mut desk, Command::Distributions(report), path, NO);
     }
     // A figure over a figure: she is asked, and told whose it is.
     let figure = folder.path().join("a.svg");
-    let save = || Command::Distributions(DistributionCommand::SaveFigure(figure.clone()));
+    let save = || Command::Distributions(DistributionCommand::SaveFigure(figure.clone().into()));
     apply(&mut desk, save());
     apply(&mut desk, save());
     assert!(desk.says("fragscale wrote it"));

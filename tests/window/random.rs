@@ -3,14 +3,13 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use fragscale::app::command::{Asking, Choice, Look, Tab};
+use fragscale::app::command::{Asking, Choice, PictureRequest, Tab, ViewChange};
 use fragscale::app::open_flight::table::SortBy;
 use fragscale::app::open_flight::tracing::Trace;
 use fragscale::app::open_flight::{Measure, OpenFlight};
-use fragscale::app::state::PictureRequest;
 use fragscale::app::state::layers::Layers;
 use fragscale::app::state::preferences::Theme;
-use fragscale::app::tasks::work::Task;
+use fragscale::app::tasks::Task;
 use fragscale::app::{Command, State};
 use fragscale::exports::PHOTO_COLUMNS;
 use fragscale::flight::{FlightSettings, Limits, Outcome, Verdict};
@@ -101,27 +100,27 @@ fn trace(dice: &mut Dice) -> Trace {
     }
 }
 
-fn look(dice: &mut Dice) -> Look {
+fn view_change(dice: &mut Dice) -> ViewChange {
     let pixels =
         |dice: &mut Dice| DVec2::new(dice.between(-50.0, 900.0), dice.between(-50.0, 600.0));
     let size = DVec2::new(dice.between(1.0, 2000.0), dice.between(1.0, 1000.0));
     match dice.below(13) {
-        0 => Look::Orbit(pixels(dice)),
-        1 => Look::Pan(pixels(dice), size),
-        2 | 3 => Look::Zoom {
+        0 => ViewChange::Orbit(pixels(dice)),
+        1 => ViewChange::Pan(pixels(dice), size),
+        2 | 3 => ViewChange::Zoom {
             cursor: pixels(dice),
             size,
             factor: dice.one_of(&[0.1, 0.9, 1.1, 10.0, 0.0, 1e9]),
         },
-        4 => Look::Resized(size),
-        5 => Look::Top,
-        6 => Look::Front,
-        7 => Look::Side,
-        8 => Look::Fit,
-        9 => Look::FitSelected,
-        10 => Look::Center(ray(dice).at(1.0)),
-        11 => Look::Through,
-        _ => Look::Blend(dice.between(-1.0, 2.0)),
+        4 => ViewChange::Resized(size),
+        5 => ViewChange::Top,
+        6 => ViewChange::Front,
+        7 => ViewChange::Side,
+        8 => ViewChange::Fit,
+        9 => ViewChange::FitSelected,
+        10 => ViewChange::Center(ray(dice).at(1.0)),
+        11 => ViewChange::Through,
+        _ => ViewChange::Blend(dice.between(-1.0, 2.0)),
     }
 }
 
@@ -159,10 +158,20 @@ fn command(dice: &mut Dice, state: &State, places: &Places) -> Command {
         ),
         3 if dice.below(4) == 0 => Command::Close,
         4 => Command::Save,
-        5 => Command::SaveAs(places.output.join(format!("flight-{}.toml", dice.below(3)))),
-        6 => Command::Export(places.output.join(format!("export-{}", dice.below(2)))),
+        5 => Command::SaveAs(
+            places
+                .output
+                .join(format!("flight-{}.toml", dice.below(3)))
+                .into(),
+        ),
+        6 => Command::Export(
+            places
+                .output
+                .join(format!("export-{}", dice.below(2)))
+                .into(),
+        ),
         7 => Command::Picture(PictureRequest {
-            path: places.output.join("figure.png"),
+            to: places.output.join("figure.png").into(),
             size: [64, 48],
             transparent: dice.coin(),
             corner_rays: dice.coin(),
@@ -177,15 +186,15 @@ fn command(dice: &mut Dice, state: &State, places: &Places) -> Command {
             Some(Asking::About),
         ])),
         10 | 11 => Command::Cancel(dice.one_of(&[
-            Task::Open,
-            Task::Scales,
-            Task::Views,
-            Task::Geometry,
-            Task::Thumbnails,
-            Task::Preview,
-            Task::Export,
-            Task::Save,
-            Task::Picture,
+            Task::OPEN,
+            Task::SCALES,
+            Task::VIEWS,
+            Task::GEOMETRY,
+            Task::THUMBNAILS,
+            Task::PREVIEW,
+            Task::EXPORT,
+            Task::SAVE,
+            Task::PICTURE,
         ])),
         12 => Command::Discard,
         13 => Command::Keep,
@@ -235,7 +244,7 @@ fn command(dice: &mut Dice, state: &State, places: &Places) -> Command {
         78..=80 => Command::Tab(dice.one_of(&[Tab::Photo, Tab::Flight, Tab::Limits])),
         81 => Command::ToggleLog,
         82 | 83 => Command::DismissNotice,
-        84..=91 => Command::Look(look(dice)),
+        84..=91 => Command::View(view_change(dice)),
         92..=94 => Command::Trace(trace(dice)),
         95 | 96 => Command::ToggleMeasure,
         97 => Command::CopyScales,

@@ -9,7 +9,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use fragscale::app::Command;
 use fragscale::app::size_distributions::{Computed, DistributionCommand, Page, Settings};
-use fragscale::app::tasks::work::Task;
+use fragscale::app::tasks::Task;
 use fragscale::exports::comparison_json;
 use fragscale::fragmentation::{FitOptions, Model, SieveSeries, Weighting, fit};
 use fragscale::units::LengthUnit;
@@ -520,7 +520,7 @@ fn the_results_are_always_those_of_the_data_and_settings_of_now() {
                 Command::Distributions(DistributionCommand::Set(settings))
             }
             9 => Command::Redo,
-            10 => Command::Cancel(dice.one_of(&[Task::Fits, Task::ReadDistributions])),
+            10 => Command::Cancel(dice.one_of(&[Task::FITS, Task::READ_DISTRIBUTIONS])),
             _ => Command::Undo,
         };
         println!("{step}: {command:?}");
@@ -658,8 +658,8 @@ fn the_command_gives_the_same_answers() {
             .apply(Command::Distributions(command));
         desk.settle();
         for save in [
-            DistributionCommand::SaveFigure(folder.path().join("window.svg")),
-            DistributionCommand::SaveReport(folder.path().join("window.html")),
+            DistributionCommand::SaveFigure(folder.path().join("window.svg").into()),
+            DistributionCommand::SaveReport(folder.path().join("window.html").into()),
         ] {
             desk.harness.state_mut().apply(Command::Distributions(save));
             desk.settle();

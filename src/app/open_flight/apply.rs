@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::command::{Choice, Command, Look};
-use crate::flight::Verdict;
+use crate::command::{Choice, Command, ViewChange};
+use crate::flight::{ScaleObject, Verdict};
 use crate::open_flight::picker::Purpose;
 use crate::open_flight::table::SortBy;
 use crate::open_flight::{Measure, OpenFlight};
@@ -65,7 +65,7 @@ impl OpenFlight {
                 self.order.verdict = verdict;
                 self.arrange();
             }
-            Command::Look(look) => self.look(look),
+            Command::View(change) => self.change_view(change),
             Command::ToggleMeasure => {
                 self.measure = if self.measure == Measure::Off {
                     Measure::First
@@ -75,6 +75,17 @@ impl OpenFlight {
             }
             _ => {}
         }
+    }
+
+    /// The command that changes a scale object; `None` where there is none at that place.
+    pub fn change_object(
+        &self,
+        place: usize,
+        change: impl FnOnce(&mut ScaleObject),
+    ) -> Option<Command> {
+        let mut settings = self.settings();
+        change(settings.scale_objects.get_mut(place)?);
+        Some(Command::Set(settings))
     }
 
     fn pick(&mut self, purpose: Purpose, ray: crate::geometry::Ray) {
@@ -113,18 +124,18 @@ impl OpenFlight {
         self.select(Some(self.shown[next]));
     }
 
-    fn look(&mut self, look: Look) {
+    fn change_view(&mut self, change: ViewChange) {
         let looking = &mut self.looking;
         let orbit = &mut looking.orbit;
-        match look {
-            Look::Blend(blend) => looking.blend = blend.clamp(0.0, 1.0),
-            Look::Resized(size) => {
+        match change {
+            ViewChange::Blend(blend) => looking.blend = blend.clamp(0.0, 1.0),
+            ViewChange::Resized(size) => {
                 looking.size = Some(size);
                 if !looking.turned {
                     self.fit();
                 }
             }
-            Look::Through => {
+            ViewChange::Through => {
                 looking.through = match looking.through {
                     Some(_) => None,
                     None => self.selected,
@@ -134,21 +145,21 @@ impl OpenFlight {
                 // Whatever turns the view leaves the camera.
                 looking.through = None;
                 looking.turned = true;
-                match look {
-                    Look::Orbit(delta) => orbit.orbit(delta),
-                    Look::Pan(delta, size) => orbit.pan(delta, size),
-                    Look::Zoom {
+                match change {
+                    ViewChange::Orbit(delta) => orbit.orbit(delta),
+                    ViewChange::Pan(delta, size) => orbit.pan(delta, size),
+                    ViewChange::Zoom {
                         cursor,
                         size,
                         factor,
                     } => orbit.zoom_to(cursor, size, factor, self.hover),
-                    Look::Top => orbit.top(),
-                    Look::Front => orbit.front(),
-                    Look::Side => orbit.side(),
-                    Look::Fit => self.fit(),
-                    Look::FitSelected => self.fit_selected(),
-                    Look::Center(point) => orbit.center_on(point),
-                    Look::Blend(_) | Look::Resized(_) | Look::Through => {}
+                    ViewChange::Top => orbit.top(),
+                    ViewChange::Front => orbit.front(),
+                    ViewChange::Side => orbit.side(),
+                    ViewChange::Fit => self.fit(),
+                    ViewChange::FitSelected => self.fit_selected(),
+                    ViewChange::Center(point) => orbit.center_on(point),
+                    ViewChange::Blend(_) | ViewChange::Resized(_) | ViewChange::Through => {}
                 }
             }
         }

@@ -1,15 +1,10 @@
-//! Bringing the reconstruction on the screen to the world: what the small window holds, its fit, and
-//! the flight that is made of it.
+//! Bringing the reconstruction on the screen to the world: what the small window holds, and its
+//! fit.
 
 use std::path::{Path, PathBuf};
 
-use crate::command::Command;
-use crate::files::FileError;
-use crate::files::{self, Kind};
 use crate::open_flight::OpenFlight;
-use crate::opening::{self, GeoreferenceRequest, Georeferenced};
-use crate::state::{Severity, State};
-use crate::tasks::work::{Done, Task};
+use crate::opening::Georeferenced;
 
 /// What the reconstruction's place in the world is known from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -120,95 +115,5 @@ impl OpenFlight {
         let name = name.map_or("flight".into(), |name| name.to_string_lossy().into_owned());
         let path = file.with_file_name(format!("{name}-georeferenced.toml"));
         std::path::absolute(&path).unwrap_or(path)
-    }
-}
-
-impl State {
-    /// Types into the small window: a fit of what stood there before does not count any more.
-    pub(crate) fn fill_georeference(&mut self, form: GeoreferenceForm) {
-        let Some(open) = &mut self.open else {
-            return;
-        };
-        // The length is a note until its distance is taken over.
-        let same = GeoreferenceForm {
-            length: form.length.clone(),
-            ..open.georeferencing.form.clone()
-        };
-        if same != form {
-            open.georeferencing.outcome = None;
-            self.work.cancel(Task::Georeference);
-        }
-        open.georeferencing.form = form;
-    }
-
-    /// Fits.
-    pub(crate) fn start_georeference(&mut self, request: GeoreferenceRequest) {
-        let Some(open) = &mut self.open else {
-            return;
-        };
-        let Some(reconstruction) = &open.reconstruction else {
-            return;
-        };
-        open.georeferencing.outcome = None;
-        let path = reconstruction.path.clone();
-        self.start(Task::Georeference, move |progress| {
-            let result = opening::georeference(&path, &request, progress);
-            Done::Georeferenced(
-                request.photos,
-                Box::new(result.map_err(|error| error.to_string())),
-            )
-        });
-    }
-
-    /// Writes the georeferenced flight and opens it; asks before a file is replaced.
-    pub(crate) fn save_georeferenced(&mut self, path: PathBuf, keep_surface: bool) {
-        if self.is_busy(Task::Save) {
-            return;
-        }
-        let command = Command::SaveGeoreferenced {
-            path: path.clone(),
-            keep_surface,
-        };
-        if self.may_write(&path, Kind::Flight, &self.read(), command) {
-            self.start_saving_georeferenced(path, keep_surface, false);
-        }
-    }
-
-    /// The same once that is clear; with `replace` over a file that is there.
-    pub(crate) fn start_saving_georeferenced(
-        &mut self,
-        path: PathBuf,
-        keep_surface: bool,
-        replace: bool,
-    ) {
-        let read = self.read();
-        let Some(open) = &self.open else {
-            return;
-        };
-        let known = (&open.reconstruction, &open.georeferencing.outcome);
-        let (Some(reconstruction), Some((photos, Ok(fitted)))) = known else {
-            self.say(
-                Severity::Error,
-                "nothing is fitted any more; fit once more, then save",
-            );
-            return;
-        };
-        let (reconstruction, fitted) = (reconstruction.path.clone(), fitted.clone());
-        let photos = photos.clone();
-        let surface = open.origin.surface().map(Path::to_owned);
-        let surface = surface.filter(|_| keep_surface);
-        self.asking = None;
-        self.start(Task::Save, move |_| {
-            let (photos, surface) = (photos.as_deref(), surface.as_deref());
-            let text = fitted.flight_text(&path, &reconstruction, photos, surface);
-            let written = text.and_then(|text| {
-                files::write(&path, text.as_bytes(), Kind::Flight, &read, replace)
-                    .map_err(|fault| FileError::new(&path, fault))
-            });
-            Done::SavedGeoreferenced(match written {
-                Ok(()) => Ok(path),
-                Err(error) => Err(error.to_string()),
-            })
-        });
     }
 }

@@ -2,7 +2,9 @@
 
 pub mod apply;
 pub mod georeferencing;
+pub mod loading;
 pub mod picker;
+mod picking;
 pub mod table;
 pub mod tracing;
 
@@ -19,12 +21,12 @@ use crate::flight::{
 };
 use crate::geometry::{Bounds, LocalFrame};
 use crate::opening::{Colours, FlightOrigin, FlightReconstruction, OpenOptions, PhotoFile};
-use crate::render::{Orbit, PhotoImage};
+use crate::render::{LargePhoto, Orbit, PhotoImage, SurfaceBuffers, drawn_ground};
 use crate::scale::{PhotoScale, ViewFacts};
+use crate::state::bundled::sample_flight;
 use crate::state::history::History;
-use crate::state::sample_flight;
-use crate::tasks::work::{Geometry, Loaded, PreviewPicture};
 use georeferencing::Georeferencing;
+use loading::Loaded;
 use picker::Picker;
 use table::{Row, TableOrder};
 use tracing::Tracing;
@@ -47,6 +49,15 @@ pub struct Preview {
     pub picture: Result<PreviewPicture, String>,
     /// Counted, so that textures know a new one.
     pub number: u64,
+}
+
+/// The selected photo, undistorted as its scale assumes.
+#[derive(Debug)]
+pub struct PreviewPicture {
+    /// For the inspector.
+    pub large: Arc<egui::ColorImage>,
+    /// For the viewport: over the look through the camera, and on the surface.
+    pub projected: Option<LargePhoto>,
 }
 
 /// The distance tool.
@@ -132,7 +143,7 @@ pub struct OpenFlight {
     /// The selected photo.
     pub preview: Option<Preview>,
     /// What the viewport draws.
-    pub geometry: Option<Arc<Geometry>>,
+    pub geometry: Option<Arc<SurfaceBuffers>>,
     /// Where coordinates are small.
     pub frame: LocalFrame,
     /// Around surface and cameras, without the surface's outliers.
@@ -377,14 +388,8 @@ impl OpenFlight {
 
     /// The elevation of the ground: as set, or where a ray needed it, or the surface's middle.
     pub fn ground(&self) -> f64 {
-        match self.settings().ground {
-            crate::scale::Ground::At(z) => z,
-            crate::scale::Ground::Auto => {
-                let photos = self.review.photos();
-                let mut used: Vec<f64> = photos.filter_map(|photo| photo.scale()?.ground).collect();
-                crate::geometry::median(&mut used).unwrap_or(self.surface_bounds.min.z)
-            }
-        }
+        let outcomes = self.review.outcomes();
+        drawn_ground(self.settings().ground, outcomes, &self.surface_bounds)
     }
 }
 

@@ -1,14 +1,10 @@
-//! Tracing scale objects on the selected photo: what a draft is, and what commands do to it.
+//! Tracing scale objects on the selected photo: what a draft is.
 
 use glam::DVec2;
 
-use crate::command::{Command, Tab};
-use crate::fault::Fault;
 use crate::flight::{ComparedObject, ScaleObject};
 use crate::open_flight::OpenFlight;
-use crate::scale::{ScaleObjectKind, Traced};
-use crate::state::{Severity, State};
-use crate::tasks::work::{Done, Task};
+use crate::scale::ScaleObjectKind;
 
 /// A step of tracing. Places are pixels of the photo as shot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,113 +46,6 @@ pub(crate) fn rounded(pixel: DVec2) -> DVec2 {
     (pixel * 100.0).round() / 100.0
 }
 
-impl State {
-    /// Does a step of tracing.
-    pub(crate) fn trace(&mut self, step: Trace) {
-        let Some(open) = &mut self.open else {
-            return;
-        };
-        match step {
-            Trace::Size(kind, size) if size > 0.0 && size.is_finite() => {
-                open.trace_sizes[kind as usize] = Some(size);
-            }
-            Trace::Begin(kind) if open.selected.is_some() && open.trace_size(kind).is_some() => {
-                open.tracing = Some(Tracing {
-                    kind,
-                    outline: Vec::new(),
-                });
-                self.tab = Tab::Photo;
-            }
-            Trace::Size(..) | Trace::Begin(_) => {}
-            Trace::GiveUp => open.tracing = None,
-            Trace::Finish => self.finish_tracing(),
-            Trace::Add(_) | Trace::Move(..) | Trace::RemoveLast => {
-                let Some(tracing) = &mut open.tracing else {
-                    return;
-                };
-                let outline = &mut tracing.outline;
-                match step {
-                    Trace::Add(pixel) if pixel.is_finite() => outline.push(rounded(pixel)),
-                    Trace::Move(point, pixel) if pixel.is_finite() => {
-                        if let Some(place) = outline.get_mut(point) {
-                            *place = rounded(pixel);
-                        }
-                    }
-                    Trace::RemoveLast => {
-                        outline.pop();
-                    }
-                    _ => {}
-                }
-                let (_, most) = tracing.kind.points();
-                if tracing.outline.len() == most {
-                    self.finish_tracing();
-                }
-            }
-        }
-    }
-
-    fn finish_tracing(&mut self) {
-        let Some(open) = &self.open else {
-            return;
-        };
-        let (Some(tracing), Some(photo)) = (&open.tracing, open.selected) else {
-            return;
-        };
-        let Some(size) = open.trace_size(tracing.kind) else {
-            return;
-        };
-        let Some(posed) = open.flight().parts().photos.get(photo) else {
-            return;
-        };
-        let camera = open.flight().camera(posed);
-        if let Err(fault) = Traced::new(camera, tracing.kind, size, &tracing.outline) {
-            self.say(Severity::Error, &fault.to_string());
-            return;
-        }
-        let object = ScaleObject {
-            photo: posed.name.clone(),
-            kind: tracing.kind,
-            size,
-            outline: tracing.outline.clone(),
-            mask: true,
-        };
-        let mut settings = open.settings();
-        settings.scale_objects.push(object);
-        let count = settings.scale_objects.len();
-        self.edit_settings(&Command::Set(settings));
-        if let Some(open) = &mut self.open
-            && open.settings().scale_objects.len() == count
-        {
-            open.tracing = None;
-        }
-    }
-
-    /// Holds the scale objects against the surface.
-    pub(crate) fn start_comparing(&mut self) {
-        let Some(open) = &self.open else {
-            return;
-        };
-        let objects = open.settings().scale_objects;
-        let (flight, outcomes) = (open.flight().clone(), open.review.outcomes().clone());
-        self.start(Task::ScaleObjects, move |_| {
-            let compared = flight.compare_objects(&objects, &outcomes);
-            Done::Compared(compared.map(|compared| objects.into_iter().zip(compared).collect()))
-        });
-    }
-
-    /// Takes what [`Self::start_comparing`] found.
-    pub(crate) fn take_compared(
-        &mut self,
-        compared: Result<Vec<(ScaleObject, ComparedObject)>, Fault>,
-    ) {
-        match (compared, &mut self.open) {
-            (Ok(compared), Some(open)) => open.compared = compared,
-            (Err(fault), _) => self.say(Severity::Error, &fault.to_string()),
-            (Ok(_), None) => {}
-        }
-    }
-}
-
 impl OpenFlight {
     /// How large the next object of a kind is: as typed, else as the last one of its kind.
     pub fn trace_size(&self, kind: ScaleObjectKind) -> Option<f64> {
@@ -170,17 +59,6 @@ impl OpenFlight {
         let name = self.name(photo).to_owned();
         let objects = self.history.now().settings.scale_objects.iter();
         objects.enumerate().filter(move |(_, o)| o.photo == name)
-    }
-
-    /// The command that changes a scale object; `None` where there is none at that place.
-    pub fn change_object(
-        &self,
-        place: usize,
-        change: impl FnOnce(&mut ScaleObject),
-    ) -> Option<Command> {
-        let mut settings = self.settings();
-        change(settings.scale_objects.get_mut(place)?);
-        Some(Command::Set(settings))
     }
 
     /// What the point cloud says beside a scale object, once that is known.

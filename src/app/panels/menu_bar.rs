@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use crate::actions::{Action, MENUS, OPEN_SAMPLE};
+use crate::actions::file::OPEN_SAMPLE;
+use crate::actions::{Action, MENUS};
 use crate::command::Command;
 use crate::state::State;
 use crate::state::preferences::Theme;

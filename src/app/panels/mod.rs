@@ -22,7 +22,6 @@ pub use inspector::Inspector;
 pub use layers_panel::layers_panel;
 pub use log_panel::{log_panel, notice};
 pub use menu_bar::menu_bar;
-pub(crate) use path_field::typed;
 pub use photos_table::photos_table;
 pub use size_distributions::size_distributions;
 pub use start_page::start_page;

@@ -1,10 +1,7 @@
 //! A field for a path, with the desktop's own dialog beside it.
 
-use std::path::PathBuf;
-
-use crate::command::Command;
+use crate::command::{Command, Dialog};
 use crate::state::State;
-use crate::tasks::work::DialogFor;
 
 /// A path that is typed, or chosen in the desktop's dialog. Returns the text of now, and whether
 /// Enter was pressed in it.
@@ -12,7 +9,7 @@ pub(super) fn path_field(
     state: &State,
     ui: &mut egui::Ui,
     start: &str,
-    browse: &[(&str, DialogFor, bool)],
+    browse: &[(&str, Dialog)],
     commands: &mut Vec<Command>,
 ) -> (String, bool) {
     // Kept until another flight is open.
@@ -36,10 +33,10 @@ pub(super) fn path_field(
     let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
     takes_the_keys_at_first(ui, &field);
     ui.horizontal(|ui| {
-        for (name, what, folder) in browse {
+        for (name, dialog) in browse {
             let hover = "Choose in the desktop's own dialog";
             if ui.button(*name).on_hover_text(hover).clicked() {
-                commands.push(Command::Browse(*what, *folder));
+                commands.push(Command::Browse(*dialog));
             }
         }
     });
@@ -56,11 +53,4 @@ pub(super) fn takes_the_keys_at_first(ui: &egui::Ui, field: &egui::Response) {
         field.request_focus();
     }
     ui.data_mut(|data| data.insert_temp(seen, now));
-}
-
-/// A path as typed, where it is one: without the quotes that file managers put around.
-pub(crate) fn typed(path: &str) -> Option<PathBuf> {
-    let path = path.trim().trim_matches(['"', '\'']);
-    let path = path.strip_prefix("file://").unwrap_or(path);
-    (!path.is_empty()).then(|| PathBuf::from(path))
 }

@@ -109,7 +109,7 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
                     commands.push(Command::Select(Some(photo)));
                 }
                 if response.double_clicked() {
-                    commands.push(Command::Look(crate::command::Look::FitSelected));
+                    commands.push(Command::View(crate::command::ViewChange::FitSelected));
                 }
                 if response.hovered() {
                     hovered = Some(photo);

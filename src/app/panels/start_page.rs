@@ -18,8 +18,11 @@ pub fn start_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
                 egui::Button::new(egui::RichText::new(text).size(16.0))
                     .min_size(egui::vec2(260.0, 36.0))
             };
-            let sample = ui.add(big(actions::OPEN_SAMPLE.label));
-            if sample.on_hover_text(actions::OPEN_SAMPLE.hover).clicked() {
+            let sample = ui.add(big(actions::file::OPEN_SAMPLE.label));
+            if sample
+                .on_hover_text(actions::file::OPEN_SAMPLE.hover)
+                .clicked()
+            {
                 commands.push(Command::OpenSample);
             }
             ui.add_space(4.0);
@@ -27,12 +30,12 @@ pub fn start_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
             open.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::Role::Button, true, "Open a flight")
             });
-            if open.on_hover_text(actions::OPEN.hover).clicked() {
+            if open.on_hover_text(actions::file::OPEN.hover).clicked() {
                 commands.push(Command::Ask(Some(Asking::Open)));
             }
             ui.add_space(4.0);
             let sizes = ui.add(big("Size distributions"));
-            let sizes = sizes.on_hover_text(actions::SIZE_DISTRIBUTIONS.hover);
+            let sizes = sizes.on_hover_text(actions::view::SIZE_DISTRIBUTIONS.hover);
             if sizes.clicked() {
                 commands.push(Command::Page(Page::SizeDistributions));
             }

@@ -12,11 +12,11 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
             let bar = egui::ProgressBar::new(fraction as f32)
                 .desired_width(90.0)
                 .desired_height(14.0);
-            ui.label(task.in_words());
+            ui.label(task.in_words);
             ui.add(bar).on_hover_text(sentence);
-            if task.can_be_cancelled() {
+            if task.can_be_cancelled {
                 let cancel = ui.small_button("✖");
-                let label = format!("Cancel {}", task.in_words().to_lowercase());
+                let label = format!("Cancel {}", task.in_words.to_lowercase());
                 cancel.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
                 if cancel.on_hover_text(&label).clicked() {
                     commands.push(Command::Cancel(task));
@@ -82,7 +82,7 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
                 let open = state.preferences.log_open;
                 egui::WidgetInfo::selected(egui::Role::Button, true, open, "Show log")
             });
-            if button.on_hover_text(actions::LOG.hover).clicked() {
+            if button.on_hover_text(actions::view::LOG.hover).clicked() {
                 commands.push(Command::ToggleLog);
             }
             if let Some(line) = state.log.last() {

@@ -24,23 +24,23 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         ui.separator();
         if state.page == Page::SizeDistributions {
             for (action, text) in [
-                (actions::ADD_DISTRIBUTIONS, "Add…"),
-                (actions::PASTE_TABLE, "Paste…"),
-                (actions::ADD_KNOWN, "Known fragments"),
-                (actions::UNDO, "⟲"),
-                (actions::REDO, "⟳"),
-                (actions::SAVE_FIGURE, "Save figure…"),
-                (actions::SAVE_REPORT, "Save report…"),
+                (actions::file::ADD_DISTRIBUTIONS, "Add…"),
+                (actions::file::PASTE_TABLE, "Paste…"),
+                (actions::file::ADD_KNOWN, "Known fragments"),
+                (actions::edit::UNDO, "⟲"),
+                (actions::edit::REDO, "⟳"),
+                (actions::file::SAVE_FIGURE, "Save figure…"),
+                (actions::file::SAVE_REPORT, "Save report…"),
             ] {
                 action_button(state, action, text, ui, commands);
             }
             return;
         }
         for (action, text) in [
-            (actions::OPEN, "Open"),
-            (actions::SAVE, "Save flight"),
-            (actions::UNDO, "⟲"),
-            (actions::REDO, "⟳"),
+            (actions::file::OPEN, "Open"),
+            (actions::file::SAVE, "Save flight"),
+            (actions::edit::UNDO, "⟲"),
+            (actions::edit::REDO, "⟳"),
         ] {
             action_button(state, action, text, ui, commands);
         }
@@ -84,8 +84,8 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         export.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Button, chosen > 0, "Export chosen photos")
         });
-        if export.on_hover_text(actions::EXPORT.hover).clicked() {
-            commands.extend((actions::EXPORT.command)(state));
+        if export.on_hover_text(actions::file::EXPORT.hover).clicked() {
+            commands.extend((actions::file::EXPORT.command)(state));
         }
     });
 }
@@ -93,11 +93,11 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 /// The switch between the flight and the size distributions.
 fn pages(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     for (page, name, action) in [
-        (Page::Pile, "Pile", actions::PILE),
+        (Page::Pile, "Pile", actions::view::PILE),
         (
             Page::SizeDistributions,
             "Size distributions",
-            actions::SIZE_DISTRIBUTIONS,
+            actions::view::SIZE_DISTRIBUTIONS,
         ),
     ] {
         let chosen = state.page == page;

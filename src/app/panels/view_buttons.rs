@@ -1,7 +1,7 @@
 //! The buttons over the viewport: views, the look through a camera, the distance tool.
 
 use crate::actions::{self, Action};
-use crate::command::{Command, Look};
+use crate::command::{Command, ViewChange};
 use crate::open_flight::Measure;
 use crate::state::State;
 
@@ -26,13 +26,13 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         }
     };
     let through = open.looking.through.is_some();
-    button(actions::FIT, "Fit", false, ui);
-    button(actions::TOP, "Top", false, ui);
-    button(actions::FRONT, "Front", false, ui);
-    button(actions::SIDE, "Side", false, ui);
-    button(actions::THROUGH, "Through camera", through, ui);
+    button(actions::view::FIT, "Fit", false, ui);
+    button(actions::view::TOP, "Top", false, ui);
+    button(actions::view::FRONT, "Front", false, ui);
+    button(actions::view::SIDE, "Side", false, ui);
+    button(actions::view::THROUGH, "Through camera", through, ui);
     button(
-        actions::MEASURE,
+        actions::photo::MEASURE,
         "Measure",
         open.measure != Measure::Off,
         ui,
@@ -56,7 +56,7 @@ pub fn blend_slider(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
             .on_hover_text("How much of the photo lies over the view")
             .changed()
         {
-            commands.push(Command::Look(Look::Blend(blend)));
+            commands.push(Command::View(ViewChange::Blend(blend)));
         }
         ui.label("photo");
     });

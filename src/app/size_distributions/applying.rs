@@ -1,8 +1,19 @@
 //! Applies what is done on the page of size distributions.
 
+use std::sync::Arc;
+
+use super::computing::{Computed, compute};
 use super::{DistributionCommand, Edit};
-use crate::command::Command;
+use crate::fault::Fault;
+use crate::jobs::Progress;
+use crate::state::history::History;
 use crate::state::{Severity, State};
+use crate::tasks::Task;
+
+impl Task {
+    /// Fitting and comparing size distributions.
+    pub const FITS: Self = Self::new("Fitting");
+}
 
 impl State {
     /// Does what a command of the page says.
@@ -52,8 +63,8 @@ impl State {
             DistributionCommand::Tab(tab) => self.distributions.tab = tab,
             DistributionCommand::AddEffort(path) => self.read_effort(path),
             DistributionCommand::RemoveEffort => self.distributions.effort = None,
-            DistributionCommand::SaveFigure(path) => self.save_figure(path),
-            DistributionCommand::SaveReport(path) => self.save_report(path),
+            DistributionCommand::SaveFigure(to) => self.save_figure(to),
+            DistributionCommand::SaveReport(to) => self.save_report(to),
         }
     }
 
@@ -65,13 +76,9 @@ impl State {
     }
 
     /// Undo and redo on this page.
-    pub(crate) fn undo_distributions(&mut self, command: &Command) {
+    pub(crate) fn undo_distributions(&mut self, go: impl FnOnce(&mut History<Edit>) -> bool) {
         let before = self.distributions.history.now().clone();
-        let moved = match command {
-            Command::Undo => self.distributions.history.undo(),
-            _ => self.distributions.history.redo(),
-        };
-        if moved {
+        if go(&mut self.distributions.history) {
             self.distributions_changed(&before);
         }
     }
@@ -80,6 +87,31 @@ impl State {
         if self.distributions.history.now() != before {
             self.distributions.edition += 1;
             self.start_computing();
+        }
+    }
+
+    /// Computes anew what depends on the data and settings of now.
+    fn start_computing(&mut self) {
+        self.distributions.problem = None;
+        if self.distributions.sources().is_empty() {
+            self.work.cancel(Task::FITS);
+            self.distributions.computed = None;
+            return;
+        }
+        let edit = self.distributions.history.now().clone();
+        let edition = self.distributions.edition;
+        let work = move |progress: &Progress| compute(edition, edit, progress);
+        self.start(Task::FITS, work, Self::take_fitted);
+    }
+
+    /// Takes what was computed; a result that is outdated was cancelled before.
+    fn take_fitted(&mut self, result: Result<Computed, Fault>) {
+        match result {
+            Ok(computed) => self.distributions.computed = Some(Arc::new(computed)),
+            Err(fault) => {
+                self.distributions.problem = Some(fault.to_string());
+                self.say(Severity::Error, &fault.to_string());
+            }
         }
     }
 }

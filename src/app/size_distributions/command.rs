@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::{PasteForm, PlotOf, ResultTab, Settings};
+use crate::command::Destination;
 use crate::fragmentation::Labels;
 
 /// One thing to do on the page of size distributions.
@@ -35,7 +36,7 @@ pub enum DistributionCommand {
     /// Takes those times away.
     RemoveEffort,
     /// Writes the figure: .svg or .png.
-    SaveFigure(PathBuf),
+    SaveFigure(Destination),
     /// Writes the report.
-    SaveReport(PathBuf),
+    SaveReport(Destination),
 }

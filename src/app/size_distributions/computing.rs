@@ -1,8 +1,6 @@
 //! The analysis of everything that was added, and the fit of every trial: a job, whenever data or
 //! settings change.
 
-use std::sync::Arc;
-
 use super::Edit;
 use super::drawing::Drawing;
 use crate::fault::Fault;
@@ -11,8 +9,6 @@ use crate::fragmentation::{
     fit_each,
 };
 use crate::jobs::Progress;
-use crate::state::{Severity, State};
-use crate::tasks::work::{Done, Task};
 
 /// What was computed.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,35 +36,11 @@ pub struct FittedCurve {
     pub percentiles: Vec<Percentile>,
 }
 
-impl State {
-    /// Computes anew what depends on the data and settings of now.
-    pub(super) fn start_computing(&mut self) {
-        self.distributions.problem = None;
-        if self.distributions.sources().is_empty() {
-            self.work.cancel(Task::Fits);
-            self.distributions.computed = None;
-            return;
-        }
-        let edit = self.distributions.history.now().clone();
-        let edition = self.distributions.edition;
-        self.start(Task::Fits, move |progress| {
-            Done::Fitted(compute(edition, edit, progress).map(Arc::new))
-        });
-    }
-
-    /// Takes what was computed; a result that is outdated was cancelled before.
-    pub(crate) fn take_fitted(&mut self, result: Result<Arc<Computed>, Fault>) {
-        match result {
-            Ok(computed) => self.distributions.computed = Some(computed),
-            Err(fault) => {
-                self.distributions.problem = Some(fault.to_string());
-                self.say(Severity::Error, &fault.to_string());
-            }
-        }
-    }
-}
-
-fn compute(edition: u64, edit: Edit, progress: &Progress) -> Result<Computed, Fault> {
+/// Computes everything.
+///
+/// # Errors
+/// Where the curves cannot be brought together, or where it was cancelled.
+pub(crate) fn compute(edition: u64, edit: Edit, progress: &Progress) -> Result<Computed, Fault> {
     let settings = &edit.settings;
     let sets = edit.sources.iter().map(|source| &source.set);
     let set = DistributionSet::joined(settings.unit, sets)?;

@@ -9,12 +9,14 @@
 //! saving      the figure and the report
 //! drawing     what the plot draws of it
 //! measured    how long the program's own steps took
+//! effort      reads times of steps, notes those
 //! ```
 
 pub mod applying;
 pub mod command;
 pub mod computing;
 pub mod drawing;
+mod effort;
 pub mod measured;
 pub mod reading;
 pub mod saving;

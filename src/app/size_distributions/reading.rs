@@ -7,12 +7,18 @@ use super::source::Source;
 use super::{Page, PasteForm, ResultTab};
 use crate::command::Command;
 use crate::formats::{self, DistributionColumns, Kind};
+use crate::jobs::Progress;
 use crate::state::{Severity, State};
-use crate::tasks::work::{Done, Task};
+use crate::tasks::Task;
+
+impl Task {
+    /// Reading size distributions.
+    pub const READ_DISTRIBUTIONS: Self = Self::new("Reading");
+}
 
 /// What was read, or why not in a line.
 #[derive(Debug)]
-pub enum Read {
+enum Read {
     /// What was named or dropped.
     Files {
         /// Of each file of size distributions.
@@ -86,48 +92,49 @@ impl State {
             self.read_effort(path.clone());
             return;
         }
-        if self.is_busy(Task::ReadDistributions) {
+        if self.is_busy(Task::READ_DISTRIBUTIONS) {
             return;
         }
-        self.start(Task::ReadDistributions, move |progress| {
+        let work = move |progress: &Progress| {
             progress.stage("reading size distributions");
             let holds = |path: &PathBuf| {
                 is_table(path) && matches!(formats::detect(path), Ok(Kind::SizeDistributions))
             };
             let (tables, of_flight): (Vec<_>, Vec<_>) =
                 paths.into_iter().partition(|path| here || holds(path));
-            Done::ReadDistributions(Read::Files {
+            Read::Files {
                 sources: tables.iter().map(|path| source(path)).collect(),
                 of_flight,
-            })
-        });
+            }
+        };
+        self.start(Task::READ_DISTRIBUTIONS, work, Self::take_distributions);
     }
 
     /// Reads files.
     pub(super) fn read_distributions(&mut self, paths: Vec<PathBuf>) {
-        if self.is_busy(Task::ReadDistributions) {
+        if self.is_busy(Task::READ_DISTRIBUTIONS) {
             return;
         }
         self.asking = None;
-        self.start(Task::ReadDistributions, move |progress| {
+        let work = move |progress: &Progress| {
             progress.stage("reading size distributions");
-            Done::ReadDistributions(Read::Files {
+            Read::Files {
                 sources: paths.iter().map(|path| source(path)).collect(),
                 of_flight: Vec::new(),
-            })
-        });
+            }
+        };
+        self.start(Task::READ_DISTRIBUTIONS, work, Self::take_distributions);
     }
 
     /// Reads the table in the small window.
     pub(super) fn read_pasted(&mut self) {
-        if self.is_busy(Task::ReadDistributions) {
+        if self.is_busy(Task::READ_DISTRIBUTIONS) {
             return;
         }
         let form = self.distributions.paste.clone();
         let number = self.distributions.pasted + 1;
-        self.start(Task::ReadDistributions, move |_| {
-            Done::ReadDistributions(Read::Pasted(pasted(&form, number)))
-        });
+        let work = move |_: &Progress| Read::Pasted(pasted(&form, number));
+        self.start(Task::READ_DISTRIBUTIONS, work, Self::take_distributions);
     }
 
     /// The sieve curve that lies beside the flight on the screen.
@@ -138,7 +145,7 @@ impl State {
     }
 
     /// Takes what was read.
-    pub(crate) fn take_distributions(&mut self, read: Read) {
+    fn take_distributions(&mut self, read: Read) {
         match read {
             Read::Files { sources, of_flight } => {
                 if !sources.is_empty() {

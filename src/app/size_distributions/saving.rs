@@ -1,39 +1,48 @@
 //! Writing the figure and the report of the size distributions.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::Path;
 
 use super::DistributionCommand;
 use super::computing::Computed;
-use crate::command::Command;
+use crate::command::{Command, Destination};
 use crate::exports::{self, ComparisonReport, FigureContents, FigureFormat, FittedDistribution};
 use crate::fault::Fault;
 use crate::files::{self, Kind};
 use crate::formats::FileError;
+use crate::jobs::Progress;
 use crate::state::{Severity, State};
-use crate::tasks::work::{Done, Task};
+use crate::tasks::Task;
+
+impl Task {
+    /// Writing the figure or report of size distributions.
+    pub const SAVE_DISTRIBUTIONS: Self = Self::new("Writing").writing();
+}
 
 impl State {
     /// Writes the figure; asks before a file is replaced.
-    pub(super) fn save_figure(&mut self, path: PathBuf) {
-        let command = DistributionCommand::SaveFigure(path.clone());
-        if self.may_save(&path, command) {
-            self.start_saving_figure(path, false);
+    pub(super) fn save_figure(&mut self, to: Destination) {
+        if self.may_save(&to, DistributionCommand::SaveFigure) {
+            self.write(to, |computed, path| {
+                FigureFormat::of(path)?.bytes(&contents(computed))
+            });
         }
     }
 
     /// Writes the report; asks before a file is replaced.
-    pub(super) fn save_report(&mut self, path: PathBuf) {
-        let command = DistributionCommand::SaveReport(path.clone());
-        if self.may_save(&path, command) {
-            self.start_saving_report(path, false);
+    pub(super) fn save_report(&mut self, to: Destination) {
+        if self.may_save(&to, DistributionCommand::SaveReport) {
+            self.write(to, |computed, _| report(computed).map(String::into_bytes));
         }
     }
 
     /// Whether the file can be written now; else asks, or says why not.
-    fn may_save(&mut self, path: &Path, command: DistributionCommand) -> bool {
+    fn may_save(
+        &mut self,
+        to: &Destination,
+        command: impl FnOnce(Destination) -> DistributionCommand,
+    ) -> bool {
         self.asking = None;
-        if self.is_busy(Task::SaveDistributions) {
+        if self.is_busy(Task::SAVE_DISTRIBUTIONS) {
             return false;
         }
         if !self.distributions.is_current() || self.distributions.computed.is_none() {
@@ -41,51 +50,30 @@ impl State {
             self.say(Severity::Error, text);
             return false;
         }
-        let command = Command::Distributions(command);
-        self.may_write(path, Kind::Result, &self.read(), command)
-    }
-
-    /// Goes on once a file may be replaced.
-    pub(crate) fn replace_distributions(&mut self, command: DistributionCommand) {
-        match command {
-            DistributionCommand::SaveFigure(path) => self.start_saving_figure(path, true),
-            DistributionCommand::SaveReport(path) => self.start_saving_report(path, true),
-            _ => {}
-        }
-    }
-
-    fn start_saving_figure(&mut self, path: PathBuf, replace: bool) {
-        self.write(path, replace, |computed, path| {
-            FigureFormat::of(path)?.bytes(&contents(computed))
-        });
-    }
-
-    fn start_saving_report(&mut self, path: PathBuf, replace: bool) {
-        self.write(path, replace, |computed, _| {
-            report(computed).map(String::into_bytes)
-        });
+        let command = |to| Command::Distributions(command(to));
+        self.may_write(to, Kind::Result, &self.read(), command)
     }
 
     fn write(
         &mut self,
-        path: PathBuf,
-        replace: bool,
+        to: Destination,
         bytes: impl FnOnce(&Computed, &Path) -> Result<Vec<u8>, Fault> + Send + 'static,
     ) {
         let Some(computed) = self.distributions.computed.clone() else {
             return;
         };
         let read = self.read();
-        self.start(Task::SaveDistributions, move |progress| {
+        let work = move |progress: &Progress| {
             progress.stage("drawing and writing");
-            let computed: Arc<Computed> = computed;
+            let Destination { path, replace } = to;
             let written = bytes(&computed, &path)
                 .and_then(|bytes| files::write(&path, &bytes, Kind::Result, &read, replace));
-            Done::SavedDistributions(match written {
+            match written {
                 Ok(()) => Ok(path),
                 Err(fault) => Err(FileError::new(&path, fault).to_string()),
-            })
-        });
+            }
+        };
+        self.start(Task::SAVE_DISTRIBUTIONS, work, Self::take_written);
     }
 }
 

@@ -1,20 +1,21 @@
 //! What the window shows: everything that panels read. Only `State::apply` and `State::poll` change
 //! it.
 
+pub mod bundled;
 pub mod history;
 pub mod layers;
 pub mod preferences;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::command::{Asking, Command, Tab};
+use crate::command::{Asking, Command, PictureRequest, Tab};
 use crate::fault::one_line;
 use crate::open_flight::OpenFlight;
 use crate::opening::OpenOptions;
 use crate::render::Gpu;
 use crate::size_distributions::{Page, SizeDistributions};
 use crate::tasks::work::Work;
-use preferences::Preferences;
+use preferences::{Preferences, Theme};
 
 /// How many lines the log keeps.
 const LOG_LINES: usize = 2000;
@@ -42,12 +43,33 @@ pub struct LogLine {
 /// What is held back until the engineer says that something may be lost.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HeldBack {
+    /// Leaving the flight on the screen.
+    Leave(Leaving),
+    /// Writing where there is something already.
+    Replace {
+        /// What writes, and may replace.
+        command: Box<Command>,
+        /// What is there, in a sentence.
+        there: String,
+    },
+}
+
+/// What the flight on the screen is left for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Leaving {
+    /// A flight that is read from here.
+    Read {
+        /// What was named.
+        paths: Vec<PathBuf>,
+        /// Whether it is a surface or photos for the flight on the screen.
+        added: bool,
+    },
+    /// The bundled flight.
+    Sample,
+    /// The start page.
+    Close,
     /// Leaving the program.
     Quit,
-    /// Another flight, or the start page.
-    Leave(Box<Command>),
-    /// Writing where there is something already, with what that is in a sentence.
-    Replace(Box<Command>, String),
 }
 
 /// The whole state of the window.
@@ -65,7 +87,7 @@ pub struct State {
     /// The size distributions, with or without a flight.
     pub distributions: SizeDistributions,
     /// Jobs under way.
-    pub work: Work,
+    pub work: Work<State>,
     /// What was said, oldest first.
     pub log: Vec<LogLine>,
     /// The last error, shown over the viewport until it is put away.
@@ -88,22 +110,8 @@ pub struct State {
     pub reads_other: bool,
     /// How many flights were opened.
     pub opened: u64,
-    /// A picture of the viewport that was asked for, and whether it may replace a file of others; the
-    /// viewport draws it.
-    pub picture: Option<(PictureRequest, bool)>,
-}
-
-/// A picture of the viewport to be written.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PictureRequest {
-    /// Where to.
-    pub path: PathBuf,
-    /// In pixels.
-    pub size: [u32; 2],
-    /// Without a background, or on white.
-    pub transparent: bool,
-    /// With the layers of the paper's figure.
-    pub corner_rays: bool,
+    /// A picture of the viewport that was asked for; the viewport draws it.
+    pub picture: Option<PictureRequest>,
 }
 
 impl State {
@@ -168,27 +176,9 @@ impl State {
     /// Tells egui which theme is wanted.
     pub fn apply_theme(&self) {
         self.context.set_theme(match self.preferences.theme {
-            crate::state::preferences::Theme::System => egui::ThemePreference::System,
-            crate::state::preferences::Theme::Light => egui::ThemePreference::Light,
-            crate::state::preferences::Theme::Dark => egui::ThemePreference::Dark,
+            Theme::System => egui::ThemePreference::System,
+            Theme::Light => egui::ThemePreference::Light,
+            Theme::Dark => egui::ThemePreference::Dark,
         });
     }
-}
-
-/// The bundled flight: beside the program's sources, or beside the installed program.
-pub fn sample_flight() -> Option<PathBuf> {
-    let beside = std::env::current_exe().ok();
-    let beside = beside.as_deref().and_then(Path::parent);
-    let places = [
-        Some(PathBuf::from(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../assets/sample"
-        ))),
-        beside.map(|folder| folder.join("assets/sample")),
-        beside.map(|folder| folder.join("../share/fragscale/sample")),
-    ];
-    places
-        .into_iter()
-        .flatten()
-        .find(|folder| folder.join("flight.toml").is_file())
 }

@@ -10,9 +10,8 @@ use super::Scene;
 use crate::flight::Outcome;
 use crate::open_flight::OpenFlight;
 use crate::panels::verdict_color;
-use crate::render::{Gpu, PhotoGeometry, PhotoLook, Renderer, Show, View};
+use crate::render::{Gpu, PhotoGeometry, PhotoLook, Renderer, Show, SurfaceBuffers, View};
 use crate::scale::ViewFacts;
-use crate::tasks::work::Geometry;
 
 /// How long the view must rest before everything is drawn.
 const REST: Duration = Duration::from_millis(250);
@@ -40,7 +39,7 @@ pub(super) struct Graphics {
 #[derive(Default)]
 pub(super) struct Uploaded {
     pub(super) flight: Option<u64>,
-    pub(super) geometry: Option<Arc<Geometry>>,
+    pub(super) geometry: Option<Arc<SurfaceBuffers>>,
     /// The scales and views that the photos' lines were made of.
     pub(super) outcomes: Option<Arc<Vec<Outcome>>>,
     pub(super) views: Option<Arc<Vec<Option<ViewFacts>>>>,
@@ -65,11 +64,7 @@ impl Graphics {
         let same_geometry = same(uploaded.geometry.as_ref(), open.geometry.as_ref());
         if !same_geometry {
             uploaded.geometry.clone_from(&open.geometry);
-            let geometry = open.geometry.as_deref();
-            let cloud = geometry.map(|geometry| geometry.cloud.clone());
-            self.renderer.set_cloud_buffers(cloud);
-            let mesh = geometry.map(|geometry| geometry.mesh.clone());
-            self.renderer.set_mesh_buffers(mesh);
+            self.renderer.set_surface(open.geometry.as_deref());
             (self.drawn, self.moved) = (None, None);
         }
         let same_photos = same(uploaded.outcomes.as_ref(), Some(open.review.outcomes()))
@@ -77,11 +72,8 @@ impl Graphics {
         if !same_photos {
             uploaded.outcomes = Some(open.review.outcomes().clone());
             uploaded.views = open.review.views().cloned();
-            let photos = open.review.photos().map(|photo| {
-                let pose = &photo.photo.pose;
-                PhotoGeometry::new(&open.frame, photo.camera, pose, photo.scale(), photo.view)
-            });
-            self.renderer.set_photos(photos.collect());
+            let photos = PhotoGeometry::of_review(&open.frame, &open.review);
+            self.renderer.set_photos(photos);
             uploaded.looks.clear();
             (self.drawn, self.moved) = (None, None);
         }

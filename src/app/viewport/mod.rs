@@ -11,13 +11,12 @@ use eframe::egui_wgpu::RenderState;
 use egui::{Align2, FontId, Pos2, Rect, Sense, vec2};
 use glam::DVec2;
 
-use crate::command::{Command, Look};
-use crate::files::{self, Kind, marked_png};
+use crate::command::{Command, PictureRequest, ViewChange};
 use crate::frame_times::{FrameTimes, Phase};
 use crate::open_flight::OpenFlight;
 use crate::render::{Background, Gpu, Renderer, Show, View};
-use crate::state::{PictureRequest, State};
-use crate::tasks::work::{Done, Task};
+use crate::state::State;
+use crate::tasks::Task;
 use graphics::{Graphics, Uploaded};
 use mouse::mouse;
 use words::{distance, legend, write};
@@ -87,7 +86,7 @@ impl Viewport {
             view: view(open),
         };
         if open.looking.size != Some(scene.size()) {
-            commands.push(Command::Look(Look::Resized(scene.size())));
+            commands.push(Command::View(ViewChange::Resized(scene.size())));
         }
         mouse(&scene, open, ui, &response, commands);
         let show = show(state, open, ui, pixels_per_point);
@@ -116,7 +115,7 @@ impl Viewport {
             }
         }
         distance(&scene, open, ui);
-        if open.geometry.is_none() && state.work.is_running(Task::Geometry) {
+        if open.geometry.is_none() && state.work.is_running(Task::GEOMETRY) {
             let text = "Preparing the surface…";
             let font = FontId::proportional(14.0);
             let color = ui.visuals().weak_text_color();
@@ -127,10 +126,9 @@ impl Viewport {
 
     /// Draws a picture that was asked for, and has it written.
     pub fn take_picture(&mut self, state: &mut State) {
-        let Some((request, replace)) = state.picture.take() else {
+        let Some(request) = state.picture.take() else {
             return;
         };
-        let read = state.read();
         let (Some(graphics), Some(open)) = (&mut self.graphics, &state.open) else {
             state.apply(Command::Report(
                 "no picture: there is no graphics device".to_owned(),
@@ -138,7 +136,7 @@ impl Viewport {
             return;
         };
         let PictureRequest {
-            path,
+            to,
             size,
             transparent,
             corner_rays,
@@ -166,24 +164,7 @@ impl Viewport {
         }
         let drawn = graphics.renderer.picture_with_words(&view, &show, size);
         graphics.drawn = None;
-        let written = state.work.start(Task::Picture, move |progress| {
-            progress.stage("writing the picture");
-            let write = || -> Result<(), String> {
-                let picture = drawn.map_err(|fault| fault.to_string())?;
-                let mut bytes = std::io::Cursor::new(Vec::new());
-                picture
-                    .write_to(&mut bytes, image::ImageFormat::Png)
-                    .map_err(|error| error.to_string())?;
-                let bytes = marked_png(bytes.into_inner());
-                files::write(&path, &bytes, Kind::Result, &read, replace)
-                    .map_err(|fault| fault.to_string())
-            };
-            let written = write().map_err(|what| format!("{}: {what}", path.display()));
-            Done::Picture(written.map(|()| path))
-        });
-        if let Err(fault) = written {
-            state.apply(Command::Report(fault.to_string()));
-        }
+        state.start_writing_picture(to, drawn);
     }
 }
 
@@ -213,24 +194,10 @@ impl Scene {
 }
 
 fn view(open: &OpenFlight) -> View {
-    let through = open
-        .looking
-        .through
-        .and_then(|photo| Some((photo, open.flight().parts().photos.get(photo)?)));
-    match through {
+    let through = open.looking.through;
+    match through.and_then(|photo| open.review.photo(photo)) {
         None => open.looking.orbit.view(),
-        Some((index, photo)) => {
-            // The scale bar is true where the photo looks.
-            let focus = open
-                .view(index)
-                .and_then(|view| view.height)
-                .unwrap_or(open.looking.orbit.distance);
-            View::of_photo(
-                open.flight().camera(photo),
-                &photo.pose,
-                focus.abs().max(1e-6),
-            )
-        }
+        Some(photo) => View::through(&photo, open.looking.orbit.distance),
     }
 }
 

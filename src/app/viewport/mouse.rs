@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::Scene;
-use crate::command::{Command, Look};
+use crate::command::{Command, ViewChange};
 use crate::open_flight::OpenFlight;
 
 pub(super) fn mouse(
@@ -22,10 +22,12 @@ pub(super) fn mouse(
         || (shift && response.dragged_by(egui::PointerButton::Primary));
     if delta != DVec2::ZERO {
         if moves {
-            commands.push(Command::Look(Look::Pan(delta, size)));
+            commands.push(Command::View(ViewChange::Pan(delta, size)));
         } else if response.dragged_by(egui::PointerButton::Primary) {
             // The same turn for the same way of the hand, whatever the screen's density.
-            commands.push(Command::Look(Look::Orbit(delta / scene.pixels_per_point)));
+            commands.push(Command::View(ViewChange::Orbit(
+                delta / scene.pixels_per_point,
+            )));
         }
     }
     let Some(at) = response.hover_pos() else {
@@ -45,7 +47,7 @@ pub(super) fn mouse(
     });
     let factor = (-f64::from(scroll) * 0.004).exp() / f64::from(pinch);
     if factor != 1.0 {
-        commands.push(Command::Look(Look::Zoom {
+        commands.push(Command::View(ViewChange::Zoom {
             cursor,
             size,
             factor,

@@ -30,6 +30,7 @@ use crate::scene::photo_geometry::PhotoGeometry;
 use crate::scene::photo_image::PhotoImage;
 use crate::scene::{CloudGeometry, Extent, MeshGeometry, narrow};
 use crate::show::{ColorBy, PhotoLook, Show};
+use crate::surface_buffers::SurfaceBuffers;
 use crate::view::View;
 use part::{Part, pair};
 use targets::Targets;
@@ -139,8 +140,7 @@ impl Renderer {
         self.set_cloud_buffers(cloud.map(|cloud| CloudBuffers::new(&self.gpu, cloud)));
     }
 
-    /// Takes a cloud that is uploaded already, or takes it away.
-    pub fn set_cloud_buffers(&mut self, cloud: Option<CloudBuffers>) {
+    fn set_cloud_buffers(&mut self, cloud: Option<CloudBuffers>) {
         self.points.cloud = cloud.unwrap_or_default();
         self.version += 1;
     }
@@ -150,11 +150,16 @@ impl Renderer {
         self.set_mesh_buffers(mesh.map(|mesh| MeshBuffers::new(&self.gpu, mesh)));
     }
 
-    /// Takes a mesh that is uploaded already, or takes it away.
-    pub fn set_mesh_buffers(&mut self, mesh: Option<MeshBuffers>) {
+    fn set_mesh_buffers(&mut self, mesh: Option<MeshBuffers>) {
         self.mesh.mesh = mesh.unwrap_or_default();
         self.version += 1;
         self.depth_of = None;
+    }
+
+    /// Takes a surface that is uploaded already, or takes it away.
+    pub fn set_surface(&mut self, surface: Option<&SurfaceBuffers>) {
+        self.set_cloud_buffers(surface.and_then(|surface| surface.cloud.clone()));
+        self.set_mesh_buffers(surface.and_then(|surface| surface.mesh.clone()));
     }
 
     /// The photos of the flight, in its order. Their looks become the default, their images stay.

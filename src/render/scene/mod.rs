@@ -1,6 +1,7 @@
 //! World data made ready for the graphics card: THE place where f64 becomes f32, after the flight's
 //! local origin is subtracted. Made on a worker thread, uploaded once.
 
+pub(crate) mod ground;
 pub(crate) mod photo_geometry;
 pub(crate) mod photo_image;
 mod tiles;

@@ -3,6 +3,7 @@
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
 use crate::camera::{Camera, Pose};
+use crate::flight::{PhotoReview, Review};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::scale::{CornerOutcome, FootprintPoint, PhotoScale, ViewFacts};
 
@@ -90,6 +91,15 @@ impl PhotoGeometry {
             image_corners,
             depths,
         }
+    }
+
+    /// Of all photos of a review, in the flight's order.
+    pub fn of_review(frame: &LocalFrame, review: &Review) -> Vec<Self> {
+        let of = |photo: PhotoReview<'_>| {
+            let pose = &photo.photo.pose;
+            Self::new(frame, photo.camera, pose, photo.scale(), photo.view)
+        };
+        review.photos().map(of).collect()
     }
 
     /// Local coordinates to shares of the undistorted image: (u w, v w, w, 1) with w the depth along

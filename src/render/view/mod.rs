@@ -5,6 +5,7 @@
 //! top-left pixel.
 
 pub(crate) mod orbit;
+mod through;
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 

@@ -2,14 +2,15 @@
 //! that fits, and where the flight that is made of it goes.
 
 use super::residuals::residuals;
-use crate::command::{Asking, Command};
+use crate::command::{Answers, Asking, Command, Dialog};
 use crate::numbers::significant_digits;
 use crate::open_flight::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
 use crate::open_flight::{Measure, OpenFlight};
 use crate::opening::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds};
-use crate::panels::path_field::{path_field, typed};
+use crate::panels::path_field::path_field;
 use crate::state::State;
-use crate::tasks::work::{DialogFor, Task};
+use crate::tasks::Task;
+use crate::typed::typed;
 
 /// Draws the window's contents.
 pub(super) fn georeference(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -137,7 +138,6 @@ fn path_row(
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
 ) {
-    let folder = field == PathField::Photos;
     ui.label(label);
     ui.horizontal(|ui| {
         let text = form.path(field);
@@ -151,7 +151,14 @@ fn path_row(
         });
         let hover = "Choose in the desktop's own dialog";
         if browse.on_hover_text(hover).clicked() {
-            commands.push(Command::Browse(DialogFor::Georeference(field), folder));
+            let dialog = match field {
+                PathField::Photos => Dialog::folder("Folder of the flight's photos"),
+                PathField::Positions | PathField::ControlPoints => {
+                    Dialog::file("List of positions")
+                }
+            };
+            let dialog = dialog.answering(Answers::Georeference(field));
+            commands.push(Command::Browse(dialog));
         }
     });
 }
@@ -211,14 +218,14 @@ fn fit(
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
 ) {
-    let running = |&(task, _): &(Task, _)| task == Task::Georeference;
+    let running = |&(task, _): &(Task, _)| task == Task::GEOREFERENCE;
     if let Some((_, (sentence, _))) = state.work.running().find(running) {
         ui.horizontal(|ui| {
             ui.spinner();
             ui.label(sentence);
             let stop = ui.button("Stop fitting");
             if stop.on_hover_text("Give this fit up").clicked() {
-                commands.push(Command::Cancel(Task::Georeference));
+                commands.push(Command::Cancel(Task::GEOREFERENCE));
             }
         });
         return;
@@ -366,7 +373,7 @@ pub(super) fn save_georeferenced(state: &State, ui: &mut egui::Ui, commands: &mu
     }
     ui.data_mut(|data| data.insert_temp(id, keep_surface));
     let start = open.proposed_georeferenced().display().to_string();
-    let browse = [("Browse…", DialogFor::SaveAs, false)];
+    let browse = [("Browse…", Dialog::new_file("Save flight", "flight.toml"))];
     let (path, entered) = path_field(state, ui, &start, &browse, commands);
     ui.separator();
     ui.horizontal(|ui| {
@@ -377,7 +384,10 @@ pub(super) fn save_georeferenced(state: &State, ui: &mut egui::Ui, commands: &mu
             && let Some(path) = path
             && (button.clicked() || entered)
         {
-            commands.push(Command::SaveGeoreferenced { path, keep_surface });
+            commands.push(Command::SaveGeoreferenced {
+                to: path.into(),
+                keep_surface,
+            });
         }
         if ui.button("Back to the fit").clicked() {
             commands.push(Command::Ask(Some(Asking::Georeference)));

@@ -7,14 +7,14 @@ mod residuals;
 use std::path::PathBuf;
 
 use crate::actions;
-use crate::command::{Asking, Command};
+use crate::command::{Answers, Asking, Command, Dialog, PictureRequest};
 use crate::open_flight::OpenFlight;
-use crate::panels::path_field::{path_field, typed};
+use crate::panels::path_field::path_field;
 use crate::panels::size_distributions::{
     add_distributions, add_effort, paste, save_figure, save_report,
 };
-use crate::state::{HeldBack, PictureRequest, State};
-use crate::tasks::work::DialogFor;
+use crate::state::{HeldBack, State};
+use crate::typed::typed;
 use georeference::{georeference, save_georeferenced};
 
 /// Draws the small window that is open, and the question before losing changes.
@@ -77,8 +77,8 @@ fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
     let modal = egui::Modal::new(egui::Id::unique("unsaved")).show(context, |ui| {
         ui.set_width(360.0);
         match &state.held_back {
-            Some(HeldBack::Replace(command, question)) => {
-                replace(command, question, ui, commands);
+            Some(HeldBack::Replace { command, there }) => {
+                replace(command, there, ui, commands);
             }
             _ if state.is_changed() => unsaved(state, ui, commands),
             _ => writing(ui, commands),
@@ -162,8 +162,14 @@ fn open(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
          with positions and angles in them:",
     );
     let browse = [
-        ("Browse for a file…", DialogFor::Open, false),
-        ("Browse for a folder…", DialogFor::Open, true),
+        (
+            "Browse for a file…",
+            Dialog::file("Open a flight").answering(Answers::Open),
+        ),
+        (
+            "Browse for a folder…",
+            Dialog::folder("Open a flight's folder").answering(Answers::Open),
+        ),
     ];
     let (path, entered) = path_field(state, ui, "", &browse, commands);
     ui.separator();
@@ -187,8 +193,14 @@ fn add(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
          dropped on this window."
     ));
     let browse = [
-        ("Browse for a surface…", DialogFor::Add, false),
-        ("Browse for a folder of photos…", DialogFor::Add, true),
+        (
+            "Browse for a surface…",
+            Dialog::file("Surface of the flight"),
+        ),
+        (
+            "Browse for a folder of photos…",
+            Dialog::folder("Folder of the flight's photos"),
+        ),
     ];
     let (path, entered) = path_field(state, ui, "", &browse, commands);
     ui.separator();
@@ -214,7 +226,7 @@ fn export(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         open.review.count()
     ));
     let start = proposed(open, Some("split-desktop"));
-    let browse = [("Browse…", DialogFor::Export, true)];
+    let browse = [("Browse…", Dialog::folder("Export for Split-Desktop into"))];
     let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
     ui.separator();
     let path = typed(&path).filter(|_| chosen > 0);
@@ -223,7 +235,7 @@ fn export(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if let Some(path) = path
         && (button.clicked() || entered)
     {
-        commands.push(Command::Export(path));
+        commands.push(Command::Export(path.into()));
     }
     if chosen == 0 {
         ui.weak("Choose photos first: the boxes in the table.");
@@ -238,7 +250,7 @@ fn save_as(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         "The flight's settings and where its files are; the files themselves stay as they are.",
     );
     let start = proposed(open, None);
-    let browse = [("Browse…", DialogFor::SaveAs, false)];
+    let browse = [("Browse…", Dialog::new_file("Save flight", "flight.toml"))];
     let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
     ui.separator();
     let path = typed(&path);
@@ -246,7 +258,7 @@ fn save_as(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if let Some(path) = path
         && (button.clicked() || entered)
     {
-        commands.push(Command::SaveAs(path));
+        commands.push(Command::SaveAs(path.into()));
     }
 }
 
@@ -278,7 +290,7 @@ fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     });
     ui.data_mut(|data| data.insert_temp(id, options));
     let start = proposed(open, Some("figure.png"));
-    let browse = [("Browse…", DialogFor::Picture, false)];
+    let browse = [("Browse…", Dialog::new_file("Save picture", "figure.png"))];
     let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
     ui.separator();
     let path = typed(&path);
@@ -287,7 +299,7 @@ fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         && (button.clicked() || entered)
     {
         commands.push(Command::Picture(PictureRequest {
-            path,
+            to: path.into(),
             size: [options.0, options.1],
             transparent: options.2,
             corner_rays: options.3,

@@ -318,7 +318,10 @@ fn scales(state: &State, photo: PhotoReview<'_>, ui: &mut egui::Ui, commands: &m
         copy.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Button, true, "Copy top and bottom scale")
         });
-        if copy.on_hover_text(actions::COPY_SCALES.hover).clicked() {
+        if copy
+            .on_hover_text(actions::edit::COPY_SCALES.hover)
+            .clicked()
+        {
             commands.push(Command::CopyScales);
         }
     });

@@ -40,8 +40,8 @@ pub(super) fn scale_objects(
                 being_traced(state, ui, commands);
             } else {
                 for (action, kind) in [
-                    (actions::TRACE_SPHERE, ScaleObjectKind::Sphere),
-                    (actions::TRACE_BAR, ScaleObjectKind::Bar),
+                    (actions::photo::TRACE_SPHERE, ScaleObjectKind::Sphere),
+                    (actions::photo::TRACE_BAR, ScaleObjectKind::Bar),
                 ] {
                     begin(state, open, action, kind, ui, commands);
                 }
@@ -100,9 +100,9 @@ fn being_traced(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.weak("The wheel zooms, dragging moves the photo or a point.");
     ui.horizontal_wrapped(|ui| {
         for (action, text) in [
-            (actions::FINISH_TRACING, "Done"),
-            (actions::REMOVE_POINT, "Last point back"),
-            (actions::GIVE_UP_TRACING, "Give up"),
+            (actions::photo::FINISH_TRACING, "Done"),
+            (actions::photo::REMOVE_POINT, "Last point back"),
+            (actions::photo::GIVE_UP_TRACING, "Give up"),
         ] {
             let command = (action.command)(state);
             let button = ui.add_enabled(command.is_some(), egui::Button::new(text));

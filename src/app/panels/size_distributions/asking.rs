@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use crate::command::Command;
-use crate::panels::path_field::{path_field, typed};
+use crate::command::{Command, Dialog};
+use crate::panels::path_field::path_field;
 use crate::size_distributions::DistributionCommand;
 use crate::state::State;
-use crate::tasks::work::DialogFor;
+use crate::typed::typed;
 
 /// Which file to add.
 pub(in crate::panels) fn add_distributions(
@@ -18,7 +18,7 @@ pub(in crate::panels) fn add_distributions(
         "A table of cumulative percent passing by size: CSV, with one line a point or one column a \
          curve. It can also be dropped on this window.",
     );
-    let browse = [("Browse…", DialogFor::Distributions, false)];
+    let browse = [("Browse…", Dialog::file("Size distributions"))];
     if let Some(path) = path(state, "", &browse, "Add file", ui, commands) {
         commands.push(Command::Distributions(DistributionCommand::Add(vec![path])));
     }
@@ -30,7 +30,7 @@ pub(in crate::panels) fn add_effort(state: &State, ui: &mut egui::Ui, commands: 
         "A table of the time that each step took: step, time and perhaps method and trial; or a column \
          of times for each trial. Minutes, where it says nothing else.",
     );
-    let browse = [("Browse…", DialogFor::Effort, false)];
+    let browse = [("Browse…", Dialog::file("Times of steps"))];
     if let Some(path) = path(state, "", &browse, "Add times", ui, commands) {
         commands.push(Command::Distributions(DistributionCommand::AddEffort(path)));
     }
@@ -45,11 +45,14 @@ pub(in crate::panels) fn save_figure(
     ui.label(
         "The figure for a report: a name that ends in .svg is drawn in lines, .png in pixels.",
     );
-    let browse = [("Browse…", DialogFor::Figure, false)];
+    let browse = [(
+        "Browse…",
+        Dialog::new_file("Save figure", "size-distributions.svg"),
+    )];
     let start = beside(state, "size-distributions.svg");
     if let Some(path) = path(state, &start, &browse, "Write figure", ui, commands) {
         commands.push(Command::Distributions(DistributionCommand::SaveFigure(
-            path,
+            path.into(),
         )));
     }
 }
@@ -61,11 +64,14 @@ pub(in crate::panels) fn save_report(
     commands: &mut Vec<Command>,
 ) {
     ui.label("One HTML page with the figure, all tables and how they were computed.");
-    let browse = [("Browse…", DialogFor::Report, false)];
+    let browse = [(
+        "Browse…",
+        Dialog::new_file("Save report", "size-distributions.html"),
+    )];
     let start = beside(state, "size-distributions.html");
     if let Some(path) = path(state, &start, &browse, "Write report", ui, commands) {
         commands.push(Command::Distributions(DistributionCommand::SaveReport(
-            path,
+            path.into(),
         )));
     }
 }
@@ -74,7 +80,7 @@ pub(in crate::panels) fn save_report(
 fn path(
     state: &State,
     start: &str,
-    browse: &[(&str, DialogFor, bool)],
+    browse: &[(&str, Dialog)],
     button: &str,
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
@@ -88,7 +94,7 @@ fn path(
 
 /// A name beside the first file that was added. The bundled flight's folder stays as it came.
 fn beside(state: &State, name: &str) -> String {
-    let bundled = crate::state::sample_flight();
+    let bundled = crate::state::bundled::sample_flight();
     let mut paths = state
         .distributions
         .sources()

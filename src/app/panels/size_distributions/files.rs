@@ -30,6 +30,6 @@ pub(super) fn files(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         }
     }
     if state.distributions.sources().len() > 1 {
-        action_button(state, actions::REMOVE_ALL, "Remove all", ui, commands);
+        action_button(state, actions::edit::REMOVE_ALL, "Remove all", ui, commands);
     }
 }

@@ -10,16 +10,12 @@
 //! paste       the small window for a table
 //! ```
 
-mod against_reference;
 mod asking;
 mod curves;
-mod effort;
 mod files;
-mod fits;
 mod log_axis;
 mod paste;
 mod plot;
-mod repeatability;
 mod results;
 mod settings;
 mod table;

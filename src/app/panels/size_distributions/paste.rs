@@ -80,7 +80,7 @@ pub(in crate::panels) fn paste(state: &State, ui: &mut egui::Ui, commands: &mut 
         if clicked {
             commands.push(Command::Distributions(DistributionCommand::Paste));
         }
-        if state.work.is_running(Task::ReadDistributions) {
+        if state.work.is_running(Task::READ_DISTRIBUTIONS) {
             ui.spinner();
         }
     });

@@ -45,7 +45,7 @@ pub(super) fn plot(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>
                 Some(problem) => {
                     ui.colored_label(ui.visuals().error_fg_color, problem);
                 }
-                None if !state.work.is_running(Task::Fits) => {
+                None if !state.work.is_running(Task::FITS) => {
                     ui.weak("Cancelled; what is shown is the result before");
                     let again = ui.button("Compute");
                     if again.on_hover_text("Fit and compare the curves of now").clicked() {

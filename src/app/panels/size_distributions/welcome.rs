@@ -13,9 +13,9 @@ pub(super) fn welcome(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
             ui.label("What Split-Desktop or a sieve gave: can it be trusted?");
             ui.add_space(16.0);
             for action in [
-                actions::ADD_DISTRIBUTIONS,
-                actions::PASTE_TABLE,
-                actions::ADD_KNOWN,
+                actions::file::ADD_DISTRIBUTIONS,
+                actions::file::PASTE_TABLE,
+                actions::file::ADD_KNOWN,
             ] {
                 let command = (action.command)(state);
                 let text = egui::RichText::new(action.label).size(16.0);
@@ -34,7 +34,7 @@ pub(super) fn welcome(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
             );
             if state
                 .work
-                .is_running(crate::tasks::work::Task::ReadDistributions)
+                .is_running(crate::tasks::work::Task::READ_DISTRIBUTIONS)
             {
                 ui.add_space(14.0);
                 ui.spinner();

@@ -1,9 +1,9 @@
 //! The fitted functions: parameters, how well they fit, percentiles with their bands.
 
-use super::results::{sentence, warning};
-use super::table::{Table, fixed, number};
+use super::sentence::{sentence, warning};
 use crate::command::Command;
 use crate::fragmentation::{Labels, PERCENTILES, Percentile};
+use crate::panels::size_distributions::table::{Table, fixed, number};
 use crate::size_distributions::Computed;
 use crate::size_distributions::computing::FittedCurve;
 

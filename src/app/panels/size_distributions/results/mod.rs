@@ -1,6 +1,11 @@
 //! The results beside the plot: their tabs, and the one that is shown.
 
-use super::{against_reference, effort, fits, repeatability};
+mod against_reference;
+mod effort;
+mod fits;
+mod repeatability;
+mod sentence;
+
 use crate::command::Command;
 use crate::size_distributions::{DistributionCommand, ResultTab};
 use crate::state::State;
@@ -57,15 +62,4 @@ pub(super) fn results(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
                 ResultTab::Effort => {}
             }
         });
-}
-
-/// A sentence over the panel's width.
-pub(super) fn sentence(text: &str, ui: &mut egui::Ui) {
-    ui.add(egui::Label::new(text).wrap());
-}
-
-/// Something to know before trusting a number.
-pub(super) fn warning(text: &str, ui: &mut egui::Ui) {
-    let text = egui::RichText::new(format!("⚠ {text}")).color(ui.visuals().warn_fg_color);
-    ui.add(egui::Label::new(text).wrap());
 }

@@ -1,9 +1,9 @@
 //! Every method against the reference: percent errors, norms, shifts.
 
-use super::results::{sentence, warning};
-use super::table::{Table, fixed, number, signed};
+use super::sentence::{sentence, warning};
 use crate::command::Command;
 use crate::fragmentation::{Comparison, PERCENT_ERROR, SCALE_WARNING};
+use crate::panels::size_distributions::table::{Table, fixed, number, signed};
 use crate::size_distributions::Computed;
 
 /// Draws the tables, or why there are none.

@@ -1,9 +1,9 @@
 //! Time effort: the paper's Table I, from a file, and the program's own measured steps.
 
-use super::results::{sentence, warning};
-use super::table::{Table, number};
+use super::sentence::{sentence, warning};
 use crate::command::{Asking, Command};
 use crate::fragmentation::{Effort, TimeSum};
+use crate::panels::size_distributions::table::{Table, number};
 use crate::size_distributions::{DistributionCommand, measured};
 use crate::state::State;
 

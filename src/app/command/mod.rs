@@ -1,9 +1,17 @@
 //! What the engineer can do, as data: panels, the menu, shortcuts and tests all send these, and one
 //! function applies them.
 
+mod asking;
+mod destination;
+mod dialog;
+mod view_change;
+
 use std::path::PathBuf;
 
-use glam::{DVec2, DVec3};
+pub use asking::Asking;
+pub use destination::{Destination, PictureRequest};
+pub use dialog::{Answers, Chooses, Dialog};
+pub use view_change::ViewChange;
 
 use crate::flight::{FlightSettings, Limits, Verdict};
 use crate::geometry::Ray;
@@ -12,10 +20,9 @@ use crate::open_flight::table::SortBy;
 use crate::open_flight::tracing::Trace;
 use crate::opening::GeoreferenceRequest;
 use crate::size_distributions::{DistributionCommand, Page};
-use crate::state::PictureRequest;
 use crate::state::layers::Layers;
 use crate::state::preferences::Theme;
-use crate::tasks::work::{DialogFor, Task};
+use crate::tasks::work::Task;
 use crate::units::LengthUnit;
 
 /// Which tab of the right panel is shown.
@@ -30,40 +37,6 @@ pub enum Tab {
     Limits,
 }
 
-/// A small window that asks for a place; beside the desktop's own dialog, which not every desktop
-/// has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Asking {
-    /// Which flight to open.
-    Open,
-    /// Which surface or photos the flight shall have.
-    Add,
-    /// Where the export goes.
-    Export,
-    /// What is known of the reconstruction's place in the world.
-    Georeference,
-    /// Where the georeferenced flight goes.
-    SaveGeoreferenced,
-    /// Where flight.toml goes.
-    SaveAs,
-    /// Where a picture goes, and how large it is.
-    Picture,
-    /// Which files of size distributions to add.
-    AddDistributions,
-    /// A table of size distributions.
-    PasteTable,
-    /// Which file has the times of steps.
-    AddEffort,
-    /// Where the figure of the size distributions goes.
-    SaveFigure,
-    /// Where the report on them goes.
-    SaveReport,
-    /// Which keys do what.
-    Keys,
-    /// What this program is.
-    About,
-}
-
 /// Which photos a choice is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Choice {
@@ -73,42 +46,6 @@ pub enum Choice {
     Trusted,
     /// None.
     None,
-}
-
-/// A turn of the free view, or leaving it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Look {
-    /// The mouse moved by these pixels: turn.
-    Orbit(DVec2),
-    /// The mouse moved by these pixels in a viewport of this size: move.
-    Pan(DVec2, DVec2),
-    /// Come closer (factor < 1) to what is under the cursor, in a viewport of this size.
-    Zoom {
-        /// Where the mouse is.
-        cursor: DVec2,
-        /// Of the viewport.
-        size: DVec2,
-        /// Under 1 comes closer.
-        factor: f64,
-    },
-    /// The viewport has this size now, pixels.
-    Resized(DVec2),
-    /// Straight down.
-    Top,
-    /// To the north.
-    Front,
-    /// To the west.
-    Side,
-    /// Everything in sight.
-    Fit,
-    /// The selected photo's footprint and camera in sight.
-    FitSelected,
-    /// This point in the middle.
-    Center(DVec3),
-    /// Through the camera of the selected photo, or back.
-    Through,
-    /// How much of the photo lies over the view.
-    Blend(f64),
 }
 
 /// One thing to do.
@@ -131,9 +68,9 @@ pub enum Command {
     /// Writes flight.toml.
     Save,
     /// Writes flight.toml at this place.
-    SaveAs(PathBuf),
+    SaveAs(Destination),
     /// Exports the chosen photos into this folder.
-    Export(PathBuf),
+    Export(Destination),
     /// Writes a picture of the viewport.
     Picture(PictureRequest),
     /// Types into the small window for georeferencing.
@@ -143,14 +80,14 @@ pub enum Command {
     /// Writes what was fitted as a flight.toml, and opens it.
     SaveGeoreferenced {
         /// Where to.
-        path: PathBuf,
+        to: Destination,
         /// Whether the surface's file is in the world already.
         keep_surface: bool,
     },
     /// Opens a small window that asks for a place, or closes it.
     Ask(Option<Asking>),
-    /// Opens the desktop's own dialog; for opening, `true` asks for a folder.
-    Browse(DialogFor, bool),
+    /// Opens the desktop's own dialog.
+    Browse(Dialog),
     /// Cancels a task.
     Cancel(Task),
     /// Leaves the program.
@@ -214,7 +151,7 @@ pub enum Command {
     DismissNotice,
 
     /// Turns or leaves the view.
-    Look(Look),
+    View(ViewChange),
     /// Begins or ends measuring.
     ToggleMeasure,
     /// A step of tracing a scale object on the selected photo.

@@ -1,9 +1,9 @@
 //! Whether the trials of a method are alike: the paper's Tables II and III.
 
-use super::results::{sentence, warning};
-use super::table::{Table, number};
+use super::sentence::{sentence, warning};
 use crate::command::Command;
 use crate::fragmentation::{Anova, Repeatability};
+use crate::panels::size_distributions::table::{Table, number};
 use crate::size_distributions::Computed;
 
 /// Draws the tables of each method.

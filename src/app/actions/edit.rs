@@ -1,0 +1,99 @@
+//! Undo, and which photos are chosen.
+
+use egui::{Key, Modifiers};
+
+use super::{Action, SHIFT, keys, on_pile, with_flight};
+use crate::command::{Choice, Command};
+use crate::size_distributions::{DistributionCommand, Page};
+
+actions! {
+    UNDO {
+        label: "Undo",
+        hover: "Undo the last change: of the flight's settings and photos to export, or of the size \
+                distributions on their page",
+        shortcut: keys(Modifiers::COMMAND, Key::Z),
+        command: |state| {
+            if state.page == Page::SizeDistributions {
+                let can = state.distributions.history.can_undo();
+                return can.then_some(Command::Undo);
+            }
+            let open = state.open.as_ref()?;
+            open.history.can_undo().then_some(Command::Undo)
+        },
+    }
+    REDO {
+        label: "Redo",
+        hover: "Take the last undo back",
+        shortcut: keys(SHIFT, Key::Z),
+        command: |state| {
+            if state.page == Page::SizeDistributions {
+                let can = state.distributions.history.can_redo();
+                return can.then_some(Command::Redo);
+            }
+            let open = state.open.as_ref()?;
+            open.history.can_redo().then_some(Command::Redo)
+        },
+    }
+    COPY_SCALES {
+        label: "Copy scales",
+        hover: "Copy the selected photo's top and bottom scale, as Split-Desktop's dialog asks for them",
+        shortcut: keys(SHIFT, Key::C),
+        command: |state| state.scales_to_copy().map(|_| Command::CopyScales),
+    }
+    CHOOSE {
+        label: "Export this photo or not",
+        hover: "Choose the selected photo for export, or leave it out",
+        shortcut: keys(Modifiers::NONE, Key::Space),
+        command: |state| {
+            let open = state.open.as_ref()?;
+            let photo = open.selected?;
+            let chosen = *open.history.now().chosen.get(photo)?;
+            on_pile(state, Command::Choose(photo, !chosen))
+        },
+    }
+    CHOOSE_TRUSTED {
+        label: "Choose trusted photos",
+        hover: "Choose for export the photos without any reason for doubt",
+        shortcut: None,
+        command: |state| {
+            let looked = state.open.as_ref()?.review.is_looked_at();
+            looked.then_some(Command::ChooseAll(Choice::Trusted))
+        },
+    }
+    CHOOSE_ALL {
+        label: "Choose all photos with a scale",
+        hover: "Choose for export every photo that has a top and a bottom scale",
+        shortcut: None,
+        command: |state| with_flight(state, Command::ChooseAll(Choice::WithScale)),
+    }
+    CHOOSE_NONE {
+        label: "Choose no photo",
+        hover: "Leave all photos out of the export",
+        shortcut: None,
+        command: |state| with_flight(state, Command::ChooseAll(Choice::None)),
+    }
+    REMOVE_ALL {
+        label: "Remove all size distributions",
+        hover: "Take every file and table from the page of size distributions; undo brings them back",
+        shortcut: None,
+        command: |state| {
+            let some = !state.distributions.sources().is_empty();
+            some.then_some(Command::Distributions(DistributionCommand::RemoveAll))
+        },
+    }
+}
+
+/// The menu's entries.
+pub const MENU: &[Option<Action>] = &[
+    Some(UNDO),
+    Some(REDO),
+    None,
+    Some(COPY_SCALES),
+    None,
+    Some(CHOOSE),
+    Some(CHOOSE_TRUSTED),
+    Some(CHOOSE_ALL),
+    Some(CHOOSE_NONE),
+    None,
+    Some(REMOVE_ALL),
+];

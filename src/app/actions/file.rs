@@ -1,0 +1,159 @@
+//! Opening, saving, writing.
+
+use egui::{Key, Modifiers};
+
+use super::{Action, SHIFT, keys, on_pile, with_distributions, with_flight};
+use crate::command::{Answers, Asking, Command, Dialog};
+use crate::size_distributions::DistributionCommand;
+
+actions! {
+    OPEN {
+        label: "Open…",
+        hover: "Open a flight: a flight.toml, or what a photogrammetry package wrote",
+        shortcut: keys(Modifiers::COMMAND, Key::O),
+        command: |_| Some(Command::Ask(Some(Asking::Open))),
+    }
+    OPEN_FILE {
+        label: "Open file…",
+        hover: "Choose a file with the desktop's own dialog",
+        shortcut: None,
+        command: |_| {
+            Some(Command::Browse(
+                Dialog::file("Open a flight").answering(Answers::Open),
+            ))
+        },
+    }
+    OPEN_FOLDER {
+        label: "Open folder…",
+        hover: "Choose a folder with the desktop's own dialog",
+        shortcut: None,
+        command: |_| {
+            Some(Command::Browse(
+                Dialog::folder("Open a flight's folder").answering(Answers::Open),
+            ))
+        },
+    }
+    ADD {
+        label: "Add surface or photos…",
+        hover: "Give the flight another cloud or mesh as its surface, or the folder of its photos",
+        shortcut: keys(SHIFT, Key::O),
+        command: |state| {
+            let wanted = state.open.is_some() || state.tried.is_some();
+            wanted.then_some(Command::Ask(Some(Asking::Add)))
+        },
+    }
+    GEOREFERENCE {
+        label: "Georeference…",
+        hover: "Bring a reconstruction in a frame of its own to the world, or to its true scale, by what \
+                is known of it",
+        shortcut: None,
+        command: |state| {
+            state.open.as_ref()?.reconstruction.as_ref()?;
+            Some(Command::Ask(Some(Asking::Georeference)))
+        },
+    }
+    OPEN_SAMPLE {
+        label: "Open the sample flight",
+        hover: "Nine photos of the paper's lab, simulated, with known answers",
+        shortcut: None,
+        command: |_| Some(Command::OpenSample),
+    }
+    ADD_DISTRIBUTIONS {
+        label: "Add size distributions…",
+        hover: "Add tables of cumulative percent passing by size: what Split-Desktop or a sieve gave",
+        shortcut: keys(Modifiers::COMMAND, Key::D),
+        command: |_| Some(Command::Ask(Some(Asking::AddDistributions))),
+    }
+    PASTE_TABLE {
+        label: "Paste table…",
+        hover: "Add a table of size distributions that was copied from a spreadsheet or a text",
+        shortcut: keys(SHIFT, Key::D),
+        command: |_| Some(Command::Ask(Some(Asking::PasteTable))),
+    }
+    ADD_KNOWN {
+        label: "Add the flight's known fragments",
+        hover: "Add reference.csv beside the flight on the screen: the sieve curve of its fragments",
+        shortcut: None,
+        command: |state| {
+            state.known_fragments()?;
+            Some(Command::Distributions(DistributionCommand::AddKnown))
+        },
+    }
+    SAVE_FIGURE {
+        label: "Save figure…",
+        hover: "Write the figure of the size distributions as an SVG or PNG",
+        shortcut: None,
+        command: |state| with_distributions(state, Asking::SaveFigure),
+    }
+    SAVE_REPORT {
+        label: "Save report…",
+        hover: "Write the figure and all tables of methods held against the reference as an HTML page",
+        shortcut: None,
+        command: |state| {
+            let computed = state.distributions.computed.as_ref()?;
+        let compared = computed.analysis.methods.len() > 1;
+            compared.then_some(Command::Ask(Some(Asking::SaveReport)))
+        },
+    }
+    SAVE {
+        label: "Save",
+        hover: "Write the flight's settings into its flight.toml",
+        shortcut: keys(Modifiers::COMMAND, Key::S),
+        command: |state| with_flight(state, Command::Save),
+    }
+    SAVE_AS {
+        label: "Save as…",
+        hover: "Write a flight.toml at another place",
+        shortcut: keys(SHIFT, Key::S),
+        command: |state| with_flight(state, Command::Ask(Some(Asking::SaveAs))),
+    }
+    EXPORT {
+        label: "Export for Split-Desktop…",
+        hover: "Write a folder with the scales, a sheet to type from, undistorted photos and overlays",
+        shortcut: keys(Modifiers::COMMAND, Key::E),
+        command: |state| with_flight(state, Command::Ask(Some(Asking::Export))),
+    }
+    PICTURE {
+        label: "Save picture…",
+        hover: "Write the viewport, or the corner-ray figure, as a PNG of any size",
+        shortcut: keys(Modifiers::COMMAND, Key::P),
+        command: |state| on_pile(state, Command::Ask(Some(Asking::Picture))),
+    }
+    CLOSE {
+        label: "Close flight",
+        hover: "Go back to the start page",
+        shortcut: keys(Modifiers::COMMAND, Key::W),
+        command: |state| with_flight(state, Command::Close),
+    }
+    QUIT {
+        label: "Quit",
+        hover: "Leave fragscale",
+        shortcut: keys(Modifiers::COMMAND, Key::Q),
+        command: |_| Some(Command::Quit),
+    }
+}
+
+/// The menu's entries.
+pub const MENU: &[Option<Action>] = &[
+    Some(OPEN),
+    Some(OPEN_FILE),
+    Some(OPEN_FOLDER),
+    Some(ADD),
+    Some(GEOREFERENCE),
+    Some(OPEN_SAMPLE),
+    None,
+    Some(ADD_DISTRIBUTIONS),
+    Some(PASTE_TABLE),
+    Some(ADD_KNOWN),
+    Some(SAVE_FIGURE),
+    Some(SAVE_REPORT),
+    None,
+    Some(SAVE),
+    Some(SAVE_AS),
+    None,
+    Some(EXPORT),
+    Some(PICTURE),
+    None,
+    Some(CLOSE),
+    Some(QUIT),
+];

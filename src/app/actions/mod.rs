@@ -1,0 +1,144 @@
+//! Named actions: the menu's entry, the shortcut and the tooltip of each are this one entry.
+
+/// Actions by their names: what one does is said once, for its tooltip and for its documentation.
+macro_rules! actions {
+    ($($name:ident {
+        label: $label:literal,
+        hover: $hover:literal,
+        shortcut: $shortcut:expr,
+        command: $command:expr,
+    })*) => {$(
+        #[doc = $hover]
+        pub const $name: Action = Action {
+            label: $label,
+            hover: $hover,
+            shortcut: $shortcut,
+            command: $command,
+        };
+    )*};
+}
+
+pub mod edit;
+pub mod file;
+pub mod help;
+pub mod photo;
+pub mod view;
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+
+use crate::command::{Asking, Command};
+use crate::size_distributions::Page;
+use crate::state::State;
+
+/// What an entry of the menu does.
+#[derive(Debug, Clone, Copy)]
+pub struct Action {
+    /// Its name in the menu.
+    pub label: &'static str,
+    /// What it does, as a tooltip.
+    pub hover: &'static str,
+    /// Its keys.
+    pub shortcut: Option<KeyboardShortcut>,
+    /// What it sends; `None` where it makes no sense now, and the entry is grey.
+    pub command: fn(&State) -> Option<Command>,
+}
+
+const fn keys(modifiers: Modifiers, key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(modifiers, key))
+}
+
+const SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+fn with_flight(state: &State, command: Command) -> Option<Command> {
+    state.open.is_some().then_some(command)
+}
+
+fn with_distributions(state: &State, asking: Asking) -> Option<Command> {
+    let computed = state.distributions.computed.is_some();
+    computed.then_some(Command::Ask(Some(asking)))
+}
+
+/// What is done in sight of the pile.
+fn on_pile(state: &State, command: Command) -> Option<Command> {
+    let in_sight = state.page == Page::Pile;
+    in_sight.then(|| with_flight(state, command)).flatten()
+}
+
+fn with_photo(state: &State, command: Command) -> Option<Command> {
+    let open = state.open.as_ref().filter(|_| state.page == Page::Pile)?;
+    open.selected.map(|_| command)
+}
+
+/// The menus, in their order. An empty place is a line between entries.
+pub const MENUS: [(&str, &[Option<Action>]); 5] = [
+    ("File", file::MENU),
+    ("Edit", edit::MENU),
+    ("View", view::MENU),
+    ("Photo", photo::MENU),
+    ("Help", help::MENU),
+];
+
+/// All actions of the menus.
+pub fn all() -> impl Iterator<Item = Action> {
+    MENUS
+        .into_iter()
+        .flat_map(|(_, entries)| entries.iter().copied())
+        .flatten()
+}
+
+/// The commands of the shortcuts that were pressed in this frame. Keys without Ctrl belong to a text
+/// field while one has the focus.
+pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
+    if state.held_back.is_some() {
+        // A question waits for its answer first.
+        return Vec::new();
+    }
+    let typing = context.egui_wants_keyboard_input();
+    // A text field has an undo of its own.
+    let editing = context.text_edit_focused();
+    let mut actions: Vec<Action> = all().filter(|action| action.shortcut.is_some()).collect();
+    // Ctrl+Shift+Z before Ctrl+Z: egui takes the first that fits, and more modifiers fit less.
+    actions.sort_by_key(|action| {
+        let shift = action.shortcut.is_some_and(|keys| keys.modifiers.shift);
+        std::cmp::Reverse(shift)
+    });
+    let mut commands = Vec::new();
+    for action in actions {
+        let Some(shortcut) = action.shortcut else {
+            continue;
+        };
+        let undoes = [edit::UNDO.shortcut, edit::REDO.shortcut].contains(&action.shortcut);
+        if (typing && !shortcut.modifiers.command) || (editing && undoes) {
+            continue;
+        }
+        if let Some(command) = (action.command)(state)
+            && context.input_mut(|input| input.consume_shortcut(&shortcut))
+        {
+            commands.push(command);
+        }
+    }
+    commands
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn no_two_actions_share_keys_or_a_name() {
+        let mut names = HashSet::new();
+        let mut shortcuts = HashSet::new();
+        for action in all() {
+            assert!(names.insert(action.label), "{} twice", action.label);
+            assert!(action.hover.len() > 5, "{} says nothing", action.label);
+            if let Some(keys) = action.shortcut {
+                assert!(
+                    shortcuts.insert(format!("{keys:?}")),
+                    "{} shares its keys",
+                    action.label
+                );
+            }
+        }
+    }
+}

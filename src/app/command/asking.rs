@@ -1,0 +1,35 @@
+//! The small windows.
+
+/// A small window that asks for a place; beside the desktop's own dialog, which not every desktop
+/// has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Asking {
+    /// Which flight to open.
+    Open,
+    /// Which surface or photos the flight shall have.
+    Add,
+    /// Where the export goes.
+    Export,
+    /// What is known of the reconstruction's place in the world.
+    Georeference,
+    /// Where the georeferenced flight goes.
+    SaveGeoreferenced,
+    /// Where flight.toml goes.
+    SaveAs,
+    /// Where a picture goes, and how large it is.
+    Picture,
+    /// Which files of size distributions to add.
+    AddDistributions,
+    /// A table of size distributions.
+    PasteTable,
+    /// Which file has the times of steps.
+    AddEffort,
+    /// Where the figure of the size distributions goes.
+    SaveFigure,
+    /// Where the report on them goes.
+    SaveReport,
+    /// Which keys do what.
+    Keys,
+    /// What this program is.
+    About,
+}

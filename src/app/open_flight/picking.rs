@@ -1,0 +1,72 @@
+//! What a ray of the mouse does to the flight on the screen, once it is known what it met.
+
+use crate::open_flight::picker::{Picked, Purpose};
+use crate::open_flight::{Measure, OpenFlight};
+
+impl OpenFlight {
+    /// Takes what a ray met.
+    pub(crate) fn take_picked(&mut self, picked: Picked) {
+        let point = picked.hit.map(|hit| hit.point);
+        match picked.purpose {
+            Purpose::Hover => self.hover = point,
+            Purpose::Center => {
+                if let Some(point) = point {
+                    self.looking.through = None;
+                    self.looking.orbit.center_on(point);
+                }
+            }
+            Purpose::Measure => {
+                if let Some(point) = point {
+                    self.measure = match self.measure {
+                        Measure::Off => Measure::Off,
+                        Measure::First | Measure::Both(..) => Measure::Second(point),
+                        Measure::Second(first) => Measure::Both(first, point),
+                    };
+                }
+            }
+            Purpose::Select => {
+                if let Some(photo) = self.photo_at(&picked) {
+                    self.select(Some(photo));
+                }
+            }
+        }
+    }
+
+    /// The photo that a click means: the camera next to the ray, else the photo that sees the place
+    /// nearest to its middle.
+    fn photo_at(&self, picked: &Picked) -> Option<usize> {
+        let photos = &self.flight().parts().photos;
+        // A camera is hit within this share of its distance: about ten pixels on the screen.
+        let reach = 0.012;
+        let camera = photos
+            .iter()
+            .enumerate()
+            .filter_map(|(index, photo)| {
+                let way = photo.pose.center - picked.ray.origin;
+                let along = way.dot(picked.ray.direction);
+                let beside = (way - picked.ray.direction * along).length();
+                let before_surface = picked.hit.is_none_or(|hit| along < hit.t);
+                (along > 0.0 && before_surface && beside < reach * along)
+                    .then_some((index, beside / along))
+            })
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((index, _)) = camera {
+            return Some(index);
+        }
+        let point = picked.hit?.point;
+        photos
+            .iter()
+            .enumerate()
+            .filter_map(|(index, photo)| {
+                let camera = self.flight().camera(photo);
+                let pixel = camera.pixel_undistorted(photo.pose.camera_from_world(point))?;
+                let half =
+                    glam::DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
+                camera
+                    .contains(pixel)
+                    .then(|| (index, ((pixel - half) / half).abs().max_element()))
+            })
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(index, _)| index)
+    }
+}

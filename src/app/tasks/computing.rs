@@ -1,0 +1,151 @@
+//! What is computed of the flight on the screen: scales, footprints, the viewport's geometry.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use super::work::Task;
+use crate::fault::Fault;
+use crate::flight::{Flight, FlightSettings, LookedUp, Outcome};
+use crate::jobs::Progress;
+use crate::opening;
+use crate::render::{Shapes, SurfaceBuffers};
+use crate::state::{Severity, State};
+
+impl Task {
+    /// Computing scales anew after a setting changed.
+    pub const SCALES: Self = Self::new("Scales").of_flight();
+    /// Draping footprints.
+    pub const VIEWS: Self = Self::new("Footprints").of_flight().to_the_end();
+    /// Triangles and points for the viewport.
+    pub const GEOMETRY: Self = Self::new("Surface").of_flight().to_the_end();
+}
+
+/// Scales after a setting changed, with the settings.
+struct Scales {
+    flight: Arc<Flight>,
+    outcomes: Vec<Outcome>,
+    looked_up: LookedUp,
+    settings: FlightSettings,
+    took: Duration,
+}
+
+impl State {
+    /// Computes scales and footprints with the settings of now.
+    pub fn start_scales(&mut self) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let (flight, settings) = (open.flight().clone(), open.settings());
+        let files = open.photo_files.clone();
+        // Footprints under way go on: where these scales are cancelled, they are still wanted.
+        let work = move |progress: &Progress| {
+            let begun = Instant::now();
+            let flight = flight.with_settings(&settings)?;
+            let outcomes = flight.scales(progress)?;
+            // Heights and laser ranges are held against the unit of now.
+            let looked_up = opening::look_up(&flight, &files);
+            Ok(Scales {
+                flight: Arc::new(flight),
+                outcomes,
+                looked_up,
+                settings,
+                took: begun.elapsed(),
+            })
+        };
+        self.start(Task::SCALES, work, Self::take_scales);
+    }
+
+    /// Drapes the footprints of the flight as it is computed.
+    pub fn start_views(&mut self) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let (flight, outcomes) = (open.flight().clone(), open.review.outcomes().clone());
+        let work = move |progress: &Progress| flight.views(&outcomes, progress);
+        self.start(Task::VIEWS, work, |state, views| match views {
+            Ok(views) => {
+                if let Some(open) = &mut state.open {
+                    open.take_views(views);
+                }
+            }
+            Err(fault) => state.say(Severity::Error, &fault.to_string()),
+        });
+    }
+
+    /// Makes ready what the viewport draws of the surface.
+    pub fn start_geometry(&mut self) {
+        let (Some(open), Some(gpu)) = (&self.open, self.gpu.clone()) else {
+            return;
+        };
+        let (flight, frame) = (open.flight().clone(), open.frame);
+        let work = move |progress: &Progress| {
+            let surface = &flight.parts().surface;
+            SurfaceBuffers::new(&gpu, &frame, surface, Shapes::BOTH, progress)
+        };
+        self.start(Task::GEOMETRY, work, |state, geometry| {
+            match (geometry, &mut state.open) {
+                (Ok(geometry), Some(open)) => open.geometry = Some(Arc::new(geometry)),
+                (Ok(_), None) => {}
+                (Err(fault), _) => state.say(Severity::Error, &fault.to_string()),
+            }
+        });
+    }
+
+    fn take_scales(&mut self, scales: Result<Scales, Fault>) {
+        let Scales {
+            flight,
+            outcomes,
+            looked_up,
+            settings,
+            took,
+        } = match scales {
+            Ok(scales) => scales,
+            Err(fault) => {
+                self.say(Severity::Error, &fault.to_string());
+                self.take_back_settings();
+                return;
+            }
+        };
+        self.note_step("Computing scales", &flight.parts().name, took);
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        let before = open.flight().parts();
+        let after = flight.parts();
+        let other_image = before.image != after.image;
+        // Of one reading of the file the points are the same.
+        let other_surface = before.surface.max_edge() != after.surface.max_edge();
+        let said_before = &open.review.looked_up().warnings;
+        let said = looked_up.warnings_of(open.path.display());
+        let new: Vec<String> = said
+            .zip(&looked_up.warnings)
+            .filter(|(_, bare)| !said_before.contains(bare))
+            .map(|(warning, _)| warning)
+            .collect();
+        open.take_scales(flight, outcomes, looked_up, settings);
+        for warning in new {
+            self.say(Severity::Warning, &warning);
+        }
+        if other_surface {
+            self.start_geometry();
+            self.start_picker();
+        }
+        if other_image {
+            self.load_preview();
+            self.start_thumbnails();
+        }
+        self.start_views();
+        self.start_comparing();
+    }
+
+    /// Where neither scales nor the file are on their way any more, a change of the settings that
+    /// was not computed goes.
+    pub(crate) fn take_back_settings(&mut self) {
+        let on_the_way = self.work.is_running(Task::SCALES) || self.work.is_running(Task::OPEN);
+        if let Some(open) = &mut self.open
+            && !on_the_way
+        {
+            open.take_back_settings();
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Exporting the chosen photos.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use super::work::Task;
+use crate::command::Destination;
+use crate::exports::{self, ExportRequest, Provenance, Replace};
+use crate::jobs::Progress;
+use crate::opening;
+use crate::state::{Severity, State};
+
+impl Task {
+    /// Writing the export folder.
+    pub const EXPORT: Self = Self::new("Export").writing();
+}
+
+impl State {
+    /// Exports the chosen photos; asks before the export of another flight is replaced.
+    pub(crate) fn export(&mut self, to: Destination) {
+        self.asking = None;
+        if !self.is_busy(Task::EXPORT) && self.may_export(&to) {
+            let replace = match to.replace {
+                true => Replace::OtherFlight,
+                false => Replace::Nothing,
+            };
+            self.start_export(to.path, replace);
+        }
+    }
+
+    /// Exports the chosen photos, into a folder with the export of another flight where that may be
+    /// replaced.
+    fn start_export(&mut self, folder: PathBuf, replace: Replace) {
+        let read = self.read();
+        let Some(open) = &self.open else {
+            return;
+        };
+        if !open.review.is_looked_at() || !open.is_computed() {
+            self.say(
+                Severity::Error,
+                "scales and footprints are still being computed; export when they are there",
+            );
+            return;
+        }
+        let mut review = open.review.clone();
+        let photo_files = open.photo_files.clone();
+        let selected = open.history.now().chosen.clone();
+        let unit = self.preferences.unit();
+        let settings = open.settings();
+        let (crs, inputs) = (open.crs.clone(), open.inputs.clone());
+        let warnings = open.all_warnings();
+        let source = open.origin.file().to_owned();
+        let work = move |progress: &Progress| {
+            let begun = Instant::now();
+            // Those that the window has not come to yet.
+            let compared = opening::compare_all_colours(&mut review, &photo_files, progress);
+            compared.map_err(|fault| fault.to_string())?;
+            let files = photo_files.iter().map(|file| file.path.clone());
+            let files: Vec<Option<PathBuf>> = files.collect();
+            let request = ExportRequest {
+                review: &review,
+                from: &Provenance {
+                    file: &source,
+                    inputs: &inputs,
+                    read: &read,
+                    photo_files: &files,
+                    settings: &settings,
+                    crs: crs.as_deref(),
+                    warnings: &warnings,
+                },
+                selected: &selected,
+                unit,
+                replace,
+            };
+            let exported = exports::export_for_split_desktop(&folder, &request, progress);
+            let summary = exported.map_err(|error| error.to_string())?;
+            let sentence = format!("{}: {summary}", folder.display());
+            let name = review.flight().parts().name.clone();
+            Ok((sentence, summary.warnings, name, begun.elapsed()))
+        };
+        self.start(Task::EXPORT, work, |state, exported: Result<_, String>| {
+            let (sentence, warnings, flight, took) = match exported {
+                Ok(exported) => exported,
+                Err(message) => return state.say(Severity::Error, &message),
+            };
+            state.note_step("Export", &flight, took);
+            for warning in warnings {
+                state.say(Severity::Warning, &warning);
+            }
+            state.say(Severity::Note, &sentence);
+        });
+    }
+}

@@ -1,0 +1,223 @@
+//! Reading photos: all of them small, the selected one large.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use image::RgbImage;
+use image::buffer::ConvertBuffer;
+
+use super::work::Task;
+use crate::camera::Camera;
+use crate::flight::ColoursFound;
+use crate::formats::{self, FileError};
+use crate::jobs::Progress;
+use crate::open_flight::{Preview, PreviewPicture};
+use crate::opening::Colours;
+use crate::picture;
+use crate::render::{LargePhoto, PhotoImage};
+use crate::scale::ImageKind;
+use crate::state::{Severity, State};
+
+/// The longer side of a thumbnail, pixels: for the table and the image planes in the viewport.
+const THUMBNAIL: u32 = 256;
+
+/// The longer side of a thumbnail in the table, pixels: sharp at 200 %.
+const ROW_THUMBNAIL: u32 = 128;
+
+/// The longer side of the photo that is laid over the surface, pixels.
+const PROJECTED: u32 = 2048;
+
+/// The longer side of the inspector's photo, pixels: zooming in shows more than a screen does.
+const PREVIEW: u32 = 4096;
+
+impl Task {
+    /// Small pictures of all photos.
+    pub const THUMBNAILS: Self = Self::new("Thumbnails").of_flight();
+    /// The selected photo for the inspector.
+    pub const PREVIEW: Self = Self::new("Photo").of_flight();
+}
+
+/// A reduced, undistorted photo on its way to the table and the viewport.
+struct Thumbnail {
+    /// Of which opened flight, counted.
+    flight: u64,
+    /// Which photo.
+    photo: usize,
+    /// For the table.
+    small: Option<egui::ColorImage>,
+    /// For the viewport.
+    image: Option<PhotoImage>,
+    /// How its colours compare with the surface's.
+    colours: Colours,
+}
+
+impl State {
+    /// Reads all photos, small.
+    pub fn start_thumbnails(&mut self) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let (number, files) = (open.number, open.photo_files.clone());
+        let flight = open.flight().clone();
+        let steps = self.work.steps_of_a_job();
+        let context = self.context.clone();
+        let work = move |progress: &Progress| {
+            progress.stage("reading photos");
+            let photos = &flight.parts().photos;
+            for (index, (photo, file)) in photos.iter().zip(files.iter()).enumerate() {
+                if progress.advance(index as u64, photos.len() as u64).is_err() {
+                    break;
+                }
+                let Some(path) = &file.path else {
+                    continue;
+                };
+                let camera = flight.camera(photo);
+                let image = flight.parts().image;
+                let thumbnail = match read_photo(path) {
+                    Ok(large) => Thumbnail {
+                        flight: number,
+                        photo: index,
+                        small: Some(color_image(&as_scaled(
+                            &large,
+                            camera,
+                            image,
+                            ROW_THUMBNAIL,
+                        ))),
+                        image: Some(PhotoImage::new(
+                            &undistorted(&large, camera, THUMBNAIL).convert(),
+                        )),
+                        colours: Colours::of_photo(&flight, index, &large),
+                    },
+                    Err(why) => Thumbnail {
+                        flight: number,
+                        photo: index,
+                        small: None,
+                        image: None,
+                        colours: Colours::Unreadable(why),
+                    },
+                };
+                // Waits until the window has taken some; a cancelled job gives up.
+                if !steps.offer(|state: &mut Self| state.take_thumbnail(thumbnail), progress) {
+                    break;
+                }
+                context.request_repaint();
+            }
+        };
+        // All have been sent by then.
+        self.start(Task::THUMBNAILS, work, |_, ()| ());
+    }
+
+    /// Reads the selected photo for the inspector.
+    pub fn load_preview(&mut self) {
+        self.work.cancel(Task::PREVIEW);
+        let Some(open) = &self.open else {
+            return;
+        };
+        let Some(photo) = open.selected else {
+            return;
+        };
+        let file = open.photo_files.get(photo).cloned().unwrap_or_default();
+        let (flight, gpu) = (open.flight().clone(), self.gpu.clone());
+        // egui refuses larger textures than the graphics device takes.
+        let largest = self.context.input(|input| input.max_texture_side);
+        let largest = u32::try_from(largest).map_or(PREVIEW, |largest| largest.min(PREVIEW));
+        let work = move |progress: &Progress| {
+            // Who runs through the table with a key held down wants none of the photos between.
+            std::thread::sleep(std::time::Duration::from_millis(60));
+            if progress.is_cancelled() {
+                return None;
+            }
+            let posed = &flight.parts().photos[photo];
+            let picture = match &file.path {
+                None => Err(format!("the file of photo '{}' is not there", posed.name)),
+                Some(path) => read_photo(path).map(|full| {
+                    let camera = flight.camera(posed);
+                    let image = flight.parts().image;
+                    PreviewPicture {
+                        projected: gpu.map(|gpu| {
+                            LargePhoto::new(&gpu, &undistorted(&full, camera, PROJECTED).convert())
+                        }),
+                        large: Arc::new(color_image(&as_scaled(&full, camera, image, largest))),
+                    }
+                }),
+            };
+            Some(picture)
+        };
+        self.start(Task::PREVIEW, work, move |state, picture| {
+            if let Some(picture) = picture
+                && let Some(open) = &mut state.open
+                && open.selected == Some(photo)
+            {
+                let number = open.preview.as_ref().map_or(0, |preview| preview.number) + 1;
+                open.preview = Some(Preview {
+                    photo,
+                    picture,
+                    number,
+                });
+            }
+        });
+    }
+
+    fn take_thumbnail(&mut self, thumbnail: Thumbnail) {
+        let Thumbnail {
+            flight,
+            photo,
+            small,
+            image,
+            colours,
+        } = thumbnail;
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        if open.number != flight || photo >= open.thumbnails.len() {
+            return;
+        }
+        if let Some(small) = small {
+            let options = egui::TextureOptions::LINEAR;
+            let texture = self
+                .context
+                .load_texture(format!("thumbnail {photo}"), small, options);
+            open.thumbnails[photo] = Some(texture);
+        }
+        open.images[photo] = image.map(Arc::new);
+        let evidence = open.review.looked_up().evidence.get(photo);
+        let is_known =
+            evidence.is_some_and(|evidence| evidence.colours != ColoursFound::NotCompared);
+        let doubt = colours.doubt().filter(|_| !is_known);
+        let said = doubt.map(|doubt| format!("photo '{}': {doubt}", open.name(photo)));
+        open.take_colours(photo, &colours);
+        if let Some(said) = said {
+            self.say(Severity::Warning, &said);
+        }
+    }
+}
+
+/// Reads a photo.
+fn read_photo(path: &Path) -> Result<RgbImage, String> {
+    let bytes = formats::read_bytes(path).map_err(|error| error.to_string())?;
+    picture::decode(&bytes).map_err(|fault| FileError::new(path, fault).to_string())
+}
+
+/// A photo as its scale assumes it, reduced.
+fn as_scaled(photo: &RgbImage, camera: &Camera, image: ImageKind, max_side: u32) -> RgbImage {
+    match image {
+        ImageKind::Undistorted => undistorted(photo, camera, max_side),
+        ImageKind::AsShot => picture::reduced(photo, max_side),
+    }
+}
+
+/// A photo without the distortion of its lens, reduced: what the viewport's pinhole cameras show,
+/// whatever the scales are for.
+fn undistorted(photo: &RgbImage, camera: &Camera, max_side: u32) -> RgbImage {
+    if photo.dimensions() == (camera.width, camera.height) {
+        picture::undistorted(photo, camera, max_side)
+    } else {
+        // A photo of another size is shown as it is: its verdict says that it does not fit.
+        picture::reduced(photo, max_side)
+    }
+}
+
+fn color_image(picture: &RgbImage) -> egui::ColorImage {
+    let size = [picture.width() as usize, picture.height() as usize];
+    egui::ColorImage::from_rgb(size, picture.as_raw())
+}

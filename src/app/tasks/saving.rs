@@ -1,0 +1,118 @@
+//! Saving the flight.
+
+use std::path::PathBuf;
+
+use super::work::Task;
+use crate::command::{Asking, Command, Destination};
+use crate::files::{self, Kind};
+use crate::flight::FlightSettings;
+use crate::formats::FileError;
+use crate::jobs::Progress;
+use crate::opening::{FlightOrigin, OpenOptions};
+use crate::state::{Severity, State};
+
+impl Task {
+    /// Writing flight.toml.
+    pub const SAVE: Self = Self::new("Saving").writing();
+}
+
+impl State {
+    /// Writes flight.toml where it was read, or asks where to.
+    pub(crate) fn save(&mut self) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        match open.origin.flight_file() {
+            // The bundled flight stays as it came.
+            Some(path) if !open.bundled => {
+                let path = path.to_owned();
+                self.save_as(path.into());
+            }
+            _ => self.ask(Some(Asking::SaveAs)),
+        }
+    }
+
+    /// Writes flight.toml at a place; asks before another file is replaced.
+    pub(crate) fn save_as(&mut self, to: Destination) {
+        self.asking = None;
+        if self.open.is_none() || self.is_busy(Task::SAVE) {
+            return;
+        }
+        let own = self.open.as_ref().filter(|open| !open.bundled);
+        let own = own.and_then(|open| open.origin.flight_file());
+        if own.is_some_and(|own| files::is_same_file(own, &to.path)) {
+            self.start_saving(to.path, true);
+            return;
+        }
+        let read = self.read_beside(&to.path);
+        if self.may_write(&to, Kind::Flight, &read, Command::SaveAs) {
+            self.start_saving(to.path, to.replace);
+        } else if self.held_back.is_none() {
+            // Not saved, and nothing to answer.
+            self.after_saving = None;
+        }
+    }
+
+    /// Writes flight.toml; with `replace` over a file that is there.
+    fn start_saving(&mut self, path: PathBuf, replace: bool) {
+        let read = self.read_beside(&path);
+        let Some(open) = &self.open else {
+            return;
+        };
+        let (settings, origin) = (open.settings(), open.origin.clone());
+        let flight = origin.clone();
+        let work = move |_: &Progress| {
+            let saved = origin.text_at(&path, &settings).and_then(|text| {
+                files::write(&path, text.as_bytes(), Kind::Flight, &read, replace)
+                    .map_err(|fault| FileError::new(&path, fault))
+            });
+            match saved {
+                Ok(()) => Ok((origin.saved_at(&path), settings)),
+                Err(error) => Err(error.to_string()),
+            }
+        };
+        self.start(Task::SAVE, work, move |state, saved| match saved {
+            Ok((origin, settings)) => state.take_saved(&flight, origin, settings),
+            Err(message) => {
+                state.after_saving = None;
+                state.say(Severity::Error, &message);
+            }
+        });
+    }
+
+    /// Takes that the flight of this origin was saved: where, with these settings.
+    fn take_saved(
+        &mut self,
+        flight: &FlightOrigin,
+        origin: FlightOrigin,
+        settings: FlightSettings,
+    ) {
+        if let Some(path) = origin.flight_file() {
+            let path = path.to_owned();
+            self.preferences.remember(&path);
+            self.say(Severity::Note, &format!("{}: saved", path.display()));
+        }
+        // She may have gone on to another flight meanwhile.
+        let on_screen = self.open.as_mut().filter(|open| open.origin == *flight);
+        if let Some(open) = on_screen {
+            if let Some(path) = origin.flight_file() {
+                open.path = path.to_owned();
+                // They stand in the file now.
+                open.options = OpenOptions::default();
+            }
+            open.bundled = false;
+            if let Some(path) = origin.flight_file() {
+                open.read.add(path);
+            }
+            open.origin = origin;
+            open.saved = settings;
+        }
+        let changed = self.open.as_ref().is_some_and(|open| open.is_changed());
+        match self.after_saving.take() {
+            // Changed again meanwhile: she is asked again.
+            Some(held_back) if changed => self.held_back = Some(held_back),
+            Some(held_back) => self.go_on(held_back),
+            None => {}
+        }
+    }
+}

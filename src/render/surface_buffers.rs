@@ -1,0 +1,77 @@
+//! A surface made ready and uploaded, for the window and for pictures alike.
+
+use crate::device::gpu::Gpu;
+use crate::fault::Fault;
+use crate::geometry::LocalFrame;
+use crate::jobs::Progress;
+use crate::primitives::mesh::MeshBuffers;
+use crate::primitives::points::CloudBuffers;
+use crate::scene::{CloudGeometry, MeshGeometry, Normals};
+use crate::surface::Surface;
+
+/// What of a surface is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shapes {
+    /// Its points.
+    pub cloud: bool,
+    /// Its triangles.
+    pub mesh: bool,
+}
+
+impl Shapes {
+    /// Everything.
+    pub const BOTH: Self = Self {
+        cloud: true,
+        mesh: true,
+    };
+}
+
+/// A surface on the graphics device. Clones share the buffers.
+#[derive(Debug, Clone, Default)]
+pub struct SurfaceBuffers {
+    pub(crate) cloud: Option<CloudBuffers>,
+    pub(crate) mesh: Option<MeshBuffers>,
+    /// How many points there are.
+    pub points: usize,
+}
+
+impl SurfaceBuffers {
+    /// Triangulates, makes ready and uploads: work for a thread other than the window's. All
+    /// geometry of a picture is made in the same frame.
+    ///
+    /// # Errors
+    /// Where the surface has no triangles, or where it was cancelled.
+    pub fn new(
+        gpu: &Gpu,
+        frame: &LocalFrame,
+        surface: &Surface,
+        wanted: Shapes,
+        progress: &Progress,
+    ) -> Result<Self, Fault> {
+        progress.stage("triangulating the surface for the picture");
+        let triangles = surface
+            .triangles()
+            .map_err(|error| Fault::new(error.to_string(), "check the surface file"))?;
+        progress.advance(1, 4)?;
+        let (vertices, colors) = (surface.vertices(), surface.colors());
+        let normals = Normals::of(frame, vertices, &triangles);
+        progress.advance(2, 4)?;
+        let mesh = wanted.mesh.then(|| {
+            let vertices = surface.vertices();
+            MeshGeometry::new(frame, vertices, colors, &normals, &triangles)
+        });
+        drop(triangles);
+        progress.advance(3, 4)?;
+        let mesh = mesh.map(|mesh| MeshBuffers::new(gpu, &mesh));
+        let cloud = wanted.cloud.then(|| {
+            let cloud = CloudGeometry::new(frame, surface.vertices(), colors, &normals);
+            CloudBuffers::new(gpu, &cloud)
+        });
+        progress.advance(4, 4)?;
+        Ok(Self {
+            cloud,
+            mesh,
+            points: surface.vertices().len(),
+        })
+    }
+}
