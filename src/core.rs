@@ -15,5 +15,6 @@ pub mod numbers;
 pub mod picture;
 pub mod raster;
 pub mod scale;
+pub mod split_mix;
 pub mod surface;
 pub mod units;

@@ -46,7 +46,7 @@ pub mod cli;
 pub use fragscale_app as app;
 pub use fragscale_core::{
     camera, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, picture, raster,
-    scale, surface, units,
+    scale, split_mix, surface, units,
 };
 pub use fragscale_exports as exports;
 pub use fragscale_formats as formats;

@@ -28,6 +28,5 @@ pub use size_distributions::{
     figure_svg, fit_csv, fit_json, fit_table,
 };
 pub use split_desktop::{
-    ExportError, ExportRequest, ExportSummary, Provenance, Replace, export_for_split_desktop,
-    other_flight_in,
+    ExportRequest, ExportSummary, Provenance, Replace, export_for_split_desktop, other_flight_in,
 };

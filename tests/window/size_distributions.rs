@@ -494,7 +494,7 @@ fn the_results_are_always_those_of_the_data_and_settings_of_now() {
         fs::write(&path, text).expect("written");
         paths.push(path);
     }
-    let mut dice = Dice(19_380_704);
+    let mut dice = Dice::new(19_380_704);
     for step in 0..400 {
         let mut settings = settings(&desk);
         let command = match dice.below(12) {

@@ -7,7 +7,7 @@
 
 mod distances;
 mod flight_text;
-mod known;
+mod list_world;
 mod marks;
 mod photo_names;
 
@@ -16,7 +16,7 @@ use std::str::FromStr;
 
 use glam::DVec3;
 
-use self::known::World;
+use self::list_world::ListWorld;
 use self::marks::MarkedPoint;
 use self::photo_names::PhotoNames;
 use crate::fault::Fault;
@@ -148,8 +148,8 @@ pub struct Georeferenced {
     pub scale_error: Option<f64>,
     /// Half the width of its 95 % interval, relative to it.
     pub scale_interval: Option<f64>,
-    /// The standard error, in degrees, of the turn about the long axis of the positions.
-    pub turn_error_degrees: Option<f64>,
+    /// The standard error, in degrees, of the rotation about the long axis of the positions.
+    pub rotation_error_degrees: Option<f64>,
     /// What was assumed or left out, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -257,7 +257,8 @@ fn georeferenced(
         (None, Some((_, list))) => list.positions.iter().map(|p| p.position).collect(),
         (None, None) => Vec::new(),
     };
-    let world = World::new(request.crs.as_deref(), stated, &all, &mut warnings).map_err(blame)?;
+    let world =
+        ListWorld::new(request.crs.as_deref(), stated, &all, &mut warnings).map_err(blame)?;
     let mut known: Vec<Known> = Vec::new();
     if points.is_some() {
         for point in &marked {
@@ -292,9 +293,12 @@ fn georeferenced(
             "{outliers} known positions do not agree with the others and were left out of the fit"
         ));
     }
-    if let Some(turn) = result.turn_error_degrees.filter(|turn| *turn > 1.0) {
+    if let Some(degrees) = result
+        .rotation_error_degrees
+        .filter(|degrees| *degrees > 1.0)
+    {
         warnings.push(format!(
-            "the positions lie nearly on a line: the turn about it is known to {turn:.1} degrees only"
+            "the positions lie nearly on a line: the rotation about it is known to {degrees:.1} degrees only"
         ));
     }
     if result.used() == 3 {
@@ -351,7 +355,7 @@ struct Known {
 }
 
 impl Known {
-    fn of_point(point: &MarkedPoint, world: &World) -> Result<Self, Fault> {
+    fn of_point(point: &MarkedPoint, world: &ListWorld) -> Result<Self, Fault> {
         Ok(Self {
             name: point.name.clone(),
             kind: KnownKind::ControlPoint,
@@ -369,7 +373,7 @@ impl Known {
 fn of_photos(
     reconstruction: &Reconstruction,
     list: &PositionList,
-    world: &World,
+    world: &ListWorld,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Known>, Fault> {
     let named: Vec<&str> = list.positions.iter().map(|p| p.name.as_str()).collect();
@@ -457,7 +461,7 @@ fn by_positions(known: &[Known], points_decide: bool) -> Result<Georeferenced, F
         rms: Some(found.rms),
         scale_error: Some(found.scale_error),
         scale_interval: Some(found.scale_interval),
-        turn_error_degrees: Some(found.turn_error.to_degrees()),
+        rotation_error_degrees: Some(found.rotation_error.to_degrees()),
         warnings: Vec::new(),
     })
 }

@@ -300,9 +300,9 @@ fn result(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mut Vec<Command>
         "Scale: {scale} {unit} to one of the reconstruction's units"
     ));
     ui.label(sure);
-    if let Some(turn) = fitted.turn_error_degrees {
+    if let Some(degrees) = fitted.rotation_error_degrees {
         ui.label(format!(
-            "Least sure turn: ± {turn:.3} degrees (standard error)"
+            "Least sure rotation: ± {degrees:.3} degrees (standard error)"
         ));
     }
     if let Some(rms) = fitted.rms {
