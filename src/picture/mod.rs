@@ -9,6 +9,7 @@ mod canvas;
 mod decode;
 mod encode;
 mod exif_size;
+mod image_size;
 mod jpeg;
 mod mask;
 mod overlay;
