@@ -29,5 +29,5 @@ pub use mask::{LEFT_OUT, mask_of_regions, paint_regions};
 pub use overlay::overlay;
 pub use reduce::{reduced, reduced_size};
 pub use scale_bar::{BarEdge, ScaleBar, scale_bars};
-pub use text::Anchor;
+pub use text::{Anchor, Typeface, text_width};
 pub use undistort::undistorted;
