@@ -45,8 +45,8 @@ pub mod cli;
 #[cfg(feature = "app")]
 pub use fragscale_app as app;
 pub use fragscale_core::{
-    camera, fault, files, flight, geodesy, geometry, georeference, jobs, picture, raster, scale,
-    surface, units,
+    camera, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, picture, raster,
+    scale, split_mix, surface, units,
 };
 pub use fragscale_exports as exports;
 pub use fragscale_formats as formats;

@@ -17,12 +17,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The core's modules and their floors. `fault` is the cellar: a sentence that every floor can say.
-const FLOORS: [(&str, i32); 13] = [
+const FLOORS: [(&str, i32); 15] = [
     ("fault", -1),
     ("files", 0),
     ("geometry", 0),
     ("jobs", 0),
+    ("numbers", 0),
     ("raster", 0),
+    ("split_mix", 0),
     ("units", 0),
     ("camera", 1),
     ("geodesy", 1),

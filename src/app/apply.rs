@@ -276,7 +276,7 @@ impl State {
         let shown = |scale: Option<f64>| {
             scale.map_or_else(
                 || "no scale".to_owned(),
-                |scale| crate::picture::significant_digits(scale, 6),
+                |scale| crate::numbers::significant_digits(scale, 6),
             )
         };
         Some(format!("{}\t{}", shown(scale.top), shown(scale.bottom)))

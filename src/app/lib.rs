@@ -29,7 +29,7 @@ pub mod viewport;
 mod writing;
 
 use fragscale_core::{
-    camera, fault, files, flight, geometry, jobs, picture, scale, surface, units,
+    camera, fault, files, flight, geometry, jobs, numbers, picture, scale, surface, units,
 };
 use fragscale_exports as exports;
 use fragscale_formats as formats;

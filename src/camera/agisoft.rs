@@ -19,7 +19,7 @@
 use glam::{DMat2, DVec2, DVec3};
 
 use super::branch::invert;
-use super::distortion::NotInvertible;
+use super::not_invertible::NotInvertible;
 use super::polynomial::smallest_positive_root;
 
 /// The squared radius up to which a frame camera's fold is looked for: tan 89.9 degrees, squared.

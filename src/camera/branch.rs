@@ -7,7 +7,7 @@
 
 use glam::{DMat2, DVec2};
 
-use super::distortion::NotInvertible;
+use super::not_invertible::NotInvertible;
 
 /// The ideal point that `map` (the distorted point and the derivative, `None` beyond the fold) puts
 /// at `distorted`, to `tolerance`. The map leaves the origin where it is.

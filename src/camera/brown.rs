@@ -11,7 +11,7 @@
 use glam::{DMat2, DVec2};
 
 use super::branch::invert;
-use super::distortion::NotInvertible;
+use super::not_invertible::NotInvertible;
 use super::polynomial::smallest_positive_root;
 
 /// The squared radius up to which the fold is looked for: tan 89.9 degrees, squared. No lens with

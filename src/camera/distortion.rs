@@ -12,6 +12,7 @@ use glam::{DVec2, DVec3};
 use super::agisoft::{Agisoft, AgisoftProjection};
 use super::brown::Brown;
 use super::fisheye::Fisheye;
+use super::not_invertible::NotInvertible;
 use super::visualsfm::VisualSfm;
 
 /// A lens model with its coefficients.
@@ -28,18 +29,6 @@ pub enum Distortion {
     VisualSfm(VisualSfm),
     /// Agisoft's model where it has terms that OpenCV's lack.
     Agisoft(Agisoft),
-}
-
-/// The model does not reach this point of the image: no direction is seen there.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error(
-    "the distortion model folds back before it reaches this point (at a distorted radius of {fold:.4} focal lengths, the point is at {radius:.4})"
-)]
-pub struct NotInvertible {
-    /// Distance of the point from the principal point, in focal lengths.
-    pub radius: f64,
-    /// How far the model reaches in that direction, in focal lengths.
-    pub fold: f64,
 }
 
 impl Distortion {

@@ -8,8 +8,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::distortion::NotInvertible;
 use super::growing::solve_growing;
+use super::not_invertible::NotInvertible;
 use super::polynomial::smallest_positive_root;
 
 /// OpenCV's equidistant distortion. Make it with [`Fisheye::new`].

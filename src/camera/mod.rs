@@ -6,6 +6,7 @@ mod brown;
 mod distortion;
 mod fisheye;
 mod growing;
+mod not_invertible;
 mod polynomial;
 mod pose;
 mod visualsfm;
@@ -14,8 +15,9 @@ use glam::{DVec2, DVec3};
 
 pub use agisoft::{Agisoft, AgisoftProjection};
 pub use brown::Brown;
-pub use distortion::{Distortion, NotInvertible};
+pub use distortion::Distortion;
 pub use fisheye::Fisheye;
+pub use not_invertible::NotInvertible;
 pub use pose::{NotRotation, Pose};
 pub use visualsfm::VisualSfm;
 

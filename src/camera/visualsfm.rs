@@ -10,8 +10,8 @@
 
 use glam::DVec2;
 
-use super::distortion::NotInvertible;
 use super::growing::solve_growing;
+use super::not_invertible::NotInvertible;
 
 /// VisualSFM's radial term.
 #[derive(Debug, Clone, Copy, PartialEq)]

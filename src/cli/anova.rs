@@ -5,12 +5,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::outputs::OutputArguments;
-use super::{Answer, ScalesFormat};
+use super::Answer;
+use super::outputs::AnswerArguments;
 use crate::exports::{self, AnovaReport};
 use crate::fault::Fault;
 use crate::formats::{FileError, read_grouped_values};
-use crate::fragmentation::Anova;
+use crate::fragmentation::{Anova, SIGNIFICANCE};
 
 #[derive(Debug, Args)]
 pub(super) struct AnovaArguments {
@@ -39,13 +39,10 @@ pub(super) struct AnovaArguments {
     #[arg(long, value_name = "DF,SS", value_parser = published, requires = "between")]
     within: Option<(usize, f64)>,
     /// The level of significance.
-    #[arg(long, default_value_t = 0.05)]
+    #[arg(long, default_value_t = SIGNIFICANCE)]
     level: f64,
-    /// How to write it.
-    #[arg(long, value_enum, default_value = "table")]
-    format: ScalesFormat,
     #[command(flatten)]
-    output: OutputArguments,
+    answer: AnswerArguments,
 }
 
 /// "9,1.9"
@@ -57,13 +54,14 @@ fn published(text: &str) -> Result<(usize, f64), String> {
 }
 
 pub(super) fn anova(arguments: &AnovaArguments) -> Result<Answer, String> {
-    let outputs = arguments.output.outputs(&arguments.file)?;
+    let outputs = arguments.answer.output.outputs(&arguments.file)?;
     let (report, warnings) = report(arguments)?;
-    let text = match arguments.format {
-        ScalesFormat::Table => exports::anova_table(&report),
-        ScalesFormat::Csv => exports::anova_csv(&report).map_err(|e| e.to_string())?,
-        ScalesFormat::Json => exports::anova_json(&report).map_err(|e| e.to_string())?,
-    };
+    let text = arguments.answer.text(
+        &report,
+        exports::anova_table,
+        exports::anova_csv,
+        exports::anova_json,
+    )?;
     let text = outputs.deliver(text)?;
     Ok(Answer::new(text, warnings))
 }

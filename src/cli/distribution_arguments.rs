@@ -1,25 +1,91 @@
-//! The arguments of every command that reads size distributions: the files and their columns.
+//! The arguments that `psd fit` and `psd compare` have in common: the files with their columns, the
+//! function, what is written.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::OutputUnit;
+use super::outputs::AnswerArguments;
 use crate::formats::{DistributionColumns, FileError, read_size_distributions};
-use crate::fragmentation::DistributionSet;
+use crate::fragmentation::{DistributionSet, Model};
 
+/// The columns of every table of size distributions.
 #[derive(Debug, Args)]
-pub(super) struct DistributionArguments {
-    /// Tables of cumulative percent passing by size, as CSV. Curves without a method are called after
-    /// their file.
-    #[arg(required = true, value_name = "FILE")]
-    files: Vec<PathBuf>,
+pub(super) struct ColumnArguments {
     /// The column of sizes, where its name does not say so.
     #[arg(long, value_name = "COLUMN")]
-    size: Option<String>,
+    pub(super) size: Option<String>,
     /// The column of cumulative percent passing.
     #[arg(long, value_name = "COLUMN")]
     passing: Option<String>,
+    /// The unit of sizes, where a table does not state it.
+    #[arg(long = "size-unit", alias = "unit", value_enum)]
+    unit: Option<OutputUnit>,
+}
+
+impl ColumnArguments {
+    /// With these columns named alone.
+    pub(super) fn columns(&self) -> DistributionColumns {
+        DistributionColumns {
+            size: self.size.clone(),
+            passing: self.passing.clone(),
+            unit: self.unit.map(Into::into),
+            ..DistributionColumns::default()
+        }
+    }
+}
+
+/// The function, the percentiles, and what is written.
+#[derive(Debug, Args)]
+pub(super) struct FittingArguments {
+    /// The function that is fitted: to each curve, or to each method's mean curve.
+    #[arg(long, value_parser = models(), default_value = "swebrec")]
+    pub(super) model: Model,
+    /// Percents passing whose sizes are given or compared.
+    #[arg(
+        long,
+        value_name = "PERCENT,...",
+        value_delimiter = ',',
+        value_parser = percent,
+        default_value = "10,20,50,80,90"
+    )]
+    pub(super) percentiles: Vec<f64>,
+    #[command(flatten)]
+    pub(super) answer: AnswerArguments,
+    /// Draw the distributions with the functions into this file, .svg or .png; may be given more than
+    /// once.
+    #[arg(long, value_name = "FILE")]
+    pub(super) figure: Vec<PathBuf>,
+}
+
+/// The models by their keys, each explained by its name.
+fn models() -> impl TypedValueParser<Value = Model> {
+    let keys = Model::ALL.map(|model| PossibleValue::new(model.key()).help(model.name()));
+    PossibleValuesParser::new(keys).map(|key| {
+        let model = Model::ALL.into_iter().find(|model| model.key() == key);
+        model.unwrap_or_default()
+    })
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let percent = text.trim().parse().map_err(|e| format!("{e}"))?;
+    if percent > 0.0 && percent < 100.0 {
+        return Ok(percent);
+    }
+    Err("give percents between 0 and 100".to_owned())
+}
+
+/// Files of size distributions of several methods.
+#[derive(Debug, Args)]
+pub(super) struct DistributionArguments {
+    /// Tables of cumulative percent passing by size, as CSV. Curves without a method are called after
+    /// their file; so is a trial without a name whose method was in a file before.
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    columns: ColumnArguments,
     /// The column that says how it was measured.
     #[arg(long, value_name = "COLUMN")]
     method: Option<String>,
@@ -32,41 +98,40 @@ pub(super) struct DistributionArguments {
     /// The column of areas or masses.
     #[arg(long, value_name = "COLUMN")]
     weight: Option<String>,
-    /// The unit of sizes, where a table does not state it.
-    #[arg(long = "size-unit", alias = "unit", value_enum)]
-    unit: Option<OutputUnit>,
 }
 
 impl DistributionArguments {
     /// The curves of all files in the unit of the first, with what was mended.
     pub(super) fn read(&self) -> Result<(DistributionSet, Vec<String>), String> {
         let columns = DistributionColumns {
-            size: self.size.clone(),
-            passing: self.passing.clone(),
             method: self.method.clone(),
             trial: self.trial.clone(),
             photo: self.photo.clone(),
             weight: self.weight.clone(),
-            unit: self.unit.map(Into::into),
+            ..self.columns.columns()
         };
-        let mut joined: Option<DistributionSet> = None;
+        let mut read: Vec<(&Path, String, DistributionSet)> = Vec::new();
         let mut warnings = Vec::new();
         for file in &self.files {
-            let (mut set, found) =
+            let (mut set, mut found) =
                 read_size_distributions(file, &columns).map_err(|error| error.to_string())?;
-            let found = found.into_iter();
-            warnings.extend(found.map(|warning| format!("{}: {warning}", file.display())));
-            let name = file.file_stem().unwrap_or_default();
-            set.name_method(&name.to_string_lossy());
-            match &mut joined {
-                None => joined = Some(set),
-                Some(joined) => joined
-                    .join(&set)
-                    .map_err(|fault| FileError::new(file, fault).to_string())?,
-            }
+            let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+            set.name_method(&stem);
+            let others = read.iter().map(|(_, name, set)| (name.as_str(), set));
+            let renamed = set
+                .set_apart(&stem, &others.collect::<Vec<_>>())
+                .map_err(|fault| FileError::new(file, fault).to_string())?;
+            found.extend(renamed);
+            let name = file.display().to_string();
+            warnings.extend(found.iter().map(|warning| format!("{name}: {warning}")));
+            read.push((file, name, set));
         }
-        // The command line asks for one or more.
-        let joined = joined.ok_or_else(|| "no file is named; name one".to_owned())?;
+        let Some((first, _, set)) = read.first() else {
+            // The command line asks for one or more.
+            return Err("no file is named; name one".to_owned());
+        };
+        let joined = DistributionSet::joined(set.unit, read.iter().map(|(_, _, set)| set))
+            .map_err(|fault| FileError::new(first, fault).to_string())?;
         Ok((joined, warnings))
     }
 

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::outputs::OutputArguments;
-use super::{Answer, ScalesFormat};
+use super::Answer;
+use super::outputs::AnswerArguments;
 use crate::exports;
 use crate::formats::read_effort_table;
 
@@ -15,21 +15,19 @@ pub(super) struct EffortArguments {
     /// times for each method or trial. Times are in minutes (others as "90 s", "0:01:30" or by the
     /// column's name, "time_s").
     file: PathBuf,
-    /// How to write it.
-    #[arg(long, value_enum, default_value = "table")]
-    format: ScalesFormat,
     #[command(flatten)]
-    output: OutputArguments,
+    answer: AnswerArguments,
 }
 
 pub(super) fn effort(arguments: &EffortArguments) -> Result<Answer, String> {
-    let outputs = arguments.output.outputs([&arguments.file])?;
+    let outputs = arguments.answer.output.outputs([&arguments.file])?;
     let (effort, warnings) = read_effort_table(&arguments.file).map_err(|e| e.to_string())?;
-    let text = match arguments.format {
-        ScalesFormat::Table => exports::effort_text(&effort),
-        ScalesFormat::Csv => exports::effort_csv(&effort).map_err(|e| e.to_string())?,
-        ScalesFormat::Json => exports::effort_json(&effort).map_err(|e| e.to_string())?,
-    };
+    let text = arguments.answer.text(
+        &effort,
+        exports::effort_text,
+        exports::effort_csv,
+        exports::effort_json,
+    )?;
     let text = outputs.deliver(text)?;
     Ok(Answer::new(text, warnings))
 }

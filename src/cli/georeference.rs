@@ -155,8 +155,8 @@ fn table(result: &Georeferenced) -> String {
         }
         _ => text += ", from one distance that nothing checks\n",
     }
-    if let Some(turn) = result.turn_error_degrees {
-        text += &format!("least sure turn: ± {turn:.3} degrees (standard error)\n");
+    if let Some(degrees) = result.rotation_error_degrees {
+        text += &format!("least sure rotation: ± {degrees:.3} degrees (standard error)\n");
     }
     let crs = result
         .crs
@@ -209,7 +209,7 @@ fn value(result: &Georeferenced) -> Value {
         "scale": result.similarity.scale,
         "scale_standard_error": result.scale_error,
         "scale_interval_95": result.scale_interval,
-        "turn_standard_error_degrees": result.turn_error_degrees,
+        "rotation_standard_error_degrees": result.rotation_error_degrees,
         "rms": result.rms,
         "positions": positions.collect::<Vec<_>>(),
         "distances": lengths.collect::<Vec<_>>(),

@@ -1,10 +1,12 @@
 //! Where the answers of commands go: standard output or a file, which is written by one rule
 //! (`files::overwrite`), looked at before the work begins and again when it is written.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::ScalesFormat;
 use crate::fault::Fault;
 use crate::files::{self, Inputs, Kind};
 use crate::formats::FileError;
@@ -34,6 +36,33 @@ impl OutputArguments {
         inputs: impl IntoIterator<Item = P>,
     ) -> Result<Outputs<'_>, String> {
         Outputs::new(self.force, inputs).answer(self.output.as_deref())
+    }
+}
+
+/// How and where the answer of a command goes that is a table for people, CSV or JSON.
+#[derive(Debug, Clone, Args)]
+pub(super) struct AnswerArguments {
+    /// How to write it.
+    #[arg(long, value_enum, default_value = "table")]
+    format: ScalesFormat,
+    #[command(flatten)]
+    pub(super) output: OutputArguments,
+}
+
+impl AnswerArguments {
+    /// What a report says in the chosen format.
+    pub(super) fn text<T, C: Display, J: Display>(
+        &self,
+        report: &T,
+        table: fn(&T) -> String,
+        csv: fn(&T) -> Result<String, C>,
+        json: fn(&T) -> Result<String, J>,
+    ) -> Result<String, String> {
+        match self.format {
+            ScalesFormat::Table => Ok(table(report)),
+            ScalesFormat::Csv => csv(report).map_err(|e| e.to_string()),
+            ScalesFormat::Json => json(report).map_err(|e| e.to_string()),
+        }
     }
 }
 

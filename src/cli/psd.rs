@@ -17,7 +17,7 @@ pub(super) enum PsdCommand {
 
 pub(super) fn psd(command: &PsdCommand, progress: &Progress) -> Result<Answer, String> {
     match command {
-        PsdCommand::Fit(arguments) => psd_fit::fit(arguments),
+        PsdCommand::Fit(arguments) => psd_fit::fit(arguments, progress),
         PsdCommand::Compare(arguments) => psd_compare::compare(arguments, progress),
     }
 }

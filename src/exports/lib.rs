@@ -11,7 +11,7 @@ mod scales_table;
 mod size_distributions;
 mod split_desktop;
 
-use fragscale_core::{camera, fault, files, flight, geodesy, jobs, picture, scale, units};
+use fragscale_core::{camera, fault, files, flight, geodesy, jobs, numbers, picture, scale, units};
 use fragscale_fragmentation as fragmentation;
 
 pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};
@@ -28,6 +28,5 @@ pub use size_distributions::{
     figure_svg, fit_csv, fit_json, fit_table,
 };
 pub use split_desktop::{
-    ExportError, ExportRequest, ExportSummary, Provenance, Replace, export_for_split_desktop,
-    other_flight_in,
+    ExportRequest, ExportSummary, Provenance, Replace, export_for_split_desktop, other_flight_in,
 };

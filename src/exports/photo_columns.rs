@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use super::PhotoLine;
 use crate::flight::{Verdict, compare_names};
-use crate::picture::significant_digits;
+use crate::numbers::significant_digits;
 use crate::units::LengthUnit;
 
 /// A column of photos, known by its name.

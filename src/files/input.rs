@@ -42,6 +42,13 @@ impl fmt::Display for FileError {
 
 impl std::error::Error for FileError {}
 
+/// A file or folder that cannot be `done` ("read", "written", "made"): the folder it lies in may be full,
+/// or not the user's.
+pub fn cannot_be(done: &str, error: &std::io::Error) -> Fault {
+    let what = format!("it cannot be {done} ({error})");
+    Fault::new(what, "check the disk, or choose another folder")
+}
+
 /// Opens a file for reading; a directory is refused in words.
 ///
 /// # Errors

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 /// Device and number of a file: hard links share them.
 type Identity = (u64, u64);
@@ -111,8 +112,25 @@ impl Inputs {
 /// its path: an editor that saved it anew gave the same path another file.
 #[derive(Debug, Clone, Default)]
 struct Known {
-    by_identity: HashMap<Identity, PathBuf>,
+    by_identity: HashMap<Identity, Named>,
     by_path: HashMap<PathBuf, PathBuf>,
+}
+
+/// How a file was named, and when it was last changed then.
+#[derive(Debug, Clone)]
+struct Named {
+    path: PathBuf,
+    changed: Option<SystemTime>,
+}
+
+impl Named {
+    /// Whether a file that has the identity now is the one that had it. The number of a file that is gone,
+    /// because it was replaced by a save, goes to the next one that is made.
+    fn is(&self, now: &fs::Metadata) -> bool {
+        let there = fs::metadata(&self.path).ok();
+        let still_there = there.is_some_and(|there| identity(&there) == identity(now));
+        still_there || self.changed == now.modified().ok()
+    }
 }
 
 impl Known {
@@ -125,9 +143,10 @@ impl Known {
             return;
         }
         if let Some(identity) = identity(&metadata) {
-            self.by_identity
-                .entry(identity)
-                .or_insert_with(|| path.to_owned());
+            self.by_identity.entry(identity).or_insert_with(|| Named {
+                path: path.to_owned(),
+                changed: metadata.modified().ok(),
+            });
         }
         if let Ok(real) = fs::canonicalize(path) {
             self.by_path.entry(real).or_insert_with(|| path.to_owned());
@@ -135,8 +154,10 @@ impl Known {
     }
 
     fn find(&self, path: &Path) -> Option<&Path> {
-        let same = fs::metadata(path).ok().as_ref().and_then(identity);
-        let same = same.and_then(|identity| self.by_identity.get(&identity));
+        let same = fs::metadata(path).ok().and_then(|now| {
+            let named = self.by_identity.get(&identity(&now)?)?;
+            named.is(&now).then_some(&named.path)
+        });
         let found = same.or_else(|| self.by_path.get(&fs::canonicalize(path).ok()?));
         found.map(PathBuf::as_path)
     }
@@ -197,6 +218,20 @@ mod tests {
             assert_eq!(inputs.named(&at(name)), None);
         }
         assert!(!is_same_file(&at("new"), &at("new")), "it is not there");
+        // Another file that has got the number of one that is gone: another time tells it, where no name
+        // is left that leads to the old one.
+        #[cfg(unix)]
+        {
+            let old = Inputs::of([at("copy")]);
+            fs::rename(at("copy"), at("reused")).unwrap();
+            assert!(old.named(&at("reused")).is_some(), "moved, and the same");
+            let reused = fs::File::options().write(true).open(at("reused")).unwrap();
+            let later = SystemTime::now() + std::time::Duration::from_secs(5);
+            reused.set_modified(later).unwrap();
+            assert_eq!(old.named(&at("reused")), None);
+            fs::rename(at("reused"), at("copy")).unwrap();
+            assert!(old.named(&at("copy")).is_some(), "by its path");
+        }
         // Saved anew by an editor: another file in its place.
         fs::rename(at("copy"), at("a")).unwrap();
         assert!(inputs.named(&at("a")).is_some());

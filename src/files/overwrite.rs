@@ -7,6 +7,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use super::atomic::write_whole;
+use super::input::cannot_be;
 use super::inputs::Inputs;
 use super::marks::{Kind, LOOKED_AT};
 use crate::fault::Fault;
@@ -117,10 +118,7 @@ pub fn write(
     force: bool,
 ) -> Result<(), Fault> {
     may_write(path, kind, inputs, force)?;
-    write_whole(path, contents).map_err(|error| {
-        let what = format!("it cannot be written ({error})");
-        Fault::new(what, "check the disk, or choose another folder")
-    })
+    write_whole(path, contents).map_err(|error| cannot_be("written", &error))
 }
 
 #[cfg(test)]

@@ -6,11 +6,11 @@
 //! sieve_series    the openings of ASTM E11, ISO 565 R20/3, EN 933-2
 //! joining         the curves of several files in one unit
 //! merging         photos to one distribution, weighted as chosen
-//! model, swebrec, swebrec5, rosin_rammler, gates_gaudin_schuhmann
-//!                 the functions that are fitted
+//! functions       that are fitted: Swebrec and its extension, Rosin-Rammler, Gates-Gaudin-Schuhmann
 //! fit             least squares, covariance, percentiles with confidence bands
 //! comparison      methods against the reference: residuals, norms, envelopes, shifts
 //! anova           one-way analysis of variance
+//! analysis        all of it for a table of methods: sieves, merging, the reference, what is said
 //! effort          time that each step took
 //! ```
 //!
@@ -18,23 +18,23 @@
 //! (`Swebrec` and its like), which take and give shares 0 to 1. Sizes are in the unit of the set; no
 //! formula here knows a unit.
 
+mod analysis;
 mod anova;
 mod comparison;
 mod distribution;
 mod distribution_set;
 mod effort;
 mod fit;
-mod gates_gaudin_schuhmann;
+mod functions;
 mod joining;
 mod merging;
-mod model;
-mod rosin_rammler;
 mod sieve_series;
-mod swebrec;
-mod swebrec5;
 
-use fragscale_core::{fault, units};
+use fragscale_core::{fault, jobs, units};
 
+pub use analysis::{
+    Analysis, AnalysisOptions, MARKED_PERCENTILES, PERCENTILES, SIGNIFICANCE, fit_each,
+};
 pub use anova::{Anova, Repeatability, Variation, repeatability};
 pub use comparison::{
     Comparison, ComparisonOptions, CurveNorm, Improvement, MeanPoint, MethodComparison,
@@ -44,10 +44,9 @@ pub use distribution::SizeDistribution;
 pub use distribution_set::{DistributionSet, LabelledDistribution, Labels};
 pub use effort::{Effort, TimeSum};
 pub use fit::{Fit, FitOptions, FittedParameter, Percentile, TOPSIZE_PERCENT, fit};
-pub use gates_gaudin_schuhmann::{GatesGaudinSchuhmann, GatesGaudinSchuhmannError};
+pub use functions::{
+    Curve, GatesGaudinSchuhmann, GatesGaudinSchuhmannError, Model, RosinRammler, RosinRammlerError,
+    Swebrec, Swebrec5, Swebrec5Error, SwebrecError,
+};
 pub use merging::{Merged, Weighting, merge};
-pub use model::{Curve, Model};
-pub use rosin_rammler::{RosinRammler, RosinRammlerError};
 pub use sieve_series::{Resampled, Sieve, SieveSeries, resample};
-pub use swebrec::{Swebrec, SwebrecError};
-pub use swebrec5::{Swebrec5, Swebrec5Error};

@@ -1,6 +1,6 @@
 //! The similarity between two frames from pairs of positions of which some may be wrong.
 //!
-//! Three pairs make a similarity. Of many threes (all, or random ones of a fixed seed) the best ten
+//! Three pairs make a similarity. Of many minimal samples of three (all, or random ones of a fixed seed) the best ten
 //! are drawn together on the half of the pairs that fits best (the concentration steps of Rousseeuw &
 //! Van Driessen, "A fast algorithm for the minimum covariance determinant estimator", 1999), and the
 //! one whose better half has the least of largest residuals wins (least quantile of squares, Rousseeuw
@@ -11,7 +11,7 @@
 //!
 //! The standard error of the scale. With q the sources and y the targets, both from their weighted
 //! means, and R the rotation, the scale is s = sum(w q·Rᵀy) / sum(w |q|²) (Umeyama 1991, equation 42,
-//! written out). A small turn moves y across q and leaves s as it is, so to the first order
+//! written out). A small rotation moves y across q and leaves s as it is, so to the first order
 //!
 //! ```text
 //! var(s) = sum(w qᵀ RᵀC R q) / (sum(w |q|²))²,   C = 3 / (3 n - 7) · sum(w r rᵀ)
@@ -28,6 +28,7 @@ use super::student::t95;
 use super::umeyama::similarity_of;
 use crate::fault::Fault;
 use crate::geometry::{Similarity, median};
+use crate::split_mix::SplitMix;
 
 /// Of good residuals' lengths in space, 99.9 % are below this many standard deviations (of one
 /// coordinate): the root of the quantile of chi squared with three degrees of freedom. A tighter cut
@@ -35,13 +36,13 @@ use crate::geometry::{Similarity, median};
 const LENGTH_999: f64 = 4.033_142;
 /// And half are below this many.
 const LENGTH_50: f64 = 1.538_172;
-/// As many threes are tried at most.
-const MOST_THREES: usize = 500;
+/// As many minimal samples are tried at most.
+const MOST_SAMPLES: usize = 500;
 /// As many of them are drawn together.
 const FINALISTS: usize = 10;
-/// Radians that the turn about the long axis of the positions may be unsure by (one standard
+/// Radians that the rotation about the long axis of the positions may be unsure by (one standard
 /// deviation): 5 degrees. More, and they lie on a line.
-const LARGEST_TURN_ERROR: f64 = 0.087_266_462_6;
+const LARGEST_ROTATION_ERROR: f64 = 0.087_266_462_6;
 /// Relative standard error of a scale beyond which there is no scale.
 const LARGEST_SCALE_ERROR: f64 = 0.1;
 
@@ -71,9 +72,9 @@ pub struct Fit {
     pub scale_error: f64,
     /// Half the width of the scale's 95 % interval, relative to it (Student's t).
     pub scale_interval: f64,
-    /// The standard error, in radians, of the turn about the long axis of the positions, which is the
+    /// The standard error, in radians, of the rotation about the long axis of the positions, which is the
     /// least sure.
-    pub turn_error: f64,
+    pub rotation_error: f64,
 }
 
 impl Fit {
@@ -116,7 +117,7 @@ pub fn fit(pairs: &[Pair]) -> Result<Fit, Fault> {
 
 fn on_a_line() -> Fault {
     Fault::new(
-        "the known positions lie on a line, so that the turn about it is not determined",
+        "the known positions lie on a line, so that the rotation about it is not determined",
         "add positions beside it, such as ground control points or a crossing strip",
     )
 }
@@ -181,7 +182,7 @@ impl Problem {
     /// The similarity with the least residual of the better half.
     fn most_agreed_on(&self) -> Option<Similarity> {
         let score = |similarity: &Similarity| self.of_better_half(&self.distances(similarity));
-        let mut found: Vec<(f64, Similarity)> = threes(self.pairs.len())
+        let mut found: Vec<(f64, Similarity)> = minimal_samples(self.pairs.len())
             .filter_map(|three| self.of_indices(&three))
             .map(|similarity| (score(&similarity), similarity))
             .collect();
@@ -241,7 +242,7 @@ impl Problem {
             }
             let similarity = self.of_indices(&used).ok_or_else(on_a_line)?;
             let distances = self.distances(&similarity);
-            // The best of many threes fits better than the noise is; all together tell it.
+            // The best of many minimal samples fits better than the noise is; all together tell it.
             let squares: f64 = used
                 .iter()
                 .filter_map(|i| distances.get(*i))
@@ -303,8 +304,8 @@ impl Problem {
         let sigma =
             ((covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z) / 3.0).sqrt();
         let across = beside_the_axis(sources).min(beside_the_axis(targets));
-        let turn_error = sigma / across;
-        if turn_error.is_nan() || turn_error > LARGEST_TURN_ERROR {
+        let rotation_error = sigma / across;
+        if rotation_error.is_nan() || rotation_error > LARGEST_ROTATION_ERROR {
             return Err(on_a_line());
         }
         if scale_error.is_nan() || scale_error > LARGEST_SCALE_ERROR {
@@ -324,7 +325,7 @@ impl Problem {
             rms: (squares / chosen.len() as f64).sqrt(),
             scale_error,
             scale_interval: scale_error * t95(free),
-            turn_error,
+            rotation_error,
         })
     }
 }
@@ -347,9 +348,9 @@ fn beside_the_axis(sum: DMat3) -> f64 {
         .sqrt()
 }
 
-/// Threes of indices: all of them where they are few, else random ones, always the same.
-fn threes(count: usize) -> Box<dyn Iterator<Item = [usize; 3]>> {
-    if count * (count - 1) * (count - 2) / 6 <= MOST_THREES {
+/// Minimal samples, three indices each: all of them where they are few, else random ones, always the same.
+fn minimal_samples(count: usize) -> Box<dyn Iterator<Item = [usize; 3]>> {
+    if count * (count - 1) * (count - 2) / 6 <= MOST_SAMPLES {
         return Box::new((0..count).flat_map(move |a| {
             (a + 1..count).flat_map(move |b| (b + 1..count).map(move |c| [a, b, c]))
         }));
@@ -360,21 +361,8 @@ fn threes(count: usize) -> Box<dyn Iterator<Item = [usize; 3]>> {
     Box::new(
         std::iter::repeat_with(three)
             .filter(|[a, b, c]| a != b && b != c && c != a)
-            .take(MOST_THREES),
+            .take(MOST_SAMPLES),
     )
-}
-
-/// Steele, Lea & Flood, "Fast splittable pseudorandom number generators", 2014.
-pub(super) struct SplitMix(pub(super) u64);
-
-impl SplitMix {
-    pub(super) fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 
 use crate::geometry::Similarity;
 
-/// How much thinner than long a set of points may be before the turn about its length is lost in
+/// How much thinner than long a set of points may be before the rotation about its length is lost in
 /// rounding.
 const THINNEST: f64 = 1e-9;
 

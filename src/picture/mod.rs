@@ -27,6 +27,6 @@ pub use exif_size::{SizeInExif, size_in_exif};
 pub use mask::{LEFT_OUT, mask_of_regions, paint_regions};
 pub use overlay::overlay;
 pub use reduce::{reduced, reduced_size};
-pub use scale_bar::{BarEdge, ScaleBar, scale_bars, significant_digits};
+pub use scale_bar::{BarEdge, ScaleBar, scale_bars};
 pub use text::Anchor;
 pub use undistort::undistorted;

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::numbers::{round_down, significant_digits};
 use crate::scale::PhotoScale;
 use crate::units::LengthUnit;
 
@@ -68,7 +69,7 @@ pub fn scale_bars(
     let bar = |(edge, scale, y): (BarEdge, Option<f64>, f64)| {
         // Pixels per world unit, times world units per unit.
         let scale = scale? * unit.in_units_of(world_unit);
-        let (length, length_text) = round_length(LONGEST_SHARE * width / scale)?;
+        let length = round_down(LONGEST_SHARE * width / scale)?;
         let length_px = length * scale;
         let middle = DVec2::new(width / 2.0, y);
         let half = DVec2::new(length_px / 2.0, 0.0);
@@ -80,39 +81,12 @@ pub fn scale_bars(
             from: middle - half,
             to: middle + half,
             text: format!(
-                "{length_text} {unit} · {} px/{unit}",
+                "{length} {unit} · {} px/{unit}",
                 significant_digits(scale, 4)
             ),
         })
     };
     edges.into_iter().filter_map(bar).collect()
-}
-
-/// The largest of 1, 2 and 5 times a power of ten that is no longer than `longest`, and its text.
-fn round_length(longest: f64) -> Option<(f64, String)> {
-    if !longest.is_finite() || longest <= 0.0 {
-        return None;
-    }
-    let exponent = longest.log10().floor();
-    // One power below as well: the logarithm may round up at a power of ten.
-    let candidates = [exponent - 1.0, exponent].map(|e| [1.0, 2.0, 5.0].map(|digit| (digit, e)));
-    let (digit, exponent) = candidates
-        .into_iter()
-        .flatten()
-        .rfind(|(digit, e)| digit * 10_f64.powf(*e) <= longest * (1.0 + 1e-12))?;
-    let decimals = (-exponent).max(0.0) as usize;
-    let text = format!("{:.decimals$}", digit * 10_f64.powf(exponent));
-    // The number that its text says, without the noise of the power.
-    Some((text.parse().ok()?, text))
-}
-
-/// A number with at least so many significant digits, without an exponent, for people to read and
-/// type.
-pub fn significant_digits(number: f64, digits: u8) -> String {
-    let exponent = number.abs().log10().floor();
-    let decimals = (f64::from(digits) - 1.0 - exponent).clamp(0.0, 12.0);
-    let decimals = if decimals.is_nan() { 0.0 } else { decimals };
-    format!("{number:.*}", decimals as usize)
 }
 
 #[cfg(test)]
@@ -163,35 +137,5 @@ mod tests {
         assert_eq!(bars.len(), 1);
         assert_eq!(bars[0].text, "0.2 ft · 780.3 px/ft");
         assert!((bars[0].length_px - 156.0576).abs() < 1e-9);
-    }
-
-    #[test]
-    fn lengths_are_round_and_fit() {
-        let text = |longest| round_length(longest).unwrap().1;
-        assert_eq!(text(99.99), "50");
-        assert_eq!(text(100.0), "100");
-        assert_eq!(text(1000.0), "1000");
-        assert_eq!(text(0.001), "0.001");
-        assert_eq!(text(4.9), "2");
-        assert_eq!(text(0.26), "0.2");
-        for step in 0..4000 {
-            let longest = 10_f64.powf(f64::from(step) / 250.0 - 8.0);
-            let (length, _) = round_length(longest).unwrap();
-            assert!(length <= longest * 1.000_001 && length * 2.5 > longest * 0.999_999);
-        }
-        assert!(round_length(0.0).is_none() && round_length(f64::INFINITY).is_none());
-    }
-
-    #[test]
-    fn numbers_have_their_digits() {
-        for (number, text) in [
-            (25.6, "25.60"),
-            (0.025_634, "0.02563"),
-            (1234.5, "1234"),
-            (98_765.4, "98765"),
-            (1.0, "1.000"),
-        ] {
-            assert_eq!(significant_digits(number, 4), text);
-        }
     }
 }

@@ -23,7 +23,9 @@ mod show;
 mod surface_buffers;
 mod view;
 
-use fragscale_core::{camera, fault, flight, geometry, jobs, picture, scale, surface, units};
+use fragscale_core::{
+    camera, fault, flight, geometry, jobs, numbers, picture, scale, surface, units,
+};
 
 pub use device::gpu::{Gpu, device_descriptor};
 pub use furniture::colormap::viridis;

@@ -6,15 +6,13 @@
 //! Steele et al., "Fast Splittable Pseudorandom Number Generators" (OOPSLA 2014), so that nothing
 //! repeats within a scene.
 
+use fragscale_core::split_mix::{SplitMix, spread};
 use glam::{DMat3, DVec3};
 
 /// Hashes 64 bits to 64 bits (the finaliser of SplitMix64); a bijection.
 #[must_use]
 pub(super) const fn hash(value: u64) -> u64 {
-    let mut h = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    h = (h ^ (h >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    h = (h ^ (h >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    h ^ (h >> 31)
+    spread(value.wrapping_add(SplitMix::GOLDEN))
 }
 
 /// A number in 0..1 (1 excluded) for `seed`; `channel` counts independent draws.

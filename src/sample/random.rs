@@ -7,6 +7,7 @@
 //! exactly, so they give the same bits on every machine; `normal` asks the machine's logarithm,
 //! whose last bit may differ.
 
+use fragscale_core::split_mix::{SplitMix, spread};
 use glam::{DQuat, DVec3, DVec4};
 
 /// A stream of random numbers, fixed by its seed.
@@ -17,20 +18,11 @@ pub struct Random {
     key: u64,
 }
 
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-
-/// The output function of SplitMix64: a bijection that spreads every bit.
-fn mix(z: u64) -> u64 {
-    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
-}
-
 impl Random {
     /// The stream of a seed.
     pub fn new(seed: u64) -> Self {
         // SplitMix64 never gives four zeros in a row, the one state that xoshiro cannot leave.
-        let nth = |n: u64| mix(seed.wrapping_add(GOLDEN.wrapping_mul(n)));
+        let nth = |n: u64| spread(seed.wrapping_add(SplitMix::GOLDEN.wrapping_mul(n)));
         Self {
             state: [nth(1), nth(2), nth(3), nth(4)],
             key: seed,
@@ -41,8 +33,9 @@ impl Random {
     /// many numbers were drawn here before.
     pub fn fork(&self, id: u64) -> Self {
         // Two rounds, so that neither (seed, id + 1) nor (seed + 1, id) repeats a stream.
-        Self::new(mix(
-            mix(self.key ^ GOLDEN).wrapping_add(mix(id.wrapping_add(GOLDEN)))
+        Self::new(spread(
+            spread(self.key ^ SplitMix::GOLDEN)
+                .wrapping_add(spread(id.wrapping_add(SplitMix::GOLDEN))),
         ))
     }
 
@@ -105,7 +98,7 @@ mod tests {
 
     /// The first outputs of SplitMix64 for the seed 1234567, as published with the reference code.
     #[test]
-    fn seeds_by_splitmix() {
+    fn seeds_by_splitspread() {
         assert_eq!(
             Random::new(1_234_567).state,
             [

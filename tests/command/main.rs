@@ -13,6 +13,8 @@
 mod common;
 #[path = "../common/own_frame.rs"]
 mod own_frame;
+#[path = "../common/wrong_pile.rs"]
+mod wrong_pile;
 
 mod anova;
 #[cfg(all(feature = "app", target_os = "linux"))]

@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 
 use crate::common::{fragscale, stdout_of};
 use fragscale::exports::{
-    ExportError, ExportRequest, ExportSummary, Provenance, Replace, export_for_split_desktop,
+    ExportRequest, ExportSummary, Provenance, Replace, export_for_split_desktop,
 };
+use fragscale::files::FileError;
 use fragscale::flight::{Evidence, Limits, LookedUp, Outcome, PhotoFileState, Review, Verdict};
 use fragscale::jobs::Progress;
 use fragscale::opening::{OpenOptions, Opened, open_flight};
@@ -88,7 +89,7 @@ impl Computed {
         to: &Path,
         selected: &[bool],
         progress: &Progress,
-    ) -> Result<ExportSummary, ExportError> {
+    ) -> Result<ExportSummary, FileError> {
         let request = ExportRequest {
             review: &self.review,
             from: &Provenance {
@@ -444,7 +445,7 @@ fn scale_objects_are_painted_over() {
 
 /// An export that was cancelled after its first photo and before its last; `None` where the watcher
 /// came too late on a busy machine.
-fn cancelled_midway(computed: &Computed, to: &Path) -> Option<ExportError> {
+fn cancelled_midway(computed: &Computed, to: &Path) -> Option<FileError> {
     let progress = Progress::default();
     let result = std::thread::scope(|scope| {
         let watcher = progress.clone();

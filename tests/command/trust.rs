@@ -3,6 +3,7 @@
 //! photos of a plane, whose scale is the focal length in pixels over the height.
 
 use crate::own_frame;
+use crate::wrong_pile;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -450,28 +451,76 @@ fn a_model_without_a_unit_has_no_scale() {
     }
 }
 
-/// The bundled flight with two pairs of its photos exchanged.
-fn swapped() -> TempDir {
-    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
+/// A photo under the surface has as good a scale as one above: it is not trusted, and every list says
+/// why.
+#[test]
+fn a_photo_from_under_the_surface_is_not_trusted() {
     let folder = tempfile::tempdir().expect("a folder");
-    for below in ["", "photos"] {
-        fs::create_dir_all(folder.path().join(below)).expect("made");
-        for entry in fs::read_dir(sample.join(below)).expect("the sample") {
-            let path = entry.expect("an entry").path();
-            if path.is_file() {
-                let name = path.file_name().expect("a name");
-                fs::copy(&path, folder.path().join(below).join(name)).expect("a copy");
-            }
-        }
+    wrong_pile::under_surface(folder.path());
+    let [above, under] = wrong_pile::ABOVE_AND_UNDER;
+    let review = review(&opened(folder.path(), None).expect("opens"));
+    let photos: Vec<PhotoReview<'_>> = review.photos().collect();
+    let verdicts: Vec<Verdict> = photos.iter().map(|photo| photo.verdict).collect();
+    assert_eq!(verdicts, [Verdict::Trust, Verdict::Check]);
+    assert_eq!(photos[1].doubts, [Doubt::UnderSurface]);
+
+    let flight = text_of(folder.path());
+    let words = Doubt::UnderSurface.to_string();
+    let said = format!("{under}: {words}");
+    let (table, err) = run(0, &["scales", flight]);
+    assert!(table.ends_with(&format!("\n\n{said}\n")), "{table}");
+    assert!(err.contains(&said), "{err}");
+    let csv = ["scales", flight, "--unit", "m", "--format", "csv"];
+    let notes_of = |csv: &str| -> Vec<String> {
+        let mut reader = csv::Reader::from_reader(csv.as_bytes());
+        let lines = reader.records().map(|line| line.expect("a line"));
+        lines.map(|line| line[line.len() - 1].to_owned()).collect()
+    };
+    assert_eq!(notes_of(&run(0, &csv).0), ["", words.as_str()]);
+    // JSON has the contract's keys and no more: the sentence is on standard error.
+    let (json, err) = run(0, &["scales", flight, "--unit", "m", "--format", "json"]);
+    assert!(err.contains(&said), "{err}");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    for photo in json["photos"].as_array().expect("photos") {
+        let keys: Vec<&String> = photo.as_object().expect("an object").keys().collect();
+        let mut expected = ["photo", "width", "height", "ground", "scale", "corners"];
+        expected.sort_unstable();
+        assert_eq!(keys, expected);
+        let top = crate::common::scale(photo, "top").expect("a scale");
+        assert!((top / wrong_pile::BOTH_SCALES - 1.0).abs() < 1e-9, "{top}");
     }
-    let photo = |n: u32| folder.path().join(format!("photos/IMG_000{n}.jpg"));
-    for (a, b) in [(1, 9), (3, 5)] {
-        let aside = folder.path().join("aside");
-        fs::rename(photo(a), &aside).expect("moved");
-        fs::rename(photo(b), photo(a)).expect("moved");
-        fs::rename(&aside, photo(b)).expect("moved");
+    let (_, err) = run(0, &["check", flight]);
+    assert!(err.contains("taken from under the surface"), "{err}");
+
+    let to = folder.path().join("all");
+    let (_, err) = run(0, &["export", flight, "--to", text_of(&to)]);
+    assert!(err.contains(&said), "{err}");
+    let of_export = |name: &str| fs::read_to_string(to.join(name)).expect("the export");
+    let sheet = of_export("scales.html");
+    for verdict in ["trust", "check"] {
+        let cell = format!("<div class=\"verdict {verdict}\">{verdict}</div>");
+        assert_eq!(sheet.matches(&cell).count(), 1, "{sheet}");
     }
-    folder
+    assert_eq!(sheet.matches("<li>taken from under the surface").count(), 1);
+    assert_eq!(notes_of(&of_export("scales.csv")), ["", words.as_str()]);
+    let footprints: serde_json::Value =
+        serde_json::from_str(&of_export("footprints.geojson")).expect("JSON");
+    let features = footprints["features"].as_array().expect("features").iter();
+    let verdicts: Vec<&serde_json::Value> =
+        features.map(|one| &one["properties"]["verdict"]).collect();
+    assert_eq!(verdicts, ["trust", "check"]);
+    let to = folder.path().join("trusted");
+    let trusted = [
+        "export",
+        flight,
+        "--photos",
+        "trusted",
+        "--to",
+        text_of(&to),
+    ];
+    run(0, &trusted);
+    let csv = fs::read_to_string(to.join("scales.csv")).expect("the export");
+    assert!(csv.contains(above) && !csv.contains(under), "{csv}");
 }
 
 #[test]
@@ -481,9 +530,10 @@ fn swapped_photos_are_not_trusted() {
     let as_flown = review(&opened(&sample, None).expect("opens"));
     let as_flown: Vec<PhotoReview<'_>> = as_flown.photos().collect();
     assert!(!as_flown.iter().any(of_colours), "{as_flown:?}");
-    let folder = swapped();
+    let folder = tempfile::tempdir().expect("a folder");
+    wrong_pile::swapped(folder.path());
     let review = review(&opened(folder.path(), None).expect("opens"));
-    let swapped = [0, 2, 4, 8];
+    let swapped = wrong_pile::SWAPPED;
     let trusted = as_flown
         .iter()
         .filter(|photo| photo.verdict == Verdict::Trust);
@@ -518,6 +568,8 @@ fn swapped_photos_are_not_trusted() {
     let trust = "<div class=\"verdict trust\">trust</div>";
     assert_eq!(sheet.matches(trust).count(), still_trusted);
     assert_eq!(sheet.matches("its colours").count(), 4);
+    let csv = fs::read_to_string(to.join("scales.csv")).expect("the export");
+    assert_eq!(csv.matches("its colours").count(), 4, "{csv}");
     let (_, err) = run(0, &["check", text_of(folder.path())]);
     assert_eq!(err.matches("its colours").count(), 4, "{err}");
 }

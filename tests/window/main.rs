@@ -18,6 +18,8 @@
 mod common;
 #[path = "../common/own_frame.rs"]
 mod own_frame;
+#[path = "../common/wrong_pile.rs"]
+mod wrong_pile;
 
 mod broken;
 mod desk;

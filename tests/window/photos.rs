@@ -4,9 +4,11 @@ use std::collections::HashMap;
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
+use fragscale::flight::Doubt;
 
 use crate::common::scales_json;
 use crate::desk::{Desk, flight};
+use crate::wrong_pile;
 
 /// Top and bottom scale of each photo in pixels per centimetre, from the command.
 fn scales() -> HashMap<String, [f64; 2]> {
@@ -222,4 +224,51 @@ fn every_tab_of_the_right_panel_opens() {
     assert!(desk.says("A photo is to check when one of these holds"));
     desk.click(Role::Tab, "Photo");
     assert!(desk.says("Corner points, m"));
+}
+
+/// The verdicts in the table, and the photos that are chosen for export.
+fn verdicts_and_chosen(desk: &Desk) -> (Vec<String>, Vec<bool>) {
+    let rows = desk.rows().into_iter();
+    let verdicts = rows.map(|(_, cells)| cells[3].clone()).collect();
+    (verdicts, desk.open().history.now().chosen.clone())
+}
+
+/// What the window proposes for export is what it trusts.
+#[test]
+fn a_photo_from_under_the_surface_is_not_trusted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    wrong_pile::under_surface(folder.path());
+    let desk = Desk::new(Some(folder.path()));
+    assert_eq!(desk.photos(), wrong_pile::ABOVE_AND_UNDER);
+    let (verdicts, chosen) = verdicts_and_chosen(&desk);
+    assert!(verdicts[0].ends_with("trust"), "{verdicts:?}");
+    assert!(verdicts[1].ends_with("check"), "{verdicts:?}");
+    assert_eq!(chosen, [true, false]);
+    let of_under = desk.open().review.photo(1).expect("a photo");
+    assert_eq!(of_under.doubts, [Doubt::UnderSurface]);
+}
+
+#[test]
+fn swapped_photos_are_not_trusted() {
+    let as_flown = Desk::new(Some(&flight("assets/sample")));
+    let (as_flown, chosen_as_flown) = verdicts_and_chosen(&as_flown);
+    let folder = tempfile::tempdir().expect("a folder");
+    wrong_pile::swapped(folder.path());
+    let desk = Desk::new(Some(folder.path()));
+    let (verdicts, chosen) = verdicts_and_chosen(&desk);
+    for photo in 0..9 {
+        let is_swapped = wrong_pile::SWAPPED.contains(&photo);
+        let reviewed = desk.open().review.photo(photo).expect("a photo");
+        let of_colours = reviewed.doubts.iter().any(Doubt::is_of_colours);
+        assert_eq!(of_colours, is_swapped, "{photo}: {:?}", reviewed.doubts);
+        match is_swapped {
+            true => assert!(verdicts[photo].ends_with("check"), "{verdicts:?}"),
+            false => assert_eq!(verdicts[photo], as_flown[photo]),
+        }
+        assert_eq!(
+            chosen[photo],
+            chosen_as_flown[photo] && !is_swapped,
+            "{photo}"
+        );
+    }
 }

@@ -16,21 +16,22 @@ use fragscale::flight::{FlightSettings, Limits, Outcome, Verdict};
 use fragscale::geometry::Ray;
 use fragscale::render::{ColorBy, Scope};
 use fragscale::scale::{Ground, ImageKind, ScaleObjectKind};
+use fragscale::split_mix::SplitMix;
 use fragscale::units::LengthUnit;
 use glam::{DVec2, DVec3};
 
 use crate::desk::{Desk, copy, copy_files, flight};
 
-/// A sequence that is the same every time (SplitMix64).
-pub struct Dice(pub u64);
+/// A sequence that is the same every time.
+pub struct Dice(SplitMix);
 
 impl Dice {
+    pub fn new(seed: u64) -> Self {
+        Self(SplitMix(seed))
+    }
+
     fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.next()
     }
 
     /// Below `end`.
@@ -373,7 +374,7 @@ fn two_thousand_commands_leave_the_window_consistent() {
         broken: vec![output.path().join("not there"), flight("Cargo.toml")],
         output: output.path().to_owned(),
     };
-    let mut dice = Dice(20_170_822);
+    let mut dice = Dice::new(20_170_822);
     let mut desk = Desk::new(Some(first.path()));
     let mut opened_with = 0;
     for step in 0..2000 {

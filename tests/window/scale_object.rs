@@ -128,7 +128,7 @@ fn a_sphere_is_traced_by_clicks() {
     );
     // What is on the screen is the scale in pixels per centimetre.
     let scale = compared.scale.expect("a scale") / 100.0;
-    let text = fragscale::picture::significant_digits(scale, 5);
+    let text = fragscale::numbers::significant_digits(scale, 5);
     assert!(desk.says(&text), "{text}");
     assert!(desk.open().is_changed());
 }

@@ -10,7 +10,8 @@ use egui::{Event, Key, Modifiers};
 use fragscale::app::Command;
 use fragscale::app::size_distributions::{Computed, DistributionCommand, Page, Settings};
 use fragscale::app::tasks::Task;
-use fragscale::fragmentation::{FitOptions, Model, Weighting, fit};
+use fragscale::exports::comparison_json;
+use fragscale::fragmentation::{FitOptions, Model, SieveSeries, Weighting, fit};
 use fragscale::units::LengthUnit;
 use tempfile::TempDir;
 
@@ -115,8 +116,14 @@ fn the_page_opens_without_a_flight_and_with_one() {
     // The sample flight's known fragments, by one click.
     desk.click(Role::Button, "Add the flight's known fragments");
     let computed = computed(&desk);
-    assert_eq!(computed.methods, ["reference"]);
-    assert_eq!(computed.set.curves[0].distribution.points().len(), 14);
+    assert_eq!(computed.analysis.methods, ["reference"]);
+    assert_eq!(
+        computed.analysis.photos.curves[0]
+            .distribution
+            .points()
+            .len(),
+        14
+    );
     assert!(desk.says("reference.csv"));
     // What the program itself took is measured.
     desk.click(Role::Tab, "Time effort");
@@ -138,8 +145,8 @@ fn a_dropped_table_is_drawn_and_one_of_a_flight_goes_to_the_pile() {
     let mut desk = Desk::new(None);
     drop_on(&mut desk, &[&path]);
     assert_eq!(desk.harness.state().state().page, Page::SizeDistributions);
-    assert_eq!(computed(&desk).set.curves.len(), 7);
-    assert_eq!(computed(&desk).methods, ["sieve", "point cloud"]);
+    assert_eq!(computed(&desk).analysis.photos.curves.len(), 7);
+    assert_eq!(computed(&desk).analysis.methods, ["sieve", "point cloud"]);
     // The plot's legend.
     assert!(desk.shows(Role::CheckBox, "sieve") && desk.shows(Role::CheckBox, "point cloud"));
     assert!(desk.shows(Role::Image, "Plot of percent passing"));
@@ -149,7 +156,7 @@ fn a_dropped_table_is_drawn_and_one_of_a_flight_goes_to_the_pile() {
     let mut desk = Desk::new(None);
     drop_on(&mut desk, &[&path, &flight("tests/windrow")]);
     assert_eq!(desk.open().flight().parts().name, "Windrow");
-    assert_eq!(computed(&desk).set.curves.len(), 7);
+    assert_eq!(computed(&desk).analysis.photos.curves.len(), 7);
 
     // A list of poses is something of a flight, as ever.
     let poses = folder.path().join("poses.csv");
@@ -181,7 +188,7 @@ fn the_fits_are_those_of_the_core() {
         assert_eq!(now.fits.len(), 4);
         let rows = table(&desk, "Parameters");
         assert_eq!(rows.len(), 4, "{rows:?}");
-        for (trial, row) in now.trials.curves.iter().zip(rows) {
+        for (trial, row) in now.analysis.trials.curves.iter().zip(rows) {
             let fitted = fit(&trial.distribution, model, &FitOptions::default()).expect("a fit");
             assert_eq!(row[0], trial.labels.to_string());
             for (place, parameter) in fitted.parameters.iter().enumerate() {
@@ -195,7 +202,7 @@ fn the_fits_are_those_of_the_core() {
         }
     }
     // The mean of trial 1's two photos.
-    let first = &computed(&desk).trials.curves[1];
+    let first = &computed(&desk).analysis.trials.curves[1];
     assert_eq!(first.distribution.points()[0], [8.0, 7.0]);
 }
 
@@ -208,7 +215,7 @@ fn sizes_in_another_unit_are_the_same_sizes() {
     };
     let before = p50(&desk);
     desk.click(Role::RadioButton, "Sizes in in");
-    assert_eq!(computed(&desk).set.unit, LengthUnit::Inch);
+    assert_eq!(computed(&desk).analysis.photos.unit, LengthUnit::Inch);
     assert!((p50(&desk) * 25.4 / before - 1.0).abs() < 1e-6);
     assert!(desk.says("xmax in"));
     desk.press(Modifiers::COMMAND, Key::Z);
@@ -218,7 +225,7 @@ fn sizes_in_another_unit_are_the_same_sizes() {
 #[test]
 fn the_reference_can_be_chosen() {
     let (_folder, mut desk) = desk(&[("trials.csv", TRIALS)]);
-    assert_eq!(computed(&desk).reference.as_deref(), Some("sieve"));
+    assert_eq!(computed(&desk).analysis.reference.as_deref(), Some("sieve"));
     desk.click(Role::Tab, "Against the reference");
     let rows = table(&desk, "Percent error of the passing");
     assert_eq!(rows.len(), 5);
@@ -231,7 +238,10 @@ fn the_reference_can_be_chosen() {
     assert!((drawn.errors[0].y - 100.0 * (41.0 / 36.0 - 1.0)).abs() < 1e-9);
     choose(&mut desk, "Reference", "point cloud");
     assert_eq!(settings(&desk).reference.as_deref(), Some("point cloud"));
-    assert_eq!(computed(&desk).reference.as_deref(), Some("point cloud"));
+    assert_eq!(
+        computed(&desk).analysis.reference.as_deref(),
+        Some("point cloud")
+    );
     // 100 (36 / 41 - 1) = -12.2 %.
     let rows = table(&desk, "Percent error of the passing");
     assert_eq!(rows[0], ["8.000", "6.83", "6.00", "-12.2", "yes"]);
@@ -280,9 +290,15 @@ fn a_table_is_pasted() {
     desk.fill("Trial of the table", "7");
     desk.click(Role::Button, "Add table");
     let now = computed(&desk);
-    assert_eq!(now.set.unit, LengthUnit::Inch);
-    assert_eq!(now.set.curves[0].labels.to_string(), "sieve / 7");
-    assert_eq!(now.set.curves[0].distribution.points()[3], [8.0, 100.0]);
+    assert_eq!(now.analysis.photos.unit, LengthUnit::Inch);
+    assert_eq!(
+        now.analysis.photos.curves[0].labels.to_string(),
+        "sieve / 7"
+    );
+    assert_eq!(
+        now.analysis.photos.curves[0].distribution.points()[3],
+        [8.0, 100.0]
+    );
     assert!(
         !desk.shows(Role::Button, "Add table"),
         "the small window is closed"
@@ -308,7 +324,9 @@ fn a_table_is_pasted_onto_the_page() {
     );
     desk.click(Role::Button, "Add table");
     assert_eq!(
-        computed(&desk).set.curves[0].distribution.points()[1],
+        computed(&desk).analysis.photos.curves[0]
+            .distribution
+            .points()[1],
         [2.0, 35.0]
     );
 }
@@ -343,7 +361,7 @@ fn a_bad_table_is_refused_in_one_line() {
     // Mended, it is taken.
     paste(&mut desk, "size\tpassing\n1\t10\n2\t35\n4\t80\n");
     desk.click(Role::Button, "Add table");
-    assert_eq!(computed(&desk).set.curves.len(), 1);
+    assert_eq!(computed(&desk).analysis.photos.curves.len(), 1);
 }
 
 /// Pastes into the small window, over what is there.
@@ -359,10 +377,10 @@ fn paste(desk: &mut Desk, text: &str) {
 fn what_is_taken_away_comes_back() {
     let more = "size_mm,percent_passing\n10,5\n20,30\n40,80\n80,99\n";
     let (_folder, mut desk) = desk(&[("trials.csv", TRIALS), ("belt.csv", more)]);
-    let curves = |desk: &Desk| computed(desk).set.curves.len();
+    let curves = |desk: &Desk| computed(desk).analysis.photos.curves.len();
     assert_eq!(curves(&desk), 8);
     // Without a method it is called after its file.
-    assert_eq!(computed(&desk).methods[2], "belt");
+    assert_eq!(computed(&desk).analysis.methods[2], "belt");
     desk.click(Role::Button, "Remove trials.csv");
     assert_eq!(curves(&desk), 1);
     desk.press(Modifiers::COMMAND, Key::Z);
@@ -401,7 +419,7 @@ fn what_is_taken_away_comes_back() {
 fn the_same_curves_twice_are_refused_in_one_line() {
     let (folder, mut desk) = desk(&[("trials.csv", TRIALS)]);
     drop_on(&mut desk, &[&folder.path().join("trials.csv")]);
-    assert_eq!(computed(&desk).set.curves.len(), 7);
+    assert_eq!(computed(&desk).analysis.photos.curves.len(), 7);
     assert!(desk.logged("is there already, from trials.csv"));
 }
 
@@ -476,7 +494,7 @@ fn the_results_are_always_those_of_the_data_and_settings_of_now() {
         fs::write(&path, text).expect("written");
         paths.push(path);
     }
-    let mut dice = Dice(19_380_704);
+    let mut dice = Dice::new(19_380_704);
     for step in 0..400 {
         let mut settings = settings(&desk);
         let command = match dice.below(12) {
@@ -552,15 +570,16 @@ fn check(desk: &Desk) {
         return;
     };
     assert_eq!(computed.edit, *page.history.now());
-    assert_eq!(computed.set.curves.len(), count);
+    assert_eq!(computed.analysis.photos.curves.len(), count);
     let labels: BTreeSet<_> = computed
-        .set
+        .analysis
+        .photos
         .curves
         .iter()
         .map(|c| c.labels.clone())
         .collect();
     assert_eq!(labels.len(), count, "two curves with the same labels");
-    assert_eq!(computed.fits.len(), computed.trials.curves.len());
+    assert_eq!(computed.fits.len(), computed.analysis.trials.curves.len());
 }
 
 #[test]
@@ -591,4 +610,77 @@ fn the_figure_and_the_report_are_written() {
     desk.type_path(&folder.path().join("a.bmp"));
     desk.click(Role::Button, "Write figure");
     assert!(desk.logged("let its name end in .svg or .png"));
+}
+
+/// The same tables looked at in the same way: the window's figure, report and numbers are the command's
+/// to the last byte.
+#[test]
+fn the_command_gives_the_same_answers() {
+    let belt = "size_in,percent_passing\n0.2,4\n0.5,10\n1,30\n2,60\n4,90\n";
+    let again = "method,size_mm,percent_passing\nSieve,8,5\nsieve,8,7\nSieve,16,15\nsieve,16,14\n\
+                 Sieve,63,66\nsieve,63,65\nSieve,125,97\nsieve,125,96\n";
+    let tables = [
+        ("trials.csv", TRIALS),
+        ("belt.csv", belt),
+        ("again.csv", again),
+    ];
+    let usual = Settings::default();
+    for (count, settings, arguments) in [
+        (1, usual.clone(), &[][..]),
+        (3, usual.clone(), &[]),
+        (
+            2,
+            Settings {
+                model: Model::RosinRammler,
+                sieves: Some(SieveSeries::Iso565),
+                reference: Some("point cloud".to_owned()),
+                envelope_percent: 20.0,
+                ..usual.clone()
+            },
+            &[
+                "--model=rosin-rammler",
+                "--resample=iso-565",
+                "--reference=point cloud",
+                "--envelope=20",
+            ],
+        ),
+    ] {
+        let tables = &tables[..count];
+        let (folder, mut desk) = desk(&[]);
+        for (name, text) in tables {
+            let path = folder.path().join(name);
+            fs::write(&path, text).expect("written");
+            drop_on(&mut desk, &[&path]);
+        }
+        let command = DistributionCommand::Set(settings);
+        desk.harness
+            .state_mut()
+            .apply(Command::Distributions(command));
+        desk.settle();
+        for save in [
+            DistributionCommand::SaveFigure(folder.path().join("window.svg")),
+            DistributionCommand::SaveReport(folder.path().join("window.html")),
+        ] {
+            desk.harness.state_mut().apply(Command::Distributions(save));
+            desk.settle();
+        }
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_fragscale"))
+            .current_dir(folder.path())
+            .args(["psd", "compare", "--format=json"])
+            .args(["--figure=command.svg", "--report=command.html"])
+            .args(arguments)
+            .args(tables.iter().map(|(name, _)| name))
+            .output()
+            .expect("the command");
+        assert!(output.status.success(), "{output:?}");
+        let comparison = computed(&desk).analysis.comparison.as_ref();
+        let json = comparison_json(comparison.expect("compared")).expect("JSON");
+        assert_eq!(String::from_utf8_lossy(&output.stdout), json);
+        for ending in ["svg", "html"] {
+            let read = |who: &str| {
+                fs::read_to_string(folder.path().join(format!("{who}.{ending}"))).expect("written")
+            };
+            assert_eq!(read("window"), read("command"), "{arguments:?}");
+        }
+    }
 }

@@ -90,7 +90,8 @@ actions! {
         hover: "Write the figure and all tables of methods held against the reference as an HTML page",
         shortcut: None,
         command: |state| {
-            let compared = state.distributions.computed.as_ref()?.comparison.is_some();
+            let computed = state.distributions.computed.as_ref()?;
+            let compared = computed.analysis.methods.len() > 1;
             compared.then_some(Command::Ask(Some(Asking::SaveReport)))
         },
     }

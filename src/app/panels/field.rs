@@ -9,7 +9,7 @@ pub(super) fn number_field(
     value: f64,
     suffix: &str,
 ) -> Option<f64> {
-    let mut text = crate::picture::significant_digits(value, 10);
+    let mut text = crate::numbers::significant_digits(value, 10);
     if text.contains('.') {
         text = text.trim_end_matches('0').trim_end_matches('.').to_owned();
     }

@@ -1,7 +1,7 @@
 //! How verdicts and missing numbers are shown.
 
 use crate::flight::Verdict;
-use crate::picture::significant_digits;
+use crate::numbers::significant_digits;
 
 /// The colour of a verdict: told apart by brightness too.
 pub fn verdict_color(verdict: Verdict, visuals: &egui::Visuals) -> egui::Color32 {

@@ -1,18 +1,14 @@
-//! Fits, comparison and repeatability of everything that was added: a job, whenever data or settings
-//! change.
+//! The analysis of everything that was added, and the fit of every trial: a job, whenever data or
+//! settings change.
 
 use super::Edit;
 use super::drawing::Drawing;
-use super::source::joined;
 use crate::fault::Fault;
 use crate::fragmentation::{
-    Comparison, ComparisonOptions, DistributionSet, Fit, FitOptions, Labels, Percentile,
-    Repeatability, compare, fit, repeatability,
+    Analysis, AnalysisOptions, DistributionSet, Fit, FitOptions, Labels, PERCENTILES, Percentile,
+    fit_each,
 };
 use crate::jobs::Progress;
-
-/// How the reference is called where nobody has chosen one.
-const REFERENCES: [&str; 4] = ["sieve", "sieving", "reference", "known fragments"];
 
 /// What was computed.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,22 +17,10 @@ pub struct Computed {
     pub edition: u64,
     /// Those.
     pub edit: Edit,
-    /// All curves, in the settings' unit.
-    pub set: DistributionSet,
-    /// The same with the photos of a trial merged.
-    pub trials: DistributionSet,
-    /// How they were merged, a sentence each.
-    pub notes: Vec<String>,
-    /// The methods, in the order of the curves.
-    pub methods: Vec<String>,
-    /// The method that the others are held against.
-    pub reference: Option<String>,
-    /// The function fitted to each curve of `trials`, in their order.
+    /// Of all curves, in the settings' unit.
+    pub analysis: Analysis,
+    /// The function fitted to each curve of the analysis's trials, in their order.
     pub fits: Vec<FittedCurve>,
-    /// Every method against the reference; `None` without one.
-    pub comparison: Option<Result<Comparison, Fault>>,
-    /// Of each method with more than one trial.
-    pub repeatability: Vec<(String, Result<Repeatability, Fault>)>,
     /// What the plot draws.
     pub drawing: Drawing,
 }
@@ -52,102 +36,42 @@ pub struct FittedCurve {
     pub percentiles: Vec<Percentile>,
 }
 
-/// The percents passing whose sizes are told.
-pub const PERCENTILES: [f64; 5] = [10.0, 20.0, 50.0, 80.0, 90.0];
-
-/// The methods of a set, in the order of its curves.
-pub fn methods(set: &DistributionSet) -> Vec<String> {
-    let mut methods: Vec<String> = Vec::new();
-    for curve in &set.curves {
-        if !methods.contains(&curve.labels.method) {
-            methods.push(curve.labels.method.clone());
-        }
-    }
-    methods
-}
-
-/// The method that the others are held against: the chosen one, else the one that is called so, else
-/// the first.
-fn reference(methods: &[String], chosen: Option<&String>) -> Option<String> {
-    let chosen = chosen.filter(|chosen| methods.contains(chosen));
-    let called = || {
-        let names = |name: &&str| methods.iter().find(|m| m.to_lowercase() == **name);
-        REFERENCES.iter().find_map(names)
-    };
-    chosen.or_else(called).or(methods.first()).cloned()
-}
-
 /// Computes everything.
 ///
 /// # Errors
 /// Where the curves cannot be brought together, or where it was cancelled.
 pub(crate) fn compute(edition: u64, edit: Edit, progress: &Progress) -> Result<Computed, Fault> {
     let settings = &edit.settings;
-    let mut set = joined(&edit.sources, settings.unit)?;
-    let mut notes = Vec::new();
-    if let Some(series) = settings.sieves {
-        let (resampled, left_out) = set.resampled(series)?;
-        set = resampled;
-        notes.push(format!("at the sieves of {}", series.name()));
-        notes.extend(left_out);
-    }
-    let sieves = settings.sieves.map(|series| series.openings(settings.unit));
-    let (trials, left_out) = set.photos_merged(settings.merging, sieves.as_deref())?;
-    if trials.curves.len() < set.curves.len() {
-        notes.push(format!("photos {}", settings.merging.sentence()));
-    }
-    notes.extend(left_out);
-    progress.stage("fitting");
-    let options = FitOptions::default();
-    let total = trials.curves.len() as u64;
-    let mut fits = Vec::new();
-    for (done, curve) in trials.curves.iter().enumerate() {
-        progress.advance(done as u64, total)?;
-        let fit = fit(&curve.distribution, settings.model, &options);
+    let sets = edit.sources.iter().map(|source| &source.set);
+    let set = DistributionSet::joined(settings.unit, sets)?;
+    // Its file may have been taken away since it was chosen.
+    let chosen = settings.reference.clone();
+    let options = AnalysisOptions {
+        model: settings.model,
+        merging: settings.merging,
+        sieves: settings.sieves,
+        reference: chosen.filter(|chosen| set.methods().contains(chosen)),
+        envelope_percent: settings.envelope_percent,
+        percentiles: PERCENTILES.to_vec(),
+        level: settings.level,
+    };
+    let analysis = Analysis::of(set, &options, progress)?;
+    let plain = |_: &_| Ok(FitOptions::default());
+    let fits = fit_each(&analysis.trials, settings.model, plain, progress)?;
+    let fits = analysis.trials.curves.iter().zip(fits).map(|(curve, fit)| {
         let percentiles = fit.iter().flat_map(|fit| {
             PERCENTILES.map(|percent| fit.percentile(percent, 1.0 - settings.level))
         });
-        fits.push(FittedCurve {
+        FittedCurve {
             labels: curve.labels.clone(),
             percentiles: percentiles.collect(),
             fit,
-        });
-    }
-    progress.stage("comparing");
-    let methods = methods(&set);
-    let reference = reference(&methods, settings.reference.as_ref());
-    let comparison = reference.as_ref().filter(|_| methods.len() > 1);
-    let comparison = comparison.map(|reference| {
-        let options = ComparisonOptions {
-            model: settings.model,
-            envelope_percent: settings.envelope_percent,
-            percentiles: PERCENTILES.to_vec(),
-            ..ComparisonOptions::new(reference)
-        };
-        compare(&trials, &options)
-    });
-    let trials_of = |method: &str| {
-        let labels = trials.curves.iter().map(|curve| &curve.labels);
-        labels.filter(|labels| labels.method == method).count()
-    };
-    let mut repeated = Vec::new();
-    for (done, method) in methods.iter().enumerate() {
-        progress.advance(done as u64, methods.len() as u64)?;
-        if trials_of(method) > 1 {
-            let table = repeatability(&set, method, &[], settings.level);
-            repeated.push((method.clone(), table));
         }
-    }
+    });
     let mut computed = Computed {
         edition,
-        set,
-        trials,
-        notes,
-        methods,
-        reference,
-        fits,
-        comparison,
-        repeatability: repeated,
+        fits: fits.collect(),
+        analysis,
         drawing: Drawing::default(),
         edit,
     };

@@ -6,7 +6,7 @@ use egui_plot::PlotPoint;
 
 use super::computing::Computed;
 use crate::exports::Look;
-use crate::fragmentation::{Curve, Labels, MethodCurve};
+use crate::fragmentation::{Curve, Labels, MARKED_PERCENTILES, MethodCurve};
 
 /// How many points a drawn function has.
 const STEPS: u32 = 160;
@@ -56,17 +56,17 @@ pub struct Area {
 impl Drawing {
     /// Of what was computed.
     pub(super) fn of(computed: &Computed) -> Self {
-        let points = computed.set.curves.iter();
+        let points = computed.analysis.photos.curves.iter();
         let sizes = points.flat_map(|curve| curve.distribution.points().iter().map(|p| p[0]));
         let (low, high) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
             (low.min(size), high.max(size))
         });
         // A little further than measured: functions are told from lines between points.
         let (low, high) = (low / 2.0, high * 1.5);
-        let comparison = computed.comparison.as_ref().and_then(|c| c.as_ref().ok());
+        let comparison = computed.analysis.comparison.as_ref().ok();
         let mut others = 0;
-        let methods = computed.methods.iter().map(|method| {
-            let is_reference = Some(method) == computed.reference.as_ref();
+        let methods = computed.analysis.methods.iter().map(|method| {
+            let is_reference = Some(method) == computed.analysis.reference.as_ref();
             let look = if is_reference {
                 Look::REFERENCE
             } else {
@@ -74,7 +74,12 @@ impl Drawing {
                 Look::of(others)
             };
             let of_method = |labels: &Labels| labels.method == *method;
-            let curves = computed.set.curves.iter().filter(|c| of_method(&c.labels));
+            let curves = computed
+                .analysis
+                .photos
+                .curves
+                .iter()
+                .filter(|c| of_method(&c.labels));
             let curves = curves.map(|curve| {
                 let points = curve.distribution.points().iter();
                 let points = points.map(|&[size, percent]| at(size, percent)).collect();
@@ -87,7 +92,7 @@ impl Drawing {
             });
             let of_trials = fitted.flat_map(|fitted| {
                 let told = fitted.percentiles.iter();
-                let told = told.filter(|p| [50.0, 80.0].contains(&p.percent));
+                let told = told.filter(|p| MARKED_PERCENTILES.contains(&p.percent));
                 let labels = &fitted.labels;
                 told.map(move |p| (format!("P{} of {labels}", p.percent), at(p.size, p.percent)))
             });
@@ -101,7 +106,7 @@ impl Drawing {
             let several = mean.filter(|mean| mean.trials.len() > 1);
             let marks = match several {
                 None => of_trials.collect(),
-                Some(mean) => [50.0, 80.0]
+                Some(mean) => MARKED_PERCENTILES
                     .map(|percent| {
                         let name = format!("P{percent} of {method}, mean");
                         (name, at(mean.fit.curve.size_at(percent), percent))
@@ -161,13 +166,11 @@ fn line(curve: &Curve, low: f64, high: f64) -> Vec<PlotPoint> {
 }
 
 fn spread(mean: &MethodCurve) -> Area {
-    let mut area = Area::default();
-    for point in &mean.points {
-        if let Some(deviation) = point.standard_deviation {
-            area.sizes.push(point.size.log10());
-            area.low.push((point.mean - deviation).max(0.0));
-            area.high.push((point.mean + deviation).min(100.0));
-        }
+    let [low, high] = mean.spread();
+    let percents = |edge: &[[f64; 2]]| edge.iter().map(|point| point[1]).collect();
+    Area {
+        sizes: low.iter().map(|point| point[0].log10()).collect(),
+        low: percents(&low),
+        high: percents(&high),
     }
-    area
 }

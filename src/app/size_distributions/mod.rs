@@ -4,8 +4,8 @@
 //! command     what the engineer can do on it
 //! applying    does that
 //! reading     files and pasted tables, as a job
-//! source      what came from one file, and all of them in one unit
-//! computing   fits and comparisons, as a job, whenever data or settings change
+//! source      what came from one file or pasted table
+//! computing   analysis and fits, as a job, whenever data or settings change
 //! saving      the figure and the report
 //! drawing     what the plot draws of it
 //! measured    how long the program's own steps took
@@ -30,7 +30,7 @@ pub use computing::Computed;
 pub use measured::{EffortFile, MeasuredStep};
 pub use source::Source;
 
-use crate::fragmentation::{Labels, Model, SieveSeries, Weighting};
+use crate::fragmentation::{AnalysisOptions, Labels, Model, SieveSeries, Weighting};
 use crate::state::history::History;
 use crate::units::LengthUnit;
 
@@ -89,14 +89,15 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
+        let usual = AnalysisOptions::default();
         Self {
-            model: Model::Swebrec,
-            merging: Weighting::Equal,
-            sieves: None,
-            reference: None,
+            model: usual.model,
+            merging: usual.merging,
+            sieves: usual.sieves,
+            reference: usual.reference,
             unit: LengthUnit::Millimetre,
-            envelope_percent: 30.0,
-            level: 0.05,
+            envelope_percent: usual.envelope_percent,
+            level: usual.level,
         }
     }
 }

@@ -63,7 +63,9 @@ fn pasted(form: &PasteForm, number: usize) -> Result<Source, String> {
         "" => other.to_owned(),
         text => text.to_owned(),
     };
-    source.name_methods(&typed(&form.method, &format!("pasted {number}")));
+    source
+        .set
+        .name_method(&typed(&form.method, &format!("pasted {number}")));
     let trial = typed(&form.trial, "");
     for curve in &mut source.set.curves {
         if curve.labels.trial.is_empty() {

@@ -79,45 +79,23 @@ impl State {
 
 /// The figure of the comparison, or of the fits where nothing is compared.
 fn contents(computed: &Computed) -> FigureContents {
-    if let Some(Ok(comparison)) = &computed.comparison {
+    let analysis = &computed.analysis;
+    if let Ok(comparison) = &analysis.comparison {
         return exports::figure_of_comparison(comparison);
     }
-    let names: Vec<String> = computed.fits.iter().map(|f| f.labels.to_string()).collect();
-    let curves = computed
-        .trials
-        .curves
-        .iter()
-        .zip(&computed.fits)
-        .zip(&names);
-    let fitted = curves.filter_map(|((curve, fitted), name)| {
-        Some(FittedDistribution {
-            name,
-            distribution: &curve.distribution,
-            fit: fitted.fit.as_ref().ok()?,
-        })
-    });
-    let fitted: Vec<_> = fitted.collect();
+    let fits = computed.fits.iter().map(|fitted| &fitted.fit);
+    let fitted = FittedDistribution::of(&analysis.trials, fits);
     let title = computed.edit.settings.model.name();
-    exports::figure_of_fits(title, computed.set.unit, &fitted)
+    exports::figure_of_fits(title, analysis.trials.unit, &fitted)
 }
 
 fn report(computed: &Computed) -> Result<String, Fault> {
-    let Some(comparison) = &computed.comparison else {
-        let what = "there is one method only, and a report compares";
-        return Err(Fault::new(what, "add another method"));
-    };
     let sources = &computed.edit.sources;
-    let warnings = sources.iter().flat_map(|source| {
+    let names: Vec<String> = sources.iter().map(|source| source.name.clone()).collect();
+    let mended = sources.iter().flat_map(|source| {
         let named = |warning| format!("{}: {warning}", source.name);
         source.warnings.iter().map(named)
     });
-    let repeatability = computed.repeatability.iter();
-    let repeatability = repeatability.filter_map(|(_, found)| found.clone().ok());
-    exports::comparison_report(&ComparisonReport {
-        sources: &sources.iter().map(|s| s.name.clone()).collect::<Vec<_>>(),
-        comparison: comparison.as_ref().map_err(Clone::clone)?,
-        repeatability: &repeatability.collect::<Vec<_>>(),
-        preparation: &computed.notes,
-        warnings: &warnings.collect::<Vec<_>>(),
-    })
+    let report = ComparisonReport::of(&names, mended.collect(), &computed.analysis)?;
+    exports::comparison_report(&report)
 }

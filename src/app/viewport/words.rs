@@ -3,8 +3,9 @@
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, pos2, vec2};
 
 use super::Scene;
+use crate::numbers::significant_digits;
 use crate::open_flight::{Measure, OpenFlight};
-use crate::picture::{Anchor, significant_digits};
+use crate::picture::Anchor;
 use crate::render::{Label, viridis};
 
 pub(super) fn write(scene: &Scene, label: &Label, ui: &egui::Ui) {

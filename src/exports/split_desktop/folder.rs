@@ -12,7 +12,6 @@
 //! away, whatever the list says of it.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -22,41 +21,11 @@ use serde::{Deserialize, Serialize};
 use super::checksum;
 use super::whose::FlightOfExport;
 use crate::fault::Fault;
-use crate::files::{Inputs, is_unfinished, write_whole};
+use crate::files::{FileError, Inputs, cannot_be, is_unfinished, write_whole};
 use crate::jobs::Progress;
 
 /// The list's file.
 const LIST: &str = "export.json";
-
-/// What went wrong, and with which file; prints as `FILE: what; remedy`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ExportError {
-    /// Below the folder that was exported to, or the folder.
-    pub path: PathBuf,
-    /// What is wrong with it.
-    pub fault: Fault,
-}
-
-impl ExportError {
-    pub(super) fn new(path: &Path, fault: Fault) -> Self {
-        Self {
-            path: path.to_owned(),
-            fault,
-        }
-    }
-}
-
-impl fmt::Display for ExportError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // A file name may hold line breaks; the error stays on one line.
-        for c in self.path.display().to_string().chars() {
-            write!(f, "{}", if c.is_control() { '?' } else { c })?;
-        }
-        write!(f, ": {}", self.fault)
-    }
-}
-
-impl std::error::Error for ExportError {}
 
 /// `export.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -125,11 +94,9 @@ impl<'a> ExportFolder<'a> {
         replace: Replace,
         planned: &[String],
         progress: &Progress,
-    ) -> Result<Self, ExportError> {
-        let cannot = |path: &Path, what: &str, e: &io::Error| {
-            let what = format!("it cannot be {what} ({e})");
-            ExportError::new(path, Fault::new(what, "choose another folder"))
-        };
+    ) -> Result<Self, FileError> {
+        let cannot =
+            |path: &Path, what: &str, e: &io::Error| FileError::new(path, cannot_be(what, e));
         let list_path = folder.join(LIST);
         let empty = List {
             program: PROGRAM.to_owned(),
@@ -152,7 +119,7 @@ impl<'a> ExportFolder<'a> {
             let before = before.in_words();
             let what = format!("it holds the export of another flight, {before}");
             let remedy = "choose another folder, or say that it may be replaced (--force)";
-            return Err(ExportError::new(folder, Fault::new(what, remedy)));
+            return Err(FileError::new(folder, Fault::new(what, remedy)));
         }
         let mut opened = Self {
             folder: folder.to_owned(),
@@ -166,7 +133,7 @@ impl<'a> ExportFolder<'a> {
         for (done, name) in planned.iter().enumerate() {
             progress
                 .advance(done as u64, planned.len() as u64)
-                .map_err(|fault| ExportError::new(folder, fault))?;
+                .map_err(|fault| FileError::new(folder, fault))?;
             if let Some(sum) = opened.check(name, progress)? {
                 opened.present.insert(name.clone(), sum);
             }
@@ -201,7 +168,7 @@ impl<'a> ExportFolder<'a> {
     }
 
     /// A file that the flight was read from stays, whoever wrote it.
-    fn refuse_what_was_read(&self, name: &str) -> Result<(), ExportError> {
+    fn refuse_what_was_read(&self, name: &str) -> Result<(), FileError> {
         let path = self.folder.join(name);
         let Some(read) = self.read.named(&path) else {
             return Ok(());
@@ -209,7 +176,7 @@ impl<'a> ExportFolder<'a> {
         let read = read.display();
         let what = format!("the flight was read from it ({read}), so it is not written over");
         let remedy = "choose another folder";
-        Err(ExportError::new(&path, Fault::new(what, remedy)))
+        Err(FileError::new(&path, Fault::new(what, remedy)))
     }
 
     /// The folder itself.
@@ -219,7 +186,7 @@ impl<'a> ExportFolder<'a> {
 
     /// The checksum of a file that is there and ours; `None` where there is none, or one of others
     /// that may be replaced.
-    fn check(&self, name: &str, progress: &Progress) -> Result<Option<String>, ExportError> {
+    fn check(&self, name: &str, progress: &Progress) -> Result<Option<String>, FileError> {
         self.refuse_what_was_read(name)?;
         let ours = self.check_ours(name, progress);
         if ours.is_err() && self.replace == Replace::Anything {
@@ -234,7 +201,7 @@ impl<'a> ExportFolder<'a> {
     }
 
     /// The checksum of a file that is there and ours; `None` where there is none.
-    fn check_ours(&self, name: &str, progress: &Progress) -> Result<Option<String>, ExportError> {
+    fn check_ours(&self, name: &str, progress: &Progress) -> Result<Option<String>, FileError> {
         let path = self.folder.join(name);
         match fs::symlink_metadata(&path) {
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -244,10 +211,8 @@ impl<'a> ExportFolder<'a> {
         let Some(entry) = self.list.files.get(name) else {
             return Err(not_ours(&path, "it is there already"));
         };
-        let sum = checksum::of_file(&path, progress).map_err(|e| {
-            let what = format!("it cannot be read ({e})");
-            ExportError::new(&path, Fault::new(what, "choose another folder"))
-        })?;
+        let sum = checksum::of_file(&path, progress)
+            .map_err(|e| FileError::new(&path, cannot_be("read", &e)))?;
         if sum == entry.sha256 || Some(&sum) == entry.replaces.as_ref() {
             return Ok(Some(sum));
         }
@@ -269,7 +234,7 @@ impl<'a> ExportFolder<'a> {
         &mut self,
         files: &[(String, Vec<u8>)],
         made_from: Option<&str>,
-    ) -> Result<(), ExportError> {
+    ) -> Result<(), FileError> {
         for (name, bytes) in files {
             let entry = Entry {
                 sha256: checksum::of_bytes(bytes),
@@ -302,7 +267,7 @@ impl<'a> ExportFolder<'a> {
         &mut self,
         planned: &[String],
         progress: &Progress,
-    ) -> Result<(), ExportError> {
+    ) -> Result<(), FileError> {
         let names: Vec<String> = self.list.files.keys().cloned().collect();
         for name in names.into_iter().filter(|name| !planned.contains(name)) {
             // A list from elsewhere could name anything; ours names no file outside.
@@ -313,7 +278,7 @@ impl<'a> ExportFolder<'a> {
                 let path = self.folder.join(&name);
                 fs::remove_file(&path).map_err(|e| {
                     let what = format!("the file of an earlier export cannot be removed ({e})");
-                    ExportError::new(&path, Fault::new(what, "remove it yourself"))
+                    FileError::new(&path, Fault::new(what, "remove it yourself"))
                 })?;
             }
             self.list.files.remove(&name);
@@ -324,28 +289,28 @@ impl<'a> ExportFolder<'a> {
         self.write_list()
     }
 
-    fn write_list(&self) -> Result<(), ExportError> {
+    fn write_list(&self) -> Result<(), FileError> {
         let text = serde_json::to_string_pretty(&self.list).map_err(|e| {
             let what = format!("the list of files cannot be written ({e})");
-            ExportError::new(&self.folder, Fault::new(what, "report this"))
+            FileError::new(&self.folder, Fault::new(what, "report this"))
         })?;
         self.write_file(LIST, text.as_bytes())
     }
 
-    fn write_file(&self, name: &str, bytes: &[u8]) -> Result<(), ExportError> {
+    fn write_file(&self, name: &str, bytes: &[u8]) -> Result<(), FileError> {
         self.refuse_what_was_read(name)?;
         let path = self.folder.join(name);
         write_whole(&path, bytes).map_err(|e| {
-            let what = format!("it cannot be written ({e})");
-            let remedy = "check the disk, or choose another folder; what is written stays good";
-            ExportError::new(&path, Fault::new(what, remedy))
+            let mut fault = cannot_be("written", &e);
+            fault.remedy.push_str("; what is written stays good");
+            FileError::new(&path, fault)
         })
     }
 }
 
-fn not_ours(path: &Path, what: &str) -> ExportError {
+fn not_ours(path: &Path, what: &str) -> FileError {
     let what = format!("{what} and is not from fragscale, so it is not written over");
-    ExportError::new(
+    FileError::new(
         path,
         Fault::new(
             what,
@@ -363,7 +328,7 @@ mod tests {
 
     static NOTHING_READ: LazyLock<Inputs> = LazyLock::new(Inputs::default);
 
-    fn open(folder: &Path, planned: &[&str]) -> Result<ExportFolder<'static>, ExportError> {
+    fn open(folder: &Path, planned: &[&str]) -> Result<ExportFolder<'static>, FileError> {
         let read = &NOTHING_READ;
         open_for("flight.toml", read, Replace::Nothing, folder, planned)
     }
@@ -374,7 +339,7 @@ mod tests {
         replace: Replace,
         folder: &Path,
         planned: &[&str],
-    ) -> Result<ExportFolder<'a>, ExportError> {
+    ) -> Result<ExportFolder<'a>, FileError> {
         let planned: Vec<String> = planned.iter().map(|&name| name.to_owned()).collect();
         let flight = FlightOfExport::new("a flight", Path::new(flight), folder);
         let progress = Progress::default();

@@ -37,7 +37,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-pub use folder::{ExportError, Replace};
+pub use folder::Replace;
 pub use whose::other_flight_in;
 
 use self::folder::ExportFolder;
@@ -47,7 +47,7 @@ use self::pictures::PictureSource;
 use self::plan::PhotoNames;
 use self::whose::FlightOfExport;
 use crate::fault::Fault;
-use crate::files::Inputs;
+use crate::files::{FileError, Inputs};
 use crate::flight::{FlightSettings, Review};
 use crate::jobs::Progress;
 use crate::picture;
@@ -133,8 +133,8 @@ pub fn export_for_split_desktop(
     dir: &Path,
     request: &ExportRequest<'_>,
     progress: &Progress,
-) -> Result<ExportSummary, ExportError> {
-    let at_dir = |fault| ExportError::new(dir, fault);
+) -> Result<ExportSummary, FileError> {
+    let at_dir = |fault| FileError::new(dir, fault);
     let flight = request.review.flight();
     let parts = flight.parts();
     let chosen: Vec<usize> = (0..parts.photos.len())
@@ -263,7 +263,7 @@ fn make_pictures<'a>(
     pictures: &[Result<PhotoNames, String>],
     objects: &[Vec<PhotoObject<'_>>],
     progress: &Progress,
-) -> Result<(ExportFolder<'a>, Vec<Done>), ExportError> {
+) -> Result<(ExportFolder<'a>, Vec<Done>), FileError> {
     progress.stage("exporting photos");
     let work = Mutex::new(Work {
         folder,
@@ -290,7 +290,7 @@ fn make_pictures<'a>(
             work.finished += 1;
             let counted = progress
                 .advance(work.finished, chosen.len() as u64)
-                .map_err(|fault| ExportError::new(work.folder.path(), fault));
+                .map_err(|fault| FileError::new(work.folder.path(), fault));
             match done.and_then(|done| counted.map(|()| done)) {
                 Ok(done) => work.done[place] = Some(done),
                 Err(error) => {
@@ -321,7 +321,7 @@ struct Work<'a> {
     folder: ExportFolder<'a>,
     done: Vec<Option<Done>>,
     finished: u64,
-    failed: Option<ExportError>,
+    failed: Option<FileError>,
 }
 
 fn lock<'a, 'b>(work: &'a Mutex<Work<'b>>) -> std::sync::MutexGuard<'a, Work<'b>> {
@@ -336,7 +336,7 @@ fn one_photo(
     names: &PhotoNames,
     objects: &[PhotoObject<'_>],
     progress: &Progress,
-) -> Result<Done, ExportError> {
+) -> Result<Done, FileError> {
     let parts = request.review.flight().parts();
     let photo = request.review.photo(index);
     let scaled = photo.and_then(|photo| Some((photo.camera, photo.scale()?)));

@@ -8,7 +8,7 @@ use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{ComparedObject, ScaleObject};
 use crate::markup::escaped;
-use crate::picture::significant_digits;
+use crate::numbers::significant_digits;
 use crate::scale::{ImageKind, Traced};
 use crate::units::LengthUnit;
 

@@ -7,7 +7,7 @@ use super::plan::PhotoNames;
 use super::{CheckedInput, ExportRequest};
 use crate::flight::compare_names;
 use crate::markup::escaped;
-use crate::picture::significant_digits;
+use crate::numbers::significant_digits;
 use crate::scale::{Ground, ImageKind};
 use crate::units::LengthUnit;
 use crate::{ColumnValue, PHOTO_COLUMNS, PhotoColumn, PhotoLine, ScaleReport};

@@ -58,6 +58,25 @@ impl MethodCurve {
         })
     }
 
+    /// The points of which every trial says something: where trials begin or end on the way, the mean
+    /// of those left may jump.
+    pub fn known_to_all(&self) -> impl Iterator<Item = &MeanPoint> {
+        let known = |point: &&MeanPoint| point.trials == self.trials.len();
+        self.points.iter().filter(known)
+    }
+
+    /// Mean less and plus the standard deviation, two edges of points [size, percent], where there are
+    /// trials to have one; 0 to 100 %.
+    pub fn spread(&self) -> [Vec<[f64; 2]>; 2] {
+        [-1.0, 1.0].map(|sign| {
+            let edge = self.known_to_all().filter_map(|point| {
+                let percent = point.mean + sign * point.standard_deviation?;
+                Some([point.size, percent.clamp(0.0, 100.0)])
+            });
+            edge.collect()
+        })
+    }
+
     /// The smallest and the largest measured size.
     pub(super) fn range(&self) -> Option<[f64; 2]> {
         Some([self.points.first()?.size, self.points.last()?.size])

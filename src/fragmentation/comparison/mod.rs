@@ -17,7 +17,7 @@ pub use method_curve::{MeanPoint, MethodCurve};
 pub use percentiles::{PercentileShift, SCALE_WARNING, Shift};
 pub use residuals::{PERCENT_ERROR, PercentError};
 
-use super::{DistributionSet, Model, SizeDistribution};
+use super::{DistributionSet, Model, PERCENTILES, SizeDistribution};
 use crate::fault::Fault;
 use crate::units::LengthUnit;
 
@@ -43,7 +43,7 @@ impl ComparisonOptions {
             reference: reference.into(),
             model: Model::Swebrec,
             envelope_percent: 30.0,
-            percentiles: vec![10.0, 20.0, 50.0, 80.0, 90.0],
+            percentiles: PERCENTILES.to_vec(),
         }
     }
 

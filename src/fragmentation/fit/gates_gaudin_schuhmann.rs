@@ -5,10 +5,9 @@
 //! which for most rock is smaller than the largest fragment.
 
 use super::coordinates::{
-    Bounds, Coordinates, EXPONENT, FARTHEST, MOST, Share, geometric, sum_of_squares,
+    Bounds, Coordinates, EXPONENT, FARTHEST, MOST, Optimum, Share, geometric, sum_of_squares,
 };
 use super::points::Points;
-use super::search::Optimum;
 use crate::{Curve, GatesGaudinSchuhmann};
 
 #[derive(Debug, Clone, Copy, PartialEq)]

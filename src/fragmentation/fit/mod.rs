@@ -11,13 +11,16 @@
 //!
 //! ```text
 //! points          checks, weights, logarithms
-//! coordinates     what the search runs in; swebrec, rosin_rammler, gates_gaudin_schuhmann
+//! coordinates     what the search runs in: bounds, an optimum
+//! family          each function in coordinates of its own: swebrec, rosin_rammler,
+//!                 gates_gaudin_schuhmann
 //! search          Levenberg-Marquardt within bounds, from many starts
 //! uncertainty     covariance, Student's t
 //! notes           what to know before trusting a fit
 //! ```
 
 mod coordinates;
+mod family;
 mod gates_gaudin_schuhmann;
 mod notes;
 mod points;
@@ -28,7 +31,7 @@ mod swebrec;
 mod tests;
 mod uncertainty;
 
-use coordinates::Family;
+use family::Family;
 use points::Points;
 use uncertainty::Uncertainty;
 

@@ -1,8 +1,8 @@
 //! What to know before trusting a fit, a sentence each.
 
-use super::coordinates::{Coordinates, Family};
+use super::coordinates::{Coordinates, Optimum};
+use super::family::Family;
 use super::points::Points;
-use super::search::Optimum;
 use super::{FitOptions, FittedParameter};
 use crate::Curve;
 

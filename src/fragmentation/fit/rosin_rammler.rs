@@ -3,10 +3,9 @@
 use std::f64::consts::LN_2;
 
 use super::coordinates::{
-    Bounds, Coordinates, EXPONENT, FARTHEST, MOST, Share, geometric, sum_of_squares,
+    Bounds, Coordinates, EXPONENT, FARTHEST, MOST, Optimum, Share, geometric, sum_of_squares,
 };
 use super::points::Points;
-use super::search::Optimum;
 use crate::{Curve, RosinRammler};
 
 #[derive(Debug, Clone, Copy, PartialEq)]

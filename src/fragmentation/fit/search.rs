@@ -8,18 +8,9 @@
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 
-use super::coordinates::{Bounds, Coordinates, Family, MOST, sum_of_squares};
+use super::coordinates::{Bounds, Coordinates, MOST, Optimum, sum_of_squares};
+use super::family::Family;
 use super::points::Points;
-
-/// A place where the search came to rest.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Optimum {
-    pub(super) at: Coordinates,
-    /// Where low and high are equal the coordinate was not free.
-    pub(super) bounds: Bounds,
-    /// With weights of mean 1.
-    pub(super) sum: f64,
-}
 
 /// Evaluations a coordinate that are enough to tell good starts from bad ones.
 const SHORT: usize = 6;

@@ -15,11 +15,10 @@
 //! the smallest sizes. 0 and 1 themselves are its bounds.
 
 use super::coordinates::{
-    Bounds, Coordinates, EXPONENT, FARTHEST, MOST, Share, geometric, sum_of_squares,
+    Bounds, Coordinates, EXPONENT, FARTHEST, MOST, Optimum, Share, geometric, sum_of_squares,
 };
 use super::points::Points;
-use super::search::Optimum;
-use crate::swebrec5::ln_exp_m1;
+use crate::functions::ln_exp_m1;
 use crate::{Curve, Swebrec, Swebrec5};
 
 /// Bounds of ln(a / (1 - a)): a is 0 at the lower and 1 at the upper one, between them not nearer to

@@ -6,6 +6,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::*;
 use crate::{GatesGaudinSchuhmann, RosinRammler, Swebrec, Swebrec5};
+use fragscale_core::split_mix::SplitMix;
 
 /// The sizes of a usual set of sieves.
 const SIEVES: [f64; 12] = [
@@ -112,15 +113,12 @@ fn gradients_are_slopes() {
     }
 }
 
-/// SplitMix64 and Marsaglia's polar method.
-struct Noise(u64);
+/// Marsaglia's polar method.
+struct Noise(SplitMix);
 
 impl Noise {
     fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+        (self.0.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
     fn normal(&mut self) -> f64 {
@@ -138,7 +136,7 @@ impl Noise {
 /// sqrt(N 0.95 0.05); four of these to both sides.
 #[test]
 fn intervals_hold_the_truth_as_often_as_they_say() {
-    let mut noise = Noise(6);
+    let mut noise = Noise(SplitMix(6));
     for truth in truths() {
         let extended = truth.model() == Model::Swebrec5;
         let mut held: Vec<(String, usize)> = Vec::new();
@@ -188,7 +186,7 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
 #[test]
 fn weights_say_what_counts() {
     let truth = truths()[2];
-    let mut noise = Noise(1);
+    let mut noise = Noise(SplitMix(1));
     let distribution = measured(&truth, || 0.3 * noise.normal()).expect("it rises");
     let points = distribution.points().to_vec();
     let with = |weights: Vec<f64>| {
@@ -292,7 +290,7 @@ fn as_many_points_as_parameters_leave_nothing_over() {
 
 #[test]
 fn another_unit_scales_the_sizes() {
-    let mut noise = Noise(3);
+    let mut noise = Noise(SplitMix(3));
     for truth in truths() {
         let Some(distribution) = measured(&truth, || 0.05 * noise.normal()) else {
             continue;

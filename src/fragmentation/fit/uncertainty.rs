@@ -7,7 +7,8 @@
 use nalgebra::DMatrix;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::coordinates::{Coordinates, Family, MOST};
+use super::coordinates::{Coordinates, MOST};
+use super::family::Family;
 use super::points::Points;
 
 /// The covariance at an optimum.

@@ -76,7 +76,7 @@ pub(super) fn by_distances(
         rms: None,
         scale_error: found.scale_error,
         scale_interval: found.scale_interval,
-        turn_error_degrees: None,
+        rotation_error_degrees: None,
         warnings,
     })
 }

@@ -148,8 +148,8 @@ pub struct Georeferenced {
     pub scale_error: Option<f64>,
     /// Half the width of its 95 % interval, relative to it.
     pub scale_interval: Option<f64>,
-    /// The standard error, in degrees, of the turn about the long axis of the positions.
-    pub turn_error_degrees: Option<f64>,
+    /// The standard error, in degrees, of the rotation about the long axis of the positions.
+    pub rotation_error_degrees: Option<f64>,
     /// What was assumed or left out, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -292,9 +292,12 @@ fn georeferenced(
             "{outliers} known positions do not agree with the others and were left out of the fit"
         ));
     }
-    if let Some(turn) = result.turn_error_degrees.filter(|turn| *turn > 1.0) {
+    if let Some(degrees) = result
+        .rotation_error_degrees
+        .filter(|degrees| *degrees > 1.0)
+    {
         warnings.push(format!(
-            "the positions lie nearly on a line: the turn about it is known to {turn:.1} degrees only"
+            "the positions lie nearly on a line: the rotation about it is known to {degrees:.1} degrees only"
         ));
     }
     if result.used() == 3 {
@@ -457,7 +460,7 @@ fn by_positions(known: &[Known], points_decide: bool) -> Result<Georeferenced, F
         rms: Some(found.rms),
         scale_error: Some(found.scale_error),
         scale_interval: Some(found.scale_interval),
-        turn_error_degrees: Some(found.turn_error.to_degrees()),
+        rotation_error_degrees: Some(found.rotation_error.to_degrees()),
         warnings: Vec::new(),
     })
 }

@@ -466,7 +466,7 @@ fn brighton_by_four_receivers() {
     assert!((scale - 1.041_871).abs() < 1e-4, "{scale}");
     let error = found.scale_error.unwrap();
     assert!((error - 0.013_945).abs() < 1e-4, "{error}");
-    let turn = found.turn_error_degrees.unwrap();
+    let turn = found.rotation_error_degrees.unwrap();
     assert!((turn - 1.219).abs() < 0.02, "{turn}");
     assert!(
         found

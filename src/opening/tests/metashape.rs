@@ -13,7 +13,7 @@ use crate::{OpenOptions, open_flight};
 #[test]
 fn angles_serve_as_the_poses_of_a_flight() {
     let folder = tempfile::tempdir().unwrap();
-    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
     let opk = |x: &str, y: &str| {
         format!(
             "# Cameras (2)\n# PhotoID, X, Y, Z, Omega, Phi, Kappa\n\
@@ -36,7 +36,7 @@ fn angles_serve_as_the_poses_of_a_flight() {
     let parts = opened.flight.parts();
     let center = parts.photos[1].pose.center;
     assert!(
-        near(center, DVec3::new(500_000.1, 5_000_000.1, 100.0)),
+        (center - DVec3::new(500_000.1, 5_000_000.1, 100.0)).length() < 1e-12,
         "{center}"
     );
     let caster = &mut parts.surface.caster().unwrap();

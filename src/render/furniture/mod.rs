@@ -7,6 +7,7 @@ pub(crate) mod words;
 
 use glam::{DVec2, DVec3};
 
+use crate::numbers::round_down;
 use crate::picture::Anchor;
 use crate::primitives::lines::{Pen, Stroke};
 use crate::show::Show;
@@ -24,33 +25,12 @@ const AXES: [(&str, DVec3, [u8; 3]); 3] = [
     ("z", DVec3::Z, [72, 132, 232]),
 ];
 
-/// The largest of 1, 2 and 5 times a power of ten that is not larger.
-fn round_length(most: f64) -> f64 {
-    let power = 10_f64.powf(most.log10().floor());
-    let steps = [5.0, 2.0, 1.0].into_iter().map(|step| step * power);
-    // The logarithm may be rounded up across a power of ten.
-    steps
-        .chain([0.5 * power])
-        .find(|length| *length <= most)
-        .unwrap_or(power)
-}
-
-/// A length as people write it.
-fn length_text(length: f64, unit: &str) -> String {
-    // Six digits: enough for a 1, a 2 or a 5, and no trace of binary fractions.
-    let decimals = (-length.log10().floor()).clamp(0.0, 12.0) as usize;
-    format!("{length:.decimals$} {unit}")
-}
-
 /// The scale bar that suits a view: at most a fifth of the viewport's width. `None` where a length
 /// cannot be given, in a view without extent.
 pub(crate) fn scale_bar(view: &View, size: DVec2) -> Option<ScaleBar> {
     let pixels_per_unit = view.pixels_per_unit(size, view.focus);
     let most = size.x * 0.2 / pixels_per_unit;
-    if !(most.is_finite() && most > 0.0) {
-        return None;
-    }
-    let length = round_length(most);
+    let length = round_down(most)?;
     Some(ScaleBar {
         length,
         pixels: length * pixels_per_unit,
@@ -126,7 +106,7 @@ pub(crate) fn labels(view: &View, show: &Show, size: DVec2) -> Vec<Label> {
     {
         labels.push(Label {
             at: (from + to) * 0.5 - DVec2::Y * 5.0 * show.pixels_per_point,
-            text: length_text(bar.length, show.unit.symbol()),
+            text: format!("{} {}", bar.length, show.unit.symbol()),
             anchor: Anchor::BottomMiddle,
             color: ink(show),
         });
@@ -143,10 +123,9 @@ pub(crate) fn ground_grid(
     origin: DVec3,
     show: &Show,
 ) -> Vec<Stroke> {
-    let cell = round_length(radius / 8.0);
-    if !(cell.is_finite() && cell > 0.0) {
+    let Some(cell) = round_down(radius / 8.0) else {
         return Vec::new();
-    }
+    };
     let reach = (radius * 1.3 / cell).ceil();
     let mut strokes = Vec::new();
     // Lines at whole multiples in the world, as on a map.
@@ -179,20 +158,6 @@ mod tests {
 
     use super::*;
     use crate::Projection;
-
-    #[test]
-    fn lengths_are_round() {
-        for (most, length, text) in [
-            (9.99, 5.0, "5 m"),
-            (10.0, 10.0, "10 m"),
-            (0.3, 0.2, "0.2 m"),
-            (0.001, 0.001, "0.001 m"),
-            (4321.0, 2000.0, "2000 m"),
-        ] {
-            assert!((round_length(most) / length - 1.0).abs() < 1e-12, "{most}");
-            assert_eq!(length_text(round_length(most), "m"), text);
-        }
-    }
 
     /// Two points that are the bar's length apart across the axis at the focus are the bar's pixels
     /// apart in the picture; in parallel projection at any depth.

@@ -1,5 +1,6 @@
 //! Splitting geometry into tiles of about equal size, so that a frame draws only what is in sight.
 
+use fragscale_core::split_mix::SplitMix;
 use std::ops::Range;
 
 use glam::Vec3;
@@ -41,16 +42,10 @@ pub(crate) fn tiles(
 
 /// Shuffles by a fixed seed, so that every prefix is a fair sample and the same one each time.
 pub(crate) fn shuffle(items: &mut [u32]) {
-    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut random = SplitMix(SplitMix::GOLDEN);
     for last in (1..items.len()).rev() {
-        // SplitMix64 (Steele, Lea & Flood 2014).
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
         // The modulo's bias is below 2^-32 for lists of this length.
-        let other = (z % (last as u64 + 1)) as usize;
+        let other = (random.next() % (last as u64 + 1)) as usize;
         items.swap(last, other);
     }
 }

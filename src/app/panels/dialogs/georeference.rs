@@ -3,11 +3,11 @@
 
 use super::residuals::residuals;
 use crate::command::{Answers, Asking, Command, Dialog};
+use crate::numbers::significant_digits;
 use crate::open_flight::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
 use crate::open_flight::{Measure, OpenFlight};
 use crate::opening::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds};
 use crate::panels::path_field::path_field;
-use crate::picture::significant_digits;
 use crate::state::State;
 use crate::tasks::Task;
 use crate::typed::typed;
@@ -307,9 +307,9 @@ fn result(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mut Vec<Command>
         "Scale: {scale} {unit} to one of the reconstruction's units"
     ));
     ui.label(sure);
-    if let Some(turn) = fitted.turn_error_degrees {
+    if let Some(degrees) = fitted.rotation_error_degrees {
         ui.label(format!(
-            "Least sure turn: ± {turn:.3} degrees (standard error)"
+            "Least sure rotation: ± {degrees:.3} degrees (standard error)"
         ));
     }
     if let Some(rms) = fitted.rms {

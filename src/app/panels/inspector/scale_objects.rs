@@ -3,11 +3,11 @@
 use crate::actions;
 use crate::command::Command;
 use crate::flight::{ComparedObject, ScaleObject, Verdict};
+use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::tracing::{Trace, Tracing};
 use crate::panels::field::{number_field, text_field};
 use crate::panels::verdict::{or_dash, verdict_color};
-use crate::picture::significant_digits;
 use crate::scale::{ScaleObjectKind, Traced};
 use crate::state::State;
 

@@ -5,7 +5,7 @@ use egui::collapsing_header::CollapsingState;
 use super::plot::color;
 use crate::command::Command;
 use crate::fragmentation::LabelledDistribution;
-use crate::picture::significant_digits;
+use crate::numbers::significant_digits;
 use crate::size_distributions::drawing::MethodDrawing;
 use crate::size_distributions::{Computed, DistributionCommand};
 use crate::state::State;
@@ -21,10 +21,10 @@ pub(super) fn curves(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comman
     ui.strong("Curves");
     for drawing in &computed.drawing.methods {
         let method = &drawing.method;
-        let curves: Vec<_> = computed.set.curves.iter().collect();
+        let curves: Vec<_> = computed.analysis.photos.curves.iter().collect();
         let curves = having(&curves, |curve| curve.labels.method == *method);
         let several = curves.len() > 1;
-        let is_reference = computed.reference.as_ref() == Some(method);
+        let is_reference = computed.analysis.reference.as_ref() == Some(method);
         let head = |ui: &mut egui::Ui, commands: &mut Vec<Command>| {
             swatch(drawing, ui);
             check(state, method, method, &curves, ui, commands);
@@ -46,7 +46,8 @@ pub(super) fn curves(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comman
             });
         }
     }
-    for note in &computed.notes {
+    let analysis = &computed.analysis;
+    for note in analysis.steps.iter().chain(&analysis.warnings) {
         let text = egui::RichText::new(note).small().weak();
         ui.add(egui::Label::new(text).wrap());
     }
@@ -61,7 +62,12 @@ fn trials(
     commands: &mut Vec<Command>,
 ) {
     let of_method = |labels: &&crate::fragmentation::Labels| labels.method == method;
-    let labels = computed.trials.curves.iter().map(|trial| &trial.labels);
+    let labels = computed
+        .analysis
+        .trials
+        .curves
+        .iter()
+        .map(|trial| &trial.labels);
     for trial in labels.filter(of_method) {
         let photos = having(curves, |curve| curve.labels.trial == trial.trial);
         let text = match trial.trial.as_str() {

@@ -3,7 +3,7 @@
 
 use egui_plot::{GridInput, GridMark};
 
-use crate::picture::significant_digits;
+use crate::numbers::significant_digits;
 
 /// The grid lines of a logarithmic axis: decades, 2 and 5 between them, and the other digits where
 /// there is room.

@@ -84,7 +84,7 @@ fn over_size<'a>(
     computed: &'a Computed,
     ui: &egui::Ui,
 ) -> Plot<'a> {
-    let unit = computed.set.unit;
+    let unit = computed.analysis.trials.unit;
     let legend = Legend::default()
         .position(Corner::LeftTop)
         .follow_insertion_order(true)

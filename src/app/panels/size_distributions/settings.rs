@@ -95,8 +95,8 @@ pub(super) fn settings(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) 
 fn reference(state: &State, settings: &mut Settings, ui: &mut Ui) {
     ui.label("Reference");
     let computed = state.distributions.computed.as_ref();
-    let methods = computed.map_or(&[][..], |computed| &computed.methods);
-    let now = computed.and_then(|computed| computed.reference.clone());
+    let methods = computed.map_or(&[][..], |computed| &computed.analysis.methods);
+    let now = computed.and_then(|computed| computed.analysis.reference.clone());
     let offered: Vec<(Option<String>, String)> = methods
         .iter()
         .map(|method| (Some(method.clone()), method.clone()))

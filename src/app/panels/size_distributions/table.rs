@@ -4,7 +4,7 @@
 use egui_extras::{Column, TableBuilder};
 
 use crate::command::Command;
-use crate::picture::significant_digits;
+use crate::numbers::significant_digits;
 
 /// The height of a row.
 const ROW: f32 = 18.0;

@@ -2,7 +2,7 @@
 
 use super::panels;
 use super::{Band, FigureContents, Look, Series, SizeAxis};
-use crate::fragmentation::{Comparison, MeanPoint, MethodCurve};
+use crate::fragmentation::{Comparison, MethodCurve};
 use crate::size_distributions::method_name;
 
 /// Measured means with the fitted functions, their spread over the trials, the envelope about the
@@ -34,7 +34,7 @@ pub fn figure_of_comparison(comparison: &Comparison) -> FigureContents {
             panels::fit_words(&curve.fit, comparison.unit)
         ),
         look: *look,
-        points: known_to_all(curve).map(|p| [p.size, p.mean]).collect(),
+        points: curve.known_to_all().map(|p| [p.size, p.mean]).collect(),
         line: panels::fitted_line(&curve.fit, &sizes),
         marks: panels::marks(&curve.fit),
     });
@@ -109,17 +109,7 @@ fn envelope_band(comparison: &Comparison) -> Band {
 
 /// Mean less and plus the standard deviation, where there are trials to have one.
 fn spread_band(look: Look, curve: &MethodCurve) -> Option<Band> {
-    let edge = |sign: f64| -> Vec<[f64; 2]> {
-        known_to_all(curve)
-            .filter_map(|p| {
-                Some([
-                    p.size,
-                    (p.mean + sign * p.standard_deviation?).clamp(0.0, 100.0),
-                ])
-            })
-            .collect()
-    };
-    let edges = [edge(-1.0), edge(1.0)];
+    let edges = curve.spread();
     let name = format!("{}: \u{b1} standard deviation", method_name(&curve.method));
     (edges[0].len() > 1).then_some(Band {
         name,
@@ -136,11 +126,4 @@ fn described(curve: &MethodCurve) -> String {
         0 | 1 => name.to_owned(),
         trials => format!("{name}, {trials} trials"),
     }
-}
-
-/// The points of which every trial says something: where trials begin or end on the way, the mean of
-/// those left may jump.
-fn known_to_all(curve: &MethodCurve) -> impl Iterator<Item = &MeanPoint> {
-    let known = |point: &&MeanPoint| point.trials == curve.trials.len();
-    curve.points.iter().filter(known)
 }

@@ -2,7 +2,8 @@
 
 use super::panels;
 use super::{Band, FigureContents, Look, Series, SizeAxis};
-use crate::fragmentation::{Fit, SizeDistribution};
+use crate::fault::Fault;
+use crate::fragmentation::{DistributionSet, Fit, LabelledDistribution, SizeDistribution};
 use crate::units::LengthUnit;
 
 /// Confidence of the bands.
@@ -13,14 +14,31 @@ const SAMPLES: u32 = 121;
 const MOST_WITH_BANDS: usize = 6;
 
 /// A measured distribution with the function fitted to it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct FittedDistribution<'a> {
     /// What it is of.
-    pub name: &'a str,
+    pub name: String,
     /// As measured; sizes in the figure's unit.
     pub distribution: &'a SizeDistribution,
     /// Of this distribution.
     pub fit: &'a Fit,
+}
+
+impl<'a> FittedDistribution<'a> {
+    /// Of a set's curves those that have a fit; `fits` in the order of the curves.
+    pub fn of(
+        set: &'a DistributionSet,
+        fits: impl IntoIterator<Item = &'a Result<Fit, Fault>>,
+    ) -> Vec<Self> {
+        let fitted = |(curve, fit): (&'a LabelledDistribution, &'a Result<Fit, Fault>)| {
+            Some(Self {
+                name: curve.labels.to_string(),
+                distribution: &curve.distribution,
+                fit: fit.as_ref().ok()?,
+            })
+        };
+        set.curves.iter().zip(fits).filter_map(fitted).collect()
+    }
 }
 
 /// Measured points, fitted functions with their confidence bands (95 %) and P50 and P80 where they are
@@ -42,7 +60,7 @@ pub fn figure_of_fits(
     for (number, of) in fitted.iter().enumerate() {
         let look = Look::of(number);
         let words = panels::fit_words(of.fit, unit);
-        let name = match of.name {
+        let name = match of.name.as_str() {
             "" => words,
             name => format!("{name}: {words}"),
         };
@@ -65,7 +83,7 @@ pub fn figure_of_fits(
             .map(|(point, left)| [point[0], *left])
             .collect();
         left_over.push(Series {
-            name: of.name.to_owned(),
+            name: of.name.clone(),
             look,
             line: left.clone(),
             points: left,
@@ -98,7 +116,7 @@ fn confidence_band(look: Look, of: &FittedDistribution<'_>, sizes: &SizeAxis) ->
     };
     let edges = [edge(|[low, _]| low), edge(|[_, high]| high)];
     let percent = 100.0 * LEVEL;
-    let name = match of.name {
+    let name = match of.name.as_str() {
         "" => format!("confidence band of the fit, {percent} %"),
         name => format!("{name}: confidence band of the fit, {percent} %"),
     };

@@ -1,12 +1,10 @@
 //! What the panels of all figures have in common: axes, fitted lines, words.
 
 use super::{Band, Panel, Series, SizeAxis};
-use crate::fragmentation::Fit;
-use crate::picture::significant_digits;
+use crate::fragmentation::{Fit, MARKED_PERCENTILES};
+use crate::numbers::significant_digits;
 use crate::units::LengthUnit;
 
-/// Percents passing whose sizes are marked.
-const MARKED: [f64; 2] = [50.0, 80.0];
 /// Sizes at which a fitted function is drawn, across the whole axis.
 const SAMPLES: u32 = 241;
 /// A value of some hundred percent would press all the others onto the zero: beyond it they are arrows.
@@ -22,7 +20,7 @@ pub(super) fn passing_panel(bands: Vec<Band>, series: Vec<Series>) -> Panel {
         axis_title: "Passing, % of mass".to_owned(),
         range: [0.0, 100.0],
         ticks: (0..=10).map(|tick| f64::from(10 * tick)).collect(),
-        levels: MARKED.to_vec(),
+        levels: MARKED_PERCENTILES.to_vec(),
         bands,
         series,
     }
@@ -75,7 +73,7 @@ pub(super) fn fitted_line(fit: &Fit, sizes: &SizeAxis) -> Vec<[f64; 2]> {
 
 /// P50 and P80 of a fitted function.
 pub(super) fn marks(fit: &Fit) -> Vec<[f64; 2]> {
-    let marks = MARKED.map(|percent| [fit.curve.size_at(percent), percent]);
+    let marks = MARKED_PERCENTILES.map(|percent| [fit.curve.size_at(percent), percent]);
     marks
         .into_iter()
         .filter(|mark| mark[0].is_finite())

@@ -339,7 +339,7 @@ fn a_fit_shows_its_points_and_what_is_left() {
     let distribution = SizeDistribution::new(vec![[40.0, 20.0], [200.0, 90.0]]).expect("points");
     let fit = fitted(80.0);
     let of = FittedDistribution {
-        name: "",
+        name: String::new(),
         distribution: &distribution,
         fit: &fit,
     };

@@ -18,7 +18,8 @@ use super::{figure_of_comparison, figure_svg, method_name};
 use crate::fault::Fault;
 use crate::files::HTML_MARK;
 use crate::fragmentation::{
-    Comparison, Fit, MethodComparison, MethodCurve, PERCENT_ERROR, Repeatability, SCALE_WARNING,
+    Analysis, Comparison, Fit, MethodComparison, MethodCurve, PERCENT_ERROR, Repeatability,
+    SCALE_WARNING,
 };
 use crate::markup::escaped;
 
@@ -28,18 +29,43 @@ const STYLE: &str = include_str!("report.css");
 const LEVEL: f64 = 0.95;
 
 /// What goes into the report of a comparison.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct ComparisonReport<'a> {
     /// The files that were read.
     pub sources: &'a [String],
     /// The comparison.
     pub comparison: &'a Comparison,
     /// Of each method with trials.
-    pub repeatability: &'a [Repeatability],
+    pub repeatability: Vec<&'a Repeatability>,
     /// What was done before comparing, a sentence each: merging, resampling.
     pub preparation: &'a [String],
     /// What was mended or left out, a sentence each.
-    pub warnings: &'a [String],
+    pub warnings: Vec<String>,
+}
+
+impl<'a> ComparisonReport<'a> {
+    /// Of an analysis of these sources; `mended` is what was noticed when they were read.
+    ///
+    /// # Errors
+    ///
+    /// Nothing was compared.
+    pub fn of(
+        sources: &'a [String],
+        mended: Vec<String>,
+        analysis: &'a Analysis,
+    ) -> Result<Self, Fault> {
+        let noticed = analysis.warnings.iter().cloned();
+        let mut warnings = mended;
+        warnings.extend(noticed.chain(analysis.not_analysed()));
+        let tables = analysis.repeatability.iter();
+        Ok(Self {
+            sources,
+            comparison: analysis.comparison.as_ref().map_err(Clone::clone)?,
+            repeatability: tables.filter_map(|(_, t)| t.as_ref().ok()).collect(),
+            preparation: &analysis.steps,
+            warnings,
+        })
+    }
 }
 
 /// The report as HTML, with its figure in it.
@@ -67,7 +93,7 @@ pub fn comparison_report(report: &ComparisonReport<'_>) -> Result<String, Fault>
         summary(comparison),
         fits(comparison),
         trials(comparison),
-        repeatability::tables(report.repeatability, comparison.unit),
+        repeatability::tables(&report.repeatability, comparison.unit),
         definitions(comparison),
         env!("CARGO_PKG_VERSION"),
     ))

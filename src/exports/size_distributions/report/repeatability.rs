@@ -7,7 +7,7 @@ use crate::size_distributions::method_name;
 use crate::units::LengthUnit;
 
 /// The tables of all methods; nothing without any.
-pub(super) fn tables(all: &[Repeatability], unit: LengthUnit) -> String {
+pub(super) fn tables(all: &[&Repeatability], unit: LengthUnit) -> String {
     let tables: String = all.iter().map(|of| of_method(of, unit)).collect();
     match tables.is_empty() {
         true => tables,

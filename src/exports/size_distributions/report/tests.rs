@@ -21,9 +21,9 @@ fn html(comparison: &Comparison, repeatability: &[Repeatability], warnings: &[St
     let report = ComparisonReport {
         sources: &["distributions.csv".to_owned()],
         comparison,
-        repeatability,
+        repeatability: repeatability.iter().collect(),
         preparation: &["Photos: merged with equal weights".to_owned()],
-        warnings,
+        warnings: warnings.to_vec(),
     };
     comparison_report(&report).expect("a report")
 }

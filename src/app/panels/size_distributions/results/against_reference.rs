@@ -8,12 +8,15 @@ use crate::size_distributions::Computed;
 
 /// Draws the tables, or why there are none.
 pub(super) fn show(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    match &computed.comparison {
-        None => sentence("Add another method, to hold it against this one.", ui),
-        Some(Err(fault)) => {
+    let analysis = &computed.analysis;
+    match &analysis.comparison {
+        _ if analysis.methods.len() < 2 => {
+            sentence("Add another method, to hold it against this one.", ui);
+        }
+        Err(fault) => {
             ui.colored_label(ui.visuals().error_fg_color, fault.to_string());
         }
-        Some(Ok(comparison)) => tables(comparison, ui, commands),
+        Ok(comparison) => tables(comparison, ui, commands),
     }
 }
 

@@ -2,15 +2,15 @@
 
 use super::sentence::{sentence, warning};
 use crate::command::Command;
-use crate::fragmentation::{Labels, Percentile};
+use crate::fragmentation::{Labels, PERCENTILES, Percentile};
 use crate::panels::size_distributions::table::{Table, fixed, number};
 use crate::size_distributions::Computed;
-use crate::size_distributions::computing::{FittedCurve, PERCENTILES};
+use crate::size_distributions::computing::FittedCurve;
 
 /// Draws the tables.
 pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let settings = &computed.edit.settings;
-    let unit = computed.set.unit;
+    let unit = computed.analysis.trials.unit;
     sentence(
         &format!(
             "{} by least squares, every point alike.",

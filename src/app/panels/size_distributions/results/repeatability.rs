@@ -8,14 +8,14 @@ use crate::size_distributions::Computed;
 
 /// Draws the tables of each method.
 pub(super) fn show(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    if computed.repeatability.is_empty() {
+    if computed.analysis.repeatability.is_empty() {
         sentence(
             "Add more than one trial of a method, to see whether they are alike.",
             ui,
         );
         return;
     }
-    for (method, result) in &computed.repeatability {
+    for (method, result) in &computed.analysis.repeatability {
         match result {
             Ok(found) => tables(computed, found, ui, commands),
             Err(fault) => {
@@ -105,7 +105,7 @@ fn per_size_table(
 ) {
     let method = &found.method;
     let mut table = Table::new(format!("{method}, size by size"));
-    table.column(format!("Size {}", computed.set.unit), "");
+    table.column(format!("Size {}", computed.analysis.trials.unit), "");
     table.column("df", "Degrees of freedom between and within the trials");
     table.column("MS trial", "Mean square between the trials");
     table.column("MS residual", "Mean square within the trials");

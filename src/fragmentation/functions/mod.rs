@@ -1,6 +1,15 @@
 //! The functions that size distributions are fitted with.
 
-use super::{GatesGaudinSchuhmann, RosinRammler, Swebrec, Swebrec5};
+mod gates_gaudin_schuhmann;
+mod rosin_rammler;
+mod swebrec;
+mod swebrec5;
+
+pub use gates_gaudin_schuhmann::{GatesGaudinSchuhmann, GatesGaudinSchuhmannError};
+pub use rosin_rammler::{RosinRammler, RosinRammlerError};
+pub use swebrec::{Swebrec, SwebrecError};
+pub(crate) use swebrec5::ln_exp_m1;
+pub use swebrec5::{Swebrec5, Swebrec5Error};
 
 /// A family of functions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

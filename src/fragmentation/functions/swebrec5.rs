@@ -166,7 +166,7 @@ impl Swebrec5 {
 }
 
 /// ln(e^y - 1) for y > 0, without overflow.
-pub(super) fn ln_exp_m1(y: f64) -> f64 {
+pub(crate) fn ln_exp_m1(y: f64) -> f64 {
     if y > 30.0 {
         y + (-(-y).exp()).ln_1p()
     } else {
