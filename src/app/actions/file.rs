@@ -91,7 +91,7 @@ actions! {
         shortcut: None,
         command: |state| {
             let computed = state.distributions.computed.as_ref()?;
-        let compared = computed.analysis.methods.len() > 1;
+            let compared = computed.analysis.methods.len() > 1;
             compared.then_some(Command::Ask(Some(Asking::SaveReport)))
         },
     }
