@@ -37,7 +37,7 @@ use serde::de::IgnoredAny;
 use crate::camera::{Brown, Camera, Distortion, Fisheye, Pose};
 use crate::fault::Fault;
 use crate::files::{FileError, open_file, read_bytes};
-use crate::packages::reconstruction::{PosedPhoto, Project, Reconstruction};
+use crate::packages::reconstruction::{PosedPhoto, Project, Reconstruction, Sizes};
 use crate::photos::photo_size;
 use crate::poses::rounded_rotation::{from_row_major, rounded_rotation};
 use crate::text::json::parse;
@@ -119,7 +119,7 @@ fn read(
     let raw: RawFile = parse(json)?;
     let mut found = Reconstruction {
         package: "nerfstudio",
-        sizes_known: true,
+        sizes: Sizes::Known,
         ..Reconstruction::default()
     };
     if raw.applied_transform.is_some() {

@@ -36,7 +36,9 @@ use glam::{DMat3, DVec2, DVec3};
 use crate::camera::{Brown, Camera, Distortion, Pose};
 use crate::fault::Fault;
 use crate::files::{FileError, read_text};
-use crate::packages::reconstruction::{Observation, PosedPhoto, Project, Reconstruction};
+use crate::packages::reconstruction::{
+    Observation, Origin, PosedPhoto, Project, Reconstruction, Sizes,
+};
 use crate::poses::rounded_rotation::{from_row_major, pose_from_camera_from_world};
 use names::Names;
 use tokens::Tokens;
@@ -118,8 +120,11 @@ fn read(text: &str) -> Result<Bundle, Fault> {
     let mut bundle = Bundle {
         reconstruction: Reconstruction {
             package: "bundler",
-            sizes_known: with_names,
-            observed_from_middle: true,
+            sizes: match with_names {
+                true => Sizes::Known,
+                false => Sizes::default(),
+            },
+            observed_from: Origin::Middle,
             ..Reconstruction::default()
         },
         registered: Vec::new(),

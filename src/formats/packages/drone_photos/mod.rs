@@ -27,7 +27,9 @@ use glam::DVec3;
 use crate::fault::Fault;
 use crate::files::FileError;
 use crate::jobs::Progress;
-use crate::packages::reconstruction::{MeasuredPosition, PosedPhoto, Project, Reconstruction};
+use crate::packages::reconstruction::{
+    MeasuredPosition, PosedPhoto, Project, Reconstruction, Sizes,
+};
 use crate::photos::photo_metadata::{self, Fix, HeightReference, MeasuredPlace, PhotoMetadata};
 use cameras::Cameras;
 
@@ -99,7 +101,7 @@ pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
     let mut reconstruction = Reconstruction {
         package: "photos",
         crs: Some("EPSG:4326".to_owned()),
-        sizes_known: true,
+        sizes: Sizes::Known,
         ..Reconstruction::default()
     };
     let mut cameras = Cameras::default();

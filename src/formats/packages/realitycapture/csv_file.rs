@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
-use crate::packages::reconstruction::Reconstruction;
+use crate::packages::reconstruction::{ImageUnit, Origin, Reconstruction, Sizes};
 use crate::text::fields::shown;
 use crate::text::separated::Separator;
 
@@ -113,8 +113,16 @@ pub(crate) fn read_csv(text: &str) -> Result<Reconstruction, Fault> {
     let is_opencv = header.optional(&["r00"]).is_some();
     let mut found = Reconstruction {
         package: "realitycapture",
-        intrinsics_in_longer_sides: !is_opencv,
-        principal_points_from_corner: is_opencv,
+        sizes: match is_opencv {
+            true => Sizes::Unknown {
+                unit: ImageUnit::Pixel,
+                principal_points_from: Origin::Corner,
+            },
+            false => Sizes::Unknown {
+                unit: ImageUnit::LongerSide,
+                principal_points_from: Origin::Middle,
+            },
+        },
         ..Reconstruction::default()
     };
     let name = header.needed(&["name"])?;

@@ -10,7 +10,7 @@ use roxmltree::Node;
 use crate::camera::{Brown, Camera, Distortion, Pose};
 use crate::fault::Fault;
 use crate::files::{FileError, open_file, read_text};
-use crate::packages::reconstruction::{Project, Reconstruction};
+use crate::packages::reconstruction::{ImageUnit, Origin, Project, Reconstruction, Sizes};
 use crate::text::fields::Fields;
 use crate::text::xml_document::{line_of, parse};
 
@@ -44,7 +44,10 @@ pub(crate) fn read_folder(folder: &Path) -> Result<Project, FileError> {
     let files = files(folder);
     let mut found = Reconstruction {
         package: "realitycapture",
-        intrinsics_in_longer_sides: true,
+        sizes: Sizes::Unknown {
+            unit: ImageUnit::LongerSide,
+            principal_points_from: Origin::Middle,
+        },
         ..Reconstruction::default()
     };
     let mut without_pose = 0;
