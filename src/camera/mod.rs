@@ -16,7 +16,7 @@ pub use agisoft::{Agisoft, AgisoftProjection};
 pub use brown::Brown;
 pub use distortion::{Distortion, NotInvertible};
 pub use fisheye::Fisheye;
-pub use pose::{NotRotation, Pose};
+pub use pose::{HALF_TURN_ABOUT_X, NotRotation, Pose};
 pub use visualsfm::VisualSfm;
 
 /// How far, in pixels, an inverse of the distortion may be off when mapped forward again.

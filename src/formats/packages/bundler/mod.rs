@@ -31,9 +31,9 @@ mod tokens;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 
-use crate::camera::{Brown, Camera, Distortion, Pose};
+use crate::camera::{Brown, Camera, Distortion, HALF_TURN_ABOUT_X, Pose};
 use crate::fault::Fault;
 use crate::files::{FileError, read_text};
 use crate::packages::reconstruction::{
@@ -247,9 +247,8 @@ fn read_camera(tokens: &mut Tokens<'_>, bundle: &mut Bundle) -> Result<(), Fault
 
 /// The pose of x right, y up, z back axes.
 fn pose(rotation: [f64; 9], translation: DVec3) -> Result<Pose, String> {
-    let down_forward = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
-    let rotation = down_forward * from_row_major(rotation);
-    let pose = pose_from_camera_from_world(rotation, down_forward * translation);
+    let rotation = HALF_TURN_ABOUT_X * from_row_major(rotation);
+    let pose = pose_from_camera_from_world(rotation, HALF_TURN_ABOUT_X * translation);
     pose.map_err(|e| format!("R of the camera that begins here: {e}"))
 }
 

@@ -1,5 +1,6 @@
 use std::fs;
 
+use glam::DMat3;
 use proptest::prelude::*;
 
 use super::*;

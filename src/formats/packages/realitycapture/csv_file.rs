@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use glam::{DMat3, DVec3};
 
-use crate::camera::{Camera, Pose};
+use crate::camera::{Camera, HALF_TURN_ABOUT_X, Pose};
 use crate::fault::Fault;
 use crate::packages::reconstruction::{ImageUnit, Origin, Reconstruction, Sizes};
 use crate::text::fields::shown;
@@ -258,9 +258,8 @@ pub(crate) fn pose(center: DVec3, [heading, pitch, roll]: [f64; 3]) -> Pose {
     let world_from_upright = DMat3::from_rotation_z(-heading.to_radians())
         * DMat3::from_rotation_x(pitch.to_radians())
         * DMat3::from_rotation_y(roll.to_radians());
-    let upright_from_camera = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
     Pose {
-        rotation: world_from_upright * upright_from_camera,
+        rotation: world_from_upright * HALF_TURN_ABOUT_X,
         center,
     }
 }
