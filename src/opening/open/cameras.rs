@@ -89,7 +89,7 @@ pub(super) fn take_sizes(
             .find(|(camera, _)| camera.is_none_or(|camera| camera == name))
             .map(|(_, size)| *size)
     };
-    if reconstruction.sizes_known {
+    if reconstruction.sizes.are_known() {
         for camera in &reconstruction.cameras {
             if given(&camera.name).is_some_and(|size| size != (camera.width, camera.height)) {
                 let (w, h) = (camera.width, camera.height);

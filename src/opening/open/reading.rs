@@ -11,7 +11,7 @@ use crate::flight::{CameraEntry, FlightFile, FlightSettings, Photo, PhotoSource}
 use crate::flight_poses::{self, PhotosToPose};
 use crate::formats::packages::ros;
 use crate::formats::tables::size_distributions::no_flight_but_sizes;
-use crate::formats::{Kind, Package, PoseLine, Reconstruction, detect, read_project};
+use crate::formats::{Kind, Package, PoseLine, Reconstruction, Sizes, detect, read_project};
 use crate::geodesy::Crs;
 use crate::geometry::Similarity;
 use crate::jobs::Progress;
@@ -142,7 +142,7 @@ fn of_reconstruction(
         path: path.to_owned(),
         in_world: reconstruction.crs.clone(),
     });
-    if source.photo_folder.is_none() && !reconstruction.sizes_known {
+    if source.photo_folder.is_none() && !reconstruction.sizes.are_known() {
         // Packages name photos relative to their own file; a folder has them in it.
         source.photo_folder = match path.is_dir() {
             true => Some(path.to_owned()),
@@ -205,7 +205,7 @@ fn take_reconstruction(
         named.filter(|size| *size != solved_on)
     });
     source.named_sizes = named.collect();
-    source.may_be_reduced = reconstruction.may_be_reduced;
+    source.may_be_reduced = reconstruction.sizes == Sizes::PerhapsReduced;
     source.package_unit = reconstruction.unit;
     source.cameras = reconstruction.cameras;
     source.photos = reconstruction
