@@ -6,7 +6,7 @@ use crate::fault::Fault;
 use crate::geodesy::{Crs, Geographic};
 use crate::geometry::median;
 use crate::units::LengthUnit;
-use crate::world::{Frame, Known, NoWorld};
+use crate::world::{Known, NoWorld, WorldFrame};
 
 /// The world, and the coordinate system of a list.
 #[derive(Debug, Clone)]
@@ -38,14 +38,16 @@ impl ListWorld {
         let known = Known {
             named: asked,
             // The reconstruction, which states nothing, is what has to fit.
-            surface: Some(Frame::AsIs(None)),
-            poses: list.clone().map_or(Frame::AsIs(None), Frame::Named),
+            surface: Some(WorldFrame::AsIs(None)),
+            poses: list
+                .clone()
+                .map_or(WorldFrame::AsIs(None), WorldFrame::Named),
             preferred: None,
             place: middle,
         };
         let crs = match known.world() {
-            Ok(Frame::Named(crs)) => Some(crs),
-            Ok(Frame::AsIs(_) | Frame::Enu(_)) => {
+            Ok(WorldFrame::Named(crs)) => Some(crs),
+            Ok(WorldFrame::AsIs(_) | WorldFrame::Enu(_)) => {
                 warnings.push(
                     "the positions state no coordinate system: they are taken as metres of a local one with z up"
                         .to_owned(),

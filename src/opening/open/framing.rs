@@ -9,12 +9,12 @@ use crate::fault::Fault;
 use crate::files::FileError;
 use crate::formats::CloudFile;
 use crate::jobs::Progress;
-use crate::world::{Frame, Known, place_of_flight, taken_to_be_in};
+use crate::world::{Known, WorldFrame, place_of_flight, taken_to_be_in};
 
 /// The surface in the world.
 pub(super) struct Framed {
     pub(super) cloud: CloudFile,
-    pub(super) world: Frame,
+    pub(super) world: WorldFrame,
 }
 
 /// Brings the poses and the surface (that of `file`, or the reconstruction's own points) to the
@@ -33,7 +33,9 @@ pub(super) fn bring_to_world(
     let path = source.file.clone();
     let at_poses = |fault| FileError::new(&path, fault);
     let mut said = Vec::new();
-    let surface = file.as_ref().map(|file| Frame::of_cloud(file, &mut said));
+    let surface = file
+        .as_ref()
+        .map(|file| WorldFrame::of_cloud(file, &mut said));
     let surface = surface.transpose().map_err(at_surface)?;
     source.warn(surface_file, &said);
     let centers = source.photos.iter().map(|photo| photo.pose.center);
@@ -70,7 +72,7 @@ pub(super) fn bring_to_world(
     source.warn(surface_file, doubt.as_slice());
     source.warn(&path, poses_moved.as_slice());
     match surface {
-        Some(Frame::AsIs(_)) if !source.poses_frame.is_as_it_is() => {
+        Some(WorldFrame::AsIs(_)) if !source.poses_frame.is_as_it_is() => {
             let centers = source.photos.iter().map(|photo| photo.pose.center);
             let centers: Vec<DVec3> = centers.collect();
             let said = taken_to_be_in(&world, &cloud.cloud.points, &centers);
@@ -93,7 +95,7 @@ pub(super) fn bring_to_world(
 /// The unit of the world: what flight.toml says, if the world's system does not say another one.
 fn take_unit(
     source: &mut Source,
-    world: &Frame,
+    world: &WorldFrame,
     surface_file: &Path,
     is_in_world: bool,
 ) -> Result<(), FileError> {

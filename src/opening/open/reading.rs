@@ -18,7 +18,7 @@ use crate::jobs::Progress;
 use crate::scale::{Ground, ImageKind};
 use crate::surface::SurfaceOptions;
 use crate::units::LengthUnit;
-use crate::world::Frame;
+use crate::world::WorldFrame;
 
 /// What `path` names, without its surface.
 ///
@@ -190,7 +190,7 @@ fn take_reconstruction(
     source.warn(path, &reconstruction.warnings);
     let (crs, origin) = (reconstruction.crs.as_deref(), reconstruction.enu_origin);
     let mut said = Vec::new();
-    source.poses_frame = Frame::of_poses(crs, origin, &mut said).map_err(at)?;
+    source.poses_frame = WorldFrame::of_poses(crs, origin, &mut said).map_err(at)?;
     source.warn(path, &said);
     let preferred = reconstruction.preferred_crs.as_deref();
     // One that is not understood cannot be a target; nothing else depends on it.
@@ -230,7 +230,7 @@ fn add_poses(
     progress: &Progress,
 ) -> Result<(), FileError> {
     let mut poses = flight_poses::read(path, photos, progress)?;
-    source.poses_frame = Frame::of_poses(poses.crs.as_deref(), None, &mut poses.warnings)
+    source.poses_frame = WorldFrame::of_poses(poses.crs.as_deref(), None, &mut poses.warnings)
         .map_err(|fault| FileError::new(path, fault))?;
     source.warn(path, &poses.warnings);
     source.inputs.push(path.to_owned());

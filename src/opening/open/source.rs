@@ -10,7 +10,7 @@ use crate::geodesy::Crs;
 use crate::geometry::Similarity;
 use crate::surface::UpAxis;
 use crate::units::LengthUnit;
-use crate::world::Frame;
+use crate::world::WorldFrame;
 
 /// What a flight is made of, as far as it is read.
 pub(super) struct Source {
@@ -27,7 +27,7 @@ pub(super) struct Source {
     /// Where the poses are from, if from a reconstruction.
     pub(super) reconstruction: Option<FlightReconstruction>,
     /// The frame of the poses and of the reconstruction's points.
-    pub(super) poses_frame: Frame,
+    pub(super) poses_frame: WorldFrame,
     /// The system that the reconstruction's package works in, where its poses are in another.
     pub(super) preferred_crs: Option<Crs>,
     pub(super) inputs: Vec<PathBuf>,
@@ -69,7 +69,7 @@ impl Source {
             flight_file: None,
             named_crs: None,
             reconstruction: None,
-            poses_frame: Frame::AsIs(None),
+            poses_frame: WorldFrame::AsIs(None),
             preferred_crs: None,
             inputs: Vec::new(),
             surface: options.surface.clone(),

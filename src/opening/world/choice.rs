@@ -16,7 +16,7 @@
 
 use glam::DVec3;
 
-use super::frame::Frame;
+use super::frame::WorldFrame;
 use crate::fault::Fault;
 use crate::geodesy::{Crs, CrsKind, Geographic};
 
@@ -55,9 +55,9 @@ pub(crate) struct Known {
     pub named: Option<Crs>,
     /// The surface file's frame; `None` where nothing but the reconstruction's own
     /// points has to fit.
-    pub surface: Option<Frame>,
+    pub surface: Option<WorldFrame>,
     /// The frame of the poses and their points.
-    pub poses: Frame,
+    pub poses: WorldFrame,
     /// The system that the package works in, where its poses are in another.
     pub preferred: Option<Crs>,
     /// Where the flight is on the Earth: the middle of the camera centres, or a point of the surface
@@ -70,28 +70,28 @@ impl Known {
     ///
     /// # Errors
     /// Where the one that is named is no map's, or the poses are at no place on the Earth.
-    pub(crate) fn world(&self) -> Result<Frame, NoWorld> {
+    pub(crate) fn world(&self) -> Result<WorldFrame, NoWorld> {
         if let Some(crs) = &self.named {
             return match crs.kind() {
-                CrsKind::Projected => Ok(Frame::Named(crs.clone())),
+                CrsKind::Projected => Ok(WorldFrame::Named(crs.clone())),
                 CrsKind::Geographic | CrsKind::Geocentric => Err(NoWorld::NoMap(crs.clone())),
             };
         }
         let surface = self.surface.clone();
-        let projected = |frame: Option<Frame>| frame.and_then(Frame::projected);
+        let projected = |frame: Option<WorldFrame>| frame.and_then(WorldFrame::projected);
         if let Some(frame) = projected(surface.clone())
             .or_else(|| projected(Some(self.poses.clone())))
             .or_else(|| {
                 self.preferred
                     .clone()
-                    .map(Frame::Named)
-                    .and_then(Frame::projected)
+                    .map(WorldFrame::Named)
+                    .and_then(WorldFrame::projected)
             })
         {
             return Ok(frame);
         }
         let zone = || match self.place {
-            Some(place) => Ok(Frame::Named(Crs::utm_at(place))),
+            Some(place) => Ok(WorldFrame::Named(Crs::utm_at(place))),
             None => Err(NoWorld::NoPlace(self.poses.in_words())),
         };
         if let Some(frame) = &surface
@@ -100,13 +100,13 @@ impl Known {
             return zone();
         }
         match &self.poses {
-            Frame::AsIs(None) => Ok(surface.unwrap_or(Frame::AsIs(None))),
-            Frame::AsIs(Some(_)) => Ok(self.poses.clone()),
-            Frame::Enu(_) => Ok(self.poses.clone()),
-            Frame::Named(crs) if crs.kind() == CrsKind::Geocentric && surface.is_none() => {
-                self.place.map(Frame::Enu).map_or_else(zone, Ok)
+            WorldFrame::AsIs(None) => Ok(surface.unwrap_or(WorldFrame::AsIs(None))),
+            WorldFrame::AsIs(Some(_)) => Ok(self.poses.clone()),
+            WorldFrame::Enu(_) => Ok(self.poses.clone()),
+            WorldFrame::Named(crs) if crs.kind() == CrsKind::Geocentric && surface.is_none() => {
+                self.place.map(WorldFrame::Enu).map_or_else(zone, Ok)
             }
-            Frame::Named(_) => zone(),
+            WorldFrame::Named(_) => zone(),
         }
     }
 }
@@ -114,13 +114,13 @@ impl Known {
 /// Where a flight is on the Earth: `middle` is that of its camera centres in `poses`, `on_surface` a
 /// point of the surface's file.
 pub(crate) fn place_of_flight(
-    poses: &Frame,
+    poses: &WorldFrame,
     middle: DVec3,
-    surface: Option<&Frame>,
+    surface: Option<&WorldFrame>,
     on_surface: DVec3,
 ) -> Option<Geographic> {
     match (poses, surface) {
-        (Frame::AsIs(_), Some(frame)) => frame.place(on_surface),
+        (WorldFrame::AsIs(_), Some(frame)) => frame.place(on_surface),
         (frame, _) => frame.place(middle),
     }
 }
@@ -130,8 +130,8 @@ mod tests {
     use super::*;
     use crate::geodesy::ecef_from_geographic;
 
-    fn named(name: &str) -> Frame {
-        Frame::Named(Crs::understand(name).unwrap())
+    fn named(name: &str) -> WorldFrame {
+        WorldFrame::Named(Crs::understand(name).unwrap())
     }
 
     const BRIGHTON: Geographic = Geographic {
@@ -146,8 +146,8 @@ mod tests {
         let ecef = ecef_from_geographic(BRIGHTON);
         let degrees = DVec3::new(BRIGHTON.longitude, BRIGHTON.latitude, 180.0);
         let choose = |named_crs: Option<&str>,
-                      surface: Option<Frame>,
-                      poses: Frame,
+                      surface: Option<WorldFrame>,
+                      poses: WorldFrame,
                       middle: DVec3,
                       on_surface: DVec3| {
             let place = place_of_flight(&poses, middle, surface.as_ref(), on_surface);
@@ -199,13 +199,19 @@ mod tests {
             utm
         );
         assert_eq!(
-            choose(None, in_degrees, Frame::AsIs(None), DVec3::ZERO, degrees),
+            choose(
+                None,
+                in_degrees,
+                WorldFrame::AsIs(None),
+                DVec3::ZERO,
+                degrees
+            ),
             utm
         );
         assert_eq!(
             choose(
                 None,
-                Some(Frame::AsIs(None)),
+                Some(WorldFrame::AsIs(None)),
                 named("EPSG:4326"),
                 degrees,
                 DVec3::ZERO
@@ -221,7 +227,7 @@ mod tests {
         assert_eq!(
             choose(
                 None,
-                Some(Frame::AsIs(None)),
+                Some(WorldFrame::AsIs(None)),
                 named("ECEF"),
                 ecef,
                 DVec3::ZERO
@@ -232,8 +238,8 @@ mod tests {
         assert_eq!(
             choose(
                 None,
-                Some(Frame::AsIs(None)),
-                Frame::AsIs(None),
+                Some(WorldFrame::AsIs(None)),
+                WorldFrame::AsIs(None),
                 DVec3::ONE,
                 DVec3::ONE
             ),

@@ -16,7 +16,7 @@ const WGS84: &str = "EPSG:4326";
 
 /// What coordinates mean.
 #[derive(Debug, Clone)]
-pub(crate) enum Frame {
+pub(crate) enum WorldFrame {
     /// Nobody says, or only a name that is not understood: coordinates are taken as they are.
     AsIs(Option<String>),
     /// Metres east, north and up of this place.
@@ -25,7 +25,7 @@ pub(crate) enum Frame {
     Named(Crs),
 }
 
-impl Frame {
+impl WorldFrame {
     /// Of what a package says: the name of a system, or where the origin stands of a frame whose
     /// axes are east, north and up. A name that is not understood is said in `warnings`.
     ///
@@ -222,8 +222,8 @@ fn is_geographic_wkt(text: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn named(name: &str) -> Frame {
-        Frame::Named(Crs::understand(name).unwrap())
+    fn named(name: &str) -> WorldFrame {
+        WorldFrame::Named(Crs::understand(name).unwrap())
     }
 
     #[test]

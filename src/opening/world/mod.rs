@@ -7,5 +7,5 @@ mod unstated_surface;
 mod way;
 
 pub(crate) use choice::{Known, NoWorld, place_of_flight};
-pub(crate) use frame::Frame;
+pub(crate) use frame::WorldFrame;
 pub(crate) use unstated_surface::taken_to_be_in;

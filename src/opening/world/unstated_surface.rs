@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::frame::Frame;
+use super::frame::WorldFrame;
 use crate::fault::Fault;
 use crate::geometry::Bounds;
 
@@ -15,7 +15,7 @@ const OUT_OF_SIGHT: f64 = 20_000.0;
 /// # Errors
 /// Where it lies so far from the photos that its coordinates are in another system.
 pub(crate) fn taken_to_be_in(
-    world: &Frame,
+    world: &WorldFrame,
     points: &[DVec3],
     centers: &[DVec3],
 ) -> Result<String, Fault> {

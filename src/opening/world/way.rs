@@ -7,11 +7,11 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::frame::Frame;
+use super::frame::WorldFrame;
 use crate::camera::Pose;
 use crate::fault::Fault;
 
-impl Frame {
+impl WorldFrame {
     /// The way from here to another frame.
     pub(crate) fn to<'a>(&'a self, to: &'a Self) -> Way<'a> {
         Way { from: self, to }
@@ -21,8 +21,8 @@ impl Frame {
 /// The way from one frame to another.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Way<'a> {
-    from: &'a Frame,
-    to: &'a Frame,
+    from: &'a WorldFrame,
+    to: &'a WorldFrame,
 }
 
 impl Way<'_> {
@@ -115,8 +115,8 @@ mod tests {
     use super::*;
     use crate::geodesy::{Crs, Geographic, ecef_from_geographic, enu_axes};
 
-    fn named(name: &str) -> Frame {
-        Frame::Named(Crs::understand(name).unwrap())
+    fn named(name: &str) -> WorldFrame {
+        WorldFrame::Named(Crs::understand(name).unwrap())
     }
 
     const BRIGHTON: Geographic = Geographic {
@@ -130,7 +130,7 @@ mod tests {
     /// degrees within a zone), and its lengths are 0.9996 (1 + x^2 / 2 R^2) of those on the ellipsoid.
     #[test]
     fn a_pose_turns_by_the_convergence_and_lengths_by_the_grids_scale() {
-        let (frame, world) = (Frame::Enu(BRIGHTON), named("EPSG:32615"));
+        let (frame, world) = (WorldFrame::Enu(BRIGHTON), named("EPSG:32615"));
         let way = frame.to(&world);
         let north = Pose::from_tilt_pan(DVec3::ZERO, [90.0, 0.0]);
         let moved = way.pose("a", &north).unwrap();
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn from_the_earths_centre_to_east_north_up_nothing_is_bent() {
-        let (frame, world) = (named("ECEF"), Frame::Enu(BRIGHTON));
+        let (frame, world) = (named("ECEF"), WorldFrame::Enu(BRIGHTON));
         let way = frame.to(&world);
         let there = ecef_from_geographic(BRIGHTON);
         let axes = enu_axes(BRIGHTON);
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn a_pose_on_longitude_and_latitude_is_told_in_east_north_up() {
-        let (frame, world) = (named("EPSG:4326"), Frame::Enu(BRIGHTON));
+        let (frame, world) = (named("EPSG:4326"), WorldFrame::Enu(BRIGHTON));
         let center = DVec3::new(
             BRIGHTON.longitude,
             BRIGHTON.latitude,
@@ -200,8 +200,8 @@ mod tests {
         );
         for (from, to) in [
             (named("EPSG:32615"), named("EPSG:32615")),
-            (Frame::AsIs(None), named("EPSG:32615")),
-            (Frame::Enu(BRIGHTON), Frame::Enu(BRIGHTON)),
+            (WorldFrame::AsIs(None), named("EPSG:32615")),
+            (WorldFrame::Enu(BRIGHTON), WorldFrame::Enu(BRIGHTON)),
         ] {
             let way = from.to(&to);
             assert_eq!(way.pose("a", &pose), Ok(pose));

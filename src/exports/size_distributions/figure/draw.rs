@@ -1,6 +1,6 @@
 //! The contents of a figure as shapes: on paper and in pixels the same ones.
 
-use super::layout::{Entry, EntryOf, Frame, Layout, TEXT, TITLE};
+use super::layout::{Entry, EntryOf, Layout, PlotArea, TEXT, TITLE};
 use super::shapes::{Anchor, Colour, Pen, Shape};
 use super::{Band, Dash, FigureContents, Marker, Panel, Series, SizeAxis};
 
@@ -57,7 +57,7 @@ pub(super) fn drawn(contents: &FigureContents, layout: &Layout) -> Vec<Shape> {
     std::mem::take(&mut pen.shapes)
 }
 
-fn draw_panel(panel: &Panel, sizes: &SizeAxis, frame: &Frame, pen: &mut Pen) {
+fn draw_panel(panel: &Panel, sizes: &SizeAxis, frame: &PlotArea, pen: &mut Pen) {
     draw_grid(panel, sizes, frame, pen);
     for band in &panel.bands {
         let edges = [&band.edges[0], &band.edges[1]].map(|e| frame.edge(sizes, panel.range, e));
@@ -110,7 +110,7 @@ fn draw_panel(panel: &Panel, sizes: &SizeAxis, frame: &Frame, pen: &mut Pen) {
     }
 }
 
-fn draw_grid(panel: &Panel, sizes: &SizeAxis, frame: &Frame, pen: &mut Pen) {
+fn draw_grid(panel: &Panel, sizes: &SizeAxis, frame: &PlotArea, pen: &mut Pen) {
     for tick in &panel.ticks {
         let y = frame.y(panel.range, *tick);
         pen.line(
@@ -139,7 +139,13 @@ fn draw_grid(panel: &Panel, sizes: &SizeAxis, frame: &Frame, pen: &mut Pen) {
 }
 
 /// The points of a series. A value beyond the range is an arrow at its end, with the value.
-fn draw_points(series: &Series, range: [f64; 2], sizes: &SizeAxis, frame: &Frame, pen: &mut Pen) {
+fn draw_points(
+    series: &Series,
+    range: [f64; 2],
+    sizes: &SizeAxis,
+    frame: &PlotArea,
+    pen: &mut Pen,
+) {
     let colour = series.style.colour;
     for &[size, value] in series.points.iter().filter(|point| point[1].is_finite()) {
         let Some(x) = frame.x(sizes, size) else {

@@ -30,8 +30,8 @@ pub(super) struct Layout {
     pub(super) height: f64,
     /// The middle of the title's line.
     pub(super) title: f64,
-    pub(super) passing: Frame,
-    pub(super) residuals: Option<Frame>,
+    pub(super) passing: PlotArea,
+    pub(super) residuals: Option<PlotArea>,
     /// The middle of the line of the size axis's title.
     pub(super) size_title: f64,
     pub(super) legend: Vec<Entry>,
@@ -39,7 +39,7 @@ pub(super) struct Layout {
 
 /// The rectangle that values are drawn in.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Frame {
+pub(super) struct PlotArea {
     pub(super) left: f64,
     pub(super) right: f64,
     pub(super) top: f64,
@@ -72,7 +72,7 @@ impl Layout {
         } else {
             52.0
         };
-        let frame = |top, height| Frame {
+        let frame = |top, height| PlotArea {
             left: LEFT,
             right: WIDTH - RIGHT,
             top,
@@ -165,7 +165,7 @@ impl Entry {
     }
 }
 
-impl Frame {
+impl PlotArea {
     /// Where a size is; `None` off the axis.
     pub(super) fn x(&self, sizes: &SizeAxis, size: f64) -> Option<f64> {
         let share = sizes.share(size);
@@ -232,7 +232,7 @@ fn cut_at_ends(sizes: &SizeAxis, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 mod tests {
     use super::*;
 
-    const FRAME: Frame = Frame {
+    const FRAME: PlotArea = PlotArea {
         left: 100.0,
         right: 300.0,
         top: 0.0,
