@@ -152,7 +152,7 @@ fn table(c: &mut Criterion) {
         ("sort by top scale", column("Top"), ""),
         ("filter by reason", SortBy::Flight, "ground"),
     ] {
-        flight.order = TableOrder {
+        flight.table.order = TableOrder {
             by,
             text: text.to_owned(),
             ..TableOrder::default()

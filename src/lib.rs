@@ -8,29 +8,51 @@
 //!
 //! # The house
 //!
-//! A module may use its own folder and the floors below it, never one above (`tests/floors.rs`
-//! holds that):
+//! A workspace whose members lie inside `src/`, so that a changed reader or panel compiles alone: the
+//! core, `fragmentation/`, `formats/`, `opening/`, `exports/`, `render/`, `sample/`, `app/`, and here
+//! `cli/`. Each re-exports nothing; this crate names all of them. The compiler holds who may use whom
+//! between members, `tests/floors.rs` the floors within the core, that no circle of imports is longer
+//! than two files, and that no folder has more than 15 files lying flat.
 //!
 //! ```text
-//! F7  main.rs  cli/              the command line
-//! F6  app/                       the window: state, commands, panels, dialogs
-//! F5  render/                    wgpu: scene -> picture; knows no egui, reads no file
+//! F7  main.rs  cli/              the command line: parses, calls, prints
+//! F6  app/                       the window: state, commands, panels, jobs
+//! F5  opening/                   files -> a flight in one world; what is looked up of its photos
+//!     render/                    wgpu: scene -> picture; knows no egui, reads no file
 //!     sample/                    the paper's lab, simulated
-//! F4  formats/  exports/         one file a format; what goes out
-//! F3  flight/                    Flight, validated when made; verdicts; flight.toml
+//! F4  formats/                   bytes -> types: clouds cameras packages poses photos tables text
+//!     exports/                   what goes out: table, CSV, JSON, sheet, Split-Desktop, figures
+//!     --- the core (core.rs) and fragmentation/ ---
+//! F3  flight/                    Flight, validated when made; review: doubts, verdicts; flight.toml
 //!     picture/                   pixels of photos: undistorting, reducing, drawing on them
 //! F2  scale/                     corner rays -> corner points -> scales; footprints
 //! F1  camera/   surface/         intrinsics, distortion, pose | triangulation, ray casting
-//!     fragmentation/             size distributions
+//!     fragmentation/             size distributions: functions, fits, analysis
 //!     geodesy/  georeference/    coordinate systems | a frame of its own brought to the world
-//! F0  geometry/ raster/ units.rs jobs.rs fault.rs files/
+//! F0  geometry/ raster/ files/   units.rs numbers.rs jobs.rs fault.rs split_mix.rs
+//!     test_data/                 for tests alone: where data lie, fixtures that two members write
 //! ```
 //!
-//! F0 to F3 take no paths (`files/` apart), write no log, know no clock and no f32: they return data and typed
-//! errors. `picture/` alone counts in f32, because colours and strokes are no measurements.
+//! F0 to F3 take no paths (`files/` apart), write no log, know no clock and no f32: they return data and
+//! typed errors. `picture/` alone counts in f32, because colours and strokes are no measurements.
 //!
-//! The features: `render` brings wgpu, `app` the window on top of it; without both the command line
-//! needs no GPU library.
+//! The features: `render` brings wgpu, `app` the window on top of it, `ros` the libraries in C that
+//! compressed recordings need; without them the command line needs no GPU library and no C compiler.
+//!
+//! # To add ... touch ...
+//!
+//! | to add | touch | which says |
+//! |---|---|---|
+//! | a camera model | `src/camera/distortion.rs` | the enum of lens models; the model itself is a file beside it |
+//! | a package | `src/formats/packages/mod.rs` | a row of `packages!`; the reader is a folder beside it; README has a line |
+//! | a column of the photo table | `src/exports/photo_columns.rs` | one row for window, CSV and sheet; the contract names CSV columns |
+//! | an undoable setting of the flight | `src/flight/file.rs` | `FlightSettings`: the window's undo and saving go by it |
+//! | a reason for doubt | `src/flight/doubt.rs` | a variant, its sentence, its gravity; who finds it adds it to the evidence |
+//! | a shader primitive | `src/render/primitives/mod.rs` | a file and a WGSL file of one name |
+//! | a subcommand with progress | `src/cli/mod.rs` | a variant; its work is a file beside it |
+//! | a JSON key of a photo | `src/exports/scales_json.rs` | the contract's object, key by key |
+//! | a distribution function | `src/fragmentation/functions/mod.rs` | the enum of models; the function is a file beside it |
+//! | a job with a panel | `src/app/tasks/mod.rs` | a task; its job and its ending are a file beside it |
 //!
 //! # Conventions (everywhere)
 //!

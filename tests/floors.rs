@@ -13,6 +13,10 @@
     reason = "in a test or a benchmark a panic is the report"
 )]
 
+#[path = "floors/circles.rs"]
+mod circles;
+
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -207,5 +211,25 @@ fn nobody_writes_past_the_rule() {
                 "{name} has {word}): files::write keeps what was read"
             );
         }
+    }
+}
+
+/// A room with more files than one looks over at once has rooms inside.
+#[test]
+fn no_folder_has_more_than_fifteen_files() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&src, &mut files);
+    let mut rooms: BTreeMap<&Path, usize> = BTreeMap::new();
+    for file in files.iter().filter(|file| !file.ends_with("tests.rs")) {
+        *rooms.entry(file.parent().expect("a folder")).or_default() += 1;
+    }
+    for (room, count) in rooms {
+        let is_of_tests = room.ends_with("tests");
+        assert!(
+            is_of_tests || count <= 15,
+            "{}: {count} files",
+            room.display()
+        );
     }
 }

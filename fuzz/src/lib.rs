@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::PathBuf;
 
-use fragscale::opening::info;
 use fragscale::jobs::Progress;
+use fragscale::opening::info;
 use tempfile::TempDir;
 
 /// A folder with that one file in it.

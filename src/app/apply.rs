@@ -200,7 +200,7 @@ impl State {
             asking,
             Some(Asking::Georeference | Asking::SaveGeoreferenced)
         );
-        let of_reconstruction = |open: &OpenFlight| open.reconstruction.is_some();
+        let of_reconstruction = |open: &OpenFlight| open.files.reconstruction.is_some();
         if georeferences && !self.open.as_deref().is_some_and(of_reconstruction) {
             return;
         }

@@ -21,7 +21,7 @@ impl State {
             step(self);
         }
         if let Some(open) = &mut self.open {
-            let answers = open.picker.as_mut().map(Picker::answers);
+            let answers = open.pointer.picker.as_mut().map(Picker::answers);
             let before = open.selected;
             for picked in answers.into_iter().flatten() {
                 open.take_picked(picked);
@@ -41,7 +41,8 @@ impl State {
 
     /// Whether nothing is under way.
     pub fn is_idle(&self) -> bool {
-        let waiting = |open: &OpenFlight| open.picker.as_ref().is_some_and(Picker::is_waiting);
+        let waiting =
+            |open: &OpenFlight| open.pointer.picker.as_ref().is_some_and(Picker::is_waiting);
         self.work.is_idle() && !self.open.as_deref().is_some_and(waiting)
     }
 }

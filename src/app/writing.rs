@@ -16,7 +16,7 @@ impl State {
     pub(crate) fn read(&self) -> Inputs {
         let mut read = Inputs::default();
         if let Some(open) = &self.open {
-            read.extend(&open.read);
+            read.extend(&open.files.read);
             let form = &open.georeferencing.form;
             for list in [&form.positions, &form.control_points] {
                 if let Some(path) = typed(list) {
@@ -37,10 +37,13 @@ impl State {
     /// one stays as it came.
     pub(crate) fn read_beside(&self, path: &Path) -> Inputs {
         let read = self.read();
-        let Some(open) = self.open.as_ref().filter(|open| !open.bundled) else {
+        let Some(open) = self.open.as_ref().filter(|open| !open.files.bundled) else {
             return read;
         };
-        let files = [open.origin.flight_file(), open.opened_file.as_deref()];
+        let files = [
+            open.files.origin.flight_file(),
+            open.files.opened_file.as_deref(),
+        ];
         let own = files.into_iter().flatten();
         match own.into_iter().any(|own| files::is_same_file(own, path)) {
             true => read.without(path),
@@ -87,7 +90,7 @@ impl State {
             return false;
         };
         let (folder, name) = (&to.path, &open.flight().parts().name);
-        let other = exports::other_flight_in(folder, name, open.origin.file());
+        let other = exports::other_flight_in(folder, name, open.files.origin.file());
         let Some(other) = other.filter(|_| !to.replace) else {
             return true;
         };

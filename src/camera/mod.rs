@@ -18,7 +18,7 @@ pub use brown::Brown;
 pub use distortion::Distortion;
 pub use fisheye::Fisheye;
 pub use not_invertible::NotInvertible;
-pub use pose::{NotRotation, Pose};
+pub use pose::{HALF_TURN_ABOUT_X, NotRotation, Pose};
 pub use visualsfm::VisualSfm;
 
 /// How far, in pixels, an inverse of the distortion may be off when mapped forward again.

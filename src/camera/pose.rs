@@ -2,6 +2,15 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
+/// From camera axes x right, y down, z forward to x right, y up, z back, and the other way round.
+///
+/// Photogrammetry and computer graphics (OpenGL) have the latter. diag(1, -1, -1), its own inverse.
+pub const HALF_TURN_ABOUT_X: DMat3 = DMat3::from_cols(
+    DVec3::X,
+    DVec3::new(0.0, -1.0, 0.0),
+    DVec3::new(0.0, 0.0, -1.0),
+);
+
 /// `world_from_camera` of one photo: camera axes x right, y down, z forward.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
@@ -92,9 +101,8 @@ impl Pose {
         let world_from_photogrammetric = DMat3::from_rotation_x(omega.to_radians())
             * DMat3::from_rotation_y(phi.to_radians())
             * DMat3::from_rotation_z(kappa.to_radians());
-        let photogrammetric_from_camera = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
         Self {
-            rotation: world_from_photogrammetric * photogrammetric_from_camera,
+            rotation: world_from_photogrammetric * HALF_TURN_ABOUT_X,
             center,
         }
     }

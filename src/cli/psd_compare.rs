@@ -104,7 +104,7 @@ pub(super) fn compare(arguments: &CompareArguments, progress: &Progress) -> Resu
             let names = arguments.table.names();
             let report = ComparisonReport::of(&names, warnings, &analysis)
                 .map_err(|fault| fault.to_string())?;
-            let page = exports::comparison_report(&report).map_err(|fault| fault.to_string())?;
+            let page = exports::comparison_report(&report);
             pending.push((path, page.into_bytes()));
             warnings = report.warnings;
         }

@@ -21,11 +21,11 @@ pub use scales_csv::scales_csv;
 pub use scales_json::scales_json;
 pub use scales_table::scales_table;
 pub use size_distributions::{
-    AnovaReport, Band, ComparisonReport, Dash, FigureContents, FigureFormat, FitReport,
-    FittedCurve, FittedDistribution, Look, Marker, Panel, Series, SizeAxis, SizeTick, anova_csv,
-    anova_json, anova_table, comparison_csv, comparison_json, comparison_report, comparison_text,
-    effort_csv, effort_json, effort_text, figure_of_comparison, figure_of_fits, figure_png,
-    figure_svg, fit_csv, fit_json, fit_table,
+    AnovaReport, Band, ComparisonReport, Dash, FigureContents, FigureFormat, FigureStyle,
+    FitReport, FittedCurve, FittedDistribution, Marker, Panel, Series, SizeAxis, SizeTick,
+    anova_csv, anova_json, anova_table, comparison_csv, comparison_json, comparison_report,
+    comparison_text, effort_csv, effort_json, effort_text, figure_of_comparison, figure_of_fits,
+    figure_png, figure_svg, fit_csv, fit_json, fit_table,
 };
 pub use split_desktop::{
     ExportRequest, ExportSummary, Provenance, Replace, export_for_split_desktop, other_flight_in,

@@ -298,3 +298,126 @@ impl<'a> PhotoReview<'a> {
         notes
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::camera::{Distortion, Pose};
+    use crate::flight::FlightParts;
+    use crate::scale::{Ground, ImageKind};
+    use crate::surface::{Cloud, Surface};
+
+    /// A photo of 100 x 100 px, 4 m above a plane with a point every half metre: a footprint of 4 m, so
+    /// that its scale is 25 px/m, with nothing to doubt.
+    fn flight() -> Arc<Flight> {
+        let at = |i: u32| DVec3::new(f64::from(i % 21), f64::from(i / 21), 0.0) / 2.0;
+        let cloud = Cloud {
+            points: (0..21 * 21).map(at).collect(),
+            ..Cloud::default()
+        };
+        let flight = Flight::new(FlightParts {
+            name: String::new(),
+            unit: LengthUnit::Metre,
+            unit_known: true,
+            ground: Ground::Auto,
+            image: ImageKind::Undistorted,
+            surface: Arc::new(Surface::new(cloud).unwrap()),
+            cameras: vec![Camera {
+                name: String::new(),
+                width: 100,
+                height: 100,
+                fx: 100.0,
+                fy: 100.0,
+                cx: 50.0,
+                cy: 50.0,
+                skew: 0.0,
+                distortion: Distortion::None,
+            }],
+            photos: vec![Photo {
+                name: "a.jpg".to_owned(),
+                camera: 0,
+                pose: Pose::from_tilt_pan(DVec3::new(5.1, 5.1, 4.0), [90.0, 0.0]),
+                trouble: None,
+            }],
+        });
+        Arc::new(flight.unwrap())
+    }
+
+    fn looked_up() -> LookedUp {
+        let (width, height) = (100, 100);
+        LookedUp {
+            evidence: vec![Evidence {
+                file: PhotoFileState::Found { width, height },
+                ..Evidence::default()
+            }],
+            warnings: Vec::new(),
+        }
+    }
+
+    fn review() -> Review {
+        let (limits, progress) = (Limits::default(), Progress::default());
+        Review::of_scales(flight(), looked_up(), &limits, &progress).unwrap()
+    }
+
+    fn settled(review: &Review) -> Option<Verdict> {
+        review.photo(0).unwrap().settled()
+    }
+
+    const OTHER: Doubt = Doubt::OtherColours {
+        correlation: 0.1,
+        points: 500,
+    };
+
+    #[test]
+    fn nothing_is_trusted_before_it_was_looked_at() {
+        let mut review = review();
+        assert_eq!(settled(&review), None);
+        review.look(&Progress::default()).unwrap();
+        assert_eq!(settled(&review), Some(Verdict::Trust));
+        assert_eq!(review.count_of(Verdict::Trust), 1);
+        let photo = review.photo(0).unwrap();
+        let top = photo.edges(LengthUnit::Centimetre).top.unwrap();
+        assert!((top - 0.25).abs() < 1e-12, "{top}");
+        assert_eq!(photo.notes(), [""; 0]);
+        // A corner's ray comes in at atan(4 / (2 * sqrt 2)), 54.7 degrees.
+        review.take_limits(&Limits {
+            flattest_angle: 55.0,
+            ..Limits::default()
+        });
+        assert_eq!(settled(&review), Some(Verdict::Check));
+        assert!(review.photo(1).is_none());
+    }
+
+    #[test]
+    fn colours_outlive_a_change_of_the_settings() {
+        let mut review = review();
+        review.look(&Progress::default()).unwrap();
+        review.take_colours([(0, ColoursFound::Against(OTHER))]);
+        assert_eq!(settled(&review), Some(Verdict::Check));
+        let outcomes = review.outcomes().to_vec();
+        review.take_scales(flight(), outcomes, looked_up());
+        assert!(!review.is_looked_at());
+        let photo = review.photo(0).unwrap();
+        assert_eq!(
+            (photo.verdict, photo.doubts),
+            (Verdict::Check, &[OTHER][..])
+        );
+        assert_eq!(photo.notes(), [OTHER.to_string()]);
+        review.take_colours([(0, ColoursFound::NothingAgainst)]);
+        assert_eq!(review.photo(0).unwrap().verdict, Verdict::Trust);
+    }
+
+    /// A file whose header cannot be read is doubted once.
+    #[test]
+    fn an_unreadable_file_is_doubted_once() {
+        let mut looked_up = looked_up();
+        let why = || Doubt::FileUnreadable("cut".to_owned());
+        looked_up.evidence[0].file = PhotoFileState::Unreadable("cut".to_owned());
+        looked_up.evidence[0].colours = ColoursFound::Against(why());
+        let (limits, progress) = (Limits::default(), Progress::default());
+        let review = Review::of_scales(flight(), looked_up, &limits, &progress).unwrap();
+        assert_eq!(review.photo(0).unwrap().doubts, [why()]);
+    }
+}

@@ -9,8 +9,7 @@ use crate::candidates::{Contents, only_below, several};
 use crate::clouds::ept;
 use crate::fault::Fault;
 use crate::files::{FileError, open_file};
-use crate::packages::package::{self, Package};
-use crate::packages::{metashape, open3d};
+use crate::packages::{self, Package, colmap, metashape, open3d};
 use crate::poses::trajectory::{self, TrajectoryFormat};
 use crate::poses::{poses_csv, poses_opk};
 use crate::tables::size_distributions;
@@ -109,7 +108,7 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
             Fault::new("it is empty", "export it again"),
         ));
     }
-    if let Some((package, path)) = package::of_file(path, &start) {
+    if let Some((package, path)) = packages::of_file(path, &start) {
         return Ok(Kind::Reconstruction(package, path));
     }
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&start);
@@ -200,22 +199,8 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
         }
         (None, _) => {}
     }
-    let of_model = |part: &str| {
-        [".bin", ".txt"]
-            .iter()
-            .any(|end| path.join(format!("{part}{end}")).is_file())
-    };
-    let parts = ["cameras", "images", "points3D"];
-    if parts.into_iter().any(of_model)
-        && let Some(missing) = parts.into_iter().find(|part| !of_model(part))
-    {
-        return Err(FileError::new(
-            path,
-            Fault::new(
-                format!("a COLMAP model without {missing}.bin or {missing}.txt"),
-                "copy the whole model",
-            ),
-        ));
+    if let Some(fault) = colmap::incomplete(path) {
+        return Err(FileError::new(path, fault));
     }
     if path.join(ept::HEADER).is_file() {
         let fault = Fault::new("a folder of a cloud in tiles (EPT)", "open its ept.json");

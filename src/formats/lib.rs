@@ -30,9 +30,9 @@ pub use candidates::{Candidate, candidates};
 pub use clouds::CloudFile;
 pub use detect::{CloudFormat, Kind, detect};
 pub use files::{FileError, open_file, read_bytes, read_text, text_from_bytes};
-pub use packages::package::Package;
+pub use packages::Package;
 pub use packages::reconstruction::{
-    MeasuredPosition, Observation, PosedPhoto, Project, Reconstruction,
+    ImageUnit, MeasuredPosition, Observation, Origin, PosedPhoto, Project, Reconstruction, Sizes,
 };
 pub use poses::poses_csv::{PoseLine, PosesFile};
 pub use poses::position_list::{

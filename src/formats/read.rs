@@ -12,7 +12,6 @@ use crate::fault::Fault;
 use crate::files::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 use crate::geodesy::is_stated;
 use crate::jobs::Progress;
-use crate::packages::package;
 use crate::packages::reconstruction::Project;
 use crate::packages::{metashape, open3d};
 use crate::poses::poses_csv::PosesFile;
@@ -143,7 +142,7 @@ pub fn read_camera(path: &Path) -> Result<Camera, FileError> {
 pub fn read_project(path: &Path, progress: &Progress) -> Result<Project, FileError> {
     match detect(path)? {
         Kind::Reconstruction(package, at) => {
-            let mut project = package::read(package, &at, progress)?;
+            let mut project = package.read(&at, progress)?;
             let found = &mut project.reconstruction;
             for crs in [&mut found.crs, &mut found.preferred_crs] {
                 // An empty text states nothing.

@@ -12,7 +12,7 @@ use crate::fault::Fault;
 use crate::files::FileError;
 use crate::flight::{CameraEntry, CameraSource};
 use crate::formats::packages::ros;
-use crate::formats::photos::photo_folder::is_image;
+use crate::formats::photos::image_names::is_image;
 use crate::formats::poses::trajectory::PosedFiles;
 use crate::formats::{
     Kind, Package, PoseLine, PosesFile, detect, read_camera_mount, read_poses, read_trajectory,

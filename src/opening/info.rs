@@ -10,8 +10,9 @@ use crate::formats::packages::ros;
 use crate::formats::packages::ros::Recording;
 use crate::formats::poses::trajectory::Trajectory;
 use crate::formats::{
-    CloudFile, DistributionColumns, FileError, Kind, Package, PosesFile, Reconstruction, detect,
-    read_camera, read_cloud, read_poses, read_project, read_size_distributions, read_trajectory,
+    CloudFile, DistributionColumns, FileError, ImageUnit, Kind, Origin, Package, PosesFile,
+    Reconstruction, Sizes, detect, read_camera, read_cloud, read_poses, read_project,
+    read_size_distributions, read_trajectory,
 };
 use crate::fragmentation::DistributionSet;
 use crate::geometry::Bounds;
@@ -68,16 +69,20 @@ fn reconstruction_info(reconstruction: &Reconstruction) -> Value {
         .iter()
         .map(|camera| {
             let mut value = camera_value(camera);
-            if !reconstruction.sizes_known {
+            if let Sizes::Unknown {
+                unit,
+                principal_points_from,
+            } = reconstruction.sizes
+            {
                 // What a package does not write is null, not 0.
                 value["width"] = Value::Null;
                 value["height"] = Value::Null;
-                if reconstruction.intrinsics_in_longer_sides {
+                if unit == ImageUnit::LongerSide {
                     for name in ["fx", "fy", "skew"] {
                         value[name] = Value::Null;
                     }
                 }
-                if !reconstruction.principal_points_from_corner {
+                if principal_points_from == Origin::Middle {
                     value["cx"] = Value::Null;
                     value["cy"] = Value::Null;
                 }

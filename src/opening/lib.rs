@@ -6,7 +6,7 @@
 //! dropped      which of several files is what
 //! info         what a file holds, for `fragscale info`
 //! origin       from which files a flight came, and the flight.toml that says so
-//! world_frame  the coordinate system that surface and photos share
+//! world        the coordinate system that surface and photos share
 //! ```
 
 mod dropped;
@@ -18,8 +18,7 @@ mod open;
 mod origin;
 mod photo_checks;
 mod photo_files;
-mod unstated_surface;
-mod world_frame;
+mod world;
 
 use fragscale_core::{
     camera, fault, files, flight, geodesy, geometry, georeference, jobs, picture, scale, surface,

@@ -6,7 +6,7 @@ use tiny_skia::{
     Transform,
 };
 
-use super::text::{Anchor, text_path};
+use super::text::{Anchor, Typeface, text_path};
 
 /// Red, green, blue, opacity.
 pub type Color = [u8; 4];
@@ -29,10 +29,11 @@ pub struct Canvas<'a> {
     /// Premultiplied while the canvas lives.
     image: &'a mut RgbaImage,
     halo: Option<Halo>,
+    typeface: Typeface,
 }
 
 impl<'a> Canvas<'a> {
-    /// A canvas on `image`, without a halo.
+    /// A canvas on `image`, without a halo, for letters of one width.
     pub fn new(image: &'a mut RgbaImage) -> Self {
         for pixel in image.pixels_mut() {
             let [r, g, b, a] = pixel.0;
@@ -40,12 +41,21 @@ impl<'a> Canvas<'a> {
                 pixel.0 = [times(r, a), times(g, a), times(b, a), a];
             }
         }
-        Self { image, halo: None }
+        Self {
+            image,
+            halo: None,
+            typeface: Typeface::default(),
+        }
     }
 
     /// What is drawn from now on gets this halo.
     pub fn set_halo(&mut self, halo: Option<Halo>) {
         self.halo = halo;
+    }
+
+    /// Words from now on are in this font.
+    pub fn set_typeface(&mut self, typeface: Typeface) {
+        self.typeface = typeface;
     }
 
     /// A straight stroke with round ends.
@@ -67,10 +77,12 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Strokes from point to point, interrupted: `dash` pixels on, `dash` pixels off.
-    pub fn dashed(&mut self, points: &[[f32; 2]], width: f32, dash: f32, color: Color) {
+    /// Strokes from point to point, interrupted: `pattern` is the lengths of stroke and gap in turn,
+    /// pixels, an even number of them.
+    pub fn dashed(&mut self, points: &[[f32; 2]], width: f32, pattern: &[f32], color: Color) {
         if let Some(path) = path_through(points, false) {
-            self.stroke(&path, width, color, StrokeDash::new(vec![dash, dash], 0.0));
+            let dash = StrokeDash::new(pattern.to_vec(), 0.0);
+            self.stroke(&path, width, color, dash);
         }
     }
 
@@ -99,7 +111,23 @@ impl<'a> Canvas<'a> {
 
     /// One line of text, `size` pixels an em; `at` is the place of its `anchor`.
     pub fn text(&mut self, at: [f32; 2], size: f32, color: Color, text: &str, anchor: Anchor) {
-        if let Some(path) = text_path(at, size, text, anchor) {
+        if let Some(path) = text_path(self.typeface, at, size, text, anchor) {
+            self.fill(&path, color);
+        }
+    }
+
+    /// The same, reading upwards: turned about `at`.
+    pub fn text_upwards(
+        &mut self,
+        at: [f32; 2],
+        size: f32,
+        color: Color,
+        text: &str,
+        anchor: Anchor,
+    ) {
+        let turn = Transform::from_rotate_at(-90.0, at[0], at[1]);
+        let path = text_path(self.typeface, at, size, text, anchor);
+        if let Some(path) = path.and_then(|path| path.transform(turn)) {
             self.fill(&path, color);
         }
     }
@@ -261,7 +289,7 @@ mod tests {
 
         // Half of a stroke of 2 x 32.
         let mut image = black();
-        Canvas::new(&mut image).dashed(&[[4.0, 20.0], [36.0, 20.0]], 2.0, 4.0, WHITE);
+        Canvas::new(&mut image).dashed(&[[4.0, 20.0], [36.0, 20.0]], 2.0, &[4.0, 4.0], WHITE);
         assert!((area(&image) - 32.0).abs() < 2.0, "{}", area(&image));
 
         let mut image = black();
@@ -311,6 +339,26 @@ mod tests {
         let mut empty = RgbaImage::new(4, 4);
         Canvas::new(&mut empty).line([0.0, 0.0], [4.0, 0.0], 1.0, RED);
         assert_eq!(empty.get_pixel(2, 3).0, [0; 4]);
+    }
+
+    /// The picture of words that read upwards, turned by a quarter to the right, is that of the words.
+    #[test]
+    fn words_read_upwards() {
+        let mut across = black();
+        let mut canvas = Canvas::new(&mut across);
+        canvas.set_typeface(Typeface::Proportional);
+        canvas.text([20.0, 20.0], 16.0, WHITE, "Fig", Anchor::Middle);
+        drop(canvas);
+        let mut upwards = black();
+        let mut canvas = Canvas::new(&mut upwards);
+        canvas.set_typeface(Typeface::Proportional);
+        canvas.text_upwards([20.0, 20.0], 16.0, WHITE, "Fig", Anchor::Middle);
+        drop(canvas);
+        assert!(area(&across) > 20.0);
+        let turned = image::imageops::rotate90(&upwards);
+        for (a, b) in across.pixels().zip(turned.pixels()) {
+            assert!(a[1].abs_diff(b[1]) < 16, "{a:?} {b:?}");
+        }
     }
 
     #[test]

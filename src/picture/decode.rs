@@ -4,22 +4,13 @@ use std::io::Cursor;
 
 use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits, RgbImage};
 
+use super::image_size::check_size;
 use super::jpeg::{self, Jpeg};
 use super::tiff_photo;
 use crate::fault::Fault;
 
-/// The most pixels that a photo may have: twice the largest aerial sensors of today.
-const MOST_PIXELS: u64 = 400_000_000;
-
-/// What a decoder may allocate, the picture included: 16-bit RGBA at [`MOST_PIXELS`] is not meant.
+/// What a decoder may allocate, the picture included: 16-bit RGBA at the most pixels is not meant.
 const MOST_BYTES: u64 = 2 << 30;
-
-/// Pixels that a byte of a photo may stand for. The flattest JPEG and PNG reach some hundreds, so a
-/// header that claims more lies.
-const MOST_PIXELS_A_BYTE: u64 = 1000;
-
-/// Below this many pixels a lying header does no harm.
-const HARMLESS_PIXELS: u64 = 16_000_000;
 
 /// The file formats of photos.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,36 +119,25 @@ fn unreadable(error: &dyn std::fmt::Display) -> Fault {
     )
 }
 
-/// Refuses sizes that no photo in a file of so many bytes has, before memory is taken for them.
-pub(super) fn check_size(width: u32, height: u32, bytes: u64) -> Result<(), Fault> {
-    let pixels = u64::from(width) * u64::from(height);
-    let refuse = |why: &str, remedy: &str| {
-        Err(Fault::new(
-            format!("the image claims to be {width} x {height}, {why}"),
-            remedy,
-        ))
-    };
-    if pixels == 0 {
-        return refuse("which has no pixels", "give a photo");
-    }
-    if pixels > MOST_PIXELS {
-        return refuse(
-            "more than the 400 megapixels that are supported",
-            "reduce it",
-        );
-    }
-    if pixels > HARMLESS_PIXELS && pixels > bytes.saturating_mul(MOST_PIXELS_A_BYTE) {
-        return refuse(
-            &format!("far too much for its {bytes} bytes"),
-            "copy the photo again",
-        );
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A PNG header of 19 999 x 19 999 pixels in front of nothing: refused by what it claims.
+    #[test]
+    fn a_lying_header_takes_no_memory() {
+        let mut png = bytes(&DynamicImage::new_rgb8(1, 1), ImageFormat::Png);
+        png[16..20].copy_from_slice(&19_999_u32.to_be_bytes());
+        png[20..24].copy_from_slice(&19_999_u32.to_be_bytes());
+        // The header's checksum is then wrong, too; mend it so that the size is what is judged.
+        let checksum = crc32(&png[12..29]);
+        png[29..33].copy_from_slice(&checksum.to_be_bytes());
+        let fault = decode(&png).unwrap_err();
+        assert!(
+            fault.what.contains("19999 x 19999, far too much"),
+            "{fault}"
+        );
+    }
 
     fn bytes(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());
@@ -200,26 +180,6 @@ mod tests {
             assert!(decode(&whole).is_ok());
             assert!(decode(&whole[..whole.len() / 2]).is_err(), "{format:?}");
         }
-    }
-
-    /// A PNG header of 19 999 x 19 999 pixels in front of nothing: refused by what it claims.
-    #[test]
-    fn a_lying_header_takes_no_memory() {
-        let mut png = bytes(&DynamicImage::new_rgb8(1, 1), ImageFormat::Png);
-        png[16..20].copy_from_slice(&19_999_u32.to_be_bytes());
-        png[20..24].copy_from_slice(&19_999_u32.to_be_bytes());
-        // The header's checksum is then wrong, too; mend it so that the size is what is judged.
-        let checksum = crc32(&png[12..29]);
-        png[29..33].copy_from_slice(&checksum.to_be_bytes());
-        let fault = decode(&png).unwrap_err();
-        assert!(
-            fault.what.contains("19999 x 19999, far too much"),
-            "{fault}"
-        );
-        assert!(check_size(65_535, 65_535, 1 << 40).is_err());
-        assert!(check_size(0, 5, 100).is_err());
-        // A phone's 48 megapixels of plain sky at 200 kB.
-        assert!(check_size(8000, 6000, 200_000).is_ok());
     }
 
     /// PNG specification, annex D.

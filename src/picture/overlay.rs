@@ -6,7 +6,7 @@ use image::{RgbImage, RgbaImage};
 
 use super::canvas::{Canvas, Color, Halo};
 use super::scale_bar::{BarEdge, scale_bars};
-use super::text::{Anchor, width};
+use super::text::{Anchor, Typeface, text_width};
 use crate::scale::{Corner, CornerName, CornerOutcome, PhotoScale};
 use crate::units::LengthUnit;
 
@@ -130,7 +130,8 @@ impl Pen {
         color: Color,
     ) {
         // Narrow pictures get smaller letters rather than a cut text.
-        let fit = self.size[0] * 0.96 / width(self.letters, text).max(1.0);
+        let fit =
+            self.size[0] * 0.96 / text_width(Typeface::default(), self.letters, text).max(1.0);
         let letters = self.letters * fit.min(1.0);
         let gap = tick + self.letters * 0.5;
         let (y, anchor) = match edge {

@@ -1,13 +1,36 @@
-//! Letters as outlines, in the font that the window uses.
+//! Letters as outlines, in the fonts that the window uses.
 
 use std::sync::LazyLock;
 
 use ab_glyph::{Font, FontRef, OutlineCurve, Point};
 use tiny_skia::{Path, PathBuilder};
 
-/// `None` only if the font that we are built with were broken.
-static FONT: LazyLock<Option<FontRef<'static>>> =
+/// A font that this program brings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Typeface {
+    /// Hack: letters and digits of one width, for words on photos.
+    #[default]
+    FixedWidth,
+    /// Ubuntu Light, for figures.
+    Proportional,
+}
+
+/// `None` only if a font that we are built with were broken.
+type Loaded = LazyLock<Option<FontRef<'static>>>;
+
+static FIXED_WIDTH: Loaded =
     LazyLock::new(|| FontRef::try_from_slice(epaint_default_fonts::HACK_REGULAR).ok());
+static PROPORTIONAL: Loaded =
+    LazyLock::new(|| FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).ok());
+
+impl Typeface {
+    fn font(self) -> Option<&'static FontRef<'static>> {
+        match self {
+            Self::FixedWidth => FIXED_WIDTH.as_ref(),
+            Self::Proportional => PROPORTIONAL.as_ref(),
+        }
+    }
+}
 
 /// Which place of a text is meant: across its width, and from the top of its capitals to the line
 /// that it stands on.
@@ -52,14 +75,20 @@ impl Anchor {
 
 /// The outlines of one line of text; `None` where there is nothing to draw. Characters that the font
 /// does not have become a question mark.
-pub(super) fn text_path(at: [f32; 2], size: f32, text: &str, anchor: Anchor) -> Option<Path> {
-    let font = FONT.as_ref()?;
+pub(super) fn text_path(
+    typeface: Typeface,
+    at: [f32; 2],
+    size: f32,
+    text: &str,
+    anchor: Anchor,
+) -> Option<Path> {
+    let font = typeface.font()?;
     let scale = size / font.units_per_em()?;
     if !scale.is_finite() || scale <= 0.0 {
         return None;
     }
     let (left, down) = anchor.shares();
-    let mut pen = at[0] - left * width(size, text);
+    let mut pen = at[0] - left * text_width(typeface, size, text);
     let base = at[1] + (1.0 - down) * capital_height(font) * scale;
     let mut path = PathBuilder::new();
     for glyph in glyphs(font, text) {
@@ -94,8 +123,8 @@ pub(super) fn text_path(at: [f32; 2], size: f32, text: &str, anchor: Anchor) -> 
 }
 
 /// The width of a line of text in pixels, `size` pixels an em.
-pub(super) fn width(size: f32, text: &str) -> f32 {
-    let Some((font, units)) = FONT.as_ref().and_then(|f| Some((f, f.units_per_em()?))) else {
+pub fn text_width(typeface: Typeface, size: f32, text: &str) -> f32 {
+    let Some((font, units)) = typeface.font().and_then(|f| Some((f, f.units_per_em()?))) else {
         return 0.0;
     };
     let advances = glyphs(font, text).map(|glyph| font.h_advance_unscaled(glyph));
@@ -123,7 +152,7 @@ mod tests {
     #[test]
     fn anchors_place_the_capitals() {
         let bounds = |anchor| {
-            text_path([100.0, 50.0], 20.0, "HH", anchor)
+            text_path(Typeface::FixedWidth, [100.0, 50.0], 20.0, "HH", anchor)
                 .unwrap()
                 .bounds()
         };
@@ -139,19 +168,40 @@ mod tests {
             "{}",
             middle.height()
         );
-        assert!((width(20.0, "HH") - 2.0 * 20.0 * 1233.0 / 2048.0).abs() < 0.1);
+        assert!(
+            (text_width(Typeface::FixedWidth, 20.0, "HH") - 2.0 * 20.0 * 1233.0 / 2048.0).abs()
+                < 0.1
+        );
     }
 
     #[test]
     fn every_sign_that_we_write_is_in_the_font() {
-        let font = FONT.as_ref().unwrap();
+        let font = Typeface::FixedWidth.font().unwrap();
         for c in "TOP BOTTOM 0123456789 cm·px/°×µ—′"
             .chars()
             .filter(|c| *c != ' ')
         {
             assert_ne!(font.glyph_id(c).0, 0, "{c}");
         }
-        assert!(text_path([0.0, 0.0], 10.0, "岩", Anchor::TopLeft).is_some());
-        assert!(text_path([0.0, 0.0], 10.0, "  ", Anchor::TopLeft).is_none());
+        assert!(
+            text_path(
+                Typeface::FixedWidth,
+                [0.0, 0.0],
+                10.0,
+                "岩",
+                Anchor::TopLeft
+            )
+            .is_some()
+        );
+        assert!(
+            text_path(
+                Typeface::FixedWidth,
+                [0.0, 0.0],
+                10.0,
+                "  ",
+                Anchor::TopLeft
+            )
+            .is_none()
+        );
     }
 }

@@ -13,7 +13,7 @@ use image::RgbImage;
 use tiff::decoder::ifd::Value;
 use tiff::tags::Tag;
 
-use super::decode::check_size;
+use super::image_size::check_size;
 use super::jpeg::{self, Colors};
 use crate::fault::Fault;
 use crate::raster::{Compression, Layout, NumberKind, TiffFile};

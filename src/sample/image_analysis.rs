@@ -20,8 +20,8 @@ use std::fmt::Write as _;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::fragment::Body;
 use super::scene::Sphere;
+use super::scene::fragment::Body;
 use crate::camera::{Camera, Pose};
 
 /// Where the pixels of a photo as shot lie in the undistorted one, row by row from the top left.

@@ -10,20 +10,16 @@
 
 pub mod files;
 mod flight_plan;
-mod fragment;
 mod image_analysis;
-mod light;
 mod material;
 mod noise;
 mod photo;
-mod pile;
 mod preset;
 mod random;
 mod scene;
 mod sensor;
 mod sfm_cloud;
 mod sieve;
-mod terrain;
 mod truth;
 
 #[cfg(test)]
@@ -43,8 +39,8 @@ use glam::{DVec2, DVec3};
 use serde_json::Value;
 
 pub use flight_plan::{FlightPlan, Shot};
-pub use pile::{Fragment, Pile, PilePlan};
 pub use preset::{Lens, Preset, Recipe};
+pub use scene::pile::{Fragment, Pile, PilePlan};
 pub use scene::{Meeting, Scene, SceneCaster, Sphere, Thing};
 pub use sfm_cloud::CloudPlan;
 
@@ -54,15 +50,15 @@ use crate::jobs::Progress;
 use crate::surface::Cloud;
 use crate::units::LengthUnit;
 use files::flight::FlightText;
-use files::photo::{DjiGimbal, PhotoMetadata};
+use files::photo_metadata::{DjiGimbal, PhotoMetadata};
 use files::poses::{Orientation, PoseRow};
 use files::reference::openings_mm;
 use fragscale_core::files::make_folder_whole;
 use image_analysis::{Analysis, Outlined, PixelPlaces, Scale};
-use light::Light;
 use material::Material;
 use photo::Look;
 use random::Random;
+use scene::light::Light;
 
 /// What the user asks of a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]

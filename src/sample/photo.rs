@@ -6,8 +6,8 @@ use glam::{DQuat, DVec2, DVec3};
 use image::RgbImage;
 use rayon::prelude::*;
 
-use super::light::Light;
 use super::material::{Edge, Material, Spot};
+use super::scene::light::Light;
 use super::scene::{Meeting, Scene, SceneCaster, Thing};
 use super::sensor::Sensor;
 use crate::camera::{Camera, Pose};

@@ -3,9 +3,9 @@
 use glam::{DVec2, DVec3};
 
 use super::flight_plan::FlightPlan;
-use super::pile::PilePlan;
+use super::scene::pile::PilePlan;
+use super::scene::terrain::Terrain;
 use super::sfm_cloud::CloudPlan;
-use super::terrain::Terrain;
 use crate::camera::{Brown, Camera, Distortion, Fisheye};
 use crate::fault::Fault;
 use crate::fragmentation::Swebrec;

@@ -261,8 +261,8 @@ fn extend_chain(chain: &mut Vec<DVec2>, start: usize, point: DVec2) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fragment::Body;
     use crate::random::Random;
+    use crate::scene::fragment::Body;
 
     fn cuboid(size: DVec3) -> Vec<DVec3> {
         let signs = [-0.5, 0.5];

@@ -156,9 +156,9 @@ fn the_pile_follows_its_distribution() {
     };
     let random = Random::new(3);
     let bodies: Vec<_> = (0..40)
-        .map(|i| fragment::Body::random(&mut random.fork(i)))
+        .map(|i| scene::fragment::Body::random(&mut random.fork(i)))
         .collect();
-    let fragments = pile::draw_sizes(&plan, &bodies, &mut random.fork(99)).unwrap();
+    let fragments = scene::pile::draw_sizes(&plan, &bodies, &mut random.fork(99)).unwrap();
     assert!(fragments.len() > 10_000, "{}", fragments.len());
     let masses: Vec<(f64, f64)> = fragments
         .iter()

@@ -14,7 +14,6 @@ use crate::common::{fragscale, scales_json};
 use fragscale::flight::{Doubt, Limits, PhotoReview, Review, Verdict};
 use fragscale::jobs::Progress;
 use fragscale::opening::{OpenOptions, Opened, open_flight};
-use tempfile::TempDir;
 
 /// Of the cameras over the plane, metres.
 const HEIGHT: f64 = 40.0;

@@ -1,6 +1,12 @@
 //! Flights whose photos are not of their pile, although their scales look well: one taken from under
 //! the surface, some exchanged with others.
 
+#![allow(
+    unreachable_pub,
+    dead_code,
+    reason = "each test binary is a crate of its own"
+)]
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;

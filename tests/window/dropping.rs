@@ -53,8 +53,12 @@ fn brighton_opens_by_dropping_its_folder() {
     drop_on(&mut desk, &[&folder]);
     let open = desk.open();
     assert_eq!(open.review.outcomes().len(), 7);
-    assert_eq!(open.crs.as_deref(), Some("EPSG:32615"), "UTM zone 15 north");
-    let surface = open.surface_bounds;
+    assert_eq!(
+        open.files.crs.as_deref(),
+        Some("EPSG:32615"),
+        "UTM zone 15 north"
+    );
+    let surface = open.extent.surface;
     for photo in 0..7 {
         let scale = open.scale(photo).expect("a scale");
         for edge in [scale.scale.top, scale.scale.bottom] {

@@ -91,8 +91,8 @@ fn a_list_of_positions_gives_the_scales_of_the_world() {
     assert_eq!(Path::new(&proposed), target);
     desk.click(Role::Button, "Save and open");
     let open = desk.open();
-    assert_eq!(open.origin.flight_file(), Some(target.as_path()));
-    assert_eq!(open.crs.as_deref(), Some("EPSG:32632"));
+    assert_eq!(open.files.origin.flight_file(), Some(target.as_path()));
+    assert_eq!(open.files.crs.as_deref(), Some("EPSG:32632"));
     assert!(!open.is_changed());
     assert_scales(&desk);
 
@@ -199,7 +199,7 @@ fn a_measured_distance_gives_the_scale() {
             .apply(Command::Click(Ray { origin, direction }));
         desk.settle();
     }
-    assert!(matches!(desk.open().measure, Measure::Both(..)));
+    assert!(matches!(desk.open().pointer.measure, Measure::Both(..)));
     // Two of the model's units are six metres.
     desk.fill("Length in metres", "6,0");
     desk.click(Role::Button, "Take the measured points");
@@ -215,12 +215,12 @@ fn a_measured_distance_gives_the_scale() {
     desk.click(Role::Button, "Save and open…");
     desk.type_path(&folder.path().join("to scale.toml"));
     desk.click(Role::Button, "Save and open");
-    assert_eq!(desk.open().crs, None);
+    assert_eq!(desk.open().files.crs, None);
     assert_scales(&desk);
     // Cameras above, now.
     let open = desk.open();
     let center = open.flight().parts().photos[0].pose.center;
-    assert!((center.z - open.surface_bounds.max.z - 30.0).abs() < 1e-6);
+    assert!((center.z - open.extent.surface.max.z - 30.0).abs() < 1e-6);
 }
 
 #[test]
@@ -236,7 +236,10 @@ fn a_file_is_replaced_only_when_she_says_so() {
     assert_eq!(fs::read_to_string(&target).expect("a file"), "mine");
     desk.click(Role::Button, "Save and open");
     desk.click(Role::Button, "Replace it");
-    assert_eq!(desk.open().origin.flight_file(), Some(target.as_path()));
+    assert_eq!(
+        desk.open().files.origin.flight_file(),
+        Some(target.as_path())
+    );
     assert_scales(&desk);
 }
 
@@ -259,7 +262,7 @@ fn a_surface_in_the_world_is_kept_where_she_says_so() {
     desk.click(Role::Button, "Save and open…");
     desk.click(Role::CheckBox, "Keep the surface scan.xyz");
     desk.click(Role::Button, "Save and open");
-    assert!(desk.open().origin.flight_file().is_some());
+    assert!(desk.open().files.origin.flight_file().is_some());
     assert!(!desk.open().is_changed());
     for photo in 0..5 {
         let top = desk.open().scale(photo).expect("a scale").scale.top;

@@ -266,20 +266,20 @@ fn check(state: &State) {
     let count = parts.photos.len();
     assert_eq!(open.review.outcomes().len(), count);
     assert_eq!(open.review.photos().count(), count);
-    assert_eq!(open.photo_files.len(), count);
-    assert_eq!(open.thumbnails.len(), count);
-    assert_eq!(open.images.len(), count);
+    assert_eq!(open.files.photo_files.len(), count);
+    assert_eq!(open.pictures.thumbnails.len(), count);
+    assert_eq!(open.pictures.images.len(), count);
     assert_eq!(open.history.now().chosen.len(), count);
     assert!(open.review.views().is_none_or(|views| views.len() == count));
     assert!(open.selected.is_none_or(|photo| photo < count));
     let through = open.looking.through;
     assert!(through.is_none_or(|photo| Some(photo) == open.selected || photo < count));
     // The table shows the photos that its filter lets through, each once.
-    let text = open.order.text.to_lowercase();
+    let text = open.table.order.text.to_lowercase();
     let wanted: BTreeSet<usize> = (0..count)
         .filter(|&photo| {
             let reviewed = open.review.photo(photo).expect("a photo");
-            let wanted = open.order.verdict;
+            let wanted = open.table.order.verdict;
             let verdict = wanted.is_none_or(|wanted| reviewed.settled() == Some(wanted));
             let doubts = reviewed.doubts.iter().map(ToString::to_string);
             let named = parts.photos[photo].name.clone();
@@ -287,15 +287,22 @@ fn check(state: &State) {
             verdict && texts.any(|words| words.contains(&text))
         })
         .collect();
-    let shown: BTreeSet<usize> = open.shown.iter().copied().collect();
+    let shown: BTreeSet<usize> = open.table.shown.iter().copied().collect();
     assert_eq!(shown, wanted);
-    assert_eq!(open.shown.len(), wanted.len(), "a photo twice");
-    if matches!(open.order.by, SortBy::Column(column) if column.name == "Top") {
+    assert_eq!(open.table.shown.len(), wanted.len(), "a photo twice");
+    if matches!(open.table.order.by, SortBy::Column(column) if column.name == "Top") {
         let tops: Vec<f64> = open
+            .table
             .shown
             .iter()
             .filter_map(|&photo| open.scale(photo)?.scale.top)
-            .map(|top| if open.order.descending { -top } else { top })
+            .map(|top| {
+                if open.table.order.descending {
+                    -top
+                } else {
+                    top
+                }
+            })
             .collect();
         assert!(tops.is_sorted(), "{tops:?}");
     }
@@ -303,7 +310,7 @@ fn check(state: &State) {
     assert!(orbit.target.is_finite() && orbit.view().eye.is_finite());
     assert!(orbit.distance > 0.0 && orbit.distance.is_finite());
     assert!((0.0..=1.0).contains(&open.looking.blend));
-    if let Measure::Both(a, b) = open.measure {
+    if let Measure::Both(a, b) = open.pointer.measure {
         assert!(a.is_finite() && b.is_finite());
     }
 }
@@ -319,7 +326,7 @@ fn check_at_rest(state: &State) {
         "{:?}",
         open.computed
     );
-    let compared = open.compared.iter().map(|(object, _)| object);
+    let compared = open.objects.compared.iter().map(|(object, _)| object);
     assert!(compared.eq(&settings.scale_objects));
     assert_eq!(parts.unit, settings.unit);
     assert_eq!(parts.ground, settings.ground);
@@ -337,7 +344,7 @@ fn check_at_rest(state: &State) {
         let trouble = matches!(outcome, Outcome::Trouble(_));
         assert_eq!(trouble, parts.photos[photo].trouble.is_some());
     }
-    if let Some(preview) = &open.preview {
+    if let Some(preview) = &open.pictures.preview {
         assert!(preview.photo < open.review.outcomes().len());
     }
 }
@@ -355,7 +362,10 @@ fn fresh(path: &Path, settings: FlightSettings) -> Vec<Outcome> {
 
 /// However the settings got there, the numbers are those of a flight that is opened with them.
 fn assert_as_if_opened_anew(open: &OpenFlight) {
-    assert_eq!(**open.review.outcomes(), fresh(&open.path, open.settings()));
+    assert_eq!(
+        **open.review.outcomes(),
+        fresh(&open.files.path, open.settings())
+    );
 }
 
 #[test]

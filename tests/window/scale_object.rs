@@ -101,9 +101,9 @@ fn a_sphere_is_traced_by_clicks() {
     open_section(&mut desk);
     // Nothing is traced before its size is known.
     desk.click(Role::Button, "Trace sphere");
-    assert!(desk.open().tracing.is_none());
+    assert!(desk.open().objects.tracing.is_none());
     trace_sphere(&mut desk);
-    assert!(desk.open().tracing.is_none());
+    assert!(desk.open().objects.tracing.is_none());
     let [object] = &objects(&desk)[..] else {
         panic!("{:?}", objects(&desk));
     };
@@ -143,7 +143,13 @@ fn points_are_taken_back_moved_and_given_up() {
         .into_iter()
         .map(|p| on_screen(&desk, p))
         .collect();
-    let count = |desk: &Desk| desk.open().tracing.as_ref().map(|t| t.outline.len());
+    let count = |desk: &Desk| {
+        desk.open()
+            .objects
+            .tracing
+            .as_ref()
+            .map(|t| t.outline.len())
+    };
     for place in &places {
         desk.click_at(*place);
     }
@@ -154,9 +160,21 @@ fn points_are_taken_back_moved_and_given_up() {
     desk.press(Modifiers::NONE, Key::Backspace);
     assert_eq!(count(&desk), Some(5));
     // Dragging a point moves it and nothing else.
-    let before = desk.open().tracing.clone().expect("a draft").outline;
+    let before = desk
+        .open()
+        .objects
+        .tracing
+        .clone()
+        .expect("a draft")
+        .outline;
     drag(&mut desk, places[2], places[2] + egui::vec2(20.0, 0.0));
-    let after = desk.open().tracing.clone().expect("a draft").outline;
+    let after = desk
+        .open()
+        .objects
+        .tracing
+        .clone()
+        .expect("a draft")
+        .outline;
     let moved = after[2] - before[2];
     let pixels = 20.0 * 1280.0 / f64::from(frame(&desk).width());
     assert!(
@@ -267,7 +285,7 @@ fn size_mask_and_deleting_are_changes_of_the_flight() {
     );
     let again = Desk::new(Some(folder.path()));
     assert_eq!(objects(&again), objects(&desk));
-    assert!(!again.open().compared.is_empty());
+    assert!(!again.open().objects.compared.is_empty());
     desk.click(Role::Button, "Delete sphere 1");
     assert!(objects(&desk).is_empty() && desk.open().is_changed());
 }

@@ -658,8 +658,8 @@ fn the_command_gives_the_same_answers() {
             .apply(Command::Distributions(command));
         desk.settle();
         for save in [
-            DistributionCommand::SaveFigure(folder.path().join("window.svg")),
-            DistributionCommand::SaveReport(folder.path().join("window.html")),
+            DistributionCommand::SaveFigure(folder.path().join("window.svg").into()),
+            DistributionCommand::SaveReport(folder.path().join("window.html").into()),
         ] {
             desk.harness.state_mut().apply(Command::Distributions(save));
             desk.settle();

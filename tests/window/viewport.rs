@@ -175,8 +175,8 @@ fn the_distance_of_two_known_points_is_measured() {
         let at = on_screen(&desk, &orbit(&desk).view(), point);
         desk.click_at(at);
     }
-    let Measure::Both(a, b) = desk.open().measure else {
-        panic!("{:?}", desk.open().measure);
+    let Measure::Both(a, b) = desk.open().pointer.measure else {
+        panic!("{:?}", desk.open().pointer.measure);
     };
     assert!(a.distance(first) < 1e-3 && b.distance(second) < 1e-3);
     assert!(desk.says(&format!("Distance {:.3} m", a.distance(b))));
@@ -184,7 +184,7 @@ fn the_distance_of_two_known_points_is_measured() {
     assert!((a.distance(b) - 1.660_60).abs() < 2e-3);
     assert_eq!(desk.selected(), before, "these clicks select nothing");
     desk.press(Modifiers::NONE, Key::M);
-    assert_eq!(desk.open().measure, Measure::Off);
+    assert_eq!(desk.open().pointer.measure, Measure::Off);
 }
 
 #[test]
@@ -203,8 +203,8 @@ fn the_view_through_the_camera_is_the_photo() {
     desk.press(Modifiers::NONE, Key::M);
     let middle = desk.viewport().center();
     desk.click_at(middle);
-    let Measure::Second(point) = desk.open().measure else {
-        panic!("{:?}", desk.open().measure);
+    let Measure::Second(point) = desk.open().pointer.measure else {
+        panic!("{:?}", desk.open().pointer.measure);
     };
     let flight = desk.open().flight().clone();
     let photo = &flight.parts().photos[5];

@@ -48,7 +48,7 @@ actions! {
                 is known of it",
         shortcut: None,
         command: |state| {
-            state.open.as_ref()?.reconstruction.as_ref()?;
+            state.open.as_ref()?.files.reconstruction.as_ref()?;
             Some(Command::Ask(Some(Asking::Georeference)))
         },
     }

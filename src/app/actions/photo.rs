@@ -50,7 +50,7 @@ actions! {
         hover: "Make a scale object of the points; a click on the first one does the same",
         shortcut: keys(Modifiers::NONE, Key::Enter),
         command: |state| {
-            let tracing = state.open.as_ref()?.tracing.as_ref()?;
+            let tracing = state.open.as_ref()?.objects.tracing.as_ref()?;
             let is_complete = tracing.is_complete();
             is_complete.then_some(Command::Trace(Trace::Finish))
         },
@@ -60,7 +60,7 @@ actions! {
         hover: "Take the last point of the outline back",
         shortcut: keys(Modifiers::NONE, Key::Backspace),
         command: |state| {
-            let tracing = state.open.as_ref()?.tracing.as_ref()?;
+            let tracing = state.open.as_ref()?.objects.tracing.as_ref()?;
             let has_points = !tracing.outline.is_empty();
             has_points.then_some(Command::Trace(Trace::RemoveLast))
         },
@@ -70,7 +70,7 @@ actions! {
         hover: "Forget the points of the outline",
         shortcut: keys(Modifiers::NONE, Key::Escape),
         command: |state| {
-            state.open.as_ref()?.tracing.as_ref()?;
+            state.open.as_ref()?.objects.tracing.as_ref()?;
             Some(Command::Trace(Trace::GiveUp))
         },
     }

@@ -13,7 +13,7 @@ impl OpenFlight {
     pub(crate) fn apply(&mut self, command: Command) {
         match command {
             Command::Click(ray) => {
-                let purpose = if self.measure == Measure::Off {
+                let purpose = if self.pointer.measure == Measure::Off {
                     Purpose::Select
                 } else {
                     Purpose::Measure
@@ -21,9 +21,9 @@ impl OpenFlight {
                 self.pick(purpose, ray);
             }
             Command::Hover(Some(ray)) => self.pick(Purpose::Hover, ray),
-            Command::Hover(None) => self.hover = None,
+            Command::Hover(None) => self.pointer.hover = None,
             Command::DoubleClick(ray) => self.pick(Purpose::Center, ray),
-            Command::HoverPhoto(photo) => self.hovered_photo = photo,
+            Command::HoverPhoto(photo) => self.table.hovered = photo,
             Command::Choose(photo, chosen) => {
                 let mut edit = self.history.now().clone();
                 if let Some(place) = edit.chosen.get_mut(photo) {
@@ -48,26 +48,26 @@ impl OpenFlight {
             }
             Command::Sort(column) => {
                 // The third click on a column is the flight's order again.
-                if self.order.by != column {
-                    (self.order.by, self.order.descending) = (column, false);
-                } else if !self.order.descending {
-                    self.order.descending = true;
+                if self.table.order.by != column {
+                    (self.table.order.by, self.table.order.descending) = (column, false);
+                } else if !self.table.order.descending {
+                    self.table.order.descending = true;
                 } else {
-                    (self.order.by, self.order.descending) = (SortBy::Flight, false);
+                    (self.table.order.by, self.table.order.descending) = (SortBy::Flight, false);
                 }
                 self.arrange();
             }
             Command::Filter(text) => {
-                self.order.text = text;
+                self.table.order.text = text;
                 self.arrange();
             }
             Command::FilterVerdict(verdict) => {
-                self.order.verdict = verdict;
+                self.table.order.verdict = verdict;
                 self.arrange();
             }
             Command::View(change) => self.change_view(change),
             Command::ToggleMeasure => {
-                self.measure = if self.measure == Measure::Off {
+                self.pointer.measure = if self.pointer.measure == Measure::Off {
                     Measure::First
                 } else {
                     Measure::Off
@@ -89,7 +89,7 @@ impl OpenFlight {
     }
 
     fn pick(&mut self, purpose: Purpose, ray: crate::geometry::Ray) {
-        if let Some(picker) = &mut self.picker {
+        if let Some(picker) = &mut self.pointer.picker {
             picker.ask(purpose, ray);
         }
     }
@@ -99,7 +99,7 @@ impl OpenFlight {
         self.selected = photo.filter(|&photo| photo < self.review.count());
         if self.selected != before {
             // The points were on the other photo.
-            self.tracing = None;
+            self.objects.tracing = None;
         }
         // Looking through a camera goes on through the next one.
         if self.looking.through.is_some() {
@@ -111,8 +111,8 @@ impl OpenFlight {
     pub(crate) fn select_by(&mut self, rows: i32) {
         let place = self
             .selected
-            .and_then(|photo| self.shown.iter().position(|&shown| shown == photo));
-        let Some(last) = self.shown.len().checked_sub(1) else {
+            .and_then(|photo| self.table.shown.iter().position(|&shown| shown == photo));
+        let Some(last) = self.table.shown.len().checked_sub(1) else {
             return;
         };
         let next = match place {
@@ -121,7 +121,7 @@ impl OpenFlight {
                 .min(last),
             None => 0,
         };
-        self.select(Some(self.shown[next]));
+        self.select(Some(self.table.shown[next]));
     }
 
     fn change_view(&mut self, change: ViewChange) {
@@ -152,7 +152,7 @@ impl OpenFlight {
                         cursor,
                         size,
                         factor,
-                    } => orbit.zoom_to(cursor, size, factor, self.hover),
+                    } => orbit.zoom_to(cursor, size, factor, self.pointer.hover),
                     ViewChange::Top => orbit.top(),
                     ViewChange::Front => orbit.front(),
                     ViewChange::Side => orbit.side(),
@@ -167,7 +167,7 @@ impl OpenFlight {
 
     /// Brings surface and cameras into sight.
     fn fit(&mut self) {
-        let (low, high) = (self.bulk_bounds.min, self.bulk_bounds.max);
+        let (low, high) = (self.extent.bulk.min, self.extent.bulk.max);
         let corners = (0..8_u8).map(|corner| {
             let pick = |bit: u8, low: f64, high: f64| if corner & bit == 0 { low } else { high };
             DVec3::new(
@@ -187,7 +187,7 @@ impl OpenFlight {
         let size = self.looking.size.unwrap_or(DVec2::new(4.0, 3.0));
         self.looking.orbit.fit_into(points, size);
         // How far one can go in and out depends on the flight, not on what is in sight.
-        self.looking.orbit.extent = self.bounds.size().length() * 0.5;
+        self.looking.orbit.extent = self.extent.all.size().length() * 0.5;
     }
 
     fn fit_selected(&mut self) {

@@ -97,16 +97,17 @@ impl OpenFlight {
     /// Whether the coordinates of its surface are those of the reconstruction's own frame, so that a
     /// distance can be measured on the screen.
     pub fn is_in_own_frame(&self) -> bool {
-        let reconstruction = self.reconstruction.as_ref();
-        reconstruction.is_some_and(|known| known.in_world.is_none()) && self.crs.is_none()
+        let reconstruction = self.files.reconstruction.as_ref();
+        reconstruction.is_some_and(|known| known.in_world.is_none()) && self.files.crs.is_none()
     }
 
     /// Where the georeferenced flight is written if nobody says otherwise: beside the reconstruction.
     pub fn proposed_georeferenced(&self) -> PathBuf {
-        let file = self.origin.suggested_file();
+        let file = self.files.origin.suggested_file();
         // Of a flight.toml the name is that of the flight, not "flight".
-        let name = if self.origin.flight_file().is_some() {
-            self.reconstruction
+        let name = if self.files.origin.flight_file().is_some() {
+            self.files
+                .reconstruction
                 .as_ref()
                 .and_then(|known| known.path.file_stem())
         } else {

@@ -1,6 +1,7 @@
 //! The flight that is open: what was read, what was computed, what the engineer has done with it.
 
 pub mod apply;
+pub mod files;
 pub mod georeferencing;
 pub mod loading;
 pub mod picker;
@@ -8,28 +9,25 @@ mod picking;
 pub mod table;
 pub mod tracing;
 
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
 use crate::exports::PhotoLine;
-use crate::files::Inputs;
 use crate::flight::{
-    ColoursFound, ComparedObject, Flight, FlightSettings, Limits, LookedUp, Outcome, Review,
-    ScaleObject, Verdict,
+    ColoursFound, Flight, FlightSettings, Limits, LookedUp, Outcome, Review, Verdict,
 };
 use crate::geometry::{Bounds, LocalFrame};
-use crate::opening::{Colours, FlightOrigin, FlightReconstruction, OpenOptions, PhotoFile};
+use crate::opening::Colours;
 use crate::render::{LargePhoto, Orbit, PhotoImage, SurfaceBuffers, drawn_ground};
 use crate::scale::{PhotoScale, ViewFacts};
-use crate::state::bundled::sample_flight;
 use crate::state::history::History;
+use files::FlightFiles;
 use georeferencing::Georeferencing;
 use loading::Loaded;
 use picker::Picker;
-use table::{Row, TableOrder};
-use tracing::Tracing;
+use table::{PhotosTable, Row};
+use tracing::TracedObjects;
 
 /// What undo goes back over.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,84 +88,74 @@ pub struct Looking {
     pub turned: bool,
 }
 
-/// A flight on the screen.
-pub struct OpenFlight {
-    /// Counted, so that results for an earlier flight are told from those for this one.
-    pub number: u64,
-    /// What the user named.
-    pub path: PathBuf,
-    /// The surface and photos that were named beside it.
-    pub options: OpenOptions,
-    /// The flight with its scales, doubts and verdicts: with the settings of now, once they are
-    /// computed.
-    pub review: Review,
-    /// Of each photo.
-    pub photo_files: Arc<Vec<PhotoFile>>,
-    /// The world's coordinate system where the files state one.
-    pub crs: Option<String>,
-    /// The files read.
-    pub inputs: Vec<PathBuf>,
-    /// These, the photos and whatever was opened on the way: nothing of it is written over.
-    pub read: Inputs,
-    /// What was noticed while reading.
-    pub warnings: Vec<String>,
-    /// The flight.toml that it was opened from: it may be saved there.
-    pub opened_file: Option<PathBuf>,
-    /// Where it came from, and where it is saved.
-    pub origin: FlightOrigin,
-    /// The reconstruction that it was made of, if any.
-    pub reconstruction: Option<FlightReconstruction>,
-    /// Bringing that to the world.
-    pub georeferencing: Georeferencing,
-    /// Whether it is the flight that comes with the program, which stays as it came.
-    pub bundled: bool,
-    /// The settings in that file.
-    pub saved: FlightSettings,
-    /// The settings that the flight and its outcomes were computed with: those of now, but for the
-    /// moment until a change is computed. Its scale objects count for nothing.
-    pub computed: FlightSettings,
-    /// The settings and choices of now, with those before.
-    pub history: History<Edit>,
-    /// Whether the photos to export have been proposed: once, after the first verdicts.
-    pub proposed: bool,
-    /// The selected photo.
-    pub selected: Option<usize>,
-    /// How the table is sorted and filtered.
-    pub order: TableOrder,
-    /// The rows that follow from it.
-    pub shown: Vec<usize>,
+/// Small and large pictures of the flight's photos, as far as they were read.
+pub struct Pictures {
     /// Small textures for the table.
     pub thumbnails: Vec<Option<egui::TextureHandle>>,
     /// Small pictures for the viewport.
     pub images: Vec<Option<Arc<PhotoImage>>>,
     /// The selected photo.
     pub preview: Option<Preview>,
-    /// What the viewport draws.
-    pub geometry: Option<Arc<SurfaceBuffers>>,
+}
+
+/// Where the flight lies.
+#[derive(Debug, Clone, Copy)]
+pub struct Extent {
     /// Where coordinates are small.
     pub frame: LocalFrame,
     /// Around surface and cameras, without the surface's outliers.
-    pub bounds: Bounds,
+    pub all: Bounds,
     /// Around the surface alone.
-    pub surface_bounds: Bounds,
+    pub surface: Bounds,
     /// Around the surface without outliers.
-    pub bulk_bounds: Bounds,
-    /// How the viewport looks.
-    pub looking: Looking,
-    /// Where the mouse points on the surface.
+    pub bulk: Bounds,
+}
+
+/// What the mouse is for in the viewport.
+#[derive(Default)]
+pub struct Pointer {
+    /// Where it points on the surface.
     pub hover: Option<DVec3>,
-    /// The photo that the mouse is over in the table.
-    pub hovered_photo: Option<usize>,
     /// The distance tool.
     pub measure: Measure,
-    /// Rays of the mouse.
+    /// Its rays.
     pub picker: Option<Picker>,
-    /// The scale object that is being traced on the selected photo.
-    pub tracing: Option<Tracing>,
-    /// How large the next scale objects are, as typed: a sphere, a bar.
-    pub trace_sizes: [Option<f64>; 2],
-    /// The scale objects with what the point cloud says beside them, once known.
-    pub compared: Vec<(ScaleObject, ComparedObject)>,
+}
+
+/// A flight on the screen: its review, and what only a window has.
+pub struct OpenFlight {
+    /// Counted, so that results for an earlier flight are told from those for this one.
+    pub number: u64,
+    /// The flight with its scales, doubts and verdicts: with the settings of now, once they are
+    /// computed.
+    pub review: Review,
+    /// The settings that it was computed with: those of now, but for the moment until a change is
+    /// computed. Their scale objects count for nothing.
+    pub computed: FlightSettings,
+    /// The settings and choices of now, with those before.
+    pub history: History<Edit>,
+    /// Whether the photos to export have been proposed: once, after the first verdicts.
+    pub proposed: bool,
+    /// What it was read from, and where it is saved.
+    pub files: FlightFiles,
+    /// Bringing its reconstruction to the world.
+    pub georeferencing: Georeferencing,
+    /// The selected photo.
+    pub selected: Option<usize>,
+    /// The table of photos.
+    pub table: PhotosTable,
+    /// Of its photos.
+    pub pictures: Pictures,
+    /// What the viewport draws.
+    pub geometry: Option<Arc<SurfaceBuffers>>,
+    /// Where it lies.
+    pub extent: Extent,
+    /// How the viewport looks.
+    pub looking: Looking,
+    /// The mouse in the viewport.
+    pub pointer: Pointer,
+    /// Scale objects on its photos.
+    pub objects: TracedObjects,
 }
 
 impl OpenFlight {
@@ -184,50 +172,43 @@ impl OpenFlight {
             again_for: _,
         } = loaded;
         let count = outcomes.len();
-        let saved = opened
-            .file
-            .as_ref()
-            .map_or_else(|| opened.settings.clone(), |(_, file)| file.settings());
-        let bundled = is_bundled(&opened.origin.suggested_file());
-        let opened_file = opened.file.map(|(path, _)| path).filter(|_| !bundled);
         let mut bounds = bulk_bounds;
         for photo in &opened.flight.parts().photos {
             bounds.min = bounds.min.min(photo.pose.center);
             bounds.max = bounds.max.max(photo.pose.center);
         }
+        let review = Review::new(
+            opened.flight.clone(),
+            outcomes,
+            opened.looked_up.clone(),
+            limits,
+        );
+        let computed = opened.settings.clone();
         let mut open = Self {
             number,
-            path,
-            options,
-            review: Review::new(opened.flight, outcomes, opened.looked_up, limits),
-            photo_files: Arc::new(opened.photo_files),
-            crs: opened.crs,
-            inputs: opened.inputs,
-            read: opened.read,
-            warnings: opened.warnings,
-            bundled,
-            opened_file,
-            georeferencing: Georeferencing::new(opened.origin.photo_folder()),
-            reconstruction: opened.reconstruction,
-            origin: opened.origin,
-            saved,
-            computed: opened.settings.clone(),
+            review,
+            computed: computed.clone(),
             history: History::new(Edit {
-                settings: opened.settings,
+                settings: computed,
                 chosen: vec![false; count],
             }),
             proposed: false,
+            georeferencing: Georeferencing::new(opened.origin.photo_folder()),
+            files: FlightFiles::new(path, options, opened),
             selected: (count > 0).then_some(0),
-            order: TableOrder::default(),
-            shown: Vec::new(),
-            thumbnails: vec![None; count],
-            images: vec![None; count],
-            preview: None,
+            table: PhotosTable::default(),
+            pictures: Pictures {
+                thumbnails: vec![None; count],
+                images: vec![None; count],
+                preview: None,
+            },
             geometry: None,
-            frame: LocalFrame::near(&surface_bounds),
-            bounds,
-            surface_bounds,
-            bulk_bounds,
+            extent: Extent {
+                frame: LocalFrame::near(&surface_bounds),
+                all: bounds,
+                surface: surface_bounds,
+                bulk: bulk_bounds,
+            },
             looking: Looking {
                 orbit: first_look(&bounds),
                 through: None,
@@ -235,13 +216,8 @@ impl OpenFlight {
                 size: None,
                 turned: false,
             },
-            hover: None,
-            hovered_photo: None,
-            measure: Measure::Off,
-            picker: None,
-            tracing: None,
-            trace_sizes: [None; 2],
-            compared: Vec::new(),
+            pointer: Pointer::default(),
+            objects: TracedObjects::default(),
         };
         open.arrange();
         open
@@ -273,7 +249,7 @@ impl OpenFlight {
 
     /// Whether something would be lost if it were closed.
     pub fn is_changed(&self) -> bool {
-        self.settings() != self.saved || self.origin.has_other_files()
+        self.settings() != self.files.saved || self.files.origin.has_other_files()
     }
 
     /// Takes a change of the settings back that will not be computed: what is on the screen must be
@@ -331,7 +307,7 @@ impl OpenFlight {
     ) {
         self.review.take_scales(flight, outcomes, looked_up);
         self.computed = computed;
-        self.compared.clear();
+        self.objects.compared.clear();
         self.arrange();
     }
 
@@ -369,8 +345,14 @@ impl OpenFlight {
 
     /// What was noticed while reading and what was looked up, one sentence each.
     pub fn all_warnings(&self) -> Vec<String> {
-        let looked_up = self.review.looked_up().warnings_of(self.path.display());
-        self.warnings.iter().cloned().chain(looked_up).collect()
+        let looked_up = self.review.looked_up();
+        let looked_up = looked_up.warnings_of(self.files.path.display());
+        self.files
+            .warnings
+            .iter()
+            .cloned()
+            .chain(looked_up)
+            .collect()
     }
 
     /// Sorts and filters the table.
@@ -378,7 +360,7 @@ impl OpenFlight {
         let rows: Vec<Row<'_>> = (0..self.review.count())
             .filter_map(|photo| self.row(photo))
             .collect();
-        self.shown = self.order.shown(&rows);
+        self.table.shown = self.table.order.shown(&rows);
     }
 
     /// How many photos are chosen for export.
@@ -389,7 +371,7 @@ impl OpenFlight {
     /// The elevation of the ground: as set, or where a ray needed it, or the surface's middle.
     pub fn ground(&self) -> f64 {
         let outcomes = self.review.outcomes();
-        drawn_ground(self.settings().ground, outcomes, &self.surface_bounds)
+        drawn_ground(self.settings().ground, outcomes, &self.extent.surface)
     }
 }
 
@@ -398,11 +380,4 @@ fn first_look(bounds: &Bounds) -> Orbit {
     let mut orbit = Orbit::new(bounds);
     orbit.pitch = 0.9;
     orbit
-}
-
-/// Whether a flight.toml is that of the bundled flight, however its path is written.
-fn is_bundled(file: &Path) -> bool {
-    let real = |path: &Path| std::fs::canonicalize(path).ok();
-    let folder = file.parent().and_then(real);
-    folder.is_some() && folder == sample_flight().as_deref().and_then(real)
 }

@@ -8,7 +8,7 @@ impl OpenFlight {
     pub(crate) fn take_picked(&mut self, picked: Picked) {
         let point = picked.hit.map(|hit| hit.point);
         match picked.purpose {
-            Purpose::Hover => self.hover = point,
+            Purpose::Hover => self.pointer.hover = point,
             Purpose::Center => {
                 if let Some(point) = point {
                     self.looking.through = None;
@@ -17,7 +17,7 @@ impl OpenFlight {
             }
             Purpose::Measure => {
                 if let Some(point) = point {
-                    self.measure = match self.measure {
+                    self.pointer.measure = match self.pointer.measure {
                         Measure::Off => Measure::Off,
                         Measure::First | Measure::Both(..) => Measure::Second(point),
                         Measure::Second(first) => Measure::Both(first, point),

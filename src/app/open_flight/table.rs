@@ -38,6 +38,17 @@ impl Default for TableOrder {
     }
 }
 
+/// The table of photos.
+#[derive(Debug, Default)]
+pub struct PhotosTable {
+    /// How it is sorted and filtered.
+    pub order: TableOrder,
+    /// The rows that follow from it.
+    pub shown: Vec<usize>,
+    /// The photo that the mouse is over.
+    pub hovered: Option<usize>,
+}
+
 /// What the table knows of one photo.
 #[derive(Debug, Clone, Copy)]
 pub struct Row<'a> {

@@ -46,12 +46,23 @@ pub(crate) fn rounded(pixel: DVec2) -> DVec2 {
     (pixel * 100.0).round() / 100.0
 }
 
+/// Scale objects of a flight in the window.
+#[derive(Debug, Default)]
+pub struct TracedObjects {
+    /// That is being traced on the selected photo.
+    pub tracing: Option<Tracing>,
+    /// How large the next ones are, as typed: a sphere, a bar.
+    pub sizes: [Option<f64>; 2],
+    /// All of them with what the point cloud says beside them, once known.
+    pub compared: Vec<(ScaleObject, ComparedObject)>,
+}
+
 impl OpenFlight {
     /// How large the next object of a kind is: as typed, else as the last one of its kind.
     pub fn trace_size(&self, kind: ScaleObjectKind) -> Option<f64> {
         let objects = &self.history.now().settings.scale_objects;
         let last = objects.iter().rfind(|object| object.kind == kind);
-        self.trace_sizes[kind as usize].or(last.map(|object| object.size))
+        self.objects.sizes[kind as usize].or(last.map(|object| object.size))
     }
 
     /// The scale objects of a photo, with their places in the list of all.
@@ -63,7 +74,7 @@ impl OpenFlight {
 
     /// What the point cloud says beside a scale object, once that is known.
     pub fn compared(&self, object: &ScaleObject) -> Option<&ComparedObject> {
-        let mut compared = self.compared.iter();
+        let mut compared = self.objects.compared.iter();
         let found = compared.find(|(before, _)| before == object);
         found
             .filter(|_| self.is_computed())

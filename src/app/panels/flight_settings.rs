@@ -23,7 +23,8 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
     ));
     ui.weak(format!(
         "Coordinate system: {}",
-        open.crs
+        open.files
+            .crs
             .as_deref()
             .map_or("not stated", |crs| crs.get(..60).unwrap_or(crs))
     ));
@@ -119,7 +120,7 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
     ui.strong("Surface");
     let mut surface = now.surface;
     let mut changed = false;
-    let size = open.surface_bounds.size().truncate().max_element();
+    let size = open.extent.surface.size().truncate().max_element();
     // One and two significant digits: something to begin with.
     let round = |length: f64| {
         let power = 10_f64.powf(length.max(1e-9).log10().floor());
@@ -166,7 +167,7 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
     ui.horizontal(|ui| {
         let changed = open.is_changed();
         let save = ui.add_enabled(changed, egui::Button::new("Save settings"));
-        let target = open.origin.suggested_file();
+        let target = open.files.origin.suggested_file();
         let hover = format!("Write them into {}", target.display());
         if save.on_hover_text(hover).clicked() {
             commands.push(Command::Save);

@@ -15,7 +15,10 @@ pub(super) fn path_field(
     // Kept until another flight is open.
     let id = ui.scope_id().with((
         "path",
-        state.open.as_ref().map(|open| open.origin.suggested_file()),
+        state
+            .open
+            .as_ref()
+            .map(|open| open.files.origin.suggested_file()),
     ));
     let mut path: String = ui
         .data(|data| data.get_temp(id))

@@ -26,7 +26,7 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         .collect();
     let selected_row = open
         .selected
-        .and_then(|photo| open.shown.iter().position(|&shown| shown == photo));
+        .and_then(|photo| open.table.shown.iter().position(|&shown| shown == photo));
     let id = ui.scope_id().with("selected row");
     let before: Option<Option<usize>> = ui.data(|data| data.get_temp(id));
     let mut table = TableBuilder::new(ui)
@@ -64,8 +64,8 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
             }
         })
         .body(|body| {
-            body.rows(ROW, open.shown.len(), |mut row| {
-                let photo = open.shown[row.index()];
+            body.rows(ROW, open.table.shown.len(), |mut row| {
+                let photo = open.table.shown[row.index()];
                 let Some(Row { line, chosen }) = open.row(photo) else {
                     return;
                 };
@@ -117,37 +117,41 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
             });
         });
     ui.data_mut(|data| data.insert_temp(id, selected_row));
-    if hovered != open.hovered_photo {
+    if hovered != open.table.hovered {
         commands.push(Command::HoverPhoto(hovered));
     }
-    if open.shown.is_empty() {
+    if open.table.shown.is_empty() {
         ui.weak("No photo passes the filter.");
     }
 }
 
 fn filter(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let mut text = open.order.text.clone();
+        let mut text = open.table.order.text.clone();
         let field = egui::TextEdit::singleline(&mut text)
             .hint_text("Filter by name or reason")
             .desired_width(170.0);
         let field = ui.add(field);
         field.widget_info(|| {
             let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Filter photos");
-            info.current_text_value = Some(open.order.text.clone());
+            info.current_text_value = Some(open.table.order.text.clone());
             info
         });
         if field.changed() {
             commands.push(Command::Filter(text));
         }
-        let wanted = open.order.verdict.map_or("any verdict", Verdict::as_str);
+        let wanted = open
+            .table
+            .order
+            .verdict
+            .map_or("any verdict", Verdict::as_str);
         egui::ComboBox::from_id_salt("verdict filter")
             .selected_text(wanted)
             .width(90.0)
             .show_ui(ui, |ui| {
                 let mut choice = |verdict: Option<Verdict>, name: &str| {
                     if ui
-                        .selectable_label(open.order.verdict == verdict, name)
+                        .selectable_label(open.table.order.verdict == verdict, name)
                         .clicked()
                     {
                         commands.push(Command::FilterVerdict(verdict));
@@ -161,7 +165,11 @@ fn filter(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             .response
             .on_hover_text("Show only photos with this verdict")
             .widget_info(|| combo_box("Filter by verdict", wanted));
-        ui.weak(format!("{} of {}", open.shown.len(), open.review.count()));
+        ui.weak(format!(
+            "{} of {}",
+            open.table.shown.len(),
+            open.review.count()
+        ));
     });
 }
 
@@ -173,7 +181,7 @@ fn sort_button(
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
 ) {
-    let arrow = match (open.order.by == by, open.order.descending) {
+    let arrow = match (open.table.order.by == by, open.table.order.descending) {
         (true, false) => " ⏶",
         (true, true) => " ⏷",
         (false, _) => "",
@@ -195,7 +203,7 @@ fn sort_button(
 
 fn thumbnail(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
     let size = egui::vec2(ROW * 1.1, ROW - 6.0);
-    match open.thumbnails.get(photo).and_then(Option::as_ref) {
+    match open.pictures.thumbnails.get(photo).and_then(Option::as_ref) {
         Some(texture) => {
             let image = egui::Image::new(texture).fit_to_exact_size(size);
             ui.add(

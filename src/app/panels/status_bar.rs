@@ -26,7 +26,7 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
         }
         if let Some(open) = &state.open {
             let unit = open.flight().parts().unit;
-            if let Some(point) = open.hover {
+            if let Some(point) = open.pointer.hover {
                 let text = format!(
                     "x {:.3}  y {:.3}  z {:.3} {unit}",
                     point.x, point.y, point.z
@@ -44,7 +44,7 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
                 });
                 ui.separator();
             }
-            match open.measure {
+            match open.pointer.measure {
                 Measure::Off => {}
                 Measure::First => {
                     ui.label("Distance: click the first point");

@@ -64,7 +64,7 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         };
         for verdict in Verdict::ALL {
             let count = open.review.count_of(verdict);
-            let shown = open.order.verdict == Some(verdict);
+            let shown = open.table.order.verdict == Some(verdict);
             let text = format!("{} {count} {verdict}", verdict_sign(verdict));
             let text = egui::RichText::new(text).color(verdict_color(verdict, ui.visuals()));
             let button = ui.selectable_label(shown, text);

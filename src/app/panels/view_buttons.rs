@@ -34,7 +34,7 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     button(
         actions::photo::MEASURE,
         "Measure",
-        open.measure != Measure::Off,
+        open.pointer.measure != Measure::Off,
         ui,
     );
 }

@@ -5,7 +5,7 @@
 use egui_plot::PlotPoint;
 
 use super::computing::Computed;
-use crate::exports::Look;
+use crate::exports::FigureStyle;
 use crate::fragmentation::{Curve, Labels, MARKED_PERCENTILES, MethodCurve};
 
 /// How many points a drawn function has.
@@ -27,7 +27,7 @@ pub struct MethodDrawing {
     /// The method.
     pub method: String,
     /// The same as in the figure.
-    pub look: Look,
+    pub style: FigureStyle,
     /// Every measured curve.
     pub curves: Vec<(Labels, Vec<PlotPoint>)>,
     /// The function fitted to each trial.
@@ -67,11 +67,11 @@ impl Drawing {
         let mut others = 0;
         let methods = computed.analysis.methods.iter().map(|method| {
             let is_reference = Some(method) == computed.analysis.reference.as_ref();
-            let look = if is_reference {
-                Look::REFERENCE
+            let style = if is_reference {
+                FigureStyle::REFERENCE
             } else {
                 others += 1;
-                Look::of(others)
+                FigureStyle::of(others)
             };
             let of_method = |labels: &Labels| labels.method == *method;
             let curves = computed
@@ -117,7 +117,7 @@ impl Drawing {
             let errors = errors.filter_map(|e| Some(at(e.size, e.percent_error?)));
             MethodDrawing {
                 method: method.clone(),
-                look,
+                style,
                 curves: curves.collect(),
                 fits: fits.collect(),
                 spread: mean.map(spread).unwrap_or_default(),

@@ -140,7 +140,7 @@ impl State {
     /// The sieve curve that lies beside the flight on the screen.
     pub fn known_fragments(&self) -> Option<PathBuf> {
         let open = self.open.as_ref()?;
-        let folder = open.origin.flight_file()?.parent()?;
+        let folder = open.files.origin.flight_file()?.parent()?;
         Some(folder.join("reference.csv"))
     }
 

@@ -97,5 +97,5 @@ fn report(computed: &Computed) -> Result<String, Fault> {
         source.warnings.iter().map(named)
     });
     let report = ComparisonReport::of(&names, mended.collect(), &computed.analysis)?;
-    exports::comparison_report(&report)
+    Ok(exports::comparison_report(&report))
 }

@@ -36,7 +36,7 @@ impl State {
             return;
         };
         let (flight, settings) = (open.flight().clone(), open.settings());
-        let files = open.photo_files.clone();
+        let files = open.files.photo_files.clone();
         // Footprints under way go on: where these scales are cancelled, they are still wanted.
         let work = move |progress: &Progress| {
             let begun = Instant::now();
@@ -77,7 +77,7 @@ impl State {
         let (Some(open), Some(gpu)) = (&self.open, self.gpu.clone()) else {
             return;
         };
-        let (flight, frame) = (open.flight().clone(), open.frame);
+        let (flight, frame) = (open.flight().clone(), open.extent.frame);
         let work = move |progress: &Progress| {
             let surface = &flight.parts().surface;
             SurfaceBuffers::new(&gpu, &frame, surface, Shapes::BOTH, progress)
@@ -116,7 +116,7 @@ impl State {
         // Of one reading of the file the points are the same.
         let other_surface = before.surface.max_edge() != after.surface.max_edge();
         let said_before = &open.review.looked_up().warnings;
-        let said = looked_up.warnings_of(open.path.display());
+        let said = looked_up.warnings_of(open.files.path.display());
         let new: Vec<String> = said
             .zip(&looked_up.warnings)
             .filter(|(_, bare)| !said_before.contains(bare))

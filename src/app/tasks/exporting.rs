@@ -43,13 +43,13 @@ impl State {
             return;
         }
         let mut review = open.review.clone();
-        let photo_files = open.photo_files.clone();
+        let photo_files = open.files.photo_files.clone();
         let selected = open.history.now().chosen.clone();
         let unit = self.preferences.unit();
         let settings = open.settings();
-        let (crs, inputs) = (open.crs.clone(), open.inputs.clone());
+        let (crs, inputs) = (open.files.crs.clone(), open.files.inputs.clone());
         let warnings = open.all_warnings();
-        let source = open.origin.file().to_owned();
+        let source = open.files.origin.file().to_owned();
         let work = move |progress: &Progress| {
             let begun = Instant::now();
             // Those that the window has not come to yet.

@@ -39,7 +39,7 @@ impl State {
         let Some(open) = &mut self.open else {
             return;
         };
-        let Some(reconstruction) = &open.reconstruction else {
+        let Some(reconstruction) = &open.files.reconstruction else {
             return;
         };
         open.georeferencing.outcome = None;
@@ -70,7 +70,7 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let known = (&open.reconstruction, &open.georeferencing.outcome);
+        let known = (&open.files.reconstruction, &open.georeferencing.outcome);
         let (Some(reconstruction), Some((photos, Ok(fitted)))) = known else {
             self.say(
                 Severity::Error,
@@ -80,7 +80,7 @@ impl State {
         };
         let (reconstruction, fitted) = (reconstruction.path.clone(), fitted.clone());
         let photos = photos.clone();
-        let surface = open.origin.surface().map(Path::to_owned);
+        let surface = open.files.origin.surface().map(Path::to_owned);
         let surface = surface.filter(|_| keep_surface);
         self.asking = None;
         let work = move |_: &Progress| {

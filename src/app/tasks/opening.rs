@@ -21,7 +21,7 @@ impl State {
     /// `added`, else a flight of their own.
     pub fn start_opening(&mut self, paths: Vec<PathBuf>, added: bool) {
         let on_screen = self.open.as_ref();
-        let base = on_screen.map(|open| (open.path.clone(), open.options.clone()));
+        let base = on_screen.map(|open| (open.files.path.clone(), open.files.options.clone()));
         let base = self.tried.clone().or(base);
         self.notice = None;
         self.reads_other = true;
@@ -37,7 +37,7 @@ impl State {
         let Some(open_now) = &self.open else {
             return;
         };
-        let (path, options) = (open_now.path.clone(), open_now.options.clone());
+        let (path, options) = (open_now.files.path.clone(), open_now.files.options.clone());
         let again = (open_now.number, settings);
         self.notice = None;
         self.reads_other = false;
@@ -134,10 +134,10 @@ impl State {
         let Some(open) = &mut self.open else {
             return;
         };
-        open.hover = None;
+        open.pointer.hover = None;
         let surface = open.flight().parts().surface.clone();
         match Picker::new(surface, self.context.clone()) {
-            Ok(picker) => open.picker = Some(picker),
+            Ok(picker) => open.pointer.picker = Some(picker),
             Err(fault) => self.say(Severity::Error, &fault.to_string()),
         }
     }
@@ -151,22 +151,22 @@ impl State {
 impl OpenFlight {
     /// Takes over what the engineer did from the flight before it was read again.
     fn keep_from(&mut self, mut before: Box<Self>) {
-        self.saved = before.saved.clone();
+        self.files.saved = before.files.saved.clone();
         // Saved elsewhere while the file was read.
-        self.path.clone_from(&before.path);
-        self.options.clone_from(&before.options);
-        self.origin = before.origin.clone();
-        self.opened_file.clone_from(&before.opened_file);
-        self.read.extend(&before.read);
-        self.bundled = before.bundled;
-        self.measure = before.measure;
-        self.tracing = before.tracing.take();
-        self.trace_sizes = before.trace_sizes;
+        self.files.path.clone_from(&before.files.path);
+        self.files.options.clone_from(&before.files.options);
+        self.files.origin = before.files.origin.clone();
+        self.files.opened_file.clone_from(&before.files.opened_file);
+        self.files.read.extend(&before.files.read);
+        self.files.bundled = before.files.bundled;
+        self.pointer.measure = before.pointer.measure;
+        self.objects.tracing = before.objects.tracing.take();
+        self.objects.sizes = before.objects.sizes;
         std::mem::swap(&mut self.georeferencing, &mut before.georeferencing);
         std::mem::swap(&mut self.history, &mut before.history);
         self.proposed = before.proposed;
         self.selected = before.selected;
-        std::mem::swap(&mut self.order, &mut before.order);
+        std::mem::swap(&mut self.table.order, &mut before.table.order);
         self.looking = before.looking;
         before.let_go();
     }

@@ -57,7 +57,7 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let (number, files) = (open.number, open.photo_files.clone());
+        let (number, files) = (open.number, open.files.photo_files.clone());
         let flight = open.flight().clone();
         let steps = self.work.steps_of_a_job();
         let context = self.context.clone();
@@ -116,7 +116,12 @@ impl State {
         let Some(photo) = open.selected else {
             return;
         };
-        let file = open.photo_files.get(photo).cloned().unwrap_or_default();
+        let file = open
+            .files
+            .photo_files
+            .get(photo)
+            .cloned()
+            .unwrap_or_default();
         let (flight, gpu) = (open.flight().clone(), self.gpu.clone());
         // egui refuses larger textures than the graphics device takes.
         let largest = self.context.input(|input| input.max_texture_side);
@@ -148,8 +153,13 @@ impl State {
                 && let Some(open) = &mut state.open
                 && open.selected == Some(photo)
             {
-                let number = open.preview.as_ref().map_or(0, |preview| preview.number) + 1;
-                open.preview = Some(Preview {
+                let number = open
+                    .pictures
+                    .preview
+                    .as_ref()
+                    .map_or(0, |preview| preview.number)
+                    + 1;
+                open.pictures.preview = Some(Preview {
                     photo,
                     picture,
                     number,
@@ -169,7 +179,7 @@ impl State {
         let Some(open) = &mut self.open else {
             return;
         };
-        if open.number != flight || photo >= open.thumbnails.len() {
+        if open.number != flight || photo >= open.pictures.thumbnails.len() {
             return;
         }
         if let Some(small) = small {
@@ -177,9 +187,9 @@ impl State {
             let texture = self
                 .context
                 .load_texture(format!("thumbnail {photo}"), small, options);
-            open.thumbnails[photo] = Some(texture);
+            open.pictures.thumbnails[photo] = Some(texture);
         }
-        open.images[photo] = image.map(Arc::new);
+        open.pictures.images[photo] = image.map(Arc::new);
         let evidence = open.review.looked_up().evidence.get(photo);
         let is_known =
             evidence.is_some_and(|evidence| evidence.colours != ColoursFound::NotCompared);

@@ -22,9 +22,9 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        match open.origin.flight_file() {
+        match open.files.origin.flight_file() {
             // The bundled flight stays as it came.
-            Some(path) if !open.bundled => {
+            Some(path) if !open.files.bundled => {
                 let path = path.to_owned();
                 self.save_as(path.into());
             }
@@ -38,8 +38,8 @@ impl State {
         if self.open.is_none() || self.is_busy(Task::SAVE) {
             return;
         }
-        let own = self.open.as_ref().filter(|open| !open.bundled);
-        let own = own.and_then(|open| open.origin.flight_file());
+        let own = self.open.as_ref().filter(|open| !open.files.bundled);
+        let own = own.and_then(|open| open.files.origin.flight_file());
         if own.is_some_and(|own| files::is_same_file(own, &to.path)) {
             self.start_saving(to.path, true);
             return;
@@ -59,7 +59,7 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let (settings, origin) = (open.settings(), open.origin.clone());
+        let (settings, origin) = (open.settings(), open.files.origin.clone());
         let flight = origin.clone();
         let work = move |_: &Progress| {
             let saved = origin.text_at(&path, &settings).and_then(|text| {
@@ -93,19 +93,22 @@ impl State {
             self.say(Severity::Note, &format!("{}: saved", path.display()));
         }
         // She may have gone on to another flight meanwhile.
-        let on_screen = self.open.as_mut().filter(|open| open.origin == *flight);
+        let on_screen = self
+            .open
+            .as_mut()
+            .filter(|open| open.files.origin == *flight);
         if let Some(open) = on_screen {
             if let Some(path) = origin.flight_file() {
-                open.path = path.to_owned();
+                open.files.path = path.to_owned();
                 // They stand in the file now.
-                open.options = OpenOptions::default();
+                open.files.options = OpenOptions::default();
             }
-            open.bundled = false;
+            open.files.bundled = false;
             if let Some(path) = origin.flight_file() {
-                open.read.add(path);
+                open.files.read.add(path);
             }
-            open.origin = origin;
-            open.saved = settings;
+            open.files.origin = origin;
+            open.files.saved = settings;
         }
         let changed = self.open.as_ref().is_some_and(|open| open.is_changed());
         match self.after_saving.take() {

@@ -22,20 +22,20 @@ impl State {
         };
         match step {
             Trace::Size(kind, size) if size > 0.0 && size.is_finite() => {
-                open.trace_sizes[kind as usize] = Some(size);
+                open.objects.sizes[kind as usize] = Some(size);
             }
             Trace::Begin(kind) if open.selected.is_some() && open.trace_size(kind).is_some() => {
-                open.tracing = Some(Tracing {
+                open.objects.tracing = Some(Tracing {
                     kind,
                     outline: Vec::new(),
                 });
                 self.tab = Tab::Photo;
             }
             Trace::Size(..) | Trace::Begin(_) => {}
-            Trace::GiveUp => open.tracing = None,
+            Trace::GiveUp => open.objects.tracing = None,
             Trace::Finish => self.finish_tracing(),
             Trace::Add(_) | Trace::Move(..) | Trace::RemoveLast => {
-                let Some(tracing) = &mut open.tracing else {
+                let Some(tracing) = &mut open.objects.tracing else {
                     return;
                 };
                 let outline = &mut tracing.outline;
@@ -63,7 +63,7 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let (Some(tracing), Some(photo)) = (&open.tracing, open.selected) else {
+        let (Some(tracing), Some(photo)) = (&open.objects.tracing, open.selected) else {
             return;
         };
         let Some(size) = open.trace_size(tracing.kind) else {
@@ -91,7 +91,7 @@ impl State {
         if let Some(open) = &mut self.open
             && open.settings().scale_objects.len() == count
         {
-            open.tracing = None;
+            open.objects.tracing = None;
         }
     }
 
@@ -110,7 +110,7 @@ impl State {
             Task::SCALE_OBJECTS,
             work,
             |state, compared: Result<_, Fault>| match (compared, &mut state.open) {
-                (Ok(compared), Some(open)) => open.compared = compared,
+                (Ok(compared), Some(open)) => open.objects.compared = compared,
                 (Err(fault), _) => state.say(Severity::Error, &fault.to_string()),
                 (Ok(_), None) => {}
             },

@@ -55,10 +55,10 @@ impl Graphics {
         if uploaded.flight != Some(open.number) {
             *uploaded = Uploaded {
                 flight: Some(open.number),
-                images: vec![false; open.images.len()],
+                images: vec![false; open.pictures.images.len()],
                 ..Uploaded::default()
             };
-            self.renderer.start(&open.frame);
+            self.renderer.start(&open.extent.frame);
             self.drawn = None;
         }
         let same_geometry = same(uploaded.geometry.as_ref(), open.geometry.as_ref());
@@ -72,7 +72,7 @@ impl Graphics {
         if !same_photos {
             uploaded.outcomes = Some(open.review.outcomes().clone());
             uploaded.views = open.review.views().cloned();
-            let photos = PhotoGeometry::of_review(&open.frame, &open.review);
+            let photos = PhotoGeometry::of_review(&open.extent.frame, &open.review);
             self.renderer.set_photos(photos);
             uploaded.looks.clear();
             (self.drawn, self.moved) = (None, None);
@@ -97,7 +97,7 @@ impl Graphics {
             uploaded.looks = looks;
             self.drawn = None;
         }
-        for (index, image) in open.images.iter().enumerate() {
+        for (index, image) in open.pictures.images.iter().enumerate() {
             if let Some(image) = image
                 && !uploaded.images[index]
             {
@@ -107,6 +107,7 @@ impl Graphics {
             }
         }
         let preview = open
+            .pictures
             .preview
             .as_ref()
             .filter(|preview| Some(preview.photo) == open.selected);

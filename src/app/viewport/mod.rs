@@ -212,7 +212,7 @@ fn show(state: &State, open: &OpenFlight, ui: &egui::Ui, pixels_per_point: f64) 
     let mut show = state.preferences.layers.show(Some(open.ground()));
     show.unit = open.flight().parts().unit;
     show.selected = open.selected;
-    show.hovered = open.hovered_photo;
+    show.hovered = open.table.hovered;
     show.photo_blend = blend(open);
     show.pixels_per_point = pixels_per_point;
     let [red, green, blue, _] = ui.visuals().extreme_bg_color.to_array();

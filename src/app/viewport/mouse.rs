@@ -31,7 +31,7 @@ pub(super) fn mouse(
         }
     }
     let Some(at) = response.hover_pos() else {
-        if open.hover.is_some() {
+        if open.pointer.hover.is_some() {
             commands.push(Command::Hover(None));
         }
         return;

@@ -77,7 +77,7 @@ pub(super) fn legend(scene: &Scene, legend: Option<&crate::render::Legend>, ui: 
 
 /// The points and the line of the distance tool.
 pub(super) fn distance(scene: &Scene, open: &OpenFlight, ui: &egui::Ui) {
-    let (first, second) = match open.measure {
+    let (first, second) = match open.pointer.measure {
         Measure::Off | Measure::First => return,
         Measure::Second(first) => (first, None),
         Measure::Both(first, second) => (first, Some(second)),

@@ -13,8 +13,8 @@ pub use anova::{AnovaReport, anova_csv, anova_json, anova_table};
 pub use comparison::{comparison_csv, comparison_json, comparison_text};
 pub use effort::{effort_csv, effort_json, effort_text};
 pub use figure::{
-    Band, Dash, FigureContents, FigureFormat, FittedDistribution, Look, Marker, Panel, Series,
-    SizeAxis, SizeTick, figure_of_comparison, figure_of_fits, figure_png, figure_svg,
+    Band, Dash, FigureContents, FigureFormat, FigureStyle, FittedDistribution, Marker, Panel,
+    Series, SizeAxis, SizeTick, figure_of_comparison, figure_of_fits, figure_png, figure_svg,
 };
 pub use fit::{FitReport, FittedCurve, fit_csv, fit_json, fit_table};
 pub use report::{ComparisonReport, comparison_report};

@@ -2,7 +2,7 @@
 //! others were made into. Where there are several, none is taken for another; the choice is the
 //! engineer's.
 //!
-//! A folder is looked into as its packages lay it out (package.rs); only where nothing lies in it
+//! A folder is looked into as its packages lay it out (packages/mod.rs); only where nothing lies in it
 //! itself, its folders are looked into, two levels down.
 
 use std::fs;
@@ -13,20 +13,7 @@ use crate::FileError;
 use crate::detect::DETECTED_BY;
 use crate::fault::Fault;
 use crate::jobs::Progress;
-use crate::packages::bundler;
-use crate::packages::colmap;
-use crate::packages::drone_photos;
-use crate::packages::nerfstudio;
-use crate::packages::odm;
-use crate::packages::opensfm;
-use crate::packages::opf;
-use crate::packages::package::{self, Package};
-use crate::packages::pix4d;
-use crate::packages::realitycapture;
-use crate::packages::ros;
-
-/// How many entries of a folder are looked at.
-const LOOKED_AT: usize = 200;
+use crate::packages::{self, LOOKED_AT, Package, colmap, drone_photos, odm, opensfm, pix4d};
 
 /// How many folders below one are looked into, over both levels.
 const MOST_FOLDERS: usize = 200;
@@ -116,7 +103,7 @@ pub(crate) struct Contents {
 impl Contents {
     /// Looks into a folder, not into its folders beyond where a package keeps its own files.
     pub(crate) fn of(folder: &Path) -> Self {
-        let mut found = laid_out(folder);
+        let mut found = packages::of_folder(folder);
         let known: Vec<PathBuf> = found.iter().map(|(_, path)| path.clone()).collect();
         found.extend(in_files(folder, &known));
         found.sort_by(|(_, a), (_, b)| a.cmp(b));
@@ -128,13 +115,9 @@ impl Contents {
         let (sources, meant) = found.into_iter().partition(is_source);
         let mut contents = Self { meant, sources };
         if contents.meant.is_empty() {
-            // Last, because beside a .p4d there may lie what another package made of the same photos,
-            // and beside what a package made there are often its photos.
-            if pix4d::is_bare_project(folder) {
-                contents.meant.push((Package::Pix4d, folder.to_owned()));
-            } else if drone_photos::has_photos(folder) {
-                contents.meant.push((Package::Photos, folder.to_owned()));
-            }
+            let bare = packages::of_bare_folder(folder);
+            let bare = bare.map(|package| (package, folder.to_owned()));
+            contents.meant.extend(bare);
         }
         contents
     }
@@ -165,36 +148,6 @@ impl Contents {
     }
 }
 
-/// What the packages' own ways to lay out a folder show in it.
-fn laid_out(folder: &Path) -> Vec<(Package, PathBuf)> {
-    let mut found = Vec::new();
-    let whole = [
-        (Package::OpenDroneMap, odm::is_project(folder)),
-        (
-            Package::RealityCaptureXmp,
-            realitycapture::has_sidecars(folder),
-        ),
-        (Package::Pix4d, pix4d::has_params(folder)),
-        (Package::Ros, ros::is_recording_folder(folder)),
-    ];
-    let whole = whole.into_iter().filter(|(_, is_there)| *is_there);
-    found.extend(whole.map(|(package, _)| (package, folder.to_owned())));
-    let models = colmap::models_in(folder, LOOKED_AT).into_iter();
-    found.extend(models.map(|model| (Package::Colmap, model)));
-    let files = [
-        (Package::Opf, opf::project_in(folder)),
-        (Package::OpenSfm, opensfm::dataset_file(folder)),
-        (Package::Bundler, bundler::bundle_of_folder(folder)),
-        (
-            Package::Nerfstudio,
-            nerfstudio::transforms_of_folder(folder),
-        ),
-    ];
-    let files = files.into_iter();
-    found.extend(files.filter_map(|(package, file)| Some((package, file?))));
-    found
-}
-
 /// The reconstructions that lie as files in a folder, besides those that are `known`.
 fn in_files(folder: &Path, known: &[PathBuf]) -> Vec<(Package, PathBuf)> {
     let mut files = entries(folder);
@@ -210,7 +163,7 @@ fn in_files(folder: &Path, known: &[PathBuf]) -> Vec<(Package, PathBuf)> {
             let mut start = Vec::new();
             let file = fs::File::open(&path).ok()?;
             file.take(DETECTED_BY as u64).read_to_end(&mut start).ok()?;
-            package::of_file(&path, &start)
+            packages::of_file(&path, &start)
         })
         .collect()
 }
@@ -372,7 +325,7 @@ fn photos_of(package: Package, path: &Path, left: &mut u64) -> Option<usize> {
         return None;
     }
     *left -= bytes;
-    let project = package::read(package, path, &Progress::default()).ok()?;
+    let project = package.read(path, &Progress::default()).ok()?;
     Some(project.reconstruction.photos.len())
 }
 

@@ -15,7 +15,7 @@ use std::collections::HashSet;
 
 use crate::camera::{Camera, Distortion};
 use crate::fault::Fault;
-use crate::packages::reconstruction::{PosedPhoto, Reconstruction};
+use crate::packages::reconstruction::{ImageUnit, Origin, PosedPhoto, Reconstruction, Sizes};
 use crate::poses::rounded_rotation::{from_row_major, pose_from_camera_from_world};
 use crate::text::fields::{Fields, shown};
 use glam::DVec3;
@@ -37,7 +37,10 @@ pub(crate) fn read(text: &str) -> Result<Reconstruction, Fault> {
     let count: u64 = Fields::new(line, first, REMEDY).whole("the count of photos")?;
     let mut found = Reconstruction {
         package: "middlebury",
-        principal_points_from_corner: true,
+        sizes: Sizes::Unknown {
+            unit: ImageUnit::Pixel,
+            principal_points_from: Origin::Corner,
+        },
         ..Reconstruction::default()
     };
     let mut names = HashSet::new();

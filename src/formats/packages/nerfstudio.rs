@@ -30,14 +30,14 @@ use std::f64::consts::PI;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use crate::camera::{Brown, Camera, Distortion, Fisheye, Pose};
+use crate::camera::{Brown, Camera, Distortion, Fisheye, HALF_TURN_ABOUT_X, Pose};
 use crate::fault::Fault;
 use crate::files::{FileError, open_file, read_bytes};
-use crate::packages::reconstruction::{PosedPhoto, Project, Reconstruction};
+use crate::packages::reconstruction::{PosedPhoto, Project, Reconstruction, Sizes};
 use crate::photos::photo_size;
 use crate::poses::rounded_rotation::{from_row_major, rounded_rotation};
 use crate::text::json::parse;
@@ -119,7 +119,7 @@ fn read(
     let raw: RawFile = parse(json)?;
     let mut found = Reconstruction {
         package: "nerfstudio",
-        sizes_known: true,
+        sizes: Sizes::Known,
         ..Reconstruction::default()
     };
     if raw.applied_transform.is_some() {
@@ -256,10 +256,9 @@ fn pose(matrix: &[Vec<f64>]) -> Result<Pose, String> {
     {
         return Err("has another last row than 0 0 0 1".to_owned());
     }
-    let opengl_from_camera = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
     let rotation = rounded_rotation(from_row_major(m)).map_err(|e| format!("is unusable: {e}"))?;
     Ok(Pose {
-        rotation: rotation * opengl_from_camera,
+        rotation: rotation * HALF_TURN_ABOUT_X,
         center: DVec3::from(center),
     })
 }
@@ -399,6 +398,8 @@ mod tests {
     use std::fs;
 
     use proptest::prelude::*;
+
+    use glam::DMat3;
 
     use super::*;
 

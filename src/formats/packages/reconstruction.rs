@@ -64,6 +64,60 @@ impl From<Reconstruction> for Project {
     }
 }
 
+/// From where pixels count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Origin {
+    /// The top-left corner of the image.
+    #[default]
+    Corner,
+    /// The middle of the image.
+    Middle,
+}
+
+/// What lengths in an image count in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ImageUnit {
+    /// Pixels.
+    #[default]
+    Pixel,
+    /// The image's longer side: a package that writes focal lengths in parts of the film.
+    LongerSide,
+}
+
+/// What a package says of the sizes of its images.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sizes {
+    /// Each camera has its own.
+    Known,
+    /// Each camera has one, and the package is known to solve on reduced copies of the photos: it may
+    /// not be that of the photos that the engineer has.
+    PerhapsReduced,
+    /// Nothing: the cameras have width = height = 0 until [`Reconstruction::set_sizes`].
+    Unknown {
+        /// What fx, fy, cx, cy and the skew are in.
+        unit: ImageUnit,
+        /// From where cx, cy count: from the corner, where a calibration was given to the package in
+        /// pixels.
+        principal_points_from: Origin,
+    },
+}
+
+impl Default for Sizes {
+    fn default() -> Self {
+        Self::Unknown {
+            unit: ImageUnit::Pixel,
+            principal_points_from: Origin::Middle,
+        }
+    }
+}
+
+impl Sizes {
+    /// Whether the cameras have theirs.
+    pub fn are_known(self) -> bool {
+        matches!(self, Self::Known | Self::PerhapsReduced)
+    }
+}
+
 /// A reconstruction in its own frame, in fragscale's conventions.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reconstruction {
@@ -83,8 +137,7 @@ pub struct Reconstruction {
     pub unit: Option<LengthUnit>,
     /// Receivers' positions of photos, aligned or not; empty where the package keeps none.
     pub measured_positions: Vec<MeasuredPosition>,
-    /// Cameras. Where `sizes_known` is false they have width = height = 0, and cx, cy count from
-    /// the middle of the image, unless `principal_points_from_corner`.
+    /// Cameras. What their numbers mean is said by `sizes`.
     pub cameras: Vec<Camera>,
     /// Photos in the file's order, aligned ones only.
     pub photos: Vec<PosedPhoto>,
@@ -92,21 +145,12 @@ pub struct Reconstruction {
     pub cloud: Cloud,
     /// Measured image points; empty where the package keeps none.
     pub observations: Vec<Observation>,
-    /// Whether the package writes the image sizes.
-    pub sizes_known: bool,
-    /// Whether cx, cy count from the top-left corner although the sizes are not known: a calibration
-    /// that was given to the package in pixels.
-    pub principal_points_from_corner: bool,
-    /// Whether fx, fy, cx, cy and the skew are in units of the image's longer side until the sizes
-    /// are set: a package that writes focal lengths in parts of the film.
-    pub intrinsics_in_longer_sides: bool,
-    /// Whether the package is known to solve on reduced copies of the photos, so that `cameras` may
-    /// not be for the photos that the engineer has.
-    pub may_be_reduced: bool,
+    /// What is known of the image sizes.
+    pub sizes: Sizes,
     /// Sizes of photos in pixels as the package names them beside its cameras, by the photo's name.
     pub named_sizes: Vec<(String, (u32, u32))>,
-    /// Whether the observations count from the middle of the image (else from its top-left corner).
-    pub observed_from_middle: bool,
+    /// From where the observations count.
+    pub observed_from: Origin,
     /// The median reprojection error in the frame that the package solved in, where the reader had
     /// to bend that frame on the way into the world.
     pub solved_reprojection_px: Option<f64>,
@@ -122,7 +166,14 @@ impl Reconstruction {
             height,
             ..camera.clone()
         };
-        if self.intrinsics_in_longer_sides {
+        let Sizes::Unknown {
+            unit,
+            principal_points_from,
+        } = self.sizes
+        else {
+            return camera;
+        };
+        if unit == ImageUnit::LongerSide {
             let longer = f64::from(width.max(height));
             for value in [
                 &mut camera.fx,
@@ -134,7 +185,7 @@ impl Reconstruction {
                 *value *= longer;
             }
         }
-        if !self.principal_points_from_corner {
+        if principal_points_from == Origin::Middle {
             camera.cx += f64::from(width) / 2.0;
             camera.cy += f64::from(height) / 2.0;
         }
@@ -166,8 +217,7 @@ impl Reconstruction {
             observation.photo = photo.flatten().unwrap_or_default();
             photo.flatten().is_some()
         });
-        self.sizes_known = true;
-        self.intrinsics_in_longer_sides = false;
+        self.sizes = Sizes::Known;
     }
 
     /// The size in pixels that the package names for each photo, beside its camera's.
@@ -187,9 +237,12 @@ impl Reconstruction {
         if self.solved_reprojection_px.is_some() {
             return self.solved_reprojection_px;
         }
-        let one_origin = self.observed_from_middle != self.principal_points_from_corner;
-        let unknown = self.intrinsics_in_longer_sides || !one_origin;
-        if !self.sizes_known && unknown {
+        if let Sizes::Unknown {
+            unit,
+            principal_points_from,
+        } = self.sizes
+            && (unit == ImageUnit::LongerSide || principal_points_from != self.observed_from)
+        {
             return None;
         }
         let errors = self.observations.iter().filter_map(|o| self.error_px(o));
@@ -202,7 +255,7 @@ impl Reconstruction {
         let point = *self.cloud.points.get(observation.point as usize)?;
         let in_camera = photo.pose.camera_from_world(point);
         let mut measured = observation.pixel;
-        if self.observed_from_middle && self.sizes_known {
+        if self.observed_from == Origin::Middle && self.sizes.are_known() {
             measured += DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
         }
         if let Distortion::VisualSfm(_) = camera.distortion {
@@ -306,6 +359,6 @@ mod tests {
         assert_eq!(photos, [("2", 1), ("3", 0)]);
         let seen: Vec<u32> = found.observations.iter().map(|o| o.photo).collect();
         assert_eq!(seen, [0, 1]);
-        assert!(found.sizes_known);
+        assert_eq!(found.sizes, Sizes::Known);
     }
 }

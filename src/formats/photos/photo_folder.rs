@@ -4,25 +4,14 @@ use std::collections::HashMap;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
+use super::image_names::{is_image, readable};
 use super::photo_size;
 use crate::fault::Fault;
 use crate::files::open_file;
 use crate::packages::reconstruction::Reconstruction;
 
-/// Endings that lists of poses and labels leave out, and that programs put behind the photo's own:
-/// "DJI_0025.JPG.tif".
-const ENDINGS: [&str; 5] = ["", ".jpg", ".jpeg", ".tif", ".tiff"];
-
 /// How many files an error about a folder names.
 const SHOWN: usize = 2;
-
-/// Whether a file is called as an image is.
-pub fn is_image(name: &str) -> bool {
-    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
-    ["jpg", "jpeg", "png", "tif", "tiff"]
-        .iter()
-        .any(|known| ending.eq_ignore_ascii_case(known))
-}
 
 /// The folder of a flight's image files, if it has one.
 pub struct PhotoFolder<'a> {
@@ -63,13 +52,16 @@ impl<'a> PhotoFolder<'a> {
         let as_named = [photo, last].map(|name| folder.join(name));
         let first_ending = last.rsplit_once('.').map(|(stem, _)| stem);
         let bare = first_ending.filter(|stem| is_image(stem));
-        let names = ENDINGS.iter().map(|ending| format!("{last}{ending}"));
+        // Lists of poses and labels leave endings out, and programs put theirs behind the photo's own.
+        let longer = readable().map(|ending| format!("{last}.{ending}"));
         let in_any_case = |name: String| self.in_any_case.get(&name.to_lowercase())?.clone();
         as_named
             .into_iter()
             .find(|path| path.is_file())
             .or_else(|| {
-                let mut found = names.chain([format!("{last}.png")]).filter_map(in_any_case);
+                let mut found = std::iter::once(last.to_owned())
+                    .chain(longer)
+                    .filter_map(in_any_case);
                 found.find(|path| path.is_file())
             })
             .or_else(|| in_any_case(bare?.to_owned()).filter(|path| path.is_file()))

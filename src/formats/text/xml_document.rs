@@ -1,32 +1,77 @@
 //! XML (1.0, namespaces) as a tree, guarded: `roxmltree` refuses document types with their entities,
 //! and takes time in the square of a tag's attributes and of nested namespaces, so long tags and
-//! deep nesting are refused before it sees them.
+//! deep nesting are refused before it sees them, and of a writer that is known, whatever it does not
+//! write.
 
-use roxmltree::Document;
+use roxmltree::{Document, ParsingOptions};
 
 use crate::fault::Fault;
-
-/// How long a tag may be, in bytes.
-const MAX_TAG: usize = 20_000;
+use crate::text::fields::shown;
 
 /// How deep elements may nest.
-const MAX_DEPTH: usize = 64;
+pub(crate) const MAX_DEPTH: usize = 64;
+
+/// What is known of those who write a kind of file.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Writer {
+    /// Their name; `None` where there are several.
+    pub(crate) name: Option<&'static str>,
+    /// What to do about XML that is damaged.
+    pub(crate) if_damaged: &'static str,
+    /// What to do about tags that they do not write.
+    pub(crate) if_foreign: &'static str,
+    /// How long a tag may be, in bytes.
+    pub(crate) longest_tag: usize,
+    /// How many equals signs a tag may have.
+    pub(crate) most_attributes: usize,
+    /// Whether they write namespaces.
+    pub(crate) has_namespaces: bool,
+    /// How many nodes a document may have.
+    pub(crate) most_nodes: u32,
+}
+
+/// Anybody.
+const ANYBODY: Writer = Writer {
+    name: None,
+    if_damaged: "the file is cut off or damaged: export it again",
+    if_foreign: "check that it is the right file",
+    longest_tag: 20_000,
+    most_attributes: usize::MAX,
+    has_namespaces: true,
+    most_nodes: u32::MAX,
+};
 
 /// The tree of an XML text.
 ///
 /// # Errors
 /// Where it is no XML, has a document type, or tags that are too deep or too long.
 pub(crate) fn parse(text: &str) -> Result<Document<'_>, Fault> {
-    guard(text)?;
-    Document::parse(text).map_err(|error| match error {
-        roxmltree::Error::DtdDetected => Fault::new(
-            "it has a document type (<!DOCTYPE>), which files of this kind have not",
-            "remove it",
-        ),
+    parse_of(text, &ANYBODY)
+}
+
+/// The tree of an XML text of this writer.
+///
+/// # Errors
+/// As [`parse`], and where it holds tags that the writer does not write.
+pub(crate) fn parse_of<'a>(text: &'a str, writer: &Writer) -> Result<Document<'a>, Fault> {
+    guard(text, writer)?;
+    let options = ParsingOptions {
+        nodes_limit: writer.most_nodes,
+        ..ParsingOptions::default()
+    };
+    Document::parse_with_options(text, options).map_err(|error| match error {
+        roxmltree::Error::DtdDetected => {
+            let whose = match writer.name {
+                Some(name) => format!("no file of {name}'s has"),
+                None => "files of this kind have not".to_owned(),
+            };
+            let what = format!("it has a document type (<!DOCTYPE>), which {whose}");
+            Fault::new(what, "remove it")
+        }
         error => Fault::at(
             u64::from(error.pos().row),
             format!("it is not valid XML ({error})"),
-            "the file is cut off or damaged: export it again",
+            writer.if_damaged,
         ),
     })
 }
@@ -37,7 +82,7 @@ pub(crate) fn line_of(node: roxmltree::Node<'_, '_>) -> u64 {
 }
 
 /// Looks at the tags alone, before anything is built.
-fn guard(text: &str) -> Result<(), Fault> {
+fn guard(text: &str, writer: &Writer) -> Result<(), Fault> {
     let mut depth = 0_usize;
     let mut rest = text;
     let line = |rest: &str| {
@@ -60,14 +105,19 @@ fn guard(text: &str) -> Result<(), Fault> {
         let Some((head, after)) = end.and_then(|end| tag.split_at_checked(end)) else {
             return Ok(());
         };
-        if skipped.is_none() {
-            if head.len() > MAX_TAG {
-                let what = format!("a tag of {} bytes", head.len());
-                return Err(Fault::at(
-                    line(tag),
-                    what,
-                    "check that it is the right file",
-                ));
+        if skipped.is_none() && !head.starts_with("<!") {
+            let attributes = head.bytes().filter(|&byte| byte == b'=').count();
+            let is_foreign = head.len() > writer.longest_tag
+                || attributes > writer.most_attributes
+                || (!writer.has_namespaces && head.contains("xmlns"));
+            if is_foreign {
+                let what = match writer.name {
+                    Some(name) => {
+                        format!("a tag that {name} does not write: '{}'", shown(head))
+                    }
+                    None => format!("a tag of {} bytes", head.len()),
+                };
+                return Err(Fault::at(line(tag), what, writer.if_foreign));
             }
             if head.starts_with("</") {
                 depth = depth.saturating_sub(1);
@@ -89,7 +139,7 @@ fn guard(text: &str) -> Result<(), Fault> {
 }
 
 /// The offset behind the `>` of a tag, quoted ones left out.
-pub(crate) fn end_of_tag(tag: &str) -> Option<usize> {
+fn end_of_tag(tag: &str) -> Option<usize> {
     let mut quote = None;
     for (at, byte) in tag.bytes().enumerate() {
         match (quote, byte) {

@@ -116,7 +116,7 @@ fn camera_of(
     let missing = || Fault::new(format!("photo '{photo}' has no camera"), "export it again");
     let camera = reconstruction.cameras.get(camera).ok_or_else(missing)?;
     let size = folder.size_of(photo).and_then(Result::ok);
-    match (reconstruction.sizes_known, size) {
+    match (reconstruction.sizes.are_known(), size) {
         (true, Some((width, height))) if (width, height) != (camera.width, camera.height) => {
             camera.rescaled(width, height).map_err(|e| {
                 Fault::new(

@@ -7,7 +7,7 @@
 
 mod distances;
 mod flight_text;
-mod known;
+mod list_world;
 mod marks;
 mod photo_names;
 
@@ -16,7 +16,7 @@ use std::str::FromStr;
 
 use glam::DVec3;
 
-use self::known::World;
+use self::list_world::ListWorld;
 use self::marks::MarkedPoint;
 use self::photo_names::PhotoNames;
 use crate::fault::Fault;
@@ -257,7 +257,8 @@ fn georeferenced(
         (None, Some((_, list))) => list.positions.iter().map(|p| p.position).collect(),
         (None, None) => Vec::new(),
     };
-    let world = World::new(request.crs.as_deref(), stated, &all, &mut warnings).map_err(blame)?;
+    let world =
+        ListWorld::new(request.crs.as_deref(), stated, &all, &mut warnings).map_err(blame)?;
     let mut known: Vec<Known> = Vec::new();
     if points.is_some() {
         for point in &marked {
@@ -354,7 +355,7 @@ struct Known {
 }
 
 impl Known {
-    fn of_point(point: &MarkedPoint, world: &World) -> Result<Self, Fault> {
+    fn of_point(point: &MarkedPoint, world: &ListWorld) -> Result<Self, Fault> {
         Ok(Self {
             name: point.name.clone(),
             kind: KnownKind::ControlPoint,
@@ -372,7 +373,7 @@ impl Known {
 fn of_photos(
     reconstruction: &Reconstruction,
     list: &PositionList,
-    world: &World,
+    world: &ListWorld,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Known>, Fault> {
     let named: Vec<&str> = list.positions.iter().map(|p| p.name.as_str()).collect();

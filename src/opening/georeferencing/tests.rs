@@ -6,7 +6,7 @@ use glam::{DMat3, EulerRot};
 use super::*;
 use crate::camera::{Camera, Distortion, Pose};
 use crate::flight::FlightFile;
-use crate::formats::PosedPhoto;
+use crate::formats::{PosedPhoto, Sizes};
 use crate::geodesy::Crs;
 use fragscale_test_data::shared_data;
 
@@ -65,7 +65,7 @@ fn reconstruction() -> Reconstruction {
             .zip(centers())
             .map(|(index, center)| photo(index, center))
             .collect(),
-        sizes_known: true,
+        sizes: Sizes::Known,
         ..Reconstruction::default()
     }
 }

@@ -23,7 +23,7 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use super::decode::check_size;
+use super::image_size::check_size;
 use crate::fault::Fault;
 
 /// What a JPEG holds.

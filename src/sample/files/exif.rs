@@ -5,7 +5,7 @@
 //! values, the value or the place where it is), and the place of the next one. Values of more than 4
 //! bytes follow their directory, each at an even place.
 
-use super::photo::{GpsPosition, PhotoMetadata};
+use super::photo_metadata::{GpsPosition, PhotoMetadata};
 
 /// The value of an entry.
 enum Value {

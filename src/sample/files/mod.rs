@@ -8,6 +8,7 @@ pub mod flight;
 pub mod label;
 pub mod laz;
 pub mod photo;
+pub mod photo_metadata;
 pub mod ply;
 pub mod poses;
 pub mod reference;

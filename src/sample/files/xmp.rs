@@ -1,7 +1,7 @@
 //! DJI's XMP (ISO 16684-1; the fields from DJI's "Media File Metadata White Paper", part 2): one
 //! `rdf:Description` with the values as attributes in the namespace drone-dji, each with its sign.
 
-use super::photo::{DjiGimbal, GpsPosition};
+use super::photo_metadata::{DjiGimbal, GpsPosition};
 
 /// The packet of a photo. Position and absolute altitude are there where the position is known.
 ///

@@ -52,7 +52,7 @@ pub(super) struct Appearance {
 }
 
 impl Appearance {
-    /// The same in the world's frame, for [`Light::shade`](crate::light::Light::shade).
+    /// The same in the world's frame, for [`Light::shade`](crate::scene::light::Light::shade).
     #[must_use]
     pub(super) fn turned(self, world_from_body: DQuat) -> Self {
         Self {

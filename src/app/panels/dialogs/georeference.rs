@@ -17,7 +17,7 @@ pub(super) fn georeference(state: &State, ui: &mut egui::Ui, commands: &mut Vec<
     let Some(open) = &state.open else {
         return;
     };
-    let Some(reconstruction) = &open.reconstruction else {
+    let Some(reconstruction) = &open.files.reconstruction else {
         return;
     };
     let path = reconstruction.path.display();
@@ -178,7 +178,7 @@ fn distances(open: &OpenFlight, form: &mut GeoreferenceForm, ui: &mut egui::Ui) 
         let hover = "How long the measured distance is in truth, in metres";
         named_field(ui.add(field), "Length in metres", hover, &form.length);
         ui.label("m");
-        let points = match open.measure {
+        let points = match open.pointer.measure {
             Measure::Both(a, b) if open.is_in_own_frame() => Ok((a, b)),
             Measure::Both(..) => {
                 Err("The surface on the screen is not in the reconstruction's frame")
@@ -362,8 +362,8 @@ pub(super) fn save_georeferenced(state: &State, ui: &mut egui::Ui, commands: &mu
     // reconstruction, as far as anybody knows.
     let id = ui.scope_id().with(("surface", open.number));
     let kept: Option<bool> = ui.data(|data| data.get_temp(id));
-    let mut keep_surface = kept.unwrap_or(open.crs.is_some());
-    match open.origin.surface() {
+    let mut keep_surface = kept.unwrap_or(open.files.crs.is_some());
+    match open.files.origin.surface() {
         None => keep_surface = false,
         Some(surface) => {
             let name = surface.file_name().unwrap_or(surface.as_os_str()).display();

@@ -147,9 +147,9 @@ fn replace(command: &Command, question: &str, ui: &mut egui::Ui, commands: &mut 
 /// name that file. The bundled flight stays as it came: what is made of it goes to where the program
 /// was started.
 fn proposed(open: &OpenFlight, name: Option<&str>) -> PathBuf {
-    let file = open.origin.suggested_file();
+    let file = open.files.origin.suggested_file();
     let start = match name {
-        _ if open.bundled => PathBuf::from(name.unwrap_or("sample-flight.toml")),
+        _ if open.files.bundled => PathBuf::from(name.unwrap_or("sample-flight.toml")),
         Some(name) => file.with_file_name(name),
         None => file,
     };

@@ -88,6 +88,7 @@ impl Inspector {
 
     fn take_texture(&mut self, open: &OpenFlight, ui: &egui::Ui) {
         let wanted = open
+            .pictures
             .preview
             .as_ref()
             .filter(|preview| Some(preview.photo) == open.selected)
@@ -100,6 +101,7 @@ impl Inspector {
         self.zoom = 1.0;
         self.middle = vec2(0.5, 0.5);
         self.texture = open
+            .pictures
             .preview
             .as_ref()
             .filter(|_| wanted.is_some())
@@ -158,14 +160,14 @@ impl Inspector {
             &response,
             commands,
         );
-        let is_traced = open.tracing.is_some();
+        let is_traced = open.objects.tracing.is_some();
         self.turn_wheel(&response, ui, size, frame, taken, is_traced);
         let size = fitted * self.zoom;
         let half_seen = (frame.size() / size / 2.0).min(vec2(0.5, 0.5));
         self.middle = self.middle.clamp(half_seen, Vec2::splat(1.0) - half_seen);
         let shown = on_screen(self.middle, size);
         let place = shown.rect;
-        match (&self.texture, open.preview.as_ref()) {
+        match (&self.texture, open.pictures.preview.as_ref()) {
             (Some(texture), _) => {
                 let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
                 painter.image(texture.id(), place, whole, Color32::WHITE);
@@ -177,7 +179,7 @@ impl Inspector {
             }
             _ => {
                 // The thumbnail stands in until the photo is read.
-                if let Some(Some(texture)) = open.thumbnails.get(photo) {
+                if let Some(Some(texture)) = open.pictures.thumbnails.get(photo) {
                     let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
                     painter.image(texture.id(), place, whole, Color32::from_gray(140));
                 }

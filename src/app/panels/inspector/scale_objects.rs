@@ -30,13 +30,13 @@ pub(super) fn scale_objects(
 ) {
     ui.separator();
     let objects: Vec<(usize, &ScaleObject)> = open.objects_of(photo).collect();
-    let is_wanted = open.tracing.is_some() || !objects.is_empty();
+    let is_wanted = open.objects.tracing.is_some() || !objects.is_empty();
     egui::CollapsingHeader::new("Scale object")
         .id_salt(("scale object", photo))
         .default_open(is_wanted)
-        .open(open.tracing.is_some().then_some(true))
+        .open(open.objects.tracing.is_some().then_some(true))
         .show(ui, |ui| {
-            if open.tracing.is_some() {
+            if open.objects.tracing.is_some() {
                 being_traced(state, ui, commands);
             } else {
                 for (action, kind) in [
@@ -90,7 +90,7 @@ fn being_traced(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let Some(open) = &state.open else {
         return;
     };
-    let Some(tracing) = &open.tracing else {
+    let Some(tracing) = &open.objects.tracing else {
         return;
     };
     ui.strong(next_step(tracing));

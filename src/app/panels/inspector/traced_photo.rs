@@ -94,7 +94,7 @@ fn outlines(open: &OpenFlight, photo: usize) -> Vec<Outline<'_>> {
         size: Some(object.size),
         points: &object.outline,
     });
-    let draft = open.tracing.as_ref().map(|tracing| Outline {
+    let draft = open.objects.tracing.as_ref().map(|tracing| Outline {
         object: None,
         kind: tracing.kind,
         size: open.trace_size(tracing.kind),
@@ -149,7 +149,7 @@ pub(super) fn mouse(
         commands.extend(drop_point(open, moved));
         return true;
     }
-    let Some(tracing) = &open.tracing else {
+    let Some(tracing) = &open.objects.tracing else {
         return dragged.is_some();
     };
     if response.clicked()

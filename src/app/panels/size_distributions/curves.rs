@@ -108,7 +108,7 @@ fn having<'a>(
 
 /// The colour that the method is drawn in.
 fn swatch(drawing: &MethodDrawing, ui: &mut egui::Ui) {
-    let color = color(drawing.look, ui.visuals().dark_mode);
+    let color = color(drawing.style, ui.visuals().dark_mode);
     let (place, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
     ui.painter().rect_filled(place, 3.0, color);
 }

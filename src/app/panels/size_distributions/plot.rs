@@ -10,7 +10,7 @@ use egui_plot::{
 
 use super::log_axis;
 use crate::command::Command;
-use crate::exports::{Dash, Look, Marker};
+use crate::exports::{Dash, FigureStyle, Marker};
 use crate::fragmentation::Labels;
 use crate::size_distributions::drawing::{Area, Drawing, MethodDrawing};
 use crate::size_distributions::{Computed, DistributionCommand, PlotOf};
@@ -156,15 +156,16 @@ fn passing(state: &State, computed: &Computed, reset: bool, ui: &mut egui::Ui) {
     .include_y(0.0)
     .include_y(100.0)
     .show(ui, |plot| {
-        let paint = |look: Look, alpha: f32| color(look, dark).gamma_multiply(alpha * fade);
-        let grey = paint(Look::REFERENCE, 0.12);
+        let paint =
+            |style: FigureStyle, alpha: f32| color(style, dark).gamma_multiply(alpha * fade);
+        let grey = paint(FigureStyle::REFERENCE, 0.12);
         area(plot, &format!("Envelope ± {percent} %"), envelope, grey);
         for method in methods {
             let name = format!("{}, mean ± s.d.", method.method);
-            area(plot, &name, &method.spread, paint(method.look, 0.25));
+            area(plot, &name, &method.spread, paint(method.style, 0.25));
         }
         for method in methods {
-            curves(plot, method, hidden, |alpha| paint(method.look, alpha));
+            curves(plot, method, hidden, |alpha| paint(method.style, alpha));
         }
         finish(plot, reset);
     });
@@ -180,7 +181,7 @@ fn curves<'a>(
 ) {
     let MethodDrawing {
         method,
-        look,
+        style,
         curves,
         fits,
         mean,
@@ -206,7 +207,10 @@ fn curves<'a>(
                 Line::new(format!("{trial}, fitted"), PlotPoints::Borrowed(points)).id(method);
             plot.line(match several {
                 true => line.width(1.0).color(paint(0.45)),
-                false => line.width(1.8).style(style(look.dash)).color(paint(1.0)),
+                false => line
+                    .width(1.8)
+                    .style(line_style(style.dash))
+                    .color(paint(1.0)),
             });
         }
     }
@@ -215,7 +219,7 @@ fn curves<'a>(
         plot.points(
             Points::new(labels.to_string(), PlotPoints::Borrowed(points))
                 .id(method)
-                .shape(shape(look.marker))
+                .shape(shape(style.marker))
                 .radius(if several { 3.0 } else { 4.0 })
                 .color(paint(if many { 0.5 } else { 0.9 })),
         );
@@ -231,7 +235,7 @@ fn curves<'a>(
             )
             .id(method)
             .width(2.2)
-            .style(style(look.dash))
+            .style(line_style(style.dash))
             .color(paint(1.0)),
         );
     }
@@ -273,7 +277,7 @@ fn errors(computed: &Computed, reset: bool, ui: &mut egui::Ui) {
             }
             for MethodDrawing {
                 method,
-                look,
+                style,
                 errors,
                 ..
             } in &computed.drawing.methods
@@ -281,18 +285,18 @@ fn errors(computed: &Computed, reset: bool, ui: &mut egui::Ui) {
                 if errors.is_empty() {
                     continue;
                 }
-                let paint = color(*look, dark);
+                let paint = color(*style, dark);
                 plot.line(
                     Line::new(method.clone(), PlotPoints::Borrowed(errors))
                         .id(method)
                         .allow_hover(false)
-                        .style(style(look.dash))
+                        .style(line_style(style.dash))
                         .color(paint),
                 );
                 plot.points(
                     Points::new(method.clone(), PlotPoints::Borrowed(errors))
                         .id(method)
-                        .shape(shape(look.marker))
+                        .shape(shape(style.marker))
                         .radius(4.0)
                         .color(paint),
                 );
@@ -319,10 +323,10 @@ fn area(plot: &mut PlotUi<'_>, name: &str, area: &Area, fill: Color32) {
 }
 
 /// The figure's colour; on a dark ground lighter, and the reference's black is the text's colour.
-pub(super) fn color(look: Look, dark: bool) -> Color32 {
-    let [r, g, b] = look.colour;
+pub(super) fn color(style: FigureStyle, dark: bool) -> Color32 {
+    let [r, g, b] = style.colour;
     let light = |v: u8| if dark { v + ((255 - v) / 10) * 3 } else { v };
-    match dark && look.colour == Look::REFERENCE.colour {
+    match dark && style.colour == FigureStyle::REFERENCE.colour {
         true => Color32::from_gray(225),
         false => Color32::from_rgb(light(r), light(g), light(b)),
     }
@@ -339,7 +343,7 @@ fn shape(marker: Marker) -> MarkerShape {
     }
 }
 
-fn style(dash: Dash) -> LineStyle {
+fn line_style(dash: Dash) -> LineStyle {
     match dash {
         Dash::Solid => LineStyle::Solid,
         Dash::Long => LineStyle::Dashed { length: 10.0 },

@@ -1,27 +1,30 @@
 //! The figure of size distributions: percent passing against size, and the residuals below it.
 //!
 //! ```text
-//! look        colours, markers and dashes that are told apart in print and by the colour-blind
+//! style       colours, markers and dashes that are told apart in print and by the colour-blind
 //! size_axis   where the logarithmic axis begins and ends, its lines and labels
 //! of_comparison, of_fits  what is shown of them
 //! panels      what the panels of both have in common
 //! layout      where everything is
-//! pen         strokes, areas, markers and words by plotters
-//! draw        the contents with a pen, the same on paper (SVG) and in pixels (PNG)
-//! picture     the bytes of both
+//! shapes      lines, areas, markers and words
+//! draw        the contents as shapes, the same on paper (SVG) and in pixels (PNG)
+//! svg, png    the shapes as a document and in pixels
+//! picture     a figure as a file
 //! ```
 //!
 //! `FigureContents` knows nothing of who draws it: the window draws the same.
 
 mod draw;
 mod layout;
-mod look;
 mod of_comparison;
 mod of_fits;
 mod panels;
-mod pen;
 mod picture;
+mod png;
+mod shapes;
 mod size_axis;
+mod style;
+mod svg;
 #[cfg(test)]
 #[allow(
     clippy::expect_used,
@@ -30,11 +33,11 @@ mod size_axis;
 )]
 mod tests;
 
-pub use look::{Dash, Look, Marker};
 pub use of_comparison::figure_of_comparison;
 pub use of_fits::{FittedDistribution, figure_of_fits};
 pub use picture::{FigureFormat, figure_png, figure_svg};
 pub use size_axis::{SizeAxis, SizeTick};
+pub use style::{Dash, FigureStyle, Marker};
 
 /// What a figure shows. All sizes are in the unit of the size axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +48,7 @@ pub struct FigureContents {
     pub sizes: SizeAxis,
     /// Percent passing, 0 to 100. The legend is of this panel.
     pub passing: Panel,
-    /// What is left between measured and reference or fitted, the looks being those of `passing`.
+    /// What is left between measured and reference or fitted, the styles being those of `passing`.
     pub residuals: Option<Panel>,
 }
 
@@ -72,7 +75,7 @@ pub struct Band {
     /// For the legend.
     pub name: String,
     /// Whose it is.
-    pub look: Look,
+    pub style: FigureStyle,
     /// Whether its edges are dashed lines, or it is a shade only.
     pub outlined: bool,
     /// The two edges, points [size, value], sizes ascending in each.
@@ -85,7 +88,7 @@ pub struct Series {
     /// For the legend.
     pub name: String,
     /// Its colour, marker and dash.
-    pub look: Look,
+    pub style: FigureStyle,
     /// Drawn as markers, [size, value], sizes ascending.
     pub points: Vec<[f64; 2]>,
     /// Drawn as a line, [size, value], sizes ascending; empty without one.

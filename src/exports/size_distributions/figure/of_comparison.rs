@@ -1,7 +1,7 @@
 //! What a figure shows of methods held against a reference: the paper's figure of distributions.
 
 use super::panels;
-use super::{Band, FigureContents, Look, Series, SizeAxis};
+use super::{Band, FigureContents, FigureStyle, Series, SizeAxis};
 use crate::fragmentation::{Comparison, MethodCurve};
 use crate::size_distributions::method_name;
 
@@ -11,11 +11,11 @@ pub fn figure_of_comparison(comparison: &Comparison) -> FigureContents {
     let envelope = comparison.options.envelope_percent;
     let reference = &comparison.reference;
     let others = comparison.methods.iter().map(|method| &method.curve);
-    // The reference first: its look and its place in the legend. It is drawn below the others.
-    let curves: Vec<(Look, &MethodCurve)> = std::iter::once(reference)
+    // The reference first: its style and its place in the legend. It is drawn below the others.
+    let curves: Vec<(FigureStyle, &MethodCurve)> = std::iter::once(reference)
         .chain(others)
         .enumerate()
-        .map(|(number, curve)| (Look::of(number), curve))
+        .map(|(number, curve)| (FigureStyle::of(number), curve))
         .collect();
     let measured = curves
         .iter()
@@ -25,15 +25,15 @@ pub fn figure_of_comparison(comparison: &Comparison) -> FigureContents {
     bands.extend(
         curves
             .iter()
-            .filter_map(|(look, curve)| spread_band(*look, curve)),
+            .filter_map(|(style, curve)| spread_band(*style, curve)),
     );
-    let series = curves.iter().map(|(look, curve)| Series {
+    let series = curves.iter().map(|(style, curve)| Series {
         name: format!(
             "{}: {}",
             described(curve),
             panels::fit_words(&curve.fit, comparison.unit)
         ),
-        look: *look,
+        style: *style,
         points: curve.known_to_all().map(|p| [p.size, p.mean]).collect(),
         line: panels::fitted_line(&curve.fit, &sizes),
         marks: panels::marks(&curve.fit),
@@ -41,19 +41,19 @@ pub fn figure_of_comparison(comparison: &Comparison) -> FigureContents {
     let passing = panels::passing_panel(bands, series.collect());
     let mut errors = vec![Series {
         name: String::new(),
-        look: Look::REFERENCE,
+        style: FigureStyle::REFERENCE,
         points: Vec::new(),
         line: vec![[sizes.low, 0.0], [sizes.high, 0.0]],
         marks: Vec::new(),
     }];
-    for (method, (look, _)) in comparison.methods.iter().zip(curves.iter().skip(1)) {
+    for (method, (style, _)) in comparison.methods.iter().zip(curves.iter().skip(1)) {
         let known = method.residuals.iter();
         let points: Vec<[f64; 2]> = known
             .filter_map(|r| Some([r.size, r.percent_error?]))
             .collect();
         errors.push(Series {
             name: method.curve.method.clone(),
-            look: *look,
+            style: *style,
             line: points.clone(),
             points,
             marks: Vec::new(),
@@ -101,19 +101,19 @@ fn envelope_band(comparison: &Comparison) -> Band {
             comparison.options.envelope_percent,
             method_name(&comparison.reference.method)
         ),
-        look: Look::REFERENCE,
+        style: FigureStyle::REFERENCE,
         outlined: true,
         edges: [edge(0), edge(1)],
     }
 }
 
 /// Mean less and plus the standard deviation, where there are trials to have one.
-fn spread_band(look: Look, curve: &MethodCurve) -> Option<Band> {
+fn spread_band(style: FigureStyle, curve: &MethodCurve) -> Option<Band> {
     let edges = curve.spread();
     let name = format!("{}: \u{b1} standard deviation", method_name(&curve.method));
     (edges[0].len() > 1).then_some(Band {
         name,
-        look,
+        style,
         outlined: false,
         edges,
     })

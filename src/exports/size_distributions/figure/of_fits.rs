@@ -1,7 +1,7 @@
 //! What a figure shows of distributions and the functions fitted to them.
 
 use super::panels;
-use super::{Band, FigureContents, Look, Series, SizeAxis};
+use super::{Band, FigureContents, FigureStyle, Series, SizeAxis};
 use crate::fault::Fault;
 use crate::fragmentation::{DistributionSet, Fit, LabelledDistribution, SizeDistribution};
 use crate::units::LengthUnit;
@@ -58,17 +58,17 @@ pub fn figure_of_fits(
     let mut passing = Vec::new();
     let mut left_over = Vec::new();
     for (number, of) in fitted.iter().enumerate() {
-        let look = Look::of(number);
+        let style = FigureStyle::of(number);
         let words = panels::fit_words(of.fit, unit);
         let name = match of.name.as_str() {
             "" => words,
             name => format!("{name}: {words}"),
         };
-        bands.extend(few.then(|| confidence_band(look, of, &sizes)).flatten());
+        bands.extend(few.then(|| confidence_band(style, of, &sizes)).flatten());
         let points = of.distribution.points();
         passing.push(Series {
             name,
-            look,
+            style,
             points: points.to_vec(),
             line: panels::fitted_line(of.fit, &sizes),
             marks: if few {
@@ -84,7 +84,7 @@ pub fn figure_of_fits(
             .collect();
         left_over.push(Series {
             name: of.name.clone(),
-            look,
+            style,
             line: left.clone(),
             points: left,
             marks: Vec::new(),
@@ -103,7 +103,11 @@ pub fn figure_of_fits(
     }
 }
 
-fn confidence_band(look: Look, of: &FittedDistribution<'_>, sizes: &SizeAxis) -> Option<Band> {
+fn confidence_band(
+    style: FigureStyle,
+    of: &FittedDistribution<'_>,
+    sizes: &SizeAxis,
+) -> Option<Band> {
     let known: Vec<(f64, [f64; 2])> = sizes
         .sizes(SAMPLES)
         .filter_map(|size| Some((size, of.fit.band_at(size, LEVEL)?)))
@@ -122,7 +126,7 @@ fn confidence_band(look: Look, of: &FittedDistribution<'_>, sizes: &SizeAxis) ->
     };
     (known.len() > 1).then_some(Band {
         name,
-        look,
+        style,
         outlined: false,
         edges,
     })

@@ -69,22 +69,18 @@ impl<'a> ComparisonReport<'a> {
 }
 
 /// The report as HTML, with its figure in it.
-///
-/// # Errors
-///
-/// Only where the figure cannot be drawn.
-pub fn comparison_report(report: &ComparisonReport<'_>) -> Result<String, Fault> {
+pub fn comparison_report(report: &ComparisonReport<'_>) -> String {
     let comparison = report.comparison;
     let mut figure = figure_of_comparison(comparison);
     // The page has it as its own.
     let title = escaped(&std::mem::take(&mut figure.title));
-    let figure = figure_svg(&figure)?;
+    let figure = figure_svg(&figure);
     let methods: String = comparison
         .methods
         .iter()
         .map(|m| of_method(m, comparison))
         .collect();
-    Ok(format!(
+    format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          {HTML_MARK}<meta name=\"viewport\" content=\"width=device-width\"/>\n<title>{title}: size distributions\
          </title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n{}<figure>\n{figure}\
@@ -96,7 +92,7 @@ pub fn comparison_report(report: &ComparisonReport<'_>) -> Result<String, Fault>
         repeatability::tables(&report.repeatability, comparison.unit),
         definitions(comparison),
         env!("CARGO_PKG_VERSION"),
-    ))
+    )
 }
 
 /// The reference, then the others.

@@ -25,7 +25,7 @@ fn html(comparison: &Comparison, repeatability: &[Repeatability], warnings: &[St
         preparation: &["Photos: merged with equal weights".to_owned()],
         warnings: warnings.to_vec(),
     };
-    comparison_report(&report).expect("a report")
+    comparison_report(&report)
 }
 
 fn named<'a>(document: &'a Document<'_>, name: &'a str) -> impl Iterator<Item = Node<'a, 'a>> {

@@ -6,45 +6,35 @@
 //!   elements are called `_` a list; the attribute `type_id` is the tag.
 //! - Text is one value, or a list of values with white space between them; `"..."` is one value.
 //!
-//! Document types and the entities that they define are refused by `roxmltree`, which reads the XML.
-//! It takes time in the square of a tag's attributes and of nested namespaces, so depth, namespaces
-//! and long tags, which OpenCV writes none of, are refused before it sees them.
+//! Depth, namespaces and long tags, which OpenCV writes none of, are refused before it is parsed.
 
 use std::collections::HashSet;
 
-use roxmltree::{Document, ParsingOptions};
-
 use crate::fault::Fault;
-use crate::text::xml_document::end_of_tag;
+use crate::text::xml_document::{Writer, parse_of};
 
-use super::yaml_tree::{Entry, MAX_DEPTH, MAX_NODES, Node, Value, quoted, too_deep, twice};
-
-/// How long a tag may be, in bytes; OpenCV's have one attribute.
-const MAX_TAG: usize = 1000;
+use super::yaml_tree::{Entry, Node, Value, quoted, twice};
 
 /// What to do about XML of others.
 const OPENCV_ONLY: &str = "give the XML that OpenCV's calibration wrote";
+
+/// OpenCV's tags have one attribute.
+const OPENCV: Writer = Writer {
+    name: Some("OpenCV"),
+    if_damaged: "mend the file there",
+    if_foreign: OPENCV_ONLY,
+    longest_tag: 1000,
+    most_attributes: usize::MAX,
+    has_namespaces: false,
+    most_nodes: 1_000_000,
+};
 
 /// The tree of an OpenCV XML.
 ///
 /// # Errors
 /// Where the text is no XML, or not OpenCV's.
 pub(super) fn tree(text: &str) -> Result<Node, Fault> {
-    refuse_foreign(text)?;
-    let options = ParsingOptions {
-        nodes_limit: u32::try_from(MAX_NODES).unwrap_or(u32::MAX),
-        ..ParsingOptions::default()
-    };
-    let document = Document::parse_with_options(text, options).map_err(|error| match error {
-        roxmltree::Error::DtdDetected => Fault::new(
-            "it has a document type (<!DOCTYPE>), which no file of OpenCV's has",
-            "remove it",
-        ),
-        error => {
-            let what = format!("it is not valid XML ({error})");
-            Fault::at(u64::from(error.pos().row), what, "mend the file there")
-        }
-    })?;
+    let document = parse_of(text, &OPENCV)?;
     let root = document.root_element();
     if root.tag_name().name() != "opencv_storage" {
         let name = quoted(root.tag_name().name());
@@ -61,7 +51,7 @@ pub(super) fn tree(text: &str) -> Result<Node, Fault> {
     element(root, &mut lines)
 }
 
-/// One element; recursion ends at [`MAX_DEPTH`], which [`refuse_foreign`] holds.
+/// One element; recursion ends where [`parse_of`] refuses to go deeper.
 fn element(xml: roxmltree::Node<'_, '_>, lines: &mut Lines<'_>) -> Result<Node, Fault> {
     let line = lines.at(xml.range().start);
     let tag = xml.attribute("type_id").map(ToOwned::to_owned);
@@ -132,56 +122,12 @@ impl Lines<'_> {
     }
 }
 
-/// Looks at the tags alone, before anything is built.
-fn refuse_foreign(text: &str) -> Result<(), Fault> {
-    let mut depth = 0_usize;
-    let mut rest = text;
-    while let Some(start) = rest.find('<') {
-        let tag = rest.get(start..).unwrap_or_default();
-        let skipped = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")]
-            .into_iter()
-            .find(|(begin, _)| tag.starts_with(begin));
-        let end = if let Some((begin, end)) = skipped {
-            let inside = tag.get(begin.len()..).unwrap_or_default();
-            inside.find(end).map(|at| begin.len() + at + end.len())
-        } else {
-            end_of_tag(tag)
-        };
-        // What has no end is no XML, which the parser says with its place.
-        let Some(end) = end else {
-            return Ok(());
-        };
-        let (tag, after) = tag.split_at_checked(end).unwrap_or((tag, ""));
-        if tag.starts_with("</") {
-            depth = depth.saturating_sub(1);
-        } else if skipped.is_none() && !tag.starts_with("<!") {
-            let line = || {
-                let mut lines = Lines {
-                    text,
-                    offset: 0,
-                    line: 1,
-                };
-                lines.at(text.len() - after.len())
-            };
-            if tag.len() > MAX_TAG || tag.contains("xmlns") {
-                let what = format!("a tag that OpenCV does not write: {}", quoted(tag));
-                return Err(Fault::at(line(), what, OPENCV_ONLY));
-            }
-            depth += usize::from(!tag.ends_with("/>"));
-            if depth > MAX_DEPTH {
-                return Err(too_deep(line()));
-            }
-        }
-        rest = after;
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::text::xml_document::MAX_DEPTH;
 
     fn fault(text: &str) -> (Option<u64>, String) {
         let fault = tree(text).unwrap_err();
@@ -226,7 +172,10 @@ mod tests {
         ] {
             let (line, what) = fault(&unit.repeat(100_000));
             assert_eq!(line, Some(1), "{unit} {what}");
-            assert!(what.starts_with("nested deeper than 64"), "{unit} {what}");
+            assert!(
+                what.starts_with("elements nested deeper than 64"),
+                "{unit} {what}"
+            );
         }
         let spaces: String = (0..60_000)
             .map(|i| format!("<a xmlns:n{i}='x'>\n"))

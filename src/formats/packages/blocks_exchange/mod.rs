@@ -47,7 +47,9 @@ use roxmltree::{Document, Node};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::geodesy::Geographic;
-use crate::packages::reconstruction::{MeasuredPosition, Observation, PosedPhoto, Reconstruction};
+use crate::packages::reconstruction::{
+    MeasuredPosition, Observation, PosedPhoto, Reconstruction, Sizes,
+};
 use crate::surface::Cloud;
 use crate::text::fields::shown;
 use crate::text::xml_document::{line_of, parse};
@@ -112,7 +114,7 @@ impl<'a, 'input> Reader<'a, 'input> {
             document,
             found: Reconstruction {
                 package: "contextcapture",
-                sizes_known: true,
+                sizes: Sizes::Known,
                 ..Reconstruction::default()
             },
             photo_of_id: HashMap::new(),

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 use roxmltree::Node;
 
-use crate::camera::Pose;
+use crate::camera::{HALF_TURN_ABOUT_X, Pose};
 use crate::fault::Fault;
 
 use super::{child, fault, number, text_of, vector};
@@ -36,8 +36,7 @@ pub(super) fn read(pose: Node<'_, '_>, axes: DMat3) -> Result<Option<(Pose, bool
         let [omega, phi, kappa] = ["Omega", "Phi", "Kappa"].map(|name| number(rotation, name));
         let mut pose = Pose::from_omega_phi_kappa(center, [omega?, phi?, kappa?]);
         // There its axes are right, up and back.
-        let photogrammetric = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
-        pose.rotation = pose.rotation * photogrammetric * axes.transpose();
+        pose.rotation = pose.rotation * HALF_TURN_ABOUT_X * axes.transpose();
         return Ok(Some((pose, false)));
     }
     // The later versions' name, and the earlier ones'.

@@ -31,12 +31,14 @@ mod tokens;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 
-use crate::camera::{Brown, Camera, Distortion, Pose};
+use crate::camera::{Brown, Camera, Distortion, HALF_TURN_ABOUT_X, Pose};
 use crate::fault::Fault;
 use crate::files::{FileError, read_text};
-use crate::packages::reconstruction::{Observation, PosedPhoto, Project, Reconstruction};
+use crate::packages::reconstruction::{
+    Observation, Origin, PosedPhoto, Project, Reconstruction, Sizes,
+};
 use crate::poses::rounded_rotation::{from_row_major, pose_from_camera_from_world};
 use names::Names;
 use tokens::Tokens;
@@ -118,8 +120,11 @@ fn read(text: &str) -> Result<Bundle, Fault> {
     let mut bundle = Bundle {
         reconstruction: Reconstruction {
             package: "bundler",
-            sizes_known: with_names,
-            observed_from_middle: true,
+            sizes: match with_names {
+                true => Sizes::Known,
+                false => Sizes::default(),
+            },
+            observed_from: Origin::Middle,
             ..Reconstruction::default()
         },
         registered: Vec::new(),
@@ -242,9 +247,8 @@ fn read_camera(tokens: &mut Tokens<'_>, bundle: &mut Bundle) -> Result<(), Fault
 
 /// The pose of x right, y up, z back axes.
 fn pose(rotation: [f64; 9], translation: DVec3) -> Result<Pose, String> {
-    let down_forward = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
-    let rotation = down_forward * from_row_major(rotation);
-    let pose = pose_from_camera_from_world(rotation, down_forward * translation);
+    let rotation = HALF_TURN_ABOUT_X * from_row_major(rotation);
+    let pose = pose_from_camera_from_world(rotation, HALF_TURN_ABOUT_X * translation);
     pose.map_err(|e| format!("R of the camera that begins here: {e}"))
 }
 

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use crate::fault::Fault;
 use crate::files::{FileError, read_text};
-use crate::photos::photo_folder::is_image;
+use crate::photos::image_names::is_image;
 
 /// Where Bundler's script makes the list, of photos in the folder above.
 const PREPARE: &str = "prepare";

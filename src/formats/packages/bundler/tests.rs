@@ -1,5 +1,6 @@
 use std::fs;
 
+use glam::DMat3;
 use proptest::prelude::*;
 
 use super::*;
@@ -69,7 +70,7 @@ fn version_0_4_brings_names_and_sizes() {
         )
         .replace("\n200 ", "\nz.jpg 480 640\n200 ");
     let found = bundle_in(dir.path(), &text).unwrap().reconstruction;
-    assert!(found.sizes_known);
+    assert!(found.sizes.are_known());
     let names: Vec<&str> = found.cameras.iter().map(|camera| &*camera.name).collect();
     assert_eq!(names, ["x.jpg", "z.jpg"]);
     assert_eq!((found.cameras[1].width, found.cameras[1].cy), (480, 320.0));

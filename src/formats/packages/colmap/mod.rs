@@ -32,6 +32,7 @@ use crate::FileError;
 use crate::Observation;
 use crate::PosedPhoto;
 use crate::Reconstruction;
+use crate::Sizes;
 use crate::read_bytes;
 use crate::read_text;
 
@@ -83,6 +84,32 @@ fn kind_of_model(folder: &Path) -> Option<&'static str> {
         ["cameras", "images"]
             .into_iter()
             .all(|part| folder.join(format!("{part}.{kind}")).is_file())
+    })
+}
+
+const PARTS: [&str; 3] = ["cameras", "images", "points3D"];
+
+/// Whether a file is called as a part of a model; `name` is in lower case.
+pub(crate) fn is_part(name: &str) -> bool {
+    PARTS.iter().any(|part| {
+        let rest = name.strip_prefix(&part.to_ascii_lowercase());
+        matches!(rest, Some(".bin" | ".txt"))
+    })
+}
+
+/// What is wrong with a folder that holds a part of a model.
+pub(crate) fn incomplete(dir: &Path) -> Option<Fault> {
+    let has = |part: &str| {
+        [".bin", ".txt"]
+            .iter()
+            .any(|end| dir.join(format!("{part}{end}")).is_file())
+    };
+    let missing = PARTS.into_iter().find(|part| !has(part))?;
+    PARTS.into_iter().any(has).then(|| {
+        Fault::new(
+            format!("a COLMAP model without {missing}.bin or {missing}.txt"),
+            "copy the whole model",
+        )
     })
 }
 
@@ -162,7 +189,7 @@ pub(crate) fn read_folder(dir: &Path) -> Result<Reconstruction, FileError> {
 
     let mut model = Reconstruction {
         package: "colmap",
-        sizes_known: true,
+        sizes: Sizes::Known,
         ..Reconstruction::default()
     };
     let camera_of_id = indices("CAMERA_ID", cameras.iter().map(|(id, _)| *id))

@@ -40,7 +40,7 @@ fn folder_of(files: &[(String, &str)]) -> tempfile::TempDir {
 fn the_parts_are_joined_by_their_ids() {
     let dir = folder_of(&model(""));
     let model = read_folder(dir.path()).unwrap();
-    assert_eq!((model.package, model.sizes_known), ("colmap", true));
+    assert_eq!((model.package, model.sizes), ("colmap", Sizes::Known));
     let names: Vec<&str> = model.photos.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["b.jpg", "a.jpg"]);
     let first = &model.photos[0];

@@ -27,13 +27,12 @@ use glam::DVec3;
 use crate::fault::Fault;
 use crate::files::FileError;
 use crate::jobs::Progress;
-use crate::packages::reconstruction::{MeasuredPosition, PosedPhoto, Project, Reconstruction};
+use crate::packages::reconstruction::{
+    MeasuredPosition, PosedPhoto, Project, Reconstruction, Sizes,
+};
+use crate::photos::image_names::{Ending, is_ending};
 use crate::photos::photo_metadata::{self, Fix, HeightReference, MeasuredPlace, PhotoMetadata};
 use cameras::Cameras;
-
-/// The endings of photos, in small letters. TIFF files are elevation models as often, and their
-/// metadata are not looked into.
-const ENDINGS: [&str; 3] = ["jpg", "jpeg", "png"];
 
 /// How many photos a warning names.
 const NAMED: usize = 3;
@@ -41,8 +40,7 @@ const NAMED: usize = 3;
 /// Whether a file is named like a photo.
 pub(crate) fn is_photo(path: &Path) -> bool {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
-    let ending = ending.to_ascii_lowercase();
-    ENDINGS.contains(&ending.as_str()) && path.is_file()
+    is_ending(&ending, Ending::Photo) && path.is_file()
 }
 
 /// Whether a folder has photos in it.
@@ -99,7 +97,7 @@ pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
     let mut reconstruction = Reconstruction {
         package: "photos",
         crs: Some("EPSG:4326".to_owned()),
-        sizes_known: true,
+        sizes: Sizes::Known,
         ..Reconstruction::default()
     };
     let mut cameras = Cameras::default();

@@ -40,7 +40,7 @@ use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::files::{FileError, read_bytes};
 use crate::packages::reconstruction::{
-    MeasuredPosition, Observation, PosedPhoto, Project, Reconstruction,
+    MeasuredPosition, Observation, PosedPhoto, Project, Reconstruction, Sizes,
 };
 use crate::photos::photo_folder::folder_of_photos;
 use crate::poses::rounded_rotation::{from_row_major, rounded_rotation};
@@ -191,7 +191,7 @@ fn read(json: &[u8]) -> Result<Scene, Fault> {
         measured_positions,
         cameras,
         photos,
-        sizes_known: true,
+        sizes: Sizes::Known,
         warnings,
         ..Reconstruction::default()
     };

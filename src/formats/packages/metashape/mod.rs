@@ -47,6 +47,7 @@ use self::xml::{child, children, is_off, root_element};
 use crate::MeasuredPosition;
 use crate::PosedPhoto;
 use crate::Reconstruction;
+use crate::Sizes;
 use crate::fault::Fault;
 use crate::geodesy::{Crs, geographic_from_ecef};
 
@@ -139,7 +140,7 @@ fn read_chunk(
 ) -> Result<Reconstruction, Fault> {
     let mut found = Reconstruction {
         package: "metashape",
-        sizes_known: true,
+        sizes: Sizes::Known,
         ..Reconstruction::default()
     };
     let sensors = sensors(chunk, &mut found.warnings)?;

@@ -20,7 +20,7 @@ use std::collections::HashMap;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use crate::camera::Pose;
+use crate::camera::{HALF_TURN_ABOUT_X, Pose};
 use crate::fault::Fault;
 use crate::geometry::Bounds;
 use crate::poses::poses_csv::{PoseLine, PosesFile};
@@ -116,8 +116,7 @@ fn read_line(number: u64, line: &str) -> Result<PoseLine, Fault> {
             return Err(fields.fault(format!("'{rest}' where the line should end")));
         }
         let to_camera = DMat3::from_cols_array(&r).transpose();
-        let axes = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
-        let off = (pose.rotation * axes).transpose() - to_camera;
+        let off = (pose.rotation * HALF_TURN_ABOUT_X).transpose() - to_camera;
         let off = off
             .to_cols_array()
             .into_iter()

@@ -1,57 +1,32 @@
 //! Agisoft's XML: parsing it safely, and the elements and numbers in it.
-//!
-//! roxmltree takes time in the square of a tag's attributes and of nested namespaces. Agisoft writes
-//! few of the former (a `<reference>` has about 20) and none of the latter, so more are refused
-//! before it sees them. Document types are refused by roxmltree itself.
 
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::{Document, Node};
 
 use crate::fault::Fault;
 use crate::text::fields::{Fields, shown};
+use crate::text::xml_document::{Writer, parse_of};
 
 /// What to do about XML that is not as Agisoft writes it.
 pub(super) const EXPORT: &str = "export it from Metashape again (File > Export > Export Cameras)";
 
-/// How many equals signs a tag may have.
-const MOST_ATTRIBUTES: usize = 100;
-
-/// How many nodes a document may have: a flight of 100 000 photos with all their metadata.
-const MOST_NODES: u32 = 10_000_000;
+/// A `<reference>` has about 20 attributes; a flight of 100 000 photos with all their metadata has
+/// millions of nodes.
+const AGISOFT: Writer = Writer {
+    name: Some("Agisoft"),
+    if_damaged: EXPORT,
+    if_foreign: EXPORT,
+    longest_tag: usize::MAX,
+    most_attributes: 100,
+    has_namespaces: false,
+    most_nodes: 10_000_000,
+};
 
 /// The document of a text.
 ///
 /// # Errors
 /// Where it is no XML, or none of Agisoft's, with the line.
 pub(super) fn parse(text: &str) -> Result<Document<'_>, Fault> {
-    refuse_foreign(text)?;
-    let options = ParsingOptions {
-        nodes_limit: MOST_NODES,
-        ..ParsingOptions::default()
-    };
-    Document::parse_with_options(text, options).map_err(|error| match error {
-        roxmltree::Error::DtdDetected => Fault::new(
-            "it has a document type (<!DOCTYPE>), which no file of Agisoft's has",
-            "remove it",
-        ),
-        error => {
-            let what = format!("it is not valid XML ({error})");
-            Fault::at(u64::from(error.pos().row), what, EXPORT)
-        }
-    })
-}
-
-/// Looks at what stands behind each `<`, which in XML can only begin a tag.
-fn refuse_foreign(text: &str) -> Result<(), Fault> {
-    let mut line = 1;
-    for piece in text.split_inclusive('<') {
-        let attributes = piece.bytes().filter(|&b| b == b'=').count();
-        if !piece.starts_with('!') && (attributes > MOST_ATTRIBUTES || piece.contains("xmlns")) {
-            let what = format!("a tag that Agisoft does not write: '<{}'", shown(piece));
-            return Err(Fault::at(line, what, EXPORT));
-        }
-        line += piece.bytes().filter(|&b| b == b'\n').count() as u64;
-    }
-    Ok(())
+    parse_of(text, &AGISOFT)
 }
 
 /// The name of the outermost element of XML of which `start` is the beginning; `None` where it is no

@@ -38,16 +38,19 @@ use glam::{DVec2, DVec3};
 use crate::camera::{Camera, Distortion, Pose, VisualSfm};
 use crate::fault::Fault;
 
+use crate::ImageUnit;
 use crate::Observation;
+use crate::Origin;
 use crate::PosedPhoto;
 use crate::Reconstruction;
+use crate::Sizes;
 use crate::text::fields::{Fields, shown};
 
 const SAVE: &str = "save the workspace from VisualSFM again (SfM > Save NV Match)";
 
 /// Reads the first model of an NVM_V3 file, in the model's own frame and unit.
 ///
-/// `sizes_known` is false: [`Reconstruction::set_sizes`] has to be told the photos' sizes. Cameras
+/// The sizes are unknown: [`Reconstruction::set_sizes`] has to be told the photos' sizes. Cameras
 /// and photos share their order and their names.
 ///
 /// # Errors
@@ -369,13 +372,21 @@ fn read_points(
 /// Finds out where the measurements count from, and lets those around the principal point count
 /// from where the principal point does.
 fn measure_from_one_origin(found: &mut Reconstruction, fixed: Option<FixedK>) {
-    found.principal_points_from_corner = fixed.is_some_and(|fixed| fixed.from_corner);
+    let from_corner = fixed.is_some_and(|fixed| fixed.from_corner);
+    let principal_points_from = match from_corner {
+        true => Origin::Corner,
+        false => Origin::Middle,
+    };
+    found.sizes = Sizes::Unknown {
+        unit: ImageUnit::Pixel,
+        principal_points_from,
+    };
     let around_center = found
         .observations
         .iter()
         .any(|observation| observation.pixel.min_element() < 0.0);
     if around_center {
-        found.observed_from_middle = !found.principal_points_from_corner;
+        found.observed_from = principal_points_from;
         let center = fixed.map_or(DVec2::ZERO, |fixed| fixed.center);
         for observation in &mut found.observations {
             observation.pixel += center;

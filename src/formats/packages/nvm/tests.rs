@@ -14,10 +14,20 @@ const FROM_MIDDLE: &str = "NVM_V3 \n\n2\n\
     -5 2.5 0 1 2 3 1 0 4 -50 -25 \n\n\
     0\n\n# the PLY section\n3\n0 1 2\n";
 
+fn principal_points_from(origin: Origin) -> Sizes {
+    Sizes::Unknown {
+        unit: ImageUnit::Pixel,
+        principal_points_from: origin,
+    }
+}
+
 #[test]
 fn a_small_file_is_read() {
     let model = read(FROM_MIDDLE).unwrap();
-    assert_eq!((model.package, model.sizes_known), ("visualsfm", false));
+    assert_eq!(
+        (model.package, model.sizes.are_known()),
+        ("visualsfm", false)
+    );
     let names: Vec<&str> = model.photos.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["some folder/first.jpg", "b c.jpg"]);
     let camera = &model.cameras[1];
@@ -34,7 +44,7 @@ fn a_small_file_is_read() {
     let world_from_camera = DMat3::from_cols(DVec3::NEG_Y, DVec3::X, DVec3::Z);
     assert!(pose.rotation.abs_diff_eq(world_from_camera, 1e-15));
     assert_eq!(model.cloud.colors, [[9, 8, 7], [1, 2, 3]]);
-    assert!(model.observed_from_middle);
+    assert_eq!(model.observed_from, Origin::Middle);
     assert_eq!(model.median_reprojection_px(), Some(0.0));
     assert_eq!(model.warnings, [""; 0]);
 }
@@ -53,7 +63,7 @@ fn measurements_without_a_sign_count_from_the_corner() {
         .replace(" 3 50 25", " 3 250 175")
         .replace("-50 -25", "150 125");
     let mut model = read(&text).unwrap();
-    assert!(!model.observed_from_middle);
+    assert_eq!(model.observed_from, Origin::Corner);
     assert_eq!(model.median_reprojection_px(), None);
     model.set_sizes(|_| Some((400, 300)));
     assert_eq!(model.median_reprojection_px(), Some(0.0));
@@ -69,7 +79,8 @@ fn a_fixed_calibration_counts_from_the_corner() {
         .replace("-50 -25", "160 114.75")
         .replace("0.125", "");
     let mut model = read(&from_corner).unwrap();
-    assert!(model.principal_points_from_corner && !model.observed_from_middle);
+    assert_eq!(model.sizes, principal_points_from(Origin::Corner));
+    assert_eq!(model.observed_from, Origin::Corner);
     assert_eq!(model.median_reprojection_px(), Some(0.0));
     model.set_sizes(|_| Some((400, 300)));
     for camera in &model.cameras {
@@ -103,7 +114,8 @@ fn a_fixed_calibration_may_count_from_the_middle() {
         .replace("NVM_V3 ", "NVM_V3 FixedK 100 -3 100 4")
         .replace("b c.jpg 200", "b c.jpg 100");
     let mut model = read(&text).unwrap();
-    assert!(!model.principal_points_from_corner && model.observed_from_middle);
+    assert_eq!(model.sizes, principal_points_from(Origin::Middle));
+    assert_eq!(model.observed_from, Origin::Middle);
     assert_eq!(model.median_reprojection_px(), Some(0.0));
     model.set_sizes(|_| Some((400, 300)));
     assert_eq!((model.cameras[0].cx, model.cameras[0].cy), (197.0, 154.0));
@@ -237,7 +249,7 @@ fn a_real_file_reprojects_as_its_readme_says() {
     assert_eq!((model.photos.len(), model.cameras.len()), (11, 11));
     assert_eq!(model.cloud.points.len(), 7817);
     assert_eq!(model.observations.len(), 36_854);
-    assert!(!model.observed_from_middle && !model.sizes_known);
+    assert!(model.observed_from == Origin::Corner && !model.sizes.are_known());
     assert_eq!(model.photos[0].name, "images/100_7103.JPG");
     assert_eq!(model.warnings, [""; 0]);
     // The photos' size, of shared/data/sceaux-images.

@@ -34,7 +34,7 @@ use serde::Deserialize;
 use crate::fault::Fault;
 use crate::files::{FileError, read_bytes, text_from_bytes};
 use crate::packages::opensfm::{self, OpenSfm};
-use crate::packages::reconstruction::{PosedPhoto, Project, Reconstruction};
+use crate::packages::reconstruction::{PosedPhoto, Project, Reconstruction, Sizes};
 use crate::text::json::parse;
 use cameras::with_cameras;
 pub(crate) use georeference::crs_from_text;
@@ -133,14 +133,13 @@ fn read_one(dir: &Path) -> Result<Project, FileError> {
     Ok(Project {
         reconstruction: Reconstruction {
             package: "opendronemap",
-            may_be_reduced: true,
             named_sizes: named_sizes(dir),
             crs: frames.crs.filter(|_| posed.in_world),
             cameras,
             photos,
             cloud: posed.cloud,
             observations: posed.observations,
-            sizes_known: true,
+            sizes: Sizes::PerhapsReduced,
             // In OpenSfM's frame, where it was solved: the way into the world is no similarity.
             solved_reprojection_px: sparse.and_then(Reconstruction::median_reprojection_px),
             warnings,

@@ -116,8 +116,7 @@ impl Joined {
         self.submodels += 1;
         let found = &mut self.found;
         found.package = part.package;
-        found.sizes_known = true;
-        found.may_be_reduced |= part.may_be_reduced;
+        found.sizes = part.sizes;
         found.named_sizes.extend(part.named_sizes);
         let said = part.warnings.iter();
         found

@@ -26,7 +26,7 @@ use serde::Deserialize;
 
 use crate::camera::{Camera, Distortion};
 use crate::fault::Fault;
-use crate::packages::reconstruction::{PosedPhoto, Reconstruction};
+use crate::packages::reconstruction::{PosedPhoto, Reconstruction, Sizes};
 use crate::poses::rounded_rotation::pose_from_camera_from_world;
 use crate::text::json::parse;
 
@@ -75,7 +75,7 @@ pub(crate) fn read(json: &[u8]) -> Result<Reconstruction, Fault> {
     }
     let mut found = Reconstruction {
         package: "open3d",
-        sizes_known: true,
+        sizes: Sizes::Known,
         warnings: vec![NUMBERED.to_owned()],
         ..Reconstruction::default()
     };

@@ -44,7 +44,7 @@ use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
 use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::geometry::Similarity;
-use crate::packages::reconstruction::{PosedPhoto, Reconstruction};
+use crate::packages::reconstruction::{PosedPhoto, Reconstruction, Sizes};
 use crate::surface::Cloud;
 use crate::text::json::{Object, parse};
 use camera::{CameraModel, usable_cameras};
@@ -150,9 +150,8 @@ impl OpenSfm {
                 cameras,
                 photos,
                 cloud,
-                sizes_known: true,
+                sizes: Sizes::PerhapsReduced,
                 // OpenDroneMap, which most often brings it, has reduced photos before it.
-                may_be_reduced: true,
                 warnings,
                 ..Reconstruction::default()
             },
@@ -413,7 +412,7 @@ mod tests {
         assert_eq!(reconstruction.cloud.points[0], DVec3::new(-1.0, 2.0, -7.0));
         assert_eq!(reconstruction.cloud.colors, [[255, 255, 0], [2, 2, 3]]);
         assert_eq!(reconstruction.package, "opensfm");
-        assert!(reconstruction.sizes_known && reconstruction.crs.is_none());
+        assert!(reconstruction.sizes.are_known() && reconstruction.crs.is_none());
         assert_eq!(
             reconstruction.warnings.len(),
             2,

@@ -44,7 +44,9 @@ use crate::cameras::polynomial_fisheye;
 use crate::fault::Fault;
 use crate::files::{FileError, read_bytes};
 use crate::geodesy::Geographic;
-use crate::packages::reconstruction::{MeasuredPosition, PosedPhoto, Project, Reconstruction};
+use crate::packages::reconstruction::{
+    ImageUnit, MeasuredPosition, Origin, PosedPhoto, Project, Reconstruction, Sizes,
+};
 use crate::text::json;
 use parts::{
     CalibratedCameras, CalibratedSensor, CameraList, InputCameras, Internals, ProjectFile,
@@ -99,8 +101,13 @@ pub(crate) fn read(path: &Path) -> Result<Project, FileError> {
     let sensors = sensors(&calibrated.sensors, &inputs, &mut found.warnings);
     let at_cameras = |fault| FileError::new(path, fault);
     // All or none: where one size is not known, all come from the photos.
-    found.sizes_known = !sensors.values().flatten().any(|camera| camera.width == 0);
-    found.principal_points_from_corner = !found.sizes_known;
+    found.sizes = match sensors.values().flatten().any(|camera| camera.width == 0) {
+        true => Sizes::Unknown {
+            unit: ImageUnit::Pixel,
+            principal_points_from: Origin::Corner,
+        },
+        false => Sizes::Known,
+    };
     let world = World::of(frame.as_ref(), &mut found.warnings).map_err(at_cameras)?;
     add_photos(&mut found, &calibrated, sensors, &names, &world);
     found.crs = frame

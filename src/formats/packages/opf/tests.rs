@@ -138,7 +138,7 @@ fn frames_are_taken_back() {
 #[test]
 fn sizes_may_come_from_the_photos() {
     let mut found = project(|_, text| text.replace("opf-input-cameras", "ext-x")).unwrap();
-    assert!(!found.sizes_known);
+    assert!(!found.sizes.are_known());
     found.set_sizes(|_| Some((6000, 4000)));
     // Without a size nothing can be fitted.
     let said = found.warnings.join("; ");

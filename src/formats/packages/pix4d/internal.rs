@@ -27,7 +27,7 @@ use super::calibrated::distortion;
 const GIVE: &str = "give *_calibrated_camera_parameters.txt of the same params folder";
 
 /// Reads the file of one perspective camera. Lengths are in units of the sensor's longer side, and
-/// cx, cy count from the middle of the image (see `Reconstruction::intrinsics_in_longer_sides`).
+/// cx, cy count from the middle of the image (see `ImageUnit::LongerSide`).
 ///
 /// # Errors
 /// INPHO's form, a fish-eye, several cameras, a number that is missing.

@@ -50,7 +50,9 @@ use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::files::{FileError, read_text};
 use crate::geometry::median;
-use crate::packages::reconstruction::{PosedPhoto, Project, Reconstruction};
+use crate::packages::reconstruction::{
+    ImageUnit, Origin, PosedPhoto, Project, Reconstruction, Sizes,
+};
 use calibrated::Calibrated;
 use external::ProjectionMatrix;
 
@@ -273,7 +275,7 @@ fn params(params: &Params) -> Result<Project, FileError> {
 fn of_parameters(params: &Params, photos: Vec<Calibrated>) -> Result<Reconstruction, FileError> {
     let mut found = Reconstruction {
         package: "pix4d",
-        sizes_known: true,
+        sizes: Sizes::Known,
         ..Reconstruction::default()
     };
     let external = params.parsed(EXTERNAL, external::read_poses)?;
@@ -413,7 +415,10 @@ fn of_external(params: &Params) -> Result<Reconstruction, FileError> {
         .ok_or_else(|| needed("Pix4D's poses without a calibration of their camera"))?;
     let mut found = Reconstruction {
         package: "pix4d",
-        intrinsics_in_longer_sides: true,
+        sizes: Sizes::Unknown {
+            unit: ImageUnit::LongerSide,
+            principal_points_from: Origin::Middle,
+        },
         cameras: vec![camera],
         ..Reconstruction::default()
     };

@@ -163,7 +163,7 @@ fn both_files_state_one_pose() {
     // The offset came from the difference: whole numbers, as Pix4D makes them.
     let said = &by_matrix.warnings[0];
     assert!(said.contains("331967.000 3488533.000 4096.000"), "{said}");
-    assert!(!by_angles.sizes_known && by_angles.warnings[0].contains("one camera"));
+    assert!(!by_angles.sizes.are_known() && by_angles.warnings[0].contains("one camera"));
     by_angles.set_sizes(|_| Some((4000, 2000)));
     let camera = &by_angles.cameras[0];
     assert_eq!(

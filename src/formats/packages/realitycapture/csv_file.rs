@@ -4,9 +4,9 @@ use std::collections::HashSet;
 
 use glam::{DMat3, DVec3};
 
-use crate::camera::{Camera, Pose};
+use crate::camera::{Camera, HALF_TURN_ABOUT_X, Pose};
 use crate::fault::Fault;
-use crate::packages::reconstruction::Reconstruction;
+use crate::packages::reconstruction::{ImageUnit, Origin, Reconstruction, Sizes};
 use crate::text::fields::shown;
 use crate::text::separated::Separator;
 
@@ -113,8 +113,16 @@ pub(crate) fn read_csv(text: &str) -> Result<Reconstruction, Fault> {
     let is_opencv = header.optional(&["r00"]).is_some();
     let mut found = Reconstruction {
         package: "realitycapture",
-        intrinsics_in_longer_sides: !is_opencv,
-        principal_points_from_corner: is_opencv,
+        sizes: match is_opencv {
+            true => Sizes::Unknown {
+                unit: ImageUnit::Pixel,
+                principal_points_from: Origin::Corner,
+            },
+            false => Sizes::Unknown {
+                unit: ImageUnit::LongerSide,
+                principal_points_from: Origin::Middle,
+            },
+        },
         ..Reconstruction::default()
     };
     let name = header.needed(&["name"])?;
@@ -250,9 +258,8 @@ pub(crate) fn pose(center: DVec3, [heading, pitch, roll]: [f64; 3]) -> Pose {
     let world_from_upright = DMat3::from_rotation_z(-heading.to_radians())
         * DMat3::from_rotation_x(pitch.to_radians())
         * DMat3::from_rotation_y(roll.to_radians());
-    let upright_from_camera = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
     Pose {
-        rotation: world_from_upright * upright_from_camera,
+        rotation: world_from_upright * HALF_TURN_ABOUT_X,
         center,
     }
 }

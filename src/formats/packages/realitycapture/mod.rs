@@ -23,7 +23,7 @@
 //!   looks straight down with the image's top to +y, pitch 90 looks to the horizon.
 //! - Neither form has image sizes: f counts in film of 36 mm by the photo's longer side, px and py
 //!   (PrincipalPointU and V) in longer sides from the image's middle, right and down. The sizes come
-//!   from the photos (`Reconstruction::intrinsics_in_longer_sides`).
+//!   from the photos (`ImageUnit::LongerSide`).
 //! - brown3, brown4, brown3t2, brown4t2, and every CSV: `1 + k1 r2 + k2 r4 + k3 r6 + k4 r8` in focal
 //!   lengths, and t1, t2 are OpenCV's p2, p1 (the "OpenCV-compliant" template writes k1,k2,t2,t1).
 //!   With a k4 that is Agisoft's model, whose p1, p2 are t1, t2. division: `1 / (1 + k1 r2)`, OpenCV's

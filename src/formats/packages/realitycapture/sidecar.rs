@@ -10,7 +10,8 @@ use roxmltree::Node;
 use crate::camera::{Brown, Camera, Distortion, Pose};
 use crate::fault::Fault;
 use crate::files::{FileError, open_file, read_text};
-use crate::packages::reconstruction::{Project, Reconstruction};
+use crate::packages::reconstruction::{ImageUnit, Origin, Project, Reconstruction, Sizes};
+use crate::photos::image_names::{Ending, is_ending};
 use crate::text::fields::Fields;
 use crate::text::xml_document::{line_of, parse};
 
@@ -19,16 +20,13 @@ use super::{FILM, Lens, add, say_refused};
 const NAMESPACE: &str = "capturingreality.com/ns/xcr";
 const EXPORT: &str = "export the XMP metadata from RealityCapture again";
 
-/// What a photo's name may end with.
-const IMAGES: [&str; 6] = ["jpg", "jpeg", "png", "tif", "tiff", "dng"];
-
 /// How many sidecars are looked at: other programs leave some as well.
 const LOOKED_AT: usize = 10;
 
 /// Whether one of a folder's first sidecars is RealityCapture's.
 pub(crate) fn has_sidecars(folder: &Path) -> bool {
     let files = files(folder);
-    let sidecars = files.iter().filter(|path| has_end(path, &["xmp"]));
+    let sidecars = files.iter().filter(|path| is_sidecar(path));
     sidecars.take(LOOKED_AT).any(|path| {
         let mut start = Vec::new();
         let read = open_file(path).map(|file| file.take(4096).read_to_end(&mut start));
@@ -44,13 +42,16 @@ pub(crate) fn read_folder(folder: &Path) -> Result<Project, FileError> {
     let files = files(folder);
     let mut found = Reconstruction {
         package: "realitycapture",
-        intrinsics_in_longer_sides: true,
+        sizes: Sizes::Unknown {
+            unit: ImageUnit::LongerSide,
+            principal_points_from: Origin::Middle,
+        },
         ..Reconstruction::default()
     };
     let mut without_pose = 0;
     let mut relative = 0;
     let mut refused = Vec::new();
-    for path in files.iter().filter(|path| has_end(path, &["xmp"])) {
+    for path in files.iter().filter(|path| is_sidecar(path)) {
         let text = read_text(path)?;
         // Other programs leave sidecars as well.
         if !text.contains(NAMESPACE) {
@@ -105,20 +106,22 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-fn has_end(path: &Path, ends: &[&str]) -> bool {
-    let end = path
-        .extension()
-        .map(|end| end.to_string_lossy().to_ascii_lowercase());
-    end.is_some_and(|end| ends.contains(&end.as_str()))
+fn is_sidecar(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default();
+    ending.eq_ignore_ascii_case("xmp")
 }
 
 /// The photo of a sidecar: the file beside it, or else the sidecar's name without its end.
 fn photo_of(sidecar: &Path, files: &[PathBuf]) -> String {
     let stem = sidecar.file_stem().unwrap_or_default();
+    let is_photo = |file: &Path| {
+        let ending = file.extension().unwrap_or_default().to_string_lossy();
+        is_ending(&ending, Ending::Raw)
+    };
     // Sorted files with one stem stand side by side, but "a-b.jpg" stands between "a.jpg" and "a.xmp".
     let photo = files
         .iter()
-        .find(|file| file.file_stem() == Some(stem) && has_end(file, &IMAGES));
+        .find(|file| file.file_stem() == Some(stem) && is_photo(file));
     let name = photo.and_then(|photo| photo.file_name()).unwrap_or(stem);
     name.to_string_lossy().into_owned()
 }

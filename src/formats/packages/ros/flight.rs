@@ -22,7 +22,7 @@ use crate::camera::Camera;
 use crate::cameras::camera_file;
 use crate::fault::Fault;
 use crate::geodesy::Geographic;
-use crate::packages::reconstruction::{MeasuredPosition, PosedPhoto, Reconstruction};
+use crate::packages::reconstruction::{MeasuredPosition, PosedPhoto, Reconstruction, Sizes};
 use crate::poses::trajectory::{NoPose, PosedFiles, Stamp, pose_photos, stamp_of};
 use crate::units::LengthUnit;
 
@@ -64,7 +64,7 @@ impl Recording {
         }
         let mut reconstruction = Reconstruction {
             package: "ros",
-            sizes_known: true,
+            sizes: Sizes::Known,
             // REP 103.
             unit: Some(LengthUnit::Metre),
             warnings: self.warnings(),

@@ -23,6 +23,7 @@ use glam::{DVec2, DVec3};
 use super::geo_file::content;
 use super::{ControlPoint, ControlPoints, check_degrees, is_geographic};
 use crate::fault::Fault;
+use crate::photos::image_names::{Ending, is_called};
 use crate::text::separated::Separator;
 
 /// Reads a gcp_list.txt whose first line says `crs`.
@@ -85,13 +86,10 @@ fn split(line: &str) -> Vec<String> {
 
 /// The photo and the point's name: a photo's name that holds blanks goes on to its ending.
 fn photo_and_name(fields: &[String]) -> (String, Option<&str>) {
-    let ends = |field: &String| {
-        let field = field.to_ascii_lowercase();
-        [".jpg", ".jpeg", ".png", ".tif", ".tiff", ".dng"]
-            .iter()
-            .any(|ending| field.ends_with(ending))
-    };
-    let last = fields.iter().position(ends).unwrap_or(0);
+    let last = fields
+        .iter()
+        .position(|field| is_called(field, Ending::Raw))
+        .unwrap_or(0);
     let photo = fields.get(..=last).unwrap_or_default().join(" ");
     (photo, fields.get(last + 1).map(String::as_str))
 }

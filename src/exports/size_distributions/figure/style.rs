@@ -2,7 +2,7 @@
 
 /// Colour, marker and dash of a series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Look {
+pub struct FigureStyle {
     /// sRGB, on white.
     pub colour: [u8; 3],
     /// Of its points.
@@ -64,15 +64,15 @@ const MARKERS: [Marker; 6] = [
 
 const DASHES: [Dash; 4] = [Dash::Solid, Dash::Long, Dash::Short, Dash::DashDot];
 
-impl Look {
-    /// The look of the reference: black, which a window on a dark ground shows in its text's colour.
+impl FigureStyle {
+    /// The style of the reference: black, which a window on a dark ground shows in its text's colour.
     pub const REFERENCE: Self = Self {
         colour: COLOURS[0],
         marker: MARKERS[0],
         dash: DASHES[0],
     };
 
-    /// The look of the series with this number; 0 is the reference. The first 84 are all different.
+    /// The style of the series with this number; 0 is the reference. The first 84 are all different.
     pub fn of(number: usize) -> Self {
         // The three come round together after 84, the least common multiple of 7, 6 and 4.
         let of = |count: usize| number % count;
@@ -105,11 +105,11 @@ mod tests {
 
     #[test]
     fn no_two_look_alike() {
-        let looks: Vec<Look> = (0..84).map(Look::of).collect();
-        for (index, look) in looks.iter().enumerate() {
-            assert!(!looks[..index].contains(look), "{index}");
+        let styles: Vec<FigureStyle> = (0..84).map(FigureStyle::of).collect();
+        for (index, style) in styles.iter().enumerate() {
+            assert!(!styles[..index].contains(style), "{index}");
         }
-        assert_eq!(Look::of(0), Look::REFERENCE);
+        assert_eq!(FigureStyle::of(0), FigureStyle::REFERENCE);
         let white = |c: [u8; 3]| {
             // Relative luminance and contrast on white (WCAG 2.1).
             let linear = |v: u8| {

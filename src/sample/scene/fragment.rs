@@ -14,8 +14,8 @@ use glam::DVec3;
 use parry3d_f64::math::Vector;
 use parry3d_f64::transformation::try_convex_hull;
 
-use super::random::Random;
-use super::sieve::sieve_size;
+use crate::random::Random;
+use crate::sieve::sieve_size;
 
 /// No fragment has S/L below this (Kadono et al. 2015 on Fujiwara et al. 1978).
 const LEAST_RATIO: f64 = 0.2;

@@ -3,9 +3,9 @@
 
 use glam::{DVec2, DVec3};
 
+use super::frame::Frame;
 use crate::fault::Fault;
 use crate::geometry::Bounds;
-use crate::world_frame::Frame;
 
 /// No drone photographs ground that begins so many metres away.
 const OUT_OF_SIGHT: f64 = 20_000.0;

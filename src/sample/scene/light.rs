@@ -13,7 +13,7 @@ use crate::noise::{hash, unit};
 
 /// A lamp, or the sun: far away, so the same from everywhere, but as wide as it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Lamp {
+pub(crate) struct Lamp {
     /// Towards it, in the world; length 1.
     pub direction: DVec3,
     /// Irradiance of a surface that faces it, over pi: a white surface then has this radiance.
@@ -26,7 +26,7 @@ pub(super) struct Lamp {
 
 /// The light of a scene, in the world's frame (z up).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Light {
+pub(crate) enum Light {
     /// One sun, the sky above and its reflection from the ground below.
     Sun {
         /// The sun.
@@ -49,7 +49,7 @@ impl Light {
     /// A clear day: the sun at `elevation` above the horizon and `azimuth` from x towards y
     /// (radians), warmer the lower it stands.
     #[must_use]
-    pub(super) fn sun(azimuth: f64, elevation: f64) -> Self {
+    pub(crate) fn sun(azimuth: f64, elevation: f64) -> Self {
         let (sin, cos) = elevation.sin_cos();
         let warm = (1.0 - sin).clamp(0.0, 1.0);
         Self::Sun {
@@ -67,7 +67,7 @@ impl Light {
 
     /// Three soft-boxes under a ceiling: one strong, one to fill, one behind.
     #[must_use]
-    pub(super) fn lab() -> Self {
+    pub(crate) fn lab() -> Self {
         let lamp = |x: f64, y: f64, z: f64, colour, radius, rays| Lamp {
             direction: DVec3::new(x, y, z).normalize(),
             colour,
@@ -92,7 +92,7 @@ impl Light {
     /// Where on a lamp the shadow rays go is drawn from `view`: their grain differs from pixel to
     /// pixel and is the same in every run.
     #[must_use]
-    pub(super) fn shade(
+    pub(crate) fn shade(
         &self,
         appearance: &Appearance,
         geometric_normal: DVec3,

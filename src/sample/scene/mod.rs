@@ -1,12 +1,17 @@
 //! Rays in the simulated lab: fragments as half-space intersections, the ground as a mesh, scale
 //! spheres as spheres. All exact to rounding, so that what a photo shows has a known place.
 
+pub(crate) mod fragment;
+pub(crate) mod light;
+pub(crate) mod pile;
+pub(crate) mod terrain;
+
 use glam::{DQuat, DVec2, DVec3};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 
-use super::pile::{Fragment, Pile, PilePlan};
-use super::terrain::Terrain;
+use self::pile::{Fragment, Pile, PilePlan};
+use self::terrain::Terrain;
 use crate::fault::Fault;
 use crate::geometry::Ray;
 use crate::surface::{Caster, Cloud, Surface};

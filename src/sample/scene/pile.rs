@@ -10,11 +10,11 @@ use glam::{DQuat, DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::fragment::Body;
-use super::random::Random;
 use super::terrain::Terrain;
 use crate::fault::Fault;
 use crate::fragmentation::Swebrec;
 use crate::jobs::Progress;
+use crate::random::Random;
 
 /// How many different bodies there are; fragments are turned and scaled copies.
 const BODIES: usize = 300;
@@ -23,7 +23,7 @@ const BODIES: usize = 300;
 const PLACES: usize = 5;
 
 /// The most fragments: a label image has 16 bits, and 0 is the ground.
-pub(super) const MOST_FRAGMENTS: usize = 65_534;
+pub(crate) const MOST_FRAGMENTS: usize = 65_534;
 
 /// What a pile is made of. Lengths in metres.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,7 +101,7 @@ impl Pile {
 /// The distribution is by mass. Drawn by mass, one fragment of size x stands for 1/x3 as many as one
 /// of size 1; so sizes are drawn by mass and kept with the probability (smallest/x)3, which is the
 /// distribution by number.
-pub(super) fn draw_sizes(
+pub(crate) fn draw_sizes(
     plan: &PilePlan,
     bodies: &[Body],
     random: &mut Random,

@@ -3,13 +3,14 @@
 use glam::DVec3;
 
 use crate::fault::Fault;
-use crate::geodesy::{Crs, CrsKind, Geographic};
+use crate::geodesy::{Crs, Geographic};
 use crate::geometry::median;
 use crate::units::LengthUnit;
+use crate::world::{Frame, Known, NoWorld};
 
 /// The world, and the coordinate system of a list.
 #[derive(Debug, Clone)]
-pub(super) struct World {
+pub(super) struct ListWorld {
     /// `None` where neither the user nor the list states a system: then the list's numbers are the
     /// world's, in metres.
     crs: Option<Crs>,
@@ -17,7 +18,7 @@ pub(super) struct World {
     unit: LengthUnit,
 }
 
-impl World {
+impl ListWorld {
     /// `asked` is what the user states, `stated` what the list does, `positions` those of the list.
     pub(super) fn new(
         asked: Option<&str>,
@@ -34,26 +35,33 @@ impl World {
             .as_ref()
             .map(|list| middle_of(list, positions))
             .transpose()?;
-        let crs = match (asked, &list, middle) {
-            (Some(asked), ..) => Some(asked),
-            (None, Some(list), _) if list.kind() == CrsKind::Projected => Some(list.clone()),
-            (None, Some(_), Some(middle)) => Some(Crs::utm_at(middle)),
-            _ => {
+        let known = Known {
+            named: asked,
+            // The reconstruction, which states nothing, is what has to fit.
+            surface: Some(Frame::AsIs(None)),
+            poses: list.clone().map_or(Frame::AsIs(None), Frame::Named),
+            preferred: None,
+            place: middle,
+        };
+        let crs = match known.world() {
+            Ok(Frame::Named(crs)) => Some(crs),
+            Ok(Frame::AsIs(_) | Frame::Enu(_)) => {
                 warnings.push(
                     "the positions state no coordinate system: they are taken as metres of a local one with z up"
                         .to_owned(),
                 );
                 None
             }
-        };
-        let mut unit = LengthUnit::Metre;
-        if let Some(crs) = &crs {
-            if crs.kind() != CrsKind::Projected {
+            Err(NoWorld::NoMap(crs)) => {
                 return Err(Fault::new(
                     format!("{} is no projected coordinate system", crs.name()),
                     "give a projected one such as EPSG:32633, or none for UTM",
                 ));
             }
+            Err(error @ NoWorld::NoPlace(_)) => return Err(error.into()),
+        };
+        let mut unit = LengthUnit::Metre;
+        if let Some(crs) = &crs {
             unit = LengthUnit::of_metres(crs.unit_metres()).ok_or_else(|| {
                 let what = format!("the unit of {} is {} m long", crs.name(), crs.unit_metres());
                 Fault::new(what, "give a system in metres or feet")

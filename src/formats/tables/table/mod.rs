@@ -9,19 +9,19 @@
 //! - Numbers may have a decimal comma where the table shows that it is one and not a thousands
 //!   separator ([`Table::number`]).
 
+mod records;
+
 use std::path::Path;
 
 use csv::StringRecord;
 
+use self::records::{blank_records, separated_records, separator, without_comments};
 use crate::fault::Fault;
 use crate::files::{FileError, open_file, text_from_bytes};
 use crate::text::fields::shown;
 
 /// Larger files are no tables that people made or looked at.
 const LARGEST: usize = 16 << 20;
-
-/// More lines than anyone measures.
-const MOST_ROWS: usize = 500_000;
 
 /// More columns than anyone measures.
 const MOST_COLUMNS: usize = 10_000;
@@ -350,148 +350,6 @@ fn too_large() -> Fault {
     Fault::new(what, "give the table alone")
 }
 
-/// Whether a line holds data or names: not empty, no comment. "#4" is a sieve's name.
-fn counts(line: &&str) -> bool {
-    let comment = line.strip_prefix('#');
-    let comment = comment.is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()));
-    !line.trim().is_empty() && !comment
-}
-
-/// The text with empty lines in place of those that do not count, so that lines keep their numbers.
-fn without_comments(text: &str) -> String {
-    let lines = text
-        .lines()
-        .flat_map(|line| [if counts(&line) { line } else { "" }, "\n"]);
-    lines.collect()
-}
-
-/// The separator of the header and the line behind it; `None` for blanks.
-fn separator(text: &str) -> Option<char> {
-    let mut lines = text.lines().filter(counts);
-    let (header, next) = (lines.next()?, lines.next());
-    let holds = |line: &str, separator: char| {
-        // A quotation mark counts at the beginning of a field; elsewhere it is inches.
-        let (mut quoted, mut begins) = (false, true);
-        line.chars().any(|c| {
-            quoted = if quoted { c != '"' } else { begins && c == '"' };
-            begins = !quoted && (c == separator || begins && c == ' ');
-            !quoted && c == separator
-        })
-    };
-    let separators = ['\t', ';', ','];
-    let in_both = |&c: &char| holds(header, c) && next.is_none_or(|next| holds(next, c));
-    let found = separators.into_iter().find(in_both);
-    found.or_else(|| separators.into_iter().find(|&c| holds(header, c)))
-}
-
-/// The records of a table with a separator.
-fn separated_records(text: &str, separator: char) -> Result<Vec<Row>, Fault> {
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(separator as u8)
-        .flexible(true)
-        .trim(csv::Trim::All)
-        .has_headers(false)
-        .from_reader(text.as_bytes());
-    let mut rows = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|error| {
-            let line = error.position().map_or(1, csv::Position::line);
-            let what = format!("it is not a table ({error})");
-            Fault::at(line, what, "check its quotes")
-        })?;
-        if record.iter().all(str::is_empty) {
-            continue;
-        }
-        let line = line_of(text, &record, str::is_empty);
-        let cells = without_spaced_quotes(record);
-        push(&mut rows, Row { line, cells })?;
-    }
-    Ok(rows)
-}
-
-/// The records of a table whose fields stand between blanks. In its header two blanks or more separate
-/// names where there are such; else what stands in brackets belongs to the name before it.
-fn blank_records(text: &str) -> Result<Vec<Row>, Fault> {
-    let mut rows: Vec<Row> = Vec::new();
-    for (line, number) in text.lines().zip(1..) {
-        if !counts(&line) {
-            continue;
-        }
-        let cells: StringRecord = match rows.is_empty() {
-            true => names_between_blanks(line).into_iter().collect(),
-            false => line.split_whitespace().collect(),
-        };
-        push(
-            &mut rows,
-            Row {
-                line: number,
-                cells,
-            },
-        )?;
-    }
-    Ok(rows)
-}
-
-fn names_between_blanks(header: &str) -> Vec<String> {
-    let header = header.trim();
-    if header.contains("  ") {
-        let names = header.split("  ").map(str::trim);
-        return names
-            .filter(|name| !name.is_empty())
-            .map(str::to_owned)
-            .collect();
-    }
-    let mut names: Vec<String> = Vec::new();
-    for word in header.split_whitespace() {
-        match names.last_mut() {
-            Some(name) if word.starts_with(['(', '[']) => {
-                name.push(' ');
-                name.push_str(word);
-            }
-            _ => names.push(word.to_owned()),
-        }
-    }
-    names
-}
-
-fn push(rows: &mut Vec<Row>, row: Row) -> Result<(), Fault> {
-    if rows.len() > MOST_ROWS {
-        let what = format!("it has over {MOST_ROWS} lines");
-        return Err(Fault::at(row.line, what, "give the table alone"));
-    }
-    rows.push(row);
-    Ok(())
-}
-
-/// Quotes count for the csv crate only right behind a comma, but people put spaces there.
-fn without_spaced_quotes(record: StringRecord) -> StringRecord {
-    if !record.iter().any(|field| field.starts_with('"')) {
-        return record;
-    }
-    let position = record.position().cloned();
-    let bare = |field: &str| {
-        let inner = field
-            .strip_prefix('"')
-            .and_then(|field| field.strip_suffix('"'));
-        inner.map_or_else(|| field.to_owned(), |inner| inner.replace("\"\"", "\""))
-    };
-    let mut record: StringRecord = record.iter().map(bare).collect();
-    record.set_position(position);
-    record
-}
-
-/// The line, from 1, on which a record begins. The csv crate places it where its search began: in
-/// front of the lines that it `skips`.
-fn line_of(text: &str, record: &StringRecord, skips: impl Fn(&str) -> bool) -> u64 {
-    let Some(position) = record.position() else {
-        return 1;
-    };
-    let begin = usize::try_from(position.byte()).unwrap_or(usize::MAX);
-    let rest = text.get(begin..).unwrap_or_default();
-    let skipped = rest.lines().take_while(|line| skips(line));
-    position.line() + skipped.count() as u64
-}
-
 /// A cell's number, with all its points and commas, and what follows it.
 pub(crate) fn split_number(cell: &str) -> (&str, &str) {
     let bytes = cell.as_bytes();
@@ -528,127 +386,4 @@ pub(crate) fn may_be_thousands(number: &str) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn numbers(text: &str) -> Result<(Vec<Option<f64>>, Vec<String>), Fault> {
-        let table = Table::read(text)?;
-        let mut repairs = NumberRepairs::default();
-        let numbers = table
-            .rows()
-            .iter()
-            .map(|row| table.number(row, 0, &mut repairs))
-            .collect::<Result<_, Fault>>()?;
-        Ok((numbers, repairs.warnings()))
-    }
-
-    #[test]
-    fn separators_comments_quotes_and_lines() {
-        for text in [
-            "\u{feff}# c\r\n\r\na,\"b, \"\"c\"\"\"\r\n# c\r\n1,\"2, x\"\r\n",
-            "\n\n\na;\"b, \"\"c\"\"\"\n\n1;\"2, x\"\n",
-            "\n\na\tb, \"c\"\n\n1\t2, x",
-        ] {
-            let table = Table::read(text).unwrap();
-            assert_eq!(table.header(), ["a", "b, \"c\""], "{text:?}");
-            assert_eq!(
-                (table.rows().len(), table.rows()[0].line),
-                (1, table.header_line() + 2)
-            );
-            assert_eq!(table.rows()[0].cell(1).replace(", ", ","), "2,x");
-            assert_eq!(table.rows()[0].cell(7), "");
-        }
-        let table = Table::read("a b  c (d)\n1   2\n").unwrap();
-        assert_eq!(
-            (table.header(), table.rows()[0].cell(1)),
-            (&["a b".into(), "c (d)".into()][..], "2")
-        );
-        let table = Table::read("a c (d)\n1\t2\n").unwrap();
-        assert_eq!(table.header(), ["a", "c (d)"]);
-        // Semicolons in a name, commas in every line; inches; a sieve's name is no comment.
-        let table = Table::read("a (b; c),d (\")\n1,2\n#4,5\n#no data\n").unwrap();
-        assert_eq!(table.header(), ["a (b; c)", "d (\")"]);
-        assert_eq!((table.rows()[1].cell(0), table.rows()[1].line), ("#4", 3));
-        assert_eq!(table.rows().len(), 2);
-    }
-
-    #[test]
-    fn columns_are_found_as_people_write_them() {
-        let table = Table::read("Step Time (s),who,Who,\n1,2,3\n").unwrap();
-        assert_eq!(table.column("step_time_s"), Ok(0));
-        assert_eq!(table.column("Who"), Ok(2));
-        let fault = table.column("WHO").unwrap_err();
-        assert_eq!(fault.what, "2 columns are called 'WHO'");
-        let fault = table.column("when").unwrap_err();
-        assert_eq!(
-            fault.to_string(),
-            "there is no column 'when'; name one of 'Step Time (s)', 'who', 'Who', ''"
-        );
-        assert_eq!(table.name(3), "number 4");
-        assert!(table.column("").is_ok());
-    }
-
-    #[test]
-    fn numbers_are_what_they_can_only_be() {
-        let (found, said) = numbers("a;b\n1;\n-2.5e-3;\n;x\n+.5;\n1.000;\n").unwrap();
-        assert_eq!(
-            found,
-            [Some(1.0), Some(-0.0025), None, Some(0.5), Some(1.0)]
-        );
-        assert!(said.is_empty(), "{said:?}");
-        let (found, said) = numbers("a;b\n0,125;\n1,5e1;\n1,000;\n").unwrap();
-        assert_eq!(found, [Some(0.125), Some(15.0), Some(1.0)]);
-        assert_eq!(
-            said,
-            ["decimal commas are read as decimal points (3 numbers, first on line 2)"]
-        );
-        for bad in [
-            "1,000",
-            "1,000,000",
-            "1.000,5",
-            "1.2.3",
-            "1 000",
-            "1'000",
-            "x",
-            "1x",
-            "-",
-            "1e",
-            "nan",
-            "inf",
-            "1e999",
-            ".",
-            ",",
-            "--1",
-            "1/2",
-        ] {
-            let fault = numbers(&format!("a;b\n2;\n{bad};\n")).unwrap_err();
-            assert_eq!(fault.line, Some(3), "{bad}");
-            assert!(
-                fault.what.starts_with(&format!("column a: '{bad}' ")),
-                "{fault}"
-            );
-        }
-        // A comma and a point that both can only be decimal: neither says what 1,000 is.
-        assert!(numbers("a;b\n1,5;2.5\n1,000;3\n").is_err());
-        assert!(numbers("a;b\n1,5;2\n1.000;3\n").is_err());
-    }
-
-    #[test]
-    fn what_stands_too_much_is_refused() {
-        let fault = Table::read("a,b\n1,2,\n1,2,3\n").unwrap_err();
-        assert_eq!(fault.line, Some(3));
-        assert!(
-            fault
-                .what
-                .contains("3 fields for 2 columns ('3' is too many)"),
-            "{fault}"
-        );
-        let wide = format!("{}\n1\n", "a,".repeat(10_001));
-        assert!(
-            Table::read(&wide)
-                .unwrap_err()
-                .what
-                .contains("over 10000 columns")
-        );
-    }
-}
+mod tests;

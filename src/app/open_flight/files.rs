@@ -1,0 +1,70 @@
+//! What the flight on the screen was read from, and where it is saved.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::files::Inputs;
+use crate::flight::FlightSettings;
+use crate::opening::{FlightOrigin, FlightReconstruction, OpenOptions, Opened, PhotoFile};
+use crate::state::bundled::sample_flight;
+
+/// The files of a flight.
+#[derive(Debug)]
+pub struct FlightFiles {
+    /// What the user named.
+    pub path: PathBuf,
+    /// The surface and photos that were named beside it.
+    pub options: OpenOptions,
+    /// Of each photo.
+    pub photo_files: Arc<Vec<PhotoFile>>,
+    /// The world's coordinate system where the files state one.
+    pub crs: Option<String>,
+    /// The files read.
+    pub inputs: Vec<PathBuf>,
+    /// These, the photos and whatever was opened on the way: nothing of it is written over.
+    pub read: Inputs,
+    /// What was noticed while reading.
+    pub warnings: Vec<String>,
+    /// The flight.toml that it was opened from: it may be saved there.
+    pub opened_file: Option<PathBuf>,
+    /// Where it came from, and where it is saved.
+    pub origin: FlightOrigin,
+    /// The reconstruction that it was made of, if any.
+    pub reconstruction: Option<FlightReconstruction>,
+    /// Whether it is the flight that comes with the program, which stays as it came.
+    pub bundled: bool,
+    /// The settings in its flight.toml.
+    pub saved: FlightSettings,
+}
+
+impl FlightFiles {
+    /// Of a flight that was just read.
+    pub(crate) fn new(path: PathBuf, options: OpenOptions, opened: Opened) -> Self {
+        let saved = opened
+            .file
+            .as_ref()
+            .map_or_else(|| opened.settings.clone(), |(_, file)| file.settings());
+        let bundled = is_bundled(&opened.origin.suggested_file());
+        Self {
+            path,
+            options,
+            photo_files: Arc::new(opened.photo_files),
+            crs: opened.crs,
+            inputs: opened.inputs,
+            read: opened.read,
+            warnings: opened.warnings,
+            opened_file: opened.file.map(|(path, _)| path).filter(|_| !bundled),
+            origin: opened.origin,
+            reconstruction: opened.reconstruction,
+            bundled,
+            saved,
+        }
+    }
+}
+
+/// Whether a flight.toml is that of the bundled flight, however its path is written.
+fn is_bundled(file: &Path) -> bool {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    let folder = file.parent().and_then(real);
+    folder.is_some() && folder == sample_flight().as_deref().and_then(real)
+}

@@ -1,0 +1,122 @@
+use super::*;
+
+fn numbers(text: &str) -> Result<(Vec<Option<f64>>, Vec<String>), Fault> {
+    let table = Table::read(text)?;
+    let mut repairs = NumberRepairs::default();
+    let numbers = table
+        .rows()
+        .iter()
+        .map(|row| table.number(row, 0, &mut repairs))
+        .collect::<Result<_, Fault>>()?;
+    Ok((numbers, repairs.warnings()))
+}
+
+#[test]
+fn separators_comments_quotes_and_lines() {
+    for text in [
+        "\u{feff}# c\r\n\r\na,\"b, \"\"c\"\"\"\r\n# c\r\n1,\"2, x\"\r\n",
+        "\n\n\na;\"b, \"\"c\"\"\"\n\n1;\"2, x\"\n",
+        "\n\na\tb, \"c\"\n\n1\t2, x",
+    ] {
+        let table = Table::read(text).unwrap();
+        assert_eq!(table.header(), ["a", "b, \"c\""], "{text:?}");
+        assert_eq!(
+            (table.rows().len(), table.rows()[0].line),
+            (1, table.header_line() + 2)
+        );
+        assert_eq!(table.rows()[0].cell(1).replace(", ", ","), "2,x");
+        assert_eq!(table.rows()[0].cell(7), "");
+    }
+    let table = Table::read("a b  c (d)\n1   2\n").unwrap();
+    assert_eq!(
+        (table.header(), table.rows()[0].cell(1)),
+        (&["a b".into(), "c (d)".into()][..], "2")
+    );
+    let table = Table::read("a c (d)\n1\t2\n").unwrap();
+    assert_eq!(table.header(), ["a", "c (d)"]);
+    // Semicolons in a name, commas in every line; inches; a sieve's name is no comment.
+    let table = Table::read("a (b; c),d (\")\n1,2\n#4,5\n#no data\n").unwrap();
+    assert_eq!(table.header(), ["a (b; c)", "d (\")"]);
+    assert_eq!((table.rows()[1].cell(0), table.rows()[1].line), ("#4", 3));
+    assert_eq!(table.rows().len(), 2);
+}
+
+#[test]
+fn columns_are_found_as_people_write_them() {
+    let table = Table::read("Step Time (s),who,Who,\n1,2,3\n").unwrap();
+    assert_eq!(table.column("step_time_s"), Ok(0));
+    assert_eq!(table.column("Who"), Ok(2));
+    let fault = table.column("WHO").unwrap_err();
+    assert_eq!(fault.what, "2 columns are called 'WHO'");
+    let fault = table.column("when").unwrap_err();
+    assert_eq!(
+        fault.to_string(),
+        "there is no column 'when'; name one of 'Step Time (s)', 'who', 'Who', ''"
+    );
+    assert_eq!(table.name(3), "number 4");
+    assert!(table.column("").is_ok());
+}
+
+#[test]
+fn numbers_are_what_they_can_only_be() {
+    let (found, said) = numbers("a;b\n1;\n-2.5e-3;\n;x\n+.5;\n1.000;\n").unwrap();
+    assert_eq!(
+        found,
+        [Some(1.0), Some(-0.0025), None, Some(0.5), Some(1.0)]
+    );
+    assert!(said.is_empty(), "{said:?}");
+    let (found, said) = numbers("a;b\n0,125;\n1,5e1;\n1,000;\n").unwrap();
+    assert_eq!(found, [Some(0.125), Some(15.0), Some(1.0)]);
+    assert_eq!(
+        said,
+        ["decimal commas are read as decimal points (3 numbers, first on line 2)"]
+    );
+    for bad in [
+        "1,000",
+        "1,000,000",
+        "1.000,5",
+        "1.2.3",
+        "1 000",
+        "1'000",
+        "x",
+        "1x",
+        "-",
+        "1e",
+        "nan",
+        "inf",
+        "1e999",
+        ".",
+        ",",
+        "--1",
+        "1/2",
+    ] {
+        let fault = numbers(&format!("a;b\n2;\n{bad};\n")).unwrap_err();
+        assert_eq!(fault.line, Some(3), "{bad}");
+        assert!(
+            fault.what.starts_with(&format!("column a: '{bad}' ")),
+            "{fault}"
+        );
+    }
+    // A comma and a point that both can only be decimal: neither says what 1,000 is.
+    assert!(numbers("a;b\n1,5;2.5\n1,000;3\n").is_err());
+    assert!(numbers("a;b\n1,5;2\n1.000;3\n").is_err());
+}
+
+#[test]
+fn what_stands_too_much_is_refused() {
+    let fault = Table::read("a,b\n1,2,\n1,2,3\n").unwrap_err();
+    assert_eq!(fault.line, Some(3));
+    assert!(
+        fault
+            .what
+            .contains("3 fields for 2 columns ('3' is too many)"),
+        "{fault}"
+    );
+    let wide = format!("{}\n1\n", "a,".repeat(10_001));
+    assert!(
+        Table::read(&wide)
+            .unwrap_err()
+            .what
+            .contains("over 10000 columns")
+    );
+}

@@ -1,0 +1,94 @@
+//! The last step: the surface is triangulated, and all becomes a flight.
+
+use std::sync::Arc;
+
+use super::framing::Framed;
+use super::source::Source;
+use super::{OpenOptions, Opened};
+use crate::evidence::look_up;
+use crate::fault::Fault;
+use crate::files::{FileError, Inputs};
+use crate::flight::{Flight, FlightParts};
+use crate::jobs::Progress;
+use crate::origin::FlightOrigin;
+use crate::photo_files::PhotoFile;
+use crate::surface::Surface;
+
+/// Builds the flight.
+///
+/// # Errors
+/// Where there are no points, or they make no surface; as [`Flight::new`].
+pub(super) fn build(
+    mut source: Source,
+    framed: Framed,
+    photo_files: Vec<PhotoFile>,
+    options: &OpenOptions,
+    progress: &Progress,
+) -> Result<Opened, FileError> {
+    let Framed { cloud, world } = framed;
+    let surface_file = source.surface_file();
+    let at_surface = |fault| FileError::new(&surface_file, fault);
+    let origin = FlightOrigin {
+        path: source.file.clone(),
+        is_flight_file: source.flight_file.is_some(),
+        name: source.name.clone(),
+        is_changed: options.surface.is_some() || options.photos.is_some(),
+        photo_folder: source.photo_folder.clone(),
+        surface: source.surface.clone(),
+    };
+    if cloud.cloud.points.is_empty() {
+        let looked = source.surface_note.map(|note| format!(": {note}"));
+        let looked = looked.unwrap_or_default();
+        return Err(at_surface(Fault::new(
+            format!("it has no 3D points to make a surface of{looked}"),
+            "add its cloud or mesh: drop it on the window, or name it with --surface or as [surface] file in a flight.toml",
+        )));
+    }
+    let settings = options.settings.clone().unwrap_or(source.settings);
+    if settings.surface.thinning.is_some() && !cloud.cloud.triangles.is_empty() {
+        let file = surface_file.display();
+        source.warnings.push(format!(
+            "{file}: it has faces, so it is used as it is and not thinned"
+        ));
+    }
+    progress.stage("building the surface");
+    let surface = Surface::with_options(cloud.cloud, &settings.surface).map_err(|error| {
+        let remedy = match settings.surface.thinning {
+            Some(_) => "check the surface file, or thin less",
+            None => "check the surface file",
+        };
+        at_surface(Fault::new(error.to_string(), remedy))
+    })?;
+    let flight = Flight::new(FlightParts {
+        name: source.name,
+        unit: settings.unit,
+        unit_known: settings.unit_known,
+        ground: settings.ground,
+        image: settings.image,
+        surface: Arc::new(surface),
+        cameras: source.cameras,
+        photos: source.photos,
+    })
+    .map_err(|fault| FileError::new(&source.file, fault))?;
+    let file = source.file.display();
+    let looked_up = look_up(&flight, &photo_files);
+    let without_photo = flight.objects_without_photo(&settings.scale_objects);
+    source.warnings.extend(
+        without_photo
+            .into_iter()
+            .map(|warning| format!("{file}: {warning}")),
+    );
+    Ok(Opened {
+        flight: Arc::new(flight),
+        warnings: source.warnings,
+        photo_files,
+        looked_up,
+        crs: world.crs().map(str::to_owned),
+        settings,
+        file: source.flight_file.map(|file| (source.file, file)),
+        origin,
+        reconstruction: source.reconstruction,
+        inputs: source.inputs,
+        read: Inputs::default(),
+    })
+}

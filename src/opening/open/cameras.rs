@@ -1,0 +1,161 @@
+//! The cameras: those of the `[[camera]]` tables, the sizes that no package wrote, and how they meet
+//! their photo files.
+
+use std::path::Path;
+
+use super::source::Source;
+use crate::fault::Fault;
+use crate::files::FileError;
+use crate::flight::{CameraEntry, CameraSource};
+use crate::formats::photos::photo_folder::PhotoFolder;
+use crate::formats::{Reconstruction, read_camera};
+use crate::photo_files::{PhotoFile, files_of, fit_cameras_to_files, set_sizes_from_files};
+
+/// Reads the cameras of the tables; returns what poses may call each.
+pub(super) fn read_tables(
+    source: &mut Source,
+    path: &Path,
+    folder: &Path,
+    entries: &[CameraEntry],
+) -> Result<Vec<Option<String>>, FileError> {
+    let at = |what: String, remedy: &str| FileError::new(path, Fault::new(what, remedy));
+    if entries.is_empty() {
+        return Err(at(
+            "there is no [[camera]]".to_owned(),
+            "add one, with a file or inline",
+        ));
+    }
+    let mut names: Vec<Option<String>> = Vec::new();
+    for entry in entries {
+        let mut camera = match entry
+            .source()
+            .map_err(|fault| FileError::new(path, fault))?
+        {
+            CameraSource::File(name) => {
+                let file = folder.join(name);
+                let camera = read_camera(&file)?;
+                source.inputs.push(file);
+                camera
+            }
+            CameraSource::Inline(camera) => camera,
+            CameraSource::Size(..) => {
+                return Err(at(
+                    "a [[camera]] has only a size".to_owned(),
+                    "add fx, fy, cx and cy, or name a calibration file",
+                ));
+            }
+        };
+        if let Some(name) = &entry.name {
+            camera.name.clone_from(name);
+        }
+        let name = entry.name.clone().or_else(|| {
+            (entries.len() > 1 && !camera.name.is_empty()).then(|| camera.name.clone())
+        });
+        if entries.len() > 1 && name.is_none() {
+            return Err(at(
+                "one of several cameras has no name".to_owned(),
+                "name each",
+            ));
+        }
+        if names.contains(&name) {
+            let name = name.unwrap_or_default();
+            return Err(at(
+                format!("two cameras are called '{name}'"),
+                "give each its own name",
+            ));
+        }
+        names.push(name);
+        source.cameras.push(camera);
+    }
+    Ok(names)
+}
+
+/// Gives a reconstruction's cameras their sizes, where the package wrote none: those of the tables, or
+/// of the photo files.
+///
+/// # Errors
+/// Where a table says another size than the package, or no size is known.
+pub(super) fn take_sizes(
+    source: &mut Source,
+    path: &Path,
+    reconstruction: &mut Reconstruction,
+    entries: &[CameraEntry],
+) -> Result<(), FileError> {
+    let at = |fault| FileError::new(path, fault);
+    let sizes = sizes_of_entries(entries).map_err(at)?;
+    let given = |name: &str| {
+        sizes
+            .iter()
+            .find(|(camera, _)| camera.is_none_or(|camera| camera == name))
+            .map(|(_, size)| *size)
+    };
+    if reconstruction.sizes.are_known() {
+        for camera in &reconstruction.cameras {
+            if given(&camera.name).is_some_and(|size| size != (camera.width, camera.height)) {
+                let (w, h) = (camera.width, camera.height);
+                let what = format!(
+                    "camera '{}' is for {w} x {h} in the reconstruction",
+                    camera.name
+                );
+                return Err(at(Fault::new(what, "remove its [[camera]] table")));
+            }
+        }
+    } else {
+        let folder = PhotoFolder::new(source.photo_folder.as_deref());
+        let mut said = Vec::new();
+        set_sizes_from_files(reconstruction, &folder, given, &mut said).map_err(at)?;
+        source.warn(path, &said);
+    }
+    Ok(())
+}
+
+/// Finds the photo files, and scales each camera to the size of its own.
+///
+/// # Errors
+/// Where the folder that somebody named cannot be the photos'.
+pub(super) fn fit(source: &mut Source) -> Result<Vec<PhotoFile>, FileError> {
+    let folder = PhotoFolder::new(source.photo_folder.as_deref());
+    if let Some(path) = &source.photo_folder
+        && source.photo_folder_is_named
+    {
+        folder
+            .check(
+                &source
+                    .photos
+                    .iter()
+                    .map(|photo| photo.name.as_str())
+                    .collect::<Vec<_>>(),
+            )
+            .map_err(|fault| FileError::new(path, fault))?;
+    }
+    let mut photo_files = files_of(&folder, &source.photos);
+    for (index, file) in photo_files.iter_mut().enumerate() {
+        file.named_size = source.named_sizes.get(index).copied().flatten();
+        file.may_be_reduced = source.may_be_reduced;
+    }
+    fit_cameras_to_files(
+        &folder,
+        &photo_files,
+        &mut source.cameras,
+        &mut source.photos,
+        &mut source.warnings,
+    );
+    Ok(photo_files)
+}
+
+/// The size that a table gives: for the camera that it names, or for all.
+type GivenSize<'a> = (Option<&'a str>, (u32, u32));
+
+/// The tables of a flight whose cameras come from a reconstruction hold sizes only.
+fn sizes_of_entries(entries: &[CameraEntry]) -> Result<Vec<GivenSize<'_>>, Fault> {
+    entries
+        .iter()
+        .map(|entry| match entry.source()? {
+            CameraSource::Size(width, height) => Ok((entry.name.as_deref(), (width, height))),
+            CameraSource::File(_) | CameraSource::Inline(_) => Err(Fault::new(
+                "a [[camera]] has intrinsics, but the reconstruction brings its own",
+                "keep only width and height, or remove the table",
+            )),
+        })
+        .collect()
+}

@@ -1,0 +1,122 @@
+//! Opening a flight: flight.toml with the files that it names, or a reconstruction given directly.
+//!
+//! ```text
+//! source    what the flight is made of: what every step adds to
+//! reading   flight.toml, or the reconstruction
+//! cameras   the [[camera]] tables; the cameras meet their photo files
+//! surface   its file
+//! framing   poses and surface are brought to one world
+//! building  the flight
+//! ```
+
+mod building;
+mod cameras;
+mod framing;
+mod reading;
+mod source;
+mod surface;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::evidence::compare_all_colours;
+use crate::fault::Fault;
+use crate::files::{FileError, Inputs, Recording};
+use crate::flight::{Flight, FlightFile, FlightSettings, Limits, LookedUp, Review};
+use crate::jobs::Progress;
+use crate::origin::FlightOrigin;
+use crate::photo_files::PhotoFile;
+
+/// What the user says beside the flight itself.
+#[derive(Debug, Clone, Default)]
+pub struct OpenOptions {
+    /// A cloud or mesh to use instead of the flight's own surface.
+    pub surface: Option<PathBuf>,
+    /// The folder of the image files, instead of the flight's own.
+    pub photos: Option<PathBuf>,
+    /// The topic of a ROS recording whose poses are taken, instead of the flight's own choice.
+    pub topic: Option<String>,
+    /// What to set instead of what the flight says.
+    pub settings: Option<FlightSettings>,
+}
+
+/// The reconstruction that a flight's poses are from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FlightReconstruction {
+    /// The file or folder.
+    pub path: PathBuf,
+    /// Who says that it is in the world already, in words; `None` in a frame of its own.
+    pub in_world: Option<String>,
+}
+
+/// A flight with what was noticed on the way.
+#[derive(Debug)]
+pub struct Opened {
+    /// Ready for scales.
+    pub flight: Arc<Flight>,
+    /// What was noticed while reading, one sentence each, with the file in front where there is one.
+    pub warnings: Vec<String>,
+    /// The image file of each photo, in the order of the flight's photos.
+    pub photo_files: Vec<PhotoFile>,
+    /// What was looked up of the photos, their colours excepted.
+    pub looked_up: LookedUp,
+    /// The coordinate system of the world where the files state one: "EPSG:n" or WKT.
+    pub crs: Option<String>,
+    /// What was set, by the flight's file or by [`OpenOptions`].
+    pub settings: FlightSettings,
+    /// The flight.toml with its path, where the flight came from one.
+    pub file: Option<(PathBuf, FlightFile)>,
+    /// Where the flight came from, and how to save it.
+    pub origin: FlightOrigin,
+    /// The reconstruction that it was made of; `None` where its poses are in a file of their own.
+    pub reconstruction: Option<FlightReconstruction>,
+    /// Every file that was read except the photos, in the order of reading.
+    pub inputs: Vec<PathBuf>,
+    /// These, the photos and whatever was opened on the way: nothing of it may be written over.
+    pub read: Inputs,
+}
+
+impl Opened {
+    /// What was noticed while reading and what was looked up, one sentence each with the file in front.
+    pub fn all_warnings(&self) -> Vec<String> {
+        let mut warnings = self.warnings.clone();
+        warnings.extend(self.looked_up.warnings_of(self.origin.path.display()));
+        warnings
+    }
+
+    /// Reviews the flight: with its footprints, and with the colours of its photos, which takes
+    /// longest, because every photo is read.
+    ///
+    /// # Errors
+    /// Where the surface cannot be met, or the work was cancelled.
+    pub fn review(&self, limits: &Limits, progress: &Progress) -> Result<Review, Fault> {
+        let (flight, looked_up) = (self.flight.clone(), self.looked_up.clone());
+        let mut review = Review::of_scales(flight, looked_up, limits, progress)?;
+        review.look(progress)?;
+        compare_all_colours(&mut review, &self.photo_files, progress)?;
+        Ok(review)
+    }
+}
+
+/// Opens a flight.toml, a folder that holds one, or a reconstruction.
+///
+/// # Errors
+/// With the file and the place in it.
+pub fn open_flight(
+    path: &Path,
+    options: &OpenOptions,
+    progress: &Progress,
+) -> Result<Opened, FileError> {
+    let recording = Recording::start();
+    let mut source = reading::read(path, options, progress)?;
+    let photo_files = cameras::fit(&mut source)?;
+    let surface = surface::read(&mut source, options, progress)?;
+    let framed = framing::bring_to_world(&mut source, surface, progress)?;
+    let mut opened = building::build(source, framed, photo_files, options, progress)?;
+    let photos = opened.photo_files.iter().flat_map(|file| &file.path);
+    opened.read = Inputs::of(opened.inputs.iter().chain(photos)).with_opened(&recording.files());
+    Ok(opened)
+}
+
+#[cfg(test)]
+mod tests;

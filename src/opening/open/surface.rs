@@ -1,0 +1,50 @@
+//! The surface's file, with its z up.
+
+use super::OpenOptions;
+use super::source::Source;
+use crate::files::FileError;
+use crate::formats::{CloudFile, read_cloud};
+use crate::jobs::Progress;
+use crate::surface::{UpAxis, doubtful_up};
+
+/// Reads it; `None` where the reconstruction's own points are the surface.
+///
+/// # Errors
+/// With the file and the place in it.
+pub(super) fn read(
+    source: &mut Source,
+    options: &OpenOptions,
+    progress: &Progress,
+) -> Result<Option<CloudFile>, FileError> {
+    if options.surface.is_some() {
+        // What is said of the flight's own file does not hold for another.
+        source.surface_up = UpAxis::Z;
+    }
+    let Some(path) = source.surface.clone() else {
+        return Ok(None);
+    };
+    let mut file = read_cloud(&path, progress)?;
+    for point in &mut file.cloud.points {
+        *point = source.surface_up.to_z_up(*point);
+    }
+    // The package's own cloud is in the frame of its poses, unless it says otherwise.
+    if let Some(similarity) = &source.package_surface_to_world
+        && source.surface_is_packages
+        && file.crs.is_none()
+        && !file.geographic
+    {
+        for point in &mut file.cloud.points {
+            *point = similarity.apply(*point);
+        }
+    }
+    if let Some((axis, along_axis, along_z)) = doubtful_up(&file.cloud) {
+        let (along_axis, along_z) = (100.0 * along_axis, 100.0 * along_z);
+        let axis = axis.name();
+        file.warnings.push(format!(
+            "seen along {axis}, {along_axis:.0} % of its area faces one way, along z {along_z:.0} %: where {axis} is up in the file, write up = \"{axis}\" below [surface] in a flight.toml (a steep wall looks the same)"
+        ));
+    }
+    source.warn(&path, &file.warnings);
+    source.inputs.push(path);
+    Ok(Some(file))
+}

@@ -1,0 +1,11 @@
+//! One frame for a flight: what a package wrote and what lies in the surface's file are brought to
+//! the world's coordinate system before any ray is cast.
+
+mod choice;
+mod frame;
+mod unstated_surface;
+mod way;
+
+pub(crate) use choice::{Known, NoWorld, place_of_flight};
+pub(crate) use frame::Frame;
+pub(crate) use unstated_surface::taken_to_be_in;
