@@ -179,6 +179,9 @@ fn reference(methods: &[String], chosen: Option<&String>) -> (Option<String>, bo
     }
 }
 
+/// A method with its analysis of variance, or why there is none.
+type OfMethod = (String, Result<Repeatability, Fault>);
+
 /// Whether the trials are alike, of each method with several.
 fn repeated(
     photos: &DistributionSet,
@@ -186,7 +189,7 @@ fn repeated(
     reference: Option<&String>,
     options: &AnalysisOptions,
     progress: &Progress,
-) -> Result<Vec<(String, Result<Repeatability, Fault>)>, Fault> {
+) -> Result<Vec<OfMethod>, Fault> {
     let mut methods = trials.methods();
     // The reference before the others, which keep their order.
     methods.sort_by_key(|method| Some(method) != reference);
