@@ -356,9 +356,13 @@ mod tests {
         drop(canvas);
         assert!(area(&across) > 20.0);
         let turned = image::imageops::rotate90(&upwards);
+        // The rasteriser knows four rows in a pixel, and many columns: an edge along them is good to a
+        // quarter, all edges together to much less.
         for (a, b) in across.pixels().zip(turned.pixels()) {
-            assert!(a[1].abs_diff(b[1]) < 16, "{a:?} {b:?}");
+            assert!(a[1].abs_diff(b[1]) < 64, "{a:?} {b:?}");
         }
+        let (a, b) = (area(&across), area(&turned));
+        assert!((a - b).abs() < 0.02 * a, "{a} {b}");
     }
 
     #[test]
