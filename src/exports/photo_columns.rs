@@ -136,7 +136,6 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 14] = [
         csv: Some("top"),
         sheet: Some("TOP scale"),
         value: |line| Number(line.scale().top),
-        ..COLUMN
     },
     PhotoColumn {
         name: "Bottom",
@@ -147,7 +146,6 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 14] = [
         csv: Some("bottom"),
         sheet: Some("BOTTOM scale"),
         value: |line| Number(line.scale().bottom),
-        ..COLUMN
     },
     PhotoColumn {
         name: "Left",

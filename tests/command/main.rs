@@ -5,6 +5,7 @@
     clippy::expect_used,
     clippy::panic,
     clippy::print_stdout,
+    clippy::unwrap_used,
     missing_docs,
     reason = "in a test or a benchmark a panic is the report"
 )]

@@ -24,7 +24,7 @@ use crate::geodesy::{Crs, CrsKind, Geographic};
 #[derive(Debug, Clone)]
 pub(crate) enum NoWorld {
     /// This system is named, and its coordinates are no lengths over a map.
-    NoMap(Crs),
+    NoMap(Box<Crs>),
     /// The positions are at no place on the Earth in this frame.
     NoPlace(String),
 }
@@ -74,7 +74,9 @@ impl Known {
         if let Some(crs) = &self.named {
             return match crs.kind() {
                 CrsKind::Projected => Ok(WorldFrame::Named(crs.clone())),
-                CrsKind::Geographic | CrsKind::Geocentric => Err(NoWorld::NoMap(crs.clone())),
+                CrsKind::Geographic | CrsKind::Geocentric => {
+                    Err(NoWorld::NoMap(Box::new(crs.clone())))
+                }
             };
         }
         let surface = self.surface.clone();

@@ -94,7 +94,8 @@ fn all_of(decoder: impl Read, size: u64) -> io::Result<Vec<u8>> {
     Ok(expanded)
 }
 
-#[cfg(all(test, feature = "ros"))]
+#[cfg(test)]
+#[cfg(feature = "ros")]
 mod tests {
     use std::io::Write;
 

@@ -228,5 +228,6 @@ fn read_file(
     }
 }
 
-#[cfg(all(test, feature = "ros"))]
+#[cfg(test)]
+#[cfg(feature = "ros")]
 mod tests;
