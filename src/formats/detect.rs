@@ -27,7 +27,7 @@ pub enum Kind {
     Poses,
     /// Poses over time.
     Trajectory(TrajectoryFormat),
-    /// A table of size distributions; see [`read_size_distributions`].
+    /// A table of size distributions; see [`read_size_distributions`](crate::read_size_distributions).
     SizeDistributions,
     /// Cameras and posed photos as this package wrote them, in this file or folder.
     Reconstruction(Package, PathBuf),

@@ -1,9 +1,9 @@
 //! What a photo says about itself in EXIF and XMP: its camera, where it was taken, which way the
 //! camera looked, and what is known of the lens. Only the file's header is read.
 //!
-//! [`blocks`] finds EXIF and XMP in the file, [`exif_fields`] and [`xmp`] take them apart,
-//! [`makers`] knows what each maker writes, [`focal`] what it says about the lens, and
-//! [`calibrated_frame`] for which image. Damaged blocks are warnings: the photo itself may be whole.
+//! `blocks` finds EXIF and XMP in the file, `exif_fields` and `xmp` take them apart,
+//! `makers` knows what each maker writes, `focal` what it says about the lens, and
+//! `calibrated_frame` for which image. Damaged blocks are warnings: the photo itself may be whole.
 
 mod blocks;
 mod calibrated_frame;

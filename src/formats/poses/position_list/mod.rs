@@ -3,11 +3,11 @@
 //!
 //! A list of photos' positions is one of
 //!
-//! - a table with a header line ([`table`]),
-//! - OpenDroneMap's `geo.txt` ([`geo_file`]),
-//! - DJI's `*_Timestamp.MRK` ([`mrk`]),
+//! - a table with a header line (`table`),
+//! - OpenDroneMap's `geo.txt` (`geo_file`),
+//! - DJI's `*_Timestamp.MRK` (`mrk`),
 //!
-//! a list of control points OpenDroneMap's `gcp_list.txt` ([`gcp_list`]) or a table. Which it is
+//! a list of control points OpenDroneMap's `gcp_list.txt` (`gcp_list`) or a table. Which it is
 //! says the text itself: the first line of OpenDroneMap's files names a coordinate system, a table's
 //! first line names columns, and an .MRK has a week in brackets.
 
