@@ -10,7 +10,7 @@
 //!
 //! A workspace whose members lie inside `src/`, so that a changed reader or panel compiles alone: the
 //! core, `fragmentation/`, `formats/`, `opening/`, `exports/`, `render/`, `sample/`, `app/`, and here
-//! `cli/`. Each re-exports nothing; this crate names all of them. The compiler holds who may use whom
+//! `cli/`. This crate re-exports all of them. The compiler holds who may use whom
 //! between members, `tests/floors.rs` the floors within the core, that no circle of imports is longer
 //! than two files, and that no folder has more than 15 files lying flat.
 //!
@@ -41,18 +41,18 @@
 //!
 //! # To add ... touch ...
 //!
-//! | to add | touch | which says |
+//! | to add | begin at | which leads to |
 //! |---|---|---|
 //! | a camera model | `src/camera/distortion.rs` | the enum of lens models; the model itself is a file beside it |
 //! | a package | `src/formats/packages/mod.rs` | a row of `packages!`; the reader is a folder beside it; README has a line |
-//! | a column of the photo table | `src/exports/photo_columns.rs` | one row for window, CSV and sheet; the contract names CSV columns |
-//! | an undoable setting of the flight | `src/flight/file.rs` | `FlightSettings`: the window's undo and saving go by it |
-//! | a reason for doubt | `src/flight/doubt.rs` | a variant, its sentence, its gravity; who finds it adds it to the evidence |
-//! | a shader primitive | `src/render/primitives/mod.rs` | a file and a WGSL file of one name |
+//! | a column of the photo table | `src/exports/photo_columns.rs` | one row for window, CSV, text and sheet; the contract names those of the CSV |
+//! | an undoable setting of the flight | `src/flight/mod.rs` | `FlightSettings`: undo goes by it; `file.rs`, `file_text.rs`, `known_keys.rs` beside it keep it, `app/panels/flight_settings.rs` shows it |
+//! | a reason for doubt | `src/flight/doubt.rs` | a variant and its sentence; found in `verdict.rs`, `placement.rs` beside it, `opening/photo_checks.rs` or `opening/evidence.rs` |
+//! | a shader primitive | `src/render/primitives/mod.rs` | a file and a WGSL file of one name; `renderer/` calls it |
 //! | a subcommand with progress | `src/cli/mod.rs` | a variant; its work is a file beside it |
-//! | a JSON key of a photo | `src/exports/scales_json.rs` | the contract's object, key by key |
-//! | a distribution function | `src/fragmentation/functions/mod.rs` | the enum of models; the function is a file beside it |
-//! | a job with a panel | `src/app/tasks/mod.rs` | a task; its job and its ending are a file beside it |
+//! | a JSON key of a photo | `src/exports/scales_json.rs` | a field and its value; the contract |
+//! | a distribution function | `src/fragmentation/functions/mod.rs` | the enum of models; the function is a file beside it, its coordinates for fitting in `fit/family.rs` |
+//! | a job with a panel | `src/app/tasks/mod.rs` | the job with its task and its ending is a file beside it, the panel one in `panels/`; `command/mod.rs` and `apply.rs` start it |
 //!
 //! # Conventions (everywhere)
 //!
