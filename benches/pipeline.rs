@@ -16,8 +16,7 @@
 use std::f64::consts::TAU;
 use std::fs;
 use std::hint::black_box;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use fragscale::formats::read_cloud;
@@ -29,7 +28,7 @@ use glam::DVec3;
 
 mod pile;
 
-use pile::{ORIGIN, pile, write_ply};
+use pile::{ORIGIN, pile, write_flight, write_ply};
 
 fn cloud(count: usize) -> Cloud {
     Cloud {
@@ -64,31 +63,6 @@ fn write_laz(path: &Path, points: &[DVec3]) {
         writer.write_point(point).expect("written");
     }
     writer.close().expect("closed");
-}
-
-/// A flight of nine photos from 40 m above the pile, which reaches beyond every footprint.
-fn write_flight(folder: &Path, surface: &str, side: f64) -> PathBuf {
-    let flight = folder.join("flight.toml");
-    let text = format!(
-        "format = 1\n[world]\nunit = \"m\"\n[surface]\nfile = \"{surface}\"\n[[camera]]\n\
-         width = 4000\nheight = 2250\nfx = 2222.2\nfy = 2222.2\ncx = 2000\ncy = 1125\n\
-         [photos]\nposes = \"poses.csv\"\n"
-    );
-    fs::write(&flight, text).expect("written");
-    let mut poses = fs::File::create(folder.join("poses.csv")).expect("a file");
-    writeln!(poses, "photo,x,y,z,tilt,pan").expect("written");
-    for i in 0..9_i32 {
-        let at = |step: i32| side * (0.3 + 0.2 * f64::from(step));
-        let (x, y) = (ORIGIN.x + at(i % 3), ORIGIN.y + at(i / 3));
-        writeln!(
-            poses,
-            "IMG_{i}.jpg,{x},{y},{},83,{}",
-            ORIGIN.z + 40.0,
-            i * 40
-        )
-        .expect("written");
-    }
-    flight
 }
 
 fn reading(c: &mut Criterion) {
@@ -201,7 +175,7 @@ fn scales(c: &mut Criterion) {
         let folder = tempfile::tempdir().expect("a folder");
         let points = pile(count);
         write_laz(&folder.path().join("pile.laz"), &points);
-        let flight = write_flight(folder.path(), "pile.laz", (count as f64 / 25.0).sqrt());
+        let flight = write_flight(folder.path(), "pile.laz", count, 9);
         group.bench_function(BenchmarkId::new("LAZ to scales", count), |b| {
             b.iter(|| {
                 let progress = Progress::default();

@@ -17,4 +17,5 @@ pub mod raster;
 pub mod scale;
 pub mod split_mix;
 pub mod surface;
+pub mod survey;
 pub mod units;

@@ -26,6 +26,7 @@
 //! F3  flight/                    Flight, validated when made; review: doubts, verdicts; flight.toml
 //!     picture/                   pixels of photos: undistorting, reducing, drawing on them
 //! F2  scale/                     corner rays -> corner points -> scales; footprints
+//!     survey/                    profiles, areas and volumes on the surface
 //! F1  camera/   surface/         intrinsics, distortion, pose | triangulation, ray casting
 //!     fragmentation/             size distributions: functions, fits, analysis
 //!     geodesy/  georeference/    coordinate systems | a frame of its own brought to the world
@@ -46,8 +47,8 @@
 //! | a camera model | `src/camera/distortion.rs` | the enum of lens models; the model itself is a file beside it |
 //! | a package | `src/formats/packages/mod.rs` | a row of `packages!`; the reader is a folder beside it; README has a line |
 //! | a column of the photo table | `src/exports/photo_columns.rs` | one row for window, CSV, text and sheet; the contract names those of the CSV |
-//! | an undoable setting of the flight | `src/flight/mod.rs` | `FlightSettings`: undo goes by it; `file.rs`, `file_text.rs`, `known_keys.rs` beside it keep it, `app/panels/flight_settings.rs` shows it |
-//! | a reason for doubt | `src/flight/doubt.rs` | a variant and its sentence; found in `verdict.rs`, `placement.rs` beside it, `opening/photo_checks.rs` or `opening/evidence.rs` |
+//! | an undoable setting of the flight | `src/flight/mod.rs` | `FlightSettings`: undo goes by it; `file.rs`, `file_text.rs`, `known_keys.rs` beside it keep it, `app/panels/flight_settings/` shows it |
+//! | a reason for doubt | `src/flight/doubt/mod.rs` | a variant, its sentence, its word (`kind.rs`) and what shows it (`sight.rs`); found in `verdict.rs`, `placement.rs` beside it, `opening/photo_checks.rs` or `opening/evidence.rs` |
 //! | a shader primitive | `src/render/primitives/mod.rs` | a file and a WGSL file of one name; `renderer/` calls it |
 //! | a subcommand with progress | `src/cli/mod.rs` | a variant; its work is a file beside it |
 //! | a JSON key of a photo | `src/exports/scales_json.rs` | a field and its value; the contract |
@@ -68,7 +69,7 @@ pub mod cli;
 pub use fragscale_app as app;
 pub use fragscale_core::{
     camera, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, picture, raster,
-    scale, split_mix, surface, units,
+    scale, split_mix, surface, survey, units,
 };
 pub use fragscale_exports as exports;
 pub use fragscale_formats as formats;

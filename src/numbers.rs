@@ -9,6 +9,64 @@ pub fn significant_digits(number: f64, digits: u8) -> String {
     format!("{number:.*}", decimals as usize)
 }
 
+/// A number with so many digits as its interval allows, and how sure it is: "19.9 ± 0.4", or
+/// "19.9 (19.2 to 20.3)" where its two sides are not alike. Both have one significant digit of half the
+/// interval's width, two where that begins with 1. Five digits and nothing beside them where the interval
+/// has no width.
+pub fn with_interval(value: f64, low: f64, high: f64) -> String {
+    let half = (high - low) / 2.0;
+    if !(half > 0.0 && half.is_finite() && value.is_finite()) {
+        return significant_digits(value, 5);
+    }
+    let decimals = decimals_of(half);
+    let text = |number: f64| with_decimals(number, decimals);
+    let last = 10_f64.powi(-decimals);
+    let [down, up] = [value - low, high - value].map(|side| (side / last).round());
+    if (up - down).abs() <= 1.0 && up.max(down) > 0.0 {
+        format!("{} ± {}", text(value), text(up.max(down) * last))
+    } else {
+        format!("{} ({} to {})", text(value), text(low), text(high))
+    }
+}
+
+/// A number with so many digits as its interval allows, alone; four where the interval has no width.
+pub fn as_its_interval_allows(value: f64, low: f64, high: f64) -> String {
+    let half = (high - low) / 2.0;
+    match half > 0.0 && half.is_finite() && value.is_finite() {
+        // More than eight would be no digits of a measurement.
+        true => with_decimals(value, decimals_of(half).min(8)),
+        false => significant_digits(value, 4),
+    }
+}
+
+/// Half the width of an interval in percent of its number, such as "2 %"; `None` where it has none.
+pub fn interval_percent(value: f64, low: f64, high: f64) -> Option<String> {
+    let percent = ((high - low) / 2.0 / value * 100.0).abs();
+    let is_some = percent > 0.0 && percent.is_finite();
+    is_some.then(|| format!("{} %", with_decimals(percent, decimals_of(percent).max(0))))
+}
+
+/// Down to which decimal place a deviation says something: its first digit, the second where the first
+/// is a 1. Negative for tens and hundreds.
+fn decimals_of(deviation: f64) -> i32 {
+    let exponent = deviation.log10().floor();
+    let first = deviation / 10_f64.powf(exponent);
+    // 1.95 is written 2, with one digit.
+    let digits = if first < 1.95 { 2.0 } else { 1.0 };
+    (digits - 1.0 - exponent).clamp(-12.0, 12.0) as i32
+}
+
+/// A number rounded to so many decimals; to tens and hundreds where these are negative.
+fn with_decimals(number: f64, decimals: i32) -> String {
+    let power = 10_f64.powi(-decimals);
+    let rounded = if decimals < 0 {
+        (number / power).round() * power
+    } else {
+        number
+    };
+    format!("{rounded:.*}", usize::try_from(decimals).unwrap_or(0))
+}
+
 /// The largest of 1, 2 and 5 times a power of ten that is no larger than `most`, without the noise of
 /// the power; `None` where there is none.
 pub fn round_down(most: f64) -> Option<f64> {
@@ -24,6 +82,17 @@ pub fn round_down(most: f64) -> Option<f64> {
         .rfind(|(digit, e)| digit * 10_f64.powf(*e) <= most * (1.0 + 1e-12))?;
     // What its text says is rounded once.
     format!("{digit}e{exponent}").parse().ok()
+}
+
+/// Of 1, 2 and 5 times a power of ten the one nearest to a number, by their ratio; `None` where there is
+/// none.
+pub fn round_near(number: f64) -> Option<f64> {
+    let below = round_down(number)?;
+    let above = round_down(below * 2.6)?;
+    Some(match number / below > above / number {
+        true => above,
+        false => below,
+    })
 }
 
 #[cfg(test)]
@@ -48,6 +117,67 @@ mod tests {
         }
         assert!(round_down(0.0).is_none() && round_down(f64::INFINITY).is_none());
         assert!(round_down(-1.0).is_none() && round_down(f64::NAN).is_none());
+    }
+
+    /// Answers as the guide to the expression of uncertainty rounds (JCGM 100, 7.2.6), by hand.
+    #[test]
+    fn numbers_have_the_digits_that_their_intervals_allow() {
+        for (value, low, high, text) in [
+            (19.9132, 19.5132, 20.3132, "19.9 ± 0.4"),
+            (19.9132, 19.2, 20.3, "19.9 (19.2 to 20.3)"),
+            (19.9132, 19.79, 20.03, "19.91 ± 0.12"),
+            (1991.32, 1953.0, 2030.0, "1990 ± 40"),
+            (0.199_132, 0.1951, 0.2031, "0.199 ± 0.004"),
+            // The sides differ by less than a last digit: the wider one is stated.
+            (25.0, 24.66, 25.25, "25.0 ± 0.3"),
+            // The number itself is outside.
+            (20.0, 20.5, 22.5, "20.0 (20.5 to 22.5)"),
+            (19.9132, 19.9132, 19.9132, "19.913"),
+            (19.9132, f64::NAN, 20.0, "19.913"),
+            (25.0, 24.01, 25.99, "25.0 ± 1.0"),
+        ] {
+            assert_eq!(with_interval(value, low, high), text);
+            let alone = as_its_interval_allows(value, low, high);
+            let first = text.split(' ').next();
+            match text.contains(' ') {
+                true => assert_eq!(Some(alone.as_str()), first),
+                false => assert_eq!(alone, "19.91"),
+            }
+        }
+    }
+
+    #[test]
+    fn intervals_are_told_in_percent() {
+        let percent = |half: f64| interval_percent(20.0, 20.0 - half, 20.0 + half);
+        for (half, text) in [
+            (0.4, "2 %"),
+            (0.06, "0.3 %"),
+            (0.32, "1.6 %"),
+            (5.0, "25 %"),
+            (0.58, "3 %"),
+        ] {
+            assert_eq!(percent(half).as_deref(), Some(text), "{half}");
+        }
+        assert_eq!(percent(0.0), None);
+        assert_eq!(interval_percent(0.0, -1.0, 1.0), None);
+    }
+
+    /// Half-way between 1 and 2 is sqrt 2, between 2 and 5 sqrt 10, between 5 and 10 sqrt 50.
+    #[test]
+    fn the_nearest_is_nearest_by_ratio() {
+        for (number, near) in [
+            (1.0, 1.0),
+            (1.41, 1.0),
+            (1.42, 2.0),
+            (3.16, 2.0),
+            (3.17, 5.0),
+            (0.0707, 0.05),
+            (0.0708, 0.1),
+            (998.0, 1000.0),
+        ] {
+            assert_eq!(round_near(number), Some(near), "{number}");
+        }
+        assert_eq!(round_near(f64::NAN), None);
     }
 
     #[test]

@@ -1,7 +1,7 @@
-//! The rough pile that benchmarks work on, made up.
+//! The rough pile that benchmarks work on, and flights over it, made up.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
@@ -47,4 +47,28 @@ pub(crate) fn write_ply(path: &Path, points: &[DVec3]) {
         }
     }
     fs::write(path, bytes).expect("written");
+}
+
+/// A flight over a pile of `count` points in the file `surface`: a grid of photos of 9 megapixels from 40 m
+/// above, none of whose footprints reaches beyond the pile where it has a million points.
+#[allow(dead_code, reason = "not every benchmark flies")]
+pub(crate) fn write_flight(folder: &Path, surface: &str, count: usize, photos: usize) -> PathBuf {
+    let flight = folder.join("flight.toml");
+    let text = format!(
+        "format = 1\n[world]\nunit = \"m\"\n[surface]\nfile = \"{surface}\"\n[[camera]]\n\
+         width = 4000\nheight = 2250\nfx = 2222.2\nfy = 2222.2\ncx = 2000\ncy = 1125\n\
+         [photos]\nposes = \"poses.csv\"\n"
+    );
+    fs::write(&flight, text).expect("written");
+    let side = (count as f64 / 25.0).sqrt();
+    let columns = (photos as f64).sqrt().ceil() as usize;
+    let at = |step: usize| side * (0.3 + 0.4 * step as f64 / (columns - 1) as f64);
+    let mut poses = "photo,x,y,z,tilt,pan\n".to_owned();
+    for i in 0..photos {
+        let (x, y) = (ORIGIN.x + at(i % columns), ORIGIN.y + at(i / columns));
+        let (z, pan) = (ORIGIN.z + 40.0, i * 40 % 360);
+        poses.push_str(&format!("IMG_{i}.jpg,{x},{y},{z},83,{pan}\n"));
+    }
+    fs::write(folder.join("poses.csv"), poses).expect("written");
+    flight
 }

@@ -1,8 +1,9 @@
 //! The one function that changes the state: it applies a command.
 
-use crate::command::{Asking, Command};
+use crate::command::{Asking, Command, ReviewStep, Tab};
 use crate::flight::FlightSettings;
-use crate::open_flight::{Edit, OpenFlight};
+use crate::open_flight::OpenFlight;
+use crate::scale::ScalePair;
 use crate::size_distributions::Page;
 use crate::state::bundled::sample_flight;
 use crate::state::history::History;
@@ -78,8 +79,11 @@ impl State {
             Command::Zoom(factor) => self.context.set_zoom_factor(factor.clamp(0.5, 3.0)),
             Command::Page(page) => self.page = page,
             Command::Distributions(command) => self.apply_to_distributions(command),
-            Command::Tab(tab) => self.tab = tab,
+            Command::Tab(tab) => self.show_tab(tab),
             Command::ToggleLog => self.preferences.log_open ^= true,
+            Command::ToggleLeft => self.preferences.left_open ^= true,
+            Command::ToggleRight => self.preferences.right_open ^= true,
+            Command::ToggleHealth => self.preferences.health_open ^= true,
             Command::DismissNotice => self.notice = None,
             Command::CopyScales => {
                 if let Some(text) = self.scales_to_copy() {
@@ -95,27 +99,36 @@ impl State {
             Command::Redo if self.page == Page::SizeDistributions => {
                 self.undo_distributions(History::redo);
             }
-            Command::Undo => self.edit_settings(|history| {
-                history.undo();
-            }),
-            Command::Redo => self.edit_settings(|history| {
-                history.redo();
-            }),
+            Command::Undo => self.undo_settings(History::undo),
+            Command::Redo => self.undo_settings(History::redo),
             Command::Set(settings) => self.set_settings(settings),
+            Command::ExportRectified(on) => self.preferences.export_rectified = on,
+            Command::Choose(photo, along) => self.choose(photo, along),
+            Command::ChooseAll(choice) => self.choose_all(choice),
+            Command::Decide(photo, decision) => self.decide(photo, decision),
+            Command::Review(step) => self.review_step(step),
+            Command::ToggleTint => self.toggle_tint(),
             Command::Trace(step) => self.trace(step),
+            Command::ToggleLoupe => self.toggle_loupe(),
+            Command::GoToCorner(name) => {
+                if let Some(open) = &mut self.open {
+                    open.go_to_corner(name);
+                }
+            }
+            Command::Photo(command) => self.apply_to_photo(command),
             Command::Select(photo) => self.select(|open| open.select(photo)),
             Command::SelectBy(rows) => self.select(|open| open.select_by(rows)),
             Command::Click(_)
-            | Command::Hover(_)
+            | Command::Hover(..)
             | Command::DoubleClick(_)
             | Command::HoverPhoto(_)
-            | Command::Choose(..)
-            | Command::ChooseAll(_)
             | Command::Sort(_)
             | Command::Filter(_)
             | Command::FilterVerdict(_)
+            | Command::FilterDoubtful(_)
             | Command::View(_)
-            | Command::ToggleMeasure => {
+            | Command::ToggleMeasure
+            | Command::Survey(_) => {
                 if let Some(open) = &mut self.open {
                     open.apply(command);
                 }
@@ -177,7 +190,21 @@ impl State {
             let before = open.selected;
             select(open);
             if open.selected != before {
+                let reviews = self.reviewed_flight().is_some();
+                if let Some(open) = self.open.as_mut().filter(|_| reviews) {
+                    open.show_reason();
+                }
                 self.load_preview();
+            }
+        }
+    }
+
+    fn show_tab(&mut self, tab: Tab) {
+        match tab {
+            Tab::Review => self.review_step(ReviewStep::Next),
+            _ => {
+                self.tab = tab;
+                self.load_tint();
             }
         }
     }
@@ -218,14 +245,22 @@ impl State {
     /// Sets the flight's settings, as a step that can be undone.
     pub(crate) fn set_settings(&mut self, settings: FlightSettings) {
         self.edit_settings(|history| {
-            let mut edit = history.now().clone();
-            edit.settings = settings;
-            history.set(edit);
+            history.set(settings);
         });
     }
 
+    fn undo_settings(&mut self, step: impl FnOnce(&mut History<FlightSettings>) -> bool) {
+        let before = self.open.as_ref().map(|open| open.settings().decisions);
+        self.edit_settings(|history| {
+            step(history);
+        });
+        if let Some(before) = before.filter(|_| self.reviewed_flight().is_some()) {
+            self.review_undone(&before);
+        }
+    }
+
     /// Undo, redo, and what they go over.
-    fn edit_settings(&mut self, change: impl FnOnce(&mut History<Edit>)) {
+    fn edit_settings(&mut self, change: impl FnOnce(&mut History<FlightSettings>)) {
         if self.is_opening() && self.reads_other {
             // What is changed now would go with this flight, or its reading would stop the other's.
             let text = "another flight is being opened; change settings when it is there";
@@ -237,11 +272,15 @@ impl State {
         };
         let before = open.settings();
         change(&mut open.history);
-        open.arrange();
+        open.take_decisions();
         let now = open.settings();
+        let stated_changed = (now.pair, now.errors) != (before.pair, before.errors);
         let objects_changed = now.scale_objects != before.scale_objects;
         if !now.gives_the_scales_of(&before) {
             self.settings_changed();
+        }
+        if stated_changed {
+            self.take_stated();
         }
         if objects_changed {
             self.start_comparing();
@@ -262,23 +301,32 @@ impl State {
         }
     }
 
-    /// What "copy scales" copies: the selected photo's top and bottom scale in the chosen unit.
+    /// What "copy scales" copies: the selected photo's top and bottom scale for Split-Desktop in the
+    /// chosen unit.
     ///
     /// `None` while scales for the settings of now are being computed.
     pub fn scales_to_copy(&self) -> Option<String> {
+        self.scales_of(self.open.as_ref()?.selected?)
+    }
+
+    /// The same of any photo.
+    pub fn scales_of(&self, photo: usize) -> Option<String> {
         let open = self.open.as_ref()?;
         if !open.is_computed() {
             return None;
         }
-        let photo = open.review.photo(open.selected?)?;
+        let photo = open.review.photo(photo)?;
+        if photo.pair == ScalePair::Fitted && !open.review.has_lines() {
+            return None;
+        }
         photo.scale_to_type()?;
-        let scale = photo.edges(self.preferences.unit());
+        let [top, bottom] = photo.pair(self.preferences.unit());
         let shown = |scale: Option<f64>| {
             scale.map_or_else(
                 || "no scale".to_owned(),
                 |scale| crate::numbers::significant_digits(scale, 6),
             )
         };
-        Some(format!("{}\t{}", shown(scale.top), shown(scale.bottom)))
+        Some(format!("{}\t{}", shown(top), shown(bottom)))
     }
 }

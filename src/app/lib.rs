@@ -8,6 +8,8 @@
 //! open_flight/        the flight on the screen, and what commands do to it alone
 //! tasks/              long work as jobs; poll takes their results
 //! state/              everything that panels read
+//! linked/             the point under the mouse, in the pile and in the photos
+//! photo_view/         the selected photo in the middle of the window
 //! size_distributions/ the other page
 //! ```
 //!
@@ -17,10 +19,17 @@
 pub mod actions;
 pub mod apply;
 pub mod command;
+pub mod corner_loupe;
+mod deciding;
+mod fonts;
 pub mod frame_times;
+pub mod linked;
+mod names;
 pub mod open_flight;
 pub mod panels;
+pub mod photo_view;
 pub mod poll;
+mod reviewing;
 pub mod size_distributions;
 pub mod state;
 pub mod tasks;
@@ -29,7 +38,7 @@ pub mod viewport;
 mod writing;
 
 use fragscale_core::{
-    camera, fault, files, flight, geometry, jobs, numbers, picture, scale, surface, units,
+    camera, fault, files, flight, geometry, jobs, numbers, picture, scale, surface, survey, units,
 };
 use fragscale_exports as exports;
 use fragscale_formats as formats;
@@ -45,7 +54,8 @@ pub use state::State;
 
 use command::Asking;
 use frame_times::{FrameTimes, Phase};
-use panels::Inspector;
+use panels::{Inspector, PhotoPanel};
+use photo_view::Middle;
 use size_distributions::{DistributionCommand, Page, PasteForm, ResultTab};
 use state::{HeldBack, Leaving, Severity};
 use viewport::Viewport;
@@ -58,6 +68,7 @@ pub struct App {
     state: State,
     viewport: Viewport,
     inspector: Inspector,
+    photo_panel: PhotoPanel,
     /// The title that the window has.
     title: String,
     times: FrameTimes,
@@ -73,6 +84,7 @@ impl App {
         for theme in [egui::Theme::Dark, egui::Theme::Light] {
             context.egui_ctx.style_mut_of(theme, more_contrast);
         }
+        fonts::use_system_fonts(&context.egui_ctx);
         let mut state = State::new(context.egui_ctx.clone(), preferences);
         let viewport = Viewport::new(context.wgpu_render_state.as_ref());
         state.gpu = viewport.gpu().cloned();
@@ -88,6 +100,7 @@ impl App {
             state,
             viewport,
             inspector: Inspector::default(),
+            photo_panel: PhotoPanel::default(),
             title: String::new(),
             times,
         }
@@ -181,6 +194,9 @@ impl eframe::App for App {
         if state.open.is_some() || state.page == Page::SizeDistributions {
             egui::Panel::top("tools").show(ui, |ui| panels::tool_bar(state, ui, out));
         }
+        if state.preferences.health_open && state.open.is_some() && state.page == Page::Pile {
+            egui::Panel::top("health").show(ui, |ui| panels::health(state, ui, out));
+        }
         egui::Panel::bottom("status").show(ui, |ui| panels::status_bar(state, ui, out));
         if state.preferences.log_open {
             egui::Panel::bottom("log")
@@ -193,28 +209,56 @@ impl eframe::App for App {
         } else if state.open.is_some() {
             // However narrow the window is, a part of it is left for the viewport.
             let width = ui.available_width();
-            egui::Panel::left("photos")
-                .resizable(true)
-                .default_size(500.0)
-                .min_size(180.0)
-                .max_size((width * 0.4).max(180.0))
-                .show(ui, |ui| {
-                    egui::ScrollArea::horizontal()
-                        .auto_shrink(false)
-                        .show(ui, |ui| panels::photos_table(state, ui, out));
-                });
-            let inspector = &mut self.inspector;
-            egui::Panel::right("inspector")
-                .resizable(true)
-                .default_size(330.0)
-                .min_size(220.0)
-                .max_size((width * 0.4).max(220.0))
-                .show(ui, |ui| panels::right_panel(state, inspector, ui, out));
+            if state.preferences.left_open {
+                egui::Panel::left("photos")
+                    .resizable(true)
+                    .default_size(500.0)
+                    .min_size(180.0)
+                    .max_size((width * 0.4).max(180.0))
+                    .show(ui, |ui| {
+                        egui::ScrollArea::horizontal()
+                            .auto_shrink(false)
+                            .show(ui, |ui| panels::photos_table(state, ui, out));
+                    });
+            }
+            if state.preferences.right_open {
+                self.inspector.crops = self.viewport.crops(state, ui);
+                let inspector = &mut self.inspector;
+                egui::Panel::right("inspector")
+                    .resizable(true)
+                    .default_size(330.0)
+                    .min_size(220.0)
+                    .max_size((width * 0.4).max(220.0))
+                    .show(ui, |ui| panels::right_panel(state, inspector, ui, out));
+            }
+            let photo_panel = &mut self.photo_panel;
+            if state.middle == Middle::Both {
+                // Below each other where there is more height than width.
+                let rest = ui.available_size();
+                let (panel, length) = match rest.x >= rest.y {
+                    true => (egui::Panel::right("photo beside"), rest.x),
+                    false => (egui::Panel::bottom("photo below"), rest.y),
+                };
+                panel
+                    .resizable(true)
+                    .default_size(length * 0.5)
+                    .min_size(160.0)
+                    .max_size((length - 160.0).max(160.0))
+                    .show(ui, |ui| photo_panel.show(state, ui, out));
+            }
             let (viewport, times) = (&mut self.viewport, &mut self.times);
             egui::CentralPanel::no_frame().show(ui, |ui| {
                 let place = ui.available_rect_before_wrap();
-                viewport.show(state, ui, out, times);
-                overlays(state, ui, place, out);
+                if state.middle.has_pile() {
+                    viewport.show(state, ui, out, times);
+                    overlays(state, ui, place, out);
+                    panels::survey_panel(state, ui.ctx(), place, out);
+                } else {
+                    let fill = ui.visuals().panel_fill;
+                    ui.painter().rect_filled(place, 0.0, fill);
+                    panels::notice(state, ui, out);
+                    photo_panel.show(state, ui, out);
+                }
             });
         } else {
             self.viewport.clear();

@@ -2,6 +2,7 @@
 
 use crate::open_flight::OpenFlight;
 use crate::open_flight::picker::Picker;
+use crate::open_flight::survey::surveyor::Surveyor;
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 
@@ -21,10 +22,17 @@ impl State {
             step(self);
         }
         if let Some(open) = &mut self.open {
+            if !open.photo_view.tiles.take(&self.context) {
+                self.context.request_repaint();
+            }
             let answers = open.pointer.picker.as_mut().map(Picker::answers);
             let before = open.selected;
             for picked in answers.into_iter().flatten() {
                 open.take_picked(picked);
+            }
+            let measured = open.pointer.surveyor.as_mut().map(Surveyor::answers);
+            for (request, measured) in measured.into_iter().flatten() {
+                open.take_measured(&request, measured);
             }
             if open.selected != before {
                 self.load_preview();
@@ -41,8 +49,12 @@ impl State {
 
     /// Whether nothing is under way.
     pub fn is_idle(&self) -> bool {
-        let waiting =
-            |open: &OpenFlight| open.pointer.picker.as_ref().is_some_and(Picker::is_waiting);
+        let waiting = |open: &OpenFlight| {
+            let pointer = &open.pointer;
+            pointer.picker.as_ref().is_some_and(Picker::is_waiting)
+                || pointer.surveyor.as_ref().is_some_and(Surveyor::is_waiting)
+                || open.photo_view.tiles.is_waiting()
+        };
         self.work.is_idle() && !self.open.as_deref().is_some_and(waiting)
     }
 }

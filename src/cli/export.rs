@@ -9,9 +9,10 @@ use super::outputs::Force;
 use super::{Answer, OutputUnit};
 use crate::exports::{self, ExportRequest, Provenance, Replace, ScaleReport};
 use crate::fault::Fault;
-use crate::flight::{Limits, Verdict};
+use crate::flight::{Along, Limits};
 use crate::formats::FileError;
 use crate::jobs::Progress;
+use crate::scale::Onto;
 
 #[derive(Debug, Args)]
 pub(super) struct ExportArguments {
@@ -23,11 +24,23 @@ pub(super) struct ExportArguments {
     /// Scales are in pixels per this unit.
     #[arg(long, value_enum, default_value = "cm")]
     unit: OutputUnit,
-    /// Which photos: all, or those without any doubt.
+    /// Which photos, without those that the flight's reviews leave out: all, or those without any doubt
+    /// and those that were accepted.
     #[arg(long, value_enum, default_value = "all")]
     photos: Selection,
+    /// Also write each photo seen squarely, with one scale for the whole image: onto the best plane
+    /// through what it shows, onto a horizontal plane, or laid over the surface from straight above.
+    #[arg(long, value_enum, value_name = "ONTO")]
+    rectified: Option<Rectified>,
     #[command(flatten)]
     force: Force,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Rectified {
+    Fit,
+    Horizontal,
+    Ortho,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
@@ -44,15 +57,22 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let review = opened.review(&Limits::default(), progress);
     let review = review.map_err(in_flight)?;
-    let photos = review.photos();
-    let selected: Vec<bool> = photos
-        .map(|photo| arguments.photos == Selection::All || photo.verdict == Verdict::Trust)
-        .collect();
+    let selected = review.going_along(match arguments.photos {
+        Selection::All => Along::All,
+        Selection::Trusted => Along::Trusted,
+    });
     if !selected.contains(&true) {
-        let fault = Fault::new(
-            format!("none of its {} photos is without doubt", review.count()),
-            "export all photos, and read the doubts in the sheet",
-        );
+        let count = review.count();
+        let fault = match arguments.photos {
+            Selection::All => Fault::new(
+                format!("all of its {count} photos are left out by [[review]] tables"),
+                "remove those that do not hold",
+            ),
+            Selection::Trusted => Fault::new(
+                format!("none of its {count} photos is without doubt or accepted"),
+                "export all photos, and read the doubts in the sheet",
+            ),
+        };
         return Err(in_flight(fault));
     }
     let photo_files: Vec<Option<PathBuf>> = opened
@@ -76,6 +96,11 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
             },
             selected: &selected,
             unit,
+            rectified: arguments.rectified.map(|onto| match onto {
+                Rectified::Fit => Onto::FittedPlane,
+                Rectified::Horizontal => Onto::HorizontalPlane,
+                Rectified::Ortho => Onto::Surface,
+            }),
             replace: match arguments.force.force {
                 true => Replace::Anything,
                 false => Replace::Nothing,

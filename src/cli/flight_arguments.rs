@@ -1,6 +1,6 @@
 //! Which flight, with which surface and photos: what every command that opens a flight understands.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -32,12 +32,32 @@ impl FlightArguments {
 
     /// Opens it; an error is one line.
     pub(super) fn open(&self, progress: &Progress) -> Result<Opened, String> {
+        // There is no scale without photos.
+        self.open_with(false, progress)
+    }
+
+    /// The same, but a cloud without photos does too: what is measured on the surface needs none.
+    pub(super) fn open_to_measure(&self, progress: &Progress) -> Result<Opened, String> {
+        self.open_with(true, progress)
+    }
+
+    fn open_with(&self, may_lack_photos: bool, progress: &Progress) -> Result<Opened, String> {
         let options = OpenOptions {
             surface: self.surface.clone(),
             photos: self.photo_folder.clone(),
             topic: self.topic.clone(),
             settings: None,
+            may_lack_photos,
         };
         opening::open_flight(&self.flight, &options, progress).map_err(|error| error.to_string())
     }
+}
+
+/// Opens a surface with or without photos; an error is one line.
+pub(super) fn open_cloud(path: &Path, progress: &Progress) -> Result<Opened, String> {
+    let options = OpenOptions {
+        may_lack_photos: true,
+        ..OpenOptions::default()
+    };
+    opening::open_flight(path, &options, progress).map_err(|error| error.to_string())
 }

@@ -14,12 +14,15 @@ mod effort;
 mod export;
 mod flight_arguments;
 mod georeference;
+mod of_photos;
+mod on_surface;
 mod outputs;
 mod psd;
 mod psd_compare;
 mod psd_fit;
 #[cfg(feature = "render")]
 mod render;
+mod sample;
 mod written_beside;
 
 use std::ffi::OsString;
@@ -33,6 +36,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use flight_arguments::FlightArguments;
+use of_photos::{rectify, scale_map};
+use on_surface::{profile, volume};
 use outputs::OutputArguments;
 
 use crate::exports;
@@ -42,7 +47,6 @@ use crate::flight::{Limits, Review};
 use crate::formats::FileError;
 use crate::jobs::{Job, Progress};
 use crate::opening;
-use crate::sample::{self, Lens, Preset, SampleOptions};
 use crate::units::LengthUnit;
 
 /// Work that is over sooner shows no progress bar.
@@ -71,6 +75,10 @@ enum Command {
     Scales(ScalesArguments),
     /// Export photos with their scales for Split-Desktop.
     Export(export::ExportArguments),
+    /// Write the scale of every pixel of a photo: numbers (TIFF) or colours with a legend (PNG).
+    ScaleMap(scale_map::ScaleMapArguments),
+    /// Show a photo squarely, with one scale everywhere: onto a plane or from straight above.
+    Rectify(rectify::RectifyArguments),
     /// Look for what makes a flight's scales wrong: places, cameras, colours that do not match.
     Check(check::CheckArguments),
     /// Bring a reconstruction in a frame of its own to the world by known positions or distances.
@@ -82,10 +90,14 @@ enum Command {
     /// Fit and compare size distributions.
     #[command(subcommand)]
     Psd(psd::PsdCommand),
+    /// Measure the surface over a line: heights, crest, toe and angle of repose.
+    Profile(profile::ProfileArguments),
+    /// Measure area and volume inside a polygon, over a level, its rim or another surface.
+    Volume(volume::VolumeArguments),
     /// Say what a file or folder holds.
     Info(InfoArguments),
     /// Make a simulated flight whose every answer is known.
-    Sample(SampleArguments),
+    Sample(sample::SampleArguments),
     /// Draw a picture of a flight: the surface, cameras, corner rays and footprints.
     #[cfg(feature = "render")]
     Render(render::RenderArguments),
@@ -112,71 +124,6 @@ struct InfoArguments {
     /// How to write it.
     #[arg(long, value_enum, default_value = "text")]
     format: InfoFormat,
-}
-
-#[derive(Debug, Args)]
-struct SampleArguments {
-    /// The folder to make; new or empty.
-    folder: PathBuf,
-    /// Which place: the paper's lab, a muckpile in UTM coordinates, a stockpile, a bench face.
-    #[arg(long, value_enum, default_value = "lab")]
-    preset: SamplePreset,
-    /// Everything random follows from this number.
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// The camera's lens.
-    #[arg(long, value_enum, default_value = "brown")]
-    lens: SampleLens,
-    /// The surface: a cloud as structure from motion gives it, or the true mesh.
-    #[arg(long, value_enum, default_value = "cloud")]
-    surface: SampleSurface,
-    /// Matching noise of the cloud, in pixels (standard deviation).
-    #[arg(long, value_name = "PIXELS", value_parser = noise)]
-    noise: Option<f64>,
-    /// How many points the cloud has.
-    #[arg(long, value_name = "COUNT")]
-    points: Option<usize>,
-    /// Add this many overlapping photos on a ring around the pile.
-    #[arg(long, value_name = "COUNT", default_value_t = 0)]
-    ring: u32,
-    /// Leave out the photos and their label images.
-    #[arg(long)]
-    no_photos: bool,
-    /// Leave out the label images, which say which fragment each pixel shows.
-    #[arg(long)]
-    no_labels: bool,
-    /// Put the middle of the pile at the world's origin, without a coordinate system.
-    #[arg(long)]
-    at_origin: bool,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum SamplePreset {
-    Lab,
-    Muckpile,
-    Stockpile,
-    Bench,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum SampleLens {
-    None,
-    Brown,
-    Fisheye,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
-enum SampleSurface {
-    Cloud,
-    Mesh,
-}
-
-fn noise(text: &str) -> Result<f64, String> {
-    let number: f64 = text.parse().map_err(|e| format!("{e}"))?;
-    if (0.0..=100.0).contains(&number) {
-        return Ok(number);
-    }
-    Err("give 0 to 100 pixels".to_owned())
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -243,7 +190,11 @@ pub fn run() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) if !error.use_stderr() => return print(&error.to_string()),
         Err(error) => {
-            let what = unknown_command().unwrap_or_else(|| usage_in_one_line(&error.to_string()));
+            let mut what =
+                unknown_command().unwrap_or_else(|| usage_in_one_line(&error.to_string()));
+            if let Some(tip) = folder_called_like_a_command() {
+                what = format!("{tip}; as a command: {what}");
+            }
             say(&format!("error: {what}"));
             return ExitCode::from(2);
         }
@@ -274,6 +225,12 @@ pub fn run() -> ExitCode {
         Command::Export(arguments) => {
             Box::new(move |progress| export::export(&arguments, progress))
         }
+        Command::ScaleMap(arguments) => {
+            Box::new(move |progress| scale_map::scale_map(&arguments, progress))
+        }
+        Command::Rectify(arguments) => {
+            Box::new(move |progress| rectify::rectify(&arguments, progress))
+        }
         Command::Check(arguments) => Box::new(move |progress| check::check(&arguments, progress)),
         Command::Georeference(arguments) => {
             Box::new(move |progress| georeference::georeference(&arguments, progress))
@@ -281,8 +238,16 @@ pub fn run() -> ExitCode {
         Command::Anova(arguments) => Box::new(move |_| anova::anova(&arguments)),
         Command::Effort(arguments) => Box::new(move |_| effort::effort(&arguments)),
         Command::Psd(command) => Box::new(move |progress| psd::psd(&command, progress)),
+        Command::Profile(arguments) => {
+            Box::new(move |progress| profile::profile(&arguments, progress))
+        }
+        Command::Volume(arguments) => {
+            Box::new(move |progress| volume::volume(&arguments, progress))
+        }
         Command::Info(arguments) => Box::new(move |progress| info(&arguments, progress)),
-        Command::Sample(arguments) => Box::new(move |progress| sample(&arguments, progress)),
+        Command::Sample(arguments) => {
+            Box::new(move |progress| sample::sample(&arguments, progress))
+        }
         #[cfg(feature = "render")]
         Command::Render(arguments) => {
             Box::new(move |progress| render::render(&arguments, progress))
@@ -326,7 +291,10 @@ fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, St
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let (flight, looked_up) = (opened.flight.clone(), opened.looked_up.clone());
     let review = Review::of_scales(flight, looked_up, &Limits::default(), progress);
-    let review = review.map_err(in_flight)?;
+    let mut review = review.map_err(in_flight)?;
+    review.take_decisions(&opened.settings.decisions);
+    review.look(progress).map_err(in_flight)?;
+    review.compute_fields(progress).map_err(in_flight)?;
     let report = exports::ScaleReport::new(&review, arguments.unit.into())
         .with_scale_objects(&opened.settings.scale_objects)
         .map_err(in_flight)?;
@@ -362,35 +330,6 @@ fn info(arguments: &InfoArguments, progress: &Progress) -> Result<Answer, String
         InfoFormat::Json => format!("{value}\n"),
         InfoFormat::Text => info_text(&value),
     };
-    Ok(Answer::new(text, Vec::new()))
-}
-
-fn sample(arguments: &SampleArguments, progress: &Progress) -> Result<Answer, String> {
-    let options = SampleOptions {
-        preset: match arguments.preset {
-            SamplePreset::Lab => Preset::Lab,
-            SamplePreset::Muckpile => Preset::Muckpile,
-            SamplePreset::Stockpile => Preset::Stockpile,
-            SamplePreset::Bench => Preset::Bench,
-        },
-        seed: arguments.seed,
-        lens: match arguments.lens {
-            SampleLens::None => Lens::None,
-            SampleLens::Brown => Lens::Brown,
-            SampleLens::Fisheye => Lens::Fisheye,
-        },
-        true_mesh: arguments.surface == SampleSurface::Mesh,
-        noise_px: arguments.noise,
-        points: arguments.points,
-        ring: arguments.ring,
-        photos: !arguments.no_photos,
-        labels: !arguments.no_labels,
-        at_origin: arguments.at_origin,
-    };
-    let folder = &arguments.folder;
-    sample::make(folder, &options, progress)
-        .map_err(|fault| FileError::new(folder, fault).to_string())?;
-    let text = format!("{}: a simulated flight\n", folder.display());
     Ok(Answer::new(text, Vec::new()))
 }
 
@@ -511,6 +450,26 @@ fn unknown_command() -> Option<String> {
     Some(one_line(&format!(
         "'{text}' is neither a command{tip} nor a file or folder; see 'fragscale --help'"
     )))
+}
+
+/// Where the first word is a command and a file or folder of that name is there: how that is opened.
+fn folder_called_like_a_command() -> Option<String> {
+    let word = std::env::args_os().nth(1)?;
+    let text = word.to_str()?;
+    let kind = match std::fs::metadata(&word).ok()?.is_dir() {
+        true => "folder",
+        false => "file",
+    };
+    let is_alone = std::env::args_os().len() == 2;
+    let command = Arguments::command();
+    let is_command = command.get_subcommands().any(|c| c.get_name() == text);
+    let there = Path::new(".").join(text);
+    (is_command && is_alone && cfg!(feature = "app")).then(|| {
+        format!(
+            "'{text}' is a command; to open the {kind} of that name type 'fragscale {}'",
+            there.display()
+        )
+    })
 }
 
 /// clap explains over several lines; here the first, with its tip, and where to read more.

@@ -2,6 +2,7 @@
 //! (`files::overwrite`), looked at before the work begins and again when it is written.
 
 use std::fmt::Display;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -66,6 +67,49 @@ impl AnswerArguments {
     }
 }
 
+/// The same of a command whose file's name says how it is written: CSV, JSON, else the table. Who writes
+/// into a file of numbers sees the table besides.
+#[derive(Debug, Clone, Args)]
+pub(super) struct NamedAnswerArguments {
+    /// How to write it; without it as the output's name ends, else as a table.
+    #[arg(long, value_enum)]
+    format: Option<ScalesFormat>,
+    #[command(flatten)]
+    pub(super) output: OutputArguments,
+}
+
+impl NamedAnswerArguments {
+    /// Delivers what a report says; what is left is for standard output.
+    pub(super) fn deliver<T, C: Display, J: Display>(
+        &self,
+        outputs: &Outputs<'_>,
+        report: &T,
+        table: fn(&T) -> String,
+        csv: fn(&T) -> Result<String, C>,
+        json: fn(&T) -> Result<String, J>,
+    ) -> Result<String, String> {
+        let ending = self
+            .output
+            .output
+            .as_ref()
+            .and_then(|path| path.extension());
+        let ending = ending.unwrap_or_default().to_string_lossy().to_lowercase();
+        let by_name = match ending.as_str() {
+            "csv" => ScalesFormat::Csv,
+            "json" => ScalesFormat::Json,
+            _ => ScalesFormat::Table,
+        };
+        let answer = AnswerArguments {
+            format: self.format.unwrap_or(by_name),
+            output: self.output.clone(),
+        };
+        let left = outputs.deliver(answer.text(report, table, csv, json)?)?;
+        let numbers_in_file =
+            self.output.output.is_some() && !matches!(answer.format, ScalesFormat::Table);
+        Ok(if numbers_in_file { table(report) } else { left })
+    }
+}
+
 /// The files that a command writes.
 #[derive(Debug)]
 pub(super) struct Outputs<'a> {
@@ -116,6 +160,26 @@ impl<'a> Outputs<'a> {
         self.inputs.extend(inputs);
         let mut all = self.all.iter();
         all.try_for_each(|(path, kind)| self.check(path, *kind))
+    }
+
+    /// Whether all of these results may be written. For a folder of them, whose names are known when the
+    /// flight is open, and differ.
+    pub(super) fn check_all<'p>(
+        &self,
+        mut paths: impl Iterator<Item = &'p Path>,
+    ) -> Result<(), String> {
+        paths.try_for_each(|path| self.check(path, Kind::Result))
+    }
+
+    /// The folder that results go into; made where it is not there.
+    pub(super) fn make_folder(&self, folder: &Path) -> Result<(), String> {
+        fs::create_dir_all(folder).map_err(|error| {
+            let fault = match folder.exists() {
+                true => Fault::new("it is no folder", "name a folder"),
+                false => files::cannot_be("made", &error),
+            };
+            FileError::new(folder, fault).to_string()
+        })
     }
 
     fn check(&self, path: &Path, kind: Kind) -> Result<(), String> {

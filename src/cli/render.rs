@@ -14,6 +14,7 @@ use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::files::{Kind, marked_png};
 use crate::flight::{Limits, Review};
+use crate::formats::photos::photo_metadata;
 use crate::formats::{self, FileError};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
@@ -21,7 +22,7 @@ use crate::opening::{Opened, PhotoFile};
 use crate::picture;
 use crate::render::{
     Background, ColorBy, Gpu, MOST_PIXELS, Orbit, PhotoGeometry, PhotoImage, Renderer, Scope,
-    Shapes, Show, SurfaceBuffers, View, drawn_ground,
+    Shapes, Show, SurfaceBuffers, Taken, View, drawn_ground, flight_line,
 };
 use crate::scale::Corner;
 
@@ -253,7 +254,8 @@ fn draw(
     let bounds = surface.bounds();
     let frame = LocalFrame::near(&bounds);
     let photos = PhotoGeometry::of_review(&frame, &review);
-    let show = show(arguments, &review, selected, &bounds);
+    let bulk = surface.bulk_bounds();
+    let show = show(arguments, &review, selected, &bulk);
     let mut renderer = Renderer::new(&gpu);
     renderer.start(&frame);
     let wanted = Shapes {
@@ -264,6 +266,10 @@ fn draw(
     renderer.set_surface(Some(&buffers));
     progress.stage("drawing");
     renderer.set_photos(photos);
+    renderer.set_bulk(Some(&bulk));
+    if show.flight_line {
+        renderer.set_flight_line(line(opened));
+    }
     set_images(&mut renderer, opened, &show, progress)?;
 
     let size = DVec2::from(arguments.size.0.map(f64::from));
@@ -275,6 +281,21 @@ fn draw(
         }
     };
     renderer.picture_with_words(&view, &show, arguments.size.0)
+}
+
+/// The photos in the order in which they were taken.
+fn line(opened: &Opened) -> Vec<usize> {
+    let photos = &opened.flight.parts().photos;
+    let times: Vec<Option<String>> = opened
+        .photo_files
+        .iter()
+        .map(|file| photo_metadata::read_file(file.path.as_deref()?).ok()?.time)
+        .collect();
+    let taken = photos.iter().zip(&times).map(|(photo, time)| Taken {
+        name: &photo.name,
+        time: time.as_deref(),
+    });
+    flight_line(&taken.collect::<Vec<_>>())
 }
 
 /// What of the arguments is of the selected photo alone.
@@ -319,6 +340,7 @@ fn show(
         axes: shown("axes"),
         scale_bar: shown("bar"),
         unit: parts.unit,
+        lengths_in: parts.unit_of_lengths(),
         project_photo: shown("photo"),
         photo_blend: arguments.blend,
         selected,

@@ -2,20 +2,36 @@
 //! what is learnt from size distributions.
 
 mod markup;
+mod measured;
 mod photo_columns;
+mod photo_file_names;
+mod rectified;
 mod report_object;
+mod scale_map;
 mod scale_report;
 mod scales_csv;
 mod scales_json;
 mod scales_table;
 mod size_distributions;
 mod split_desktop;
+mod tiff_pages;
 
-use fragscale_core::{camera, fault, files, flight, geodesy, jobs, numbers, picture, scale, units};
+#[cfg(test)]
+use fragscale_core::surface;
+use fragscale_core::{
+    camera, fault, files, flight, geodesy, jobs, numbers, picture, scale, survey, units,
+};
 use fragscale_fragmentation as fragmentation;
 
+pub use measured::{
+    MeasuredUnit, ProfileReport, VolumeReport, profile_csv, profile_json, profile_table,
+    volume_csv, volume_json, volume_table, volume_warning,
+};
 pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};
+pub use photo_file_names::photo_file_stems;
+pub use rectified::{RectifiedFormat, RectifiedPhoto};
 pub use report_object::{PointCloudScale, ReportObject};
+pub use scale_map::{MapLayer, ScaleMap, scale_map_png, scale_map_tiff};
 pub use scale_report::{PhotoLine, ScaleReport};
 pub use scales_csv::scales_csv;
 pub use scales_json::scales_json;

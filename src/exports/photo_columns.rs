@@ -7,7 +7,8 @@ use std::cmp::Ordering;
 
 use super::PhotoLine;
 use crate::flight::{Verdict, compare_names};
-use crate::numbers::significant_digits;
+use crate::numbers::{as_its_interval_allows, significant_digits};
+use crate::scale::{self, Uncertainty};
 use crate::units::LengthUnit;
 
 /// A column of photos, known by its name.
@@ -22,6 +23,8 @@ pub struct PhotoColumn {
     /// Its width in the window's table and the least that it may be made, points; `None` where it is
     /// not shown there.
     pub width: Option<[f32; 2]>,
+    /// Whether it comes behind the verdict there, where a narrow window cuts it off.
+    pub is_behind: bool,
     /// Its heading in the table for people, where it is one of its columns.
     pub table: Option<&'static str>,
     /// Its name in scales.csv, without the unit; where it is one of its columns.
@@ -51,6 +54,12 @@ pub enum ColumnKind {
     Pixels,
     /// Pixels per unit.
     Scale,
+    /// An end of a scale's interval, pixels per unit; its name in scales.csv has no unit.
+    Interval,
+    /// In percent.
+    Percent,
+    /// A share of 1.
+    Share,
     /// How many of its four corners.
     OfFour,
     /// In the world's unit.
@@ -74,7 +83,7 @@ pub enum ColumnValue<'a> {
     Verdict(Verdict, bool),
 }
 
-use ColumnKind::{Angle, Length, Name, OfFour, Pixels, Scale, Text};
+use ColumnKind::{Angle, Interval, Length, Name, OfFour, Percent, Pixels, Scale, Share, Text};
 use ColumnValue::{Count, Number};
 
 /// A column that is shown nowhere: what a row does not say.
@@ -83,14 +92,23 @@ const COLUMN: PhotoColumn = PhotoColumn {
     hover: "",
     kind: Text,
     width: None,
+    is_behind: false,
     table: None,
     csv: None,
     sheet: None,
     value: |_| Count(None),
 };
 
+/// One of the intervals of a photo.
+fn interval(
+    line: &PhotoLine<'_>,
+    of: fn(&Uncertainty) -> Option<scale::Interval>,
+) -> Option<scale::Interval> {
+    of(&line.uncertainty()?)
+}
+
 /// All columns, in their order.
-pub static PHOTO_COLUMNS: [PhotoColumn; 14] = [
+pub static PHOTO_COLUMNS: [PhotoColumn; 29] = [
     PhotoColumn {
         name: "Photo",
         hover: "Name of the photo's file",
@@ -129,23 +147,25 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 14] = [
     },
     PhotoColumn {
         name: "Top",
-        hover: "Scale at the top edge",
+        hover: "Scale at the top edge, from its two corners",
         kind: Scale,
         width: Some([46.0, 30.0]),
+        is_behind: true,
         table: Some("top"),
         csv: Some("top"),
-        sheet: Some("TOP scale"),
         value: |line| Number(line.scale().top),
+        ..COLUMN
     },
     PhotoColumn {
         name: "Bottom",
-        hover: "Scale at the bottom edge",
+        hover: "Scale at the bottom edge, from its two corners",
         kind: Scale,
         width: Some([46.0, 30.0]),
+        is_behind: true,
         table: Some("bottom"),
         csv: Some("bottom"),
-        sheet: Some("BOTTOM scale"),
         value: |line| Number(line.scale().bottom),
+        ..COLUMN
     },
     PhotoColumn {
         name: "Left",
@@ -166,11 +186,121 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 14] = [
         ..COLUMN
     },
     PhotoColumn {
-        name: "Verdict",
-        hover: "Whether to trust the scale",
-        kind: ColumnKind::Verdict,
-        width: Some([66.0, 30.0]),
-        value: |line| ColumnValue::Verdict(line.photo.verdict, line.photo.settled().is_some()),
+        name: "TOP",
+        hover: "What goes to Split-Desktop as the scale at the top edge",
+        kind: Scale,
+        sheet: Some("TOP scale"),
+        value: |line| Number(line.pair()[0]),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "BOTTOM",
+        hover: "What goes to Split-Desktop as the scale at the bottom edge",
+        kind: Scale,
+        sheet: Some("BOTTOM scale"),
+        value: |line| Number(line.pair()[1]),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Fitted top",
+        hover: "Scale at the top edge, of the best line through the scale of all pixels",
+        kind: Scale,
+        width: Some([46.0, 30.0]),
+        table: Some("fitted top"),
+        csv: Some("fitted_top"),
+        value: |line| Number(line.fitted().map(|fitted| fitted.top)),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Fitted bottom",
+        hover: "Scale at the bottom edge, of the best line through the scale of all pixels",
+        kind: Scale,
+        width: Some([46.0, 30.0]),
+        table: Some("fitted bottom"),
+        csv: Some("fitted_bottom"),
+        value: |line| Number(line.fitted().map(|fitted| fitted.bottom)),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Off line %",
+        hover: "How far the scale of all pixels is from the best line, root mean square",
+        kind: Percent,
+        width: Some([46.0, 30.0]),
+        table: Some("off line"),
+        csv: Some("off_line_rms_percent"),
+        value: |line| Number(line.fitted().map(|fitted| fitted.rms_percent)),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Covered",
+        hover: "The share of the photo that shows the surface",
+        kind: Share,
+        csv: Some("covered"),
+        value: |line| Number(line.fitted().map(|fitted| fitted.covered)),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Top, low",
+        hover: "The corners' top scale: lower end of its 95 % interval",
+        kind: Interval,
+        csv: Some("top_low"),
+        value: |line| Number(interval(line, |u| u.top).map(|ends| ends.low)),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Top, high",
+        hover: "The corners' top scale: upper end of its 95 % interval",
+        kind: Interval,
+        csv: Some("top_high"),
+        value: |line| Number(interval(line, |u| u.top).map(|ends| ends.high)),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Bottom, low",
+        hover: "The corners' bottom scale: lower end of its 95 % interval",
+        kind: Interval,
+        csv: Some("bottom_low"),
+        value: |line| Number(interval(line, |u| u.bottom).map(|ends| ends.low)),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Bottom, high",
+        hover: "The corners' bottom scale: upper end of its 95 % interval",
+        kind: Interval,
+        csv: Some("bottom_high"),
+        value: |line| Number(interval(line, |u| u.bottom).map(|ends| ends.high)),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Fitted top, low",
+        hover: "The best line's top scale: lower end of its 95 % interval",
+        kind: Interval,
+        csv: Some("fitted_top_low"),
+        value: |line| Number(interval(line, |u| u.fitted_top).map(|ends| ends.low)),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Fitted top, high",
+        hover: "The best line's top scale: upper end of its 95 % interval",
+        kind: Interval,
+        csv: Some("fitted_top_high"),
+        value: |line| Number(interval(line, |u| u.fitted_top).map(|ends| ends.high)),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Fitted bottom, low",
+        hover: "The best line's bottom scale: lower end of its 95 % interval",
+        kind: Interval,
+        csv: Some("fitted_bottom_low"),
+        value: |line| Number(interval(line, |u| u.fitted_bottom).map(|ends| ends.low)),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Fitted bottom, high",
+        hover: "The best line's bottom scale: upper end of its 95 % interval",
+        kind: Interval,
+        csv: Some("fitted_bottom_high"),
+        value: |line| Number(interval(line, |u| u.fitted_bottom).map(|ends| ends.high)),
         ..COLUMN
     },
     PhotoColumn {
@@ -178,6 +308,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 14] = [
         hover: "How many of the four corners are on the surface",
         kind: OfFour,
         width: Some([28.0, 20.0]),
+        is_behind: true,
         table: Some("corners"),
         csv: Some("corners_on_surface"),
         value: |line| Count(line.photo.corners_on_surface()),
@@ -188,6 +319,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 14] = [
         hover: "Height of the camera above the surface below it, in the world's unit",
         kind: Length,
         width: Some([54.0, 30.0]),
+        is_behind: true,
         value: |line| Number(line.photo.view.and_then(|view| view.height)),
         ..COLUMN
     },
@@ -196,7 +328,28 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 14] = [
         hover: "Of the optical axis below the horizon; 90 looks straight down",
         kind: Angle,
         width: Some([40.0, 30.0]),
+        is_behind: true,
         value: |line| Number(line.photo.view.map(|view| view.tilt)),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Verdict",
+        hover: "Whether to trust the scale",
+        kind: ColumnKind::Verdict,
+        width: Some([84.0, 30.0]),
+        csv: Some("verdict"),
+        value: |line| ColumnValue::Verdict(line.photo.verdict, line.photo.settled().is_some()),
+        ..COLUMN
+    },
+    PhotoColumn {
+        name: "Reasons",
+        hover: "What speaks against the scale, and what the engineer has decided",
+        csv: Some("reasons"),
+        value: |line| {
+            let doubts = line.photo.doubts.iter().map(ToString::to_string);
+            let all: Vec<String> = doubts.chain(line.photo.decided()).collect();
+            ColumnValue::Text(all.join("; ").into())
+        },
         ..COLUMN
     },
     PhotoColumn {
@@ -239,7 +392,9 @@ impl PhotoColumn {
             Number(number) => number.map_or_else(String::new, |number| number.to_string()),
             // Where nothing was computed, nothing is on the surface.
             Count(count) => count.unwrap_or(0).to_string(),
-            ColumnValue::Verdict(verdict, _) => verdict.to_string(),
+            // What nobody has looked at is not called trusted.
+            ColumnValue::Verdict(_, false) => String::new(),
+            ColumnValue::Verdict(verdict, true) => verdict.to_string(),
         }
     }
 
@@ -247,21 +402,42 @@ impl PhotoColumn {
     pub fn table_value(&self, line: &PhotoLine<'_>) -> String {
         match (self.kind, (self.value)(line)) {
             (Scale, Number(scale)) => scale.map_or_else(|| "-".to_owned(), six_digits),
+            (Percent, Number(percent)) => {
+                percent.map_or_else(|| "-".to_owned(), |p| format!("{p:.1} %"))
+            }
             (OfFour, Count(count)) => format!("{} of 4", count.unwrap_or(0)),
             _ => self.csv_value(line),
         }
     }
 
-    /// Its value in the window's narrow table.
+    /// How sure its scale is; `None` of what is no scale, and where nobody knows.
+    fn interval_of(&self, line: &PhotoLine<'_>) -> Option<scale::Interval> {
+        let of: fn(&Uncertainty) -> Option<scale::Interval> = match self.csv? {
+            "top" => |u| u.top,
+            "bottom" => |u| u.bottom,
+            "left" => |u| u.left,
+            "right" => |u| u.right,
+            "fitted_top" => |u| u.fitted_top,
+            "fitted_bottom" => |u| u.fitted_bottom,
+            _ => return None,
+        };
+        interval(line, of)
+    }
+
+    /// Its value in the window's narrow table, a scale with the digits that its interval allows.
     pub fn short_value(&self, line: &PhotoLine<'_>) -> String {
         let dash = || "–".to_owned();
         match (self.kind, (self.value)(line)) {
             (_, ColumnValue::Text(text)) => text.into_owned(),
             (OfFour, Count(count)) => count.map_or_else(dash, |count| format!("{count}/4")),
             (_, Count(count)) => count.map_or_else(dash, |count| count.to_string()),
+            (Percent, Number(percent)) => percent.map_or_else(dash, |p| format!("{p:.1}")),
             (Angle, Number(angle)) => angle.map_or_else(dash, |angle| format!("{angle:.1}")),
             (Pixels, Number(pixels)) => pixels.map_or_else(dash, |pixels| pixels.to_string()),
-            (_, Number(number)) => number.map_or_else(dash, |n| significant_digits(n, 4)),
+            (_, Number(number)) => number.map_or_else(dash, |n| match self.interval_of(line) {
+                Some(ends) => as_its_interval_allows(n, ends.low, ends.high),
+                None => significant_digits(n, 4),
+            }),
             (_, ColumnValue::Verdict(_, false)) => "…".to_owned(),
             (_, ColumnValue::Verdict(verdict, true)) => verdict.to_string(),
         }
@@ -326,7 +502,7 @@ mod tests {
         }
     }
 
-    /// Contract, section 5.
+    /// Contract, sections 5, 7 and 8.
     #[test]
     fn the_csv_has_the_columns_of_the_contract() {
         let headings = PHOTO_COLUMNS.iter();
@@ -335,7 +511,7 @@ mod tests {
             .collect();
         assert_eq!(
             headings.join(","),
-            "photo,width_px,height_px,top_px_per_cm,bottom_px_per_cm,left_px_per_cm,right_px_per_cm,corners_on_surface,note"
+            "photo,width_px,height_px,top_px_per_cm,bottom_px_per_cm,left_px_per_cm,right_px_per_cm,fitted_top_px_per_cm,fitted_bottom_px_per_cm,off_line_rms_percent,covered,top_low,top_high,bottom_low,bottom_high,fitted_top_low,fitted_top_high,fitted_bottom_low,fitted_bottom_high,corners_on_surface,verdict,reasons,note"
         );
     }
 

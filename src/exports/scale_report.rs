@@ -3,7 +3,7 @@
 use super::ReportObject;
 use crate::fault::Fault;
 use crate::flight::{PhotoReview, Review, ScaleObject};
-use crate::scale::{EdgeScales, ImageKind};
+use crate::scale::{EdgeScales, FittedScale, ImageKind, ScaleEstimate, ScalePair, Uncertainty};
 use crate::units::LengthUnit;
 
 /// The scales of a review's photos, or of some of them, in a unit.
@@ -129,6 +129,36 @@ impl<'a> PhotoLine<'a> {
         }
     }
 
+    /// The best line through its scale field, pixels per unit.
+    pub fn fitted(&self) -> Option<FittedScale> {
+        match self.to_type && !self.photo.unit_known {
+            true => None,
+            false => self.photo.fitted(self.unit),
+        }
+    }
+
+    /// How sure its scales are, pixels per unit.
+    pub fn uncertainty(&self) -> Option<Uncertainty> {
+        match self.to_type && !self.photo.unit_known {
+            true => None,
+            false => self.photo.uncertainty(self.unit),
+        }
+    }
+
+    /// Top and bottom scale for Split-Desktop, pixels per unit.
+    pub fn pair(&self) -> [Option<f64>; 2] {
+        let estimates = self.estimates(self.photo.pair);
+        estimates.map(|estimate| Some(estimate?.value))
+    }
+
+    /// Top and bottom scale of either pair with how sure they are, pixels per unit.
+    pub fn estimates(&self, pair: ScalePair) -> [Option<ScaleEstimate>; 2] {
+        match self.to_type && !self.photo.unit_known {
+            true => [None; 2],
+            false => self.photo.estimates(pair, self.unit),
+        }
+    }
+
     /// Elevation of the ground, where a ray needed it; world units.
     pub fn ground(&self) -> Option<f64> {
         self.photo.scale()?.ground
@@ -136,7 +166,6 @@ impl<'a> PhotoLine<'a> {
 
     /// Whether Split-Desktop gets the two scales that it asks for.
     pub fn has_top_and_bottom(&self) -> bool {
-        let scale = self.scale();
-        scale.top.is_some() && scale.bottom.is_some()
+        self.pair().iter().all(Option::is_some)
     }
 }

@@ -2,12 +2,18 @@
 //! have these besides, as `scale_objects`. To add a key of a photo is to add a field of `Photo` and
 //! its value, below.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::ReportObject;
 use super::scale_report::{PhotoLine, ScaleReport};
 use crate::camera::Camera;
-use crate::scale::{Corner, CornerName, CornerOutcome, PhotoScale};
+use crate::flight::{Doubt, Verdict};
+use crate::scale::{
+    Corner, CornerName, CornerOutcome, ErrorSource, FittedScale, Interval, PhotoScale, ScalePair,
+    Uncertainty,
+};
 
 #[derive(Serialize)]
 struct Report<'a> {
@@ -28,6 +34,12 @@ struct Photo<'a> {
     ground: Option<f64>,
     scale: Scale,
     corners: [CornerRay; 4],
+    fitted: Option<Fitted>,
+    uncertainty: Option<Uncertain>,
+    /// Null while nobody has looked at the photo.
+    verdict: Option<&'static str>,
+    reasons: Vec<String>,
+    decision: Option<Decided<'a>>,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     scale_objects: &'a [ReportObject],
 }
@@ -42,9 +54,36 @@ impl<'a> Photo<'a> {
             ground: line.ground(),
             scale: Scale::new(line),
             corners: corners(line.photo.scale(), camera),
+            fitted: line.fitted().map(Fitted::from),
+            uncertainty: line
+                .uncertainty()
+                .map(|uncertainty| Uncertain::new(&uncertainty, line.photo.pair)),
+            verdict: line.photo.settled().map(Verdict::as_str),
+            reasons: line.photo.doubts.iter().map(Doubt::to_string).collect(),
+            decision: line.photo.decision.map(|decision| Decided {
+                decision: decision.kind.as_str(),
+                note: &decision.note,
+                date: decision.date.map(|date| date.to_string()),
+                reasons_since: line
+                    .photo
+                    .reasons_since_accepted()
+                    .into_iter()
+                    .map(Doubt::to_string)
+                    .collect(),
+            }),
             scale_objects: line.scale_objects,
         }
     }
+}
+
+/// What the engineer has decided.
+#[derive(Serialize)]
+struct Decided<'a> {
+    decision: &'static str,
+    note: &'a str,
+    date: Option<String>,
+    /// Those that were not there when she accepted the photo: then it is not accepted any more.
+    reasons_since: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -63,6 +102,91 @@ impl Scale {
             right: scale.right,
             bottom: scale.bottom,
             left: scale.left,
+        }
+    }
+}
+
+/// The best line (contract, section 7).
+#[derive(Serialize)]
+struct Fitted {
+    top: f64,
+    bottom: f64,
+    rms_percent: f64,
+    worst_percent: f64,
+    covered: f64,
+    left_right_percent: f64,
+}
+
+impl From<FittedScale> for Fitted {
+    fn from(fitted: FittedScale) -> Self {
+        let FittedScale {
+            top,
+            bottom,
+            rms_percent,
+            worst_percent,
+            covered,
+            left_right_percent,
+        } = fitted;
+        Self {
+            top,
+            bottom,
+            rms_percent,
+            worst_percent,
+            covered,
+            left_right_percent,
+        }
+    }
+}
+
+/// How sure the scales are (contract, section 8).
+#[derive(Serialize)]
+struct Uncertain {
+    top: Option<Ends>,
+    bottom: Option<Ends>,
+    left: Option<Ends>,
+    right: Option<Ends>,
+    fitted_top: Option<Ends>,
+    fitted_bottom: Option<Ends>,
+    parts_percent: BTreeMap<&'static str, Option<f64>>,
+    not_counted: Vec<&'static str>,
+}
+
+impl Uncertain {
+    fn new(uncertainty: &Uncertainty, pair: ScalePair) -> Self {
+        let parts = ErrorSource::ALL
+            .into_iter()
+            .zip(uncertainty.parts_percent(pair));
+        Self {
+            top: uncertainty.top.map(Ends::from),
+            bottom: uncertainty.bottom.map(Ends::from),
+            left: uncertainty.left.map(Ends::from),
+            right: uncertainty.right.map(Ends::from),
+            fitted_top: uncertainty.fitted_top.map(Ends::from),
+            fitted_bottom: uncertainty.fitted_bottom.map(Ends::from),
+            parts_percent: parts
+                .map(|(source, part)| (source.as_str(), part))
+                .collect(),
+            not_counted: uncertainty
+                .not_counted(pair)
+                .map(ErrorSource::as_str)
+                .collect(),
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct Ends {
+    standard_error: f64,
+    low: f64,
+    high: f64,
+}
+
+impl From<Interval> for Ends {
+    fn from(interval: Interval) -> Self {
+        Self {
+            standard_error: interval.standard_error,
+            low: interval.low,
+            high: interval.high,
         }
     }
 }

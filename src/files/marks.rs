@@ -11,8 +11,15 @@ pub const SVG_MARK: &str = "<!-- Written by fragscale. -->\n";
 /// In the head of a page.
 pub const HTML_MARK: &str = "<meta name=\"generator\" content=\"fragscale\"/>\n";
 
+/// How the line begins that stands below the six of a world file.
+pub const WORLD_FILE_MARK: &str = "fragscale: ";
+
 /// A `tEXt` chunk of PNG (its specification, section 11.3.3.2): length, type, keyword and text, CRC.
 const PNG_MARK: &[u8] = b"\0\0\0\x12tEXtSoftware\0fragscale\xf4\x7d\x57\xef";
+
+/// Where a TIFF's own data begin: behind its header, which says the byte order and where the first
+/// directory is. The texts of that directory are put there, the program's name first.
+const TIFF_HEAD: usize = 8;
 
 /// Where the first chunk of a PNG ends: the signature, and IHDR, which always comes first.
 const PNG_HEAD: usize = 8 + 25;
@@ -35,7 +42,8 @@ impl Kind {
         if beginning.starts_with(FLIGHT_MARK.trim_end().as_bytes()) {
             return Some(Self::Flight);
         }
-        (is_png(beginning) || is_text(beginning)).then_some(Self::Result)
+        let is_result = is_png(beginning) || is_tiff(beginning) || is_text(beginning);
+        is_result.then_some(Self::Result)
     }
 }
 
@@ -52,6 +60,11 @@ fn is_png(beginning: &[u8]) -> bool {
         && (beginning.get(PNG_HEAD..)).is_some_and(|rest| rest.starts_with(PNG_MARK))
 }
 
+fn is_tiff(beginning: &[u8]) -> bool {
+    (beginning.starts_with(b"II*\0") || beginning.starts_with(b"MM\0*"))
+        && (beginning.get(TIFF_HEAD..)).is_some_and(|rest| rest.starts_with(b"fragscale "))
+}
+
 fn is_text(beginning: &[u8]) -> bool {
     let text = String::from_utf8_lossy(beginning);
     let first = text.lines().next().unwrap_or_default();
@@ -60,6 +73,7 @@ fn is_text(beginning: &[u8]) -> bool {
     let (svg, html) = (SVG_MARK.trim_end(), HTML_MARK.trim_end());
     begins("<svg ") && has(svg)
         || begins("<!DOCTYPE html>") && has(html)
+        || text.lines().nth(6).is_some_and(|line| line.starts_with(WORLD_FILE_MARK))
         || is_csv(first)
         || is_table(first)
         // The scales of a flight.

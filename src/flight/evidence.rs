@@ -66,6 +66,15 @@ impl Evidence {
     }
 }
 
+/// Of how many photos the files' metadata were looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MetadataRead {
+    /// So many files were read: of a large flight not all.
+    pub looked_at: usize,
+    /// So many of these name their camera or its focal length.
+    pub telling: usize,
+}
+
 /// What was looked up of a flight.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LookedUp {
@@ -73,6 +82,8 @@ pub struct LookedUp {
     pub evidence: Vec<Evidence>,
     /// The same of the whole flight, a sentence each.
     pub warnings: Vec<String>,
+    /// What the photos' files say of themselves.
+    pub metadata: MetadataRead,
 }
 
 impl LookedUp {

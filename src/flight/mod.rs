@@ -1,13 +1,14 @@
 //! A flight: one review, with everything that its scales depend on. Validated when made.
 
-mod camera_entry;
+mod computing;
+mod date;
+mod decision;
+mod difference;
 mod doubt;
 mod evidence;
 mod file;
-mod file_check;
-mod file_text;
-mod known_keys;
 mod name_order;
+mod named_photo;
 mod placement;
 mod review;
 mod scale_object;
@@ -18,21 +19,22 @@ mod verdict;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-pub use camera_entry::{CameraEntry, CameraSource};
-pub use doubt::Doubt;
-pub use evidence::{ColoursFound, Evidence, LookedUp, PhotoFileState};
-pub use file::{FlightFile, PhotoSource, ReconstructionFlight};
+pub use date::Date;
+pub use decision::{Decision, DecisionKind};
+pub use difference::{Difference, DifferenceReason};
+pub use doubt::{Doubt, InView, OnPhoto, Sight};
+pub use evidence::{ColoursFound, Evidence, LookedUp, MetadataRead, PhotoFileState};
+pub use file::{CameraEntry, CameraSource, FlightFile, PhotoSource, ReconstructionFlight};
 pub use name_order::compare_names;
 pub use placement::Placement;
-pub use review::{PhotoReview, Review};
+pub use review::{Along, PhotoReview, Review};
 pub use scale_object::{ComparedObject, ScaleObject};
 pub use verdict::{Limits, Verdict};
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
-use crate::jobs::Progress;
-use crate::scale::{Ground, GroundFinder, ImageKind, PhotoScale, ViewFacts};
-use crate::surface::{Surface, SurfaceError, SurfaceOptions};
+use crate::scale::{Ground, ImageKind, PhotoScale, PoseErrors, ScalePair, StatedErrors};
+use crate::surface::{Surface, SurfaceOptions};
 use crate::units::LengthUnit;
 
 /// One image with its camera and pose.
@@ -46,6 +48,10 @@ pub struct Photo {
     pub pose: Pose,
     /// Why this photo can have no scale, in words; `None` where it can.
     pub trouble: Option<String>,
+    /// How sure its pose is, as its line in the poses says: before what the flight's own table says.
+    pub errors: PoseErrors,
+    /// The same as its package says: behind that.
+    pub package_errors: PoseErrors,
 }
 
 /// What the engineer can set of a flight while she looks at it.
@@ -60,13 +66,56 @@ pub struct FlightSettings {
     pub ground: Ground,
     /// Which image the scales are for.
     pub image: ImageKind,
+    /// Which scales go to Split-Desktop.
+    pub pair: ScalePair,
+    /// How sure the engineer is of what scales are computed from.
+    pub errors: StatedErrors,
     /// What is left out of the surface.
     pub surface: SurfaceOptions,
     /// Traced on photos, to compare with: no scale of the flight depends on them.
     pub scale_objects: Vec<ScaleObject>,
+    /// What the engineer has decided of photos, each named once: no scale depends on it.
+    pub decisions: Vec<Decision>,
+}
+
+impl Default for FlightSettings {
+    /// In metres, which nobody has said.
+    fn default() -> Self {
+        Self {
+            unit: LengthUnit::Metre,
+            unit_known: false,
+            ground: Ground::default(),
+            image: ImageKind::default(),
+            pair: ScalePair::default(),
+            errors: StatedErrors::default(),
+            surface: SurfaceOptions::default(),
+            scale_objects: Vec::new(),
+            decisions: Vec::new(),
+        }
+    }
 }
 
 impl FlightSettings {
+    /// What was decided of a photo.
+    pub fn decision(&self, photo: &str) -> Option<&Decision> {
+        self.decisions
+            .iter()
+            .find(|decision| decision.photo == photo)
+    }
+
+    /// Decides about a photo in the place of what was decided before; `None` decides nothing.
+    pub fn decide(&mut self, photo: &str, decision: Option<Decision>) {
+        let before = self.decisions.iter().position(|d| d.photo == photo);
+        match (before, decision) {
+            (Some(place), Some(decision)) => self.decisions[place] = decision,
+            (Some(place), None) => {
+                self.decisions.remove(place);
+            }
+            (None, Some(decision)) => self.decisions.push(decision),
+            (None, None) => {}
+        }
+    }
+
     /// Whether the same scales follow from both.
     pub fn gives_the_scales_of(&self, other: &Self) -> bool {
         let Self {
@@ -75,7 +124,10 @@ impl FlightSettings {
             ground,
             image,
             surface,
+            pair: _,
+            errors: _,
             scale_objects: _,
+            decisions: _,
         } = self;
         (*unit, *unit_known) == (other.unit, other.unit_known)
             && (*ground, *image, *surface) == (other.ground, other.image, other.surface)
@@ -95,6 +147,12 @@ pub struct FlightParts {
     pub ground: Ground,
     /// Which image the scales are for.
     pub image: ImageKind,
+    /// Which scales go to Split-Desktop.
+    pub pair: ScalePair,
+    /// How sure the engineer is of what scales are computed from.
+    pub errors: StatedErrors,
+    /// The same as the package says: where she says nothing.
+    pub package_errors: StatedErrors,
     /// What the rays meet; shared, because settings change more often than surfaces.
     pub surface: Arc<Surface>,
     /// The devices.
@@ -128,6 +186,16 @@ impl Outcome {
     }
 }
 
+impl FlightParts {
+    /// What is written beside lengths in the world: its unit, or that nobody states one.
+    pub fn unit_of_lengths(&self) -> &'static str {
+        match self.unit_known {
+            true => self.unit.symbol(),
+            false => "units of the file",
+        }
+    }
+}
+
 impl Flight {
     /// Puts a flight together.
     ///
@@ -141,6 +209,14 @@ impl Flight {
                 "give at least one photo with its pose",
             ));
         }
+        Self::perhaps_without_photos(parts)
+    }
+
+    /// The same, but a surface without photos does too: to look at, there is no scale in it.
+    ///
+    /// # Errors
+    /// As [`Self::new`], but for photos that are not there.
+    pub fn perhaps_without_photos(parts: FlightParts) -> Result<Self, Fault> {
         if let Ground::At(z) = parts.ground
             && !z.is_finite()
         {
@@ -200,14 +276,29 @@ impl Flight {
         let surface = surface.map_err(|error| {
             Fault::new(error.to_string(), "give a positive length or leave it out")
         })?;
-        Self::new(FlightParts {
+        Self::perhaps_without_photos(FlightParts {
             unit: settings.unit,
             unit_known: settings.unit_known,
             ground: settings.ground,
             image: settings.image,
+            pair: settings.pair,
+            errors: settings.errors,
             surface: Arc::new(surface),
             ..self.parts.clone()
         })
+    }
+
+    /// The same flight with another pair for Split-Desktop and other stated errors: no scale of its
+    /// corners and no best line depends on them.
+    #[must_use]
+    pub fn with_stated(&self, pair: ScalePair, errors: StatedErrors) -> Self {
+        Self {
+            parts: FlightParts {
+                pair,
+                errors,
+                ..self.parts.clone()
+            },
+        }
     }
 
     /// Its parts.
@@ -221,83 +312,17 @@ impl Flight {
         &self.parts.cameras[photo.camera]
     }
 
-    /// The scales of all photos, in their order.
-    ///
-    /// # Errors
-    /// Where the surface cannot be met, or the work was cancelled.
-    pub fn scales(&self, progress: &Progress) -> Result<Vec<Outcome>, Fault> {
-        let FlightParts {
-            surface,
-            ground,
-            image,
-            photos,
-            ..
-        } = &self.parts;
-        let mut caster = surface.caster().map_err(unusable)?;
-        let mut finder = GroundFinder::new(*ground, surface);
-        let mut outcomes = Vec::with_capacity(photos.len());
-        progress.stage("computing scales");
-        for photo in photos {
-            progress.advance(outcomes.len() as u64, photos.len() as u64)?;
-            outcomes.push(match &photo.trouble {
-                Some(trouble) => Outcome::Trouble(trouble.clone()),
-                None => {
-                    let camera = self.camera(photo);
-                    let scale =
-                        PhotoScale::compute(camera, &photo.pose, *image, &mut finder, &mut caster);
-                    Outcome::Scale(Box::new(scale.map_err(unusable)?))
-                }
-            });
-        }
-        Ok(outcomes)
+    /// How sure everything is that a photo's scale is computed from: what its line in the poses says,
+    /// then the flight's own table, then the package.
+    pub fn errors(&self, photo: &Photo) -> StatedErrors {
+        let parts = &self.parts;
+        let of_photo = |pose| StatedErrors {
+            pose,
+            ..StatedErrors::default()
+        };
+        of_photo(photo.errors)
+            .or(parts.errors)
+            .or(of_photo(photo.package_errors))
+            .or(parts.package_errors)
     }
-
-    /// How each photo looks at the surface, in their order; `None` where `outcomes`, those of
-    /// [`Self::scales`], have no scale to look at.
-    ///
-    /// # Errors
-    /// Where the surface cannot be met, or the work was cancelled.
-    pub fn views(
-        &self,
-        outcomes: &[Outcome],
-        progress: &Progress,
-    ) -> Result<Vec<Option<ViewFacts>>, Fault> {
-        let FlightParts {
-            surface,
-            ground,
-            image,
-            photos,
-            ..
-        } = &self.parts;
-        progress.stage("making the surface ready for many rays");
-        let rays = photos.len() * ViewFacts::RAYS;
-        surface.triangulate_for(rays).map_err(unusable)?;
-        progress.advance(0, photos.len() as u64)?;
-        let mut caster = surface.caster_for(rays).map_err(unusable)?;
-        let mut finder = GroundFinder::new(*ground, surface);
-        let mut views = Vec::with_capacity(photos.len());
-        progress.stage("draping footprints");
-        for (photo, outcome) in photos.iter().zip(outcomes) {
-            progress.advance(views.len() as u64, photos.len() as u64)?;
-            let Some(scale) = outcome.scale() else {
-                views.push(None);
-                continue;
-            };
-            let view = ViewFacts::compute(
-                self.camera(photo),
-                &photo.pose,
-                *image,
-                scale,
-                &mut finder,
-                &mut caster,
-            );
-            views.push(Some(view.map_err(unusable)?));
-        }
-        Ok(views)
-    }
-}
-
-/// What a surface that cannot be met means for a flight.
-fn unusable(error: SurfaceError) -> Fault {
-    Fault::new(error.to_string(), "check the surface file")
 }

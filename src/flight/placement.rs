@@ -132,6 +132,8 @@ mod tests {
             name: format!("{index}.jpg"),
             camera: 0,
             pose: Pose::from_tilt_pan(*center, [90.0, 0.0]),
+            errors: Default::default(),
+            package_errors: Default::default(),
             trouble: None,
         };
         let camera = Camera {
@@ -151,6 +153,9 @@ mod tests {
             unit_known: true,
             ground: Ground::Auto,
             image: ImageKind::Undistorted,
+            pair: Default::default(),
+            errors: Default::default(),
+            package_errors: Default::default(),
             surface: Arc::new(Surface::new(cloud).unwrap()),
             cameras: vec![camera],
             photos: centers.iter().enumerate().map(photo).collect(),

@@ -3,7 +3,8 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::{Flight, Outcome, unusable};
+use super::computing::unusable;
+use super::{Flight, Outcome};
 use crate::fault::Fault;
 use crate::scale::{PlaceScale, ScaleObjectKind, Traced};
 

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::*;
 use crate::camera::Distortion;
+use crate::jobs::Progress;
 use crate::surface::Cloud;
 
 /// A camera that sees 1.28 by 0.72 of what is 1 away.
@@ -37,12 +38,17 @@ fn flight() -> Flight {
         unit_known: true,
         ground: Ground::Auto,
         image: ImageKind::Undistorted,
+        pair: Default::default(),
+        errors: Default::default(),
+        package_errors: Default::default(),
         surface: Arc::new(Surface::new(cloud).unwrap()),
         cameras: vec![camera()],
         photos: vec![Photo {
             name: "a.jpg".to_owned(),
             camera: 0,
             pose: Pose::from_tilt_pan(DVec3::new(0.0, 0.0, 10.0), [90.0, 0.0]),
+            errors: Default::default(),
+            package_errors: Default::default(),
             trouble: None,
         }],
     })
@@ -51,12 +57,15 @@ fn flight() -> Flight {
 
 fn settings() -> FlightSettings {
     FlightSettings {
+        pair: Default::default(),
+        errors: Default::default(),
         unit: LengthUnit::Metre,
         unit_known: true,
         ground: Ground::Auto,
         image: ImageKind::Undistorted,
         surface: SurfaceOptions::default(),
         scale_objects: Vec::new(),
+        decisions: Vec::new(),
     }
 }
 

@@ -8,8 +8,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Doubt, Evidence, Outcome, PhotoFileState};
-use crate::scale::{CornerName, CornerOutcome, EdgeScales, ViewFacts};
+use super::{Decision, DecisionKind, Doubt, Evidence, Outcome, PhotoFileState};
+use crate::scale::{CornerName, CornerOutcome, EdgeScales, FieldFacts, ScalePair, ViewFacts};
 use crate::units::LengthUnit;
 
 /// When to doubt. A value at its limit is still good.
@@ -31,6 +31,11 @@ pub struct Limits {
     /// The surface's root mean square distance from that plane, as a share of the footprint's mean
     /// edge, above which four corners say too little.
     pub plane_share: f64,
+    /// How far the scale of the photo's pixels may be from the best line, root mean square, as a share of
+    /// the scale: judged in the place of `plane_share` where there is a line.
+    pub off_line_share: f64,
+    /// The width of the 95 % interval of a scale that goes to Split-Desktop, as a share of the scale.
+    pub interval_share: f64,
 }
 
 impl Default for Limits {
@@ -50,6 +55,11 @@ impl Default for Limits {
             // At usual fields of view the mean edge is about as long as the distance, so that the
             // scale within the photo is about 8 % off that between its edges.
             plane_share: 0.08,
+            // The same error as above, measured instead of guessed from four corners.
+            off_line_share: 0.08,
+            // Sizes are off by as much as the scale: more than that between two blasts would be taken for
+            // a difference of the blasts.
+            interval_share: 0.05,
         }
     }
 }
@@ -59,21 +69,33 @@ impl Default for Limits {
 pub enum Verdict {
     /// No reason for doubt was found.
     Trust,
+    /// There are reasons for doubt; the engineer has looked at them, and takes the photo along.
+    Accepted,
     /// There is a scale, and a reason to look before using it.
     Check,
-    /// The top or the bottom scale is missing.
+    /// The engineer leaves the photo out.
+    LeftOut,
+    /// The top or the bottom scale is missing, of the pair that goes to Split-Desktop.
     NoScale,
 }
 
 impl Verdict {
     /// All of them, best first.
-    pub const ALL: [Self; 3] = [Self::Trust, Self::Check, Self::NoScale];
+    pub const ALL: [Self; 5] = [
+        Self::Trust,
+        Self::Accepted,
+        Self::Check,
+        Self::LeftOut,
+        Self::NoScale,
+    ];
 
     /// In one or two words.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Trust => "trust",
+            Self::Accepted => "accepted",
             Self::Check => "check",
+            Self::LeftOut => "left out",
             Self::NoScale => "no scale",
         }
     }
@@ -85,26 +107,58 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// A photo's verdict with its reasons.
+/// A photo's verdict with its reasons, whatever anybody has decided.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Judged {
-    /// What to do with its scale.
+    /// What to do with its scale: [`Verdict::Trust`], [`Verdict::Check`] or [`Verdict::NoScale`].
     pub verdict: Verdict,
     /// The gravest first.
     pub doubts: Vec<Doubt>,
 }
 
-/// Judges a photo: every reason for doubt, the gravest first, and what follows from them. `view` is
-/// `None` where the photo has no scale to look at; `camera` is its camera's image size; `unit` is the
-/// world's, `None` where nobody states it.
-pub(super) fn judge(
-    outcome: &Outcome,
-    view: Option<&ViewFacts>,
-    evidence: &Evidence,
-    camera: (u32, u32),
-    unit: Option<LengthUnit>,
-    limits: &Limits,
-) -> Judged {
+impl Judged {
+    /// The verdict with what the engineer has decided: she may leave any photo out, and take along what
+    /// she was to check, as long as the reasons are those that she has looked at. Where there is no scale
+    /// she cannot make one.
+    pub(super) fn with(&self, decision: Option<&Decision>) -> Verdict {
+        match (self.verdict, decision) {
+            (_, Some(decision)) if decision.kind == DecisionKind::LeftOut => Verdict::LeftOut,
+            (Verdict::Check, Some(decision)) if decision.covers(&self.doubts) => Verdict::Accepted,
+            (verdict, _) => verdict,
+        }
+    }
+}
+
+/// What a photo is judged by.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Facts<'a> {
+    /// Its scale.
+    pub outcome: &'a Outcome,
+    /// `None` where the photo has no scale to look at, or nobody has looked.
+    pub view: Option<&'a ViewFacts>,
+    /// `None` where the photo has no scale, or nobody has computed its field.
+    pub field: Option<&'a FieldFacts>,
+    /// Which scales go to Split-Desktop.
+    pub pair: ScalePair,
+    /// What was looked up of it.
+    pub evidence: &'a Evidence,
+    /// Its camera's image size, pixels.
+    pub camera: (u32, u32),
+    /// The world's, `None` where nobody states it.
+    pub unit: Option<LengthUnit>,
+}
+
+/// Judges a photo: every reason for doubt, the gravest first, and what follows from them.
+pub(super) fn judge(facts: &Facts<'_>, limits: &Limits) -> Judged {
+    let Facts {
+        outcome,
+        view,
+        field,
+        pair,
+        evidence,
+        camera,
+        unit,
+    } = *facts;
     let mut doubts = Vec::new();
     let mut verdict = Verdict::Trust;
     match outcome {
@@ -134,11 +188,22 @@ pub(super) fn judge(
                 bottom,
                 left,
             } = scale.scale;
-            if top.is_none() || bottom.is_none() {
-                verdict = Verdict::NoScale;
-                if doubts.is_empty() {
-                    let reason = "two corner points coincide".to_owned();
-                    doubts.push(Doubt::NoScale(reason));
+            match pair {
+                ScalePair::Corners if top.is_none() || bottom.is_none() => {
+                    verdict = Verdict::NoScale;
+                    if doubts.is_empty() {
+                        let reason = "two corner points coincide".to_owned();
+                        doubts.push(Doubt::NoScale(reason));
+                    }
+                }
+                ScalePair::Corners => {}
+                // A field that nobody has computed yet says nothing.
+                ScalePair::Fitted => {
+                    if let Some(field) = field.filter(|field| field.fitted.is_none()) {
+                        let covered = field.covered;
+                        doubts.insert(0, Doubt::NoFit { covered });
+                        verdict = Verdict::NoScale;
+                    }
                 }
             }
             let limit = limits.top_bottom_ratio;
@@ -163,10 +228,14 @@ pub(super) fn judge(
     }
     doubts.splice(0..0, of_number);
     doubts.extend(found);
+    if let Some(field) = field {
+        doubts.extend(doubts_of_field(field, pair, limits));
+    }
     if let Some(view) = view {
         // Where the unit is not known, no length is said in it: the shares hold all the same.
         let unit = unit.unwrap_or(LengthUnit::Metre);
-        doubts.extend(doubts_of_view(view, unit, limits));
+        let has_line = field.is_some_and(|field| field.fitted.is_some());
+        doubts.extend(doubts_of_view(view, unit, limits, has_line));
     }
     match &evidence.file {
         PhotoFileState::Missing | PhotoFileState::NotNamed if is_reduced => {}
@@ -193,7 +262,37 @@ fn ratio(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     Some((a / b).max(b / a))
 }
 
-fn doubts_of_view(view: &ViewFacts, unit: LengthUnit, limits: &Limits) -> Vec<Doubt> {
+/// What the scale field says against the scales that go to Split-Desktop.
+fn doubts_of_field(field: &FieldFacts, pair: ScalePair, limits: &Limits) -> Vec<Doubt> {
+    let mut doubts = Vec::new();
+    let limit = limits.off_line_share * 100.0;
+    if let Some(line) = field.fitted
+        && line.rms_percent > limit
+    {
+        let percent = line.rms_percent;
+        doubts.push(Doubt::OffLine { percent, limit });
+    }
+    let limit = limits.interval_share * 100.0;
+    let widest = field.uncertainty.as_ref().and_then(|uncertainty| {
+        let ends = match pair {
+            ScalePair::Fitted => [uncertainty.fitted_top, uncertainty.fitted_bottom],
+            ScalePair::Corners => [uncertainty.top, uncertainty.bottom],
+        };
+        let widths = ends.into_iter().flatten().map(|ends| ends.width_percent());
+        widths.max_by(f64::total_cmp)
+    });
+    if let Some(percent) = widest.filter(|&percent| percent > limit) {
+        doubts.push(Doubt::WideInterval { percent, limit });
+    }
+    doubts
+}
+
+fn doubts_of_view(
+    view: &ViewFacts,
+    unit: LengthUnit,
+    limits: &Limits,
+    has_line: bool,
+) -> Vec<Doubt> {
     let mut doubts = Vec::new();
     if let Some(size) = view.footprint_size {
         let limit = limits.triangle_share * size;
@@ -213,7 +312,9 @@ fn doubts_of_view(view: &ViewFacts, unit: LengthUnit, limits: &Limits) -> Vec<Do
             });
         }
         let limit = limits.plane_share * size;
-        if let Some(distance) = view.plane_distance.filter(|&distance| distance > limit) {
+        if let Some(distance) = view.plane_distance.filter(|&distance| distance > limit)
+            && !has_line
+        {
             doubts.push(Doubt::NotPlane {
                 distance,
                 limit,
@@ -233,7 +334,7 @@ mod tests {
     use glam::{DVec2, DVec3};
 
     use super::*;
-    use crate::scale::{Corner, Footprint, PhotoScale};
+    use crate::scale::{Corner, FittedScale, Footprint, Interval, PhotoScale, Uncertainty};
 
     const SIZE: (u32, u32) = (1280, 720);
 
@@ -307,13 +408,32 @@ mod tests {
             triangle_share: 0.25,
             flattest_angle: 30.0,
             plane_share: 0.125,
+            off_line_share: 0.5,
+            interval_share: 0.25,
         }
     }
 
     fn judged(outcome: &Outcome, view: &ViewFacts, file: &PhotoFileState) -> (Verdict, Vec<Doubt>) {
-        let unit = Some(LengthUnit::Metre);
-        let judged = judge(outcome, Some(view), &evidence(file), SIZE, unit, &limits());
+        let evidence = evidence(file);
+        let facts = Facts {
+            view: Some(view),
+            ..facts(outcome, &evidence)
+        };
+        let judged = judge(&facts, &limits());
         (judged.verdict, judged.doubts)
+    }
+
+    /// Of a photo whose corners' scale is used, in metres, and nobody has looked.
+    fn facts<'a>(outcome: &'a Outcome, evidence: &'a Evidence) -> Facts<'a> {
+        Facts {
+            outcome,
+            view: None,
+            field: None,
+            pair: ScalePair::Corners,
+            evidence,
+            camera: SIZE,
+            unit: Some(LengthUnit::Metre),
+        }
     }
 
     #[test]
@@ -338,8 +458,7 @@ mod tests {
             doubts: vec![Doubt::UnderSurface, found.clone()],
             ..Evidence::default()
         };
-        let unit = Some(LengthUnit::Metre);
-        let judged = judge(&good(), Some(&view()), &evidence, SIZE, unit, &limits());
+        let judged = judge(&facts(&good(), &evidence), &limits());
         // The size is said once, and first: it is the number that is wrong.
         assert_eq!(judged.verdict, Verdict::Check);
         assert_eq!(judged.doubts, [found, Doubt::UnderSurface]);
@@ -353,14 +472,12 @@ mod tests {
     /// Pixels per nothing are no scale, however good the view.
     #[test]
     fn without_a_unit_there_is_no_scale() {
-        let judged = judge(
-            &good(),
-            Some(&view()),
-            &evidence(&FOUND),
-            SIZE,
-            None,
-            &limits(),
-        );
+        let (good, found) = (good(), evidence(&FOUND));
+        let facts = Facts {
+            unit: None,
+            ..facts(&good, &found)
+        };
+        let judged = judge(&facts, &limits());
         assert_eq!(judged.verdict, Verdict::NoScale);
         assert_eq!(judged.doubts, [Doubt::UnitUnknown]);
     }
@@ -425,6 +542,67 @@ mod tests {
         assert_eq!(nothing, []);
     }
 
+    /// What the pixels say is judged of the scales that are used.
+    #[test]
+    fn the_field_is_judged_for_the_pair_in_use() {
+        let interval = |width: f64| {
+            Some(Interval {
+                standard_error: 1.0,
+                low: 100.0 - width / 2.0,
+                high: 100.0 + width / 2.0,
+            })
+        };
+        let field = |rms_percent: f64, of_line: f64, of_corners: f64| FieldFacts {
+            covered: 1.0,
+            fitted: Some(FittedScale {
+                top: 100.0,
+                bottom: 100.0,
+                rms_percent,
+                worst_percent: 99.0,
+                covered: 1.0,
+                left_right_percent: 0.0,
+            }),
+            uncertainty: Some(Uncertainty {
+                top: interval(1.0),
+                bottom: interval(of_corners),
+                fitted_top: interval(of_line),
+                fitted_bottom: interval(1.0),
+                ..Uncertainty::default()
+            }),
+        };
+        let doubts = |field: &FieldFacts, pair: ScalePair| {
+            let (outcome, view, evidence) = (good(), view(), evidence(&FOUND));
+            let facts = Facts {
+                outcome: &outcome,
+                view: Some(&view),
+                field: Some(field),
+                pair,
+                evidence: &evidence,
+                camera: SIZE,
+                unit: Some(LengthUnit::Metre),
+            };
+            judge(&facts, &limits()).doubts
+        };
+        let both = [ScalePair::Fitted, ScalePair::Corners];
+        for pair in both {
+            assert_eq!(doubts(&field(50.0, 25.0, 25.0), pair), []);
+            let percent = 50_f64.next_up();
+            let off = Doubt::OffLine {
+                percent,
+                limit: 50.0,
+            };
+            assert_eq!(doubts(&field(percent, 1.0, 1.0), pair), [off]);
+        }
+        let wide = [Doubt::WideInterval {
+            percent: 26.0,
+            limit: 25.0,
+        }];
+        let noisy_corners = field(1.0, 1.0, 26.0);
+        assert_eq!(both.map(|pair| doubts(&noisy_corners, pair).len()), [0, 1]);
+        assert_eq!(doubts(&noisy_corners, ScalePair::Corners), wide);
+        assert_eq!(doubts(&field(1.0, 26.0, 1.0), ScalePair::Fitted), wide);
+    }
+
     #[test]
     fn the_gravest_doubt_comes_first() {
         let on_ground = CornerOutcome::OnGround {
@@ -460,8 +638,7 @@ mod tests {
             judged(&scale([s; 4], [f64::NAN, 1.0, 100.0, 1.0]), &view(), &FOUND);
         assert_eq!((verdict, doubts.len()), (Verdict::NoScale, 1));
         let trouble = Outcome::Trouble("another shape".to_owned());
-        let unit = Some(LengthUnit::Metre);
-        let judged = judge(&trouble, None, &evidence(&FOUND), SIZE, unit, &limits());
+        let judged = judge(&facts(&trouble, &evidence(&FOUND)), &limits());
         let reason = Doubt::NoScale("another shape".to_owned());
         assert_eq!(
             (judged.verdict, judged.doubts),
@@ -469,9 +646,59 @@ mod tests {
         );
     }
 
+    fn field(covered: f64) -> FieldFacts {
+        let fitted = FittedScale {
+            top: 100.0,
+            bottom: 100.0,
+            rms_percent: 0.0,
+            worst_percent: 0.0,
+            covered,
+            left_right_percent: 0.0,
+        };
+        FieldFacts {
+            fitted: (covered >= 0.5).then_some(fitted),
+            covered,
+            uncertainty: None,
+        }
+    }
+
+    /// The pair that goes to Split-Desktop decides, whatever the other one says.
+    #[test]
+    fn without_the_pair_in_use_there_is_no_scale() {
+        let found = evidence(&FOUND);
+        let n = CornerOutcome::Nowhere;
+        let no_corners = scale([n; 4], [f64::NAN; 4]);
+        let no_point = Doubt::NoPoint(CornerName::ALL.to_vec());
+        let no_fit = Doubt::NoFit { covered: 0.31 };
+        let of = |outcome: &Outcome, pair: ScalePair, field: Option<FieldFacts>| {
+            let facts = Facts {
+                pair,
+                field: field.as_ref(),
+                ..facts(outcome, &found)
+            };
+            let judged = judge(&facts, &limits());
+            (judged.verdict, judged.doubts)
+        };
+        use ScalePair::{Corners, Fitted};
+        use Verdict::{Check, NoScale, Trust};
+        let [seen, hidden] = [Some(field(0.5)), Some(field(0.31))];
+        assert_eq!(of(&good(), Fitted, seen.clone()), (Trust, vec![]));
+        assert_eq!(of(&good(), Corners, hidden.clone()), (Trust, vec![]));
+        assert_eq!(of(&good(), Fitted, None), (Trust, vec![]));
+        let expected = (NoScale, vec![no_fit.clone()]);
+        assert_eq!(of(&good(), Fitted, hidden.clone()), expected);
+        let expected = (Check, vec![no_point.clone()]);
+        assert_eq!(of(&no_corners, Fitted, seen.clone()), expected);
+        let expected = (NoScale, vec![no_point.clone()]);
+        assert_eq!(of(&no_corners, Corners, seen), expected);
+        let expected = (NoScale, vec![no_fit, no_point]);
+        assert_eq!(of(&no_corners, Fitted, hidden), expected);
+    }
+
     #[test]
     fn verdicts_sort_best_first() {
-        let mut verdicts = [Verdict::NoScale, Verdict::Trust, Verdict::Check];
+        let mut verdicts = Verdict::ALL;
+        verdicts.reverse();
         verdicts.sort();
         assert_eq!(verdicts, Verdict::ALL);
     }

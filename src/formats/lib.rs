@@ -23,7 +23,9 @@ mod read;
 pub mod tables;
 pub mod text;
 
-use fragscale_core::{camera, fault, files, geodesy, geometry, jobs, raster, surface, units};
+use fragscale_core::{
+    camera, fault, files, geodesy, geometry, jobs, raster, scale, surface, units,
+};
 use fragscale_fragmentation as fragmentation;
 
 pub use candidates::{Candidate, candidates};
@@ -31,6 +33,7 @@ pub use clouds::CloudFile;
 pub use detect::{CloudFormat, Kind, detect};
 pub use files::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use packages::Package;
+pub use packages::pose_covariance::PoseCovariance;
 pub use packages::reconstruction::{
     ImageUnit, MeasuredPosition, Observation, Origin, PosedPhoto, Project, Reconstruction, Sizes,
 };
@@ -46,6 +49,7 @@ pub use read::{
 };
 pub use tables::effort_table::{effort_table, read_effort_table};
 pub use tables::grouped_values::{GroupedValues, Groups, grouped_values, read_grouped_values};
+pub use tables::places::{places, read_places, typed_places};
 pub use tables::size_distributions::{
     DistributionColumns, PointWeights, read_point_weights, read_size_distributions,
     size_distributions,

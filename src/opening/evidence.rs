@@ -31,7 +31,7 @@ pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
     let placement = flight.placement();
     warnings.extend(placement.warnings(flight));
     let of_places = placement.doubts(parts.unit);
-    let of_files = photo_checks(flight, files);
+    let (of_files, metadata) = photo_checks(flight, files);
     warnings.extend(of_files.iter().map(|(doubt, _)| doubt.to_string()));
     let of_files = of_files.into_iter().flat_map(|(doubt, photos)| {
         let each = photos.into_iter();
@@ -42,7 +42,11 @@ pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
             evidence.doubts.push(doubt);
         }
     }
-    LookedUp { evidence, warnings }
+    LookedUp {
+        evidence,
+        warnings,
+        metadata,
+    }
 }
 
 /// Doubts scales for images that nobody may have: of photos whose files are not there, while the

@@ -18,6 +18,7 @@ use crate::formats::{
     Kind, Package, PoseLine, PosesFile, detect, read_camera_mount, read_poses, read_trajectory,
 };
 use crate::jobs::Progress;
+use crate::scale::PoseErrors;
 
 /// What poses over time are for.
 pub(crate) struct PhotosToPose<'a> {
@@ -98,6 +99,7 @@ fn poses_file(posed: PosedFiles, mut warnings: Vec<String>) -> PosesFile {
                 photo,
                 camera: None,
                 pose,
+                errors: PoseErrors::default(),
                 line,
             })
             .collect(),

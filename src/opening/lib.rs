@@ -4,6 +4,8 @@
 //! ```text
 //! open         the flight of a flight.toml, a package's folder, or loose files
 //! dropped      which of several files is what
+//! meant        which flight is meant by a folder above it
+//! health       a flight's unit, coordinates, colours, ... at a glance
 //! info         what a file holds, for `fragscale info`
 //! origin       from which files a flight came, and the flight.toml that says so
 //! world        the coordinate system that surface and photos share
@@ -13,7 +15,9 @@ mod dropped;
 mod evidence;
 mod flight_poses;
 mod georeferencing;
+mod health;
 mod info;
+mod meant;
 mod open;
 mod origin;
 mod photo_checks;
@@ -33,10 +37,12 @@ pub use georeferencing::{
     GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind, LengthResidual,
     PositionResidual, georeference,
 };
+pub use health::{Health, HealthFinding, HealthItem, Remedy, StatedOfFlight, flight_health};
 pub use info::info;
-pub use open::{FlightReconstruction, OpenOptions, Opened, open_flight};
+pub use meant::meant_by;
+pub use open::{FlightReconstruction, OpenOptions, Opened, lacks_surface, open_flight};
 pub use origin::FlightOrigin;
-pub use photo_files::PhotoFile;
+pub use photo_files::{PhotoFile, lacks_photos};
 
 #[cfg(test)]
 mod tests;

@@ -23,6 +23,8 @@ pub struct FlightOrigin {
     pub(crate) photo_folder: Option<PathBuf>,
     /// The surface's file; `None` for the reconstruction's own points.
     pub(crate) surface: Option<PathBuf>,
+    /// Whether it is a cloud or mesh without photos.
+    pub(crate) is_surface: bool,
 }
 
 impl FlightOrigin {
@@ -49,6 +51,11 @@ impl FlightOrigin {
     /// The surface's file; `None` for the reconstruction's own points.
     pub fn surface(&self) -> Option<&Path> {
         self.surface.as_deref()
+    }
+
+    /// Whether it is a cloud or mesh without photos: no flight yet, so it cannot be saved as one.
+    pub fn is_surface_alone(&self) -> bool {
+        self.is_surface
     }
 
     /// Where to save it, if nobody says otherwise: in the flight.toml that it came from, or beside the
@@ -87,6 +94,12 @@ impl FlightOrigin {
     /// not Unicode, or `target` would hide the reconstruction that it names.
     pub fn text_at(&self, target: &Path, settings: &FlightSettings) -> Result<String, FileError> {
         let at_target = |fault| FileError::new(target, fault);
+        if self.is_surface {
+            return Err(at_target(Fault::new(
+                "a cloud without photos makes no flight",
+                "add its cameras first",
+            )));
+        }
         let folder = fs::canonicalize(folder_of(target)).map_err(|e| {
             let what = format!("its folder cannot be found ({e})");
             at_target(Fault::new(what, "choose a folder that exists"))

@@ -15,7 +15,7 @@ use std::collections::BTreeSet;
 
 use glam::{DVec2, DVec3};
 
-use crate::flight::{Doubt, Flight, Photo};
+use crate::flight::{Doubt, Flight, MetadataRead, Photo};
 use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
 use crate::geometry::{Ray, median};
 use crate::photo_files::PhotoFile;
@@ -40,7 +40,7 @@ pub(crate) type Finding = (Doubt, Vec<usize>);
 type Described<'a> = (usize, &'a Photo, PhotoMetadata);
 
 /// Compares a flight with its photo files, which are in the order of its photos.
-pub(crate) fn photo_checks(flight: &Flight, files: &[PhotoFile]) -> Vec<Finding> {
+pub(crate) fn photo_checks(flight: &Flight, files: &[PhotoFile]) -> (Vec<Finding>, MetadataRead) {
     let photos = &flight.parts().photos;
     let step = photos.len().div_ceil(MOST_PHOTOS).max(1);
     let described: Vec<Described<'_>> = photos
@@ -53,12 +53,17 @@ pub(crate) fn photo_checks(flight: &Flight, files: &[PhotoFile]) -> Vec<Finding>
             Some((index, photo, metadata))
         })
         .collect();
+    let tells = |m: &PhotoMetadata| m.model.is_some() || !m.focal.is_empty();
+    let metadata = MetadataRead {
+        looked_at: described.len(),
+        telling: described.iter().filter(|(.., m)| tells(m)).count(),
+    };
     if described.is_empty() {
-        return Vec::new();
+        return (Vec::new(), metadata);
     }
     let mut findings = check_cameras(flight, &described);
     findings.extend(check_distances(flight, &described));
-    findings
+    (findings, metadata)
 }
 
 fn check_cameras(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding> {
@@ -234,6 +239,8 @@ mod tests {
             name: name.to_owned(),
             camera: 0,
             pose: Pose::from_tilt_pan(DVec3::new(1.0, 2.0, 50.0), [90.0, 0.0]),
+            errors: Default::default(),
+            package_errors: Default::default(),
             trouble: None,
         };
         Flight::new(FlightParts {
@@ -242,6 +249,9 @@ mod tests {
             unit_known: true,
             ground: Ground::Auto,
             image: ImageKind::Undistorted,
+            pair: Default::default(),
+            errors: Default::default(),
+            package_errors: Default::default(),
             surface: Arc::new(Surface::new(cloud).unwrap()),
             cameras: vec![Camera {
                 name: name.to_owned(),
@@ -289,7 +299,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let film = 24.0 / 1872.0_f64.sqrt() * 5000.0;
         let check = |flight: &Flight, models, altitude, range| {
-            let found = photo_checks(flight, &files(folder.path(), models, altitude, range));
+            let (found, read) =
+                photo_checks(flight, &files(folder.path(), models, altitude, range));
+            assert_eq!((read.looked_at, read.telling), (2, 2));
             // Each of these speaks against all of its two photos.
             assert!(found.iter().all(|(_, photos)| *photos == [0, 1]));
             found
@@ -364,6 +376,9 @@ mod tests {
                 ..Cloud::default()
             };
             let parts = FlightParts {
+                pair: Default::default(),
+                errors: Default::default(),
+                package_errors: Default::default(),
                 surface: Arc::new(Surface::new(cloud).unwrap()),
                 ..good.parts().clone()
             };
@@ -372,7 +387,7 @@ mod tests {
         assert_eq!(check(&on_pile, ["FC1"; 2], 50.0, 40.0), [""; 0]);
         // Files that are not there are not spoken of here.
         assert_eq!(
-            photo_checks(&good, &[PhotoFile::default(), PhotoFile::default()]),
+            photo_checks(&good, &[PhotoFile::default(), PhotoFile::default()]).0,
             []
         );
     }

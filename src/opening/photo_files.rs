@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use crate::camera::Camera;
 use crate::fault::Fault;
+use crate::files::FileError;
 use crate::flight::{Photo, PhotoFileState};
 use crate::formats::Reconstruction;
 use crate::formats::photos::photo_folder::{PhotoFolder, size_of_file};
@@ -47,6 +48,15 @@ pub(crate) fn files_of(folder: &PhotoFolder<'_>, photos: &[Photo]) -> Vec<PhotoF
     photos.iter().map(file_of).collect()
 }
 
+/// How the fault begins that a folder of photos would mend.
+const NO_SIZE: &str = "the image size of";
+
+/// Whether a flight could not be opened because its package writes no image sizes and its photos are
+/// not there: the folder of the photos mends that.
+pub fn lacks_photos(error: &FileError) -> bool {
+    error.fault.what.starts_with(NO_SIZE)
+}
+
 /// Gives the cameras of a package that writes no image sizes those of their photos; `given` is what a
 /// flight.toml says. A photo whose file cannot be read, or is missing among others that are there, is
 /// left out, which is said in `warnings`.
@@ -85,7 +95,7 @@ pub(crate) fn set_sizes_from_files(
         let (photo, why) = left_out.into_iter().next().unwrap_or_default();
         return Err(Fault::new(
             format!(
-                "the image size of '{photo}' is not known: this package writes none, and its file does not tell it ({why})"
+                "{NO_SIZE} '{photo}' is not known: this package writes none, and its file does not tell it ({why})"
             ),
             "give [photos] folder, or a [[camera]] table with width and height, in a flight.toml",
         ));
@@ -225,6 +235,8 @@ mod tests {
                 name: format!("a/{index}.png"),
                 camera: 0,
                 pose: Pose::from_tilt_pan(DVec3::ZERO, [90.0, 0.0]),
+                errors: Default::default(),
+                package_errors: Default::default(),
                 trouble: None,
             })
             .collect();

@@ -7,7 +7,7 @@ use image::{RgbImage, RgbaImage};
 use super::canvas::{Canvas, Color, Halo};
 use super::scale_bar::{BarEdge, scale_bars};
 use super::text::{Anchor, Typeface, text_width};
-use crate::scale::{Corner, CornerName, CornerOutcome, PhotoScale};
+use crate::scale::{Corner, CornerName, CornerOutcome, PhotoScale, ScaleEstimate};
 use crate::units::LengthUnit;
 
 const BAR: Color = [255, 255, 255, 255];
@@ -19,11 +19,13 @@ const NO_POINT: Color = [240, 60, 60, 255];
 
 /// The photo with its scale drawn on it. `photo` shows the image that the scale is for (undistorted
 /// or as shot), at the camera's size or reduced; bars and texts are sized for the picture as it is.
+///
+/// `pair` is the scale at the top and at the bottom, pixels per `unit`; the corners are those of `scale`.
 pub fn overlay(
     photo: &RgbImage,
     scale: &PhotoScale,
+    pair: [Option<ScaleEstimate>; 2],
     unit: LengthUnit,
-    world_unit: LengthUnit,
 ) -> RgbImage {
     let mut picture: RgbaImage = photo.convert();
     let (width, height) = photo.dimensions();
@@ -48,13 +50,7 @@ pub fn overlay(
         1.0
     };
     let camera_size = |side: u32| (f64::from(side) / shrunk).round() as u32;
-    let bars = scale_bars(
-        scale,
-        camera_size(width),
-        camera_size(height),
-        unit,
-        world_unit,
-    );
+    let bars = scale_bars(pair, camera_size(width), camera_size(height), unit);
     for edge in [BarEdge::Top, BarEdge::Bottom] {
         match bars.iter().find(|bar| bar.edge == edge) {
             Some(bar) => {
@@ -215,12 +211,21 @@ mod tests {
                 direction: Some(DVec3::NEG_Z),
                 outcome: outcomes[index],
             }),
+            // What the corners say has no part in the bars.
             scale: EdgeScales {
-                top: Some(2560.0),
+                top: Some(1234.0),
                 ..EdgeScales::default()
             },
             ground: Some(0.0),
         }
+    }
+
+    fn pair() -> [Option<ScaleEstimate>; 2] {
+        let top = ScaleEstimate {
+            value: 25.6,
+            interval: None,
+        };
+        [Some(top), None]
     }
 
     fn whitest(picture: &RgbImage, row: u32) -> (u32, u32) {
@@ -233,10 +238,9 @@ mod tests {
     /// The bar of 10 cm at 25.6 px/cm is 256 px long, and 128 px in a picture of half the size.
     #[test]
     fn the_bar_is_as_long_as_it_says() {
-        let (cm, m) = (LengthUnit::Centimetre, LengthUnit::Metre);
         for (width, height, length) in [(1000, 700, 256.0), (500, 350, 128.0)] {
             let grey = RgbImage::from_pixel(width, height, Rgb([90; 3]));
-            let picture = overlay(&grey, &scale(), cm, m);
+            let picture = overlay(&grey, &scale(), pair(), LengthUnit::Centimetre);
             let (left, right) = whitest(&picture, height / 20);
             let long = f64::from(right - left + 1);
             // The end ticks add half a stroke on each side.
@@ -248,8 +252,7 @@ mod tests {
     #[test]
     fn corners_say_what_they_met() {
         let grey = RgbImage::from_pixel(1000, 700, Rgb([90; 3]));
-        let (cm, m) = (LengthUnit::Centimetre, LengthUnit::Metre);
-        let picture = overlay(&grey, &scale(), cm, m);
+        let picture = overlay(&grey, &scale(), pair(), LengthUnit::Centimetre);
         let at = |x, y| {
             let [r, g, b] = picture.get_pixel(x, y).0;
             [r, g, b, 255]

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::numbers::{round_down, significant_digits};
-use crate::scale::PhotoScale;
+use crate::numbers::round_down;
+use crate::scale::ScaleEstimate;
 use crate::units::LengthUnit;
 
 /// A bar is at most this share of the image's width.
@@ -52,23 +52,23 @@ pub struct ScaleBar {
 
 /// The bars of a photo's scale in an image of `width` x `height` pixels, the camera's size: centred
 /// at the top and the bottom edge, each at the scale of its edge. An edge without a scale has no
-/// bar. `unit` is the one of the bars, `world_unit` that of `scale`.
+/// bar. `pair` is the scale at the top and at the bottom, pixels per `unit`.
 pub fn scale_bars(
-    scale: &PhotoScale,
+    pair: [Option<ScaleEstimate>; 2],
     width: u32,
     height: u32,
     unit: LengthUnit,
-    world_unit: LengthUnit,
 ) -> Vec<ScaleBar> {
     let (width, height) = (f64::from(width), f64::from(height));
     let inset = INSET_SHARE * height;
+    let [top, bottom] = pair;
     let edges = [
-        (BarEdge::Top, scale.scale.top, inset),
-        (BarEdge::Bottom, scale.scale.bottom, height - inset),
+        (BarEdge::Top, top, inset),
+        (BarEdge::Bottom, bottom, height - inset),
     ];
-    let bar = |(edge, scale, y): (BarEdge, Option<f64>, f64)| {
-        // Pixels per world unit, times world units per unit.
-        let scale = scale? * unit.in_units_of(world_unit);
+    let bar = |(edge, estimate, y): (BarEdge, Option<ScaleEstimate>, f64)| {
+        let estimate = estimate?;
+        let scale = estimate.value;
         let length = round_down(LONGEST_SHARE * width / scale)?;
         let length_px = length * scale;
         let middle = DVec2::new(width / 2.0, y);
@@ -80,10 +80,7 @@ pub fn scale_bars(
             length_px,
             from: middle - half,
             to: middle + half,
-            text: format!(
-                "{length} {unit} · {} px/{unit}",
-                significant_digits(scale, 4)
-            ),
+            text: format!("{length} {unit} · {} px/{unit}", estimate.text(4)),
         })
     };
     edges.into_iter().filter_map(bar).collect()
@@ -91,33 +88,24 @@ pub fn scale_bars(
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
-    use crate::scale::{Corner, CornerName, CornerOutcome, EdgeScales};
+    use crate::scale::Interval;
 
-    fn scale(top: Option<f64>, bottom: Option<f64>) -> PhotoScale {
-        PhotoScale {
-            corners: CornerName::ALL.map(|name| Corner {
-                name,
-                pixel: DVec2::ZERO,
-                direction: Some(DVec3::NEG_Z),
-                outcome: CornerOutcome::Nowhere,
-            }),
-            scale: EdgeScales {
-                top,
-                bottom,
-                ..EdgeScales::default()
-            },
-            ground: None,
-        }
+    fn pair(top: Option<f64>, bottom: Option<f64>) -> [Option<ScaleEstimate>; 2] {
+        [top, bottom].map(|value| {
+            let interval = None;
+            Some(ScaleEstimate {
+                value: value?,
+                interval,
+            })
+        })
     }
 
     /// 2560 px/m are 25.6 px/cm; of 1000 px 350 may be bar, 13.67 cm, so 10 cm, 256 px.
     #[test]
     fn a_known_bar() {
-        let (cm, m) = (LengthUnit::Centimetre, LengthUnit::Metre);
-        let bars = scale_bars(&scale(Some(2560.0), Some(5120.0)), 1000, 800, cm, m);
+        let cm = LengthUnit::Centimetre;
+        let bars = scale_bars(pair(Some(25.6), Some(51.2)), 1000, 800, cm);
         let [top, bottom] = &bars[..] else {
             panic!("{bars:?}");
         };
@@ -133,9 +121,19 @@ mod tests {
         assert_eq!((bottom.edge, bottom.length_in_unit), (BarEdge::Bottom, 5.0));
         assert_eq!(bottom.from.y, 760.0);
         // The same lengths for an engineer with feet: 2560 px/m are 780.288 px/ft exactly.
-        let bars = scale_bars(&scale(Some(2560.0), None), 1000, 800, LengthUnit::Foot, m);
+        let bars = scale_bars(pair(Some(780.288), None), 1000, 800, LengthUnit::Foot);
         assert_eq!(bars.len(), 1);
         assert_eq!(bars[0].text, "0.2 ft · 780.3 px/ft");
         assert!((bars[0].length_px - 156.0576).abs() < 1e-9);
+        let sure = ScaleEstimate {
+            value: 25.6,
+            interval: Some(Interval {
+                standard_error: 0.2,
+                low: 25.2,
+                high: 26.0,
+            }),
+        };
+        let bars = scale_bars([None, Some(sure)], 1000, 800, cm);
+        assert_eq!(bars[0].text, "10 cm · 25.6 ± 0.4 px/cm");
     }
 }

@@ -4,16 +4,11 @@ use glam::DVec2;
 use image::RgbImage;
 use rayon::prelude::*;
 
+use super::pyramid::Part;
 use super::reduce::{reduced_size, reduced_to};
 use super::resample::cubic;
+use super::warp::{CELL, Cell, bilinear};
 use crate::camera::{Camera, Distortion};
-
-/// Pixels along the side of a cell within which the mapping is interpolated.
-const CELL: u32 = 16;
-
-/// How far, in pixels of the photo, a bilinear mapping may be off in the checked points of a cell;
-/// cells where it is further off are mapped exactly, pixel by pixel.
-const TOLERANCE_PX: f64 = 0.02;
 
 /// The undistorted image of `photo`, at its camera's size or reduced so that no side is longer than
 /// `max_side` (`u32::MAX` for the full size). Pixels that the photo does not show are black: beyond
@@ -23,9 +18,8 @@ const TOLERANCE_PX: f64 = 0.02;
 /// image.
 pub fn undistorted(photo: &RgbImage, camera: &Camera, max_side: u32) -> RgbImage {
     let (width, height) = reduced_size(camera.width, camera.height, max_side);
-    let mut out = RgbImage::new(width, height);
-    if photo.is_empty() || out.is_empty() {
-        return out;
+    if photo.is_empty() || width == 0 || height == 0 {
+        return RgbImage::new(width, height);
     }
     // What is looked at through fewer pixels is averaged first, or fine rock would turn to noise.
     let reduced;
@@ -38,14 +32,41 @@ pub fn undistorted(photo: &RgbImage, camera: &Camera, max_side: u32) -> RgbImage
     if camera.distortion == Distortion::None && photo.dimensions() == (width, height) {
         return photo.clone();
     }
-    let mapping = Mapping::new(photo, camera, width, height);
+    let whole = Part {
+        x: 0,
+        y: 0,
+        width,
+        height,
+    };
+    filled(photo, &Mapping::new(photo, camera, width, height), whole)
+}
+
+/// A part of the undistorted image at the size of `photo`, which may be a reduced one of its camera's
+/// shape: a tile of what [`undistorted`] gives, but for the places between the corners of cells, which are
+/// the same to 0.02 pixels.
+pub fn undistorted_part(photo: &RgbImage, camera: &Camera, part: Part) -> RgbImage {
+    let part = part.within(photo.dimensions());
+    if camera.distortion == Distortion::None {
+        return part.of(photo);
+    }
+    let (width, height) = photo.dimensions();
+    filled(photo, &Mapping::new(photo, camera, width, height), part)
+}
+
+/// A part of the image that a mapping leads to.
+fn filled(photo: &RgbImage, mapping: &Mapping<'_>, part: Part) -> RgbImage {
+    let Part { width, height, .. } = part;
+    let mut out = RgbImage::new(width, height);
+    if photo.is_empty() || out.is_empty() {
+        return out;
+    }
     let bytes_a_band = (width * CELL) as usize * 3;
     out.par_chunks_mut(bytes_a_band)
         .enumerate()
         .for_each(|(band, pixels)| {
             let row = band as u32 * CELL;
             for column in (0..width).step_by(CELL as usize) {
-                let cell = mapping.cell(column, row);
+                let cell = mapping.cell(part.x + column, part.y + row);
                 let columns = CELL.min(width - column);
                 for (y, line) in pixels.chunks_mut(width as usize * 3).enumerate() {
                     let line = &mut line[column as usize * 3..][..columns as usize * 3];
@@ -79,14 +100,6 @@ struct Mapping<'a> {
     size: DVec2,
 }
 
-/// How a cell of [`CELL`] pixels a side is mapped.
-enum Cell {
-    /// Between the sources of its corners: top left, top right, bottom left, bottom right.
-    Smooth([DVec2; 4]),
-    /// Pixel by pixel from its top left corner.
-    Exact(DVec2),
-}
-
 impl<'a> Mapping<'a> {
     fn new(photo: &RgbImage, camera: &'a Camera, width: u32, height: u32) -> Self {
         let size = |width: u32, height: u32| DVec2::new(f64::from(width), f64::from(height));
@@ -116,27 +129,8 @@ impl<'a> Mapping<'a> {
     /// of its sides and of itself.
     fn cell(&self, column: u32, row: u32) -> Cell {
         let origin = DVec2::new(f64::from(column), f64::from(row));
-        let place = |share: DVec2| self.source(origin + share * f64::from(CELL));
-        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(place);
-        let [Some(a), Some(b), Some(c), Some(d)] = corners else {
-            return Cell::Exact(origin);
-        };
-        let corners = [a, b, c, d];
-        let checked = [(0.5, 0.0), (0.0, 0.5), (0.5, 0.5), (1.0, 0.5), (0.5, 1.0)];
-        let is_smooth = checked.into_iter().map(DVec2::from).all(|share| {
-            let off = |source: DVec2| (source - bilinear(&corners, share)).length();
-            place(share).is_some_and(|source| off(source) < TOLERANCE_PX)
-        });
-        if is_smooth {
-            Cell::Smooth(corners)
-        } else {
-            Cell::Exact(origin)
-        }
+        Cell::at(origin, |place| self.source(place))
     }
-}
-
-fn bilinear([a, b, c, d]: &[DVec2; 4], share: DVec2) -> DVec2 {
-    a.lerp(*b, share.x).lerp(c.lerp(*d, share.x), share.y)
 }
 
 #[cfg(test)]
@@ -278,6 +272,30 @@ mod tests {
                 smooth > 14_000,
                 "only {smooth} of 15 000 cells are interpolated"
             );
+        }
+    }
+
+    /// Parts of any place are those of the whole, to the steepness of a ramp of one a pixel.
+    #[test]
+    fn parts_are_those_of_the_whole() {
+        let photo = coordinates(240, 160);
+        for camera in lenses().into_iter().chain([camera(Distortion::None)]) {
+            let whole = undistorted(&photo, &camera, u32::MAX);
+            for (x, y, width, height) in [(0, 0, 240, 160), (33, 47, 50, 70), (199, 101, 90, 90)] {
+                let part = Part {
+                    x,
+                    y,
+                    width,
+                    height,
+                };
+                let tile = undistorted_part(&photo, &camera, part);
+                assert_eq!(tile.dimensions(), (width.min(240 - x), height.min(160 - y)));
+                for (u, v, pixel) in tile.enumerate_pixels() {
+                    let there = whole.get_pixel(x + u, y + v);
+                    let off = (0..3).map(|i| pixel[i].abs_diff(there[i])).max().unwrap();
+                    assert!(off <= 1, "{u}, {v}: {pixel:?} {there:?}");
+                }
+            }
         }
     }
 

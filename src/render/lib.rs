@@ -28,12 +28,14 @@ use fragscale_core::{
 };
 
 pub use device::gpu::{Gpu, device_descriptor};
-pub use furniture::colormap::viridis;
+pub use fragscale_core::picture::viridis;
+pub use furniture::flight_line::{Taken, flight_line};
 pub use furniture::labels::{Label, Legend, ScaleBar};
+pub use furniture::photo_lines::SELECTED;
 pub use primitives::mesh::MeshBuffers;
 pub use primitives::points::CloudBuffers;
 pub use primitives::surface::LargePhoto;
-pub use renderer::{Drawn, MOST_PIXELS, Renderer};
+pub use renderer::{Aside, Drawn, MOST_PIXELS, Renderer};
 pub use scene::ground::drawn_ground;
 pub use scene::photo_geometry::PhotoGeometry;
 pub use scene::photo_image::PhotoImage;
@@ -41,4 +43,4 @@ pub use scene::{CloudGeometry, MeshGeometry, Normals};
 pub use show::{Background, ColorBy, PhotoLook, Scope, Show};
 pub use surface_buffers::{Shapes, SurfaceBuffers};
 pub use view::orbit::Orbit;
-pub use view::{Projection, View};
+pub use view::{PhotoZoom, Projection, View};

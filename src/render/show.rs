@@ -1,5 +1,6 @@
 //! What is shown, and how.
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::units::LengthUnit;
@@ -69,7 +70,7 @@ pub struct Show {
     pub outlines: Scope,
     /// The footprints' insides, translucent.
     pub fills: Scope,
-    /// A line through the camera centres in the flight's order.
+    /// A line through the camera centres, in the order of [`super::Renderer::set_flight_line`].
     pub flight_line: bool,
     /// A grid at this elevation, world units.
     pub ground: Option<f64>,
@@ -79,6 +80,16 @@ pub struct Show {
     pub scale_bar: bool,
     /// The unit of the world, for the scale bar's text.
     pub unit: LengthUnit,
+    /// What is written beside lengths in the world (`FlightParts::unit_of_lengths`).
+    pub lengths_in: &'static str,
+    /// The unit that the legend says scales in; `None` is the world's.
+    pub scale_unit: Option<LengthUnit>,
+    /// The points of the distance tool, in the world: one is marked, between two the distance is told.
+    pub measured: Vec<DVec3>,
+    /// Lines that are drawn on the surface, in the world.
+    pub drawn_lines: Vec<Vec<DVec3>>,
+    /// Their points, which are marked.
+    pub drawn_points: Vec<DVec3>,
     /// The selected photo laid on the surface that it sees ([`super::Renderer::set_projected_photo`]).
     pub project_photo: bool,
     /// How much of the photo lies over the view that looks through its camera, 0 to 1.
@@ -116,6 +127,11 @@ impl Default for Show {
             axes: true,
             scale_bar: true,
             unit: LengthUnit::Metre,
+            lengths_in: "m",
+            scale_unit: None,
+            measured: Vec::new(),
+            drawn_lines: Vec::new(),
+            drawn_points: Vec::new(),
             project_photo: false,
             photo_blend: 0.0,
             selected: None,

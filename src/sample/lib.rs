@@ -21,6 +21,7 @@ mod sensor;
 mod sfm_cloud;
 mod sieve;
 mod truth;
+mod written;
 
 #[cfg(test)]
 use fragscale_core::scale;
@@ -43,6 +44,7 @@ pub use preset::{Lens, Preset, Recipe};
 pub use scene::pile::{Fragment, Pile, PilePlan};
 pub use scene::{Meeting, Scene, SceneCaster, Sphere, Thing};
 pub use sfm_cloud::CloudPlan;
+pub use written::{DrawnErrors, PoseNoise};
 
 use crate::fault::Fault;
 use crate::geometry::Ray;
@@ -51,7 +53,6 @@ use crate::surface::Cloud;
 use crate::units::LengthUnit;
 use files::flight::FlightText;
 use files::photo_metadata::{DjiGimbal, PhotoMetadata};
-use files::poses::{Orientation, PoseRow};
 use files::reference::openings_mm;
 use fragscale_core::files::make_folder_whole;
 use image_analysis::{Analysis, Outlined, PixelPlaces, Scale};
@@ -59,6 +60,7 @@ use material::Material;
 use photo::Look;
 use random::Random;
 use scene::light::Light;
+use written::Written;
 
 /// What the user asks of a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,6 +85,8 @@ pub struct SampleOptions {
     pub labels: bool,
     /// Whether the middle of the pile is the world's origin, instead of the preset's place.
     pub at_origin: bool,
+    /// Errors of what is written: of poses, of the lens, of the world's lengths.
+    pub errors: DrawnErrors,
 }
 
 /// Makes a simulated flight in `folder`, which must be new or empty.
@@ -145,6 +149,7 @@ fn fill(
     let random = Random::new(options.seed);
     let mut shots = recipe.flight.fly(&mut random.fork(20));
     shots.extend(recipe.flight.ring(options.ring, &mut random.fork(21)));
+    let written = Written::draw(&options.errors, &shots, &random)?;
     let scene = build_scene(recipe, &shots, &random, progress)?;
     let look = look(options.preset, recipe);
 
@@ -158,15 +163,10 @@ fn fill(
         };
         (reconstruct(&scene, recipe, &look, &random, progress)?, name)
     };
-    write_surface(&folder.join(name), surface, recipe, progress)?;
-    write_texts(
-        folder,
-        name,
-        recipe,
-        &shots,
-        options.photos.then_some("photos"),
-    )?;
-    let truth = truth::truth(&scene, &recipe.camera, &shots, recipe.origin)?;
+    write_surface(&folder.join(name), surface, recipe, &written, progress)?;
+    write_texts(folder, name, recipe, &shots, &written, options)?;
+    progress.stage("measuring the truth");
+    let truth = truth::truth(&scene, &recipe.camera, &shots, &written, recipe.origin)?;
     write(&folder.join("truth.json"), format!("{truth}\n").as_bytes())?;
     let sieved = sieved(&scene, recipe);
     let reference = files::reference::reference_csv(&sieved);
@@ -285,11 +285,12 @@ fn write_surface(
     path: &Path,
     mut cloud: Cloud,
     recipe: &Recipe,
+    written: &Written,
     progress: &Progress,
 ) -> Result<(), Fault> {
     progress.stage("writing the surface");
     for point in &mut cloud.points {
-        *point += recipe.origin;
+        *point = *point * written.world_factor() + recipe.origin;
     }
     let bytes = match recipe.epsg.filter(|_| cloud.triangles.is_empty()) {
         Some(epsg) => files::laz::laz(&cloud, epsg),
@@ -298,31 +299,25 @@ fn write_surface(
     write(path, &bytes.map_err(|e| Fault::new(e, "report this"))?)
 }
 
-/// Of the photos' folder where there are photos.
+/// Poses, camera, and the flight with what it states of their errors; the photos' folder where there
+/// are photos.
 fn write_texts(
     folder: &Path,
     surface: &str,
     recipe: &Recipe,
     shots: &[Shot],
-    photos: Option<&str>,
+    written: &Written,
+    options: &SampleOptions,
 ) -> Result<(), Fault> {
     let report = |error: String| Fault::new(error, "report this");
-    let rows: Vec<PoseRow> = shots
-        .iter()
-        .map(|shot| PoseRow {
-            photo: shot.name.clone(),
-            camera: None,
-            center: shot.actual.0 + recipe.origin,
-            orientation: Orientation::TiltPan(shot.actual.1),
-        })
-        .collect();
+    let rows = written.pose_rows(shots, recipe.origin);
     write(
         &folder.join("poses.csv"),
         files::poses::poses_csv(&rows).map_err(report)?.as_bytes(),
     )?;
     write(
         &folder.join("ost.yaml"),
-        files::calibration::ost_yaml(&recipe.camera)
+        files::calibration::ost_yaml(&written.camera(&recipe.camera))
             .map_err(report)?
             .as_bytes(),
     )?;
@@ -332,7 +327,9 @@ fn write_texts(
         surface,
         camera: "ost.yaml",
         poses: "poses.csv",
-        photos,
+        photos: options.photos.then_some("photos"),
+        focal: options.errors.lens,
+        world_scale: options.errors.world,
     };
     write(
         &folder.join("flight.toml"),
@@ -353,7 +350,9 @@ fn sieved(scene: &Scene, recipe: &Recipe) -> Vec<(f64, f64)> {
             return recipe.pile.sizes.passing(size);
         }
         let passed = pile.fragments.iter().filter(|f| f.size <= size);
-        fines + (1.0 - fines) * passed.map(|f| pile.volume(f)).sum::<f64>() / total
+        // All of it is 1, whatever the rounding of the sums.
+        let share = passed.map(|f| pile.volume(f)).sum::<f64>() / total;
+        (fines + (1.0 - fines) * share).min(1.0)
     };
     let largest = recipe.pile.sizes.size_at(1.0) * 1000.0;
     let openings = openings_mm(largest / 100.0, largest * 1.2);

@@ -1,9 +1,8 @@
 //! The ground: the plane z = ground that a ray falls back to where it misses the surface.
 
-use glam::DVec3;
-
+use super::pyramid::Pyramid;
 use crate::camera::{Camera, Pose};
-use crate::geometry::{Bounds, median};
+use crate::geometry::median;
 use crate::surface::{Surface, SurfaceError};
 
 /// How the elevation of the ground is found.
@@ -63,7 +62,7 @@ impl<'a> GroundFinder<'a> {
 
     /// The median elevation of the vertices that the photo shows.
     fn median_seen(&self, camera: &Camera, pose: &Pose) -> Option<f64> {
-        let view = Pyramid::new(camera, pose);
+        let view = Pyramid::of_image(camera, pose.center, pose.rotation);
         let mut seen = Vec::new();
         for block in self.surface.vertex_blocks() {
             if view.misses(&block.bounds) {
@@ -89,58 +88,14 @@ impl<'a> GroundFinder<'a> {
     }
 }
 
-/// The part of the world that an undistorted image shows: in front of the camera, between the four
-/// planes through its centre and the image's edges.
-struct Pyramid {
-    apex: DVec3,
-    /// Inward normals in the world. K·(x, y, z) = z·(u, v, 1), so u >= 0 is fx·x + s·y + cx·z >= 0,
-    /// and so on.
-    normals: [DVec3; 5],
-}
-
-impl Pyramid {
-    fn new(camera: &Camera, pose: &Pose) -> Self {
-        let Camera {
-            fx,
-            fy,
-            cx,
-            cy,
-            skew,
-            ..
-        } = *camera;
-        let (width, height) = (f64::from(camera.width), f64::from(camera.height));
-        let normals = [
-            DVec3::Z,
-            DVec3::new(fx, skew, cx),
-            DVec3::new(-fx, -skew, width - cx),
-            DVec3::new(0.0, fy, cy),
-            DVec3::new(0.0, -fy, height - cy),
-        ];
-        Self {
-            apex: pose.center,
-            normals: normals.map(|normal| (pose.rotation * normal).normalize_or_zero()),
-        }
-    }
-
-    /// Whether a box lies wholly outside of one of the planes, by more than rounding can do. Where it
-    /// does not, its vertices are looked at one by one.
-    fn misses(&self, bounds: &Bounds) -> bool {
-        let (middle, half) = (bounds.center(), bounds.size() / 2.0);
-        let way = middle - self.apex;
-        let room = 1e-9 * (way.length() + half.length())
-            + 1e-14 * (middle.abs() + self.apex.abs()).max_element();
-        self.normals
-            .iter()
-            .any(|normal| normal.dot(way) + normal.abs().dot(half) < -room)
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
     use proptest::prelude::*;
 
     use super::*;
     use crate::camera::Distortion;
+    use crate::geometry::Bounds;
     use crate::surface::Cloud;
 
     /// The definition, vertex by vertex.
@@ -224,7 +179,7 @@ mod tests {
             let ray = camera.direction_undistorted(glam::DVec2::new(u, v));
             let point = center + pose.rotation * ray * depth;
             let bounds = Bounds { min: point, max: point };
-            prop_assert!(!Pyramid::new(&camera, &pose).misses(&bounds));
+            prop_assert!(!Pyramid::of_image(&camera, pose.center, pose.rotation).misses(&bounds));
         }
     }
 }

@@ -6,20 +6,37 @@
 //! The paper's equation 5 writes T (p, 1), which adds the camera centre to a direction; only the
 //! rotation may act on a direction, and so it does here.
 
+mod estimate;
+mod facts;
+mod field;
+mod fitted;
 mod footprint;
 mod ground;
+mod pyramid;
+mod rectification;
 mod scale_object;
+mod sighting;
 mod sphere;
+mod stated_errors;
+mod uncertainty;
 mod view;
 
 use std::fmt;
 
 use glam::{DVec2, DVec3};
 
+pub use estimate::ScaleEstimate;
+pub use facts::FieldFacts;
+pub use field::{FieldError, FieldGrid, FieldPoint, ScaleField};
+pub use fitted::{FittedScale, LEAST_COVERED};
 pub use footprint::{Footprint, FootprintDetail, FootprintPoint};
 pub use ground::{Ground, GroundFinder};
+pub use rectification::{Onto, PixelSize, PlaneFrame, PlaneRaster, Rectification};
 pub use scale_object::{Bar, PlaceScale, ScaleObjectKind, Traced};
+pub use sighting::{Sighting, sighting};
 pub use sphere::Sphere;
+pub use stated_errors::{PoseErrors, ScalePair, StatedErrors};
+pub use uncertainty::{ErrorSource, Interval, PixelErrors, UncertainPhoto, Uncertainty};
 pub use view::ViewFacts;
 
 use crate::camera::{Camera, NotInvertible, Pose};
@@ -55,6 +72,15 @@ impl ImageKind {
             Self::Undistorted => camera.pixel_undistorted(point),
             Self::AsShot => camera.pixel_as_shot(point),
         }
+    }
+
+    /// The pixel in this image of what the other one shows at `pixel`, or `None` where one of them does
+    /// not show it.
+    pub fn pixel_from(self, other: Self, camera: &Camera, pixel: DVec2) -> Option<DVec2> {
+        if self == other {
+            return Some(pixel);
+        }
+        self.pixel(camera, other.direction(camera, pixel).ok()?)
     }
 }
 

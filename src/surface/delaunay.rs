@@ -1,4 +1,5 @@
-//! The whole 2.5-D Delaunay triangulation of points, by spade.
+//! The 2.5-D Delaunay triangulation of points, by spade: what rays walk on (`walk.rs`), and the whole
+//! of small clouds.
 
 use glam::DVec3;
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};

@@ -4,14 +4,19 @@
 //! (contract, section 2). The two have different ways to meet rays: `walk` for a cloud, which
 //! builds no more than the rays ask for, `mesh` for faces, which may overhang.
 
+mod around;
 mod blocks;
 mod bulk;
 mod cloud;
 mod delaunay;
 mod hull;
+mod left_out;
+mod made_once;
 mod mesh;
+mod patches;
 mod sites;
 mod thinning;
+mod tiles;
 mod up_axis;
 mod walk;
 
@@ -22,11 +27,15 @@ use glam::DVec3;
 
 pub use blocks::VertexBlock;
 pub use cloud::Cloud;
+pub use left_out::LeftOut;
+pub use patches::{Patch, Patches};
 pub use up_axis::{UpAxis, doubtful_up};
 
 use crate::geometry::{Bounds, LocalFrame, Ray};
 use mesh::Mesh;
+use patches::Run;
 use sites::Sites;
+use tiles::Tiles;
 use walk::Walk;
 
 /// Points that make no surface.
@@ -122,6 +131,10 @@ struct Whole {
     shape: Shape,
     /// Of the vertices, once somebody asked.
     blocks: OnceLock<Vec<VertexBlock>>,
+    /// Of a cloud: its triangles, once somebody asked.
+    tiles: OnceLock<Tiles>,
+    /// Of a mesh: the boxes around runs of its faces, once somebody asked.
+    runs: OnceLock<Vec<Run>>,
     /// The same as a mesh, once somebody asked.
     mesh: OnceLock<Arc<Whole>>,
     /// Held while it is made: threads that ask at the same time wait for the one that makes it.
@@ -157,7 +170,7 @@ struct Met {
 }
 
 /// The longest edge of a triangle.
-fn longest_edge([a, b, c]: [DVec3; 3]) -> f64 {
+pub(crate) fn longest_edge([a, b, c]: [DVec3; 3]) -> f64 {
     a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
 
@@ -219,6 +232,8 @@ impl Surface {
             magnitude,
             shape,
             blocks: OnceLock::new(),
+            tiles: OnceLock::new(),
+            runs: OnceLock::new(),
             mesh: OnceLock::new(),
             making: Mutex::default(),
         };
@@ -272,6 +287,11 @@ impl Surface {
         Ok(())
     }
 
+    /// Whether its triangles were put between points here, and not read.
+    pub fn is_cloud(&self) -> bool {
+        matches!(self.whole.shape, Shape::Cloud(_))
+    }
+
     /// Whether so many rays are worth a mesh of the whole surface.
     fn pays_whole(&self, rays: usize) -> bool {
         match &self.whole.shape {
@@ -315,17 +335,29 @@ impl Surface {
             Shape::Cloud(sites) => sites,
         };
         if self.whole.mesh.get().is_none() {
+            // On all cores, so not while the lock is held: who waits for others may be given work that
+            // asks for the mesh, too.
+            let triangles = match sites.points().len() <= walk::FEW_SITES {
+                // As the walk has them: of a coarse lattice there are many triangulations.
+                true => delaunay::triangulate(sites.points())?,
+                false => {
+                    let tiles = self.whole.tiles.get_or_init(|| Tiles::new(sites));
+                    let made = tiles.seen(sites, |_| false)?.into_iter();
+                    made.flat_map(|made| &made.triangles).copied().collect()
+                }
+            };
             // A thread that panicked while it held the lock has set nothing.
             let making = self.whole.making.lock();
             let _making = making.unwrap_or_else(PoisonError::into_inner);
             if self.whole.mesh.get().is_none() {
-                let triangles = delaunay::triangulate(sites.points())?;
                 let (points, colors) = (sites.points().to_vec(), sites.colors().to_vec());
                 let whole = Whole {
                     frame: self.whole.frame,
                     magnitude: self.whole.magnitude,
                     shape: Shape::Mesh(Mesh::new(points, colors, triangles)?),
                     blocks: OnceLock::new(),
+                    tiles: OnceLock::new(),
+                    runs: OnceLock::new(),
                     mesh: OnceLock::new(),
                     making: Mutex::default(),
                 };
@@ -429,12 +461,8 @@ impl Caster<'_> {
     /// The nearest intersection in front of the ray's origin. Edges, vertices and the rim belong to
     /// the surface.
     pub fn cast(&mut self, ray: &Ray) -> Option<Hit> {
-        let Whole {
-            frame, magnitude, ..
-        } = &*self.surface.whole;
-        let local = frame.local_from_world_ray(ray);
-        // What the rounding of the input and of a few products can shift a ray by, sixteenfold.
-        let slack = 16.0 * f64::EPSILON * (magnitude + local.origin.length());
+        let local = self.surface.frame().local_from_world_ray(ray);
+        let slack = self.surface.slack(ray.origin);
         let met = match &mut self.way {
             Way::Walk(walk) => walk.cast(&local, slack),
             Way::Mesh(mesh) => mesh.cast(&local, slack, self.surface.max_edge),

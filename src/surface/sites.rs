@@ -4,6 +4,8 @@
 //! ray's trace, and does any site lie inside this circle. Building it is a counting sort, a fiftieth
 //! of the cost of triangulating everything.
 
+use std::ops::Range;
+
 use glam::{DVec2, DVec3};
 
 use super::SurfaceError;
@@ -24,9 +26,20 @@ pub(super) struct Sites {
     bounds: Bounds,
     /// The corners of their convex hull over (x, y), counter-clockwise.
     hull: Vec<DVec3>,
+    /// The same as indices, in any order.
+    hull_indices: Vec<u32>,
     grid: Grid,
     /// Where each cell's points begin, and after the last cell the number of points.
     starts: Vec<u32>,
+}
+
+/// A block of cells.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Cells {
+    /// Along x.
+    pub(super) columns: Range<usize>,
+    /// Along y.
+    pub(super) rows: Range<usize>,
 }
 
 /// A grid over the bulk of the cloud. Its border cells reach to infinity, so that a few points far
@@ -168,14 +181,31 @@ impl Sites {
         if is_line(&hull) {
             return Err(SurfaceError::OnOneLine);
         }
-        Ok(Self {
+        let mut sites = Self {
             points: sorted,
             colors,
             bounds,
             hull,
+            hull_indices: Vec::new(),
             grid,
             starts,
-        })
+        };
+        let of_hull = sites
+            .hull
+            .iter()
+            .filter_map(|corner| sites.index_of(*corner));
+        sites.hull_indices = of_hull.collect();
+        Ok(sites)
+    }
+
+    /// The index of the site at a point of `points`.
+    fn index_of(&self, point: DVec3) -> Option<u32> {
+        let cell = self.grid.row(point.y) * self.grid.columns + self.grid.column(point.x);
+        let in_cell = self.in_cell(cell).iter();
+        let place = in_cell
+            .zip(self.starts[cell]..)
+            .find(|(site, _)| **site == point);
+        Some(place?.1)
     }
 
     /// All sites, grouped by cell.
@@ -196,6 +226,74 @@ impl Sites {
     /// The corners of the convex hull over (x, y), counter-clockwise.
     pub(super) fn hull(&self) -> &[DVec3] {
         &self.hull
+    }
+
+    /// The indices of these corners, in any order.
+    pub(super) fn hull_indices(&self) -> &[u32] {
+        &self.hull_indices
+    }
+
+    /// How many columns and rows of cells there are.
+    pub(super) fn grid_size(&self) -> (usize, usize) {
+        (self.grid.columns, self.grid.rows)
+    }
+
+    /// The indices of the sites in a block of cells: a range for each of its rows.
+    pub(super) fn ranges_of(&self, cells: &Cells) -> impl Iterator<Item = Range<usize>> {
+        let columns = cells.columns.clone();
+        cells.rows.clone().map(move |row| {
+            let first = row * self.grid.columns;
+            let start = |column: usize| self.starts[first + column] as usize;
+            start(columns.start)..start(columns.end)
+        })
+    }
+
+    /// A block with so many cells around it, as far as there are any.
+    pub(super) fn widened(&self, cells: &Cells, by: usize) -> Cells {
+        let wider = |range: &Range<usize>, count: usize| {
+            range.start.saturating_sub(by)..(range.end + by).min(count)
+        };
+        Cells {
+            columns: wider(&cells.columns, self.grid.columns),
+            rows: wider(&cells.rows, self.grid.rows),
+        }
+    }
+
+    /// Whether a disc lies within a block of cells, of which those at the border have no end.
+    pub(super) fn holds_disc(&self, cells: &Cells, center: DVec2, radius: f64) -> bool {
+        let grid = &self.grid;
+        let holds = |range: &Range<usize>, count: usize, min: f64, center: f64| {
+            let at = |cell: usize| min + grid.cell * cell as f64;
+            (range.start == 0 || center - radius > at(range.start))
+                && (range.end == count || center + radius < at(range.end))
+        };
+        holds(&cells.columns, grid.columns, grid.min.x, center.x)
+            && holds(&cells.rows, grid.rows, grid.min.y, center.y)
+    }
+
+    /// The places in (x, y) of a block's first and last corner; without end where it is at the border.
+    pub(super) fn corners_of(&self, cells: &Cells) -> (DVec2, DVec2) {
+        let grid = &self.grid;
+        let ends = |range: &Range<usize>, count: usize, min: f64| {
+            let at = |cell: usize| min + grid.cell * cell as f64;
+            (
+                if range.start == 0 {
+                    f64::NEG_INFINITY
+                } else {
+                    at(range.start)
+                },
+                if range.end == count {
+                    f64::INFINITY
+                } else {
+                    at(range.end)
+                },
+            )
+        };
+        let (x, y) = (
+            ends(&cells.columns, grid.columns, grid.min.x),
+            ends(&cells.rows, grid.rows, grid.min.y),
+        );
+        (DVec2::new(x.0, y.0), DVec2::new(x.1, y.1))
     }
 
     /// How many cells there are.
@@ -233,8 +331,8 @@ impl Sites {
         cells
     }
 
-    /// Calls `visit` with every site in the cells that a disc touches.
-    pub(super) fn near_disc(&self, center: DVec2, radius: f64, mut visit: impl FnMut(&DVec3)) {
+    /// Calls `visit` with every site in the cells that a disc touches, and its index.
+    pub(super) fn near_disc(&self, center: DVec2, radius: f64, mut visit: impl FnMut(u32, &DVec3)) {
         let grid = &self.grid;
         // Room for the rounding of huge circles, whose middle is far away.
         let radius = radius * (1.0 + 1e-9);
@@ -253,8 +351,8 @@ impl Sites {
             let first = row * grid.columns;
             let from = self.starts[first + columns.0] as usize;
             let to = self.starts[first + columns.1 + 1] as usize;
-            for point in &self.points[from..to] {
-                visit(point);
+            for (index, point) in (from as u32..).zip(&self.points[from..to]) {
+                visit(index, point);
             }
         }
     }
@@ -328,7 +426,7 @@ mod tests {
         ] {
             let inside = |p: &DVec3| p.truncate().distance(center) <= radius;
             let mut found = 0;
-            sites.near_disc(center, radius, |p| found += usize::from(inside(p)));
+            sites.near_disc(center, radius, |_, p| found += usize::from(inside(p)));
             assert_eq!(
                 found,
                 points.iter().filter(|p| inside(p)).count(),

@@ -35,7 +35,7 @@ use crate::geometry::Ray;
 const SITES_AT_ONCE: usize = 64;
 
 /// With fewer sites than this, everything is built at the start: it takes a millisecond.
-const FEW_SITES: usize = 1000;
+pub(super) const FEW_SITES: usize = 1000;
 
 type Edge<'a> = DirectedEdgeHandle<'a, Site, (), (), ()>;
 type Face<'a> = FaceHandle<'a, InnerTag, Site, (), (), ()>;
@@ -465,16 +465,17 @@ impl<'a> Walk<'a> {
         let (center, radius_squared) = (a + to_center, to_center.length_squared());
         let coord = |p: DVec2| Coord { x: p.x, y: p.y };
         let mut found = Vec::new();
-        self.sites.near_disc(center, radius_squared.sqrt(), |site| {
-            let place = site.truncate();
-            // Clearly outside; NaN, of a circle too large for f64, is left to the predicate.
-            if place.distance_squared(center) > radius_squared * (1.0 + 1e-6) {
-                return;
-            }
-            if incircle(coord(a), coord(b), coord(c), coord(place)) > 0.0 {
-                found.push(*site);
-            }
-        });
+        self.sites
+            .near_disc(center, radius_squared.sqrt(), |_, site| {
+                let place = site.truncate();
+                // Clearly outside; NaN, of a circle too large for f64, is left to the predicate.
+                if place.distance_squared(center) > radius_squared * (1.0 + 1e-6) {
+                    return;
+                }
+                if incircle(coord(a), coord(b), coord(c), coord(place)) > 0.0 {
+                    found.push(*site);
+                }
+            });
         let middle = (a + b + c) / 3.0;
         if found.len() > SITES_AT_ONCE {
             found.select_nth_unstable_by(SITES_AT_ONCE, |p, q| {

@@ -174,7 +174,8 @@ fn a_copied_scale_reaches_another_program() {
     let flight = sample().join("flight.toml");
     let told = crate::common::scales_json(&flight, &[]);
     let photo = &told["photos"][0];
-    let edges = ["top", "bottom"].map(|edge| crate::common::scale(photo, edge).expect("a scale"));
+    // The pair that goes to Split-Desktop.
+    let edges = ["top", "bottom"].map(|edge| photo["fitted"][edge].as_f64().expect("a scale"));
     screen.open(&flight);
     screen.until("a scale is copied", |screen| {
         screen.press("ctrl+shift+c");

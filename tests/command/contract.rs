@@ -81,6 +81,12 @@ fn json_has_the_contracts_keys_in_its_order() {
         "\"direction\"",
         "\"point\"",
         "\"on\"",
+        "\"fitted\"",
+        "\"rms_percent\"",
+        "\"worst_percent\"",
+        "\"covered\"",
+        "\"left_right_percent\"",
+        "\"uncertainty\"",
     ];
     let places: Vec<usize> = keys.iter().map(|key| text.find(key).expect(key)).collect();
     assert!(places.is_sorted(), "{places:?}");
@@ -120,7 +126,9 @@ fn csv_has_the_contracts_columns_and_the_same_numbers() {
         lines.next(),
         Some(
             "photo,width_px,height_px,top_px_per_in,bottom_px_per_in,left_px_per_in,\
-             right_px_per_in,corners_on_surface,note"
+             right_px_per_in,fitted_top_px_per_in,fitted_bottom_px_per_in,off_line_rms_percent,\
+             covered,top_low,top_high,bottom_low,bottom_high,fitted_top_low,fitted_top_high,\
+             fitted_bottom_low,fitted_bottom_high,corners_on_surface,verdict,reasons,note"
         )
     );
     let first: Vec<&str> = lines.next().expect("a photo").split(',').collect();
@@ -128,7 +136,23 @@ fn csv_has_the_contracts_columns_and_the_same_numbers() {
     for (column, edge) in [(3, "top"), (4, "bottom"), (5, "left"), (6, "right")] {
         assert_eq!(first[column].parse().ok(), scale(&json["photos"][0], edge));
     }
-    assert_eq!(first[7..], ["4", ""]);
+    let fitted = &json["photos"][0]["fitted"];
+    for (column, key) in [
+        (7, "top"),
+        (8, "bottom"),
+        (9, "rms_percent"),
+        (10, "covered"),
+    ] {
+        assert_eq!(first[column].parse().ok(), fitted[key].as_f64(), "{key}");
+    }
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let first = reader.records().next().expect("a photo").expect("a line");
+    let photo = &json["photos"][0];
+    let reasons = photo["reasons"].as_array().expect("reasons").iter();
+    let reasons: Vec<&str> = reasons.map(|r| r.as_str().expect("words")).collect();
+    let verdict = photo["verdict"].as_str().expect("a verdict");
+    let expected = ["4", verdict, &reasons.join("; "), ""];
+    assert_eq!(first.iter().skip(19).collect::<Vec<_>>(), expected);
     assert_eq!(lines.count(), 8);
 }
 
@@ -331,6 +355,34 @@ fn a_mistyped_command_is_recognised() {
         stderr.contains("'scails' is neither a command (perhaps 'scales')"),
         "{stderr}"
     );
+}
+
+/// A flight's folder that is called like a command: how it is opened is told.
+#[cfg(feature = "app")]
+#[test]
+fn a_folder_that_is_called_like_a_command_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::create_dir(folder.path().join("sample")).expect("a folder");
+    let run = |arguments: &[&str]| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_fragscale"))
+            .args(arguments)
+            .current_dir(folder.path())
+            .output()
+            .expect("the program");
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8(output.stderr).expect("UTF-8")
+    };
+    let stderr = run(&["sample"]);
+    assert!(
+        stderr.contains(
+            "'sample' is a command; to open the folder of that name type 'fragscale ./sample'"
+        ),
+        "{stderr}"
+    );
+    assert_eq!(stderr.lines().count(), 1, "{stderr}");
+    // Without such a folder there is nothing to mix up.
+    let stderr = run(&["scales"]);
+    assert!(!stderr.contains("./scales"), "{stderr}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::{fragscale, scale, scales_json, stdout_of};
-use own_frame::{model, positions};
+use own_frame::{CENTERS, model, positions};
 use serde_json::Value;
 
 fn text(path: &Path) -> &str {
@@ -82,4 +82,29 @@ fn the_table_and_the_errors_are_lines() {
     assert!(!flight.exists());
     let usage = fragscale(&command(folder.path(), &["--distance", "1 2"]));
     assert_eq!(usage.status.code(), Some(2));
+}
+
+/// Four of five cameras, at the corners of a rectangle, have positions that are 0.3 m too high and too low
+/// in turn. No similarity follows that, so the residuals are these, and with S the sum of the squares of
+/// the distances from the long axis (the y of the cameras, from their mean, times 3: 82.8 m²) the turn about
+/// it is known to sqrt(4 · 0.3² / (3 · 5 - 7) / S) = 0.023313 rad = 1.335715 degrees.
+#[test]
+fn the_rotations_standard_error_is_in_degrees() {
+    let folder = tempfile::tempdir().expect("a folder");
+    model(folder.path());
+    let mut list = "photo,x,y,z\n".to_owned();
+    for (i, ([x, y, z], way)) in CENTERS.iter().zip([1.0, -1.0, 1.0, -1.0, 0.0]).enumerate() {
+        let (x, y, z) = (5e5 + 3.0 * x, 5e6 - 3.0 * y, 150.0 - 3.0 * z + 0.3 * way);
+        list += &format!("img_{}.jpg,{x},{y},{z}\n", i + 1);
+    }
+    let path = folder.path().join("list.csv");
+    fs::write(&path, list).expect("written");
+    let arguments = ["--positions", text(&path), "--format", "json"];
+    let said = stdout_of(&command(folder.path(), &arguments));
+    let said: Value = serde_json::from_str(&said).expect("JSON");
+    let degrees = said["rotation_standard_error_degrees"].as_f64();
+    let degrees = degrees.expect("a number");
+    assert!((degrees - 1.335_715).abs() < 1e-5, "{degrees}");
+    // Lengths do not suffer from it.
+    assert!(said["scale_standard_error"].as_f64().expect("a number") < 1e-9);
 }

@@ -102,7 +102,8 @@ fn scales_for_reduced_photos_say_so() {
     let words = "for images of 400 px width, not for the photos";
     let (csv, err) = run(0, &["scales", text_of(&model), "--format", "csv"]);
     assert!(err.contains(words), "{err}");
-    assert_eq!(csv.matches(words).count(), PHOTOS.len(), "{csv}");
+    // Among the reasons and in the note.
+    assert_eq!(csv.matches(words).count(), 2 * PHOTOS.len(), "{csv}");
     let to = folder.path().join("export");
     let (_, err) = run(0, &["export", text_of(&model), "--to", text_of(&to)]);
     assert!(err.contains(words), "{err}");
@@ -161,7 +162,8 @@ fn the_size_in_opendronemaps_list_is_said() {
     assert_eq!(found["photos"][0]["width"], 400);
     let (csv, _) = run(0, &["scales", text_of(folder.path()), "--format", "csv"]);
     let words = "for images of 400 px width, not for the photos, which have 4000 x 3000 px";
-    assert_eq!(csv.matches(words).count(), PHOTOS.len(), "{csv}");
+    // Among the reasons and in the note.
+    assert_eq!(csv.matches(words).count(), 2 * PHOTOS.len(), "{csv}");
 }
 
 #[test]
@@ -415,7 +417,7 @@ fn a_model_without_a_unit_has_no_scale() {
     ];
     let (csv, err) = run(0, &arguments);
     assert!(err.contains(words), "{err}");
-    assert_eq!(csv.matches(words).count(), 5, "{csv}");
+    assert_eq!(csv.matches(words).count(), 10, "{csv}");
     let to = folder.path().join("export");
     let mut arguments = vec!["export", text_of(&model), "--to", text_of(&to)];
     arguments.extend(folder_of_photos);
@@ -482,7 +484,19 @@ fn a_photo_from_under_the_surface_is_not_trusted() {
     let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
     for photo in json["photos"].as_array().expect("photos") {
         let keys: Vec<&String> = photo.as_object().expect("an object").keys().collect();
-        let mut expected = ["photo", "width", "height", "ground", "scale", "corners"];
+        let mut expected = [
+            "photo",
+            "width",
+            "height",
+            "ground",
+            "scale",
+            "corners",
+            "fitted",
+            "uncertainty",
+            "verdict",
+            "reasons",
+            "decision",
+        ];
         expected.sort_unstable();
         assert_eq!(keys, expected);
         let top = crate::common::scale(photo, "top").expect("a scale");
@@ -568,7 +582,7 @@ fn swapped_photos_are_not_trusted() {
     assert_eq!(sheet.matches(trust).count(), still_trusted);
     assert_eq!(sheet.matches("its colours").count(), 4);
     let csv = fs::read_to_string(to.join("scales.csv")).expect("the export");
-    assert_eq!(csv.matches("its colours").count(), 4, "{csv}");
+    assert_eq!(csv.matches("its colours").count(), 8, "{csv}");
     let (_, err) = run(0, &["check", text_of(folder.path())]);
     assert_eq!(err.matches("its colours").count(), 4, "{err}");
 }

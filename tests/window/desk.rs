@@ -13,6 +13,15 @@ use fragscale::app::open_flight::OpenFlight;
 use fragscale::render::Gpu;
 use tempfile::TempDir;
 
+/// A text as it is drawn, not as it is called.
+pub struct Written {
+    pub text: String,
+    /// Where its letters are.
+    pub place: Rect,
+    /// What of the window it may be drawn in.
+    pub seen_in: Rect,
+}
+
 /// The longest that a job of these small flights may take on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -91,8 +100,21 @@ impl Desk {
     /// Clicks what has this role and name, and lets the window answer.
     #[track_caller]
     pub fn click(&mut self, role: Role, name: &str) {
+        self.bring_into_sight(role, name);
         self.node(role, name).click();
         self.settle();
+    }
+
+    /// Scrolls to a part that lies below the window's foot.
+    #[track_caller]
+    fn bring_into_sight(&mut self, role: Role, name: &str) {
+        let node = self.node(role, name);
+        // The status bar is under everything.
+        let foot = self.harness.ctx.content_rect().bottom() - 30.0;
+        if node.rect().bottom() > foot {
+            node.scroll_to_me();
+            self.harness.run();
+        }
     }
 
     /// The one part of the window with this role and name.
@@ -132,6 +154,30 @@ impl Desk {
                 (text, node.rect())
             })
             .collect()
+    }
+
+    /// Every text that the last frame drew.
+    pub fn written(&self) -> Vec<Written> {
+        fn take(shape: &egui::Shape, seen_in: Rect, all: &mut Vec<Written>) {
+            match shape {
+                egui::Shape::Vec(shapes) => {
+                    for shape in shapes {
+                        take(shape, seen_in, all);
+                    }
+                }
+                egui::Shape::Text(text) => all.push(Written {
+                    text: text.galley.text().to_owned(),
+                    place: text.galley.mesh_bounds.translate(text.pos.to_vec2()),
+                    seen_in,
+                }),
+                _ => {}
+            }
+        }
+        let mut all = Vec::new();
+        for clipped in &self.harness.output().shapes {
+            take(&clipped.shape, clipped.clip_rect, &mut all);
+        }
+        all
     }
 
     /// The photos in the rows of the table, from above, with the texts of their cells.
@@ -181,6 +227,7 @@ impl Desk {
     /// Replaces what is in a field, and leaves the field.
     #[track_caller]
     pub fn fill(&mut self, name: &str, text: &str) {
+        self.bring_into_sight(Role::TextInput, name);
         self.node(Role::TextInput, name).click();
         self.harness.run();
         self.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);

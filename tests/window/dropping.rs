@@ -155,9 +155,12 @@ fn a_flight_without_a_surface_waits_for_it() {
     fs::remove_file(folder.path().join("level.ply")).unwrap();
     let mut desk = Desk::new(None);
     drop_on(&mut desk, &[&other]);
-    assert!(desk.logged("higher.ply: a surface without photos; drop it together"));
+    assert!(desk.open().files.origin.is_surface_alone());
     drop_on(&mut desk, &[&path]);
-    assert!(desk.harness.state().state().open.is_none());
+    assert!(
+        desk.open().files.origin.is_surface_alone(),
+        "the cloud stays"
+    );
     assert!(desk.logged("level.ply: there is no such file"));
     act(&mut desk, Command::Ask(Some(Asking::Add)));
     assert!(desk.says("a cloud or mesh to be its surface"));

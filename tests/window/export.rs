@@ -42,7 +42,7 @@ fn the_chosen_photos_are_exported_as_the_command_exports_them() {
         desk.click(Role::CheckBox, &format!("Export {photo}"));
     }
     desk.click(Role::Button, "Export chosen photos");
-    assert!(desk.says("6 of 9 photos are chosen"));
+    assert!(desk.says("6 of 9 photos go along"));
     desk.type_path(&ours);
     desk.click(Role::Button, "Export now");
     assert!(
@@ -55,25 +55,28 @@ fn the_chosen_photos_are_exported_as_the_command_exports_them() {
         "the small window is closed"
     );
 
-    let sample = flight("assets/sample");
+    // The command reads from the flight what she has decided.
+    let saved = folder.path().join("flight.toml");
+    desk.harness
+        .state_mut()
+        .apply(Command::SaveAs(saved.clone().into()));
+    desk.settle();
     let arguments = [
         "export",
-        sample.to_str().expect("UTF-8"),
+        saved.to_str().expect("UTF-8"),
         "--to",
         theirs.to_str().expect("UTF-8"),
         "--unit",
         "in",
+        "--photos",
+        "trusted",
     ];
     let output = fragscale(&arguments);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let left_out = ["IMG_0001", "IMG_0004", "IMG_0009"];
     let (window, command) = (lines(&ours), lines(&theirs));
-    assert_eq!(command.len(), 10);
-    let of_chosen: Vec<String> = command
-        .into_iter()
-        .filter(|line| !left_out.iter().any(|name| line.starts_with(name)))
-        .collect();
-    assert_eq!(window, of_chosen);
+    assert_eq!(command.len(), 7);
+    assert_eq!(window, command);
     // The same folders, in them the chosen photos only.
     assert_eq!(names(&ours), names(&theirs));
     for entry in fs::read_dir(&ours).expect("a folder") {
@@ -89,7 +92,7 @@ fn the_chosen_photos_are_exported_as_the_command_exports_them() {
         }
     }
     let html = fs::read_to_string(ours.join("scales.html")).expect("scales.html");
-    assert!(html.contains("IMG_0002.jpg") && !html.contains("IMG_0004.jpg"));
+    assert!(html.contains("IMG_0002.jpg") && !html.contains("photos/IMG_0004.jpg"));
 }
 
 #[test]

@@ -50,6 +50,20 @@ fn at_200_percent() {
     });
 }
 
+/// The photo by its scale, with lines at round values and the legend; the pile below it is the steepest.
+#[test]
+fn tinted() {
+    let screen = Screen {
+        size: [900.0, 520.0],
+        pixels_per_point: 1.0,
+        theme: Theme::Dark,
+    };
+    sample(&screen, "window_tint", |desk| {
+        desk.click(Role::Row, "Photo IMG_0005.jpg");
+        desk.click(Role::Button, "Tint by scale");
+    });
+}
+
 #[test]
 fn the_start_page() {
     let screen = Screen {

@@ -150,6 +150,7 @@ fn an_export_into_another_flights_folder_is_asked_for() {
     apply(&mut desk, Command::Export(out.clone().into()));
     assert!(desk.harness.state().state().held_back.is_none());
 
+    apply(&mut desk, Command::Save);
     apply(&mut desk, Command::Open(second.path().to_owned()));
     apply(&mut desk, Command::ChooseAll(Choice::WithScale));
     apply(&mut desk, Command::Export(out.clone().into()));

@@ -4,18 +4,26 @@ use std::collections::HashMap;
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
-use fragscale::flight::Doubt;
+use fragscale::flight::{Along, Doubt};
 
 use crate::common::scales_json;
 use crate::desk::{Desk, flight};
 use crate::wrong_pile;
 
-/// Top and bottom scale of each photo in pixels per centimetre, from the command.
+/// Top and bottom scale of each photo's corners in pixels per centimetre, from the command.
 fn scales() -> HashMap<String, [f64; 2]> {
+    pairs("scale")
+}
+
+/// The same of its best line.
+fn fitted() -> HashMap<String, [f64; 2]> {
+    pairs("fitted")
+}
+
+fn pairs(of: &str) -> HashMap<String, [f64; 2]> {
     let json = scales_json(&flight("assets/sample"), &["--unit", "cm"]);
     let photos = json["photos"].as_array().expect("photos");
-    let edge =
-        |photo: &serde_json::Value, edge: &str| photo["scale"][edge].as_f64().expect("a scale");
+    let edge = |photo: &serde_json::Value, edge: &str| photo[of][edge].as_f64().expect("a scale");
     photos
         .iter()
         .map(|photo| {
@@ -23,6 +31,31 @@ fn scales() -> HashMap<String, [f64; 2]> {
             (name.to_owned(), [edge(photo, "top"), edge(photo, "bottom")])
         })
         .collect()
+}
+
+/// Half the width of the intervals of fitted top and bottom and of the corners' top and bottom, from the
+/// command, in pixels per centimetre.
+fn halves() -> HashMap<String, [f64; 4]> {
+    let json = scales_json(&flight("assets/sample"), &["--unit", "cm"]);
+    let photos = json["photos"].as_array().expect("photos").iter();
+    let half = |photo: &serde_json::Value, name: &str| {
+        let [low, high] = ["low", "high"].map(|end| &photo["uncertainty"][name][end]);
+        (high.as_f64().expect("a number") - low.as_f64().expect("a number")) / 2.0
+    };
+    photos
+        .map(|photo| {
+            let name = photo["photo"].as_str().expect("a name");
+            let names = ["fitted_top", "fitted_bottom", "top", "bottom"];
+            (name.to_owned(), names.map(|name| half(photo, name)))
+        })
+        .collect()
+}
+
+/// How many digits a number has down to the first of half its interval, the second where that is a 1.
+fn digits(value: f64, half: f64) -> i32 {
+    let first = half.log10().floor();
+    let is_one = half / 10_f64.powf(first) < 1.95;
+    (value.log10().floor() - first) as i32 + 1 + i32::from(is_one)
 }
 
 /// Whether `shown` is `value` to this many significant digits.
@@ -44,21 +77,33 @@ fn assert_shown(shown: &str, value: f64, digits: i32) {
 fn the_sample_opens_from_the_start_page_with_the_commands_scales() {
     let mut desk = Desk::new(None);
     desk.click(Role::Button, "Open the sample flight");
-    let scales = scales();
+    let (scales, fitted, halves) = (scales(), fitted(), halves());
     let rows = desk.rows();
     assert_eq!(rows.len(), 9);
     for (photo, cells) in &rows {
-        let [top, bottom] = scales[photo];
         assert_eq!(&cells[0], photo);
-        assert_shown(&cells[1], top, 4);
-        assert_shown(&cells[2], bottom, 4);
-        assert_eq!(cells[4], "4/4");
+        let pairs = fitted[photo].into_iter().chain(scales[photo]);
+        let places = [1, 2, 5, 6].into_iter().zip(halves[photo]);
+        for ((place, half), scale) in places.zip(pairs) {
+            assert_shown(&cells[place], scale, digits(scale, half));
+        }
+        assert_eq!(cells[7], "4/4");
     }
     // The other unit is the same number with another factor.
     desk.click(Role::RadioButton, "Pixels per m");
     for (photo, cells) in desk.rows() {
-        assert_shown(&cells[1], scales[&photo][0] * 100.0, 4);
-        assert_shown(&cells[2], scales[&photo][1] * 100.0, 4);
+        let [of_fitted, _, of_top, of_bottom] = halves[&photo];
+        for (cell, scale, half) in [
+            (&cells[1], fitted[&photo][0], of_fitted),
+            (&cells[5], scales[&photo][0], of_top),
+            (&cells[6], scales[&photo][1], of_bottom),
+        ] {
+            // Tens and hundreds are rounded as well, and filled with zeros.
+            let digits = digits(scale, half);
+            let last = 10_f64.powi(scale.log10().floor() as i32 + 3 - digits);
+            let shown: f64 = cell.parse().expect("a number");
+            assert!((shown - scale * 100.0).abs() <= last * 0.500_001, "{cell}");
+        }
     }
 }
 
@@ -94,7 +139,10 @@ fn photos_are_selected_by_their_rows_and_by_keys() {
     }
     assert_eq!(desk.selected(), "IMG_0001.jpg", "the first row is the end");
     // The keys follow the rows as they are shown.
-    desk.click(Role::Button, "Sort by scale at the top edge");
+    desk.click(
+        Role::Button,
+        "Sort by scale at the top edge, from its two corners",
+    );
     let order = desk.photos();
     desk.click(Role::Row, &format!("Photo {}", order[3]));
     desk.press(Modifiers::NONE, Key::ArrowDown);
@@ -113,7 +161,10 @@ fn the_table_sorts_by_the_top_scale_both_ways_and_back() {
         "the order of the flight is another"
     );
     for (turned, name) in [(false, "up"), (true, "down")] {
-        desk.click(Role::Button, "Sort by scale at the top edge");
+        desk.click(
+            Role::Button,
+            "Sort by scale at the top edge, from its two corners",
+        );
         let mut scales = top(&desk.photos());
         assert_eq!(scales.len(), 9);
         if turned {
@@ -121,7 +172,10 @@ fn the_table_sorts_by_the_top_scale_both_ways_and_back() {
         }
         assert!(scales.is_sorted(), "{name}: {scales:?}");
     }
-    desk.click(Role::Button, "Sort by scale at the top edge");
+    desk.click(
+        Role::Button,
+        "Sort by scale at the top edge, from its two corners",
+    );
     assert_eq!(desk.photos(), of_flight);
 }
 
@@ -134,7 +188,7 @@ fn the_table_is_filtered_by_text_and_by_verdict() {
     assert_eq!(desk.photos().len(), 9);
     let with = |desk: &Desk, verdict: &str| -> Vec<String> {
         let rows = desk.rows().into_iter();
-        rows.filter(|(_, cells)| cells[3].ends_with(verdict))
+        rows.filter(|(_, cells)| cells[4].ends_with(verdict))
             .map(|(photo, _)| photo)
             .collect()
     };
@@ -176,7 +230,7 @@ fn the_table_is_filtered_by_text_and_by_verdict() {
 #[test]
 fn choices_for_export_are_undone_and_done_again() {
     let mut desk = Desk::new(Some(&flight("tests/windrow")));
-    let chosen = |desk: &Desk| desk.open().history.now().chosen.clone();
+    let chosen = |desk: &Desk| desk.open().review.going_along(Along::Trusted);
     desk.click(Role::Button, "Edit");
     desk.click(Role::Button, "Choose all photos with a scale");
     assert_eq!(chosen(&desk), [true; 9]);
@@ -194,14 +248,14 @@ fn choices_for_export_are_undone_and_done_again() {
     desk.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     assert_eq!(chosen(&desk), both);
     assert_eq!(desk.selected(), "IMG_0005.jpg", "undo leaves the selection");
-    assert!(!desk.open().is_changed(), "choices are not in flight.toml");
+    assert!(desk.open().is_changed(), "choices are in flight.toml");
 }
 
 #[test]
 fn scales_are_copied_as_the_dialog_asks_for_them() {
     let mut desk = Desk::new(Some(&flight("assets/sample")));
     desk.click(Role::Row, "Photo IMG_0002.jpg");
-    let [top, bottom] = scales()["IMG_0002.jpg"];
+    let [top, bottom] = fitted()["IMG_0002.jpg"];
     desk.node(Role::Button, "Copy top and bottom scale").click();
     desk.harness.step();
     let copied = desk.copied();
@@ -229,8 +283,8 @@ fn every_tab_of_the_right_panel_opens() {
 /// The verdicts in the table, and the photos that are chosen for export.
 fn verdicts_and_chosen(desk: &Desk) -> (Vec<String>, Vec<bool>) {
     let rows = desk.rows().into_iter();
-    let verdicts = rows.map(|(_, cells)| cells[3].clone()).collect();
-    (verdicts, desk.open().history.now().chosen.clone())
+    let verdicts = rows.map(|(_, cells)| cells[4].clone()).collect();
+    (verdicts, desk.open().review.going_along(Along::Trusted))
 }
 
 /// What the window proposes for export is what it trusts.

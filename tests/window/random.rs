@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use fragscale::app::command::{Asking, Choice, PictureRequest, Tab, ViewChange};
+use fragscale::app::linked::PointFrom;
+use fragscale::app::open_flight::survey::{BaseChoice, SurveyStep, SurveyTool};
 use fragscale::app::open_flight::table::SortBy;
 use fragscale::app::open_flight::tracing::Trace;
 use fragscale::app::open_flight::{Measure, OpenFlight};
@@ -12,10 +14,10 @@ use fragscale::app::state::preferences::Theme;
 use fragscale::app::tasks::Task;
 use fragscale::app::{Command, State};
 use fragscale::exports::PHOTO_COLUMNS;
-use fragscale::flight::{FlightSettings, Limits, Outcome, Verdict};
+use fragscale::flight::{Along, DecisionKind, FlightSettings, Limits, Outcome, Verdict};
 use fragscale::geometry::Ray;
 use fragscale::render::{ColorBy, Scope};
-use fragscale::scale::{Ground, ImageKind, ScaleObjectKind};
+use fragscale::scale::{Ground, ImageKind, ScaleObjectKind, ScalePair};
 use fragscale::split_mix::SplitMix;
 use fragscale::units::LengthUnit;
 use glam::{DVec2, DVec3};
@@ -39,7 +41,7 @@ impl Dice {
         (self.next() % end as u64) as usize
     }
 
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
@@ -74,11 +76,13 @@ fn ray(dice: &mut Dice) -> Ray {
 
 fn settings(dice: &mut Dice, now: FlightSettings) -> FlightSettings {
     let mut next = now;
-    match dice.below(6) {
+    match dice.below(8) {
         0 => next.unit = dice.one_of(&LengthUnit::ALL),
         1 => next.ground = Ground::Auto,
         2 => next.ground = Ground::At(dice.between(-1.0, 1.0)),
         3 => next.image = dice.one_of(&[ImageKind::Undistorted, ImageKind::AsShot]),
+        6 => next.pair = dice.one_of(&[ScalePair::Fitted, ScalePair::Corners]),
+        7 => next.errors.surface = dice.coin().then(|| dice.between(0.0, 0.1)),
         4 => next.surface.max_edge = dice.coin().then(|| dice.between(0.001, 1.0)),
         _ => next.surface.thinning = dice.coin().then(|| dice.between(0.05, 0.5)),
     }
@@ -116,7 +120,7 @@ fn view_change(dice: &mut Dice) -> ViewChange {
         5 => ViewChange::Top,
         6 => ViewChange::Front,
         7 => ViewChange::Side,
-        8 => ViewChange::Fit,
+        8 => dice.one_of(&[ViewChange::Fit, ViewChange::FitAll]),
         9 => ViewChange::FitSelected,
         10 => ViewChange::Center(ray(dice).at(1.0)),
         11 => ViewChange::Through,
@@ -202,7 +206,10 @@ fn command(dice: &mut Dice, state: &State, places: &Places) -> Command {
         15..=20 => Command::Select(dice.coin().then(|| dice.below(photos))),
         21..=26 => Command::SelectBy(dice.one_of(&[-1, 1, -3, 5, i32::MIN, i32::MAX])),
         27..=30 => Command::Click(ray(dice)),
-        31..=33 => Command::Hover(dice.coin().then(|| ray(dice))),
+        31..=33 => {
+            let from = dice.one_of(&[PointFrom::Pile, PointFrom::Photo, PointFrom::Inspector]);
+            Command::Hover(from, dice.coin().then(|| ray(dice)))
+        }
         34 | 35 => Command::DoubleClick(ray(dice)),
         36 | 37 => Command::HoverPhoto(dice.coin().then(|| dice.below(photos))),
         38..=42 => Command::Choose(dice.below(photos), dice.coin()),
@@ -242,14 +249,41 @@ fn command(dice: &mut Dice, state: &State, places: &Places) -> Command {
         76 => Command::Theme(dice.one_of(&[Theme::System, Theme::Light, Theme::Dark])),
         77 => Command::Zoom(dice.one_of(&[0.0, 1.0, 1.25, 2.0, 9.0])),
         78..=80 => Command::Tab(dice.one_of(&[Tab::Photo, Tab::Flight, Tab::Limits])),
-        81 => Command::ToggleLog,
+        81 => match dice.below(3) {
+            0 => Command::ToggleLog,
+            1 => Command::ToggleLeft,
+            _ => Command::ToggleRight,
+        },
         82 | 83 => Command::DismissNotice,
-        84..=91 => Command::View(view_change(dice)),
+        84 | 85 => {
+            let kinds = [DecisionKind::Accepted, DecisionKind::LeftOut];
+            let decided = (dice.one_of(&kinds), "why\n so".to_owned());
+            Command::Decide(dice.below(photos), dice.coin().then_some(decided))
+        }
+        86..=91 => Command::View(view_change(dice)),
         92..=94 => Command::Trace(trace(dice)),
-        95 | 96 => Command::ToggleMeasure,
+        95 => Command::ToggleMeasure,
+        96 => Command::Survey(survey_step(dice)),
+        97 if dice.coin() => Command::ToggleTint,
         97 => Command::CopyScales,
         98 => Command::Copy("text".to_owned()),
         _ => Command::Report("told\nin two lines".to_owned()),
+    }
+}
+
+fn survey_step(dice: &mut Dice) -> SurveyStep {
+    let tools = [SurveyTool::Profile, SurveyTool::Volume];
+    let bases = [
+        BaseChoice::Rim,
+        BaseChoice::Height(0.1),
+        BaseChoice::Height(f64::NAN),
+    ];
+    match dice.below(6) {
+        0 | 1 => SurveyStep::Toggle(dice.one_of(&tools)),
+        2 => SurveyStep::RemoveLast,
+        3 => SurveyStep::Finish,
+        4 => SurveyStep::Base(dice.one_of(&bases)),
+        _ => SurveyStep::Leave,
     }
 }
 
@@ -269,7 +303,18 @@ fn check(state: &State) {
     assert_eq!(open.files.photo_files.len(), count);
     assert_eq!(open.pictures.thumbnails.len(), count);
     assert_eq!(open.pictures.images.len(), count);
-    assert_eq!(open.history.now().chosen.len(), count);
+    let along = open.review.going_along(Along::Trusted);
+    assert_eq!(
+        along.iter().filter(|&&along| along).count(),
+        open.chosen_count()
+    );
+    for (photo, along) in open.review.photos().zip(along) {
+        let decision = open.history.now().decision(photo.name());
+        assert_eq!(photo.decision, decision);
+        let is_left_out = decision.is_some_and(|d| d.kind == DecisionKind::LeftOut);
+        assert!(!(along && is_left_out));
+        assert_eq!(photo.verdict == Verdict::LeftOut, is_left_out);
+    }
     assert!(open.review.views().is_none_or(|views| views.len() == count));
     assert!(open.selected.is_none_or(|photo| photo < count));
     let through = open.looking.through;
@@ -333,8 +378,12 @@ fn check_at_rest(state: &State) {
     assert_eq!(parts.image, settings.image);
     assert_eq!(parts.surface.max_edge(), settings.surface.max_edge);
     let log = &state.log[state.log.len().saturating_sub(20)..];
-    assert!(open.review.views().is_some(), "{log:#?}");
-    assert!(open.proposed);
+    assert!(open.review.is_looked_at(), "{log:#?}");
+    assert_eq!((parts.pair, parts.errors), (settings.pair, settings.errors));
+    let tinted = open.tint.as_ref().map(|tint| tint.photo);
+    let is_tinted = state.preferences.tint;
+    assert!(!is_tinted || tinted == open.selected, "{tinted:?} {log:#?}");
+    assert!(open.review.is_looked_at());
     let points = parts.surface.vertices().len();
     // Without a graphics device there is none.
     if let Some(geometry) = &open.geometry {

@@ -19,7 +19,7 @@ fn orbit(desk: &Desk) -> Orbit {
 }
 
 /// Where a view shows a point of the world, on the screen.
-fn on_screen(desk: &Desk, view: &View, point: DVec3) -> Pos2 {
+pub fn on_screen(desk: &Desk, view: &View, point: DVec3) -> Pos2 {
     let place = desk.viewport();
     let size = DVec2::new(f64::from(place.width()), f64::from(place.height()));
     let pixel = view.project(point, size).expect("before the eye");
@@ -27,7 +27,7 @@ fn on_screen(desk: &Desk, view: &View, point: DVec3) -> Pos2 {
 }
 
 /// The windrow's surface (see tests/windrow.rs): its western flank rises 3 in 4 to a level crest.
-fn on_windrow(x: f64, y: f64) -> DVec3 {
+pub fn on_windrow(x: f64, y: f64) -> DVec3 {
     let profile = match x {
         x if x < -0.64 => 0.0,
         x if x < -0.32 => (x + 0.64) * 0.75,

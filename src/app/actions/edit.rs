@@ -42,13 +42,13 @@ actions! {
     }
     CHOOSE {
         label: "Export this photo or not",
-        hover: "Choose the selected photo for export, or leave it out",
+        hover: "Take the selected photo along into the export, or leave it out",
         shortcut: keys(Modifiers::NONE, Key::Space),
         command: |state| {
             let open = state.open.as_ref()?;
             let photo = open.selected?;
-            let chosen = *open.history.now().chosen.get(photo)?;
-            on_pile(state, Command::Choose(photo, !chosen))
+            let goes_along = open.row(photo)?.goes_along();
+            on_pile(state, Command::Choose(photo, !goes_along))
         },
     }
     CHOOSE_TRUSTED {

@@ -22,6 +22,8 @@ pub mod edit;
 pub mod file;
 pub mod help;
 pub mod photo;
+pub mod review;
+pub mod survey;
 pub mod view;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
@@ -70,11 +72,12 @@ fn with_photo(state: &State, command: Command) -> Option<Command> {
 }
 
 /// The menus, in their order. An empty place is a line between entries.
-pub const MENUS: [(&str, &[Option<Action>]); 5] = [
+pub const MENUS: [(&str, &[Option<Action>]); 6] = [
     ("File", file::MENU),
     ("Edit", edit::MENU),
     ("View", view::MENU),
     ("Photo", photo::MENU),
+    ("Review", review::MENU),
     ("Help", help::MENU),
 ];
 
@@ -108,7 +111,9 @@ pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
             continue;
         };
         let undoes = [edit::UNDO.shortcut, edit::REDO.shortcut].contains(&action.shortcut);
-        if (typing && !shortcut.modifiers.command) || (editing && undoes) {
+        // An open menu is closed by it first.
+        let closes = shortcut.logical_key == Key::Escape && egui::Popup::is_any_open(context);
+        if closes || (typing && !shortcut.modifiers.command) || (editing && undoes) {
             continue;
         }
         if let Some(command) = (action.command)(state)

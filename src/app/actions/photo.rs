@@ -2,9 +2,12 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, keys, on_pile};
-use crate::command::Command;
+use super::{Action, keys, on_pile, survey, with_photo};
+use crate::command::{Command, ReviewStep, ViewChange};
+use crate::open_flight::Measure;
+use crate::open_flight::survey::SurveyStep;
 use crate::open_flight::tracing::Trace;
+use crate::photo_view::{Middle, PhotoCommand};
 use crate::scale::ScaleObjectKind;
 use crate::state::State;
 
@@ -33,6 +36,12 @@ actions! {
         shortcut: keys(Modifiers::NONE, Key::M),
         command: |state| on_pile(state, Command::ToggleMeasure),
     }
+    TINT {
+        label: "Tint by scale",
+        hover: "Tint the selected photo by the scale of its pixels, with lines of equal scale",
+        shortcut: keys(Modifiers::NONE, Key::I),
+        command: |state| with_photo(state, Command::ToggleTint),
+    }
     TRACE_SPHERE {
         label: "Trace sphere",
         hover: "Mark the outline of a sphere of known size on the photo, to compare its scale",
@@ -46,11 +55,18 @@ actions! {
         command: |state| begin_tracing(state, ScaleObjectKind::Bar),
     }
     FINISH_TRACING {
-        label: "Finish the outline",
-        hover: "Make a scale object of the points; a click on the first one does the same",
+        label: "Finish the outline, or accept",
+        hover: "Make a scale object of the points, as a click on the first one does; in a review accept the photo",
         shortcut: keys(Modifiers::NONE, Key::Enter),
         command: |state| {
-            let tracing = state.open.as_ref()?.objects.tracing.as_ref()?;
+            let open = state.open.as_ref()?;
+            let Some(tracing) = &open.objects.tracing else {
+                let drawn = open.pointer.drawn.as_ref().filter(|drawn| !drawn.finished);
+                return match drawn {
+                    Some(_) => on_pile(state, Command::Survey(SurveyStep::Finish)),
+                    None => super::review::accept(state),
+                };
+            };
             let is_complete = tracing.is_complete();
             is_complete.then_some(Command::Trace(Trace::Finish))
         },
@@ -60,18 +76,43 @@ actions! {
         hover: "Take the last point of the outline back",
         shortcut: keys(Modifiers::NONE, Key::Backspace),
         command: |state| {
-            let tracing = state.open.as_ref()?.objects.tracing.as_ref()?;
+            let open = state.open.as_ref()?;
+            let Some(tracing) = &open.objects.tracing else {
+                let drawn = open.pointer.drawn.as_ref();
+                let drawn = drawn.filter(|drawn| !drawn.points.is_empty());
+                return on_pile(state, drawn.map(|_| Command::Survey(SurveyStep::RemoveLast))?);
+            };
             let has_points = !tracing.outline.is_empty();
             has_points.then_some(Command::Trace(Trace::RemoveLast))
         },
     }
-    GIVE_UP_TRACING {
-        label: "Give up tracing",
-        hover: "Forget the points of the outline",
+    LEAVE {
+        label: "Leave tracing, measuring, the camera or the review",
+        hover: "Give up tracing, else stop measuring, else leave the camera, the photo view, the review",
         shortcut: keys(Modifiers::NONE, Key::Escape),
         command: |state| {
-            state.open.as_ref()?.objects.tracing.as_ref()?;
-            Some(Command::Trace(Trace::GiveUp))
+            // It closes the small window first.
+            let open = state.open.as_ref().filter(|_| state.asking.is_none())?;
+            if open.objects.tracing.is_some() {
+                return Some(Command::Trace(Trace::GiveUp));
+            }
+            if open.pointer.drawn.is_some() {
+                return on_pile(state, Command::Survey(SurveyStep::Leave));
+            }
+            let command = match open.pointer.measure {
+                Measure::Off if open.looking.through.is_some() => {
+                    Command::View(ViewChange::Through)
+                }
+                Measure::Off => {
+                    if state.middle == Middle::Photo {
+                        return on_pile(state, Command::Photo(PhotoCommand::Middle(Middle::Pile)));
+                    }
+                    state.reviewed_flight()?;
+                    Command::Review(ReviewStep::Leave)
+                }
+                _ => Command::ToggleMeasure,
+            };
+            on_pile(state, command)
         },
     }
 }
@@ -82,10 +123,13 @@ pub const MENU: &[Option<Action>] = &[
     Some(PREVIOUS),
     None,
     Some(MEASURE),
+    Some(survey::PROFILE),
+    Some(survey::VOLUME),
+    Some(TINT),
     None,
     Some(TRACE_SPHERE),
     Some(TRACE_BAR),
     Some(FINISH_TRACING),
     Some(REMOVE_POINT),
-    Some(GIVE_UP_TRACING),
+    Some(LEAVE),
 ];

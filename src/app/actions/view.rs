@@ -4,7 +4,30 @@ use egui::{Key, Modifiers};
 
 use super::{Action, keys, on_pile, with_photo};
 use crate::command::{Command, ViewChange};
+use crate::photo_view::{Middle, PhotoCommand};
 use crate::size_distributions::Page;
+use crate::state::State;
+
+/// Shows this in the middle, or the pile where it is there already.
+fn middle(state: &State, middle: Middle) -> Option<Command> {
+    let wanted = match state.middle == middle {
+        true => Middle::Pile,
+        false => middle,
+    };
+    on_pile(state, Command::Photo(PhotoCommand::Middle(wanted)))
+}
+
+fn in_photo(state: &State, command: PhotoCommand) -> Option<Command> {
+    with_photo(state, Command::Photo(command)).filter(|_| state.middle.has_photo())
+}
+
+fn has_panels(state: &State, command: Command) -> Option<Command> {
+    let has = match state.page {
+        Page::Pile => state.open.is_some(),
+        Page::SizeDistributions => !state.distributions.sources().is_empty(),
+    };
+    has.then_some(command)
+}
 
 actions! {
     PILE {
@@ -39,9 +62,15 @@ actions! {
     }
     FIT {
         label: "Show everything",
-        hover: "Bring the whole flight into sight",
+        hover: "Bring the whole flight into sight, without points that lie far off it",
         shortcut: keys(Modifiers::NONE, Key::Home),
         command: |state| on_pile(state, Command::View(ViewChange::Fit)),
+    }
+    FIT_ALL {
+        label: "Show all points",
+        hover: "Bring everything into sight, with the points that lie far off",
+        shortcut: keys(Modifiers::SHIFT, Key::Home),
+        command: |state| on_pile(state, Command::View(ViewChange::FitAll)),
     }
     FIT_SELECTED {
         label: "Show the selected photo",
@@ -54,6 +83,48 @@ actions! {
         hover: "See the surface as the selected photo does, with the photo over it",
         shortcut: keys(Modifiers::NONE, Key::C),
         command: |state| with_photo(state, Command::View(ViewChange::Through)),
+    }
+    PHOTO_ALONE {
+        label: "Photo in the middle",
+        hover: "Show the selected photo at full resolution instead of the pile, or the pile again",
+        shortcut: keys(Modifiers::NONE, Key::P),
+        command: |state| middle(state, Middle::Photo),
+    }
+    PHOTO_BESIDE {
+        label: "Photo beside the pile",
+        hover: "Show the selected photo at full resolution beside the pile, or the pile alone again",
+        shortcut: keys(Modifiers::NONE, Key::B),
+        command: |state| middle(state, Middle::Both),
+    }
+    PHOTO_ONE_TO_ONE {
+        label: "Photo one to one",
+        hover: "A pixel of the photo is a pixel of the screen",
+        shortcut: keys(Modifiers::NONE, Key::Z),
+        command: |state| in_photo(state, PhotoCommand::OneToOne),
+    }
+    PHOTO_FIT {
+        label: "Whole photo",
+        hover: "Show all of the photo in the photo view",
+        shortcut: keys(Modifiers::SHIFT, Key::Z),
+        command: |state| in_photo(state, PhotoCommand::Fit),
+    }
+    LEFT_PANEL {
+        label: "Table",
+        hover: "Show or hide the panel at the left: the photos, or the size distributions",
+        shortcut: keys(Modifiers::NONE, Key::F2),
+        command: |state| has_panels(state, Command::ToggleLeft),
+    }
+    RIGHT_PANEL {
+        label: "Photo and settings",
+        hover: "Show or hide the panel at the right: photo and settings, or results",
+        shortcut: keys(Modifiers::NONE, Key::F3),
+        command: |state| has_panels(state, Command::ToggleRight),
+    }
+    HEALTH {
+        label: "Flight health",
+        hover: "Show or hide the strip of unit, coordinates, up axis, colours, EXIF, holes and photos",
+        shortcut: keys(Modifiers::NONE, Key::F4),
+        command: |state| on_pile(state, Command::ToggleHealth),
     }
     LOG {
         label: "Log",
@@ -72,8 +143,17 @@ pub const MENU: &[Option<Action>] = &[
     Some(FRONT),
     Some(SIDE),
     Some(FIT),
+    Some(FIT_ALL),
     Some(FIT_SELECTED),
     Some(THROUGH),
     None,
+    Some(PHOTO_ALONE),
+    Some(PHOTO_BESIDE),
+    Some(PHOTO_ONE_TO_ONE),
+    Some(PHOTO_FIT),
+    None,
+    Some(LEFT_PANEL),
+    Some(RIGHT_PANEL),
+    Some(HEALTH),
     Some(LOG),
 ];

@@ -8,6 +8,8 @@ pub enum Asking {
     Open,
     /// Which surface or photos the flight shall have.
     Add,
+    /// Which of the flights in a folder.
+    Choose,
     /// Where the export goes.
     Export,
     /// What is known of the reconstruction's place in the world.

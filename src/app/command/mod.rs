@@ -4,6 +4,7 @@
 mod asking;
 mod destination;
 mod dialog;
+mod review_step;
 mod view_change;
 
 use std::path::PathBuf;
@@ -11,14 +12,19 @@ use std::path::PathBuf;
 pub use asking::Asking;
 pub use destination::{Destination, PictureRequest};
 pub use dialog::{Answers, Chooses, Dialog};
+pub use review_step::ReviewStep;
 pub use view_change::ViewChange;
 
-use crate::flight::{FlightSettings, Limits, Verdict};
+use crate::flight::{DecisionKind, FlightSettings, Limits, Verdict};
 use crate::geometry::Ray;
+use crate::linked::PointFrom;
 use crate::open_flight::georeferencing::GeoreferenceForm;
+use crate::open_flight::survey::SurveyStep;
 use crate::open_flight::table::SortBy;
 use crate::open_flight::tracing::Trace;
 use crate::opening::GeoreferenceRequest;
+use crate::photo_view::PhotoCommand;
+use crate::scale::CornerName;
 use crate::size_distributions::{DistributionCommand, Page};
 use crate::state::layers::Layers;
 use crate::state::preferences::Theme;
@@ -35,6 +41,8 @@ pub enum Tab {
     Flight,
     /// When to doubt.
     Limits,
+    /// The doubtful photos, one after the other.
+    Review,
 }
 
 /// Which photos a choice is about.
@@ -69,6 +77,8 @@ pub enum Command {
     Save,
     /// Writes flight.toml at this place.
     SaveAs(Destination),
+    /// Whether exports have the rectified photos, too.
+    ExportRectified(bool),
     /// Exports the chosen photos into this folder.
     Export(Destination),
     /// Writes a picture of the viewport.
@@ -105,22 +115,28 @@ pub enum Command {
     SelectBy(i32),
     /// Selects the photo that a click in the viewport means.
     Click(Ray),
-    /// Looks what is under the mouse; `None` where the mouse left.
-    Hover(Option<Ray>),
+    /// Looks what is under the mouse, in this part of the window; `None` where the mouse left it.
+    Hover(PointFrom, Option<Ray>),
     /// Moves the view's centre to what is under the mouse.
     DoubleClick(Ray),
     /// The mouse is over a photo of the table.
     HoverPhoto(Option<usize>),
-    /// Chooses a photo for export, or not.
+    /// Takes a photo along into the export, or not: decides whatever is needed for it.
     Choose(usize, bool),
-    /// Chooses many.
+    /// Takes many along.
     ChooseAll(Choice),
+    /// Decides about a photo, with a note; `None` takes the decision back.
+    Decide(usize, Option<(DecisionKind, String)>),
+    /// A step of the review of doubtful photos.
+    Review(ReviewStep),
     /// Sorts the table; the same column again turns it around.
     Sort(SortBy),
     /// Shows only photos that hold this text.
     Filter(String),
     /// Shows only photos with this verdict.
     FilterVerdict(Option<Verdict>),
+    /// Shows only photos that something speaks against.
+    FilterDoubtful(bool),
 
     /// Changes the flight's settings.
     Set(FlightSettings),
@@ -147,6 +163,12 @@ pub enum Command {
     Tab(Tab),
     /// Shows or hides the log.
     ToggleLog,
+    /// Shows or hides the panel at the left.
+    ToggleLeft,
+    /// Shows or hides the panel at the right.
+    ToggleRight,
+    /// Shows or hides the strip of the flight's health.
+    ToggleHealth,
     /// Puts the message over the viewport away.
     DismissNotice,
 
@@ -154,8 +176,18 @@ pub enum Command {
     View(ViewChange),
     /// Begins or ends measuring.
     ToggleMeasure,
+    /// A step of drawing a line or polygon on the surface, to measure there.
+    Survey(SurveyStep),
     /// A step of tracing a scale object on the selected photo.
     Trace(Trace),
+    /// Shows the corners enlarged, or does no longer.
+    ToggleLoupe,
+    /// Goes to a corner of the selected photo.
+    GoToCorner(CornerName),
+    /// Does something in the photo view.
+    Photo(PhotoCommand),
+    /// Tints the selected photo by its scale, or does no longer.
+    ToggleTint,
     /// Copies what Split-Desktop's dialog asks for: the selected photo's top and bottom scale.
     CopyScales,
     /// Copies a text.

@@ -26,8 +26,10 @@ pub enum ViewChange {
     Front,
     /// To the west.
     Side,
-    /// Everything in sight.
+    /// Cameras and surface in sight, without its outliers.
     Fit,
+    /// Everything in sight, outliers too.
+    FitAll,
     /// The selected photo's footprint and camera in sight.
     FitSelected,
     /// This point in the middle.

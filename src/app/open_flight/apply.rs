@@ -2,50 +2,43 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::command::{Choice, Command, ViewChange};
-use crate::flight::{ScaleObject, Verdict};
+use crate::command::{Command, ViewChange};
+use crate::flight::ScaleObject;
+use crate::geometry::Bounds;
 use crate::open_flight::picker::Purpose;
+use crate::open_flight::survey::SurveyStep;
 use crate::open_flight::table::SortBy;
 use crate::open_flight::{Measure, OpenFlight};
+use crate::render::PhotoZoom;
 
 impl OpenFlight {
     /// What concerns the flight on the screen alone.
     pub(crate) fn apply(&mut self, command: Command) {
         match command {
             Command::Click(ray) => {
-                let purpose = if self.pointer.measure == Measure::Off {
+                let purpose = if self.pointer.drawn.is_some() {
+                    Purpose::Draw
+                } else if self.pointer.measure == Measure::Off {
                     Purpose::Select
                 } else {
                     Purpose::Measure
                 };
                 self.pick(purpose, ray);
             }
-            Command::Hover(Some(ray)) => self.pick(Purpose::Hover, ray),
-            Command::Hover(None) => self.pointer.hover = None,
+            Command::Hover(from, Some(ray)) => {
+                self.pointer.from = Some(from);
+                self.pick(Purpose::Hover, ray);
+            }
+            Command::Hover(_, None) => {
+                self.point_at_nothing();
+                self.ask_surveyor();
+            }
+            Command::DoubleClick(_) if self.pointer.drawn.is_some() => {
+                self.survey(SurveyStep::Finish);
+            }
+            Command::Survey(step) => self.survey(step),
             Command::DoubleClick(ray) => self.pick(Purpose::Center, ray),
             Command::HoverPhoto(photo) => self.table.hovered = photo,
-            Command::Choose(photo, chosen) => {
-                let mut edit = self.history.now().clone();
-                if let Some(place) = edit.chosen.get_mut(photo) {
-                    *place = chosen;
-                }
-                self.history.set(edit);
-                self.arrange();
-            }
-            // Nothing is trusted before it was looked at.
-            Command::ChooseAll(Choice::Trusted) if !self.review.is_looked_at() => {}
-            Command::ChooseAll(choice) => {
-                let mut edit = self.history.now().clone();
-                for (place, photo) in edit.chosen.iter_mut().zip(self.review.photos()) {
-                    *place = match choice {
-                        Choice::WithScale => photo.verdict != Verdict::NoScale,
-                        Choice::Trusted => photo.verdict == Verdict::Trust,
-                        Choice::None => false,
-                    };
-                }
-                self.history.set(edit);
-                self.arrange();
-            }
             Command::Sort(column) => {
                 // The third click on a column is the flight's order again.
                 if self.table.order.by != column {
@@ -65,8 +58,13 @@ impl OpenFlight {
                 self.table.order.verdict = verdict;
                 self.arrange();
             }
+            Command::FilterDoubtful(on) => {
+                self.table.order.doubtful = on;
+                self.arrange();
+            }
             Command::View(change) => self.change_view(change),
             Command::ToggleMeasure => {
+                self.pointer.drawn = None;
                 self.pointer.measure = if self.pointer.measure == Measure::Off {
                     Measure::First
                 } else {
@@ -89,8 +87,9 @@ impl OpenFlight {
     }
 
     fn pick(&mut self, purpose: Purpose, ray: crate::geometry::Ray) {
+        let flight = self.flight().clone();
         if let Some(picker) = &mut self.pointer.picker {
-            picker.ask(purpose, ray);
+            picker.ask(purpose, ray, &flight);
         }
     }
 
@@ -100,10 +99,12 @@ impl OpenFlight {
         if self.selected != before {
             // The points were on the other photo.
             self.objects.tracing = None;
+            self.reviewing = Default::default();
         }
-        // Looking through a camera goes on through the next one.
-        if self.looking.through.is_some() {
+        // Looking through a camera goes on through the next one, all of it.
+        if self.looking.through.is_some() && self.looking.through != self.selected {
             self.looking.through = self.selected;
+            self.looking.into = PhotoZoom::default();
         }
     }
 
@@ -136,10 +137,14 @@ impl OpenFlight {
                 }
             }
             ViewChange::Through => {
+                looking.into = PhotoZoom::default();
                 looking.through = match looking.through {
                     Some(_) => None,
                     None => self.selected,
                 };
+            }
+            ViewChange::Zoom { .. } | ViewChange::Pan(..) if looking.through.is_some() => {
+                self.look_into_photo(change);
             }
             _ => {
                 // Whatever turns the view leaves the camera.
@@ -157,6 +162,7 @@ impl OpenFlight {
                     ViewChange::Front => orbit.front(),
                     ViewChange::Side => orbit.side(),
                     ViewChange::Fit => self.fit(),
+                    ViewChange::FitAll => self.fit_box(self.extent.surface),
                     ViewChange::FitSelected => self.fit_selected(),
                     ViewChange::Center(point) => orbit.center_on(point),
                     ViewChange::Blend(_) | ViewChange::Resized(_) | ViewChange::Through => {}
@@ -165,9 +171,44 @@ impl OpenFlight {
         }
     }
 
-    /// Brings surface and cameras into sight.
-    fn fit(&mut self) {
-        let (low, high) = (self.extent.bulk.min, self.extent.bulk.max);
+    /// Looks into a part of the photo whose camera is looked through.
+    fn look_into_photo(&mut self, change: ViewChange) {
+        let photo = self
+            .looking
+            .through
+            .and_then(|photo| self.review.photo(photo));
+        let Some(camera) = photo.map(|photo| photo.camera) else {
+            return;
+        };
+        let image = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+        let into = self.looking.into;
+        self.looking.into = match change {
+            ViewChange::Zoom {
+                cursor,
+                size,
+                factor,
+            } => into.zoomed(cursor, 1.0 / factor, image, size),
+            ViewChange::Pan(by, size) => into.panned(by, image, size),
+            _ => into,
+        };
+    }
+
+    /// The mouse left, or the surface under it is another one.
+    pub(crate) fn point_at_nothing(&mut self) {
+        self.pointer.hover = None;
+        self.pointer.from = None;
+        self.pointer.linked = None;
+    }
+
+    /// Brings surface and cameras into sight, without the surface's outliers: a few points of a sparse cloud
+    /// lie anywhere, and all else would be a dot.
+    pub(super) fn fit(&mut self) {
+        self.fit_box(self.extent.bulk);
+    }
+
+    /// Brings this box and the cameras into sight.
+    fn fit_box(&mut self, surface: Bounds) {
+        let (low, high) = (surface.min, surface.max);
         let corners = (0..8_u8).map(|corner| {
             let pick = |bit: u8, low: f64, high: f64| if corner & bit == 0 { low } else { high };
             DVec3::new(
@@ -183,11 +224,14 @@ impl OpenFlight {
         self.fit_points(&points);
     }
 
-    fn fit_points(&mut self, points: &[DVec3]) {
+    pub(super) fn fit_points(&mut self, points: &[DVec3]) {
         let size = self.looking.size.unwrap_or(DVec2::new(4.0, 3.0));
         self.looking.orbit.fit_into(points, size);
-        // How far one can go in and out depends on the flight, not on what is in sight.
-        self.looking.orbit.extent = self.extent.all.size().length() * 0.5;
+        // How far one can go in and out depends on the flight, not on what is in sight; as far at least as
+        // that is.
+        let orbit = &mut self.looking.orbit;
+        let flight = self.extent.all.size().length() * 0.5;
+        orbit.extent = flight.max(orbit.distance * 0.1);
     }
 
     fn fit_selected(&mut self) {

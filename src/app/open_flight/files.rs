@@ -7,6 +7,7 @@ use crate::files::Inputs;
 use crate::flight::FlightSettings;
 use crate::opening::{FlightOrigin, FlightReconstruction, OpenOptions, Opened, PhotoFile};
 use crate::state::bundled::sample_flight;
+use crate::surface::UpAxis;
 
 /// The files of a flight.
 #[derive(Debug)]
@@ -19,6 +20,8 @@ pub struct FlightFiles {
     pub photo_files: Arc<Vec<PhotoFile>>,
     /// The world's coordinate system where the files state one.
     pub crs: Option<String>,
+    /// What the surface's triangles say is up, where that is not z.
+    pub doubtful_up: Option<UpAxis>,
     /// The files read.
     pub inputs: Vec<PathBuf>,
     /// These, the photos and whatever was opened on the way: nothing of it is written over.
@@ -50,6 +53,7 @@ impl FlightFiles {
             options,
             photo_files: Arc::new(opened.photo_files),
             crs: opened.crs,
+            doubtful_up: opened.doubtful_up,
             inputs: opened.inputs,
             read: opened.read,
             warnings: opened.warnings,

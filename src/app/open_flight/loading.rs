@@ -1,11 +1,12 @@
 //! Reading a flight and computing its scales: what a job does with what was named.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use crate::command::Asking;
 use crate::fault::Fault;
 use crate::flight::{FlightSettings, Outcome};
-use crate::formats::FileError;
+use crate::formats::{Candidate, FileError, Kind, detect};
 use crate::geometry::Bounds;
 use crate::jobs::Progress;
 use crate::opening::{self, Dropped, OpenOptions, Opened};
@@ -36,6 +37,10 @@ pub struct Loaded {
 pub struct NotOpened {
     /// Why, in a line.
     pub why: String,
+    /// What would mend it, and can be asked for.
+    pub asks: Option<Asking>,
+    /// Which flights a folder holds of which none was named.
+    pub choices: Vec<Candidate>,
     /// What was tried, if a flight was named: its surface or its photos may be named next.
     pub tried: Option<(PathBuf, OpenOptions)>,
 }
@@ -47,8 +52,21 @@ pub(crate) fn named(
     base: Option<(PathBuf, OpenOptions)>,
     added: bool,
 ) -> Result<(PathBuf, OpenOptions), Box<NotOpened>> {
-    let not_opened = |why| Box::new(NotOpened { why, tried: None });
-    let dropped = Dropped::sort(paths).map_err(|error| not_opened(error.to_string()))?;
+    let not_opened = |why| {
+        Box::new(NotOpened {
+            why,
+            asks: None,
+            choices: Vec::new(),
+            tried: None,
+        })
+    };
+    let paths = opening::meant_by(paths).map_err(|choices| {
+        Box::new(NotOpened {
+            choices,
+            ..*not_opened("it holds several flights: choose one".to_owned())
+        })
+    })?;
+    let dropped = Dropped::sort(&paths).map_err(|error| not_opened(error.to_string()))?;
     let OpenOptions {
         surface,
         mut photos,
@@ -58,11 +76,20 @@ pub(crate) fn named(
         None if !added => photos.take(),
         flight => flight,
     };
-    match (flight, base) {
+    // A cloud that is looked at is the surface of what is added to it, not of what is opened next.
+    let base_is_cloud = base.as_ref().is_some_and(|(path, _)| is_cloud(path));
+    let (alone, base) = match base_is_cloud {
+        true => (base.map(|(path, _)| path), None),
+        false => (None, base),
+    };
+    match (
+        flight.or(photos.take_if(|_| added && alone.is_some())),
+        base,
+    ) {
         (Some(flight), _) => Ok((
             flight,
             OpenOptions {
-                surface,
+                surface: surface.or(alone.filter(|_| added)),
                 photos,
                 ..OpenOptions::default()
             },
@@ -73,17 +100,19 @@ pub(crate) fn named(
                 surface: surface.or(before.surface),
                 photos: photos.or(before.photos),
                 topic: before.topic,
-                settings: None,
+                ..OpenOptions::default()
             },
         )),
-        (None, None) => {
-            let name = paths.first().map(|path| path.display().to_string());
-            Err(not_opened(format!(
-                "{}: a surface without photos; drop it together with the photos or with what the photogrammetry package wrote",
-                name.unwrap_or_default()
-            )))
-        }
+        (None, None) => match surface {
+            Some(cloud) => Ok((cloud, OpenOptions::default())),
+            None => Err(not_opened("nothing to open was named".to_owned())),
+        },
     }
+}
+
+/// Whether this is a cloud or mesh.
+fn is_cloud(path: &Path) -> bool {
+    matches!(detect(path), Ok(Kind::Cloud(_)))
 }
 
 /// Reads a flight and computes its scales; `again` for the open flight of this number, with these
@@ -96,8 +125,12 @@ pub(crate) fn load(
 ) -> Result<Loaded, Box<NotOpened>> {
     let again_for = again.as_ref().map(|(number, _)| *number);
     options.settings = again.map(|(_, settings)| settings);
+    options.may_lack_photos = true;
     let not_opened = |error: FileError| {
+        let lacks = opening::lacks_photos(&error) || opening::lacks_surface(&error);
         Box::new(NotOpened {
+            asks: lacks.then_some(Asking::Add),
+            choices: Vec::new(),
             why: error.to_string(),
             tried: Some((path.clone(), options.clone())),
         })

@@ -2,41 +2,46 @@
 
 pub mod apply;
 pub mod files;
+mod flight_line;
 pub mod georeferencing;
 pub mod loading;
+mod measure;
 pub mod picker;
 mod picking;
+pub mod reviewing;
+pub mod survey;
 pub mod table;
+pub mod tint;
 pub mod tracing;
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
+use glam::DVec3;
 
+use crate::corner_loupe::CornerFacts;
 use crate::exports::PhotoLine;
 use crate::flight::{
-    ColoursFound, Flight, FlightSettings, Limits, LookedUp, Outcome, Review, Verdict,
+    Along, ColoursFound, Flight, FlightSettings, Limits, LookedUp, Outcome, Review,
 };
 use crate::geometry::{Bounds, LocalFrame};
-use crate::opening::Colours;
-use crate::render::{LargePhoto, Orbit, PhotoImage, SurfaceBuffers, drawn_ground};
-use crate::scale::{PhotoScale, ViewFacts};
+use crate::linked::{LinkedPoint, PointFrom};
+use crate::opening::{Colours, HealthFinding, StatedOfFlight, flight_health};
+use crate::photo_view::PhotoView;
+use crate::render::{LargePhoto, Orbit, PhotoImage, PhotoZoom, SurfaceBuffers, drawn_ground};
+use crate::scale::{FieldFacts, PhotoScale, ViewFacts};
 use crate::state::history::History;
 use files::FlightFiles;
 use georeferencing::Georeferencing;
 use loading::Loaded;
+pub use measure::Measure;
 use picker::Picker;
+use reviewing::Reviewing;
+use survey::Drawn;
+use survey::surveyor::Surveyor;
 use table::{PhotosTable, Row};
+use tint::PhotoTint;
 use tracing::TracedObjects;
-
-/// What undo goes back over.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Edit {
-    /// The flight's settings.
-    pub settings: FlightSettings,
-    /// Which photos are chosen for export.
-    pub chosen: Vec<bool>,
-}
 
 /// The selected photo in the inspector.
 #[derive(Debug)]
@@ -58,20 +63,6 @@ pub struct PreviewPicture {
     pub projected: Option<LargePhoto>,
 }
 
-/// The distance tool.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Measure {
-    /// Clicks select photos.
-    #[default]
-    Off,
-    /// Waits for the first point.
-    First,
-    /// Has one.
-    Second(DVec3),
-    /// Has both; the next click begins anew.
-    Both(DVec3, DVec3),
-}
-
 /// How the viewport looks at the flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Looking {
@@ -79,6 +70,8 @@ pub struct Looking {
     pub orbit: Orbit,
     /// The photo whose camera is looked through.
     pub through: Option<usize>,
+    /// Which part of that photo is looked at.
+    pub into: PhotoZoom,
     /// How much of that photo lies over the view, 0 to 1.
     pub blend: f64,
     /// The viewport's size in pixels, once it was drawn.
@@ -94,6 +87,8 @@ pub struct Pictures {
     pub thumbnails: Vec<Option<egui::TextureHandle>>,
     /// Small pictures for the viewport.
     pub images: Vec<Option<Arc<PhotoImage>>>,
+    /// When each was taken, by EXIF; those that were read.
+    pub times: Vec<Option<String>>,
     /// The selected photo.
     pub preview: Option<Preview>,
 }
@@ -116,10 +111,18 @@ pub struct Extent {
 pub struct Pointer {
     /// Where it points on the surface.
     pub hover: Option<DVec3>,
+    /// What of the window it points from; `None` where it points at nothing.
+    pub from: Option<PointFrom>,
+    /// What is known of that place.
+    pub linked: Option<Arc<LinkedPoint>>,
     /// The distance tool.
     pub measure: Measure,
+    /// What is drawn on the surface to measure there.
+    pub drawn: Option<Drawn>,
     /// Its rays.
     pub picker: Option<Picker>,
+    /// Measures what is drawn.
+    pub surveyor: Option<Surveyor>,
 }
 
 /// A flight on the screen: its review, and what only a window has.
@@ -130,12 +133,10 @@ pub struct OpenFlight {
     /// computed.
     pub review: Review,
     /// The settings that it was computed with: those of now, but for the moment until a change is
-    /// computed. Their scale objects count for nothing.
+    /// computed. Their scale objects, pair and stated errors count for nothing.
     pub computed: FlightSettings,
-    /// The settings and choices of now, with those before.
-    pub history: History<Edit>,
-    /// Whether the photos to export have been proposed: once, after the first verdicts.
-    pub proposed: bool,
+    /// The settings of now, with those before: what undo goes back over.
+    pub history: History<FlightSettings>,
     /// What it was read from, and where it is saved.
     pub files: FlightFiles,
     /// Bringing its reconstruction to the world.
@@ -144,10 +145,24 @@ pub struct OpenFlight {
     pub selected: Option<usize>,
     /// The table of photos.
     pub table: PhotosTable,
+    /// How it is at a glance.
+    pub health: Vec<HealthFinding>,
+    /// The photo under review.
+    pub reviewing: Reviewing,
     /// Of its photos.
     pub pictures: Pictures,
+    /// The selected photo in the middle of the window.
+    pub photo_view: PhotoView,
+    /// What the selected photo's corners lie on, where that is looked at.
+    pub corners: Option<CornerFacts>,
+    /// The scale field of the selected photo, where it is to be tinted.
+    pub tint: Option<PhotoTint>,
+    /// How many such fields were asked for.
+    pub tints: u64,
     /// What the viewport draws.
     pub geometry: Option<Arc<SurfaceBuffers>>,
+    /// The photos in the order of the flight line.
+    pub line: Arc<Vec<usize>>,
     /// Where it lies.
     pub extent: Extent,
     /// How the viewport looks.
@@ -187,22 +202,26 @@ impl OpenFlight {
         let mut open = Self {
             number,
             review,
-            computed: computed.clone(),
-            history: History::new(Edit {
-                settings: computed,
-                chosen: vec![false; count],
-            }),
-            proposed: false,
+            history: History::new(computed.clone()),
+            computed,
             georeferencing: Georeferencing::new(opened.origin.photo_folder()),
             files: FlightFiles::new(path, options, opened),
             selected: (count > 0).then_some(0),
             table: PhotosTable::default(),
+            health: Vec::new(),
+            reviewing: Reviewing::default(),
             pictures: Pictures {
                 thumbnails: vec![None; count],
                 images: vec![None; count],
+                times: vec![None; count],
                 preview: None,
             },
+            photo_view: PhotoView::default(),
+            corners: None,
+            tint: None,
+            tints: 0,
             geometry: None,
+            line: Arc::default(),
             extent: Extent {
                 frame: LocalFrame::near(&surface_bounds),
                 all: bounds,
@@ -212,6 +231,7 @@ impl OpenFlight {
             looking: Looking {
                 orbit: first_look(&bounds),
                 through: None,
+                into: PhotoZoom::default(),
                 blend: 0.5,
                 size: None,
                 turned: false,
@@ -220,6 +240,8 @@ impl OpenFlight {
             objects: TracedObjects::default(),
         };
         open.arrange();
+        open.order_line();
+        open.take_decisions();
         open
     }
 
@@ -238,30 +260,33 @@ impl OpenFlight {
 
     /// The settings of now.
     pub fn settings(&self) -> FlightSettings {
-        self.history.now().settings.clone()
+        self.history.now().clone()
     }
 
     /// Whether the scales on the screen are those of the settings of now.
     pub fn is_computed(&self) -> bool {
-        let now = &self.history.now().settings;
+        let now = self.history.now();
         now.gives_the_scales_of(&self.computed)
     }
 
     /// Whether something would be lost if it were closed.
     pub fn is_changed(&self) -> bool {
-        self.settings() != self.files.saved || self.files.origin.has_other_files()
+        let is_flight = !self.files.origin.is_surface_alone();
+        is_flight && (self.settings() != self.files.saved || self.files.origin.has_other_files())
     }
 
     /// Takes a change of the settings back that will not be computed: what is on the screen must be
     /// what the settings say.
     pub fn take_back_settings(&mut self) {
         if !self.is_computed() {
-            let mut edit = self.history.now().clone();
-            edit.settings = FlightSettings {
-                scale_objects: edit.settings.scale_objects,
+            let now = self.history.now().clone();
+            self.history.replace(FlightSettings {
+                scale_objects: now.scale_objects,
+                decisions: now.decisions,
+                pair: now.pair,
+                errors: now.errors,
                 ..self.computed.clone()
-            };
-            self.history.replace(edit);
+            });
             self.arrange();
         }
     }
@@ -287,7 +312,6 @@ impl OpenFlight {
     pub fn row(&self, photo: usize) -> Option<Row<'_>> {
         Some(Row {
             line: PhotoLine::of(self.review.photo(photo)?, photo),
-            chosen: self.history.now().chosen.get(photo).copied()?,
         })
     }
 
@@ -311,35 +335,39 @@ impl OpenFlight {
         self.arrange();
     }
 
-    /// Takes the footprints. What can be trusted then is proposed for export, once; the rest waits for
-    /// the engineer.
+    /// Takes the footprints.
     pub fn take_views(&mut self, views: Vec<Option<ViewFacts>>) {
         self.review.take_views(views);
-        if !self.proposed {
-            self.proposed = true;
-            let verdicts = self.review.photos().map(|photo| photo.verdict);
-            let proposal: Vec<bool> = verdicts.map(|verdict| verdict == Verdict::Trust).collect();
-            self.history.each(|edit| edit.chosen.clone_from(&proposal));
-        }
         self.arrange();
     }
 
-    /// Takes what a photo's colours say. One that they speak against is no longer proposed for export.
+    /// Takes what the scale fields say.
+    pub fn take_fields(&mut self, fields: Vec<Option<FieldFacts>>) {
+        self.review.take_fields(fields);
+        self.arrange();
+    }
+
+    /// Takes the pair for Split-Desktop and the errors that the settings of now state.
+    pub fn take_stated(&mut self) {
+        let now = self.history.now();
+        self.review.take_stated(now.pair, now.errors);
+        self.arrange();
+    }
+
+    /// Takes what a photo's colours say.
     pub fn take_colours(&mut self, photo: usize, colours: &Colours) {
         let found = ColoursFound::from(colours.doubt());
         let speaks_against = found != ColoursFound::NothingAgainst;
-        let before = self.review.photo(photo).map(|photo| photo.verdict);
         self.review.take_colours([(photo, found)]);
-        if !speaks_against {
-            return;
+        match speaks_against {
+            true => self.arrange(),
+            false => self.look_at_health(),
         }
-        if self.proposed && before == Some(Verdict::Trust) {
-            self.history.each(|edit| {
-                if let Some(chosen) = edit.chosen.get_mut(photo) {
-                    *chosen = false;
-                }
-            });
-        }
+    }
+
+    /// Takes what the engineer has decided of photos.
+    pub fn take_decisions(&mut self) {
+        self.review.take_decisions(&self.history.now().decisions);
         self.arrange();
     }
 
@@ -360,18 +388,33 @@ impl OpenFlight {
         let rows: Vec<Row<'_>> = (0..self.review.count())
             .filter_map(|photo| self.row(photo))
             .collect();
+        let doubtful =
+            |(photo, row): (usize, &Row<'_>)| row.line.photo.is_doubtful().then_some(photo);
+        let doubtful = rows.iter().enumerate().filter_map(doubtful).collect();
         self.table.shown = self.table.order.shown(&rows);
+        self.table.doubtful = doubtful;
+        self.look_at_health();
     }
 
-    /// How many photos are chosen for export.
+    fn look_at_health(&mut self) {
+        let stated = StatedOfFlight {
+            crs: self.files.crs.as_deref(),
+            reconstruction: self.files.reconstruction.as_ref(),
+            doubtful_up: self.files.doubtful_up,
+        };
+        self.health = flight_health(&self.review, &stated);
+    }
+
+    /// How many photos go along into an export.
     pub fn chosen_count(&self) -> usize {
-        self.history.now().chosen.iter().filter(|&&c| c).count()
+        let photos = self.review.photos();
+        photos.filter(|p| p.goes_along(Along::Trusted)).count()
     }
 
     /// The elevation of the ground: as set, or where a ray needed it, or the surface's middle.
     pub fn ground(&self) -> f64 {
         let outcomes = self.review.outcomes();
-        drawn_ground(self.settings().ground, outcomes, &self.extent.surface)
+        drawn_ground(self.settings().ground, outcomes, &self.extent.bulk)
     }
 }
 

@@ -8,7 +8,9 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::fault::Fault;
+use crate::flight::Flight;
 use crate::geometry::Ray;
+use crate::linked::LinkedPoint;
 use crate::surface::{Hit, Surface};
 
 /// What a ray is cast for.
@@ -22,10 +24,12 @@ pub enum Purpose {
     Center,
     /// A point of the distance tool.
     Measure,
+    /// A point of what is drawn on the surface.
+    Draw,
 }
 
 /// A ray and what it met.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Picked {
     /// What it was cast for.
     pub purpose: Purpose,
@@ -33,14 +37,19 @@ pub struct Picked {
     pub ray: Ray,
     /// The nearest place on the surface.
     pub hit: Option<Hit>,
+    /// What else is known of that place, where the mouse hovers.
+    pub linked: Option<LinkedPoint>,
     /// How many rays this answers: itself, and older ones that nobody needs any more.
     answered: usize,
 }
 
+/// A ray to cast, in this flight.
+type Asked = (Purpose, Ray, Arc<Flight>);
+
 /// Casts rays for the window.
 #[derive(Debug)]
 pub struct Picker {
-    ask: Sender<(Purpose, Ray)>,
+    ask: Sender<Asked>,
     answers: Receiver<Picked>,
     /// How many rays were asked and not answered.
     waiting: usize,
@@ -52,7 +61,7 @@ impl Picker {
     /// # Errors
     /// Where the system has no thread left.
     pub fn new(surface: Arc<Surface>, context: egui::Context) -> Result<Self, Fault> {
-        let (ask, asked) = channel::<(Purpose, Ray)>();
+        let (ask, asked) = channel::<Asked>();
         let (answer, answers) = channel();
         std::thread::Builder::new()
             .name("picker".to_owned())
@@ -65,16 +74,22 @@ impl Picker {
                     let mut batch = vec![first];
                     batch.extend(asked.try_iter());
                     let mut answered = 0;
-                    for (place, &(purpose, ray)) in batch.iter().enumerate() {
+                    for (place, (purpose, ray, flight)) in batch.iter().enumerate() {
+                        let (purpose, ray) = (*purpose, *ray);
                         answered += 1;
-                        let newer = batch[place + 1..].iter().any(|(p, _)| *p == purpose);
+                        let newer = batch[place + 1..].iter().any(|(p, ..)| *p == purpose);
                         if purpose == Purpose::Hover && newer {
                             continue;
                         }
+                        let hit = caster.cast(&ray);
+                        let hovered = hit.filter(|_| purpose == Purpose::Hover);
+                        let linked = hovered
+                            .map(|hit| LinkedPoint::new(hit.point, flight, &surface, &mut caster));
                         let picked = Picked {
                             purpose,
                             ray,
-                            hit: caster.cast(&ray),
+                            hit,
+                            linked,
                             answered: std::mem::take(&mut answered),
                         };
                         if answer.send(picked).is_err() {
@@ -93,9 +108,9 @@ impl Picker {
     }
 
     /// Asks what a ray meets.
-    pub fn ask(&mut self, purpose: Purpose, ray: Ray) {
+    pub fn ask(&mut self, purpose: Purpose, ray: Ray, flight: &Arc<Flight>) {
         // The thread is gone only where the surface has no caster.
-        if self.ask.send((purpose, ray)).is_ok() {
+        if self.ask.send((purpose, ray, flight.clone())).is_ok() {
             self.waiting += 1;
         }
     }
@@ -117,10 +132,15 @@ impl Picker {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::camera::{Camera, Distortion, Pose};
+    use crate::flight::{FlightParts, Photo};
+    use crate::scale::{Ground, ImageKind, PoseErrors, ScalePair, StatedErrors};
     use crate::surface::Cloud;
-    use glam::DVec3;
+    use crate::units::LengthUnit;
+    use glam::{DVec2, DVec3};
 
-    /// A level square at z = 2: the answer is known.
+    /// A level square at z = 2 under a camera 10 above its middle, 1000 px a unit at 1: the answers are
+    /// known.
     #[test]
     fn a_ray_is_answered() {
         let points = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)];
@@ -129,21 +149,74 @@ mod tests {
             ..Cloud::default()
         })
         .unwrap();
-        let mut picker = Picker::new(Arc::new(surface), egui::Context::default()).unwrap();
+        let surface = Arc::new(surface);
+        let camera = Camera {
+            name: String::new(),
+            width: 200,
+            height: 200,
+            fx: 1000.0,
+            fy: 1000.0,
+            cx: 100.0,
+            cy: 100.0,
+            skew: 0.0,
+            distortion: Distortion::None,
+        };
+        // It sees one unit to each side; the second photo another place.
+        let photo = |name: &str, x: f64| Photo {
+            name: name.to_owned(),
+            camera: 0,
+            pose: Pose::from_yaw_pitch_roll(DVec3::new(x, 2.0, 12.0), [0.0, -90.0, 0.0]),
+            trouble: None,
+            errors: PoseErrors::default(),
+            package_errors: PoseErrors::default(),
+        };
+        let flight = Flight::new(FlightParts {
+            name: String::new(),
+            unit: LengthUnit::Metre,
+            unit_known: true,
+            ground: Ground::Auto,
+            image: ImageKind::Undistorted,
+            pair: ScalePair::default(),
+            errors: StatedErrors::default(),
+            package_errors: StatedErrors::default(),
+            surface: surface.clone(),
+            cameras: vec![camera],
+            photos: vec![photo("a", 2.0), photo("b", 3.5)],
+        });
+        let flight = Arc::new(flight.unwrap());
+        let mut picker = Picker::new(surface, egui::Context::default()).unwrap();
         let ray = Ray {
-            origin: DVec3::new(1.0, 3.0, 10.0),
+            origin: DVec3::new(1.5, 2.5, 10.0),
             direction: DVec3::NEG_Z,
         };
-        picker.ask(Purpose::Select, ray);
-        assert!(picker.is_waiting());
-        let picked = loop {
-            if let Some(picked) = picker.answers().pop() {
-                break picked;
+        for purpose in [Purpose::Select, Purpose::Hover] {
+            picker.ask(purpose, ray, &flight);
+            assert!(picker.is_waiting());
+            let picked = loop {
+                if let Some(picked) = picker.answers().pop() {
+                    break picked;
+                }
+                std::thread::yield_now();
+            };
+            let point = DVec3::new(1.5, 2.5, 2.0);
+            assert_eq!(picked.purpose, purpose);
+            assert_eq!(picked.hit.unwrap().point, point);
+            assert!(!picker.is_waiting());
+            let Some(linked) = picked.linked else {
+                assert_eq!(purpose, Purpose::Select);
+                continue;
+            };
+            // Half a unit to the left and up, 100 px a unit; ten centimetres around it.
+            let [(0, seen)] = linked.seen[..] else {
+                panic!("{:?}", linked.seen);
+            };
+            assert!(seen.pixel.distance(DVec2::new(50.0, 50.0)) < 1e-9);
+            assert!((seen.scale - 100.0).abs() < 1e-9);
+            assert!((linked.radius - 0.1).abs() < 1e-12 && linked.is_ten_centimetres);
+            for end in linked.ring.iter().flatten() {
+                assert!((end.distance(point) - 0.1).abs() < 1e-9 && (end.z - 2.0).abs() < 1e-9);
             }
-            std::thread::yield_now();
-        };
-        assert_eq!(picked.purpose, Purpose::Select);
-        assert_eq!(picked.hit.unwrap().point, DVec3::new(1.0, 3.0, 2.0));
-        assert!(!picker.is_waiting());
+            assert!(linked.ring.len() >= 64);
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! What a ray of the mouse does to the flight on the screen, once it is known what it met.
 
+use std::sync::Arc;
+
 use crate::open_flight::picker::{Picked, Purpose};
 use crate::open_flight::{Measure, OpenFlight};
 
@@ -8,7 +10,18 @@ impl OpenFlight {
     pub(crate) fn take_picked(&mut self, picked: Picked) {
         let point = picked.hit.map(|hit| hit.point);
         match picked.purpose {
-            Purpose::Hover => self.pointer.hover = point,
+            // The mouse may have left since.
+            Purpose::Hover if self.pointer.from.is_none() => {}
+            Purpose::Hover => {
+                self.pointer.hover = point;
+                self.pointer.linked = picked.linked.map(Arc::new);
+                self.ask_surveyor();
+            }
+            Purpose::Draw => {
+                if let Some(point) = point {
+                    self.draw_at(point);
+                }
+            }
             Purpose::Center => {
                 if let Some(point) = point {
                     self.looking.through = None;

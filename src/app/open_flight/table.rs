@@ -1,7 +1,7 @@
 //! Which photos the table shows, and in which order.
 
 use crate::exports::{ColumnValue, PhotoColumn, PhotoLine};
-use crate::flight::Verdict;
+use crate::flight::{Along, Verdict};
 
 /// What the table can be sorted by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,6 +25,8 @@ pub struct TableOrder {
     pub text: String,
     /// Only photos with this verdict.
     pub verdict: Option<Verdict>,
+    /// Only photos that something speaks against.
+    pub doubtful: bool,
 }
 
 impl Default for TableOrder {
@@ -34,6 +36,7 @@ impl Default for TableOrder {
             descending: false,
             text: String::new(),
             verdict: None,
+            doubtful: false,
         }
     }
 }
@@ -45,6 +48,8 @@ pub struct PhotosTable {
     pub order: TableOrder,
     /// The rows that follow from it.
     pub shown: Vec<usize>,
+    /// The photos that something speaks against, in the flight's order.
+    pub doubtful: Vec<usize>,
     /// The photo that the mouse is over.
     pub hovered: Option<usize>,
 }
@@ -54,8 +59,13 @@ pub struct PhotosTable {
 pub struct Row<'a> {
     /// The photo with everything that is known of it.
     pub line: PhotoLine<'a>,
-    /// Whether it is chosen for export.
-    pub chosen: bool,
+}
+
+impl Row<'_> {
+    /// Whether it goes along into an export.
+    pub fn goes_along(&self) -> bool {
+        self.line.photo.goes_along(Along::Trusted)
+    }
 }
 
 impl TableOrder {
@@ -72,6 +82,7 @@ impl TableOrder {
                         .map(|doubt| doubt.to_string().to_lowercase())
                 };
                 self.verdict.is_none_or(|v| Some(v) == row.settled())
+                    && (!self.doubtful || row.is_doubtful())
                     && (wanted.is_empty()
                         || row.name().to_lowercase().contains(&wanted)
                         || doubts().any(|doubt| doubt.contains(&wanted)))
@@ -81,7 +92,7 @@ impl TableOrder {
             SortBy::Flight if self.descending => shown.reverse(),
             SortBy::Flight => {}
             SortBy::Export => shown.sort_by(|&a, &b| {
-                let order = rows[b].chosen.cmp(&rows[a].chosen);
+                let order = rows[b].goes_along().cmp(&rows[a].goes_along());
                 if self.descending {
                     order.reverse()
                 } else {
@@ -118,6 +129,8 @@ mod tests {
             name: (*name).to_owned(),
             camera: 0,
             pose: Pose::from_tilt_pan(DVec3::Z, [90.0, 0.0]),
+            errors: Default::default(),
+            package_errors: Default::default(),
             trouble: Some(format!("trouble of {name}")),
         };
         let camera = Camera {
@@ -144,6 +157,9 @@ mod tests {
             unit_known: true,
             ground: Ground::Auto,
             image: ImageKind::Undistorted,
+            pair: Default::default(),
+            errors: Default::default(),
+            package_errors: Default::default(),
             surface: Arc::new(Surface::new(cloud).unwrap()),
             cameras: vec![camera],
             photos,
@@ -158,7 +174,6 @@ mod tests {
         let rows: Vec<Row<'_>> = photos
             .map(|(index, photo)| Row {
                 line: PhotoLine::of(photo, index),
-                chosen: false,
             })
             .collect();
         order.shown(&rows)

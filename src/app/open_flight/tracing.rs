@@ -60,7 +60,7 @@ pub struct TracedObjects {
 impl OpenFlight {
     /// How large the next object of a kind is: as typed, else as the last one of its kind.
     pub fn trace_size(&self, kind: ScaleObjectKind) -> Option<f64> {
-        let objects = &self.history.now().settings.scale_objects;
+        let objects = &self.history.now().scale_objects;
         let last = objects.iter().rfind(|object| object.kind == kind);
         self.objects.sizes[kind as usize].or(last.map(|object| object.size))
     }
@@ -68,7 +68,7 @@ impl OpenFlight {
     /// The scale objects of a photo, with their places in the list of all.
     pub fn objects_of(&self, photo: usize) -> impl Iterator<Item = (usize, &ScaleObject)> {
         let name = self.name(photo).to_owned();
-        let objects = self.history.now().settings.scale_objects.iter();
+        let objects = self.history.now().scale_objects.iter();
         objects.enumerate().filter(move |(_, o)| o.photo == name)
     }
 

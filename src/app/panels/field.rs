@@ -30,6 +30,18 @@ pub(super) fn text_field(
     text: &str,
     width: f32,
 ) -> Option<String> {
+    hinted_field(ui, label, hover, text, "…", width)
+}
+
+/// The same with words that stand in it while it is empty.
+pub(super) fn hinted_field(
+    ui: &mut egui::Ui,
+    label: &str,
+    hover: &str,
+    text: &str,
+    hint: &str,
+    width: f32,
+) -> Option<String> {
     let id = ui.scope_id().with(label);
     let mut typed: String = ui
         .data(|data| data.get_temp(id))
@@ -37,7 +49,7 @@ pub(super) fn text_field(
     let field = ui.add(
         egui::TextEdit::singleline(&mut typed)
             .id(id)
-            .hint_text("…")
+            .hint_text(hint)
             .desired_width(width),
     );
     field.widget_info(|| {

@@ -45,11 +45,25 @@ pub(super) fn limits_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<C
             "The surface leaves the corners' plane by over",
             "% of the footprint (rms)",
             true,
-            "Four corners on a plane say nothing about a heap between them",
+            "Four corners on a plane say nothing about a heap between them (only where no line fits)",
+        ),
+        (
+            &mut next.off_line_share,
+            "The scale of the pixels is off the best line by over",
+            "% (rms)",
+            true,
+            "Split-Desktop draws a line from top to bottom: what lies off it is measured with a wrong scale",
+        ),
+        (
+            &mut next.interval_share,
+            "The 95 % interval of a scale is wider than",
+            "% of the scale",
+            true,
+            "Every size is as unsure as the scale: a difference between two blasts drowns in it",
         ),
     ] {
         ui.strong(name);
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let shown = if percent { *value * 100.0 } else { *value };
             if let Some(typed) = number_field(ui, name, why, shown, suffix)
                 && typed >= 0.0

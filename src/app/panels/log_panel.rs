@@ -1,6 +1,7 @@
 //! The log, which keeps every warning, and the last error over the viewport.
 
 use crate::command::Command;
+use crate::names;
 use crate::state::{LogLine, Severity, State};
 
 /// Draws the log.
@@ -21,18 +22,18 @@ pub fn log_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) 
         }
     });
     let height = ui.text_style_height(&egui::TextStyle::Body);
-    egui::ScrollArea::both()
+    egui::ScrollArea::vertical()
         .auto_shrink(false)
         .stick_to_bottom(true)
         .show_rows(ui, height, state.log.len(), |ui, rows| {
             for line in &state.log[rows] {
-                let text = egui::RichText::new(format!("{} {}", sign(line), line.text));
-                let text = match line.severity {
-                    Severity::Note => text,
-                    Severity::Warning => text.color(ui.visuals().warn_fg_color),
-                    Severity::Error => text.color(ui.visuals().error_fg_color),
+                let color = match line.severity {
+                    Severity::Note => ui.visuals().text_color(),
+                    Severity::Warning => ui.visuals().warn_fg_color,
+                    Severity::Error => ui.visuals().error_fg_color,
                 };
-                ui.add(egui::Label::new(text).extend());
+                let text = format!("{} {}", sign(line), line.text);
+                names::styled(ui, &text, egui::TextStyle::Body, |text| text.color(color));
             }
         });
 }

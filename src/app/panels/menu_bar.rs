@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::actions::file::OPEN_SAMPLE;
 use crate::actions::{Action, MENUS};
 use crate::command::Command;
+use crate::names;
 use crate::state::State;
 use crate::state::preferences::Theme;
 
@@ -46,12 +47,17 @@ fn entry_of(state: &State, action: Action, ui: &mut egui::Ui, commands: &mut Vec
     }
 }
 
+/// The width of a recent flight's name, points.
+pub(super) const RECENT_WIDTH: f32 = 400.0;
+
 fn recent(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let recent = &state.preferences.recent;
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
         ui.menu_button("Recent flights", |ui| {
             for path in recent {
-                let button = ui.button(short(path));
+                let font = egui::TextStyle::Button.resolve(ui.style());
+                let path_shown = short(path);
+                let button = ui.button(&*names::fitted(ui, &path_shown, &font, RECENT_WIDTH));
                 if button.on_hover_text(path.display().to_string()).clicked() {
                     commands.push(Command::Open(path.clone()));
                     ui.close();

@@ -1,33 +1,44 @@
 //! The parts of the window. Each is a function that reads the state and sends commands.
 
+mod cloud_alone;
+mod corner_loupe;
 mod dialogs;
 mod field;
 mod flight_settings;
+mod health;
 mod inspector;
 mod layers_panel;
 mod limits_page;
+pub(crate) mod linked;
 mod log_panel;
 mod menu_bar;
 mod path_field;
+mod photo_view;
 mod photos_table;
+mod review;
 mod size_distributions;
 mod start_page;
 mod status_bar;
+mod survey;
 mod tool_bar;
 mod verdict;
 mod view_buttons;
 
+pub use corner_loupe::Crops;
 pub use dialogs::ask;
+pub use health::health;
 pub use inspector::Inspector;
 pub use layers_panel::layers_panel;
 pub use log_panel::{log_panel, notice};
 pub use menu_bar::menu_bar;
+pub use photo_view::PhotoPanel;
 pub use photos_table::photos_table;
 pub use size_distributions::size_distributions;
 pub use start_page::start_page;
 pub use status_bar::status_bar;
+pub use survey::survey_panel;
 pub use tool_bar::tool_bar;
-pub use verdict::{verdict_color, verdict_sign};
+pub use verdict::{line_color, verdict_color, verdict_sign};
 pub use view_buttons::{blend_slider, view_buttons};
 
 use crate::command::{Command, Tab};
@@ -45,6 +56,11 @@ pub fn right_panel(
             (Tab::Photo, "Photo", "The selected photo and its scale"),
             (Tab::Flight, "Flight", "The flight's settings"),
             (Tab::Limits, "Limits", "When a photo's scale is doubted"),
+            (
+                Tab::Review,
+                "Review",
+                "The doubtful photos, one after the other: accept them or leave them out",
+            ),
         ] {
             let shown = ui
                 .selectable_label(state.tab == tab, name)
@@ -60,6 +76,7 @@ pub fn right_panel(
     ui.separator();
     match state.tab {
         Tab::Photo => inspector.show(state, ui, commands),
+        Tab::Review => review::review(state, inspector, ui, commands),
         Tab::Flight => {
             egui::ScrollArea::vertical().show(ui, |ui| {
                 flight_settings::flight_settings(state, ui, commands);

@@ -2,14 +2,20 @@
 
 use egui_extras::{Column as Width, TableBuilder};
 
+use super::cloud_alone::cloud_alone;
 use super::field::combo_box;
+use super::review::row_menu;
 use super::verdict::{verdict_color, verdict_sign};
 use crate::command::Command;
 use crate::exports::{ColumnKind, PHOTO_COLUMNS, PhotoColumn, PhotoLine};
 use crate::flight::{PhotoReview, Verdict};
+use crate::names;
 use crate::open_flight::OpenFlight;
-use crate::open_flight::table::{Row, SortBy};
+use crate::open_flight::table::SortBy;
 use crate::state::State;
+
+/// The height of the headings, which two lines fit into.
+const HEADER: f32 = 36.0;
 
 /// The height of a row, which a thumbnail fits into.
 const ROW: f32 = 34.0;
@@ -19,11 +25,17 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     let Some(open) = &state.open else {
         return;
     };
+    if open.review.count() == 0 {
+        cloud_alone(ui, commands);
+        return;
+    }
     filter(open, ui, commands);
-    let columns: Vec<(&'static PhotoColumn, [f32; 2])> = PHOTO_COLUMNS
+    let mut columns: Vec<(&'static PhotoColumn, [f32; 2])> = PHOTO_COLUMNS
         .iter()
         .filter_map(|column| Some((column, column.width?)))
         .collect();
+    // What matters first, in a narrow window alone.
+    columns.sort_by_key(|(column, _)| column.is_behind);
     let selected_row = open
         .selected
         .and_then(|photo| open.table.shown.iter().position(|&shown| shown == photo));
@@ -51,9 +63,9 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     }
     let mut hovered = None;
     table
-        .header(22.0, |mut header| {
+        .header(HEADER, |mut header| {
             header.col(|ui| {
-                let hover = "Chosen for export";
+                let hover = "Goes along into the export";
                 sort_button(open, SortBy::Export, "⬇", hover, ui, commands);
             });
             for (column, _) in &columns {
@@ -66,9 +78,10 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         .body(|body| {
             body.rows(ROW, open.table.shown.len(), |mut row| {
                 let photo = open.table.shown[row.index()];
-                let Some(Row { line, chosen }) = open.row(photo) else {
+                let Some(row_of_photo) = open.row(photo) else {
                     return;
                 };
+                let (line, chosen) = (row_of_photo.line, row_of_photo.goes_along());
                 // What is shown is typed.
                 let line = PhotoLine {
                     unit: state.preferences.unit(),
@@ -95,7 +108,17 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
                         }
                         match column.kind {
                             ColumnKind::Verdict => verdict(line.photo, ui),
-                            _ => text(ui, column.short_value(&line)),
+                            ColumnKind::Name | ColumnKind::Text => {
+                                names::name(ui, &column.short_value(&line));
+                            }
+                            ColumnKind::Scale => {
+                                // All digits are under the mouse.
+                                names::whole_number(ui, column.short_value(&line), false)
+                                    .on_hover_text(column.table_value(&line));
+                            }
+                            _ => {
+                                names::whole_number(ui, column.short_value(&line), false);
+                            }
                         }
                     });
                 }
@@ -108,6 +131,7 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
                 if response.clicked() {
                     commands.push(Command::Select(Some(photo)));
                 }
+                response.context_menu(|ui| row_menu(state, photo, ui, commands));
                 if response.double_clicked() {
                     commands.push(Command::View(crate::command::ViewChange::FitSelected));
                 }
@@ -126,7 +150,7 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
 }
 
 fn filter(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let mut text = open.table.order.text.clone();
         let field = egui::TextEdit::singleline(&mut text)
             .hint_text("Filter by name or reason")
@@ -165,11 +189,18 @@ fn filter(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             .response
             .on_hover_text("Show only photos with this verdict")
             .widget_info(|| combo_box("Filter by verdict", wanted));
-        ui.weak(format!(
-            "{} of {}",
-            open.table.shown.len(),
-            open.review.count()
-        ));
+        let is_on = open.table.order.doubtful;
+        let doubtful = ui.selectable_label(is_on, "doubtful");
+        doubtful.widget_info(|| {
+            let label = "Only doubtful photos";
+            egui::WidgetInfo::selected(egui::Role::Button, true, is_on, label)
+        });
+        let hover = "Show only photos that something speaks against, decided or not";
+        if doubtful.on_hover_text(hover).clicked() {
+            commands.push(Command::FilterDoubtful(!is_on));
+        }
+        let shown = format!("{} of {}", open.table.shown.len(), open.review.count());
+        ui.add(egui::Label::new(egui::RichText::new(shown).weak()).extend());
     });
 }
 
@@ -187,7 +218,7 @@ fn sort_button(
         (false, _) => "",
     };
     let text = egui::RichText::new(format!("{name}{arrow}")).strong();
-    let button = ui.add(egui::Button::new(text).frame(false).truncate());
+    let button = ui.add(egui::Button::new(text).frame(false).wrap());
     let button = button.on_hover_text(format!("{hover}. Click to sort."));
     button.widget_info(|| {
         egui::WidgetInfo::labeled(
@@ -220,11 +251,6 @@ fn thumbnail(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
     }
 }
 
-/// A cell that leaves clicks to its row.
-fn text(ui: &mut egui::Ui, text: String) {
-    ui.add(egui::Label::new(text).selectable(false).truncate());
-}
-
 fn verdict(photo: PhotoReview<'_>, ui: &mut egui::Ui) {
     let Some(verdict) = photo.settled() else {
         ui.weak("…").on_hover_text("Not looked at yet");
@@ -233,8 +259,9 @@ fn verdict(photo: PhotoReview<'_>, ui: &mut egui::Ui) {
     let words = format!("{} {verdict}", verdict_sign(verdict));
     let words = egui::RichText::new(words).color(verdict_color(verdict, ui.visuals()));
     let label = ui.add(egui::Label::new(words).selectable(false).truncate());
-    if !photo.doubts.is_empty() {
-        let reasons: Vec<String> = photo.doubts.iter().map(ToString::to_string).collect();
+    let reasons = photo.doubts.iter().map(ToString::to_string);
+    let reasons: Vec<String> = reasons.chain(photo.decided()).collect();
+    if !reasons.is_empty() {
         label.on_hover_text(reasons.join("\n"));
     }
 }

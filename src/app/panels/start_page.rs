@@ -1,8 +1,9 @@
 //! The first page: the sample flight, recent flights, and what can be opened.
 
-use super::menu_bar::short;
+use super::menu_bar::{RECENT_WIDTH, short};
 use crate::actions;
 use crate::command::{Asking, Command};
+use crate::names;
 use crate::size_distributions::Page;
 use crate::state::State;
 
@@ -56,7 +57,10 @@ pub fn start_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
             if !state.preferences.recent.is_empty() {
                 ui.strong("Recent flights");
                 for path in &state.preferences.recent {
-                    let link = ui.link(short(path));
+                    let font = egui::TextStyle::Body.resolve(ui.style());
+                    let width = RECENT_WIDTH.min(ui.available_width());
+                    let name = short(path);
+                    let link = ui.link(&*names::fitted(ui, &name, &font, width));
                     if link.on_hover_text(path.display().to_string()).clicked() {
                         commands.push(Command::Open(path.clone()));
                     }

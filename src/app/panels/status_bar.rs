@@ -2,6 +2,7 @@
 
 use crate::actions;
 use crate::command::Command;
+use crate::names;
 use crate::open_flight::Measure;
 use crate::state::{Severity, State};
 
@@ -25,7 +26,7 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
             ui.separator();
         }
         if let Some(open) = &state.open {
-            let unit = open.flight().parts().unit;
+            let unit = open.flight().parts().unit_of_lengths();
             if let Some(point) = open.pointer.hover {
                 let text = format!(
                     "x {:.3}  y {:.3}  z {:.3} {unit}",
@@ -86,7 +87,7 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
                 commands.push(Command::ToggleLog);
             }
             if let Some(line) = state.log.last() {
-                ui.add(egui::Label::new(&line.text).truncate());
+                names::name(ui, &line.text);
             }
         });
     });

@@ -4,6 +4,7 @@ use super::verdict::{verdict_color, verdict_sign};
 use crate::actions;
 use crate::command::Command;
 use crate::flight::Verdict;
+use crate::open_flight::OpenFlight;
 use crate::size_distributions::Page;
 use crate::state::State;
 use crate::units::LengthUnit;
@@ -65,10 +66,16 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         for verdict in Verdict::ALL {
             let count = open.review.count_of(verdict);
             let shown = open.table.order.verdict == Some(verdict);
+            let is_decided = matches!(verdict, Verdict::Accepted | Verdict::LeftOut);
+            if is_decided && count == 0 && !shown {
+                continue;
+            }
             let text = format!("{} {count} {verdict}", verdict_sign(verdict));
             let text = egui::RichText::new(text).color(verdict_color(verdict, ui.visuals()));
             let button = ui.selectable_label(shown, text);
-            let button = button.on_hover_text(format!("Show only the photos to {verdict}"));
+            let button = button.on_hover_text(format!(
+                "Show only the photos with the verdict \"{verdict}\""
+            ));
             button.widget_info(|| {
                 let label = format!("Only photos: {verdict}");
                 egui::WidgetInfo::selected(egui::Role::Button, true, shown, label)
@@ -84,10 +91,25 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         export.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Button, chosen > 0, "Export chosen photos")
         });
-        if export.on_hover_text(actions::file::EXPORT.hover).clicked() {
+        let export = export.on_hover_text(actions::file::EXPORT.hover);
+        if export.on_disabled_hover_text(why_no_export(open)).clicked() {
             commands.extend((actions::file::EXPORT.command)(state));
         }
     });
+}
+
+/// Why nothing can be exported now.
+fn why_no_export(open: &OpenFlight) -> &'static str {
+    if open.review.count() == 0 {
+        "There are no photos yet: add the cameras of this cloud"
+    } else if !open.review.is_looked_at() || !open.is_computed() {
+        "Scales, footprints and scale fields are still being computed"
+    } else if !open.flight().parts().unit_known {
+        "No photo goes along: the model's unit is not known. Georeference it, or set its unit under Flight"
+    } else {
+        "No photo goes along: none is without doubt, or all were left out. Accept a photo beside its \
+         reasons, or tick its box in the table"
+    }
 }
 
 /// The switch between the flight and the size distributions.

@@ -8,10 +8,29 @@ pub fn verdict_color(verdict: Verdict, visuals: &egui::Visuals) -> egui::Color32
     match (verdict, visuals.dark_mode) {
         (Verdict::Trust, true) => egui::Color32::from_rgb(110, 200, 130),
         (Verdict::Trust, false) => egui::Color32::from_rgb(20, 120, 50),
+        (Verdict::Accepted, true) => egui::Color32::from_rgb(90, 200, 220),
+        (Verdict::Accepted, false) => egui::Color32::from_rgb(0, 105, 125),
         (Verdict::Check, true) => egui::Color32::from_rgb(255, 190, 80),
         (Verdict::Check, false) => egui::Color32::from_rgb(160, 90, 0),
+        (Verdict::LeftOut, true) => egui::Color32::from_gray(165),
+        (Verdict::LeftOut, false) => egui::Color32::from_gray(85),
         (Verdict::NoScale, true) => egui::Color32::from_rgb(255, 110, 110),
         (Verdict::NoScale, false) => egui::Color32::from_rgb(180, 20, 30),
+    }
+}
+
+/// The colour of a photo's lines in the viewport: on dark rock as on a light page, so neither as dark as
+/// letters on it would be nor as light as the page. `None` is not settled yet.
+pub fn line_color(verdict: Option<Verdict>, visuals: &egui::Visuals) -> egui::Color32 {
+    match (verdict, visuals.dark_mode) {
+        (None, true) => visuals.text_color(),
+        (Some(verdict), true) => verdict_color(verdict, visuals),
+        (None, false) => egui::Color32::from_gray(136),
+        (Some(Verdict::Trust), false) => egui::Color32::from_rgb(40, 160, 80),
+        (Some(Verdict::Accepted), false) => egui::Color32::from_rgb(0, 145, 170),
+        (Some(Verdict::Check), false) => egui::Color32::from_rgb(200, 120, 0),
+        (Some(Verdict::LeftOut), false) => egui::Color32::from_rgb(142, 136, 98),
+        (Some(Verdict::NoScale), false) => egui::Color32::from_rgb(240, 80, 80),
     }
 }
 
@@ -19,7 +38,9 @@ pub fn verdict_color(verdict: Verdict, visuals: &egui::Visuals) -> egui::Color32
 pub fn verdict_sign(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Trust => "✔",
+        Verdict::Accepted => "☑",
         Verdict::Check => "⚠",
+        Verdict::LeftOut => "⊗",
         Verdict::NoScale => "✖",
     }
 }
@@ -27,4 +48,55 @@ pub fn verdict_sign(verdict: Verdict) -> &'static str {
 /// A number that may be missing.
 pub(super) fn or_dash(value: Option<f64>, digits: u8) -> String {
     value.map_or_else(|| "–".to_owned(), |value| significant_digits(value, digits))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::SELECTED;
+
+    /// WCAG 2.2: relative luminance of an sRGB colour.
+    fn luminance(color: egui::Color32) -> f64 {
+        let [r, g, b, _] = color.to_array().map(|channel| {
+            let share = f64::from(channel) / 255.0;
+            if share <= 0.04045 {
+                share / 12.92
+            } else {
+                ((share + 0.055) / 1.055).powf(2.4)
+            }
+        });
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    }
+
+    fn contrast(a: egui::Color32, b: egui::Color32) -> f64 {
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    /// WCAG's contrast for what is no text, 3 to 1, on the light page and on dark rock.
+    #[test]
+    fn lines_stand_out_from_dark_rock_on_a_light_page() {
+        let visuals = egui::Visuals::light();
+        let rock = egui::Color32::from_rgb(58, 56, 54);
+        for verdict in Verdict::ALL {
+            let color = line_color(Some(verdict), &visuals);
+            for behind in [visuals.extreme_bg_color, rock] {
+                let contrast = contrast(color, behind);
+                assert!(contrast >= 3.0, "{verdict} on {behind:?}: {contrast:.2}");
+            }
+        }
+    }
+
+    /// The selected photo's lines have another colour than any verdict, above all than "check".
+    #[test]
+    fn the_selection_is_no_verdict() {
+        for visuals in [egui::Visuals::light(), egui::Visuals::dark()] {
+            for verdict in Verdict::ALL {
+                let [r, g, b, _] = line_color(Some(verdict), &visuals).to_array();
+                let apart = [r, g, b].into_iter().zip(SELECTED);
+                let apart = apart.map(|(a, b)| u32::from(a.abs_diff(b))).sum::<u32>();
+                assert!(apart > 200, "{verdict}: {r} {g} {b}");
+            }
+        }
+    }
 }

@@ -3,6 +3,8 @@
 use crate::actions::{self, Action};
 use crate::command::{Command, ViewChange};
 use crate::open_flight::Measure;
+use crate::open_flight::survey::SurveyTool;
+use crate::photo_view::Middle;
 use crate::state::State;
 
 /// Draws the buttons.
@@ -27,16 +29,30 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     };
     let through = open.looking.through.is_some();
     button(actions::view::FIT, "Fit", false, ui);
+    // Only where it shows something else.
+    if open.extent.bulk != open.extent.surface {
+        button(actions::view::FIT_ALL, "Fit all", false, ui);
+    }
     button(actions::view::TOP, "Top", false, ui);
     button(actions::view::FRONT, "Front", false, ui);
     button(actions::view::SIDE, "Side", false, ui);
     button(actions::view::THROUGH, "Through camera", through, ui);
+    let middle = state.middle;
+    let photo = actions::view::PHOTO_ALONE;
+    button(photo, "Photo", middle == Middle::Photo, ui);
+    let both = actions::view::PHOTO_BESIDE;
+    button(both, "Photo beside", middle == Middle::Both, ui);
     button(
         actions::photo::MEASURE,
         "Measure",
         open.pointer.measure != Measure::Off,
         ui,
     );
+    let drawn = open.pointer.drawn.as_ref().map(|drawn| drawn.tool);
+    let profile = drawn == Some(SurveyTool::Profile);
+    button(actions::survey::PROFILE, "Profile", profile, ui);
+    let volume = drawn == Some(SurveyTool::Volume);
+    button(actions::survey::VOLUME, "Volume", volume, ui);
 }
 
 /// How much of the photo lies over a look through its camera.

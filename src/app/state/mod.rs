@@ -10,8 +10,10 @@ use std::path::PathBuf;
 
 use crate::command::{Asking, Command, PictureRequest, Tab};
 use crate::fault::one_line;
+use crate::formats::Candidate;
 use crate::open_flight::OpenFlight;
 use crate::opening::OpenOptions;
+use crate::photo_view::Middle;
 use crate::render::Gpu;
 use crate::size_distributions::{Page, SizeDistributions};
 use crate::tasks::work::Work;
@@ -84,6 +86,8 @@ pub struct State {
     pub open: Option<Box<OpenFlight>>,
     /// Which page is shown.
     pub page: Page,
+    /// What is in the middle of the page of the pile.
+    pub middle: Middle,
     /// The size distributions, with or without a flight.
     pub distributions: SizeDistributions,
     /// Jobs under way.
@@ -106,6 +110,8 @@ pub struct State {
     pub may_quit: bool,
     /// The flight that could not be opened last, with what was named beside it.
     pub tried: Option<(PathBuf, OpenOptions)>,
+    /// The flights of the folder that was named last, to choose from.
+    pub choices: Vec<Candidate>,
     /// Whether the flight that is being read is another one than that on the screen.
     pub reads_other: bool,
     /// How many flights were opened.
@@ -124,6 +130,7 @@ impl State {
             preferences,
             open: None,
             page: Page::default(),
+            middle: Middle::default(),
             distributions: SizeDistributions::default(),
             log: Vec::new(),
             notice: None,
@@ -134,6 +141,7 @@ impl State {
             after_saving: None,
             may_quit: false,
             tried: None,
+            choices: Vec::new(),
             reads_other: false,
             opened: 0,
             picture: None,

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::flight::Limits;
+use crate::photo_view::PhotoOverlays;
 use crate::state::layers::Layers;
 use crate::units::LengthUnit;
 
@@ -28,6 +29,20 @@ pub struct Preferences {
     pub theme: Theme,
     /// Whether the log is open.
     pub log_open: bool,
+    /// Whether the panel at the left is shown: the table of photos, or what was added.
+    pub left_open: bool,
+    /// Whether the panel at the right is shown: photo and settings, or results.
+    pub right_open: bool,
+    /// Whether the strip of the flight's health is shown.
+    pub health_open: bool,
+    /// Whether the selected photo is tinted by its scale.
+    pub tint: bool,
+    /// Whether the corners are shown enlarged.
+    pub loupe_open: bool,
+    /// What lies over the photo in the photo view.
+    pub photo_overlays: PhotoOverlays,
+    /// Whether an export has the rectified photos, too.
+    pub export_rectified: bool,
 }
 
 /// Light or dark.
@@ -52,6 +67,13 @@ impl Default for Preferences {
             layers: Layers::default(),
             theme: Theme::System,
             log_open: false,
+            left_open: true,
+            right_open: true,
+            health_open: true,
+            tint: false,
+            loupe_open: false,
+            photo_overlays: PhotoOverlays::default(),
+            export_rectified: false,
         }
     }
 }

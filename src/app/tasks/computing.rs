@@ -16,6 +16,8 @@ impl Task {
     pub const SCALES: Self = Self::new("Scales").of_flight();
     /// Draping footprints.
     pub const VIEWS: Self = Self::new("Footprints").of_flight().to_the_end();
+    /// Computing scale fields: best lines, and how sure scales are.
+    pub const FIELDS: Self = Self::new("Scale fields").of_flight().to_the_end();
     /// Triangles and points for the viewport.
     pub const GEOMETRY: Self = Self::new("Surface").of_flight().to_the_end();
 }
@@ -30,7 +32,7 @@ struct Scales {
 }
 
 impl State {
-    /// Computes scales and footprints with the settings of now.
+    /// Computes scales, and then footprints and scale fields, with the settings of now.
     pub fn start_scales(&mut self) {
         let Some(open) = &self.open else {
             return;
@@ -70,6 +72,36 @@ impl State {
             }
             Err(fault) => state.say(Severity::Error, &fault.to_string()),
         });
+    }
+
+    /// Computes the scale fields of the flight as it is computed.
+    pub fn start_fields(&mut self) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let (flight, outcomes) = (open.flight().clone(), open.review.outcomes().clone());
+        let work = move |progress: &Progress| flight.fields(&outcomes, progress);
+        self.start(Task::FIELDS, work, |state, fields| match fields {
+            Ok(fields) => {
+                if let Some(open) = &mut state.open {
+                    open.take_fields(fields);
+                }
+            }
+            Err(fault) => state.say(Severity::Error, &fault.to_string()),
+        });
+    }
+
+    /// Has the flight say what the settings of now state of it, and computes the scale fields anew where
+    /// they depend on it.
+    pub(crate) fn take_stated(&mut self) {
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        let before = open.flight().parts().errors;
+        open.take_stated();
+        if open.flight().parts().errors != before {
+            self.start_fields();
+        }
     }
 
     /// Makes ready what the viewport draws of the surface.
@@ -131,11 +163,19 @@ impl State {
             self.start_picker();
         }
         if other_image {
+            self.load_full_photo_anew();
             self.load_preview();
             self.start_thumbnails();
         }
+        if let Some(open) = &mut self.open {
+            // Stated otherwise while these scales were computed.
+            open.take_stated();
+        }
         self.start_views();
+        self.start_fields();
         self.start_comparing();
+        self.load_tint_anew();
+        self.load_corners();
     }
 
     /// Where neither scales nor the file are on their way any more, a change of the settings that

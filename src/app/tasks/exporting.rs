@@ -6,8 +6,10 @@ use std::time::Instant;
 use super::work::Task;
 use crate::command::Destination;
 use crate::exports::{self, ExportRequest, Provenance, Replace};
+use crate::flight::Along;
 use crate::jobs::Progress;
 use crate::opening;
+use crate::scale::Onto;
 use crate::state::{Severity, State};
 
 impl Task {
@@ -38,14 +40,15 @@ impl State {
         if !open.review.is_looked_at() || !open.is_computed() {
             self.say(
                 Severity::Error,
-                "scales and footprints are still being computed; export when they are there",
+                "scales, footprints and scale fields are still being computed; export when they are there",
             );
             return;
         }
         let mut review = open.review.clone();
         let photo_files = open.files.photo_files.clone();
-        let selected = open.history.now().chosen.clone();
+        let seen = open.review.going_along(Along::Trusted);
         let unit = self.preferences.unit();
+        let rectified = (self.preferences.export_rectified).then_some(Onto::FittedPlane);
         let settings = open.settings();
         let (crs, inputs) = (open.files.crs.clone(), open.files.inputs.clone());
         let warnings = open.all_warnings();
@@ -55,6 +58,7 @@ impl State {
             // Those that the window has not come to yet.
             let compared = opening::compare_all_colours(&mut review, &photo_files, progress);
             compared.map_err(|fault| fault.to_string())?;
+            let selected = review.going_along(Along::Trusted);
             let files = photo_files.iter().map(|file| file.path.clone());
             let files: Vec<Option<PathBuf>> = files.collect();
             let request = ExportRequest {
@@ -70,13 +74,25 @@ impl State {
                 },
                 selected: &selected,
                 unit,
+                rectified,
                 replace,
             };
             let exported = exports::export_for_split_desktop(&folder, &request, progress);
             let summary = exported.map_err(|error| error.to_string())?;
             let sentence = format!("{}: {summary}", folder.display());
             let name = review.flight().parts().name.clone();
-            Ok((sentence, summary.warnings, name, begun.elapsed()))
+            let mut warnings = summary.warnings;
+            let lost = review.photos().zip(seen.iter().zip(&selected));
+            warnings.extend(
+                lost.filter(|(_, (seen, is_selected))| **seen && !**is_selected)
+                    .map(|(photo, _)| {
+                        format!(
+                            "{}: not exported, its colours speak against it",
+                            photo.name()
+                        )
+                    }),
+            );
+            Ok((sentence, warnings, name, begun.elapsed()))
         };
         self.start(Task::EXPORT, work, |state, exported: Result<_, String>| {
             let (sentence, warnings, flight, took) = match exported {

@@ -10,6 +10,7 @@ pub mod photos;
 pub mod picture;
 pub mod saving;
 pub mod scale_objects;
+pub mod tint;
 pub mod work;
 
 pub use work::{Task, Work};

@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 
 use super::work::Task;
+use crate::command::Asking;
 use crate::flight::{FlightSettings, Verdict};
 use crate::jobs::Progress;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::loading::{Loaded, NotOpened, load, named};
 use crate::open_flight::picker::Picker;
+use crate::open_flight::survey::surveyor::Surveyor;
 use crate::state::{Severity, State};
 
 impl Task {
@@ -49,11 +51,25 @@ impl State {
         match opened {
             Ok(loaded) => self.take_flight(loaded),
             Err(not_opened) => {
-                let NotOpened { why, tried } = *not_opened;
+                let NotOpened {
+                    why,
+                    asks,
+                    choices,
+                    tried,
+                } = *not_opened;
+                if !choices.is_empty() {
+                    self.say(Severity::Note, &why);
+                    self.choices = choices;
+                    self.ask(Some(Asking::Choose));
+                    return;
+                }
                 self.say(Severity::Error, &why);
                 // A wrong surface does not make forget the flight that it was for.
                 self.tried = tried.or_else(|| self.tried.take());
                 self.take_back_settings();
+                if asks.is_some() {
+                    self.ask(asks);
+                }
             }
         }
     }
@@ -104,11 +120,13 @@ impl State {
         let mut open = Box::new(OpenFlight::new(self.opened, loaded, &limits));
         if let Some(before) = again {
             open.keep_from(before);
-            open.arrange();
+            open.take_stated();
+            open.take_decisions();
         }
         self.open = Some(open);
         self.start_picker();
         self.start_views();
+        self.start_fields();
         self.start_comparing();
         self.start_geometry();
         self.load_preview();
@@ -134,10 +152,16 @@ impl State {
         let Some(open) = &mut self.open else {
             return;
         };
-        open.pointer.hover = None;
+        open.point_at_nothing();
         let surface = open.flight().parts().surface.clone();
-        match Picker::new(surface, self.context.clone()) {
-            Ok(picker) => open.pointer.picker = Some(picker),
+        let picker = Picker::new(surface.clone(), self.context.clone());
+        let surveyor = Surveyor::new(surface, self.context.clone());
+        match picker.and_then(|picker| Ok((picker, surveyor?))) {
+            Ok((picker, surveyor)) => {
+                open.pointer.picker = Some(picker);
+                open.pointer.surveyor = Some(surveyor);
+                open.survey_anew();
+            }
             Err(fault) => self.say(Severity::Error, &fault.to_string()),
         }
     }
@@ -164,7 +188,6 @@ impl OpenFlight {
         self.objects.sizes = before.objects.sizes;
         std::mem::swap(&mut self.georeferencing, &mut before.georeferencing);
         std::mem::swap(&mut self.history, &mut before.history);
-        self.proposed = before.proposed;
         self.selected = before.selected;
         std::mem::swap(&mut self.table.order, &mut before.table.order);
         self.looking = before.looking;

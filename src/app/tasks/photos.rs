@@ -9,6 +9,7 @@ use image::buffer::ConvertBuffer;
 use super::work::Task;
 use crate::camera::Camera;
 use crate::flight::ColoursFound;
+use crate::formats::photos::photo_metadata;
 use crate::formats::{self, FileError};
 use crate::jobs::Progress;
 use crate::open_flight::{Preview, PreviewPicture};
@@ -49,6 +50,8 @@ struct Thumbnail {
     image: Option<PhotoImage>,
     /// How its colours compare with the surface's.
     colours: Colours,
+    /// When it was taken, by EXIF.
+    time: Option<String>,
 }
 
 impl State {
@@ -73,6 +76,8 @@ impl State {
                 };
                 let camera = flight.camera(photo);
                 let image = flight.parts().image;
+                let metadata = photo_metadata::read_file(path).ok();
+                let time = metadata.and_then(|metadata| metadata.time);
                 let thumbnail = match read_photo(path) {
                     Ok(large) => Thumbnail {
                         flight: number,
@@ -87,6 +92,7 @@ impl State {
                             &undistorted(&large, camera, THUMBNAIL).convert(),
                         )),
                         colours: Colours::of_photo(&flight, index, &large),
+                        time,
                     },
                     Err(why) => Thumbnail {
                         flight: number,
@@ -94,6 +100,7 @@ impl State {
                         small: None,
                         image: None,
                         colours: Colours::Unreadable(why),
+                        time,
                     },
                 };
                 // Waits until the window has taken some; a cancelled job gives up.
@@ -107,8 +114,11 @@ impl State {
         self.start(Task::THUMBNAILS, work, |_, ()| ());
     }
 
-    /// Reads the selected photo for the inspector.
+    /// Reads the selected photo for the inspector; its tint comes with it.
     pub fn load_preview(&mut self) {
+        self.load_tint();
+        self.load_full_photo();
+        self.load_corners();
         self.work.cancel(Task::PREVIEW);
         let Some(open) = &self.open else {
             return;
@@ -175,6 +185,7 @@ impl State {
             small,
             image,
             colours,
+            time,
         } = thumbnail;
         let Some(open) = &mut self.open else {
             return;
@@ -190,6 +201,7 @@ impl State {
             open.pictures.thumbnails[photo] = Some(texture);
         }
         open.pictures.images[photo] = image.map(Arc::new);
+        open.take_time(photo, time);
         let evidence = open.review.looked_up().evidence.get(photo);
         let is_known =
             evidence.is_some_and(|evidence| evidence.colours != ColoursFound::NotCompared);
@@ -203,7 +215,7 @@ impl State {
 }
 
 /// Reads a photo.
-fn read_photo(path: &Path) -> Result<RgbImage, String> {
+pub(crate) fn read_photo(path: &Path) -> Result<RgbImage, String> {
     let bytes = formats::read_bytes(path).map_err(|error| error.to_string())?;
     picture::decode(&bytes).map_err(|fault| FileError::new(path, fault).to_string())
 }

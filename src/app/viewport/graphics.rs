@@ -9,7 +9,7 @@ use egui::{Color32, Pos2, Rect, pos2};
 use super::Scene;
 use crate::flight::Outcome;
 use crate::open_flight::OpenFlight;
-use crate::panels::verdict_color;
+use crate::panels::line_color;
 use crate::render::{Gpu, PhotoGeometry, PhotoLook, Renderer, Show, SurfaceBuffers, View};
 use crate::scale::ViewFacts;
 
@@ -43,6 +43,8 @@ pub(super) struct Uploaded {
     /// The scales and views that the photos' lines were made of.
     pub(super) outcomes: Option<Arc<Vec<Outcome>>>,
     pub(super) views: Option<Arc<Vec<Option<ViewFacts>>>>,
+    /// The order of the flight line.
+    pub(super) line: Option<Arc<Vec<usize>>>,
     pub(super) images: Vec<bool>,
     pub(super) projected: Option<(usize, u64)>,
     pub(super) looks: Vec<PhotoLook>,
@@ -59,6 +61,7 @@ impl Graphics {
                 ..Uploaded::default()
             };
             self.renderer.start(&open.extent.frame);
+            self.renderer.set_bulk(Some(&open.extent.bulk));
             self.drawn = None;
         }
         let same_geometry = same(uploaded.geometry.as_ref(), open.geometry.as_ref());
@@ -75,16 +78,19 @@ impl Graphics {
             let photos = PhotoGeometry::of_review(&open.extent.frame, &open.review);
             self.renderer.set_photos(photos);
             uploaded.looks.clear();
+            uploaded.line = None;
             (self.drawn, self.moved) = (None, None);
+        }
+        if !same(uploaded.line.as_ref(), Some(&open.line)) {
+            uploaded.line = Some(open.line.clone());
+            self.renderer.set_flight_line(open.line.to_vec());
+            self.drawn = None;
         }
         let looks: Vec<PhotoLook> = open
             .review
             .photos()
             .map(|photo| {
-                let color = match photo.settled() {
-                    Some(verdict) => verdict_color(verdict, visuals),
-                    None => visuals.text_color(),
-                };
+                let color = line_color(photo.settled(), visuals);
                 let [red, green, blue, _] = color.to_array();
                 PhotoLook {
                     visible: true,

@@ -3,6 +3,8 @@
 //! The picture is drawn into a texture of its own, and only when something of it has changed; every
 //! other frame of the window shows the same texture again.
 
+mod crops;
+mod drawn;
 mod graphics;
 mod mouse;
 mod words;
@@ -13,23 +15,28 @@ use glam::DVec2;
 
 use crate::command::{Command, PictureRequest, ViewChange};
 use crate::frame_times::{FrameTimes, Phase};
+use crate::linked::PointFrom;
 use crate::open_flight::OpenFlight;
+use crate::panels::linked;
 use crate::render::{Background, Gpu, Renderer, Show, View};
 use crate::state::State;
 use crate::tasks::Task;
+use drawn::show_drawn;
 use graphics::{Graphics, Uploaded};
 use mouse::mouse;
-use words::{distance, legend, write};
+use words::{legend, write};
 
 /// The viewport with what it has uploaded.
 pub struct Viewport {
     graphics: Option<Graphics>,
+    crops: crops::Drawn,
 }
 
 impl Viewport {
     /// With eframe's graphics device; without one it says so.
     pub fn new(state: Option<&RenderState>) -> Self {
         Self {
+            crops: crops::Drawn::default(),
             graphics: state.map(|state| {
                 let info = state.adapter.get_info();
                 let gpu = Gpu::of_window(state.device.clone(), state.queue.clone(), &info);
@@ -102,6 +109,9 @@ impl Viewport {
                 if let Some(error) = graphics.gpu.take_error() {
                     commands.push(Command::Report(format!("graphics: {error}")));
                 }
+                if graphics.gpu.take_lost_frame() {
+                    ui.ctx().request_repaint();
+                }
                 times.end(Phase::Panels);
                 graphics.upload(open, ui.visuals());
                 times.end(Phase::Upload);
@@ -114,7 +124,7 @@ impl Viewport {
                 legend(&scene, graphics.renderer.legend(&show).as_ref(), ui);
             }
         }
-        distance(&scene, open, ui);
+        point(state, open, &scene, ui, &response, commands);
         if open.geometry.is_none() && state.work.is_running(Task::GEOMETRY) {
             let text = "Preparing the surface…";
             let font = FontId::proportional(14.0);
@@ -147,6 +157,12 @@ impl Viewport {
         }
         let mut show = layers.show(Some(open.ground()));
         show.unit = open.flight().parts().unit;
+        show.lengths_in = open.flight().parts().unit_of_lengths();
+        show.scale_unit = Some(state.preferences.unit());
+        if !corner_rays {
+            show.measured = open.pointer.measure.points();
+            show_drawn(open, &mut show);
+        }
         show.selected = if corner_rays { None } else { open.selected };
         show.photo_blend = blend(open);
         // Lines as thick as in a report's figure, whatever the size.
@@ -197,8 +213,31 @@ fn view(open: &OpenFlight) -> View {
     let through = open.looking.through;
     match through.and_then(|photo| open.review.photo(photo)) {
         None => open.looking.orbit.view(),
-        Some(photo) => View::through(&photo, open.looking.orbit.distance),
+        Some(photo) => {
+            View::through(&photo, open.looking.orbit.distance).into_photo(open.looking.into)
+        }
     }
+}
+
+/// The place that the mouse points at, from wherever it does.
+fn point(
+    state: &State,
+    open: &OpenFlight,
+    scene: &Scene,
+    ui: &egui::Ui,
+    response: &egui::Response,
+    commands: &mut Vec<Command>,
+) {
+    if let Some(linked) = &open.pointer.linked {
+        let painter = ui.painter().with_clip_rect(scene.place);
+        let to_screen = |point| Some(scene.screen(scene.view.project(point, scene.size())?));
+        let at = linked::glow(&painter, linked, to_screen);
+        if open.pointer.from == Some(PointFrom::Pile) {
+            linked::beside(state, open, linked, &painter, scene.place, at);
+        }
+    }
+    linked::menu(open, response, commands);
+    linked::copy(open, ui, response, commands);
 }
 
 fn blend(open: &OpenFlight) -> f64 {
@@ -211,6 +250,10 @@ fn blend(open: &OpenFlight) -> f64 {
 fn show(state: &State, open: &OpenFlight, ui: &egui::Ui, pixels_per_point: f64) -> Show {
     let mut show = state.preferences.layers.show(Some(open.ground()));
     show.unit = open.flight().parts().unit;
+    show.lengths_in = open.flight().parts().unit_of_lengths();
+    show.scale_unit = Some(state.preferences.unit());
+    show.measured = open.pointer.measure.points();
+    show_drawn(open, &mut show);
     show.selected = open.selected;
     show.hovered = open.table.hovered;
     show.photo_blend = blend(open);

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::Scene;
 use crate::command::{Command, ViewChange};
+use crate::linked::PointFrom;
 use crate::open_flight::OpenFlight;
 
 pub(super) fn mouse(
@@ -31,8 +32,8 @@ pub(super) fn mouse(
         }
     }
     let Some(at) = response.hover_pos() else {
-        if open.pointer.hover.is_some() {
-            commands.push(Command::Hover(None));
+        if open.pointer.from == Some(PointFrom::Pile) && !response.context_menu_opened() {
+            commands.push(Command::Hover(PointFrom::Pile, None));
         }
         return;
     };
@@ -57,7 +58,7 @@ pub(super) fn mouse(
         commands.push(Command::DoubleClick(ray));
     } else if response.clicked() {
         commands.push(Command::Click(ray));
-    } else if !still && !response.dragged() {
-        commands.push(Command::Hover(Some(ray)));
+    } else if !still && !response.dragged() && !response.context_menu_opened() {
+        commands.push(Command::Hover(PointFrom::Pile, Some(ray)));
     }
 }

@@ -10,7 +10,7 @@ use super::ExportRequest;
 use super::kml;
 use crate::fault::Fault;
 use crate::geodesy::{Crs, CrsKind};
-use crate::scale::FootprintPoint;
+use crate::scale::{FootprintPoint, ScaleEstimate};
 use crate::units::LengthUnit;
 use crate::{PhotoLine, ScaleReport};
 
@@ -144,7 +144,12 @@ fn map_system(crs: &str, unit: LengthUnit) -> Result<Crs, Fault> {
 
 fn feature(footprint: &PhotoFootprint<'_>, report: &ScaleReport<'_>) -> Value {
     let PhotoLine { photo, .. } = footprint.line;
-    let scale = footprint.line.scale();
+    let (scale, fitted) = (footprint.line.scale(), footprint.line.fitted());
+    let [top, bottom] = footprint.line.estimates(photo.pair);
+    let ends = |estimate: Option<ScaleEstimate>| {
+        let interval = estimate?.interval?;
+        Some([interval.low, interval.high])
+    };
     let geometry = match footprint.ring.is_empty() {
         true => Value::Null,
         false => json!({ "type": "Polygon", "coordinates": [footprint.ring] }),
@@ -159,6 +164,14 @@ fn feature(footprint: &PhotoFootprint<'_>, report: &ScaleReport<'_>) -> Value {
             "right": scale.right,
             "bottom": scale.bottom,
             "left": scale.left,
+            "fitted_top": fitted.map(|fitted| fitted.top),
+            "fitted_bottom": fitted.map(|fitted| fitted.bottom),
+            "use": photo.pair.as_str(),
+            "off_line_rms_percent": fitted.map(|fitted| fitted.rms_percent),
+            "off_line_worst_percent": fitted.map(|fitted| fitted.worst_percent),
+            "covered": photo.field.map(|field| field.covered),
+            "used_top_95": ends(top),
+            "used_bottom_95": ends(bottom),
             "verdict": photo.verdict.as_str(),
             "corners_on_surface": photo.corners_on_surface().unwrap_or(0),
             "outline_complete": footprint.is_complete,

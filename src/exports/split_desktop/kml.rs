@@ -7,6 +7,7 @@ use super::footprints::PhotoFootprint;
 use crate::ScaleReport;
 use crate::flight::Verdict;
 use crate::markup::escaped;
+use crate::scale::ScalePair;
 
 /// A placemark a photo, coloured by its verdict.
 pub(super) fn document<'a>(
@@ -22,7 +23,9 @@ pub(super) fn document<'a>(
         // aabbggrr
         let color = match verdict {
             Verdict::Trust => "50af4c",
+            Verdict::Accepted => "c8b43c",
             Verdict::Check => "20b0ff",
+            Verdict::LeftOut => "909090",
             Verdict::NoScale => "3c3cf0",
         };
         let _ = writeln!(
@@ -32,21 +35,26 @@ pub(super) fn document<'a>(
     }
     for footprint in footprints.filter(|footprint| !footprint.ring.is_empty()) {
         let photo = footprint.line.photo;
-        let scale = footprint.line.scale();
         let mut verdicts = Verdict::ALL.iter();
         let style = verdicts.position(|verdict| *verdict == photo.verdict);
-        let style = style.unwrap_or(1);
-        let number =
-            |scale: Option<f64>| scale.map_or_else(|| "none".to_owned(), |s| s.to_string());
+        let style = style.unwrap_or(2);
         let unit = report.unit();
+        let both = |pair: ScalePair| {
+            let [top, bottom] = footprint
+                .line
+                .estimates(pair)
+                .map(|estimate| estimate.map_or_else(|| "none".to_owned(), |scale| scale.text(5)));
+            let name = pair.as_str();
+            format!("{name}: top {top} px/{unit}, bottom {bottom} px/{unit}")
+        };
         let mut description = format!(
-            "top {} px/{unit}, bottom {} px/{unit}; {}; {} of 4 corners on the surface",
-            number(scale.top),
-            number(scale.bottom),
+            "{}; {}; {}; {} of 4 corners on the surface",
+            both(photo.pair),
+            both(photo.pair.other()),
             photo.verdict,
             photo.corners_on_surface().unwrap_or(0)
         );
-        for note in photo.notes() {
+        for note in photo.notes().into_iter().chain(photo.decided()) {
             description += &format!("; {note}");
         }
         let positions: Vec<String> = footprint

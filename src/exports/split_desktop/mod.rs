@@ -10,6 +10,7 @@
 //! photos/NAME          what to open in Split-Desktop, undistorted or as shot, full size
 //! overlays/NAME.jpg    the same, smaller, with the scale drawn on it
 //! thumbnails/NAME.jpg  for the sheet
+//! rectified/NAME.png   where asked for: the photo seen squarely, with one scale, and its world file
 //! masks/NAME.png       white for rock, black where a scale object was painted over
 //! footprints.geojson   where each photo lies
 //! footprints.kml       the same for map programs, where the coordinate system is known
@@ -23,10 +24,10 @@ mod checksum;
 mod folder;
 mod footprints;
 mod kml;
-mod names;
 mod objects;
 mod pictures;
 mod plan;
+mod rectified;
 mod sheet;
 mod whose;
 
@@ -51,14 +52,15 @@ use crate::files::{FileError, Inputs};
 use crate::flight::{FlightSettings, Review};
 use crate::jobs::Progress;
 use crate::picture;
+use crate::scale::Onto;
 use crate::units::LengthUnit;
 use crate::{ScaleReport, scales_csv};
 
 /// What the pictures that are worked on at once may take, in bytes.
 const MEMORY: u64 = 2 << 30;
 
-/// Bytes that a pixel of a photo takes on its way: decoded, undistorted, and its files.
-const BYTES_A_PIXEL: u64 = 12;
+/// Bytes that a pixel of a photo takes on its way: decoded, undistorted, rectified, and its files.
+const BYTES_A_PIXEL: u64 = 18;
 
 /// The most photos that are worked on at once.
 const MOST_AT_ONCE: usize = 4;
@@ -74,6 +76,8 @@ pub struct ExportRequest<'a> {
     pub selected: &'a [bool],
     /// Scales are in pixels per this.
     pub unit: LengthUnit,
+    /// Onto what the photos are rectified besides; `None` where they are not.
+    pub rectified: Option<Onto>,
     /// What of others may be replaced.
     pub replace: Replace,
 }
@@ -339,8 +343,9 @@ fn one_photo(
 ) -> Result<Done, FileError> {
     let parts = request.review.flight().parts();
     let photo = request.review.photo(index);
-    let scaled = photo.and_then(|photo| Some((photo.camera, photo.scale()?)));
-    let (Some((camera, scale)), Some(Some(file))) = (scaled, request.from.photo_files.get(index))
+    let scaled = photo.and_then(|photo| Some((photo, photo.camera, photo.scale()?)));
+    let (Some((photo, camera, scale)), Some(Some(file))) =
+        (scaled, request.from.photo_files.get(index))
     else {
         return Ok(Done::Not(
             "no pictures: it has no scale or no file".to_owned(),
@@ -351,8 +356,9 @@ fn one_photo(
         camera,
         image: parts.image,
         scale,
+        pair: photo.estimates(photo.pair, request.unit),
         unit: request.unit,
-        world_unit: parts.unit,
+        rectified: rectified::depends_on(request, index),
         names,
         left_out: objects
             .iter()
@@ -385,10 +391,20 @@ fn one_photo(
     let Some(photo) = photo else {
         return Ok(Done::Kept(doubt));
     };
-    let files = match source.make(photo, bytes) {
+    // Before the photo's memory is given away; without it the others are of use all the same.
+    let (rectified, doubt) = match rectified::files(request, index, names, &photo.image, progress) {
+        Ok(rectified) => (rectified, doubt),
+        Err(fault) => {
+            let why = format!("not rectified: {fault}");
+            let doubts = doubt.into_iter().chain([why]);
+            (Vec::new(), Some(doubts.collect::<Vec<_>>().join("; ")))
+        }
+    };
+    let mut files = match source.make(photo, bytes) {
         Ok(files) => files,
         Err(fault) => return Ok(Done::Not(format!("no pictures: {fault}"))),
     };
+    files.extend(rectified);
     let mut work = lock(work);
     if progress.is_cancelled() {
         // `advance` says so.

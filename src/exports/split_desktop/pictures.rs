@@ -11,7 +11,7 @@ use super::plan::PhotoNames;
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::picture::{self, DecodedPhoto, PhotoFormat};
-use crate::scale::{ImageKind, PhotoScale};
+use crate::scale::{ImageKind, PhotoScale, ScaleEstimate};
 use crate::units::LengthUnit;
 
 /// Of the undistorted photos: beyond it files grow and no eye sees a difference.
@@ -27,7 +27,7 @@ const OVERLAY_SIDE: u32 = 1600;
 const THUMBNAIL_SIDE: u32 = 480;
 
 /// Raised when the same inputs are to give other pictures.
-const PICTURES_VERSION: u32 = 3;
+const PICTURES_VERSION: u32 = 5;
 
 /// What the pictures of a photo depend on.
 pub(super) struct PictureSource<'a> {
@@ -35,8 +35,11 @@ pub(super) struct PictureSource<'a> {
     pub camera: &'a Camera,
     pub image: ImageKind,
     pub scale: &'a PhotoScale,
+    /// Top and bottom scale for Split-Desktop, pixels per `unit`.
+    pub pair: [Option<ScaleEstimate>; 2],
     pub unit: LengthUnit,
-    pub world_unit: LengthUnit,
+    /// What else the rectified photo depends on, where there is one.
+    pub rectified: Option<String>,
     pub names: &'a PhotoNames,
     /// What is painted over, pixels of the image that the scale is for.
     pub left_out: Vec<Vec<DVec2>>,
@@ -58,7 +61,11 @@ impl PictureSource<'_> {
             .iter()
             .map(|corner| corner.point().is_some())
             .collect();
-        let edges = self.scale.scale;
+        let pair = self.pair.map(|estimate| {
+            let estimate = estimate?;
+            let ends = estimate.interval.map(|ends| [ends.low, ends.high]);
+            Some((estimate.value, ends))
+        });
         let left_out = |region: &Vec<DVec2>| region.iter().map(DVec2::to_array).collect::<Vec<_>>();
         let text = json!([
             PICTURES_VERSION,
@@ -68,11 +75,12 @@ impl PictureSource<'_> {
             camera.distortion.name(),
             camera.distortion.coefficients(),
             self.image == ImageKind::AsShot,
-            [edges.top, edges.bottom],
+            pair,
             on,
             points,
-            [self.unit.symbol(), self.world_unit.symbol()],
+            self.unit.symbol(),
             self.left_out.iter().map(left_out).collect::<Vec<_>>(),
+            self.rectified,
         ]);
         checksum::of_bytes(text.to_string().as_bytes())
     }
@@ -110,7 +118,7 @@ impl PictureSource<'_> {
         drop(image);
         let drawn = |side: u32| -> Result<Vec<u8>, Fault> {
             let image = picture::reduced(&small, side);
-            let image = picture::overlay(&image, self.scale, self.unit, self.world_unit);
+            let image = picture::overlay(&image, self.scale, self.pair, self.unit);
             picture::encode(&image, PhotoFormat::Jpeg, OVERLAY_QUALITY, None, None)
         };
         let mut files = vec![

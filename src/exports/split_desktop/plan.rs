@@ -1,9 +1,10 @@
 //! What an export consists of: its files, before any of them is made.
 
 use super::ExportRequest;
-use super::names::file_names;
 use super::objects::PhotoObject;
+use super::rectified;
 use crate::flight::Outcome;
+use crate::photo_file_names::file_names;
 
 /// The fixed files.
 pub(super) const CSV: &str = "scales.csv";
@@ -19,12 +20,19 @@ pub(super) struct PhotoNames {
     pub thumbnail: String,
     /// Where something is left out of the analysis.
     pub mask: Option<String>,
+    /// Where it is asked for: the photo seen squarely, and its world file.
+    pub rectified: Option<[String; 2]>,
 }
 
 impl PhotoNames {
     pub(super) fn all(&self) -> Vec<String> {
         let pictures = [&self.photo, &self.overlay, &self.thumbnail].into_iter();
-        pictures.chain(&self.mask).cloned().collect()
+        let rectified = self.rectified.iter().flatten();
+        pictures
+            .chain(&self.mask)
+            .chain(rectified)
+            .cloned()
+            .collect()
     }
 }
 
@@ -61,6 +69,11 @@ pub(super) fn pictures(
                     .get(index)
                     .is_some_and(|objects| objects.iter().any(PhotoObject::is_masked))
                     .then(|| format!("masks/{stem}.png")),
+                rectified: (request.rectified.is_some()).then(|| {
+                    rectified::FORMAT
+                        .endings()
+                        .map(|end| format!("rectified/{stem}.{end}"))
+                }),
             }),
         })
         .collect()

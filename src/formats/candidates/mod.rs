@@ -40,7 +40,7 @@ pub struct Candidate {
 
 impl Candidate {
     /// As in a list below `folder`: "sparse/0: COLMAP, 26 photos".
-    fn in_words(&self, folder: &Path) -> String {
+    pub fn in_words(&self, folder: &Path) -> String {
         let inside = self.path.strip_prefix(folder).unwrap_or(&self.path);
         let place = if inside.as_os_str().is_empty() {
             ".".to_owned()

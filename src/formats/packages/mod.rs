@@ -18,6 +18,7 @@ pub(crate) mod open3d;
 pub(crate) mod opensfm;
 pub(crate) mod opf;
 pub(crate) mod pix4d;
+pub(crate) mod pose_covariance;
 pub(crate) mod realitycapture;
 pub(crate) mod reconstruction;
 pub mod ros;

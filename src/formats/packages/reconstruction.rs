@@ -7,6 +7,8 @@ use glam::DVec2;
 use crate::camera::{Camera, Distortion, Pose};
 use crate::geodesy::Geographic;
 use crate::geometry::{Similarity, median};
+use crate::packages::pose_covariance::PoseCovariance;
+use crate::scale::StatedErrors;
 use crate::surface::Cloud;
 use crate::units::LengthUnit;
 
@@ -137,6 +139,11 @@ pub struct Reconstruction {
     pub unit: Option<LengthUnit>,
     /// Receivers' positions of photos, aligned or not; empty where the package keeps none.
     pub measured_positions: Vec<MeasuredPosition>,
+    /// How sure the package is of each photo's pose, in the reconstruction's frame; parallel to `photos`,
+    /// or empty where the package says nothing.
+    pub pose_errors: Vec<PoseCovariance>,
+    /// How sure it is of what all photos share. (Of poses `pose_errors` says it.)
+    pub errors: StatedErrors,
     /// Cameras. What their numbers mean is said by `sizes`.
     pub cameras: Vec<Camera>,
     /// Photos in the file's order, aligned ones only.
@@ -212,6 +219,9 @@ impl Reconstruction {
             photo.camera = camera.unwrap_or_default();
             camera.is_some()
         });
+        let mut is_kept = photo_now_at.iter().map(Option::is_some);
+        self.pose_errors
+            .retain(|_| is_kept.next().unwrap_or_default());
         self.observations.retain_mut(|observation| {
             let photo = photo_now_at.get(observation.photo as usize).copied();
             observation.photo = photo.flatten().unwrap_or_default();
@@ -274,6 +284,9 @@ impl Reconstruction {
         for point in &mut self.cloud.points {
             *point = similarity.apply(*point);
         }
+        for errors in &mut self.pose_errors {
+            *errors = errors.moved(&(similarity.rotation * similarity.scale));
+        }
     }
 }
 
@@ -333,6 +346,10 @@ mod tests {
             camera,
             pose: Pose::from_tilt_pan(DVec3::ZERO, [90.0, 0.0]),
         };
+        let of_angle = |angle| PoseCovariance {
+            angle: Some(DVec3::splat(angle)),
+            ..PoseCovariance::default()
+        };
         let seen = |photo| Observation {
             photo,
             point: 7,
@@ -342,6 +359,7 @@ mod tests {
             cameras: vec![camera("a"), camera("b"), camera("c")],
             photos: vec![photo("1", 1), photo("2", 2), photo("3", 0)],
             observations: vec![seen(0), seen(1), seen(2), seen(9)],
+            pose_errors: [0.1, 0.2, 0.3].map(of_angle).to_vec(),
             ..Reconstruction::default()
         };
         found.set_sizes(|camera| [Some((40, 30)), None, Some((20, 10))][camera]);
@@ -357,6 +375,7 @@ mod tests {
             .map(|p| (p.name.as_str(), p.camera))
             .collect();
         assert_eq!(photos, [("2", 1), ("3", 0)]);
+        assert_eq!(found.pose_errors, [0.2, 0.3].map(of_angle));
         let seen: Vec<u32> = found.observations.iter().map(|o| o.photo).collect();
         assert_eq!(seen, [0, 1]);
         assert_eq!(found.sizes, Sizes::Known);

@@ -2,7 +2,8 @@
 //!
 //! `photo`, `x`, `y`, `z` are always there; `camera` where there are several; the orientation is one
 //! of `qx,qy,qz,qw`, `omega,phi,kappa`, `yaw,pitch,roll` and `tilt,pan` (see `camera::Pose` for what
-//! each means). Lines that begin with # are comments. Fields may be quoted; commas separate them, or
+//! each means). `s_x,s_y,s_z` (world unit) and `s_angle` (degrees) are standard deviations of the centre
+//! and of the rotation about each camera axis (contract, section 8); an empty cell states none. Lines that begin with # are comments. Fields may be quoted; commas separate them, or
 //! what else a spreadsheet writes: semicolons, tabs (see `table`). Numbers with a decimal comma are
 //! read with a warning. Column names are compared without case and outer spaces; columns of other
 //! names are passed over with a warning.
@@ -14,6 +15,7 @@ use glam::DVec3;
 use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::files::text_from_bytes;
+use crate::scale::PoseErrors;
 use crate::tables::table::{NumberRepairs, Row, Table};
 use crate::text::separated::Separator;
 
@@ -26,6 +28,8 @@ pub struct PoseLine {
     pub camera: Option<String>,
     /// In the world.
     pub pose: Pose,
+    /// How sure it is, where the columns are there and filled.
+    pub errors: PoseErrors,
     /// Where it stands, from 1.
     pub line: u64,
 }
@@ -50,6 +54,10 @@ const ORIENTATIONS: [&[&str]; 4] = [
     &["yaw", "pitch", "roll"],
     &["tilt", "pan"],
 ];
+
+/// The columns of standard deviations.
+const POSITION_ERRORS: [&str; 3] = ["s_x", "s_y", "s_z"];
+const ANGLE_ERROR: &str = "s_angle";
 
 /// Reads a poses.csv.
 ///
@@ -121,6 +129,8 @@ struct Columns {
     position: [usize; 3],
     orientation: &'static [&'static str],
     angles: Vec<usize>,
+    position_errors: Option<[usize; 3]>,
+    angle_error: Option<usize>,
 }
 
 impl Columns {
@@ -175,8 +185,15 @@ impl Columns {
                 ));
             }
         };
+        let [s_x, s_y, s_z] = POSITION_ERRORS;
+        let position_errors = match POSITION_ERRORS.into_iter().any(|name| find(name).is_some()) {
+            true => Some([needed(s_x)?, needed(s_y)?, needed(s_z)?]),
+            false => None,
+        };
         Ok(Self {
             photo,
+            position_errors,
+            angle_error: find(ANGLE_ERROR),
             camera: find("camera"),
             position,
             orientation,
@@ -237,6 +254,38 @@ impl Columns {
                 ));
             }
         };
+        let mut deviation = |column: usize, name: &str| {
+            let deviation = table.number(row, column, repairs)?;
+            if deviation.is_some_and(|deviation| deviation < 0.0) {
+                let what = format!("column {name}: a standard deviation is negative");
+                return Err(Fault::at(line, what, "give 0 or more, or leave it empty"));
+            }
+            Ok(deviation)
+        };
+        let position = match self.position_errors {
+            None => [None; 3],
+            Some([x, y, z]) => [
+                deviation(x, POSITION_ERRORS[0])?,
+                deviation(y, POSITION_ERRORS[1])?,
+                deviation(z, POSITION_ERRORS[2])?,
+            ],
+        };
+        let position = match position {
+            [Some(x), Some(y), Some(z)] => Some(DVec3::new(x, y, z)),
+            [None, None, None] => None,
+            _ => {
+                let what = "of s_x, s_y, s_z one is there and another is not";
+                return Err(Fault::at(line, what, "give all three, or none"));
+            }
+        };
+        let angle = match self.angle_error {
+            None => None,
+            Some(column) => deviation(column, ANGLE_ERROR)?,
+        };
+        let errors = PoseErrors {
+            position,
+            angle: angle.map(DVec3::splat),
+        };
         let photo = row.cell(self.photo);
         if photo.is_empty() {
             return Err(empty("photo"));
@@ -246,6 +295,7 @@ impl Columns {
             photo: photo.to_owned(),
             camera: camera.filter(|name| !name.is_empty()).map(str::to_owned),
             pose,
+            errors,
             line,
         })
     }
@@ -255,6 +305,8 @@ fn is_known(name: &str) -> bool {
     ["photo", "camera", "x", "y", "z"]
         .iter()
         .chain(ORIENTATIONS.into_iter().flatten())
+        .chain(&POSITION_ERRORS)
+        .chain([&ANGLE_ERROR])
         .any(|known| name.eq_ignore_ascii_case(known))
 }
 
@@ -297,6 +349,34 @@ mod tests {
         assert_eq!(file.lines[1].camera, None);
         assert_eq!(file.lines[1].pose.center, DVec3::new(4.0, 5.0, 6.0));
         assert_eq!(file.warnings, ["columns that are not used: battery"]);
+    }
+
+    #[test]
+    fn standard_deviations_are_read() {
+        let head = "photo,x,y,z,tilt,pan,s_x,s_y,s_z,s_angle\n";
+        let text = format!("{head}a.jpg,1,2,3,90,0,0.01,0.02,0.03,0.5\nb.jpg,1,2,3,90,0,,,,\n");
+        let file = read(text.as_bytes()).unwrap();
+        assert_eq!(
+            file.lines[0].errors,
+            PoseErrors {
+                position: Some(DVec3::new(0.01, 0.02, 0.03)),
+                angle: Some(DVec3::splat(0.5)),
+            }
+        );
+        assert_eq!(file.lines[1].errors, PoseErrors::default());
+        assert_eq!(file.warnings, Vec::<String>::new());
+        let fault = |cells: &str| {
+            let text = format!("{head}a.jpg,1,2,3,90,0,{cells}\n");
+            read(text.as_bytes()).unwrap_err().to_string()
+        };
+        let negative = fault("0.01,-0.02,0.03,0.5");
+        assert!(
+            negative.contains("column s_y: a standard deviation is negative"),
+            "{negative}"
+        );
+        assert!(fault("0.01,,0.03,0.5").contains("one is there and another is not"));
+        let missing = read(b"photo,x,y,z,tilt,pan,s_x\na.jpg,1,2,3,90,0,1\n").unwrap_err();
+        assert!(missing.what.contains("no column s_y"), "{missing}");
     }
 
     #[test]

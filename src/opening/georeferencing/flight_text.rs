@@ -8,12 +8,11 @@ use crate::fault::Fault;
 use crate::flight::{FlightFile, FlightSettings, ReconstructionFlight};
 use crate::formats::FileError;
 use crate::origin::{folder_of, path_from, real};
-use crate::scale::{Ground, ImageKind};
-use crate::surface::SurfaceOptions;
+use crate::scale::StatedErrors;
 
 impl Georeferenced {
     /// The text of a flight.toml at `target` with the reconstruction in `reconstruction`, its paths
-    /// relative to `target`. The sixteen numbers of the transform read back to the bit. A `surface`
+    /// relative to `target`, and the standard error of the scale where there is one. The sixteen numbers of the transform read back to the bit. A `surface`
     /// is taken as it is: it has to be in the world already.
     ///
     /// Write it with `files::write`.
@@ -60,14 +59,21 @@ impl Georeferenced {
         let settings = FlightSettings {
             unit: self.unit,
             unit_known: true,
-            ground: Ground::Auto,
-            image: ImageKind::Undistorted,
-            surface: SurfaceOptions::default(),
-            // Their sizes were in the unit of another world.
-            scale_objects: Vec::new(),
+            errors: StatedErrors {
+                world_scale: self.scale_error.map(percent),
+                ..StatedErrors::default()
+            },
+            // Scale objects have sizes in the unit of another world.
+            ..FlightSettings::default()
         };
         FlightFile::for_reconstruction(&flight, &settings)
             .to_toml()
             .map_err(at)
     }
+}
+
+/// A relative standard error in percent, with the four digits that such a number can have.
+fn percent(relative: f64) -> f64 {
+    let percent = 100.0 * relative;
+    format!("{percent:.3e}").parse().unwrap_or(percent)
 }

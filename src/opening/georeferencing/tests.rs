@@ -343,6 +343,31 @@ fn what_is_refused() {
     );
 }
 
+/// Lengths of 1 that are 2 and 2.02 m: the scale is 2.01, and 0.01 m its standard deviation from two
+/// numbers and its standard error from two lengths of 1: sqrt(2 · 0.01² / 1 / 2) / 2.01 = 0.4975 %.
+/// One length says nothing of it.
+#[test]
+fn the_flight_says_how_sure_the_scale_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("model.nvm");
+    fs::write(&model, "NVM_V3\n").unwrap();
+    let stated = |distances: &[&str]| {
+        let distances = distances.iter().map(|text| text.parse().unwrap());
+        let request = GeoreferenceRequest {
+            distances: distances.collect(),
+            ..GeoreferenceRequest::default()
+        };
+        let target = folder.path().join("flight.toml");
+        let text = run(&request)
+            .unwrap()
+            .flight_text(&target, &model, None, None);
+        FlightFile::parse(&text.unwrap()).unwrap().errors()
+    };
+    let both = stated(&["0,0,0 1,0,0 2", "0,0,0 0,1,0 2.02"]);
+    assert_eq!(both.world_scale, Some(0.4975));
+    assert_eq!(stated(&["0,0,0 1,0,0 2"]), Default::default());
+}
+
 /// What is written as a flight.toml reads back to the bit and opens.
 #[test]
 fn the_flight_reads_back() {
@@ -371,6 +396,12 @@ fn the_flight_reads_back() {
     assert_eq!(
         numbers.map(f64::to_bits),
         found.similarity.to_row_major().map(f64::to_bits)
+    );
+    // Rounding is all that is left of it.
+    assert!(
+        file.errors()
+            .world_scale
+            .is_some_and(|percent| percent < 1e-6)
     );
     let inside = found
         .flight_text(&target, folder.path(), None, None)
@@ -466,6 +497,10 @@ fn brighton_by_four_receivers() {
     assert!((scale - 1.041_871).abs() < 1e-4, "{scale}");
     let error = found.scale_error.unwrap();
     assert!((error - 0.013_945).abs() < 1e-4, "{error}");
+    let target = std::env::temp_dir().join("flight.toml");
+    let text = found.flight_text(&target, &folder, None, None).unwrap();
+    let percent = FlightFile::parse(&text).unwrap().errors().world_scale;
+    assert!(percent.is_some_and(|percent| (percent - 1.3945).abs() < 0.01));
     let turn = found.rotation_error_degrees.unwrap();
     assert!((turn - 1.219).abs() < 0.02, "{turn}");
     assert!(

@@ -14,6 +14,15 @@ use crate::origin::FlightOrigin;
 use crate::photo_files::PhotoFile;
 use crate::surface::Surface;
 
+/// How the fault begins that a surface would mend.
+const NO_POINTS: &str = "it has no 3D points to make a surface of";
+
+/// Whether a flight could not be opened because its cameras come without points: a cloud or mesh mends
+/// that.
+pub fn lacks_surface(error: &FileError) -> bool {
+    error.fault.what.starts_with(NO_POINTS)
+}
+
 /// Builds the flight.
 ///
 /// # Errors
@@ -35,12 +44,13 @@ pub(super) fn build(
         is_changed: options.surface.is_some() || options.photos.is_some(),
         photo_folder: source.photo_folder.clone(),
         surface: source.surface.clone(),
+        is_surface: source.photos.is_empty() && options.may_lack_photos,
     };
     if cloud.cloud.points.is_empty() {
         let looked = source.surface_note.map(|note| format!(": {note}"));
         let looked = looked.unwrap_or_default();
         return Err(at_surface(Fault::new(
-            format!("it has no 3D points to make a surface of{looked}"),
+            format!("{NO_POINTS}{looked}"),
             "add its cloud or mesh: drop it on the window, or name it with --surface or as [surface] file in a flight.toml",
         )));
     }
@@ -59,20 +69,28 @@ pub(super) fn build(
         };
         at_surface(Fault::new(error.to_string(), remedy))
     })?;
-    let flight = Flight::new(FlightParts {
+    let parts = FlightParts {
         name: source.name,
         unit: settings.unit,
         unit_known: settings.unit_known,
         ground: settings.ground,
         image: settings.image,
+        pair: settings.pair,
+        errors: settings.errors,
+        package_errors: source.package_errors,
         surface: Arc::new(surface),
         cameras: source.cameras,
         photos: source.photos,
-    })
-    .map_err(|fault| FileError::new(&source.file, fault))?;
+    };
+    let flight = match origin.is_surface {
+        true => Flight::perhaps_without_photos(parts),
+        false => Flight::new(parts),
+    };
+    let flight = flight.map_err(|fault| FileError::new(&source.file, fault))?;
     let file = source.file.display();
     let looked_up = look_up(&flight, &photo_files);
-    let without_photo = flight.objects_without_photo(&settings.scale_objects);
+    let mut without_photo = flight.objects_without_photo(&settings.scale_objects);
+    without_photo.extend(flight.decisions_without_photo(&settings.decisions));
     source.warnings.extend(
         without_photo
             .into_iter()
@@ -83,6 +101,7 @@ pub(super) fn build(
         warnings: source.warnings,
         photo_files,
         looked_up,
+        doubtful_up: source.doubtful_up,
         crs: world.crs().map(str::to_owned),
         settings,
         file: source.flight_file.map(|file| (source.file, file)),

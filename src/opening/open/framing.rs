@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::source::Source;
 use crate::fault::Fault;
 use crate::files::FileError;
-use crate::formats::CloudFile;
+use crate::formats::{CloudFile, PoseCovariance};
 use crate::jobs::Progress;
 use crate::world::{Known, WorldFrame, place_of_flight, taken_to_be_in};
 
@@ -58,8 +58,17 @@ pub(super) fn bring_to_world(
     if !of_poses.is_none() || !of_points.is_none() {
         progress.stage("bringing poses and surface to one coordinate system");
     }
-    for photo in &mut source.photos {
-        photo.pose = of_poses.pose(&photo.name, &photo.pose).map_err(at_poses)?;
+    let nothing = std::iter::repeat(PoseCovariance::default());
+    let stated = std::mem::take(&mut source.pose_errors);
+    for (photo, stated) in source
+        .photos
+        .iter_mut()
+        .zip(stated.into_iter().chain(nothing))
+    {
+        let moved = of_poses.pose(&photo.name, &photo.pose).map_err(at_poses)?;
+        let stated = stated.moved(&of_poses.differences(&photo.pose, &moved));
+        photo.pose = moved;
+        photo.package_errors = stated.errors();
     }
     of_points
         .points(&mut cloud.cloud.points)

@@ -19,6 +19,8 @@ mod surface;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+pub use self::building::lacks_surface;
+
 use crate::evidence::compare_all_colours;
 use crate::fault::Fault;
 use crate::files::{FileError, Inputs, Recording};
@@ -26,6 +28,7 @@ use crate::flight::{Flight, FlightFile, FlightSettings, Limits, LookedUp, Review
 use crate::jobs::Progress;
 use crate::origin::FlightOrigin;
 use crate::photo_files::PhotoFile;
+use crate::surface::UpAxis;
 
 /// What the user says beside the flight itself.
 #[derive(Debug, Clone, Default)]
@@ -38,6 +41,8 @@ pub struct OpenOptions {
     pub topic: Option<String>,
     /// What to set instead of what the flight says.
     pub settings: Option<FlightSettings>,
+    /// Whether a cloud without photos is opened, to be looked at: there is no scale in it.
+    pub may_lack_photos: bool,
 }
 
 /// The reconstruction that a flight's poses are from.
@@ -60,6 +65,8 @@ pub struct Opened {
     pub photo_files: Vec<PhotoFile>,
     /// What was looked up of the photos, their colours excepted.
     pub looked_up: LookedUp,
+    /// What the surface's triangles say is up, where that is not z.
+    pub doubtful_up: Option<UpAxis>,
     /// The coordinate system of the world where the files state one: "EPSG:n" or WKT.
     pub crs: Option<String>,
     /// What was set, by the flight's file or by [`OpenOptions`].
@@ -84,7 +91,7 @@ impl Opened {
         warnings
     }
 
-    /// Reviews the flight: with its footprints, and with the colours of its photos, which takes
+    /// Reviews the flight: with its footprints, its scale fields, and with the colours of its photos, which takes
     /// longest, because every photo is read.
     ///
     /// # Errors
@@ -92,7 +99,9 @@ impl Opened {
     pub fn review(&self, limits: &Limits, progress: &Progress) -> Result<Review, Fault> {
         let (flight, looked_up) = (self.flight.clone(), self.looked_up.clone());
         let mut review = Review::of_scales(flight, looked_up, limits, progress)?;
+        review.take_decisions(&self.settings.decisions);
         review.look(progress)?;
+        review.compute_fields(progress)?;
         compare_all_colours(&mut review, &self.photo_files, progress)?;
         Ok(review)
     }

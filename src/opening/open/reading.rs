@@ -15,9 +15,7 @@ use crate::formats::{Kind, Package, PoseLine, Reconstruction, Sizes, detect, rea
 use crate::geodesy::Crs;
 use crate::geometry::Similarity;
 use crate::jobs::Progress;
-use crate::scale::{Ground, ImageKind};
-use crate::surface::SurfaceOptions;
-use crate::units::LengthUnit;
+use crate::scale::PoseErrors;
 use crate::world::WorldFrame;
 
 /// What `path` names, without its surface.
@@ -34,6 +32,7 @@ pub(super) fn read(
         Kind::Flight(file) => of_file(file, options, progress),
         Kind::Reconstruction(..) => of_reconstruction(path, options, progress),
         Kind::SizeDistributions => Err(FileError::new(path, no_flight_but_sizes())),
+        Kind::Cloud(_) if options.may_lack_photos => Ok(of_cloud(path, options)),
         Kind::Cloud(_) | Kind::Camera | Kind::Poses | Kind::Trajectory(_) => Err(FileError::new(
             path,
             Fault::new(
@@ -104,6 +103,8 @@ fn of_file(path: &Path, options: &OpenOptions, progress: &Progress) -> Result<So
                 reconstruction.preferred_crs = None;
                 reconstruction.enu_origin = None;
                 reconstruction.unit = None;
+                // The scale is no longer the package's.
+                reconstruction.errors.world_scale = None;
                 source.package_surface_to_world = Some(similarity);
             }
             take_reconstruction(&mut source, &path, reconstruction, &file.cameras).map_err(
@@ -121,21 +122,22 @@ fn of_file(path: &Path, options: &OpenOptions, progress: &Progress) -> Result<So
     Ok(source)
 }
 
+/// A cloud or mesh that is opened itself, without photos.
+fn of_cloud(path: &Path, options: &OpenOptions) -> Source {
+    let mut source = Source::new(path, FlightSettings::default(), options);
+    source.unit_is_stated = false;
+    source.surface = Some(path.to_owned());
+    source
+}
+
 /// A reconstruction that is opened itself.
 fn of_reconstruction(
     path: &Path,
     options: &OpenOptions,
     progress: &Progress,
 ) -> Result<Source, FileError> {
-    let settings = FlightSettings {
-        unit: LengthUnit::Metre,
-        unit_known: false,
-        ground: Ground::Auto,
-        image: ImageKind::Undistorted,
-        surface: SurfaceOptions::default(),
-        scale_objects: Vec::new(),
-    };
-    let mut source = Source::new(path, settings, options);
+    // In a unit that nobody has said yet.
+    let mut source = Source::new(path, FlightSettings::default(), options);
     source.unit_is_stated = false;
     let reconstruction = read_reconstruction(&mut source, path, progress)?;
     source.reconstruction = Some(FlightReconstruction {
@@ -208,6 +210,8 @@ fn take_reconstruction(
     source.may_be_reduced = reconstruction.sizes == Sizes::PerhapsReduced;
     source.package_unit = reconstruction.unit;
     source.cameras = reconstruction.cameras;
+    source.package_errors = reconstruction.errors;
+    source.pose_errors = reconstruction.pose_errors;
     source.photos = reconstruction
         .photos
         .into_iter()
@@ -216,6 +220,9 @@ fn take_reconstruction(
             camera: photo.camera,
             pose: photo.pose,
             trouble: None,
+            errors: PoseErrors::default(),
+            // As soon as it is in the world (framing.rs).
+            package_errors: PoseErrors::default(),
         })
         .collect();
     source.reconstruction_cloud.cloud = reconstruction.cloud;
@@ -241,6 +248,8 @@ fn add_poses(
             camera,
             pose: line.pose,
             trouble: None,
+            errors: line.errors,
+            package_errors: PoseErrors::default(),
         });
     }
     Ok(())

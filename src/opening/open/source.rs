@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use super::{FlightReconstruction, OpenOptions};
 use crate::camera::Camera;
 use crate::flight::{FlightFile, FlightSettings, Photo};
-use crate::formats::CloudFile;
+use crate::formats::{CloudFile, PoseCovariance};
 use crate::geodesy::Crs;
 use crate::geometry::Similarity;
+use crate::scale::StatedErrors;
 use crate::surface::UpAxis;
 use crate::units::LengthUnit;
 use crate::world::WorldFrame;
@@ -35,6 +36,8 @@ pub(super) struct Source {
     pub(super) surface: Option<PathBuf>,
     /// The axis of that file that points up.
     pub(super) surface_up: UpAxis,
+    /// What the surface's triangles say is up, where that is not z.
+    pub(super) doubtful_up: Option<UpAxis>,
     /// Whether `surface` is what the package left, not what somebody named.
     pub(super) surface_is_packages: bool,
     /// What its package's reader says about the surface.
@@ -51,6 +54,10 @@ pub(super) struct Source {
     pub(super) may_be_reduced: bool,
     /// The unit that the package states for its own frame.
     pub(super) package_unit: Option<LengthUnit>,
+    /// How sure the package is of what all photos share.
+    pub(super) package_errors: StatedErrors,
+    /// How sure it is of each photo's pose, in the frame of the poses; parallel to `photos` or empty.
+    pub(super) pose_errors: Vec<PoseCovariance>,
     /// The topic of a recording whose poses are taken.
     pub(super) topic: Option<String>,
     pub(super) cameras: Vec<Camera>,
@@ -74,6 +81,7 @@ impl Source {
             inputs: Vec::new(),
             surface: options.surface.clone(),
             surface_up: UpAxis::Z,
+            doubtful_up: None,
             surface_is_packages: false,
             surface_note: None,
             package_surface_to_world: None,
@@ -83,6 +91,8 @@ impl Source {
             named_sizes: Vec::new(),
             may_be_reduced: false,
             package_unit: None,
+            package_errors: StatedErrors::default(),
+            pose_errors: Vec::new(),
             topic: options.topic.clone(),
             cameras: Vec::new(),
             photos: Vec::new(),

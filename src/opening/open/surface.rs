@@ -39,6 +39,7 @@ pub(super) fn read(
     }
     if let Some((axis, along_axis, along_z)) = doubtful_up(&file.cloud) {
         let (along_axis, along_z) = (100.0 * along_axis, 100.0 * along_z);
+        source.doubtful_up = Some(axis);
         let axis = axis.name();
         file.warnings.push(format!(
             "seen along {axis}, {along_axis:.0} % of its area faces one way, along z {along_z:.0} %: where {axis} is up in the file, write up = \"{axis}\" below [surface] in a flight.toml (a steep wall looks the same)"

@@ -111,6 +111,14 @@ impl WorldFrame {
         }
     }
 
+    /// Metres in the unit of its lengths; those of longitudes and latitudes count in metres.
+    pub(super) fn metres(&self) -> f64 {
+        match self {
+            Self::Named(crs) => crs.unit_metres(),
+            Self::Enu(_) | Self::AsIs(_) => 1.0,
+        }
+    }
+
     /// Whether nobody says what its coordinates are.
     pub(crate) fn is_as_it_is(&self) -> bool {
         matches!(self, Self::AsIs(_))

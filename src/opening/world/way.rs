@@ -4,7 +4,7 @@
 //! two systems' axes at that place (the convergence of a map's meridians, the curvature between
 //! two places). Heights are carried as numbers: nobody here knows a geoid.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::frame::WorldFrame;
@@ -62,6 +62,17 @@ impl Way<'_> {
             rotation: turn * pose.rotation,
             center,
         })
+    }
+
+    /// What takes small differences between positions at a photo's place to those there, given its
+    /// pose before and after; of a frame of longitudes and latitudes differences are metres towards
+    /// east, north and up. A map's scale factor is left out: it is a few parts in ten thousand.
+    pub(crate) fn differences(&self, before: &Pose, after: &Pose) -> DMat3 {
+        if let Some(factor) = self.only_heights() {
+            return DMat3::from_diagonal(DVec3::new(1.0, 1.0, factor));
+        }
+        let turn = after.rotation * before.rotation.transpose();
+        turn * (self.from.metres() / self.to.metres())
     }
 
     /// Puts points there.
@@ -190,6 +201,27 @@ mod tests {
         let moved = frame.to(&world).pose("a", &pose).unwrap();
         assert!((moved.center - DVec3::new(0.0, 0.0, 40.0)).length() < 1e-8);
         assert!((moved.rotation.x_axis - pose.rotation.x_axis).length() < 1e-12);
+    }
+
+    /// The axes of the Earth's centre are turned to east, north, up; a foot of EPSG:2263 is
+    /// 1200/3937 m, and with x = rho sin t, y = rho0 - rho cos t, t = n (lon - lon0) (Snyder, eq. 14-1
+    /// to 14-4) east is (cos t, sin t) there; n = 0.654 between its parallels of 40.67 and 41.03 degrees.
+    #[test]
+    fn differences_turn_and_count_in_the_worlds_unit() {
+        let there = ecef_from_geographic(BRIGHTON);
+        let pose = Pose::from_tilt_pan(there, [80.0, 30.0]);
+        let (frame, world) = (named("ECEF"), WorldFrame::Enu(BRIGHTON));
+        let way = frame.to(&world);
+        let turn = way.differences(&pose, &way.pose("a", &pose).unwrap());
+        let up = turn * (enu_axes(BRIGHTON) * DVec3::new(0.0, 0.0, 2.0));
+        assert!((up - DVec3::new(0.0, 0.0, 2.0)).length() < 1e-12, "{up}");
+        let (frame, world) = (named("EPSG:4326"), named("EPSG:2263"));
+        let pose = Pose::from_tilt_pan(DVec3::new(-73.0, 40.85, 10.0), [80.0, 30.0]);
+        let way = frame.to(&world);
+        let east = way.differences(&pose, &way.pose("a", &pose).unwrap()) * DVec3::X;
+        assert!((east.length() - 3937.0 / 1200.0).abs() < 1e-9, "{east}");
+        let angle = east.y.atan2(east.x).to_degrees();
+        assert!((angle - 0.654).abs() < 1e-3, "{angle}");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The graphics device, and what it complains about.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use wgpu::{Adapter, AdapterInfo, Backend, Backends, DeviceDescriptor, DeviceType, Limits};
@@ -19,6 +20,8 @@ pub struct Gpu {
     /// Whether the processor draws: then one sample a pixel is all it can afford.
     pub software: bool,
     errors: Arc<Mutex<Option<String>>>,
+    /// Whether the window lost a frame to a resize.
+    lost_frame: Arc<AtomicBool>,
 }
 
 /// What to ask of a device: the largest textures and buffers that its adapter offers, within reason.
@@ -87,8 +90,13 @@ impl Gpu {
                 .unwrap_or_else(PoisonError::into_inner)
                 .get_or_insert(sentence);
         };
-        let kept = Arc::clone(&errors);
+        let lost_frame = Arc::new(AtomicBool::new(false));
+        let (kept, lost) = (Arc::clone(&errors), Arc::clone(&lost_frame));
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            if is_of_a_resize(&error.to_string()) {
+                lost.store(true, Ordering::Relaxed);
+                return;
+            }
             keep(&kept, format!("the graphics device refused: {error}"));
         }));
         let kept = Arc::clone(&errors);
@@ -103,7 +111,13 @@ impl Gpu {
             queue,
             software: adapter.device_type == DeviceType::Cpu,
             errors,
+            lost_frame,
         }
+    }
+
+    /// Whether the window lost a frame since the last call, because it was resized: it wants another one.
+    pub fn take_lost_frame(&self) -> bool {
+        self.lost_frame.swap(false, Ordering::Relaxed)
     }
 
     /// Lets the device take what was written into buffers and textures: otherwise it would wait for
@@ -132,9 +146,68 @@ impl Gpu {
     }
 }
 
+/// Whether this is the complaint about a frame of the window that was laid out for the size before a resize
+/// and would be drawn into a surface of the size after it: egui_wgpu's encoder clips to what is not there
+/// any more; or that a slow device was still busy when the surface was to get its new size, which is tried
+/// again with the next frame. Nothing of ours clips or has a surface, and the next frame is right, so nobody
+/// has to know.
+fn is_of_a_resize(error: &str) -> bool {
+    let clips = ["set_scissor_rect", "Scissor Rect", "render target"];
+    let waits = ["Surface::configure", "Failed to wait for GPU"];
+    let has_all = |words: &[&str]| words.iter().all(|words| error.contains(words));
+    has_all(&clips) || has_all(&waits)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// What egui_wgpu does when the window became smaller while a frame was laid out.
+    #[test]
+    fn a_resize_is_no_error_but_wants_another_frame() {
+        let gpu = Gpu::headless().unwrap();
+        let target = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d {
+                width: 1199,
+                height: 417,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        let view = target.create_view(&wgpu::TextureViewDescriptor::default());
+        let label = Some("encoder");
+        let descriptor = wgpu::CommandEncoderDescriptor { label };
+        let mut encoder = gpu.device.create_command_encoder(&descriptor);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+            })],
+            ..Default::default()
+        });
+        pass.set_scissor_rect(0, 0, 1336, 25);
+        drop(pass);
+        let _refused = encoder.finish();
+        assert_eq!(gpu.take_error(), None);
+        assert!(gpu.take_lost_frame());
+        assert!(!gpu.take_lost_frame());
+        // As it was told on a screen.
+        assert!(is_of_a_resize(
+            "Validation Error Caused by: In Surface::configure Failed to wait for GPU to come idle before \
+             reconfiguring the Surface"
+        ));
+        assert!(!is_of_a_resize(
+            "In Device::create_buffer, label = 'far too large'"
+        ));
+    }
 
     #[test]
     fn an_error_is_kept_as_a_sentence() {

@@ -1,7 +1,11 @@
 //! What helps to read a picture and is no data: the ground's grid, the axes, the scale bar.
 
-pub(crate) mod colormap;
+pub(crate) mod crowd;
+mod drawn;
+pub(crate) mod flight_line;
+pub(crate) mod image_edge;
 pub(crate) mod labels;
+mod measured;
 pub(crate) mod photo_lines;
 pub(crate) mod words;
 
@@ -84,6 +88,8 @@ pub(crate) fn on_screen(view: &View, show: &Show, size: DVec2) -> Vec<Stroke> {
             strokes.extend(parts.map(|(from, to)| pen.line(at(from), at(to))));
         }
     }
+    strokes.extend(drawn::strokes(view, show, size));
+    strokes.extend(measured::strokes(view, show, size));
     strokes
 }
 
@@ -106,11 +112,12 @@ pub(crate) fn labels(view: &View, show: &Show, size: DVec2) -> Vec<Label> {
     {
         labels.push(Label {
             at: (from + to) * 0.5 - DVec2::Y * 5.0 * show.pixels_per_point,
-            text: format!("{} {}", bar.length, show.unit.symbol()),
+            text: format!("{} {}", bar.length, show.lengths_in),
             anchor: Anchor::BottomMiddle,
             color: ink(show),
         });
     }
+    labels.extend(measured::label(view, show, size));
     labels
 }
 

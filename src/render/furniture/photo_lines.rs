@@ -2,21 +2,24 @@
 
 use glam::DVec3;
 
+use super::crowd::presence;
 use crate::primitives::lines::{Pen, Stroke};
 use crate::scene::photo_geometry::PhotoGeometry;
 use crate::show::{Background, PhotoLook, Show};
 
-/// Of the selected photo.
-const SELECTED: [u8; 3] = [255, 149, 0];
+/// Of the selected photo: no verdict has it.
+pub const SELECTED: [u8; 3] = [178, 102, 255];
 /// Of what fell back to the ground.
-const GROUND: [u8; 3] = [226, 61, 61];
+pub(crate) const GROUND: [u8; 3] = [226, 61, 61];
 /// Dashes in the length of a ray; an outline has four times as many.
 const DASHES: f64 = 24.0;
 
-/// The strokes of all photos. `cameras` is how deep the image planes lie, world units;
-/// `looked_through` is the photo whose camera is the eye, which is not in sight itself.
+/// The strokes of all photos. `line` is the order that the flight line goes through them, `cameras` how deep
+/// the image planes lie, world units; `looked_through` is the photo whose camera is the eye, which is not in
+/// sight itself.
 pub(crate) fn photo_lines(
     photos: &[PhotoGeometry],
+    line: &[usize],
     looks: &[PhotoLook],
     show: &Show,
     cameras: f64,
@@ -26,15 +29,20 @@ pub(crate) fn photo_lines(
     if show.flight_line {
         let [r, g, b] = ink(show);
         let pen = Pen::new([r, g, b], 1.5).pale(0.6);
-        for pair in photos.windows(2) {
-            strokes.push(pen.line(pair[0].center, pair[1].center));
+        let centers: Vec<DVec3> = line
+            .iter()
+            .filter_map(|&photo| Some(photos.get(photo)?.center))
+            .collect();
+        for pair in centers.windows(2) {
+            strokes.push(pen.line(pair[0], pair[1]));
         }
     }
     // The selected photo last: over the others where they meet.
     let mut order: Vec<usize> = (0..photos.len()).collect();
     order.sort_by_key(|&index| (show.selected == Some(index), show.hovered == Some(index)));
+    let presence = presence(photos, show);
     for index in order {
-        let (photo, look) = (&photos[index], looks[index]);
+        let (photo, look, seen) = (&photos[index], looks[index], presence[index]);
         if !look.visible {
             continue;
         }
@@ -45,16 +53,16 @@ pub(crate) fn photo_lines(
         } else {
             (look.color, 1.0)
         };
-        let pen = Pen::new(color, 1.3 * weight);
+        let pen = Pen::new(color, 1.3 * weight).pale(seen);
         // The outline of the photo that one looks through is the picture's own edge.
         if looked_through == Some(index) {
             continue;
         }
         if show.outlines.holds(index, show) {
-            outline(photo, pen, &mut strokes);
+            outline(photo, pen, seen, &mut strokes);
         }
         if show.corner_rays.holds(index, show) {
-            corner_rays(photo, pen, show, &mut strokes);
+            corner_rays(photo, pen, seen, show, &mut strokes);
         }
         if show.frusta.holds(index, show) {
             frustum(photo, pen, cameras, &mut strokes);
@@ -81,26 +89,28 @@ fn frustum(photo: &PhotoGeometry, pen: Pen, depth: f64, strokes: &mut Vec<Stroke
 }
 
 /// Rays from the centre to the corner points, which get a dot; a ring on the ground.
-fn corner_rays(photo: &PhotoGeometry, pen: Pen, show: &Show, strokes: &mut Vec<Stroke>) {
+fn corner_rays(photo: &PhotoGeometry, pen: Pen, seen: f64, show: &Show, strokes: &mut Vec<Stroke>) {
     for met in photo.corners.iter().flatten() {
         let length = met.point.distance(photo.center);
         let pen = if met.on_ground {
-            Pen::new(GROUND, pen.width).dashed(length / DASHES)
+            Pen::new(GROUND, pen.width)
+                .dashed(length / DASHES)
+                .pale(seen)
         } else {
             pen
         };
         strokes.push(pen.pale(0.9).line(photo.center, met.point));
         let [r, g, b, _] = pen.color;
         let size = 4.0 + 2.0 * pen.width;
-        strokes.push(Pen::new([r, g, b], size).dot(met.point));
+        strokes.push(Pen::new([r, g, b], size).pale(seen).dot(met.point));
         if met.on_ground {
             let inner = ink(show).map(|channel| 255 - channel);
-            strokes.push(Pen::new(inner, size * 0.5).dot(met.point));
+            strokes.push(Pen::new(inner, size * 0.5).pale(seen).dot(met.point));
         }
     }
 }
 
-fn outline(photo: &PhotoGeometry, pen: Pen, strokes: &mut Vec<Stroke>) {
+fn outline(photo: &PhotoGeometry, pen: Pen, seen: f64, strokes: &mut Vec<Stroke>) {
     let points = &photo.outline;
     let next = points.iter().cycle().skip(1);
     let stretches: Vec<(DVec3, DVec3, bool)> = points
@@ -116,7 +126,9 @@ fn outline(photo: &PhotoGeometry, pen: Pen, strokes: &mut Vec<Stroke>) {
         width: pen.width * 1.25,
         ..pen
     };
-    let fallen = Pen::new(GROUND, whole.width).dashed(length / (4.0 * DASHES));
+    let fallen = Pen::new(GROUND, whole.width)
+        .dashed(length / (4.0 * DASHES))
+        .pale(seen);
     let mut along = 0.0;
     for (from, to, on_ground) in stretches {
         let pen = if on_ground { fallen } else { whole };

@@ -3,10 +3,9 @@
 use glam::DVec2;
 use image::RgbaImage;
 
-use super::colormap::viridis;
 use super::labels::{Label, Legend};
 use super::photo_lines::ink;
-use crate::picture::{Anchor, Canvas, Color, Halo};
+use crate::picture::{Anchor, Canvas, Color, Halo, viridis};
 use crate::scene::narrow_number;
 use crate::show::{Background, Show};
 
@@ -81,29 +80,11 @@ impl Writer<'_> {
         self.canvas.set_halo(Some(self.halo));
         let title = DVec2::new(bottom_right.x, margin);
         self.text(title, self.ink, &legend.title, Anchor::TopRight);
-        for (share, text) in ticks(legend.range) {
+        for (share, text) in legend.ticks() {
             let at = top_left + DVec2::new(-6.0 * self.point, height * (1.0 - share));
             self.text(at, self.ink, &text, Anchor::MiddleRight);
         }
     }
-}
-
-/// Three to seven round values within a range: where they are on it, from 0 to 1, and their text.
-fn ticks([low, high]: [f64; 2]) -> Vec<(f64, String)> {
-    let span = high - low;
-    let power = 10_f64.powf((span / 3.0).log10().floor());
-    let fits = |step: &f64| span / *step >= 3.0;
-    let steps = [5.0, 2.0, 1.0].map(|step| step * power);
-    let Some(step) = steps.into_iter().find(fits) else {
-        return Vec::new();
-    };
-    let decimals = (-step.log10().floor()).clamp(0.0, 12.0) as usize;
-    let first = (low / step).ceil();
-    (0..8)
-        .map(|i| (first + f64::from(i)) * step)
-        .take_while(|value| *value <= high)
-        .map(|value| ((value - low) / span, format!("{value:.decimals$}")))
-        .collect()
 }
 
 fn place(at: DVec2) -> [f32; 2] {
@@ -112,25 +93,4 @@ fn place(at: DVec2) -> [f32; 2] {
 
 fn with_alpha([r, g, b]: [u8; 3]) -> Color {
     [r, g, b, 255]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ticks_are_round_and_inside() {
-        let texts = |range| -> Vec<String> {
-            let ticks = ticks(range);
-            assert!(ticks.iter().all(|(share, _)| (0.0..=1.0).contains(share)));
-            ticks.into_iter().map(|(_, text)| text).collect()
-        };
-        assert_eq!(texts([0.0, 90.0]), ["0", "20", "40", "60", "80"]);
-        assert_eq!(texts([160.3, 161.1]), ["160.4", "160.6", "160.8", "161.0"]);
-        assert_eq!(
-            texts([1750.0, 2260.0]),
-            ["1800", "1900", "2000", "2100", "2200"]
-        );
-        assert!(texts([1.0, 1.0]).is_empty());
-    }
 }

@@ -57,11 +57,11 @@ impl Pen {
         Self { dash, ..self }
     }
 
-    /// `opacity` from 0 to 1.
+    /// `opacity` from 0 to 1, of what it is already.
     pub(crate) fn pale(self, opacity: f64) -> Self {
-        let [r, g, b, _] = self.color;
+        let [r, g, b, before] = self.color;
         Self {
-            color: [r, g, b, (255.0 * opacity).round() as u8],
+            color: [r, g, b, (f64::from(before) * opacity).round() as u8],
             ..self
         }
     }

@@ -1,5 +1,6 @@
 //! What is drawn, frame by frame or into a picture; how is in `passes`.
 
+mod aside;
 mod part;
 mod pass;
 mod passes;
@@ -35,6 +36,7 @@ use crate::scene::{CloudGeometry, Extent, MeshGeometry, narrow};
 use crate::show::{ColorBy, PhotoLook, Show};
 use crate::surface_buffers::SurfaceBuffers;
 use crate::view::View;
+pub use aside::Aside;
 use part::{Part, pair};
 use targets::Targets;
 
@@ -55,6 +57,10 @@ pub struct Renderer {
     pub(crate) mesh: Mesh,
     pub(crate) photos: Vec<PhotoGeometry>,
     pub(crate) looks: Vec<PhotoLook>,
+    /// The photos in the order of the flight line.
+    pub(crate) line: Vec<usize>,
+    /// Around what there is to be seen, without outliers: its middle in the local frame, and its radius.
+    pub(crate) bulk: Option<(DVec3, f64)>,
     pub(crate) surface_photo: SurfacePhoto,
     pub(crate) images: Images,
     pub(crate) lines: Lines,
@@ -104,6 +110,8 @@ impl Renderer {
             mesh: Mesh::new(device, &frame, &surface_photo.layout),
             photos: Vec::new(),
             looks: Vec::new(),
+            line: Vec::new(),
+            bulk: None,
             surface_photo,
             images: Images::new(device, &frame),
             lines: Lines::new(device, &frame),
@@ -134,6 +142,7 @@ impl Renderer {
         self.set_cloud(None);
         self.set_mesh(None);
         self.set_photos(Vec::new());
+        self.bulk = None;
         self.images.clear();
         self.set_projected_photo(None);
     }
@@ -165,8 +174,25 @@ impl Renderer {
         self.set_mesh_buffers(surface.and_then(|surface| surface.mesh.clone()));
     }
 
+    /// The box around the bulk of the surface, in the world: the ground's grid lies under it. Without it
+    /// that is everything, outliers too.
+    pub fn set_bulk(&mut self, bulk: Option<&Bounds>) {
+        self.bulk = bulk.map(|bulk| {
+            let middle = self.frame.local_from_world(bulk.center());
+            (middle, (bulk.size().length() * 0.5).max(1e-6))
+        });
+    }
+
+    /// The order in which the flight line goes through the photos: their indices. [`Self::set_photos`]
+    /// takes the photos' own order.
+    pub fn set_flight_line(&mut self, line: Vec<usize>) {
+        self.line = line;
+        self.strokes_for = None;
+    }
+
     /// The photos of the flight, in its order. Their looks become the default, their images stay.
     pub fn set_photos(&mut self, photos: Vec<PhotoGeometry>) {
+        self.line = (0..photos.len()).collect();
         self.looks = vec![PhotoLook::default(); photos.len()];
         self.photos = photos;
         self.strokes_for = None;
@@ -324,14 +350,18 @@ impl Renderer {
 
     /// What the colours mean, where they mean a number.
     pub fn legend(&self, show: &Show) -> Option<Legend> {
-        let unit = show.unit.symbol();
+        let unit = show.lengths_in;
+        let scales = show.scale_unit.unwrap_or(show.unit);
         let title = match show.color_by {
             ColorBy::Rgb => return None,
             ColorBy::Elevation => format!("elevation ({unit})"),
             ColorBy::Slope => "slope (°)".to_owned(),
-            ColorBy::Scale => format!("scale (px/{unit})"),
+            ColorBy::Scale => format!("scale (px/{})", scales.symbol()),
         };
-        let range = self.range(show)?;
+        let mut range = self.range(show)?;
+        if show.color_by == ColorBy::Scale {
+            range = range.map(|scale| scale * scales.in_units_of(show.unit));
+        }
         Some(Legend { title, range })
     }
 

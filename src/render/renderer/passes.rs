@@ -9,8 +9,9 @@ use super::pass::{depth, is_in_sight, opaque, pass};
 use super::sight::Sight;
 use super::targets::{SurfaceTarget, Targets};
 use crate::furniture;
-use crate::furniture::colormap::STOPS;
+use crate::furniture::crowd::{LEAST_PLANE, presence};
 use crate::furniture::photo_lines::{camera_depth, fill_colors, ink, photo_lines};
+use crate::picture::VIRIDIS_STOPS;
 use crate::primitives::fill::{CellCorner, Pyramid};
 use crate::primitives::frame::FrameUniform;
 use crate::primitives::images::Place;
@@ -132,7 +133,7 @@ impl Renderer {
             project: u32::from(project),
             relief: if show.eye_dome { 0.8 } else { 0.0 },
             spare: 0.0,
-            viridis: STOPS.map(opaque),
+            viridis: VIRIDIS_STOPS.map(opaque),
         };
         let queue = &self.gpu.queue;
         self.main_frame.write(queue, &main);
@@ -179,7 +180,7 @@ impl Renderer {
             }
         }
         self.draw_relief(&mut encoder, targets);
-        self.draw_fills(&mut encoder, targets, show);
+        self.draw_fills(&mut encoder, targets, show, looked_through);
         self.draw_overlay(
             &mut encoder,
             targets,
@@ -298,21 +299,32 @@ impl Renderer {
         self.edl.draw(&mut pass, &group);
     }
 
-    /// The photos that have their fill drawn.
+    /// The photos that have their fill drawn: not the one that is laid over, whose own colours count.
     fn filled<'a>(
         &'a self,
         show: &'a Show,
+        looked_through: Option<usize>,
     ) -> impl Iterator<Item = (&'a PhotoGeometry, [[u8; 4]; 2])> {
+        let is_laid_over = show.project_photo && self.surface_photo.index == show.selected
+            || show.photo_blend > 0.0 && self.surface_photo.index == looked_through;
+        let laid_over = self.surface_photo.index.filter(|_| is_laid_over);
         let photos = self.photos.iter().zip(&self.looks).enumerate();
         photos
+            .filter(move |(index, _)| laid_over != Some(*index))
             .filter(|(index, (_, look))| look.visible && show.fills.holds(*index, show))
             .map(|(index, (photo, look))| (photo, fill_colors(*look, show.selected == Some(index))))
     }
 
     /// Tints what is inside footprints, on the surface.
-    fn draw_fills(&self, encoder: &mut CommandEncoder, targets: &Targets, show: &Show) {
+    fn draw_fills(
+        &self,
+        encoder: &mut CommandEncoder,
+        targets: &Targets,
+        show: &Show,
+        looked_through: Option<usize>,
+    ) {
         let pyramids: Vec<Pyramid> = self
-            .filled(show)
+            .filled(show, looked_through)
             .filter_map(|(photo, [color, _])| Pyramid::new(photo, color))
             .collect();
         if pyramids.is_empty() {
@@ -342,36 +354,50 @@ impl Renderer {
         let cameras = camera_depth(&self.photos, overlay.radius) * show.frustum_size;
         let wanted = (show.clone(), looked_through);
         if self.strokes_for.as_ref() != Some(&wanted) {
-            let strokes = photo_lines(&self.photos, &self.looks, show, cameras, looked_through);
+            let strokes = photo_lines(
+                &self.photos,
+                &self.line,
+                &self.looks,
+                show,
+                cameras,
+                looked_through,
+            );
             self.strokes = StrokeBuffer::new(device, &strokes);
             self.strokes_for = Some(wanted);
         }
         let grid = show.ground.map_or_else(Vec::new, |ground| {
+            let (middle, radius) = self.bulk.unwrap_or((overlay.middle, overlay.radius));
             furniture::ground_grid(
                 ground - self.frame.origin().z,
-                overlay.middle,
-                overlay.radius,
+                middle,
+                radius,
                 self.frame.origin(),
                 show,
             )
         });
         let grid = StrokeBuffer::new(device, &grid);
-        let on_screen = furniture::on_screen(view, show, overlay.whole);
+        let mut on_screen = furniture::on_screen(view, show, overlay.whole);
+        if let Some(photo) = looked_through.and_then(|index| self.photos.get(index)) {
+            let edge = furniture::image_edge::strokes(view, photo, overlay.whole, show);
+            on_screen.splice(0..0, edge);
+        }
         let on_screen = StrokeBuffer::new(device, &on_screen);
+        let presence = presence(&self.photos, show);
         let planes: Vec<(u32, [DVec3; 4])> = self
             .photos
             .iter()
             .zip(&self.looks)
             .enumerate()
             .filter(|(index, (_, look))| {
-                look.visible && show.images.holds(*index, show) && looked_through != Some(*index)
+                let is_wanted = look.visible && show.images.holds(*index, show);
+                is_wanted && looked_through != Some(*index) && presence[*index] >= LEAST_PLANE
             })
             .filter_map(|(index, (photo, _))| {
                 Some((self.images.number(index)?, photo.image_plane(cameras)))
             })
             .collect();
         let cells: Vec<CellCorner> = self
-            .filled(show)
+            .filled(show, looked_through)
             .flat_map(|(photo, [_, color])| {
                 let corners = photo.ground_cells.iter().flatten();
                 corners.map(move |corner| CellCorner {

@@ -35,7 +35,63 @@ pub enum Projection {
         center: DVec2,
         /// Pixels of the image.
         skew: f64,
+        /// How far one looks into it.
+        zoom: PhotoZoom,
     },
+}
+
+/// A part of a photo that is looked at: a narrower field of view than the camera's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PhotoZoom {
+    /// How many times larger than fitted into the viewport, at least 1.
+    pub factor: f64,
+    /// Which place of the image is in the viewport's middle, as a share of its width and height.
+    pub middle: DVec2,
+}
+
+impl Default for PhotoZoom {
+    fn default() -> Self {
+        Self {
+            factor: 1.0,
+            middle: DVec2::splat(0.5),
+        }
+    }
+}
+
+impl PhotoZoom {
+    /// The largest.
+    const MOST: f64 = 400.0;
+
+    /// Larger by a factor, with what is under the cursor (viewport pixels) staying there.
+    #[must_use]
+    pub fn zoomed(self, cursor: DVec2, factor: f64, image: DVec2, size: DVec2) -> Self {
+        let (before, offset) = letterbox(image, self, size);
+        let share = (cursor - offset) / (image * before);
+        let next = (self.factor * factor).clamp(1.0, Self::MOST);
+        if next.is_nan() || next <= 1.0 {
+            return Self::default();
+        }
+        let after = before * next / self.factor;
+        let middle = share + (size * 0.5 - cursor) / (image * after);
+        Self {
+            factor: next,
+            middle: middle.clamp(DVec2::ZERO, DVec2::ONE),
+        }
+    }
+
+    /// Moved by so many viewport pixels.
+    #[must_use]
+    pub fn panned(self, by: DVec2, image: DVec2, size: DVec2) -> Self {
+        if self.factor <= 1.0 {
+            return self;
+        }
+        let (scale, _) = letterbox(image, self, size);
+        let middle = self.middle - by / (image * scale);
+        Self {
+            middle: middle.clamp(DVec2::ZERO, DVec2::ONE),
+            ..self
+        }
+    }
 }
 
 /// Where one looks from, and how.
@@ -73,9 +129,19 @@ impl View {
                 focal: DVec2::new(camera.fx, camera.fy),
                 center: DVec2::new(camera.cx, camera.cy),
                 skew: camera.skew,
+                zoom: PhotoZoom::default(),
             },
             focus,
         }
+    }
+
+    /// The same look into a part of the photo; nothing changes in the other projections.
+    #[must_use]
+    pub fn into_photo(mut self, wanted: PhotoZoom) -> Self {
+        if let Projection::Photo { zoom, .. } = &mut self.projection {
+            *zoom = wanted;
+        }
+        self
     }
 
     /// The ray of a viewport pixel; its direction has unit length.
@@ -141,10 +207,10 @@ impl View {
     /// Where the photo lies in a viewport that looks through its camera: its top left and bottom
     /// right pixel. `None` in the other projections.
     pub fn photo_rectangle(&self, size: DVec2) -> Option<[DVec2; 2]> {
-        let Projection::Photo { image, .. } = self.projection else {
+        let Projection::Photo { image, zoom, .. } = self.projection else {
             return None;
         };
-        let (scale, offset) = letterbox(image, size);
+        let (scale, offset) = letterbox(image, zoom, size);
         Some([offset, offset + image * scale])
     }
 
@@ -169,8 +235,9 @@ impl View {
                 focal,
                 center,
                 skew,
+                zoom,
             } => {
-                let (scale, offset) = letterbox(image, size);
+                let (scale, offset) = letterbox(image, zoom, size);
                 Pinhole {
                     focal: focal * scale,
                     center: center * scale + offset,
@@ -215,9 +282,9 @@ impl View {
 }
 
 /// How an image fits into a viewport: its scale and the place of its corner.
-fn letterbox(image: DVec2, size: DVec2) -> (f64, DVec2) {
-    let scale = (size / image).min_element();
-    (scale, (size - image * scale) * 0.5)
+fn letterbox(image: DVec2, zoom: PhotoZoom, size: DVec2) -> (f64, DVec2) {
+    let scale = (size / image).min_element() * zoom.factor;
+    (scale, size * 0.5 - zoom.middle * image * scale)
 }
 
 #[cfg(test)]
@@ -307,6 +374,37 @@ mod tests {
             assert!(clip(DVec3::Z * far).z < 1e-3);
             assert!(clip(DVec3::Z * 10.0).z > clip(DVec3::Z * 10.001).z);
         }
+    }
+
+    /// What is under the cursor stays there, ray and all; all the way back the whole photo is seen.
+    #[test]
+    fn one_looks_into_the_photo_about_the_cursor() {
+        let [photo, ..] = views();
+        let image = DVec2::new(4000.0, 2250.0);
+        let cursor = DVec2::new(800.0, 200.0);
+        let ray = photo.ray(cursor, SIZE);
+        let mut zoom = PhotoZoom::default();
+        for factor in [2.0, 3.0, 0.7] {
+            zoom = zoom.zoomed(cursor, factor, image, SIZE);
+            let now = photo.into_photo(zoom).ray(cursor, SIZE);
+            assert!(now.direction.distance(ray.direction) < 1e-12);
+        }
+        // A quarter of the size, times 4.2.
+        let at = |x: f64| {
+            photo
+                .into_photo(zoom)
+                .ray(DVec2::new(x, 350.0), SIZE)
+                .direction
+        };
+        let axis = photo.world_from_view.z_axis;
+        let apart = (at(600.0) / at(600.0).dot(axis)).distance(at(500.0) / at(500.0).dot(axis));
+        assert!(
+            (apart - 100.0 / (3000.0 * 0.25 * 4.2)).abs() < 1e-12,
+            "{apart}"
+        );
+        assert_eq!(zoom.zoomed(cursor, 0.01, image, SIZE), PhotoZoom::default());
+        let moved = zoom.panned(DVec2::new(21.0, 0.0), image, SIZE);
+        assert!((zoom.middle.x - moved.middle.x - 21.0 / 4200.0).abs() < 1e-12);
     }
 
     /// The photo's own corners are the corners of the letterbox.

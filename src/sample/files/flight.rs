@@ -18,20 +18,33 @@ pub struct FlightText<'a> {
     pub poses: &'a str,
     /// Where the image files are.
     pub photos: Option<&'a str>,
+    /// Standard deviation of fx and fy together, percent, where it is stated.
+    pub focal: Option<f64>,
+    /// Standard deviation of all lengths of the world, percent, where it is stated.
+    pub world_scale: Option<f64>,
 }
 
 /// The text of a flight.toml; everything that is not said stays as the program takes it by default.
 ///
 /// # Errors
-/// Where the program would not take it: a path is empty.
+/// Where the program would not take it: a path is empty, a standard deviation is negative.
 pub fn flight_toml(flight: &FlightText) -> Result<String, String> {
     let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
     let folder = flight.photos.map_or_else(String::new, |folder| {
         format!("folder = {}\n", quoted(folder))
     });
+    let stated = |key: &str, value: Option<f64>| {
+        let value = value.map(|value| format!("{key} = {}\n", toml::Value::Float(value)));
+        value.unwrap_or_default()
+    };
+    let mut uncertainty = stated("focal", flight.focal);
+    uncertainty += &stated("world_scale", flight.world_scale);
+    if !uncertainty.is_empty() {
+        uncertainty.insert_str(0, "\n[uncertainty]\n");
+    }
     let text = format!(
         "format = 1\nname = {}\n\n[world]\nunit = {}\n\n[surface]\nfile = {}\n\n[[camera]]\n\
-         file = {}\n\n[photos]\nposes = {}\n{folder}",
+         file = {}\n\n[photos]\nposes = {}\n{folder}{uncertainty}",
         quoted(flight.name),
         quoted(flight.unit.symbol()),
         quoted(flight.surface),
@@ -46,6 +59,7 @@ pub fn flight_toml(flight: &FlightText) -> Result<String, String> {
 mod tests {
     use super::*;
     use crate::flight::{CameraSource, PhotoSource};
+    use crate::scale::StatedErrors;
 
     const FLIGHT: FlightText = FlightText {
         name: "Lab \"1\" \\ ä",
@@ -54,7 +68,34 @@ mod tests {
         camera: "ost.yaml",
         poses: "poses.csv",
         photos: Some("photos"),
+        focal: None,
+        world_scale: None,
     };
+
+    #[test]
+    fn what_is_stated_of_errors_reads_back() {
+        for (focal, world_scale) in [
+            (None, None),
+            (Some(0.1), None),
+            (None, Some(1.0)),
+            (Some(0.0), Some(1e-9)),
+        ] {
+            let text = flight_toml(&FlightText {
+                focal,
+                world_scale,
+                ..FLIGHT
+            });
+            let expected = StatedErrors {
+                focal,
+                world_scale,
+                ..StatedErrors::default()
+            };
+            let errors = FlightFile::parse(&text.unwrap()).unwrap().errors();
+            assert_eq!(errors, expected);
+        }
+        let focal = Some(-0.1);
+        assert!(flight_toml(&FlightText { focal, ..FLIGHT }).is_err());
+    }
 
     #[test]
     fn reads_back() {

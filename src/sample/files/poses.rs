@@ -1,4 +1,5 @@
-//! poses.csv (contract, section 4), with quaternions of world_from_camera or with tilt and pan.
+//! poses.csv (contract, section 4), with quaternions of world_from_camera or with tilt and pan, and
+//! where they are stated with standard deviations (section 8).
 //! Numbers are the shortest ones that read back to the same f64.
 
 use std::collections::HashSet;
@@ -16,6 +17,15 @@ pub enum Orientation {
     TiltPan([f64; 2]),
 }
 
+/// How sure a pose is: one standard deviation each.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StatedDeviations {
+    /// Of the camera centre along each axis of the world, in the world's unit.
+    pub position: DVec3,
+    /// Of the rotation about each camera axis, degrees.
+    pub angle: f64,
+}
+
 /// One line of a poses.csv.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseRow {
@@ -27,6 +37,8 @@ pub struct PoseRow {
     pub center: DVec3,
     /// As it will stand there.
     pub orientation: Orientation,
+    /// In columns of their own; `None` leaves the cells empty.
+    pub stated: Option<StatedDeviations>,
 }
 
 impl PoseRow {
@@ -37,18 +49,25 @@ impl PoseRow {
             camera: None,
             center: pose.center,
             orientation: Orientation::Quaternion(DQuat::from_mat3(&pose.rotation).to_array()),
+            stated: None,
         }
     }
 }
 
-/// The text of a poses.csv. The column `camera` is there where a row names one.
+/// The text of a poses.csv. The column `camera` is there where a row names one, those of standard
+/// deviations where a row states them.
 ///
 /// # Errors
 /// Where there is no row, a name is one that a reader would change or that stands twice, a number is
-/// not finite, or quaternions and angles are mixed.
+/// not finite, a standard deviation is negative, or quaternions and angles are mixed.
 pub fn poses_csv(rows: &[PoseRow]) -> Result<String, String> {
     let first = rows.first().ok_or("there are no poses to write")?;
     let cameras = rows.iter().any(|row| row.camera.is_some());
+    let states = rows.iter().any(|row| row.stated.is_some());
+    let deviations: &[&str] = match states {
+        true => &["s_x", "s_y", "s_z", "s_angle"],
+        false => &[],
+    };
     let columns: &[&str] = match first.orientation {
         Orientation::Quaternion(_) => &["qx", "qy", "qz", "qw"],
         Orientation::TiltPan(_) => &["tilt", "pan"],
@@ -60,7 +79,7 @@ pub fn poses_csv(rows: &[PoseRow]) -> Result<String, String> {
     let camera = cameras.then_some("camera");
     let head = ["photo"].into_iter().chain(camera).chain(["x", "y", "z"]);
     writer
-        .write_record(head.chain(columns.iter().copied()))
+        .write_record(head.chain(columns.iter().chain(deviations).copied()))
         .map_err(failed)?;
     let mut seen = HashSet::new();
     for row in rows {
@@ -88,11 +107,24 @@ pub fn poses_csv(rows: &[PoseRow]) -> Result<String, String> {
                 "the pose of the photo '{photo}' has {number} in it"
             ));
         }
+        let stated = row.stated.map(|StatedDeviations { position, angle }| {
+            let [x, y, z] = position.to_array();
+            [x, y, z, angle]
+        });
+        let is_deviation = |number: &f64| *number >= 0.0 && number.is_finite();
+        if let Some(number) = stated.iter().flatten().find(|number| !is_deviation(number)) {
+            return Err(format!(
+                "the photo '{photo}' has the standard deviation {number}"
+            ));
+        }
+        let stated = match stated {
+            Some(numbers) => numbers.map(|number| number.to_string()).to_vec(),
+            None => vec![String::new(); deviations.len()],
+        };
         let camera = cameras.then(|| row.camera.clone().unwrap_or_default());
         let names = [photo.clone()].into_iter().chain(camera);
-        writer
-            .write_record(names.chain(numbers().map(f64::to_string)))
-            .map_err(failed)?;
+        let pose = names.chain(numbers().map(f64::to_string));
+        writer.write_record(pose.chain(stated)).map_err(failed)?;
     }
     let bytes = writer.into_inner().map_err(|e| e.to_string())?;
     String::from_utf8(bytes).map_err(|e| e.to_string())
@@ -112,8 +144,11 @@ mod tests {
     use glam::DMat3;
 
     use super::*;
+    use crate::files::read_back::written;
+    use crate::formats::read_poses;
     use crate::jobs::Progress;
     use crate::opening::{OpenOptions, open_flight};
+    use crate::scale::PoseErrors;
 
     /// The poses that the program itself reads from a poses.csv.
     fn read(text: &str) -> Vec<(String, Pose)> {
@@ -154,6 +189,40 @@ mod tests {
             camera: Some(camera.to_owned()),
             center: DVec3::new(500_000.123_456_789, 1.0 / 3.0, 1e-7),
             orientation,
+            stated: None,
+        }
+    }
+
+    #[test]
+    fn standard_deviations_read_back() {
+        let down = Orientation::TiltPan([90.0, 0.0]);
+        let stated = StatedDeviations {
+            position: DVec3::new(0.02, 1e-9, 1.0 / 3.0),
+            angle: 0.1,
+        };
+        let rows = [
+            row("a.jpg", "left", down),
+            PoseRow {
+                stated: Some(stated),
+                ..row("b.jpg", "left", down)
+            },
+        ];
+        let text = poses_csv(&rows).unwrap();
+        let (_folder, path) = written("poses.csv", &text);
+        let lines = read_poses(&path).unwrap().lines;
+        assert_eq!(lines[0].errors, PoseErrors::default());
+        let expected = PoseErrors {
+            position: Some(stated.position),
+            angle: Some(DVec3::splat(stated.angle)),
+        };
+        assert_eq!(lines[1].errors, expected);
+        for wrong in [-0.1, f64::NAN, f64::INFINITY] {
+            let mut rows = rows.clone();
+            rows[1].stated = Some(StatedDeviations {
+                angle: wrong,
+                ..stated
+            });
+            assert!(poses_csv(&rows).unwrap_err().contains(&wrong.to_string()));
         }
     }
 

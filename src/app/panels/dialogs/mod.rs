@@ -1,6 +1,7 @@
 //! Small windows beside the work: where to open, save or export, keys, about. None of them blocks;
 //! only the question before unsaved changes are lost does.
 
+mod choose;
 mod georeference;
 mod residuals;
 
@@ -8,6 +9,7 @@ use std::path::PathBuf;
 
 use crate::actions;
 use crate::command::{Answers, Asking, Command, Dialog, PictureRequest};
+use crate::names;
 use crate::open_flight::OpenFlight;
 use crate::panels::path_field::path_field;
 use crate::panels::size_distributions::{
@@ -15,6 +17,7 @@ use crate::panels::size_distributions::{
 };
 use crate::state::{HeldBack, State};
 use crate::typed::typed;
+use choose::choose;
 use georeference::{georeference, save_georeferenced};
 
 /// Draws the small window that is open, and the question before losing changes.
@@ -23,6 +26,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
         let title = match asking {
             Asking::Open => "Open a flight",
             Asking::Add => "Add surface or photos",
+            Asking::Choose => "Which of them?",
             Asking::Export => "Export for Split-Desktop",
             Asking::Georeference => "Georeference",
             Asking::SaveGeoreferenced => "Save georeferenced flight",
@@ -49,6 +53,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                 match asking {
                     Asking::Open => open(state, ui, commands),
                     Asking::Add => add(state, ui, commands),
+                    Asking::Choose => choose(state, ui, commands),
                     Asking::Export => export(state, ui, commands),
                     Asking::Georeference => georeference(state, ui, commands),
                     Asking::SaveGeoreferenced => save_georeferenced(state, ui, commands),
@@ -92,9 +97,11 @@ fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
 fn unsaved(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.heading("Unsaved changes");
     if let Some(open) = &state.open {
+        let body = egui::TextStyle::Body.resolve(ui.style());
+        let name = &open.flight().parts().name;
         ui.label(format!(
-            "The settings of {} have changed since they were saved.",
-            open.flight().parts().name
+            "The settings of {} or what was decided of its photos have changed since they were saved.",
+            names::fitted(ui, name, &body, 300.0)
         ));
     }
     ui.add_space(8.0);
@@ -188,10 +195,23 @@ fn add(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         (None, Some(open)) => open.flight().parts().name.clone(),
         (None, None) => return,
     };
-    ui.label(format!(
-        "For {name}: a cloud or mesh to be its surface, or the folder of its photos. It can also be \
-         dropped on this window."
-    ));
+    let body = egui::TextStyle::Body.resolve(ui.style());
+    let name = names::fitted(ui, &name, &body, 400.0).into_owned();
+    let is_cloud = state.tried.is_none()
+        && state
+            .open
+            .as_ref()
+            .is_some_and(|open| open.files.origin.is_surface_alone());
+    ui.label(match is_cloud {
+        true => format!(
+            "For the cloud {name}: its cameras, as a flight.toml, what a photogrammetry package wrote, or a \
+             folder of drone photos."
+        ),
+        false => format!(
+            "For {name}: a cloud or mesh to be its surface, or the folder of its photos. It can also be \
+             dropped on this window."
+        ),
+    });
     let browse = [
         (
             "Browse for a surface…",
@@ -220,7 +240,7 @@ fn export(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let unit = state.preferences.unit();
     let chosen = open.chosen_count();
     ui.label(format!(
-        "{chosen} of {} photos are chosen; scales in pixels per {unit}. The folder gets scales.csv, \
+        "{chosen} of {} photos go along; scales in pixels per {unit}. The folder gets scales.csv, \
          scales.html to print and type from, the undistorted photos, overlays, and footprints as \
          GeoJSON.",
         open.review.count()
@@ -228,6 +248,13 @@ fn export(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let start = proposed(open, Some("split-desktop"));
     let browse = [("Browse…", Dialog::folder("Export for Split-Desktop into"))];
     let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
+    let mut rectified = state.preferences.export_rectified;
+    let check = ui.checkbox(&mut rectified, "Rectified photos, too");
+    let hover = "Each photo seen squarely onto the plane through what it shows, with one scale for the whole \
+                 image, a bar and a world file: for programs that know one scale";
+    if check.on_hover_text(hover).changed() {
+        commands.push(Command::ExportRectified(rectified));
+    }
     ui.separator();
     let path = typed(&path).filter(|_| chosen > 0);
     let button = ui.add_enabled(path.is_some(), egui::Button::new("Export now"));
@@ -238,7 +265,7 @@ fn export(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         commands.push(Command::Export(path.into()));
     }
     if chosen == 0 {
-        ui.weak("Choose photos first: the boxes in the table.");
+        ui.weak("No photo goes along: tick the boxes in the table.");
     }
 }
 
@@ -308,6 +335,15 @@ fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 }
 
 fn keys(ui: &mut egui::Ui) {
+    // The list is longer than a small screen is high.
+    let most = (ui.ctx().content_rect().height() - 90.0).max(100.0);
+    egui::ScrollArea::vertical()
+        .max_height(most)
+        .min_scrolled_height(most)
+        .show(ui, list_of_keys);
+}
+
+fn list_of_keys(ui: &mut egui::Ui) {
     egui::Grid::new("keys")
         .striped(true)
         .num_columns(2)

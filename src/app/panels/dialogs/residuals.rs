@@ -3,6 +3,7 @@
 use egui_extras::{Column as Width, TableBuilder};
 
 use crate::command::Command;
+use crate::names;
 use crate::opening::{Georeferenced, PositionResidual};
 
 /// The height of a row.
@@ -70,12 +71,11 @@ pub(super) fn residuals(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mu
                 };
                 let [name, numbers @ .., used] = cells(position);
                 row.col(|ui| {
-                    ui.add(egui::Label::new(&name).truncate())
-                        .on_hover_text(&name);
+                    names::name(ui, &name);
                 });
                 for text in numbers {
                     row.col(|ui| {
-                        ui.label(text);
+                        names::whole_number(ui, text, true);
                     });
                 }
                 row.col(|ui| {

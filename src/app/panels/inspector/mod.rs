@@ -1,26 +1,39 @@
 //! The selected photo: its picture with the scale bars of the paper's figure, its numbers, and every
 //! reason to doubt them.
 
+mod decision;
+mod reason_picture;
+mod reasons;
+mod remedy;
 mod scale_objects;
-mod traced_photo;
+mod scales;
+pub(super) mod tint;
+pub(super) mod traced_photo;
 
 use egui::{Color32, Pos2, Rect, Sense, Stroke, Vec2, pos2, vec2};
 use glam::DVec2;
 
-use crate::actions;
 use crate::command::Command;
 use crate::flight::PhotoReview;
-use crate::numbers::significant_digits;
+use crate::linked::PointFrom;
+use crate::names;
 use crate::open_flight::OpenFlight;
-use crate::panels::verdict::{or_dash, verdict_color, verdict_sign};
+use crate::panels::corner_loupe::{self, Crops};
+use crate::panels::linked;
+use crate::panels::verdict::{verdict_color, verdict_sign};
 use crate::picture::{BarEdge, ScaleBar, scale_bars};
 use crate::scale::{CornerOutcome, ImageKind, PhotoScale, ViewFacts};
 use crate::state::State;
+use decision::decision;
+use reasons::reasons;
+pub(super) use remedy::{Offer, remedy_button};
 use scale_objects::scale_objects;
+pub(super) use scales::SIZE_ERROR;
+use scales::scales;
+use tint::Tint;
 use traced_photo::{Dragged, PhotoPlace};
 
 /// The inspector keeps the photo's texture and how it is zoomed.
-#[derive(Default)]
 pub struct Inspector {
     /// Flight, photo and number of the preview that the texture shows.
     shown: Option<(u64, usize, u64)>,
@@ -29,8 +42,27 @@ pub struct Inspector {
     zoom: f32,
     /// The place of the photo (0 to 1 each way) in the middle of its frame.
     middle: Vec2,
+    /// What tints the photo.
+    tint: Tint,
+    /// The surface at the photo's corners.
+    pub(crate) crops: Option<Crops>,
     /// The point of a scale object that the mouse moves.
     dragged: Option<Dragged>,
+}
+
+impl Default for Inspector {
+    fn default() -> Self {
+        Self {
+            shown: None,
+            texture: None,
+            // Fitted from the first frame on: without any size, the labels of top and bottom change places.
+            zoom: 1.0,
+            middle: vec2(0.5, 0.5),
+            tint: Tint::default(),
+            crops: None,
+            dragged: None,
+        }
+    }
 }
 
 impl Inspector {
@@ -46,8 +78,11 @@ impl Inspector {
             ui.weak("Select a photo in the table or in the viewport.");
             return;
         };
-        ui.horizontal(|ui| {
-            ui.add(egui::Label::new(egui::RichText::new(reviewed.name()).strong()).truncate());
+        // From the right, so that a long name gives way.
+        let right = egui::Layout::right_to_left(egui::Align::Center);
+        let row = vec2(ui.available_width(), ui.spacing().interact_size.y);
+        ui.allocate_ui_with_layout(row, right, |ui| {
+            tint::switch(state, ui, commands);
             if let Some(verdict) = reviewed.settled() {
                 let text = format!("{} {verdict}", verdict_sign(verdict));
                 ui.colored_label(verdict_color(verdict, ui.visuals()), text);
@@ -55,34 +90,33 @@ impl Inspector {
             if !open.is_computed() {
                 ui.weak("computing…");
             }
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                let body = egui::TextStyle::Body;
+                names::styled(ui, reviewed.name(), body, egui::RichText::strong);
+            });
         });
         self.take_texture(open, ui);
         self.picture(state, open, photo, ui, commands);
         egui::ScrollArea::vertical().show(ui, |ui| {
             if reviewed.scale_to_type().is_some() {
-                scales(state, reviewed, ui, commands);
+                scales(state, open, reviewed, ui, commands);
             }
-            if reviewed.doubts.is_empty() {
-                ui.weak(if reviewed.is_looked_at {
-                    "No reason for doubt was found."
-                } else {
-                    "Looking for reasons for doubt…"
-                });
-            } else {
-                ui.strong("Reasons for doubt");
-                for doubt in reviewed.doubts {
-                    let text = format!("• {doubt}");
-                    let color = verdict_color(reviewed.verdict, ui.visuals());
-                    ui.add(egui::Label::new(egui::RichText::new(text).color(color)).wrap());
-                }
-            }
+            reasons(state, reviewed, ui, commands);
+            decision(open, photo, reviewed, ui, commands);
+            let texture = self.texture.as_ref().map(egui::TextureHandle::id);
+            corner_loupe::corner_loupe(state, open, reviewed, texture, self.crops, ui, commands);
             scale_objects(state, open, photo, ui, commands);
-            if let Some(scale) = reviewed.scale() {
-                corners(reviewed, scale, ui);
-            }
-            if let Some(view) = reviewed.view {
-                facts(reviewed, view, ui);
-            }
+            // What does not wrap is scrolled: wider than the panel, it would push everything aside.
+            egui::ScrollArea::horizontal()
+                .id_salt("points")
+                .show(ui, |ui| {
+                    if let Some(scale) = reviewed.scale() {
+                        corners(reviewed, scale, ui, commands);
+                    }
+                    if let Some(view) = reviewed.view {
+                        facts(reviewed, view, ui);
+                    }
+                });
         });
     }
 
@@ -125,6 +159,11 @@ impl Inspector {
         let Some(reviewed) = open.review.photo(photo) else {
             return;
         };
+        let tint = tint::wanted(state, open, reviewed);
+        if let Some(tint) = tint {
+            let unit = state.preferences.unit();
+            self.tint.take(open, tint, reviewed, unit, ui);
+        }
         let camera = reviewed.camera;
         let aspect = camera.width as f32 / camera.height as f32;
         let width = ui.available_width();
@@ -186,12 +225,15 @@ impl Inspector {
             }
         }
         // Nothing else lies over what is traced.
+        if tint.is_some() && !is_traced {
+            self.tint.draw(&painter, place);
+        }
         if let Some(scale) = reviewed.scale_to_type().filter(|_| !is_traced) {
             let unit = state.preferences.unit();
-            let world = reviewed.unit;
             let to_screen = |pixel: DVec2| shown.to_screen(pixel);
-            for bar in scale_bars(scale, camera.width, camera.height, unit, world) {
-                draw_bar(&painter, &bar, &to_screen);
+            let pair = reviewed.estimates(reviewed.pair, unit);
+            for bar in scale_bars(pair, camera.width, camera.height, unit) {
+                draw_bar(&painter, frame, &bar, &to_screen);
             }
             for corner in &scale.corners {
                 let at = to_screen(corner.pixel)
@@ -199,9 +241,22 @@ impl Inspector {
                 draw_corner(&painter, at, &corner.outcome);
             }
         }
+        if !is_traced {
+            let to_screen = |pixel| Some(shown.to_screen(pixel));
+            commands.extend(corner_loupe::clicked(reviewed, &response, frame, to_screen));
+        }
         traced_photo::draw(open, photo, &shown, self.dragged, &painter);
-        if is_traced {
-            // A tooltip would hide what is traced.
+        let from = PointFrom::Inspector;
+        linked::on_photo(state, open, from, &shown, frame, ui, &response, commands);
+        let pixel = response.hover_pos().map(|at| shown.pixel_under(at));
+        if state.preferences.tint {
+            tint::reading(state, reviewed, tint, pixel, ui);
+        }
+        if tint.is_some() {
+            self.tint.legend(state.preferences.unit(), ui);
+        }
+        if is_traced || tint.is_some() {
+            // A tooltip would hide what is traced, or pointed at.
             return;
         }
         let kind = match image {
@@ -246,14 +301,21 @@ impl Inspector {
     }
 }
 
-fn message(painter: &egui::Painter, frame: Rect, text: &str, ui: &egui::Ui) {
+pub(super) fn message(painter: &egui::Painter, frame: Rect, text: &str, ui: &egui::Ui) {
     let color = ui.visuals().error_fg_color;
     let font = egui::TextStyle::Body.resolve(ui.style());
     let galley = painter.layout(text.to_owned(), font, color, frame.width() - 20.0);
     painter.galley(frame.center() - galley.size() / 2.0, galley, color);
 }
 
-fn draw_bar(painter: &egui::Painter, bar: &ScaleBar, to_screen: &impl Fn(DVec2) -> Pos2) {
+/// A bar with its scale, which stays inside the frame: in rows where that is narrow, because with its first
+/// digit cut off it would be another number.
+pub(super) fn draw_bar(
+    painter: &egui::Painter,
+    frame: Rect,
+    bar: &ScaleBar,
+    to_screen: &impl Fn(DVec2) -> Pos2,
+) {
     let (from, to) = (to_screen(bar.from), to_screen(bar.to));
     let tick = vec2(0.0, 5.0);
     for (width, color) in [(4.0, Color32::from_black_alpha(180)), (2.0, Color32::WHITE)] {
@@ -270,14 +332,20 @@ fn draw_bar(painter: &egui::Painter, bar: &ScaleBar, to_screen: &impl Fn(DVec2) 
     let at = from.lerp(to, 0.5) + gap;
     let text = format!("{}  {}", bar.edge.as_str(), bar.text);
     let font = egui::FontId::proportional(13.0);
-    let galley = painter.layout_no_wrap(text, font, Color32::WHITE);
+    let widest = frame.width() - 8.0;
+    let galley = painter.layout(text, font, Color32::WHITE, widest);
     let place = anchor.anchor_size(at, galley.size());
+    let (least, most) = (frame.left() + 4.0, frame.right() - 4.0 - place.width());
+    let place = place.translate(vec2(
+        place.left().clamp(least, most.max(least)) - place.left(),
+        0.0,
+    ));
     painter.rect_filled(place.expand(2.0), 3.0, Color32::from_black_alpha(150));
     painter.galley(place.min, galley, Color32::WHITE);
 }
 
 /// A disc for a corner on the surface, a triangle for one on the ground, a cross for none.
-fn draw_corner(painter: &egui::Painter, at: Pos2, outcome: &CornerOutcome) {
+pub(super) fn draw_corner(painter: &egui::Painter, at: Pos2, outcome: &CornerOutcome) {
     let outline = Stroke::new(1.5, Color32::from_black_alpha(200));
     match outcome {
         CornerOutcome::OnSurface { .. } => {
@@ -304,43 +372,12 @@ fn draw_corner(painter: &egui::Painter, at: Pos2, outcome: &CornerOutcome) {
     }
 }
 
-/// The scales of the four edges, big enough to type from.
-fn scales(state: &State, photo: PhotoReview<'_>, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    let unit = state.preferences.unit();
-    let edges = photo.edges(unit);
-    ui.horizontal(|ui| {
-        for (name, value) in [("Top", edges.top), ("Bottom", edges.bottom)] {
-            ui.vertical(|ui| {
-                ui.weak(format!("{name}, px/{unit}"));
-                ui.label(egui::RichText::new(or_dash(value, 5)).size(22.0).strong());
-            });
-            ui.add_space(14.0);
-        }
-        let copy = ui.button("Copy");
-        copy.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Button, true, "Copy top and bottom scale")
-        });
-        if copy
-            .on_hover_text(actions::edit::COPY_SCALES.hover)
-            .clicked()
-        {
-            commands.push(Command::CopyScales);
-        }
-    });
-    ui.horizontal(|ui| {
-        ui.label(format!("Left {}", or_dash(edges.left, 5)));
-        ui.label(format!("Right {}", or_dash(edges.right, 5)));
-        if let (Some(top), Some(bottom)) = (edges.top, edges.bottom) {
-            ui.label(format!(
-                "Top/bottom {}",
-                significant_digits(top / bottom, 4)
-            ));
-        }
-    });
-    ui.separator();
-}
-
-fn corners(photo: PhotoReview<'_>, scale: &PhotoScale, ui: &mut egui::Ui) {
+fn corners(
+    photo: PhotoReview<'_>,
+    scale: &PhotoScale,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
     let unit = photo.unit;
     ui.separator();
     ui.strong(format!("Corner points, {unit}"));
@@ -353,11 +390,20 @@ fn corners(photo: PhotoReview<'_>, scale: &PhotoScale, ui: &mut egui::Ui) {
             }
             ui.end_row();
             for corner in &scale.corners {
-                ui.label(corner.name.as_str().replace('_', " "));
+                let name = corner.name.as_str().replace('_', " ");
+                // No tooltip: it would lie over the next row.
+                let link = ui.link(&name);
+                link.widget_info(|| {
+                    let label = format!("Go to the corner {name}");
+                    egui::WidgetInfo::labeled(egui::Role::Link, true, label)
+                });
+                if link.clicked() {
+                    commands.push(Command::GoToCorner(corner.name));
+                }
                 match corner.point() {
                     Some(point) => {
                         for value in point.to_array() {
-                            ui.label(format!("{value:.3}"));
+                            names::whole_number(ui, format!("{value:.3}"), true);
                         }
                     }
                     None => {
@@ -408,7 +454,8 @@ fn facts(photo: PhotoReview<'_>, view: &ViewFacts, ui: &mut egui::Ui) {
             ),
         ] {
             ui.weak(name);
-            ui.label(value.unwrap_or_else(|| "–".to_owned()));
+            let value = value.unwrap_or_else(|| "–".to_owned());
+            names::whole_number(ui, value, true);
             ui.end_row();
         }
     });

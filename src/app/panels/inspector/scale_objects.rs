@@ -3,6 +3,7 @@
 use crate::actions;
 use crate::command::Command;
 use crate::flight::{ComparedObject, ScaleObject, Verdict};
+use crate::names;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::tracing::{Trace, Tracing};
@@ -66,7 +67,7 @@ fn begin(
         ScaleObjectKind::Sphere => ("Diameter", "Diameter of the next sphere"),
         ScaleObjectKind::Bar => ("Length", "Length of the next bar"),
     };
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let command = (action.command)(state);
         let button = ui.add_enabled(command.is_some(), egui::Button::new(action.label));
         let button = button.on_disabled_hover_text("Type its size first");
@@ -102,7 +103,7 @@ fn being_traced(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         for (action, text) in [
             (actions::photo::FINISH_TRACING, "Done"),
             (actions::photo::REMOVE_POINT, "Last point back"),
-            (actions::photo::GIVE_UP_TRACING, "Give up"),
+            (actions::photo::LEAVE, "Give up"),
         ] {
             let command = (action.command)(state);
             let button = ui.add_enabled(command.is_some(), egui::Button::new(text));
@@ -161,7 +162,7 @@ fn card(
     let world = open.flight().parts().unit;
     let title = format!("{} {number}", object.kind.as_str());
     egui::Frame::group(ui.style()).show(ui, |ui| {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             ui.strong(format!("{number}: {}", object.kind.as_str()));
             ui.label(object.kind.size_name());
             let label = format!("Size of {title}");
@@ -182,7 +183,7 @@ fn card(
             }
             Some(compared) => numbers(state, open, compared, &title, ui, commands),
         }
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let mut mask = object.mask;
             let label = "Mask in export";
             let check = ui.checkbox(&mut mask, label);
@@ -231,7 +232,7 @@ fn numbers(
         Ok(Traced::Sphere(sphere)) => sphere.relative_error,
         _ => None,
     };
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.vertical(|ui| {
             ui.weak(format!("Uniform scale, px/{unit}"));
             ui.label(egui::RichText::new(in_unit(scale)).size(20.0).strong());
@@ -249,11 +250,14 @@ fn numbers(
     let place = compared.place;
     let row = |ui: &mut egui::Ui, name: &str, hover: &str, value: String, off: String| {
         ui.weak(name).on_hover_text(hover);
-        ui.label(value);
-        ui.label(off);
+        names::whole_number(ui, value, true);
+        names::whole_number(ui, off, true);
         ui.end_row();
     };
-    egui::Grid::new(title).num_columns(3).show(ui, |ui| {
+    // Scrolled: wider than the panel, it would make that wider.
+    let scroll = egui::ScrollArea::horizontal().id_salt(title);
+    let grid = egui::Grid::new(title).num_columns(3);
+    scroll.show(ui, |ui| grid.show(ui, |ui| {
         let sign = "In percent: how much larger the object's scale is. Where it is larger, fragments \
                     come out smaller with it.";
         let found = |scale: Option<f64>| or_dash(scale.map(|scale| scale * factor), 5);
@@ -309,7 +313,7 @@ fn numbers(
             }
             Err(_) => {}
         }
-    });
+    }));
     for doubt in doubts(&compared.traced) {
         ui.colored_label(doubtful(ui), format!("• {doubt}"));
     }

@@ -20,7 +20,7 @@ const OUTLINE: Color32 = Color32::from_rgb(70, 225, 255);
 const SHADE: Color32 = Color32::from_black_alpha(210);
 
 /// A photo on the screen: where it is, and which image of which camera it is.
-pub(super) struct PhotoPlace<'a> {
+pub(in crate::panels) struct PhotoPlace<'a> {
     /// The whole photo, also where it is cut off.
     pub rect: Rect,
     pub camera: &'a Camera,
@@ -29,12 +29,21 @@ pub(super) struct PhotoPlace<'a> {
 
 impl PhotoPlace<'_> {
     /// Of a pixel of the image that is shown.
-    pub(super) fn to_screen(&self, pixel: DVec2) -> Pos2 {
+    pub(in crate::panels) fn to_screen(&self, pixel: DVec2) -> Pos2 {
         let share = vec2(
             (pixel.x / f64::from(self.camera.width)) as f32,
             (pixel.y / f64::from(self.camera.height)) as f32,
         );
         self.rect.min + share * self.rect.size()
+    }
+
+    /// The pixel of the image that is shown under a place of the screen, also beside the image.
+    pub(in crate::panels) fn pixel_under(&self, at: Pos2) -> DVec2 {
+        let share = (at - self.rect.min) / self.rect.size();
+        DVec2::new(
+            f64::from(share.x) * f64::from(self.camera.width),
+            f64::from(share.y) * f64::from(self.camera.height),
+        )
     }
 
     /// Of a pixel of the photo as shot, where the image that is shown has it.
@@ -51,11 +60,7 @@ impl PhotoPlace<'_> {
 
     /// The pixel of the photo as shot under a place of the screen.
     fn shot_under(&self, at: Pos2) -> Option<DVec2> {
-        let share = (at - self.rect.min) / self.rect.size();
-        let shown = DVec2::new(
-            f64::from(share.x) * f64::from(self.camera.width),
-            f64::from(share.y) * f64::from(self.camera.height),
-        );
+        let shown = self.pixel_under(at);
         match self.image {
             ImageKind::AsShot => Some(shown),
             ImageKind::Undistorted => {
@@ -69,7 +74,7 @@ impl PhotoPlace<'_> {
 /// A point that is being moved: which object (`None` for the one that is traced), which point of it,
 /// and where to, in pixels as shot.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Dragged {
+pub(in crate::panels) struct Dragged {
     object: Option<usize>,
     point: usize,
     to: DVec2,
@@ -104,7 +109,7 @@ fn outlines(open: &OpenFlight, photo: usize) -> Vec<Outline<'_>> {
 }
 
 /// Sets and moves points. Returns whether the mouse is taken, so that it does not move the photo.
-pub(super) fn mouse(
+pub(in crate::panels) fn mouse(
     open: &OpenFlight,
     photo: usize,
     place: &PhotoPlace<'_>,
@@ -197,7 +202,7 @@ fn drop_point(open: &OpenFlight, moved: Dragged) -> Option<Command> {
 }
 
 /// Draws the outlines with their points.
-pub(super) fn draw(
+pub(in crate::panels) fn draw(
     open: &OpenFlight,
     photo: usize,
     place: &PhotoPlace<'_>,

@@ -5,6 +5,7 @@ use egui::collapsing_header::CollapsingState;
 use super::plot::color;
 use crate::command::Command;
 use crate::fragmentation::LabelledDistribution;
+use crate::names;
 use crate::numbers::significant_digits;
 use crate::size_distributions::drawing::MethodDrawing;
 use crate::size_distributions::{Computed, DistributionCommand};
@@ -127,7 +128,18 @@ fn check(
     let shown = shown.count();
     let mut all = shown == curves.len();
     let mixed = shown > 0 && !all;
-    let response = ui.add(egui::Checkbox::new(&mut all, text).indeterminate(mixed));
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let spacing = ui.spacing();
+    // What else is in the row: the box itself, "reference", weights.
+    let others = spacing.icon_width + spacing.icon_spacing + 90.0;
+    let width = (ui.available_width() - others).max(40.0);
+    let shown = names::fitted(ui, text, &font, width);
+    let is_cut = *shown != *text;
+    let response = ui.add(egui::Checkbox::new(&mut all, &*shown).indeterminate(mixed));
+    let response = match is_cut {
+        true => response.on_hover_text(text),
+        false => response,
+    };
     response.widget_info(|| {
         let label = format!("Show {name}");
         egui::WidgetInfo::selected(egui::Role::CheckBox, true, all, label)

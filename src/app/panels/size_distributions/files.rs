@@ -2,6 +2,7 @@
 
 use crate::actions;
 use crate::command::Command;
+use crate::names;
 use crate::panels::tool_bar::action_button;
 use crate::size_distributions::DistributionCommand;
 use crate::state::State;
@@ -9,6 +10,9 @@ use crate::state::State;
 /// Draws the list of files and tables, with what was noticed while reading them.
 pub(super) fn files(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     for (place, source) in state.distributions.sources().iter().enumerate() {
+        let count = source.set.curves.len();
+        let curves = if count == 1 { "curve" } else { "curves" };
+        let counted = format!("{count} {curves}, {}", source.set.unit);
         ui.horizontal(|ui| {
             let remove = ui.small_button("✖");
             let label = format!("Remove {}", source.name);
@@ -17,12 +21,11 @@ pub(super) fn files(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
                 commands.push(Command::Distributions(DistributionCommand::Remove(place)));
             }
             let path = source.path.as_ref().map(|path| path.display().to_string());
-            let name = ui.strong(&source.name);
+            let body = egui::TextStyle::Body;
+            let name = names::styled(ui, &source.name, body, egui::RichText::strong);
             name.on_hover_text(path.as_deref().unwrap_or("A table that was pasted"));
-            let count = source.set.curves.len();
-            let curves = if count == 1 { "curve" } else { "curves" };
-            ui.weak(format!("{count} {curves}, {}", source.set.unit));
         });
+        ui.horizontal_wrapped(|ui| ui.weak(counted));
         for warning in &source.warnings {
             let text = egui::RichText::new(format!("⚠ {warning}"));
             let text = text.color(ui.visuals().warn_fg_color).small();

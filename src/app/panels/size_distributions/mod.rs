@@ -37,26 +37,32 @@ pub fn size_distributions(state: &State, ui: &mut egui::Ui, commands: &mut Vec<C
         });
         return;
     }
-    egui::Panel::left("distributions")
-        .resizable(true)
-        .default_size(270.0)
-        .min_size(180.0)
-        .max_size((width * 0.4).max(180.0))
-        .show(ui, |ui| {
-            egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-                files::files(state, ui, commands);
-                ui.separator();
-                settings::settings(state, ui, commands);
-                ui.separator();
-                curves::curves(state, ui, commands);
+    if state.preferences.left_open {
+        egui::Panel::left("distributions")
+            .resizable(true)
+            .default_size(270.0)
+            .min_size(180.0)
+            .max_size((width * 0.4).max(180.0))
+            .show(ui, |ui| {
+                egui::ScrollArea::vertical()
+                    .auto_shrink(false)
+                    .show(ui, |ui| {
+                        files::files(state, ui, commands);
+                        ui.separator();
+                        settings::settings(state, ui, commands);
+                        ui.separator();
+                        curves::curves(state, ui, commands);
+                    });
             });
-        });
-    egui::Panel::right("distribution results")
-        .resizable(true)
-        .default_size((width * 0.34).clamp(260.0, 420.0))
-        .min_size(220.0)
-        .max_size((width * 0.5).max(220.0))
-        .show(ui, |ui| results::results(state, ui, commands));
+    }
+    if state.preferences.right_open {
+        egui::Panel::right("distribution results")
+            .resizable(true)
+            .default_size((width * 0.34).clamp(260.0, 420.0))
+            .min_size(220.0)
+            .max_size((width * 0.5).max(220.0))
+            .show(ui, |ui| results::results(state, ui, commands));
+    }
     egui::CentralPanel::default_margins().show(ui, |ui| {
         super::notice(state, ui, commands);
         plot::plot(state, ui, commands);

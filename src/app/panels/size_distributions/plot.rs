@@ -12,6 +12,7 @@ use super::log_axis;
 use crate::command::Command;
 use crate::exports::{Dash, FigureStyle, Marker};
 use crate::fragmentation::Labels;
+use crate::names;
 use crate::size_distributions::drawing::{Area, Drawing, MethodDrawing};
 use crate::size_distributions::{Computed, DistributionCommand, PlotOf};
 use crate::state::State;
@@ -92,9 +93,12 @@ fn over_size<'a>(
         .color_conflict_handling(ColorConflictHandling::PickFirst)
         .background_alpha(0.85);
     let grid = ui.visuals().text_color().gamma_multiply(0.45);
-    Plot::new(name.to_owned())
-        .legend(legend)
-        .grid_color(grid)
+    let plot = Plot::new(name.to_owned());
+    let plot = match room_of_legend(ui) > LEAST_LEGEND {
+        true => plot.legend(legend),
+        false => plot,
+    };
+    plot.grid_color(grid)
         .cursor_color(grid)
         .custom_x_axes(vec![
             AxisHints::new_x()
@@ -122,6 +126,20 @@ fn over_size<'a>(
         })
 }
 
+/// A legend narrower than this, points, says nothing.
+const LEAST_LEGEND: f32 = 110.0;
+
+/// How wide an entry's name may be: the axis, swatch and margins are beside it.
+fn room_of_legend(ui: &egui::Ui) -> f32 {
+    ui.available_width() - 130.0
+}
+
+/// A method's name as its entry in the legend.
+fn entry(ui: &egui::Ui, name: &str) -> String {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    names::fitted(ui, name, &font, room_of_legend(ui).max(20.0)).into_owned()
+}
+
 /// Wheel and reset, and what a screen reader says.
 fn finish(plot: &mut PlotUi<'_>, reset: bool) {
     if plot.response().hovered() {
@@ -146,6 +164,13 @@ fn passing(state: &State, computed: &Computed, reset: bool, ui: &mut egui::Ui) {
     } else {
         0.4
     };
+    let entries: Vec<[String; 2]> = methods
+        .iter()
+        .map(|drawing| {
+            let method = drawing.method.as_str();
+            [method.to_owned(), format!("{method}, mean ± s.d.")].map(|name| entry(ui, &name))
+        })
+        .collect();
     let response = over_size(
         "percent passing",
         "Percent passing [%]",
@@ -160,12 +185,13 @@ fn passing(state: &State, computed: &Computed, reset: bool, ui: &mut egui::Ui) {
             |style: FigureStyle, alpha: f32| color(style, dark).gamma_multiply(alpha * fade);
         let grey = paint(FigureStyle::REFERENCE, 0.12);
         area(plot, &format!("Envelope ± {percent} %"), envelope, grey);
-        for method in methods {
-            let name = format!("{}, mean ± s.d.", method.method);
-            area(plot, &name, &method.spread, paint(method.style, 0.25));
+        for (method, [_, name]) in methods.iter().zip(&entries) {
+            area(plot, name, &method.spread, paint(method.style, 0.25));
         }
-        for method in methods {
-            curves(plot, method, hidden, |alpha| paint(method.style, alpha));
+        for (method, [name, _]) in methods.iter().zip(&entries) {
+            curves(plot, method, name, hidden, |alpha| {
+                paint(method.style, alpha)
+            });
         }
         finish(plot, reset);
     });
@@ -176,6 +202,7 @@ fn passing(state: &State, computed: &Computed, reset: bool, ui: &mut egui::Ui) {
 fn curves<'a>(
     plot: &mut PlotUi<'a>,
     drawing: &'a MethodDrawing,
+    name: &str,
     hidden: &BTreeSet<Labels>,
     paint: impl Fn(f32) -> Color32,
 ) {
@@ -190,7 +217,7 @@ fn curves<'a>(
     } = drawing;
     // The first of the same id names the entry; each curve has its own name for the read-out.
     plot.add(
-        Points::new(method.clone(), Vec::<[f64; 2]>::new())
+        Points::new(name.to_owned(), Vec::<[f64; 2]>::new())
             .id(method)
             .color(paint(1.0)),
     );
@@ -266,6 +293,8 @@ fn errors(computed: &Computed, reset: bool, ui: &mut egui::Ui) {
         return;
     }
     let title = "Percent error of the passing [%]";
+    let methods = &computed.drawing.methods;
+    let entries: Vec<String> = methods.iter().map(|m| entry(ui, &m.method)).collect();
     let response = over_size("percent error", title, "% error", computed, ui)
         .include_y(-limit * 1.2)
         .include_y(limit * 1.2)
@@ -275,19 +304,19 @@ fn errors(computed: &Computed, reset: bool, ui: &mut egui::Ui) {
                 let line = HLine::new(format!("± {limit} %"), y).id("limits");
                 plot.hline(line.color(neutral).style(LineStyle::dashed_loose()));
             }
-            for MethodDrawing {
-                method,
-                style,
-                errors,
-                ..
-            } in &computed.drawing.methods
-            {
+            for (drawing, name) in methods.iter().zip(&entries) {
+                let MethodDrawing {
+                    method,
+                    style,
+                    errors,
+                    ..
+                } = drawing;
                 if errors.is_empty() {
                     continue;
                 }
                 let paint = color(*style, dark);
                 plot.line(
-                    Line::new(method.clone(), PlotPoints::Borrowed(errors))
+                    Line::new(name.clone(), PlotPoints::Borrowed(errors))
                         .id(method)
                         .allow_hover(false)
                         .style(line_style(style.dash))

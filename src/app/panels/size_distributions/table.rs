@@ -4,10 +4,14 @@
 use egui_extras::{Column, TableBuilder};
 
 use crate::command::Command;
+use crate::names;
 use crate::numbers::significant_digits;
 
 /// The height of a row.
 const ROW: f32 = 18.0;
+
+/// The width of a column's name, at most.
+const LONGEST_HEAD: f32 = 140.0;
 
 /// The height of a table that is longer.
 const TALLEST: f32 = 330.0;
@@ -45,7 +49,10 @@ impl Table {
     /// Its name, the button that copies it, head and rows.
     pub(super) fn show(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         ui.horizontal(|ui| {
-            ui.strong(&self.name);
+            let font = egui::TextStyle::Body.resolve(ui.style());
+            let width = (ui.available_width() - 100.0).max(40.0);
+            let name = names::fitted(ui, &self.name, &font, width).into_owned();
+            ui.strong(name).on_hover_text(&self.name);
             let copy = ui.small_button("Copy table");
             let label = format!("Copy table: {}", self.name);
             copy.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
@@ -82,8 +89,11 @@ impl Table {
             .header(20.0, |mut header| {
                 for (name, hover) in &self.head {
                     header.col(|ui| {
+                        // A method's name can be long; its numbers are what counts.
+                        let font = egui::TextStyle::Body.resolve(ui.style());
+                        let name = names::fitted(ui, name, &font, LONGEST_HEAD).into_owned();
                         let name = egui::RichText::new(name).strong();
-                        let name = ui.add(egui::Label::new(name).extend());
+                        let name = names::whole_number(ui, name, true);
                         if !hover.is_empty() {
                             name.on_hover_text(hover);
                         }
@@ -97,7 +107,7 @@ impl Table {
                     };
                     for text in cells {
                         row.col(|ui| {
-                            ui.add(egui::Label::new(text).extend());
+                            names::whole_number(ui, text, true);
                         });
                     }
                     row.response().widget_info(|| {

@@ -107,6 +107,15 @@ impl Cameras {
         warnings
     }
 
+    /// How far the focal length of the worst camera is expected to be off, a part of it.
+    pub(super) fn largest_error(&self) -> Option<f64> {
+        let errors = self
+            .cameras
+            .iter()
+            .map(|(_, _, focal)| focal.relative_error);
+        errors.reduce(f64::max)
+    }
+
     pub(super) fn into_cameras(self) -> Vec<Camera> {
         self.cameras
             .into_iter()

@@ -12,8 +12,14 @@
 //! more digits and heights above the ellipsoid, go before EXIF's for the photos whose numbers it
 //! names, if they agree within 20 m.
 //!
+//! Standard deviations that the receiver states for all three axes (XMP of DJI, Pix4D's, Skydio's; the
+//! .MRK) are those of the poses, which nothing adjusted; where none are stated, those that such receivers
+//! usually have. EXIF's GPSHPositioningError is not taken: it has no height, and its definition names no
+//! probability. Of angles nothing states any.
+//!
 //! The errors to be expected are said in warnings, because they are the scale's errors: the focal
-//! length's part as it is, and the height's part of the distance to the ground.
+//! length's part as it is, and the height's part of the distance to the ground. They are counted in the
+//! intervals as standard deviations, that of the focal length as the largest of all cameras.
 
 mod cameras;
 mod marks;
@@ -27,6 +33,7 @@ use glam::DVec3;
 use crate::fault::Fault;
 use crate::files::FileError;
 use crate::jobs::Progress;
+use crate::packages::pose_covariance::PoseCovariance;
 use crate::packages::reconstruction::{
     MeasuredPosition, PosedPhoto, Project, Reconstruction, Sizes,
 };
@@ -130,6 +137,9 @@ pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
             camera,
             pose: orientation.pose(center),
         });
+        let deviation = metadata.place.and_then(expected_deviation);
+        let errors = PoseCovariance::of_deviations(deviation, None);
+        reconstruction.pose_errors.push(errors);
         posed.push(metadata);
     }
     if reconstruction.photos.is_empty() {
@@ -139,6 +149,7 @@ pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
     warnings.extend(cameras.warnings(&posed));
     warnings.extend(of_places(&posed));
     warnings.extend(of_photos(&photos));
+    reconstruction.errors.focal = cameras.largest_error().map(|error| error * 100.0);
     reconstruction.cameras = cameras.into_cameras();
     reconstruction.warnings = warnings;
     Ok(Project {
@@ -146,6 +157,23 @@ pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
         photos: Some(folder),
         ..Project::default()
     })
+}
+
+/// Standard deviations of a place towards east, north and up in metres: as the receiver states them, else
+/// as such receivers have them, which is what [`of_places`] says in words. `None` without a fix.
+fn expected_deviation(place: MeasuredPlace) -> Option<DVec3> {
+    let usual = match place.fix {
+        Some(Fix::RtkFixed) => DVec3::new(0.03, 0.03, 0.05),
+        Some(Fix::RtkFloat) => DVec3::new(0.5, 0.5, 1.0),
+        Some(Fix::Single) | None => DVec3::new(2.0, 2.0, 5.0),
+        Some(Fix::Nothing) => return place.deviation,
+    };
+    let height = match place.height {
+        // Set at take-off: tens of metres.
+        Some(HeightReference::Barometer) => usual.z.max(20.0),
+        _ => usual.z,
+    };
+    Some(place.deviation.unwrap_or(usual.with_z(height)))
 }
 
 /// Photos that are left out, by the reason.

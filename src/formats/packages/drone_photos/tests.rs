@@ -153,6 +153,19 @@ fn an_mrk_corrects_the_photos_it_numbers() {
         assert!(said(&found, words), "{words}: {:#?}", found.warnings);
     }
     assert_eq!(found.measured_positions[1].position.latitude, 47.500109);
+    // An .MRK counts north, east, up; poses east, north, up.
+    let stated: Vec<_> = found
+        .pose_errors
+        .iter()
+        .map(|e| e.errors().position)
+        .collect();
+    let of_mrk = Some(DVec3::new(0.02, 0.01, 0.03));
+    // The third is EXIF's, of a receiver without corrections.
+    let usual = |place: &Option<DVec3>| place.is_some_and(|p| p.x == 2.0 && p.z >= 5.0);
+    assert_eq!(stated[..2], [of_mrk, of_mrk]);
+    assert!(usual(&stated[2]), "{:?}", stated[2]);
+    // Nothing but a focal length for 35 mm film.
+    assert!(found.errors.focal.is_some_and(|percent| percent >= 2.0));
 }
 
 #[test]

@@ -17,7 +17,8 @@
 //! ("f = fy, b1 = fx - fy, b2 = skew", Agisoft's support). Its manual, and that of Agisoft Lens, have
 //! p1 and p2 in OpenCV's order, so they are not swapped there.
 //!
-//! Refused: spherical, cylindrical, RPC and other projections. `<covariance>` is not read.
+//! Refused: spherical, cylindrical, RPC and other projections. `<covariance>` is read in a sensor (cameras.rs), not in
+//! a calibration file.
 
 use roxmltree::Node;
 

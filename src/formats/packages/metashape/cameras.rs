@@ -11,6 +11,13 @@
 //!   master's transform * sensor's rotation and location. A rig's first camera, which carries the
 //!   transform, need not be of the master sensor: its transform is the master sensor's all the same,
 //!   so its own sensor's offset applies to it too (as Meta's Metashape-to-KRT converter has it).
+//! - `<location_covariance>` (9 numbers, the square of the chunk's unit, in its axes) and
+//!   `<rotation_covariance>` (square radians, of small turns about the camera's own axes x, y, z, after
+//!   its rotation) of an aligned camera: so Agisoft's own script `save_estimated_reference.py`
+//!   (github.com/agisoft-llc/metashape-scripts) takes them, and makes the standard deviations of the
+//!   Reference pane of them. Those of a rig's masters and slaves are not theirs alone, and not taken.
+//! - `<covariance>` of a sensor: `<params>`, names of its calibration's elements, and `<coeffs>`, the
+//!   matrix row by row; the variance of f is taken, in square pixels.
 //! - `<rolling_shutter>` moves the rows of a photo while it is read out: not applied, counted.
 
 use std::collections::{HashMap, HashSet};
@@ -21,9 +28,12 @@ use roxmltree::Node;
 use super::calibration;
 use super::georeference::pose_of;
 use super::names::{Named, distinct_names};
-use super::xml::{EXPORT, attribute, child, children, is_off, line, numbers};
+use super::xml::{EXPORT, attribute, child, children, is_off, line, numbers, text};
 use crate::camera::{Brown, Camera, Distortion, Pose};
 use crate::fault::Fault;
+use crate::packages::pose_covariance::{
+    NoCovariance, PassedOver, PoseCovariance, Taken, covariance, degrees,
+};
 use crate::text::fields::shown;
 
 /// A `<sensor>`.
@@ -32,6 +42,8 @@ pub(super) struct Sensor {
     pub(super) id: String,
     /// Or why there is none.
     pub(super) camera: Result<Camera, Fault>,
+    /// Standard deviation of its focal length, percent.
+    pub(super) focal_error: Option<f64>,
     /// Its axes in those of its master.
     offset: Option<Pose>,
 }
@@ -48,6 +60,8 @@ pub(super) struct Photo<'a> {
     pub(super) component: Option<&'a str>,
     /// In the chunk's frame, or in the component's.
     pub(super) pose: Option<Pose>,
+    /// In the same frame.
+    pub(super) errors: PoseCovariance,
     /// Whether it takes part.
     pub(super) enabled: bool,
     /// What its receiver measured: x, y, z in the chunk's coordinate system.
@@ -73,6 +87,7 @@ pub(super) fn sensors(
     }
     let mut sensors = Vec::new();
     let mut ids = HashSet::new();
+    let mut passed_over = PassedOver::default();
     for node in children(list, "sensor") {
         let id = node.attribute("id").unwrap_or_default();
         if !ids.insert(id) {
@@ -86,10 +101,57 @@ pub(super) fn sensors(
         sensors.push(Sensor {
             id: id.to_owned(),
             camera: camera_of(node, name, warnings),
+            focal_error: passed_over.or_count(focal_error(node)),
             offset: offset_of(node)?,
         });
     }
+    warnings.extend(passed_over.warning());
     Ok(sensors)
+}
+
+/// The standard deviation of the adjusted focal length, percent.
+fn focal_error(sensor: Node<'_, '_>) -> Taken<f64> {
+    let adjusted =
+        children(sensor, "calibration").find(|c| c.attribute("class") == Some("adjusted"));
+    let (Some(adjusted), Some(stated)) = (adjusted, child(sensor, "covariance")) else {
+        return Ok(None);
+    };
+    let names = child(stated, "params").map_or("", text).split_whitespace();
+    let names: Vec<&str> = names.collect();
+    let focal = child(adjusted, "f").and_then(|f| text(f).parse::<f64>().ok());
+    let (Some(at), Some(focal)) = (names.iter().position(|name| *name == "f"), focal) else {
+        // It was not adjusted.
+        return Ok(None);
+    };
+    let numbers = child(stated, "coeffs").map_or("", text).split_whitespace();
+    let numbers: Vec<&str> = numbers.collect();
+    let count = names.len();
+    let variance = numbers
+        .get(at * count + at)
+        .filter(|_| numbers.len() == count * count);
+    let variance = variance.and_then(|number| number.parse::<f64>().ok());
+    match variance {
+        Some(0.0) => Ok(None),
+        Some(variance) if variance > 0.0 && variance.is_finite() && focal > 0.0 => {
+            Ok(Some(100.0 * variance.sqrt() / focal))
+        }
+        _ => Err(NoCovariance),
+    }
+}
+
+/// What an aligned camera states of its own pose.
+fn pose_errors(camera: Node<'_, '_>, passed_over: &mut PassedOver) -> PoseCovariance {
+    let mut stated = |name: &'static str| {
+        let element = child(camera, name)?;
+        let taken = numbers(element)
+            .map_err(|_| NoCovariance)
+            .and_then(covariance);
+        passed_over.or_count(taken)
+    };
+    PoseCovariance {
+        position: stated("location_covariance"),
+        angle: stated("rotation_covariance").as_ref().map(degrees),
+    }
 }
 
 fn label_of<'a>(node: Node<'a, '_>) -> &'a str {
@@ -232,6 +294,7 @@ pub(super) fn photos<'a>(
         .map(|(index, sensor)| (sensor.id.as_str(), index))
         .collect();
     let mut photos = Vec::new();
+    let mut passed_over = PassedOver::default();
     for (&node, name) in nodes.iter().zip(names) {
         let master = node.attribute("master_id").and_then(|id| by_id.get(id));
         let sensor_id = node.attribute("sensor_id").unwrap_or_default();
@@ -247,6 +310,8 @@ pub(super) fn photos<'a>(
                 .transpose()?
                 .map(|pose| after(&pose, offset)),
         };
+        let is_own = own.is_some() && master.is_none() && offset.is_none();
+        let errors = is_own.then(|| pose_errors(node, &mut passed_over));
         photos.push(Photo {
             id: node.attribute("id").unwrap_or_default(),
             name,
@@ -255,11 +320,13 @@ pub(super) fn photos<'a>(
                 .attribute("component_id")
                 .or_else(|| master?.attribute("component_id")),
             pose,
+            errors: errors.unwrap_or_default(),
             enabled: !is_off(node, "enabled"),
             measured: child(node, "reference").and_then(measured),
             rolling_shutter: child(node, "rolling_shutter").is_some(),
         });
     }
+    warnings.extend(passed_over.warning());
     Ok(photos)
 }
 

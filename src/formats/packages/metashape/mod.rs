@@ -16,13 +16,15 @@
 //! - A document of several chunks, which share no frame: the active one is read if it has an aligned
 //!   photo, else the first that has. An XML whose root is `<chunk>` (a project's) reads as well.
 //! - Photos are named by their label, in projects by their file.
-//! - Tie points of a .psx: `points.rs`. Not read: `<region>`, `<markers>`, `<covariance>`, `<settings>`,
-//!   dense clouds and models.
+//! - Tie points of a .psx: `points.rs`. Not read: `<region>`, `<markers>`, `<settings>`, dense
+//!   clouds and models.
 //!
 //! The text that the same dialogue exports with angles: `opk.rs`.
 
 mod calibration;
 mod cameras;
+#[cfg(test)]
+mod error_tests;
 mod georeference;
 mod names;
 mod opk;
@@ -50,6 +52,7 @@ use crate::Reconstruction;
 use crate::Sizes;
 use crate::fault::Fault;
 use crate::geodesy::{Crs, geographic_from_ecef};
+use crate::geometry::Similarity;
 
 /// What to do where no photo can be used.
 const ALIGN: &str = "align the photos in Metashape, then export the cameras again";
@@ -260,6 +263,7 @@ fn add_photos<'a>(
     sensors: Vec<Sensor>,
 ) -> HashMap<&'a str, u32> {
     let mut photo_of_camera = HashMap::new();
+    let focal_error_of_sensor: Vec<_> = sensors.iter().map(|sensor| sensor.focal_error).collect();
     let mut camera_of_sensor = HashMap::new();
     for (index, sensor) in sensors.into_iter().enumerate() {
         // The faults of sensors with photos are said by now.
@@ -268,6 +272,11 @@ fn add_photos<'a>(
             found.cameras.push(camera);
         }
     }
+    let focal_errors = photos
+        .iter()
+        .filter_map(|photo| focal_error_of_sensor.get(photo.sensor?).copied().flatten());
+    // Of several cameras the least sure: the flight has one number.
+    found.errors.focal = focal_errors.reduce(f64::max);
     for photo in photos {
         let camera = photo.sensor.and_then(|index| camera_of_sensor.get(&index));
         if let (Some(pose), Some(&camera)) = (photo.pose, camera) {
@@ -275,6 +284,10 @@ fn add_photos<'a>(
             if let Ok(index) = u32::try_from(found.photos.len()) {
                 photo_of_camera.insert(photo.id, index);
             }
+            let to_world = |world: Similarity| world.rotation * world.scale;
+            found
+                .pose_errors
+                .push(world.map_or(photo.errors, |world| photo.errors.moved(&to_world(world))));
             found.photos.push(PosedPhoto {
                 name: photo.name.clone(),
                 camera,

@@ -24,6 +24,7 @@ use crate::camera::{HALF_TURN_ABOUT_X, Pose};
 use crate::fault::Fault;
 use crate::geometry::Bounds;
 use crate::poses::poses_csv::{PoseLine, PosesFile};
+use crate::scale::PoseErrors;
 use crate::text::fields::{Fields, shown};
 use crate::text::separated::{Separator, unquoted};
 
@@ -132,6 +133,7 @@ fn read_line(number: u64, line: &str) -> Result<PoseLine, Fault> {
         photo,
         camera: None,
         pose,
+        errors: PoseErrors::default(),
         line: number,
     })
 }

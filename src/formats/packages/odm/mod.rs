@@ -12,6 +12,7 @@
 //! | `opensfm/tracks.csv` | where photos show the sparse points |
 //! | `odm_georeferencing/{coords,proj}.txt`, `.../alignment_matrix.json`, `opensfm/geocoords_transformation.txt` | the frames (georeference.rs) |
 //! | the dense clouds and the elevation model (surface.rs) | the surface |
+//! | `odm_report/stats.json`, else `opensfm/stats/stats.json` | how sure the world's scale is (opensfm/stats.rs) |
 //! | `img_list.txt`, else `images.json` | which photos there were before the alignment |
 //! | `images/` | the photos |
 //!
@@ -26,15 +27,18 @@ mod shots;
 mod submodels;
 mod surface;
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
+use glam::DVec3;
 use serde::Deserialize;
 
 use crate::fault::Fault;
 use crate::files::{FileError, read_bytes, text_from_bytes};
 use crate::packages::opensfm::{self, OpenSfm};
+use crate::packages::pose_covariance::PoseCovariance;
 use crate::packages::reconstruction::{PosedPhoto, Project, Reconstruction, Sizes};
+use crate::scale::StatedErrors;
 use crate::text::json::parse;
 use cameras::with_cameras;
 pub(crate) use georeference::crs_from_text;
@@ -94,6 +98,7 @@ fn read_one(dir: &Path) -> Result<Project, FileError> {
         sparse => sparse?,
     };
     let projected = sparse.as_ref().and_then(OpenSfm::said_to_be_projected);
+    let by_receivers = sparse.as_ref().and_then(OpenSfm::scale_error_by_receivers);
     let sparse = sparse.map(|sparse| with_tracks(dir, sparse, &mut warnings));
     let sparse = sparse.as_ref();
     if let Some(sparse) = sparse {
@@ -124,6 +129,16 @@ fn read_one(dir: &Path) -> Result<Project, FileError> {
     };
     let (cameras, photos) = with_cameras(dir, posed.shots, sparse, &mut warnings)?;
     warnings.extend(unaligned(dir, &photos));
+    let centers: Vec<DVec3> = photos.iter().map(|photo| photo.pose.center).collect();
+    let in_map = posed.in_world && frames.crs.is_some();
+    let stats = ["odm_report/stats.json", "opensfm/stats/stats.json"].map(|name| dir.join(name));
+    let stats = stats.iter().find(|file| in_map && file.is_file());
+    let world_scale = match stats {
+        Some(stats) => opensfm::scale_error(stats, &centers, &mut warnings),
+        // Older ones write no statistics; what these would hold stands in the reconstruction.
+        None => by_receivers.filter(|_| in_map && !has_ground_control(dir)),
+    };
+    let pose_errors = sparse.map_or_else(Vec::new, |sparse| pose_errors(sparse, &photos));
     // In another frame it would be a wrong one, and that is said.
     let (surface, surface_note) = if posed.in_world {
         surface(dir)
@@ -137,6 +152,11 @@ fn read_one(dir: &Path) -> Result<Project, FileError> {
             crs: frames.crs.filter(|_| posed.in_world),
             cameras,
             photos,
+            pose_errors,
+            errors: StatedErrors {
+                world_scale,
+                ..StatedErrors::default()
+            },
             cloud: posed.cloud,
             observations: posed.observations,
             sizes: Sizes::PerhapsReduced,
@@ -149,6 +169,31 @@ fn read_one(dir: &Path) -> Result<Project, FileError> {
         surface_note,
         photos: Some(dir.join("images")).filter(|folder| folder.is_dir()),
     })
+}
+
+/// Whether ground control points went into it, so that receivers alone did not place it.
+fn has_ground_control(dir: &Path) -> bool {
+    let files = [
+        "gcp_list.txt",
+        "opensfm/gcp_list.txt",
+        "opensfm/ground_control_points.json",
+        "odm_georeferencing/gcp_list.txt",
+    ];
+    files.iter().any(|file| dir.join(file).exists())
+}
+
+/// What `reconstruction.json` says of how sure the poses are, in the frame that `photos` are in: its
+/// axes turn to that as a photo's own do, and its metres are taken for those of the map.
+fn pose_errors(sparse: &Reconstruction, photos: &[PosedPhoto]) -> Vec<PoseCovariance> {
+    let solved = sparse.photos.iter().zip(&sparse.pose_errors);
+    let solved: HashMap<&str, _> = solved.map(|pair| (pair.0.name.as_str(), pair)).collect();
+    let of_photo = |photo: &PosedPhoto| {
+        let (before, errors) = solved.get(photo.name.as_str())?;
+        let turn = photo.pose.rotation * before.pose.rotation.transpose();
+        Some(errors.moved(&turn))
+    };
+    let of_photos = photos.iter().map(|p| of_photo(p).unwrap_or_default());
+    of_photos.collect()
 }
 
 /// Adds the observations, where there are any.

@@ -308,3 +308,64 @@ fn sparse_points_stand_in_and_the_places_are_said() {
     let found = read_folder(dir.path()).unwrap();
     assert!(found.surface.is_none() && found.surface_note.unwrap().contains("odm_dem/dsm.tif"));
 }
+
+/// The photos are named in another order, and the world is turned by a quarter about z against
+/// OpenSfM's frame; the cameras' own axes are not.
+#[test]
+fn what_opensfm_states_of_its_errors_follows_the_photos() {
+    let covariance = "[[1e-6,0,0,0,0,0],[0,4e-6,0,0,0,0],[0,0,9e-6,0,0,0],[0,0,0,1,0,0],\
+                      [0,0,0,0,4,0],[0,0,0,0,0,9]]";
+    let sparse = SPARSE.1.replace(
+        "\"translation\": [-1, 2, 50]",
+        &format!("\"translation\": [-1, 2, 50], \"covariance\": {covariance}"),
+    );
+    // Half a turn about x, then a quarter about z: about (1, 1, 0), or (1, -1, 0) for the inverse.
+    let half = std::f64::consts::PI / 2.0_f64.sqrt();
+    let shots = SHOTS.1.replacen(
+        "\"translation\": [500001, 4000002, 50], \"rotation\": [3.141592653589793, 0, 0]",
+        &format!("\"translation\": [500001, 4000002, 50], \"rotation\": [{half}, {half}, 0]"),
+        1,
+    );
+    let dir = project(&[CAMERAS, (SPARSE.0, &sparse), (SHOTS.0, &shots), COORDS]);
+    let found = read_folder(dir.path()).unwrap().reconstruction;
+    assert_eq!(found.pose_errors[0], PoseCovariance::default());
+    let errors = found.pose_errors[1].errors();
+    let position = errors.position.unwrap();
+    assert!(
+        (position - DVec3::new(2.0, 1.0, 3.0)).length() < 1e-12,
+        "{position}"
+    );
+    // The right Jacobian at half a turn about x: 1 along x, and 2/pi between y and z, mixed.
+    let about_x = errors.angle.unwrap().x.to_radians();
+    assert!((about_x - 1e-3).abs() < 1e-12, "{about_x}");
+    assert_eq!(found.errors.world_scale, None);
+}
+
+/// Three centres 10 m apart on a line along east: S = 200 m2, so sqrt(9/2 · 0.02² / 200) = 0.3 %.
+#[test]
+fn statistics_say_how_sure_the_scale_is() {
+    let shot = |name: &str, x: f64| {
+        format!(
+            r#"{{"properties": {{"filename": "{name}", "camera": "c", "focal": 0.5, "width": 400, "height": 200,
+                "translation": [{x}, 4000000, 60], "rotation": [3.141592653589793, 0, 0]}}}}"#
+        )
+    };
+    let shots = [
+        shot("a", 500_000.0),
+        shot("b", 500_010.0),
+        shot("c", 500_020.0),
+    ]
+    .join(", ");
+    let shots = format!("{{\"features\": [{shots}]}}");
+    let stats = r#"{"reconstruction_statistics": {"has_gps": true, "has_gcp": false},
+        "gps_errors": {"std": {"x": 0.02, "y": 7, "z": 9}}, "odm_processing_statistics": {}}"#;
+    let stats = ("odm_report/stats.json", stats);
+    let dir = project(&[CAMERAS, (SHOTS.0, &shots), COORDS, stats]);
+    let found = read_folder(dir.path()).unwrap().reconstruction;
+    let percent = found.errors.world_scale.unwrap();
+    assert!((percent - 0.3).abs() < 1e-9, "{percent}");
+    // Of a frame of its own it says nothing.
+    let dir = project(&[CAMERAS, (SHOTS.0, &shots), stats]);
+    let found = read_folder(dir.path()).unwrap().reconstruction;
+    assert_eq!(found.errors, StatedErrors::default());
+}

@@ -16,6 +16,7 @@ use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::poses::poses_csv::{PoseLine, PosesFile};
 use crate::poses::rounded_rotation::{from_row_major, rounded_rotation};
+use crate::scale::PoseErrors;
 use crate::text::fields::Fields;
 
 const WRITE: &str = "write the trajectory again with Open3D";
@@ -91,6 +92,7 @@ pub(crate) fn read_log(text: &str) -> Result<PosesFile, Fault> {
                 rotation,
                 center: DVec3::new(x, y, z),
             },
+            errors: PoseErrors::default(),
             line,
         });
     }

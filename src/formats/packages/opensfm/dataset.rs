@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `tracks.csv`; beside `reconstruction_X.json` first `tracks_X.csv` | where photos show the points |
 //! | `reference_lla.json` | the frame's origin, where the reconstruction states none |
+//! | `stats/stats.json` | how sure the world's scale is (stats.rs) |
 //! | `image_list.txt` | which photos there were before the alignment |
 //! | `images/`; of a folder `opensfm` also `../images/` | the photos |
 //! | `reconstruction.topocentric.json`, `exported_geocoords.txt` | OpenDroneMap has put projected coordinates less an offset into `reconstruction.json`, unless the photos' positions say otherwise (frame/) |
@@ -15,8 +16,11 @@ use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
+
 use super::OpenSfm;
 use super::frame::Hint;
+use super::stats::world_scale_error;
 use crate::files::{FileError, open_file, read_bytes, text_from_bytes};
 use crate::packages::reconstruction::{Project, Reconstruction};
 use crate::photos::photo_folder::folder_of_photos;
@@ -75,6 +79,16 @@ pub(crate) fn read_file(path: &Path) -> Result<Project, FileError> {
     file.reconstruction.warnings.append(&mut warnings);
     file.place(hint(path));
     let mut reconstruction = file.reconstruction;
+    let centers: Vec<DVec3> = reconstruction
+        .photos
+        .iter()
+        .map(|p| p.pose.center)
+        .collect();
+    // In a frame of its own it says nothing of the world.
+    if reconstruction.enu_origin.is_some() || reconstruction.crs.is_some() {
+        let stats = folder.join("stats/stats.json");
+        reconstruction.errors.world_scale = scale_error(&stats, &centers, &mut warnings);
+    }
     warnings.extend(unaligned(folder, &reconstruction));
     reconstruction.warnings.extend(warnings);
     let mut folders = vec![folder.join("images")];
@@ -86,6 +100,22 @@ pub(crate) fn read_file(path: &Path) -> Result<Project, FileError> {
         reconstruction,
         photos,
         ..Project::default()
+    })
+}
+
+/// The standard error of the world's scale, percent, by a `stats.json`, if it is there.
+pub(crate) fn scale_error(
+    path: &Path,
+    centers: &[DVec3],
+    warnings: &mut Vec<String>,
+) -> Option<f64> {
+    let read = |bytes: Vec<u8>| {
+        world_scale_error(&bytes, centers).map_err(|fault| FileError::new(path, fault))
+    };
+    let found = path.is_file().then(|| read_bytes(path).and_then(read))?;
+    found.unwrap_or_else(|error| {
+        warnings.push(format!("how sure the scale is cannot be told: {error}"));
+        None
     })
 }
 
@@ -149,6 +179,35 @@ mod tests {
 
     use super::*;
     use fragscale_test_data::shared_data;
+
+    #[test]
+    fn statistics_say_how_sure_the_scale_is() {
+        let stats = r#"{"reconstruction_statistics": {"has_gps": true},
+            "gps_errors": {"std": {"x": 1, "y": 1, "z": 1}}}"#;
+        let shots = |place: &str, x: f64| {
+            format!(
+                r#""{place}": {{"camera": "c", "rotation": [0, 0, 0], "translation": [{x}, 0, 0]}}"#
+            )
+        };
+        let shots = [shots("a", 0.0), shots("b", 30.0), shots("d", -30.0)].join(", ");
+        let from = ONE.find("\"a.jpg\"").unwrap();
+        let to = ONE.find("},\n        \"points\"").unwrap();
+        let text = format!("{}{shots}{}", &ONE[..from], &ONE[to..]);
+        let files = |stats| {
+            [
+                ("opensfm/reconstruction.json", &*text),
+                ("opensfm/stats/stats.json", stats),
+            ]
+        };
+        let (_dir, found) = project(&files(stats));
+        // n = 3: sqrt(9/2 / 1800).
+        let percent = found.reconstruction.errors.world_scale.unwrap();
+        assert!((percent - 5.0).abs() < 1e-12, "{percent}");
+        let (_dir, found) = project(&files("[1"));
+        assert_eq!(found.reconstruction.errors.world_scale, None);
+        let said = found.reconstruction.warnings.join("; ");
+        assert!(said.contains("how sure the scale is"), "{said}");
+    }
 
     const ONE: &str = r#"[{"cameras": {"c": {"focal": 1, "width": 200, "height": 400}},
         "shots": {"a.jpg": {"camera": "c", "rotation": [0, 0, 0], "translation": [0, 0, 0],

@@ -8,7 +8,8 @@
 //!                                 nothing in common, not even a frame
 //! RECONSTRUCTION {
 //!   cameras        {name: model}                             see camera.rs
-//!   shots          {name: {camera, rotation [3], translation [3], gps_position [3], gps_dop}}
+//!   shots          {name: {camera, rotation [3], translation [3], gps_position [3], gps_dop,
+//!                          covariance [6][6]}}                see covariance.rs
 //!   points         {name: {coordinates [3], color [3]}}      may be left out
 //!   pano_shots     panoramas                                 left out here, with a warning
 //!   reference_lla  {latitude, longitude, altitude}           also in reference_lla.json
@@ -28,10 +29,12 @@
 //! points count in the photo as stored, whatever its EXIF orientation.
 
 pub(crate) mod camera;
+mod covariance;
 mod dataset;
 mod frame;
 mod reference;
 mod rig;
+mod stats;
 mod tracks;
 
 use std::collections::HashMap;
@@ -44,13 +47,14 @@ use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
 use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::geometry::Similarity;
+use crate::packages::pose_covariance::{PassedOver, PoseCovariance};
 use crate::packages::reconstruction::{PosedPhoto, Reconstruction, Sizes};
 use crate::surface::Cloud;
 use crate::text::json::{Object, parse};
 use camera::{CameraModel, usable_cameras};
-pub(crate) use dataset::{count_of_photos, dataset_file, read_file};
+pub(crate) use dataset::{count_of_photos, dataset_file, read_file, scale_error};
 use frame::{Frame, Hint, frame_of};
-use reference::{Measured, RawReference, enu_origin, measured_positions};
+use reference::{Measured, RawReference, enu_origin, measured_positions, scale_error_of};
 use rig::{RawRigCamera, RawRigInstance, Rigs};
 
 /// A `reconstruction.json` with the names of its points, which `tracks.csv` calls them by.
@@ -115,6 +119,8 @@ impl OpenSfm {
         let measured_positions = measured_positions(&measured, enu_origin, &mut warnings);
         let rigs = Rigs::new(raw.rig_cameras, raw.rig_instances);
         let mut photos = Vec::with_capacity(raw.shots.0.len());
+        let mut pose_errors = Vec::with_capacity(raw.shots.0.len());
+        let mut passed_over = PassedOver::default();
         let mut without_translation = 0;
         for (name, shot) in raw.shots.0 {
             let Some(&camera) = camera_indices.get(shot.camera.as_str()) else {
@@ -134,6 +140,11 @@ impl OpenSfm {
                 None => rigs.pose_of(&name)?,
             };
             let pose = checked(pose, &name)?;
+            let rotation = shot.rotation.map(|r| -DVec3::from(r));
+            pose_errors.push(match rotation {
+                Some(rotation) => covariance::of(&shot.covariance, rotation, &mut passed_over),
+                None => PoseCovariance::default(),
+            });
             photos.push(PosedPhoto { name, camera, pose });
         }
         if without_translation > 0 {
@@ -141,6 +152,7 @@ impl OpenSfm {
                 "{without_translation} shots have no translation; 0 is taken, as OpenSfM does"
             ));
         }
+        warnings.extend(passed_over.warning());
         let (cloud, point_indices) = points(raw.points)?;
         Ok(Self {
             reconstruction: Reconstruction {
@@ -149,6 +161,7 @@ impl OpenSfm {
                 measured_positions,
                 cameras,
                 photos,
+                pose_errors,
                 cloud,
                 sizes: Sizes::PerhapsReduced,
                 // OpenDroneMap, which most often brings it, has reduced photos before it.
@@ -195,6 +208,19 @@ impl OpenSfm {
                 reconstruction.crs = Some(crs);
             }
         }
+    }
+
+    /// The standard error of all lengths in percent by its receivers' positions, where they placed it.
+    pub(crate) fn scale_error_by_receivers(&self) -> Option<f64> {
+        let photos = self.reconstruction.photos.iter();
+        let centers: HashMap<&str, DVec3> = photos
+            .map(|photo| (photo.name.as_str(), photo.pose.center))
+            .collect();
+        let pairs = self.measured.iter().filter_map(|one| {
+            let solved = centers.get(one.photo.as_str())?;
+            Some((*solved, one.position))
+        });
+        scale_error_of(&pairs.collect::<Vec<_>>())
     }
 
     /// The sentence that says so where the photos' positions tell that OpenDroneMap has put projected
@@ -263,6 +289,9 @@ struct RawShot {
     translation: Option<[f64; 3]>,
     gps_position: Option<[f64; 3]>,
     gps_dop: Option<f64>,
+    /// Of any shape: it only adds to the pose.
+    #[serde(default)]
+    covariance: serde_json::Value,
 }
 
 #[derive(Deserialize)]

@@ -5,6 +5,7 @@
 //! at the reference, through ECEF, without any approximation. A photo's height is its EXIF altitude,
 //! or 2 m for all where the option `use_altitude_tag` is off, as it is by default.
 
+use fragscale_core::georeference::{Pair, fit};
 use glam::DVec3;
 use serde::Deserialize;
 
@@ -47,6 +48,22 @@ impl Measured {
             position,
         })
     }
+}
+
+/// The standard error of all lengths in percent, from how the solved centres agree with the receivers'
+/// positions, both in one frame: what `georeference` would find. `None` where it cannot be told, and where
+/// they do not fit each other as a reconstruction does that its receivers placed.
+pub(super) fn scale_error_of(pairs: &[(DVec3, DVec3)]) -> Option<f64> {
+    let pairs = pairs.iter().map(|&(solved, measured)| Pair {
+        source: solved,
+        target: measured,
+        accuracy: None,
+    });
+    let pairs: Vec<Pair> = pairs.collect();
+    let found = fit(&pairs).ok()?;
+    let off = (found.similarity.scale - 1.0).abs();
+    // Ground control, or a known length, gave it another size.
+    (off <= 4.0 * found.scale_error).then_some(100.0 * found.scale_error)
 }
 
 /// The origin of the frame; `None` where there was no GPS, or the numbers are no place.

@@ -10,6 +10,7 @@
 //! P_wkt.prj                                     the world's coordinate system
 //! P_pmatrix.txt                                 name and the 12 numbers of K [R | -R t]
 //! P_calibrated_external_camera_parameters.txt   imageName X Y Z Omega Phi Kappa, in the world
+//! P_calibrated_external_camera_parameters_error.txt   see deviations.rs
 //! P_pix4d_calibrated_internal_camera_parameters.cam    the calibration in mm
 //! ```
 //!
@@ -27,13 +28,14 @@
 //!   reconstruction without image sizes.
 //! - A fish-eye's record has no K and no distortion (its polynomial is in the .cam, in keywords that
 //!   no source states): such photos are left out, with a warning.
-//! - Left out: sparse points (`*_tp_pix4d.txt` has image points only), rolling shutter, covariances,
+//! - Left out: sparse points (`*_tp_pix4d.txt` has image points only), rolling shutter,
 //!   positions on WGS 84 (`*_wgs84.txt`).
 //! - Opened by the folder, by any of these files, by a project folder that has `1_initial/params`, or
 //!   by the .p4d beside it; a .p4d alone has no calibration. A project's one LAS or LAZ in
 //!   `2_densification/point_cloud` is its surface.
 
 mod calibrated;
+mod deviations;
 mod external;
 mod internal;
 mod project;
@@ -50,6 +52,7 @@ use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::files::{FileError, read_text};
 use crate::geometry::median;
+use crate::packages::pose_covariance::PassedOver;
 use crate::packages::reconstruction::{
     ImageUnit, Origin, PosedPhoto, Project, Reconstruction, Sizes,
 };
@@ -59,6 +62,7 @@ use external::ProjectionMatrix;
 const PARAMETERS: &str = "calibrated_camera_parameters.txt";
 const EXTERNAL: &str = "calibrated_external_camera_parameters.txt";
 const EXTERNAL_WGS84: &str = "calibrated_external_camera_parameters_wgs84.txt";
+const EXTERNAL_ERRORS: &str = "calibrated_external_camera_parameters_error.txt";
 const INTERNAL: &str = "calibrated_internal_camera_parameters.cam";
 const OFFSET: &str = "offset.xyz";
 const SYSTEM: &str = "wkt.prj";
@@ -247,6 +251,7 @@ fn prefix_of(name: &str) -> Option<String> {
         PARAMETERS,
         EXTERNAL,
         EXTERNAL_WGS84,
+        EXTERNAL_ERRORS,
         INTERNAL,
         OFFSET,
         SYSTEM,
@@ -261,6 +266,7 @@ fn params(params: &Params) -> Result<Project, FileError> {
         Some(photos) => of_parameters(params, photos)?,
         None => of_external(params)?,
     };
+    take_deviations(params, &mut reconstruction)?;
     match params.text(SYSTEM)? {
         Some((_, text)) if !text.trim().is_empty() => {
             reconstruction.crs = Some(text.trim().to_owned());
@@ -270,6 +276,31 @@ fn params(params: &Params) -> Result<Project, FileError> {
         ),
     }
     Ok(Project::from(reconstruction))
+}
+
+/// How sure Pix4D says the poses are, in either of the two files.
+fn take_deviations(params: &Params, found: &mut Reconstruction) -> Result<(), FileError> {
+    let mut stated = HashMap::new();
+    for end in [EXTERNAL_ERRORS, EXTERNAL] {
+        let Some((_, text)) = params.text(end)? else {
+            continue;
+        };
+        for of_photo in deviations::read(&text) {
+            stated.entry(of_photo.photo.clone()).or_insert(of_photo);
+        }
+    }
+    if stated.is_empty() {
+        return Ok(());
+    }
+    let mut passed_over = PassedOver::default();
+    let of_photo = |photo: &PosedPhoto| {
+        let stated = stated.get(&photo.name)?;
+        Some(stated.of(&photo.pose, &mut passed_over))
+    };
+    let errors = found.photos.iter().map(of_photo);
+    found.pose_errors = errors.map(Option::unwrap_or_default).collect();
+    found.warnings.extend(passed_over.warning());
+    Ok(())
 }
 
 fn of_parameters(params: &Params, photos: Vec<Calibrated>) -> Result<Reconstruction, FileError> {

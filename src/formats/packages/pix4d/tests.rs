@@ -363,3 +363,30 @@ proptest! {
         let _ = internal::read(&text);
     }
 }
+
+/// The file of errors goes before the columns of the poses' own; a photo that neither names states none.
+#[test]
+fn standard_deviations_of_poses() {
+    let with_columns = EXTERNAL_LINES.replacen(
+        "Kappa\n",
+        "Kappa X_sigma Y_sigma Z_sigma Omega_sigma Phi_sigma Kappa_sigma\n",
+        1,
+    );
+    let with_columns = format!("{} 0.01 0.02 0.03 0.1 0.2 0.3\n", with_columns.trim_end());
+    let errors = "imageName, X_sigma, Y_sigma, Z_sigma\nDSC_0157.JPG, 0.04, 0.05, 0.06\n";
+    let record = record();
+    let mut files = vec![
+        ("p_calibrated_camera_parameters.txt", record.as_str()),
+        ("p_calibrated_external_camera_parameters.txt", &with_columns),
+    ];
+    let found = read(folder(&files).path()).unwrap().reconstruction;
+    let stated = found.pose_errors[0].errors();
+    assert_eq!(stated.position, Some(DVec3::new(0.01, 0.02, 0.03)));
+    // Turning axes keeps the sum of the squares, near enough to straight down.
+    let length = stated.angle.unwrap().length();
+    assert!((length - 0.14_f64.sqrt()).abs() < 0.01, "{length}");
+    files.push(("p_calibrated_external_camera_parameters_error.txt", errors));
+    let found = read(folder(&files).path()).unwrap().reconstruction;
+    let stated = found.pose_errors[0].errors();
+    assert_eq!(stated.position, Some(DVec3::new(0.04, 0.05, 0.06)));
+}

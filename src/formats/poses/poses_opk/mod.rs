@@ -37,6 +37,7 @@ use crate::fault::Fault;
 use crate::files::text_from_bytes;
 use crate::geodesy::Crs;
 use crate::poses::poses_csv::{PoseLine, PosesFile};
+use crate::scale::PoseErrors;
 use crate::text::fields::shown;
 use crate::text::json;
 use crate::text::separated::{Numbers, Separator};
@@ -129,6 +130,7 @@ pub(crate) fn read_table(bytes: &[u8], system: Option<&str>) -> Result<PosesFile
             photo: field(0)?.clone(),
             camera: camera.filter(|name| !name.is_empty()).cloned(),
             pose: angles.pose(center, turned),
+            errors: PoseErrors::default(),
             line,
         })?;
     }
@@ -198,6 +200,7 @@ pub(crate) fn read_geojson(bytes: &[u8]) -> Result<PosesFile, Fault> {
             photo: properties.filename,
             camera: properties.camera.filter(|name| !name.is_empty()),
             pose: Pose::from_omega_phi_kappa(DVec3::from_array(properties.xyz), angles),
+            errors: PoseErrors::default(),
             line,
         })?;
     }

@@ -25,7 +25,7 @@ pub(super) fn effort(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comman
                 let command = DistributionCommand::RemoveEffort;
                 commands.push(Command::Distributions(command));
             }
-            ui.label(&file.name);
+            crate::names::name(ui, &file.name);
         }
     });
     if let Some(file) = &distributions.effort {

@@ -40,8 +40,24 @@ fn tables(
         pooled,
         ..
     } = found;
+    // First what is to be believed: with several photos a trial, the single sizes.
+    if let Some(headline) = headline(found, &computed.analysis.trials.unit.to_string()) {
+        ui.add(egui::Label::new(egui::RichText::new(headline).strong()).wrap());
+        ui.add_space(4.0);
+    }
     match pooled {
-        Ok(pooled) => pooled_table(method, trials.len(), pooled, ui, commands),
+        Ok(pooled) => {
+            pooled_table(method, pooled, ui, commands);
+            if per_size.is_empty() {
+                sentence(
+                    &format!("{} trials: {}.", trials.len(), pooled.verdict("trials")),
+                    ui,
+                );
+            }
+            for note in &pooled.notes {
+                warning(note, ui);
+            }
+        }
         Err(fault) => warning(&format!("{method}: {fault}"), ui),
     }
     if per_size.is_empty() {
@@ -55,13 +71,31 @@ fn tables(
     per_size_table(computed, found, ui, commands);
 }
 
-fn pooled_table(
-    method: &str,
-    trials: usize,
-    pooled: &Anova,
-    ui: &mut egui::Ui,
-    commands: &mut Vec<Command>,
-) {
+/// What the single sizes say; `None` where none was analysed.
+fn headline(found: &Repeatability, unit: &str) -> Option<String> {
+    let method = &found.method;
+    let analysed = found.sizes.iter().zip(&found.per_size);
+    let analysed: Vec<(f64, &Anova)> = analysed
+        .filter_map(|(size, anova)| Some((*size, anova.as_ref().ok()?)))
+        .collect();
+    let (_, first) = analysed.first()?;
+    // The product may end in ...0001; seven digits are what a level has.
+    let level = (first.level * 1e9).round() / 1e7;
+    let differ = analysed.iter().filter(|(_, a)| a.differs() == Some(true));
+    let differ: Vec<String> = differ.map(|(size, _)| size.to_string()).collect();
+    let count = analysed.len();
+    Some(match differ.len() {
+        0 => {
+            format!("{method}: the trials do not differ at any of {count} sizes ({level} % level)")
+        }
+        some => format!(
+            "{method}: the trials differ at {some} of {count} sizes ({level} % level): {} {unit}",
+            differ.join(", ")
+        ),
+    })
+}
+
+fn pooled_table(method: &str, pooled: &Anova, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let mut table = Table::new(format!("{method}, all sizes pooled"));
     table.column("Source", "What the percents passing vary with");
     table.column("df", "Degrees of freedom");
@@ -88,13 +122,6 @@ fn pooled_table(
     }
     table.show(ui, commands);
     sentence(&said(pooled), ui);
-    sentence(
-        &format!("{} trials: {}.", trials, pooled.verdict("trials")),
-        ui,
-    );
-    for note in &pooled.notes {
-        warning(note, ui);
-    }
 }
 
 fn per_size_table(

@@ -1,0 +1,68 @@
+//! The review of doubtful photos, with keys alone.
+
+use egui::{Key, Modifiers};
+
+use super::{Action, keys};
+use crate::command::{Command, ReviewStep};
+use crate::state::State;
+
+fn reviewed(state: &State, step: ReviewStep) -> Option<Command> {
+    let open = state.reviewed_flight().filter(|_| state.asking.is_none())?;
+    (!open.table.doubtful.is_empty()).then_some(Command::Review(step))
+}
+
+/// Accepts the photo that is reviewed, where one is: what Enter does there.
+pub(super) fn accept(state: &State) -> Option<Command> {
+    let (_, photo) = state.reviewed_flight()?.selected_review()?;
+    let can = photo.is_doubtful() && photo.is_looked_at;
+    can.then(|| reviewed(state, ReviewStep::Accept)).flatten()
+}
+
+actions! {
+    NEXT_DOUBTFUL {
+        label: "Next doubtful photo",
+        hover: "Review the next photo that something speaks against and nobody has decided about",
+        shortcut: keys(Modifiers::NONE, Key::N),
+        command: |state| {
+            let doubtful = !state.open.as_ref()?.table.doubtful.is_empty();
+            doubtful.then_some(Command::Review(ReviewStep::Next))
+        },
+    }
+    DOUBTFUL_BEFORE {
+        label: "Doubtful photo before",
+        hover: "Go back to the photo before in the review",
+        shortcut: keys(Modifiers::SHIFT, Key::N),
+        command: |state| reviewed(state, ReviewStep::Back),
+    }
+    ACCEPT {
+        label: "Accept the reviewed photo",
+        hover: "Checked, accepted (Enter): it goes along into the export, with the note; go on to the next one",
+        shortcut: None,
+        command: |state| accept(state),
+    }
+    LEAVE_OUT {
+        label: "Leave the reviewed photo out",
+        hover: "Leave the photo out of the export, with the note, and go on to the next one",
+        shortcut: keys(Modifiers::NONE, Key::Delete),
+        command: |state| {
+            let (_, photo) = state.reviewed_flight()?.selected_review()?;
+            photo.is_doubtful().then(|| reviewed(state, ReviewStep::LeaveOut)).flatten()
+        },
+    }
+    WRITE_NOTE {
+        label: "Write the note",
+        hover: "Type why the photo is accepted or left out; Enter accepts with it",
+        shortcut: keys(Modifiers::NONE, Key::W),
+        command: |state| reviewed(state, ReviewStep::WriteNote),
+    }
+}
+
+/// The menu's entries.
+pub const MENU: &[Option<Action>] = &[
+    Some(NEXT_DOUBTFUL),
+    Some(DOUBTFUL_BEFORE),
+    None,
+    Some(ACCEPT),
+    Some(LEAVE_OUT),
+    Some(WRITE_NOTE),
+];

@@ -1,0 +1,22 @@
+//! What is drawn on the surface to measure there.
+
+use egui::{Key, Modifiers};
+
+use super::{Action, keys, on_pile};
+use crate::command::Command;
+use crate::open_flight::survey::{SurveyStep, SurveyTool};
+
+actions! {
+    PROFILE {
+        label: "Profile along a line",
+        hover: "Draw a line on the surface: its profile, crest, toe and angle of repose",
+        shortcut: keys(Modifiers::NONE, Key::L),
+        command: |state| on_pile(state, Command::Survey(SurveyStep::Toggle(SurveyTool::Profile))),
+    }
+    VOLUME {
+        label: "Volume inside a polygon",
+        hover: "Draw a polygon on the surface: area and volume over its rim or a level",
+        shortcut: keys(Modifiers::NONE, Key::V),
+        command: |state| on_pile(state, Command::Survey(SurveyStep::Toggle(SurveyTool::Volume))),
+    }
+}

@@ -1,0 +1,22 @@
+//! Steps of a review: through the doubtful photos, one after the other.
+
+/// A step of a review.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ReviewStep {
+    /// The next doubtful photo that nobody has decided about; begins the review.
+    Next,
+    /// The doubtful photo before.
+    Back,
+    /// Shows this one of the photo's reasons for doubt.
+    Reason(usize),
+    /// What is typed as a note.
+    Note(String),
+    /// The keys go into the note.
+    WriteNote,
+    /// Takes the photo along, with the note, and goes on.
+    Accept,
+    /// Leaves the photo out, with the note, and goes on.
+    LeaveOut,
+    /// Ends the review.
+    Leave,
+}

@@ -1,0 +1,89 @@
+//! What the engineer decides of photos, as changes of the flight's settings: so undo goes back over it,
+//! closing asks for it, and saving writes it.
+
+use chrono::Datelike;
+
+use crate::command::Choice;
+use crate::fault::one_line;
+use crate::flight::{Along, Date, Decision, DecisionKind, PhotoReview, Verdict};
+use crate::state::{Severity, State};
+
+impl State {
+    /// Takes a photo along into the export, or not.
+    pub(crate) fn choose(&mut self, photo: usize, go_along: bool) {
+        self.choose_each(|place, reviewed| match place == photo {
+            true => go_along,
+            false => reviewed.goes_along(Along::Trusted),
+        });
+    }
+
+    /// Takes many along.
+    pub(crate) fn choose_all(&mut self, choice: Choice) {
+        self.choose_each(|_, reviewed| match choice {
+            Choice::WithScale => reviewed.own_verdict != Verdict::NoScale,
+            Choice::Trusted => reviewed.own_verdict == Verdict::Trust,
+            Choice::None => false,
+        });
+    }
+
+    /// Decides whatever is needed so that those photos go along for which `wanted` says so.
+    fn choose_each(&mut self, wanted: impl Fn(usize, PhotoReview<'_>) -> bool) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        if !open.review.is_looked_at() {
+            self.say(Severity::Note, STILL_LOOKING);
+            return;
+        }
+        let mut settings = open.settings();
+        for (place, photo) in open.review.photos().enumerate() {
+            let wanted = wanted(place, photo);
+            if photo.goes_along(Along::Trusted) != wanted {
+                let decision = photo.decision_to(wanted).map(|decision| Decision {
+                    date: today(),
+                    ..decision
+                });
+                settings.decide(photo.name(), decision);
+            }
+        }
+        self.set_settings(settings);
+    }
+
+    /// Decides about a photo, today and for the reasons of now.
+    pub(crate) fn decide(&mut self, photo: usize, decision: Option<(DecisionKind, String)>) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let Some(reviewed) = open.review.photo(photo) else {
+            return;
+        };
+        // What is accepted is what was seen.
+        let accepts = matches!(decision, Some((DecisionKind::Accepted, _)));
+        if accepts && !open.review.is_looked_at() {
+            self.say(Severity::Note, STILL_LOOKING);
+            return;
+        }
+        let decision = decision.map(|(kind, note)| Decision {
+            note: one_line(&note),
+            date: today(),
+            ..Decision::new(reviewed.name(), kind, reviewed.doubts)
+        });
+        let mut settings = open.settings();
+        settings.decide(reviewed.name(), decision);
+        self.set_settings(settings);
+    }
+}
+
+const STILL_LOOKING: &str =
+    "footprints and scale fields are still being looked at; decide when they are there";
+
+/// The day where this computer stands: the core knows no clock.
+fn today() -> Option<Date> {
+    let now = chrono::Local::now();
+    let year = now.year().try_into().ok()?;
+    Date::new(
+        year,
+        now.month().try_into().ok()?,
+        now.day().try_into().ok()?,
+    )
+}

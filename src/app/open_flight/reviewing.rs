@@ -1,0 +1,140 @@
+//! The review of the doubtful photos: which one is next, which reason is shown, and where to look.
+
+use std::f64::consts::TAU;
+
+use crate::flight::{DecisionKind, Doubt, InView, PhotoReview, Sight};
+use crate::open_flight::OpenFlight;
+use crate::render::PhotoZoom;
+
+/// How steep the view comes down on a footprint, radians.
+const STEEP: f64 = 0.9;
+
+/// The same on what is looked at from the side: the horizon is a line, the surface is not.
+const LEVEL: f64 = 0.08;
+
+/// The photo that is under review.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Reviewing {
+    /// Which of its reasons for doubt is shown.
+    pub reason: usize,
+    /// What was typed as a note; `None` where nothing was, and the saved one holds.
+    pub note: Option<String>,
+}
+
+/// How far the review is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ReviewProgress {
+    /// How many photos are doubtful.
+    pub doubtful: usize,
+    /// The place of the selected photo among them, from 1; `None` where it is not doubtful.
+    pub at: Option<usize>,
+    /// How many of them wait for a decision.
+    pub waiting: usize,
+    /// How many of them were accepted for the reasons of now.
+    pub accepted: usize,
+    /// How many of them are left out.
+    pub left_out: usize,
+}
+
+impl OpenFlight {
+    /// The selected photo with everything that is known of it.
+    pub fn selected_review(&self) -> Option<(usize, PhotoReview<'_>)> {
+        let photo = self.selected?;
+        Some((photo, self.review.photo(photo)?))
+    }
+
+    /// How far the review is.
+    pub fn review_progress(&self) -> ReviewProgress {
+        let doubtful = &self.table.doubtful;
+        let photos = || {
+            doubtful
+                .iter()
+                .filter_map(|&photo| self.review.photo(photo))
+        };
+        let place = |photo| doubtful.iter().position(|&at| at == photo);
+        let waiting = photos().filter(PhotoReview::waits_for_decision).count();
+        let is_left_out = |photo: &PhotoReview<'_>| {
+            photo
+                .decision
+                .is_some_and(|d| d.kind == DecisionKind::LeftOut)
+        };
+        let left_out = photos().filter(is_left_out).count();
+        ReviewProgress {
+            doubtful: doubtful.len(),
+            at: self.selected.and_then(place).map(|place| place + 1),
+            waiting,
+            accepted: doubtful.len().saturating_sub(waiting + left_out),
+            left_out,
+        }
+    }
+
+    /// The reason for doubt that is shown of the selected photo.
+    pub fn reason(&self) -> Option<&Doubt> {
+        let (_, photo) = self.selected_review()?;
+        let last = photo.doubts.len().checked_sub(1)?;
+        photo.doubts.get(self.reviewing.reason.min(last))
+    }
+
+    /// What shows it.
+    pub fn sight(&self) -> Option<Sight> {
+        self.reason().map(Doubt::sight)
+    }
+
+    /// The next doubtful photo that waits for a decision, this one where `from_here`; the next doubtful
+    /// one where none waits.
+    pub(crate) fn next_doubtful(&self, from_here: bool) -> Option<usize> {
+        let waits = |photo: &usize| {
+            let photo = self.review.photo(*photo);
+            photo.is_some_and(|photo| photo.waits_for_decision())
+        };
+        let before = |photo: &&usize| match self.selected {
+            Some(selected) if from_here => **photo < selected,
+            Some(selected) => **photo <= selected,
+            None => false,
+        };
+        let doubtful = &self.table.doubtful;
+        let begin = doubtful.iter().take_while(before).count();
+        let around = || doubtful[begin..].iter().chain(&doubtful[..begin]).copied();
+        around().find(waits).or_else(|| around().next())
+    }
+
+    /// The doubtful photo before the selected one.
+    pub(crate) fn doubtful_before(&self) -> Option<usize> {
+        let doubtful = self.table.doubtful.iter().rev();
+        let before = |photo: &&usize| self.selected.is_none_or(|selected| **photo < selected);
+        let mut around = doubtful.clone().filter(before);
+        around.next().or_else(|| doubtful.clone().next()).copied()
+    }
+
+    /// Turns the view to what the shown reason means.
+    pub(crate) fn show_reason(&mut self) {
+        let Some(sight) = self.sight() else {
+            return;
+        };
+        self.looking.turned = true;
+        if sight.in_view == InView::ThroughCamera {
+            self.looking.through = self.selected;
+            self.looking.into = PhotoZoom::default();
+            return;
+        }
+        self.looking.through = None;
+        let Some((_, photo)) = self.selected_review() else {
+            return;
+        };
+        let points = photo.points_in(&sight.in_view);
+        let forward = photo.photo.pose.rotation.z_axis.truncate();
+        let orbit = &mut self.looking.orbit;
+        orbit.pitch = match sight.in_view {
+            InView::FromSide => LEVEL,
+            _ => STEEP,
+        };
+        // Across its line of sight, where that is not straight down.
+        if sight.in_view == InView::FromSide && forward.length() > 0.1 {
+            orbit.yaw = forward.y.atan2(-forward.x).rem_euclid(TAU);
+        }
+        match points.is_empty() {
+            true => self.fit(),
+            false => self.fit_points(&points),
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! The tools that draw a line or a polygon on the surface and say what is measured there.
+
+pub mod surveyor;
+
+use glam::{DVec2, DVec3};
+
+use super::OpenFlight;
+use crate::exports::MeasuredUnit;
+use crate::survey::{Profile, Volume};
+use surveyor::{Measured, Request};
+
+/// What is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SurveyTool {
+    /// A line with the profile over it.
+    Profile,
+    /// A polygon with the area and volume inside.
+    Volume,
+}
+
+/// What a volume is over.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum BaseChoice {
+    /// The plane through the polygon's rim.
+    #[default]
+    Rim,
+    /// An elevation, world units.
+    Height(f64),
+}
+
+/// Something to do with them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SurveyStep {
+    /// Takes this tool, or puts it away.
+    Toggle(SurveyTool),
+    /// Takes the last point back.
+    RemoveLast,
+    /// Ends the line, closes the polygon; the next click begins anew.
+    Finish,
+    /// What the volume is over.
+    Base(BaseChoice),
+    /// Puts the tool away.
+    Leave,
+}
+
+/// A line or polygon that is drawn on the surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawn {
+    /// Which of them.
+    pub tool: SurveyTool,
+    /// Its points on the surface, in the world.
+    pub points: Vec<DVec3>,
+    /// Whether no more points are added: the next click begins anew.
+    pub finished: bool,
+    /// What the volume is over.
+    pub base: BaseChoice,
+    /// What was measured last, while drawing that of a moment ago; an error says why nothing.
+    pub measured: Option<Result<Measured, String>>,
+    /// What was asked last.
+    asked: Option<(Vec<DVec2>, BaseChoice)>,
+}
+
+impl Drawn {
+    fn new(tool: SurveyTool, base: BaseChoice) -> Self {
+        Self {
+            tool,
+            points: Vec::new(),
+            finished: false,
+            base,
+            measured: None,
+            asked: None,
+        }
+    }
+
+    /// Its points, the mouse the last of them while it is drawn.
+    pub fn outline(&self, hover: Option<DVec3>) -> Vec<DVec3> {
+        let mut points = self.points.clone();
+        if !self.finished && !points.is_empty() {
+            points.extend(hover);
+        }
+        points
+    }
+
+    /// How many points it needs.
+    fn least(&self) -> usize {
+        match self.tool {
+            SurveyTool::Profile => 2,
+            SurveyTool::Volume => 3,
+        }
+    }
+
+    /// The profile, where it is one.
+    pub fn profile(&self) -> Option<&Profile> {
+        match &self.measured {
+            Some(Ok(Measured::Profile(profile))) => Some(profile),
+            _ => None,
+        }
+    }
+
+    /// What lies inside the polygon, where it is one.
+    pub fn volume(&self) -> Option<&Volume> {
+        match &self.measured {
+            Some(Ok(Measured::Volume(volume))) => Some(volume),
+            _ => None,
+        }
+    }
+}
+
+impl OpenFlight {
+    /// Of what is measured.
+    pub fn measured_unit(&self) -> MeasuredUnit {
+        MeasuredUnit::of(self.flight().parts())
+    }
+
+    /// Does something with the tools.
+    pub(crate) fn survey(&mut self, step: SurveyStep) {
+        let drawn = &mut self.pointer.drawn;
+        match (step, drawn.as_mut()) {
+            (SurveyStep::Toggle(tool), before) => {
+                let same = before.as_ref().is_some_and(|drawn| drawn.tool == tool);
+                let base = before.map_or_else(BaseChoice::default, |drawn| drawn.base);
+                *drawn = (!same).then(|| Drawn::new(tool, base));
+                self.pointer.measure = super::Measure::Off;
+            }
+            (SurveyStep::Leave, _) => *drawn = None,
+            (SurveyStep::RemoveLast, Some(drawn)) => {
+                drawn.points.pop();
+                drawn.finished = false;
+            }
+            (SurveyStep::Finish, Some(drawn)) => {
+                drawn.finished = drawn.points.len() >= drawn.least();
+            }
+            // What is no number would never be the same as before.
+            (SurveyStep::Base(BaseChoice::Height(height)), _) if !height.is_finite() => {}
+            (SurveyStep::Base(base), Some(drawn)) => drawn.base = base,
+            (_, None) => {}
+        }
+        self.ask_surveyor();
+    }
+
+    /// Adds a point to what is drawn.
+    pub(crate) fn draw_at(&mut self, point: DVec3) {
+        if let Some(drawn) = &mut self.pointer.drawn {
+            if drawn.finished {
+                *drawn = Drawn::new(drawn.tool, drawn.base);
+            }
+            // A double click ends the drawing where its first click put a point.
+            if drawn.points.last() != Some(&point) {
+                drawn.points.push(point);
+            }
+        }
+        self.ask_surveyor();
+    }
+
+    /// Has measured what is drawn now, where it has changed.
+    pub(crate) fn ask_surveyor(&mut self) {
+        let hover = self.pointer.hover;
+        let Some(drawn) = &mut self.pointer.drawn else {
+            return;
+        };
+        let outline = drawn.outline(hover);
+        let mut places: Vec<DVec2> = outline.iter().map(|point| point.truncate()).collect();
+        places.dedup();
+        if places.len() < drawn.least() {
+            (drawn.measured, drawn.asked) = (None, None);
+            return;
+        }
+        let asked = Some((places.clone(), drawn.base));
+        if drawn.asked == asked {
+            return;
+        }
+        drawn.asked = asked;
+        let request = Request {
+            tool: drawn.tool,
+            places,
+            base: drawn.base,
+        };
+        if let Some(surveyor) = &mut self.pointer.surveyor {
+            surveyor.ask(request);
+        }
+    }
+
+    /// Measures again, on another surface.
+    pub(crate) fn survey_anew(&mut self) {
+        if let Some(drawn) = &mut self.pointer.drawn {
+            drawn.asked = None;
+        }
+        self.ask_surveyor();
+    }
+
+    /// Takes what was measured.
+    pub(crate) fn take_measured(&mut self, request: &Request, measured: Result<Measured, String>) {
+        if let Some(drawn) = &mut self.pointer.drawn
+            && drawn.tool == request.tool
+            && drawn.asked.is_some()
+        {
+            drawn.measured = Some(measured);
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! The flight's health as a strip: each thing green, or with its remedy as a button. What it says is
+//! `opening::flight_health`'s.
+
+use egui::RichText;
+
+use crate::command::Command;
+use crate::flight::Verdict;
+use crate::opening::{Health, HealthFinding, HealthItem};
+use crate::panels::inspector::Offer;
+use crate::panels::verdict::{verdict_color, verdict_sign};
+use crate::state::State;
+
+/// Draws the strip.
+pub fn health(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    // What is bad comes first.
+    let grave = |finding: &&HealthFinding| finding.health != Health::Bad;
+    let mut findings: Vec<&HealthFinding> = open.health.iter().collect();
+    findings.sort_by_key(grave);
+    ui.horizontal_wrapped(|ui| {
+        for finding in findings {
+            item(state, finding, ui, commands);
+        }
+    });
+}
+
+fn item(state: &State, finding: &HealthFinding, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let HealthFinding {
+        item,
+        health,
+        short,
+        says,
+        remedy,
+    } = finding;
+    let visuals = ui.visuals();
+    let (sign, color) = match health {
+        Health::Good => (
+            verdict_sign(Verdict::Trust),
+            verdict_color(Verdict::Trust, visuals),
+        ),
+        Health::Unknown => ("–", visuals.weak_text_color()),
+        Health::Bad => (
+            verdict_sign(Verdict::Check),
+            verdict_color(Verdict::Check, visuals),
+        ),
+    };
+    let text = RichText::new(format!("{sign} {}: {short}", item.as_str())).color(color);
+    let label = ui.add(egui::Label::new(text).selectable(false).extend());
+    label.widget_info(|| {
+        let label = format!("{}: {says}", name(*item));
+        egui::WidgetInfo::labeled(egui::Role::Status, true, label)
+    });
+    label.on_hover_text(says);
+    if let Some(offer) = remedy.and_then(|remedy| Offer::of(state, remedy)) {
+        let button = ui.small_button(offer.name);
+        button.widget_info(|| {
+            let label = format!("{}: {}", name(*item), offer.name);
+            egui::WidgetInfo::labeled(egui::Role::Button, true, label)
+        });
+        let hover = format!("{says}\n{}", offer.hover);
+        if button.on_hover_text(hover).clicked() {
+            commands.push(offer.command);
+        }
+    }
+    ui.add_space(6.0);
+}
+
+fn name(item: HealthItem) -> &'static str {
+    match item {
+        HealthItem::Unit => "Unit",
+        HealthItem::CoordinateSystem => "Coordinate system",
+        HealthItem::UpAxis => "Up axis",
+        HealthItem::Colours => "Colours",
+        HealthItem::Exif => "EXIF",
+        HealthItem::Holes => "Holes",
+        HealthItem::Photos => "Photo files",
+    }
+}

@@ -1,0 +1,257 @@
+//! The review: one doubtful photo with its reasons and what shows them, to be accepted or left out.
+
+mod row_menu;
+
+use egui::RichText;
+
+pub(super) use row_menu::row_menu;
+
+use crate::actions::{self, Action};
+use crate::command::{Command, ReviewStep};
+use crate::flight::{DecisionKind, PhotoReview};
+use crate::names;
+use crate::open_flight::OpenFlight;
+use crate::panels::inspector::{Inspector, Offer, SIZE_ERROR, remedy_button};
+use crate::panels::verdict::{verdict_color, verdict_sign};
+use crate::reviewing::note_field;
+use crate::state::State;
+
+/// Draws the page.
+pub(super) fn review(
+    state: &State,
+    inspector: &mut Inspector,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    progress(state, open, ui, commands);
+    let selected = open.selected_review();
+    let Some((photo, reviewed)) = selected.filter(|(_, photo)| photo.is_doubtful()) else {
+        if !open.table.doubtful.is_empty() {
+            ui.weak("Nothing speaks against the selected photo.");
+            button(
+                state,
+                actions::review::NEXT_DOUBTFUL,
+                "Next",
+                false,
+                ui,
+                commands,
+            );
+        }
+        return;
+    };
+    heading(reviewed, ui);
+    if let Some(sight) = open.sight() {
+        inspector.reason_picture(state, open, (photo, reviewed), &sight.on_photo, ui);
+    }
+    egui::ScrollArea::vertical().show(ui, |ui| {
+        reasons(state, open, reviewed, ui, commands);
+        size_errors(state, reviewed, ui);
+        if let Some(decided) = reviewed.decided() {
+            ui.add(egui::Label::new(RichText::new(decided).italics()).wrap());
+        }
+        decide(state, photo, reviewed, ui, commands);
+    });
+}
+
+/// How far the review is, and what is done at its end.
+fn progress(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let progress = open.review_progress();
+    if progress.doubtful == 0 {
+        ui.label(match open.review.is_looked_at() {
+            true => "No photo is doubtful.",
+            false => "Looking for reasons for doubt…",
+        });
+    } else {
+        ui.horizontal_wrapped(|ui| {
+            let place = match progress.at {
+                Some(at) => format!("{at} of {}", progress.doubtful),
+                None => format!("{} doubtful", progress.doubtful),
+            };
+            ui.strong(place);
+            ui.weak(format!(
+                "{} to decide, {} accepted, {} left out",
+                progress.waiting, progress.accepted, progress.left_out
+            ));
+        });
+    }
+    if progress.waiting > 0 || !open.review.is_looked_at() {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        if progress.doubtful > 0 {
+            ui.label("All doubtful photos are decided.");
+        }
+        let chosen = open.chosen_count();
+        let text = RichText::new(format!("Export {chosen}…")).strong();
+        let export = ui.add_enabled(chosen > 0, egui::Button::new(text));
+        export.widget_info(|| {
+            let label = "Export what was reviewed";
+            egui::WidgetInfo::labeled(egui::Role::Button, chosen > 0, label)
+        });
+        if export.on_hover_text(actions::file::EXPORT.hover).clicked() {
+            commands.extend((actions::file::EXPORT.command)(state));
+        }
+    });
+}
+
+fn heading(reviewed: PhotoReview<'_>, ui: &mut egui::Ui) {
+    // From the right, so that a long name gives way.
+    let right = egui::Layout::right_to_left(egui::Align::Center);
+    let row = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(row, right, |ui| {
+        let verdict = reviewed.verdict;
+        let text = format!("{} {verdict}", verdict_sign(verdict));
+        ui.colored_label(verdict_color(verdict, ui.visuals()), text);
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            let body = egui::TextStyle::Body;
+            names::styled(ui, reviewed.name(), body, RichText::strong);
+        });
+    });
+}
+
+/// Every reason, the one that is shown marked; a click shows another one.
+fn reasons(
+    state: &State,
+    open: &OpenFlight,
+    reviewed: PhotoReview<'_>,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let shown = open.reason();
+    for (place, doubt) in reviewed.doubts.iter().enumerate() {
+        let is_shown = shown.is_some_and(|shown| std::ptr::eq(shown, doubt));
+        let said = doubt.to_string();
+        let color = verdict_color(reviewed.own_verdict, ui.visuals());
+        let text = match is_shown {
+            true => RichText::new(said.as_str()).color(color).strong(),
+            false => RichText::new(said.as_str()).weak(),
+        };
+        let label = egui::Label::new(text).wrap().selectable(false);
+        let label = ui.add(label.sense(egui::Sense::click()));
+        if !is_shown {
+            label.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Show: {said}"))
+            });
+            if label.on_hover_text("Show this reason").clicked() {
+                commands.push(Command::Review(ReviewStep::Reason(place)));
+            }
+        } else if let Some(remedy) = Offer::against(state, doubt) {
+            remedy_button(remedy, ui, commands);
+        }
+    }
+}
+
+/// The scales to be trusted or not, and what their error does to sizes.
+fn size_errors(state: &State, reviewed: PhotoReview<'_>, ui: &mut egui::Ui) {
+    let unit = state.preferences.unit();
+    let ends = reviewed.estimates(reviewed.pair, unit);
+    for (name, end) in ["top", "bottom"].into_iter().zip(ends) {
+        let Some(end) = end.filter(|_| reviewed.unit_known) else {
+            continue;
+        };
+        let error = end.size_error();
+        let error = error.map_or_else(String::new, |error| format!(": P80 {error}"));
+        let text = format!("{name} {} px/{unit}{error}", end.text(5));
+        ui.add(egui::Label::new(text).wrap())
+            .on_hover_text(SIZE_ERROR);
+    }
+}
+
+/// The note, and what is decided with it.
+fn decide(
+    state: &State,
+    photo: usize,
+    reviewed: PhotoReview<'_>,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let mut note = state.note_of_review();
+    let field = egui::TextEdit::singleline(&mut note).id(note_field());
+    let field = field
+        .hint_text("Note: why (W)")
+        .desired_width(f32::INFINITY);
+    let field = ui.add(field);
+    field.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Note of the review");
+        info.current_text_value = Some(note.clone());
+        info
+    });
+    if field.changed() {
+        commands.push(Command::Review(ReviewStep::Note(note)));
+    }
+    if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
+        commands.extend((actions::review::ACCEPT.command)(state));
+    }
+    let decided = reviewed.decision.map(|decision| decision.kind);
+    let is = |kind| decided == Some(kind) && !reviewed.waits_for_decision();
+    let accepted = is(DecisionKind::Accepted);
+    let left_out = is(DecisionKind::LeftOut);
+    ui.horizontal_wrapped(|ui| {
+        button(
+            state,
+            actions::review::ACCEPT,
+            "Accept (Enter)",
+            accepted,
+            ui,
+            commands,
+        );
+        button(
+            state,
+            actions::review::LEAVE_OUT,
+            "Leave out (Del)",
+            left_out,
+            ui,
+            commands,
+        );
+        if decided.is_some() {
+            let take_back = ui.button("Take back");
+            take_back.widget_info(|| {
+                let label = "Take the decision back";
+                egui::WidgetInfo::labeled(egui::Role::Button, true, label)
+            });
+            if take_back.clicked() {
+                commands.push(Command::Decide(photo, None));
+            }
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        button(
+            state,
+            actions::review::DOUBTFUL_BEFORE,
+            "Back (Shift+N)",
+            false,
+            ui,
+            commands,
+        );
+        button(
+            state,
+            actions::review::NEXT_DOUBTFUL,
+            "Next (N)",
+            false,
+            ui,
+            commands,
+        );
+    });
+}
+
+/// A button for an action, grey where it makes no sense.
+fn button(
+    state: &State,
+    action: Action,
+    text: &str,
+    on: bool,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let command = (action.command)(state);
+    let button = ui.add_enabled(command.is_some(), egui::Button::new(text).selected(on));
+    button.widget_info(|| {
+        egui::WidgetInfo::selected(egui::Role::Button, command.is_some(), on, action.label)
+    });
+    if button.on_hover_text(action.hover).clicked() {
+        commands.extend(command);
+    }
+}

@@ -1,0 +1,80 @@
+//! Area and volume inside the polygon.
+
+use super::{copy, numbers};
+use crate::command::Command;
+use crate::exports::{VolumeReport, volume_table};
+use crate::numbers::significant_digits;
+use crate::open_flight::OpenFlight;
+use crate::open_flight::survey::{BaseChoice, Drawn, SurveyStep};
+
+pub(super) fn volume(
+    open: &OpenFlight,
+    drawn: &Drawn,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let parts = open.flight().parts();
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Over");
+        let is_rim = drawn.base == BaseChoice::Rim;
+        let rim = ui.radio(is_rim, "its rim");
+        let hover = "The plane that is nearest to the surface along the polygon's sides";
+        if rim.on_hover_text(hover).clicked() {
+            commands.push(Command::Survey(SurveyStep::Base(BaseChoice::Rim)));
+        }
+        let level = ui.radio(!is_rim, "a level");
+        let mut height = match drawn.base {
+            BaseChoice::Height(height) => height,
+            BaseChoice::Rim => open.ground(),
+        };
+        let before = height;
+        let field = egui::DragValue::new(&mut height)
+            .speed(open.extent.bulk.size().z.max(1e-6) / 500.0)
+            .max_decimals(3)
+            .suffix(format!(" {}", parts.unit_of_lengths()));
+        let field = ui.add(field);
+        field.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Level of the base")
+        });
+        field.on_hover_text("The elevation of the base");
+        let hover = "A level plane at this elevation; at first the flight's ground";
+        if level.on_hover_text(hover).clicked() || height != before {
+            commands.push(Command::Survey(SurveyStep::Base(BaseChoice::Height(
+                height,
+            ))));
+        }
+    });
+    let Some(volume) = drawn.volume() else {
+        return;
+    };
+    let unit = open.measured_unit();
+    let number = |number: f64, unit: &str| format!("{} {unit}", significant_digits(number, 5));
+    let (cubic, square) = (unit.volume(), unit.area());
+    let mut rows = vec![
+        ("Fill (above)", number(volume.fill, &cubic)),
+        ("Cut (below)", number(volume.cut, &cubic)),
+        ("Fill less cut", number(volume.net(), &cubic)),
+        ("Plan area", number(volume.plan_area, &square)),
+        ("Surface area", number(volume.surface_area, &square)),
+    ];
+    if volume.covered < 1.0 - 1e-9 {
+        let holes = significant_digits(100.0 * (1.0 - volume.covered), 3);
+        rows.push(("Not covered, not counted", format!("{holes} %")));
+    }
+    numbers("volume numbers", &rows, ui);
+    let report = VolumeReport {
+        flight: &parts.name,
+        unit,
+        volume,
+        base: None,
+    };
+    let mut text = volume_table(&report);
+    text += "\nx,y\n";
+    for corner in &drawn.points {
+        text += &format!("{},{}\n", corner.x, corner.y);
+    }
+    ui.horizontal(|ui| {
+        let hover = "The numbers as text, with the polygon's corners";
+        copy("Copy numbers", hover, Some(text), ui, commands);
+    });
+}

@@ -1,0 +1,128 @@
+//! Steps of the review of doubtful photos. What is decided goes the way of every decision, so that undo
+//! goes back over it.
+
+use crate::command::{ReviewStep, Tab};
+use crate::flight::{Decision, DecisionKind, OnPhoto};
+use crate::open_flight::OpenFlight;
+use crate::size_distributions::Page;
+use crate::state::State;
+
+/// The field of the note: a key brings the cursor into it.
+pub(crate) fn note_field() -> egui::Id {
+    egui::Id::unique("note of the review")
+}
+
+impl State {
+    /// The flight whose doubtful photos are being reviewed: while its page is in sight.
+    pub fn reviewed_flight(&self) -> Option<&OpenFlight> {
+        let in_sight = self.page == Page::Pile && self.preferences.right_open;
+        let open = self.open.as_deref()?;
+        (in_sight && self.tab == Tab::Review).then_some(open)
+    }
+
+    /// Whether the scale field of the selected photo is to be seen.
+    pub fn wants_field(&self) -> bool {
+        let sight = self.reviewed_flight().and_then(OpenFlight::sight);
+        self.preferences.tint || sight.is_some_and(|sight| sight.on_photo == OnPhoto::Field)
+    }
+
+    /// Does a step.
+    pub(crate) fn review_step(&mut self, step: ReviewStep) {
+        let was_reviewing = self.reviewed_flight().is_some();
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        match step {
+            ReviewStep::Next => {
+                let next = open.next_doubtful(!was_reviewing);
+                self.page = Page::Pile;
+                self.tab = Tab::Review;
+                self.preferences.right_open = true;
+                self.review_photo(next);
+            }
+            ReviewStep::Back => {
+                let before = open.doubtful_before();
+                self.review_photo(before);
+            }
+            ReviewStep::Reason(reason) => {
+                open.reviewing.reason = reason;
+                open.show_reason();
+                self.load_tint();
+            }
+            ReviewStep::Note(note) => open.reviewing.note = Some(note),
+            ReviewStep::WriteNote => {
+                self.context
+                    .memory_mut(|memory| memory.request_focus(note_field()));
+            }
+            ReviewStep::Accept => self.decide_and_go_on(DecisionKind::Accepted),
+            ReviewStep::LeaveOut => self.decide_and_go_on(DecisionKind::LeftOut),
+            ReviewStep::Leave => {
+                self.tab = Tab::Photo;
+                self.load_tint();
+            }
+        }
+    }
+
+    /// Selects a photo of the review, and shows its gravest reason.
+    fn review_photo(&mut self, photo: Option<usize>) {
+        let Some(open) = self.open.as_mut().filter(|_| photo.is_some()) else {
+            return;
+        };
+        open.select(photo);
+        open.reviewing.reason = 0;
+        open.show_reason();
+        self.load_preview();
+    }
+
+    fn decide_and_go_on(&mut self, kind: DecisionKind) {
+        let Some((photo, reviewed)) = self.open.as_ref().and_then(|open| open.selected_review())
+        else {
+            return;
+        };
+        if !reviewed.is_doubtful() {
+            return;
+        }
+        let note = self.note_of_review();
+        self.decide(photo, Some((kind, note)));
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        let is_decided = open
+            .review
+            .photo(photo)
+            .is_some_and(|p| !p.waits_for_decision());
+        if is_decided {
+            open.reviewing.note = None;
+            let waits = open.review_progress().waiting > 0;
+            let next = open.next_doubtful(false).filter(|_| waits);
+            self.review_photo(next);
+        }
+    }
+
+    /// What is in the field of the note: what was typed, else what is saved.
+    pub(crate) fn note_of_review(&self) -> String {
+        let open = self.open.as_ref();
+        let typed = open.and_then(|open| open.reviewing.note.clone());
+        let saved = || {
+            let (_, photo) = open?.selected_review()?;
+            Some(photo.decision?.note.clone())
+        };
+        typed.or_else(saved).unwrap_or_default()
+    }
+
+    /// Brings the photo back whose decision was undone or done again.
+    pub(crate) fn review_undone(&mut self, before: &[Decision]) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        let now = open.settings().decisions;
+        let other = now.iter().find(|decision| !before.contains(decision));
+        let gone = || before.iter().find(|decision| !now.contains(decision));
+        let Some(changed) = other.or_else(gone) else {
+            return;
+        };
+        let photos = &open.flight().parts().photos;
+        let photo = photos.iter().position(|photo| photo.name == changed.photo);
+        self.review_photo(photo);
+    }
+}

@@ -1,0 +1,252 @@
+//! `fragscale rectify`: photos seen squarely, with one scale everywhere.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+
+use super::chosen_photos::{ChosenPhotos, check_unit};
+use crate::cli::flight_arguments::FlightArguments;
+use crate::cli::outputs::{Force, Outputs};
+use crate::cli::{Answer, OutputUnit};
+use crate::exports::{self, RectifiedFormat, RectifiedPhoto};
+use crate::fault::Fault;
+use crate::files::Kind;
+use crate::formats::{self, FileError};
+use crate::jobs::Progress;
+use crate::opening::Opened;
+use crate::picture;
+use crate::scale::{Onto, PixelSize};
+use crate::units::LengthUnit;
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct RectifyArguments {
+    #[command(flatten)]
+    flight: FlightArguments,
+    #[command(flatten)]
+    photos: ChosenPhotos,
+    /// The folder to write to.
+    #[arg(long, value_name = "DIR")]
+    to: PathBuf,
+    /// The plane that the photo is seen squarely onto: the best one through what it shows of the surface,
+    /// or a horizontal one, with north up.
+    #[arg(long, value_enum, default_value = "fit")]
+    plane: Plane,
+    /// Lay the photo over the surface and look straight from above, instead of onto a plane.
+    #[arg(long, conflicts_with = "plane")]
+    ortho: bool,
+    /// The side of a pixel, as 2mm or 0.5in; without it what the photo shows at its middle, rounded.
+    #[arg(long, value_name = "LENGTH")]
+    pixel: Option<Length>,
+    /// Pixel size and bar are said in this unit.
+    #[arg(long, value_enum, default_value = "cm")]
+    unit: OutputUnit,
+    /// How to write the picture.
+    #[arg(long, value_enum, default_value = "png")]
+    format: Format,
+    #[command(flatten)]
+    force: Force,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Plane {
+    Fit,
+    Horizontal,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Format {
+    Png,
+    Tiff,
+}
+
+/// A length with its unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Length {
+    value: f64,
+    unit: LengthUnit,
+}
+
+impl FromStr for Length {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let text = text.trim();
+        let digits = text.find(|c: char| c.is_alphabetic()).unwrap_or(text.len());
+        // "1e-3m" has a letter in its number.
+        let digits = match text[digits..].strip_prefix(['e', 'E']) {
+            Some(rest) if rest.starts_with(|c: char| c.is_ascii_digit() || "+-".contains(c)) => {
+                let unit = rest.find(|c: char| c.is_alphabetic());
+                text.len() - rest.len() + unit.unwrap_or(rest.len())
+            }
+            _ => digits,
+        };
+        let (number, unit) = text.split_at(digits);
+        let value: Option<f64> = number.trim().parse().ok();
+        let value = value.filter(|value| *value > 0.0 && value.is_finite());
+        match (value, unit.trim().parse()) {
+            (Some(value), Ok(unit)) => Ok(Self { value, unit }),
+            _ => Err("give a positive length with its unit, as 2mm".to_owned()),
+        }
+    }
+}
+
+pub(in crate::cli) fn rectify(
+    arguments: &RectifyArguments,
+    progress: &Progress,
+) -> Result<Answer, String> {
+    let mut outputs = Outputs::new(arguments.force, arguments.flight.files());
+    let opened = arguments.flight.open(progress)?;
+    outputs.read(&opened.read)?;
+    let path = &arguments.flight.flight;
+    let in_flight = |fault| FileError::new(path, fault).to_string();
+    let flight = &opened.flight;
+    check_unit(flight).map_err(in_flight)?;
+    let chosen = arguments.photos.of(flight).map_err(in_flight)?;
+    let format = match arguments.format {
+        Format::Png => RectifiedFormat::Png,
+        Format::Tiff => RectifiedFormat::Tiff,
+    };
+    let stems = exports::photo_file_stems(flight);
+    let files = |index: usize| {
+        format.endings().map(|ending| {
+            let kind = if arguments.ortho {
+                "ortho"
+            } else {
+                "rectified"
+            };
+            arguments
+                .to
+                .join(format!("{}_{kind}.{ending}", stems[index]))
+        })
+    };
+    let planned: Vec<[PathBuf; 2]> = chosen.iter().map(|&index| files(index)).collect();
+    outputs.check_all(planned.iter().flatten().map(PathBuf::as_path))?;
+    let maker = Maker {
+        arguments,
+        opened: &opened,
+        format,
+        progress,
+    };
+    let mut warnings = opened.all_warnings();
+    let (mut text, mut written, mut failed) = (String::new(), 0, Vec::new());
+    for (done, (&index, files)) in chosen.iter().zip(&planned).enumerate() {
+        let name = &flight.parts().photos[index].name;
+        progress.stage(format!("rectifying {name}"));
+        let counted = progress.advance(done as u64, chosen.len() as u64);
+        counted.map_err(in_flight)?;
+        match maker.make(index) {
+            Ok(made) => {
+                outputs.make_folder(&arguments.to)?;
+                outputs.write(&files[0], &made.picture, Kind::Result)?;
+                outputs.write(&files[1], made.world_file.as_bytes(), Kind::Result)?;
+                text += &format!("{}: {}\n", files[0].display(), made.words);
+                warnings.extend(made.warning.map(|warning| format!("{name}: {warning}")));
+                written += 1;
+            }
+            Err(fault) if progress.is_cancelled() || !arguments.photos.all => {
+                let what = format!("{name}: {}", fault.what);
+                return Err(in_flight(Fault::new(what, fault.remedy)));
+            }
+            Err(fault) => failed.push(format!("{name}: not rectified: {fault}")),
+        }
+    }
+    let failures = failed.len();
+    warnings.extend(failed);
+    let failed = (failures > 0).then(|| {
+        let what = format!(
+            "{failures} of {} photos are not rectified",
+            failures + written
+        );
+        in_flight(Fault::new(what, "see the warnings above"))
+    });
+    Ok(Answer {
+        text,
+        warnings,
+        failed,
+    })
+}
+
+/// What all pictures of a flight are made from.
+struct Maker<'a> {
+    arguments: &'a RectifyArguments,
+    opened: &'a Opened,
+    format: RectifiedFormat,
+    progress: &'a Progress,
+}
+
+/// A photo's files, and what to say of them.
+struct Made {
+    picture: Vec<u8>,
+    world_file: String,
+    words: String,
+    warning: Option<String>,
+}
+
+impl Maker<'_> {
+    fn make(&self, index: usize) -> Result<Made, Fault> {
+        let (arguments, flight) = (self.arguments, &self.opened.flight);
+        let parts = flight.parts();
+        let photo = &parts.photos[index];
+        let file = self.opened.photo_files.get(index);
+        let Some(path) = file.and_then(|file| file.path.as_deref()) else {
+            let what = "its image file was not found";
+            return Err(Fault::new(
+                what,
+                "name the folder of the photos (--photo-folder)",
+            ));
+        };
+        let onto = match (arguments.ortho, arguments.plane) {
+            (true, _) => Onto::Surface,
+            (_, Plane::Fit) => Onto::FittedPlane,
+            (_, Plane::Horizontal) => Onto::HorizontalPlane,
+        };
+        let unit: LengthUnit = arguments.unit.into();
+        let in_world = |length: Length| length.value * length.unit.in_units_of(parts.unit);
+        let size = PixelSize {
+            asked: arguments.pixel.map(in_world),
+            round_in: unit.in_units_of(parts.unit),
+        };
+        let rectification = flight.rectification(photo, onto, size, self.progress)?;
+        let rectified = RectifiedPhoto {
+            rectification: &rectification,
+            onto,
+            flight: &parts.name,
+            photo: &photo.name,
+            unit,
+            world_unit: parts.unit,
+            crs: self.opened.crs.as_deref(),
+        };
+        // Read late: whatever is refused is refused without it.
+        let bytes = formats::read_bytes(path).map_err(|error| error.fault)?;
+        let image = picture::decode(&bytes)?;
+        drop(bytes);
+        let warning = rectification.is_cut.then(|| {
+            "it is cut: rays near the horizon meet the plane far outside of what they show"
+                .to_owned()
+        });
+        Ok(Made {
+            picture: rectified.bytes(&image, self.format)?,
+            world_file: rectified.world_file(),
+            words: rectified.words(),
+            warning,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_have_a_unit() {
+        let length = |value, unit| Ok(Length { value, unit });
+        assert_eq!("2mm".parse(), length(2.0, LengthUnit::Millimetre));
+        assert_eq!(" 0.5 in ".parse(), length(0.5, LengthUnit::Inch));
+        assert_eq!("1e-3m".parse(), length(0.001, LengthUnit::Metre));
+        assert_eq!("2us-ft".parse(), length(2.0, LengthUnit::UsSurveyFoot));
+        for wrong in ["2", "mm", "", "-2mm", "0mm", "2 km", "infmm", "1e", "2mm3"] {
+            assert!(wrong.parse::<Length>().is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! A profile, going out.
+
+use serde_json::{Value, json};
+
+use super::{MeasuredUnit, coordinate, csv_of, percent, rows_of_text};
+use crate::survey::{Face, Profile, ProfilePoint};
+
+/// A profile and what it is of.
+#[derive(Debug, Clone, Copy)]
+pub struct ProfileReport<'a> {
+    /// The flight's name.
+    pub flight: &'a str,
+    /// Of its lengths.
+    pub unit: MeasuredUnit,
+    /// What was found.
+    pub profile: &'a Profile,
+}
+
+/// What the sides of the crest are called.
+const SIDES: [&str; 2] = ["before", "after"];
+
+/// Crest, toes and angles of repose as text.
+pub fn profile_table(report: &ProfileReport<'_>) -> String {
+    let ProfileReport {
+        flight,
+        unit,
+        profile,
+    } = report;
+    let unit = unit.length();
+    let place = |at: &ProfilePoint| {
+        let [distance, height] = [at.distance, at.point.z].map(coordinate);
+        format!("{height} {unit} at {distance} {unit} along the line")
+    };
+    let mut rows = vec![
+        (
+            "length in plan",
+            format!("{} {unit}", coordinate(profile.length)),
+        ),
+        ("points", profile.points().count().to_string()),
+        ("covered by the surface", percent(profile.covered())),
+    ];
+    if let (Some(crest), Some(lowest)) = (profile.crest(), profile.lowest()) {
+        rows.push(("crest", place(crest)));
+        rows.push(("lowest", place(lowest)));
+    }
+    let faces = profile.faces();
+    for (side, face) in SIDES.into_iter().zip(&faces) {
+        let Some(face) = face else {
+            continue;
+        };
+        let [toe, angle, overall] = match side {
+            "before" => [
+                "toe before",
+                "angle of repose before",
+                "crest to toe before",
+            ],
+            _ => ["toe after", "angle of repose after", "crest to toe after"],
+        };
+        rows.push((toe, place(&face.toe)));
+        rows.push((angle, repose(face, &unit)));
+        let height = coordinate(face.height());
+        rows.push((
+            overall,
+            format!("{:.1}°, {height} {unit} high", face.overall),
+        ));
+    }
+    let mut text = format!("{flight}: profile\n\n{}", rows_of_text(&rows));
+    if faces.iter().any(Option::is_some) {
+        text += "\nThe angle of repose is the slope of the steepest line fitted to a stretch that falls by half \
+                 of the height between crest and toe.\n";
+    } else {
+        text +=
+            "\nNo side of the crest falls by a tenth of the profile's relief: there is no face.\n";
+    }
+    text
+}
+
+fn repose(face: &Face, unit: &str) -> String {
+    match (face.repose, face.fitted) {
+        (Some(repose), Some([from, to])) => {
+            let [from, to] = [from, to].map(coordinate);
+            format!("{repose:.1}°, from {from} to {to} {unit} along the line")
+        }
+        _ => "none: holes in the surface".to_owned(),
+    }
+}
+
+/// A line for each point: where it is, and in which part between holes it is, counted from 1. Numbers
+/// read back to the same f64.
+///
+/// # Errors
+/// Where memory runs out.
+pub fn profile_csv(report: &ProfileReport<'_>) -> Result<String, csv::Error> {
+    let unit = report.unit.in_names();
+    let mut header: Vec<String> = ["distance", "x", "y", "height"]
+        .map(|name| format!("{name}_{unit}"))
+        .to_vec();
+    header.push("part".to_owned());
+    let runs = report.profile.runs.iter().enumerate();
+    let lines = runs.flat_map(|(part, run)| {
+        run.iter().map(move |at| {
+            let numbers = [at.distance, at.point.x, at.point.y, at.point.z];
+            let mut line: Vec<String> = numbers.map(|number| number.to_string()).to_vec();
+            line.push((part + 1).to_string());
+            line
+        })
+    });
+    csv_of(std::iter::once(header).chain(lines))
+}
+
+/// All of it as JSON.
+///
+/// # Errors
+/// Where memory runs out.
+pub fn profile_json(report: &ProfileReport<'_>) -> Result<String, serde_json::Error> {
+    let profile = report.profile;
+    let at = |at: &ProfilePoint| json!({"distance": at.distance, "point": at.point.to_array()});
+    let faces: Vec<Value> = (SIDES.into_iter().zip(profile.faces()))
+        .filter_map(|(side, face)| {
+            let face = face?;
+            Some(json!({
+                "side": side,
+                "crest": at(&face.crest),
+                "toe": at(&face.toe),
+                "height": face.height(),
+                "crest_to_toe_degrees": face.overall,
+                "angle_of_repose_degrees": face.repose,
+                "fitted_between": face.fitted,
+            }))
+        })
+        .collect();
+    let runs: Vec<Value> = (profile.runs.iter())
+        .map(|run| run.iter().map(at).collect())
+        .collect();
+    let value = json!({
+        "flight": report.flight,
+        "unit": report.unit.symbol,
+        "length": profile.length,
+        "covered": profile.covered(),
+        "crest": profile.crest().map(at),
+        "lowest": profile.lowest().map(at),
+        "faces": faces,
+        "parts": runs,
+    });
+    Ok(serde_json::to_string_pretty(&value)? + "\n")
+}

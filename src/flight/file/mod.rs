@@ -1,0 +1,627 @@
+//! flight.toml (contract, section 3): the text of a flight, with the names of its other files.
+
+mod camera_entry;
+mod check;
+mod decisions_text;
+mod known_keys;
+mod text;
+mod uncertainty_entry;
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+use toml::de::DeTable;
+
+pub use self::camera_entry::{CameraEntry, CameraSource};
+
+use self::known_keys::{key_line, line_of, nth_key_line, refuse_unknown_keys};
+use self::uncertainty_entry::UncertaintyEntry;
+use super::FlightSettings;
+use super::decision::{Decision, DecisionEntry};
+use super::scale_object::{ScaleObject, ScaleObjectEntry};
+use crate::fault::Fault;
+use crate::files::FLIGHT_MARK;
+use crate::scale::{Ground, ImageKind, ScalePair, StatedErrors};
+use crate::surface::{SurfaceOptions, UpAxis};
+use crate::units::LengthUnit;
+
+/// The text of a flight. Paths are relative to the file and stay text here.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FlightFile {
+    /// Version of the format: 1.
+    pub(super) format: u32,
+    /// For people.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    pub(super) world: World,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) surface: Option<SurfaceEntry>,
+    /// The `[[camera]]` tables.
+    #[serde(default, rename = "camera", skip_serializing_if = "Vec::is_empty")]
+    pub cameras: Vec<CameraEntry>,
+    pub(super) photos: PhotosEntry,
+    #[serde(default, skip_serializing_if = "ScaleEntry::is_default")]
+    scale: ScaleEntry,
+    #[serde(default, skip_serializing_if = "UncertaintyEntry::is_empty")]
+    uncertainty: UncertaintyEntry,
+    #[serde(
+        default,
+        rename = "scale_object",
+        skip_serializing_if = "Vec::is_empty"
+    )]
+    pub(super) scale_objects: Vec<ScaleObjectEntry>,
+    #[serde(default, rename = "review", skip_serializing_if = "Vec::is_empty")]
+    decisions: Vec<DecisionEntry>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct World {
+    pub(super) unit: String,
+    #[serde(default)]
+    pub(super) ground: GroundEntry,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) crs: Option<String>,
+}
+
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(super) struct SurfaceEntry {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) up: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    max_edge: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    thinning: Option<f64>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct PhotosEntry {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) poses: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) reconstruction: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) folder: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) topic: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) transform: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+struct ScaleEntry {
+    #[serde(default)]
+    image: ImageEntry,
+    #[serde(default, rename = "use")]
+    pair: PairEntry,
+}
+
+impl ScaleEntry {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+enum ImageEntry {
+    #[default]
+    #[serde(rename = "undistorted")]
+    Undistorted,
+    #[serde(rename = "as-shot")]
+    AsShot,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum PairEntry {
+    #[default]
+    Fitted,
+    Corners,
+}
+
+/// What `world.unit` says of a frame whose unit nobody knows.
+pub(super) const UNKNOWN_UNIT: &str = "unknown";
+
+/// `world.unit` of these settings.
+pub(super) fn unit_word(settings: &FlightSettings) -> &'static str {
+    match settings.unit_known {
+        true => settings.unit.symbol(),
+        false => UNKNOWN_UNIT,
+    }
+}
+
+/// A number or "auto".
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct GroundEntry(pub(super) Ground);
+
+impl Serialize for GroundEntry {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0 {
+            Ground::Auto => serializer.serialize_str("auto"),
+            Ground::At(z) => serializer.serialize_f64(z),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for GroundEntry {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Visitor;
+        impl serde::de::Visitor<'_> for Visitor {
+            type Value = GroundEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an elevation or \"auto\"")
+            }
+
+            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<GroundEntry, E> {
+                if text == "auto" {
+                    return Ok(GroundEntry(Ground::Auto));
+                }
+                Err(E::invalid_value(serde::de::Unexpected::Str(text), &self))
+            }
+
+            fn visit_f64<E: serde::de::Error>(self, z: f64) -> Result<GroundEntry, E> {
+                Ok(GroundEntry(Ground::At(z)))
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, z: i64) -> Result<GroundEntry, E> {
+                Ok(GroundEntry(Ground::At(z as f64)))
+            }
+        }
+        deserializer.deserialize_any(Visitor)
+    }
+}
+
+/// Where the posed photos come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PhotoSource<'a> {
+    /// A poses.csv, or poses over time (a trajectory, a recording), relative to flight.toml.
+    Poses(&'a str),
+    /// A reconstruction, and the row-major 4x4 from its frame to the world.
+    Reconstruction(&'a str, Option<[f64; 16]>),
+}
+
+/// What a flight.toml says of a reconstruction. Paths are relative to the file that it will be.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ReconstructionFlight<'a> {
+    /// For people.
+    pub name: &'a str,
+    /// The file or folder that a package wrote.
+    pub reconstruction: &'a str,
+    /// The row-major similarity from the package's frame to the world.
+    pub transform: Option<[f64; 16]>,
+    /// The folder of the image files.
+    pub folder: Option<&'a str>,
+    /// The surface's file, where it is not the reconstruction's own points.
+    pub surface: Option<&'a str>,
+    /// The coordinate system of the world.
+    pub crs: Option<&'a str>,
+}
+
+impl FlightFile {
+    /// Reads the text of a flight.toml.
+    ///
+    /// # Errors
+    /// With the line, where it is no TOML, has an unknown key (the nearest known one is named), lacks
+    /// one, or contradicts itself.
+    pub fn parse(text: &str) -> Result<Self, Fault> {
+        let fault = |error: toml::de::Error| {
+            let line = error.span().map_or(1, |span| line_of(text, span.start));
+            Fault::at(
+                line,
+                error.message(),
+                "see the flight file's format in README",
+            )
+        };
+        let table = DeTable::parse(text).map_err(fault)?;
+        refuse_unknown_keys(text, "", table.get_ref())?;
+        let file: Self = toml::from_str(text).map_err(fault)?;
+        file.check(|table, key| key_line(text, table, key))?;
+        for (number, entry) in file.scale_objects.iter().enumerate() {
+            if let Some((key, what)) = ScaleObject::from(entry).trouble() {
+                let line = nth_key_line(text, "scale_object", number, key);
+                return Err(Fault::at(line, what, "correct or remove it"));
+            }
+        }
+        for (number, entry) in file.decisions.iter().enumerate() {
+            let before = file.decisions.get(..number).unwrap_or_default();
+            if let Some((key, what, remedy)) = entry.trouble(before) {
+                let line = nth_key_line(text, "review", number, key);
+                return Err(Fault::at(line, what, remedy));
+            }
+        }
+        Ok(file)
+    }
+
+    /// A flight whose photos come from a reconstruction.
+    pub fn for_reconstruction(
+        flight: &ReconstructionFlight<'_>,
+        settings: &FlightSettings,
+    ) -> Self {
+        let SurfaceOptions { max_edge, thinning } = settings.surface;
+        let surface = SurfaceEntry {
+            file: flight.surface.map(str::to_owned),
+            up: None,
+            max_edge,
+            thinning,
+        };
+        Self {
+            format: 1,
+            name: Some(flight.name.to_owned()),
+            world: World {
+                unit: unit_word(settings).to_owned(),
+                ground: GroundEntry(settings.ground),
+                crs: flight.crs.map(str::to_owned),
+            },
+            surface: (surface != SurfaceEntry::default()).then_some(surface),
+            cameras: Vec::new(),
+            photos: PhotosEntry {
+                poses: None,
+                reconstruction: Some(flight.reconstruction.to_owned()),
+                folder: flight.folder.map(str::to_owned),
+                topic: None,
+                transform: flight.transform.map(Vec::from),
+            },
+            scale: ScaleEntry {
+                image: match settings.image {
+                    ImageKind::Undistorted => ImageEntry::Undistorted,
+                    ImageKind::AsShot => ImageEntry::AsShot,
+                },
+                pair: match settings.pair {
+                    ScalePair::Fitted => PairEntry::Fitted,
+                    ScalePair::Corners => PairEntry::Corners,
+                },
+            },
+            uncertainty: settings.errors.into(),
+            scale_objects: settings.scale_objects.iter().map(Into::into).collect(),
+            decisions: settings.decisions.iter().map(Into::into).collect(),
+        }
+    }
+
+    /// The text of this flight, with a first line that says who wrote it.
+    ///
+    /// # Errors
+    /// Never for a flight that was parsed; the serializer's sentence otherwise.
+    pub fn to_toml(&self) -> Result<String, Fault> {
+        toml::to_string(self)
+            .map(|text| format!("{FLIGHT_MARK}{text}"))
+            .map_err(|e| Fault::new(format!("the flight cannot be written ({e})"), "report this"))
+    }
+
+    /// The unit of all world coordinates; `None` where the file says that it is not known.
+    pub fn unit(&self) -> Option<LengthUnit> {
+        // `parse` has checked that it is a unit or [`UNKNOWN_UNIT`].
+        self.world.unit.parse().ok()
+    }
+
+    /// The coordinate system of the world, where the file names one: "EPSG:n", WKT or a PROJ text.
+    pub fn crs(&self) -> Option<&str> {
+        self.world.crs.as_deref()
+    }
+
+    /// The fall-back plane.
+    pub fn ground(&self) -> Ground {
+        self.world.ground.0
+    }
+
+    /// Which image the scales are for.
+    pub fn image(&self) -> ImageKind {
+        match self.scale.image {
+            ImageEntry::Undistorted => ImageKind::Undistorted,
+            ImageEntry::AsShot => ImageKind::AsShot,
+        }
+    }
+
+    /// Which scales go to Split-Desktop.
+    pub fn pair(&self) -> ScalePair {
+        match self.scale.pair {
+            PairEntry::Fitted => ScalePair::Fitted,
+            PairEntry::Corners => ScalePair::Corners,
+        }
+    }
+
+    /// How sure the engineer is of what scales are computed from.
+    pub fn errors(&self) -> StatedErrors {
+        self.uncertainty.into()
+    }
+
+    /// The surface's file, relative to flight.toml.
+    pub fn surface(&self) -> Option<&str> {
+        self.surface.as_ref()?.file.as_deref()
+    }
+
+    /// Which axis of the surface's file points up.
+    pub fn surface_up(&self) -> UpAxis {
+        let up = self.surface.as_ref().and_then(|s| s.up.as_deref());
+        // `parse` has checked it.
+        up.and_then(|up| up.parse().ok()).unwrap_or_default()
+    }
+
+    /// What is left out of the surface.
+    pub fn surface_options(&self) -> SurfaceOptions {
+        let entry = self.surface.as_ref();
+        SurfaceOptions {
+            max_edge: entry.and_then(|surface| surface.max_edge),
+            thinning: entry.and_then(|surface| surface.thinning),
+        }
+    }
+
+    /// All that can be set while the flight is looked at.
+    pub fn settings(&self) -> FlightSettings {
+        FlightSettings {
+            unit: self.unit().unwrap_or(LengthUnit::Metre),
+            unit_known: self.unit().is_some(),
+            ground: self.ground(),
+            image: self.image(),
+            pair: self.pair(),
+            errors: self.errors(),
+            surface: self.surface_options(),
+            scale_objects: self.scale_objects.iter().map(ScaleObject::from).collect(),
+            decisions: self.decisions.iter().map(Decision::from).collect(),
+        }
+    }
+
+    /// The folder of the image files, relative to flight.toml.
+    pub fn photo_folder(&self) -> Option<&str> {
+        self.photos.folder.as_deref()
+    }
+
+    /// The topic of a ROS recording whose poses are meant.
+    pub fn topic(&self) -> Option<&str> {
+        self.photos.topic.as_deref()
+    }
+
+    /// Where the posed photos come from.
+    pub fn photo_source(&self) -> PhotoSource<'_> {
+        let photos = &self.photos;
+        match &photos.reconstruction {
+            Some(path) => {
+                let transform = photos.transform.as_deref();
+                PhotoSource::Reconstruction(path, transform.and_then(|t| t.try_into().ok()))
+            }
+            // `parse` has checked that one of the two is there.
+            None => PhotoSource::Poses(photos.poses.as_deref().unwrap_or_default()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const WHOLE: &str = r#"format = 1
+name = "Lab trial 1"
+
+[world]
+unit = "m"
+ground = 0.25
+
+[surface]
+file = "pile.ply"
+
+[[camera]]
+name = "bebop"
+file = "ost.yaml"
+
+[[camera]]
+name = "other"
+width = 1280
+height = 720
+fx = 1000.0
+fy = 1001
+cx = 639.5
+cy = 359.5
+skew = 0.5
+pixel_origin = "center"
+distortion = "brown"
+coefficients = [0.1, -0.2]
+
+[photos]
+poses = "poses.csv"
+folder = "photos"
+
+[scale]
+image = "as-shot"
+"#;
+
+    #[test]
+    fn everything_is_read() {
+        let file = FlightFile::parse(WHOLE).unwrap();
+        assert_eq!(file.name.as_deref(), Some("Lab trial 1"));
+        assert_eq!(file.unit(), Some(LengthUnit::Metre));
+        assert_eq!(file.ground(), Ground::At(0.25));
+        assert_eq!(file.image(), ImageKind::AsShot);
+        assert_eq!(file.surface(), Some("pile.ply"));
+        assert_eq!(file.photo_source(), PhotoSource::Poses("poses.csv"));
+        assert_eq!(file.photo_folder(), Some("photos"));
+        assert_eq!(file.cameras[0].source(), Ok(CameraSource::File("ost.yaml")));
+        let Ok(CameraSource::Inline(camera)) = file.cameras[1].source() else {
+            panic!("an inline camera");
+        };
+        // From pixel centres to the outer corner.
+        assert_eq!((camera.cx, camera.cy, camera.fy), (640.0, 360.0, 1001.0));
+        let k = [0.1, -0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!(camera.distortion.coefficients(), k);
+    }
+
+    #[test]
+    fn surface_options_are_read() {
+        let options = |text: &str| FlightFile::parse(text).map(|file| file.surface_options());
+        let text = WHOLE.replace(
+            "\"pile.ply\"",
+            "\"pile.ply\"\nmax_edge = 2\nthinning = 0.05",
+        );
+        let both = SurfaceOptions {
+            max_edge: Some(2.0),
+            thinning: Some(0.05),
+        };
+        assert_eq!(options(&text), Ok(both));
+        assert_eq!(options(WHOLE), Ok(SurfaceOptions::default()));
+        let fault = options(&text.replace("max_edge = 2", "max_edge = -2")).unwrap_err();
+        assert_eq!(fault.line, Some(10));
+        let fault = options(&text.replace("0.05", "nan")).unwrap_err();
+        assert_eq!(fault.line, Some(11));
+        assert!(fault.what.contains("surface.thinning is NaN"), "{fault}");
+        // The options may stand alone where a reconstruction brings the points.
+        let text = "format = 1\nworld.unit = \"m\"\nsurface.max_edge = 3\n[photos]\nreconstruction = \"a.nvm\"";
+        let file = FlightFile::parse(text).unwrap();
+        assert_eq!(
+            (file.surface(), file.settings().surface.max_edge),
+            (None, Some(3.0))
+        );
+    }
+
+    #[test]
+    fn the_axis_that_points_up() {
+        assert_eq!(FlightFile::parse(WHOLE).unwrap().surface_up(), UpAxis::Z);
+        let text = WHOLE.replace("\"pile.ply\"", "\"pile.ply\"\nup = \"y\"");
+        let file = FlightFile::parse(&text).unwrap();
+        assert_eq!(file.surface_up(), UpAxis::Y);
+        assert_eq!(FlightFile::parse(&file.to_toml().unwrap()), Ok(file));
+        let fault = FlightFile::parse(&text.replace("\"y\"", "\"up\"")).unwrap_err();
+        assert_eq!(fault.line, Some(10));
+        assert!(fault.what.contains("surface.up is 'up'"), "{fault}");
+        let text = "format = 1\nworld.unit = \"m\"\nsurface.up = \"y\"\n[photos]\nreconstruction = \"a.nvm\"";
+        let fault = FlightFile::parse(text).unwrap_err();
+        assert!(fault.what.contains("belongs to surface.file"), "{fault}");
+    }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let file = FlightFile::parse(WHOLE).unwrap();
+        assert_eq!(FlightFile::parse(&file.to_toml().unwrap()), Ok(file));
+        let text = "format = 1\n[world]\nunit = \"us-ft\"\n[photos]\nreconstruction = \"sparse/0\"\n\
+            transform = [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]\n";
+        let file = FlightFile::parse(text).unwrap();
+        assert_eq!(file.ground(), Ground::Auto);
+        assert_eq!(FlightFile::parse(&file.to_toml().unwrap()), Ok(file));
+    }
+
+    fn refuse(from: &str, to: &str) -> Fault {
+        assert!(WHOLE.contains(from));
+        FlightFile::parse(&WHOLE.replace(from, to)).unwrap_err()
+    }
+
+    #[test]
+    fn unknown_keys_are_named_with_their_neighbour() {
+        let fault = refuse("fx = 1000.0", "fX = 1000.0");
+        assert_eq!(fault.line, Some(19));
+        assert_eq!(
+            fault.to_string(),
+            "unknown key 'fX' in [camera]; did you mean 'fx'?"
+        );
+        let fault = refuse("[world]", "[wrold]");
+        assert_eq!(
+            fault.to_string(),
+            "unknown key 'wrold'; did you mean 'world'?"
+        );
+        let fault = refuse("folder =", "weather_report =");
+        assert!(fault.remedy.starts_with("known keys are poses"), "{fault}");
+    }
+
+    #[test]
+    fn scale_objects_are_read_and_their_mistakes_placed() {
+        let object = "\n[[scale_object]]\nphoto = \"a.jpg\"\nkind = \"bar\"\nsize = 2\n\
+            outline = [[1, 2], [3, 4.5]]\nmask = false\n";
+        let text = WHOLE.to_owned() + object + object;
+        let file = FlightFile::parse(&text).unwrap();
+        let expected = ScaleObject {
+            photo: "a.jpg".to_owned(),
+            kind: crate::scale::ScaleObjectKind::Bar,
+            size: 2.0,
+            outline: vec![(1.0, 2.0).into(), (3.0, 4.5).into()],
+            mask: false,
+        };
+        assert_eq!(file.settings().scale_objects, [expected.clone(), expected]);
+        let lines = WHOLE.lines().count() as u64;
+        // In the second of them.
+        let refused = |from: &str, to: &str| {
+            let text = WHOLE.to_owned() + object + &object.replace(from, to);
+            FlightFile::parse(&text).unwrap_err()
+        };
+        for (from, to, line, what) in [
+            ("size = 2", "size = 0", 5, "size is 0, no positive length"),
+            ("size = 2", "size = nan", 5, "size is NaN"),
+            ("[1, 2], ", "", 6, "of the bar has 1 points, not 2"),
+            ("\"bar\"", "\"sphere\"", 6, "has 2 points, not at least 3"),
+            ("4.5", "inf", 6, "not finite"),
+            ("\"a.jpg\"", "\"\"", 3, "photo is empty"),
+            ("\"bar\"", "\"ball\"", 4, "unknown variant"),
+            (
+                "mask",
+                "masked",
+                7,
+                "unknown key 'masked' in [scale_object]",
+            ),
+        ] {
+            let fault = refused(from, to);
+            assert!(fault.what.contains(what), "{fault}");
+            assert_eq!(fault.line, Some(lines + 7 + line), "{fault}");
+        }
+    }
+
+    #[test]
+    fn mistakes_are_placed() {
+        assert_eq!(refuse("format = 1", "format = 2").line, Some(1));
+        assert_eq!(refuse("unit = \"m\"", "unit = \"km\"").line, Some(5));
+        assert_eq!(refuse("ground = 0.25", "ground = nan").line, Some(6));
+        assert_eq!(refuse("\"pile.ply\"", "\"\"").line, Some(9));
+        assert_eq!(refuse("\"ost.yaml\"", "\"\"").line, Some(13));
+        assert_eq!(refuse("ground = 0.25", "ground = \"low\"").line, Some(6));
+        assert_eq!(refuse("fx = 1000.0", "fx = \"wide\"").line, Some(19));
+        assert_eq!(refuse("poses = \"poses.csv\"", "").line, Some(30));
+        assert_eq!(refuse("[photos]", "[photos").line, Some(28));
+        let fault = refuse("folder =", "reconstruction =");
+        assert!(fault.what.contains("both"), "{fault}");
+        let fault = refuse("folder = \"photos\"", "transform = [1, 2]");
+        assert_eq!(fault.line, Some(30));
+        assert!(
+            refuse("[surface]\nfile = \"pile.ply\"", "")
+                .what
+                .contains("no surface")
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_panics(text in "\\PC*") {
+            let _ = FlightFile::parse(&text);
+        }
+
+        #[test]
+        fn no_damage_panics(at in 0..WHOLE.len(), byte in 0..128_u8) {
+            let mut bytes = WHOLE.as_bytes().to_vec();
+            bytes[at] = byte;
+            let _ = FlightFile::parse(&String::from_utf8(bytes).unwrap());
+        }
+    }
+
+    #[test]
+    fn errors_and_the_pair_are_read() {
+        let text =
+            format!("{WHOLE}\n[uncertainty]\nposition = [0.01, 0.02, 3]\nangle = 1\nfocal = 0.1\n");
+        let text = text.replace("[scale]", "[scale]\nuse = \"corners\"");
+        let settings = FlightFile::parse(&text).unwrap().settings();
+        assert_eq!(settings.pair, ScalePair::Corners);
+        let expected = StatedErrors {
+            pose: crate::scale::PoseErrors {
+                position: Some(glam::DVec3::new(0.01, 0.02, 3.0)),
+                angle: Some(glam::DVec3::ONE),
+            },
+            focal: Some(0.1),
+            ..StatedErrors::default()
+        };
+        assert_eq!(settings.errors, expected);
+        let fault = |line: &str| {
+            let fault = FlightFile::parse(&format!("{WHOLE}\n[uncertainty]\n{line}\n"));
+            fault.unwrap_err().to_string()
+        };
+        assert!(fault("focal = -0.1").contains("uncertainty.focal is -0.1"));
+        assert!(fault("angle = [1, 2]").contains("expected a number or [x, y, z]"));
+        assert!(fault("postion = 1").contains("did you mean 'position'?"));
+        assert_eq!(FlightFile::parse(WHOLE).unwrap().pair(), ScalePair::Fitted);
+    }
+}

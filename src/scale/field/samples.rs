@@ -1,0 +1,310 @@
+//! Pixels on a grid over an image, with their rays, and which of them a triangle may lie under.
+
+use std::ops::Range;
+
+use glam::{DVec2, DVec3};
+
+use crate::camera::Camera;
+use crate::scale::ImageKind;
+
+/// Pixels at the middles of equal cells of an image: column i and row j are at
+/// ((i + 0.5)·W / columns, (j + 0.5)·H / rows).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FieldGrid {
+    /// Along the image's width, at least 1.
+    pub columns: u32,
+    /// Along its height, at least 1.
+    pub rows: u32,
+}
+
+impl FieldGrid {
+    /// The grid of the fit (contract, section 7): 64 columns, and as many rows as make cells square,
+    /// halves rounded up, at least 2.
+    pub fn of_fit(camera: &Camera) -> Self {
+        let (w, h) = (u64::from(camera.width), u64::from(camera.height));
+        // round(64 h / w), exactly.
+        let rows = (128 * h + w) / (2 * w).max(1);
+        Self {
+            columns: 64,
+            rows: u32::try_from(rows.max(2)).unwrap_or(u32::MAX),
+        }
+    }
+
+    /// Every pixel.
+    pub fn of_pixels(camera: &Camera) -> Self {
+        Self {
+            columns: camera.width.max(1),
+            rows: camera.height.max(1),
+        }
+    }
+
+    /// How many pixels it has.
+    pub fn len(self) -> usize {
+        self.columns as usize * self.rows as usize
+    }
+
+    /// Whether it has none.
+    pub fn is_empty(self) -> bool {
+        self.len() == 0
+    }
+
+    /// The pixel of the image at a column and a row.
+    pub fn pixel(self, camera: &Camera, column: u32, row: u32) -> DVec2 {
+        let at = |place: u32, size: u32, count: u32| {
+            (f64::from(place) + 0.5) * f64::from(size) / f64::from(count)
+        };
+        DVec2::new(
+            at(column, camera.width, self.columns),
+            at(row, camera.height, self.rows),
+        )
+    }
+}
+
+/// Some rows of a grid, with the rays of their pixels as points (x, y) of the plane z = 1 in camera
+/// axes.
+pub(super) struct Samples {
+    columns: u32,
+    /// Of the grid.
+    rows: Range<u32>,
+    /// Around all points; `None` where no pixel has a ray forward.
+    pub(super) extent: Option<[DVec2; 2]>,
+    layout: Layout,
+}
+
+enum Layout {
+    /// Of an undistorted image: column and row are affine in the point.
+    Affine { camera: Camera, grid: FieldGrid },
+    /// Through a lens: each pixel's point (NaN where there is none), row by row, and bins over the
+    /// plane that know which pixels' points they hold.
+    Listed { points: Vec<DVec2>, bins: Bins },
+}
+
+impl Samples {
+    /// Of some rows of a grid over an image of this kind.
+    pub(super) fn new(
+        camera: &Camera,
+        image: ImageKind,
+        grid: FieldGrid,
+        rows: Range<u32>,
+    ) -> Self {
+        let layout = match image {
+            ImageKind::Undistorted => Layout::Affine {
+                camera: camera.clone(),
+                grid,
+            },
+            ImageKind::AsShot => {
+                let points = rows.clone().flat_map(|row| {
+                    (0..grid.columns).map(move |column| {
+                        let direction = camera.direction_as_shot(grid.pixel(camera, column, row));
+                        match direction {
+                            Ok(direction) if direction.z > 0.0 => {
+                                direction.truncate() / direction.z
+                            }
+                            _ => DVec2::NAN,
+                        }
+                    })
+                });
+                let points: Vec<DVec2> = points.collect();
+                let bins = Bins::new(&points, grid.columns);
+                Layout::Listed { points, bins }
+            }
+        };
+        let mut samples = Self {
+            columns: grid.columns,
+            rows,
+            extent: None,
+            layout,
+        };
+        samples.extent = samples.find_extent();
+        samples
+    }
+
+    fn find_extent(&self) -> Option<[DVec2; 2]> {
+        let around = |points: &mut dyn Iterator<Item = DVec2>| {
+            points.filter(|point| point.is_finite()).fold(
+                None,
+                |extent: Option<[DVec2; 2]>, point| {
+                    let [min, max] = extent.unwrap_or([point; 2]);
+                    Some([min.min(point), max.max(point)])
+                },
+            )
+        };
+        match &self.layout {
+            Layout::Listed { points, .. } => around(&mut points.iter().copied()),
+            Layout::Affine { .. } => {
+                let (last, end) = (self.columns.checked_sub(1)?, self.rows.end.checked_sub(1)?);
+                let corners = [
+                    (0, self.rows.start),
+                    (last, self.rows.start),
+                    (0, end),
+                    (last, end),
+                ];
+                around(
+                    &mut corners
+                        .into_iter()
+                        .map(|(column, row)| self.point(column, row)),
+                )
+            }
+        }
+    }
+
+    /// How many pixels there are.
+    pub(super) fn len(&self) -> usize {
+        self.columns as usize * self.rows.len()
+    }
+
+    /// The place of a pixel among all, row by row.
+    pub(super) fn place(&self, column: u32, row: u32) -> usize {
+        (row - self.rows.start) as usize * self.columns as usize + column as usize
+    }
+
+    /// The point of a pixel's ray; NaN where it has none.
+    pub(super) fn point(&self, column: u32, row: u32) -> DVec2 {
+        match &self.layout {
+            Layout::Affine { camera, grid } => camera
+                .direction_undistorted(grid.pixel(camera, column, row))
+                .truncate(),
+            Layout::Listed { points, .. } => points[self.place(column, row)],
+        }
+    }
+
+    /// All columns and rows.
+    pub(super) fn all(&self) -> (Range<u32>, Range<u32>) {
+        (0..self.columns, self.rows.clone())
+    }
+
+    /// Columns and rows that hold every pixel whose point lies within the box around these points.
+    pub(super) fn near(&self, corners: &[DVec2]) -> (Range<u32>, Range<u32>) {
+        match &self.layout {
+            Layout::Affine { camera, grid } => {
+                let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+                let cells = DVec2::new(
+                    f64::from(grid.columns) / f64::from(camera.width),
+                    f64::from(grid.rows) / f64::from(camera.height),
+                );
+                for corner in corners {
+                    // In front of the camera, so there is a pixel.
+                    let pixel = camera.pixel_undistorted(corner.extend(1.0));
+                    let at = pixel.unwrap_or(DVec2::NAN) * cells - 0.5;
+                    (min, max) = (min.min(at), max.max(at));
+                }
+                // Those from `min` to `max`, with room for rounding. (`as` cuts towards 0, saturates, and
+                // makes NaN 0; `ceil` and `floor` are calls.)
+                let range = |min: f64, max: f64, all: &Range<u32>| {
+                    let (min, max) = (min - 1e-6, max + 1e-6);
+                    let cut = min as u32;
+                    let from = cut.saturating_add(u32::from(f64::from(cut) < min));
+                    let to = if max < 0.0 {
+                        0
+                    } else {
+                        (max as u32).saturating_add(1)
+                    };
+                    from.max(all.start)..to.min(all.end)
+                };
+                (
+                    range(min.x, max.x, &(0..self.columns)),
+                    range(min.y, max.y, &self.rows),
+                )
+            }
+            Layout::Listed { bins, .. } => {
+                let (columns, rows) = bins.near(corners);
+                let first = self.rows.start;
+                (columns, rows.start + first..rows.end + first)
+            }
+        }
+    }
+}
+
+/// Bins over the plane, each with a box around the columns and rows of the pixels whose points it holds.
+/// They are even in the angles of x and of y: a wide lens puts its rim far out.
+struct Bins {
+    min: DVec2,
+    /// Bins a radian.
+    density: DVec2,
+    size: [usize; 2],
+    /// Row by row: columns and rows, the ends excluded; empty bins are empty.
+    held: Vec<[u32; 4]>,
+}
+
+const EMPTY: [u32; 4] = [u32::MAX, 0, u32::MAX, 0];
+
+/// The angles of x and of y.
+fn angles(point: DVec2) -> DVec2 {
+    DVec2::new(point.x.atan(), point.y.atan())
+}
+
+impl Bins {
+    fn new(points: &[DVec2], columns: u32) -> Self {
+        let columns = columns.max(1) as usize;
+        let seen = || {
+            points
+                .iter()
+                .enumerate()
+                .filter(|(_, point)| point.is_finite())
+        };
+        let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for (_, &point) in seen() {
+            (min, max) = (min.min(angles(point)), max.max(angles(point)));
+        }
+        let size = [columns, points.len().div_ceil(columns).max(1)];
+        let count = DVec2::new(size[0] as f64, size[1] as f64);
+        let density = count / (max - min).max(DVec2::splat(1e-12));
+        let mut bins = Self {
+            min,
+            density,
+            size,
+            held: vec![EMPTY; size[0] * size[1]],
+        };
+        for (place, &point) in seen() {
+            let [x, y] = bins.bin(angles(point));
+            let (column, row) = ((place % columns) as u32, (place / columns) as u32);
+            let held = &mut bins.held[y * size[0] + x];
+            *held = [
+                held[0].min(column),
+                held[1].max(column + 1),
+                held[2].min(row),
+                held[3].max(row + 1),
+            ];
+        }
+        bins
+    }
+
+    fn bin(&self, angles: DVec2) -> [usize; 2] {
+        let at = (angles - self.min) * self.density;
+        // `as` saturates.
+        [
+            (at.x as usize).min(self.size[0] - 1),
+            (at.y as usize).min(self.size[1] - 1),
+        ]
+    }
+
+    fn near(&self, corners: &[DVec2]) -> (Range<u32>, Range<u32>) {
+        let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for &corner in corners {
+            (min, max) = (min.min(angles(corner)), max.max(angles(corner)));
+        }
+        // Room for rounding.
+        let room = DVec2::splat(1e-12);
+        let ([x0, y0], [x1, y1]) = (self.bin(min - room), self.bin(max + room));
+        let mut all = EMPTY;
+        for y in y0..=y1 {
+            for held in &self.held[y * self.size[0] + x0..=y * self.size[0] + x1] {
+                all = [
+                    all[0].min(held[0]),
+                    all[1].max(held[1]),
+                    all[2].min(held[2]),
+                    all[3].max(held[3]),
+                ];
+            }
+        }
+        match all[0] < all[1] {
+            true => (all[0]..all[1], all[2]..all[3]),
+            false => (0..0, 0..0),
+        }
+    }
+}
+
+/// The ray of a point of the plane, in camera axes.
+pub(super) fn ray(point: DVec2) -> DVec3 {
+    point.extend(1.0)
+}

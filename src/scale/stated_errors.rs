@@ -1,0 +1,140 @@
+//! How sure somebody is of what scales are computed from: standard deviations that an engineer states
+//! (contract, section 8) or that her photogrammetry package wrote.
+//!
+//! What nobody states is not counted, and that is said; nothing here has a value by default.
+
+use glam::DVec3;
+
+/// Standard deviations of one photo's pose; `None` where nobody states it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PoseErrors {
+    /// Of the camera centre along the world's x, y, z; world units.
+    pub position: Option<DVec3>,
+    /// Of the rotation about the camera's x, y, z axes; degrees.
+    pub angle: Option<DVec3>,
+}
+
+impl PoseErrors {
+    /// These, and where they say nothing, those.
+    #[must_use]
+    pub fn or(self, those: Self) -> Self {
+        Self {
+            position: self.position.or(those.position),
+            angle: self.angle.or(those.angle),
+        }
+    }
+}
+
+/// Standard deviations of everything that a scale is computed from; `None` where nobody states it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct StatedErrors {
+    /// Of each photo's pose.
+    pub pose: PoseErrors,
+    /// Of fx and fy together, percent.
+    pub focal: Option<f64>,
+    /// Of a surface point along its ray, world units; what lies between points is estimated besides.
+    pub surface: Option<f64>,
+    /// Of all lengths, percent.
+    pub world_scale: Option<f64>,
+}
+
+impl StatedErrors {
+    /// These, and where they say nothing, those.
+    #[must_use]
+    pub fn or(self, those: Self) -> Self {
+        Self {
+            pose: self.pose.or(those.pose),
+            focal: self.focal.or(those.focal),
+            surface: self.surface.or(those.surface),
+            world_scale: self.world_scale.or(those.world_scale),
+        }
+    }
+
+    /// The first value that is no standard deviation (negative, or not finite), with its key in
+    /// flight.toml.
+    pub fn trouble(&self) -> Option<(&'static str, f64)> {
+        let axes = |key, axes: Option<DVec3>| {
+            let of_axes = axes.into_iter().flat_map(|axes| axes.to_array());
+            of_axes.map(move |value| (key, value))
+        };
+        axes("position", self.pose.position)
+            .chain(axes("angle", self.pose.angle))
+            .chain(self.focal.map(|value| ("focal", value)))
+            .chain(self.surface.map(|value| ("surface", value)))
+            .chain(self.world_scale.map(|value| ("world_scale", value)))
+            .find(|(_, value)| !(*value >= 0.0 && value.is_finite()))
+    }
+}
+
+/// Which top and bottom scale go to Split-Desktop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ScalePair {
+    /// Of the best line through the scale of all pixels (contract, section 7).
+    #[default]
+    Fitted,
+    /// Of the four corners, as in the paper.
+    Corners,
+}
+
+impl ScalePair {
+    /// Its name in flight.toml and in lists.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Fitted => "fitted",
+            Self::Corners => "corners",
+        }
+    }
+
+    /// The one that stands beside it.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::Fitted => Self::Corners,
+            Self::Corners => Self::Fitted,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_stated_first_counts() {
+        let table = StatedErrors {
+            pose: PoseErrors {
+                position: None,
+                angle: Some(DVec3::splat(0.1)),
+            },
+            focal: Some(0.2),
+            ..StatedErrors::default()
+        };
+        let package = StatedErrors {
+            pose: PoseErrors {
+                position: Some(DVec3::X),
+                angle: Some(DVec3::Y),
+            },
+            focal: Some(9.0),
+            world_scale: Some(0.0),
+            ..StatedErrors::default()
+        };
+        let both = table.or(package);
+        assert_eq!(both.pose.position, Some(DVec3::X));
+        assert_eq!(both.pose.angle, Some(DVec3::splat(0.1)));
+        assert_eq!((both.focal, both.surface), (Some(0.2), None));
+        assert_eq!(both.world_scale, Some(0.0));
+    }
+
+    #[test]
+    fn negative_ones_are_found() {
+        let mut errors = StatedErrors {
+            surface: Some(0.0),
+            ..StatedErrors::default()
+        };
+        assert_eq!(errors.trouble(), None);
+        errors.world_scale = Some(-0.1);
+        assert_eq!(errors.trouble(), Some(("world_scale", -0.1)));
+        errors.pose.angle = Some(DVec3::new(0.0, f64::INFINITY, 0.0));
+        assert_eq!(errors.trouble(), Some(("angle", f64::INFINITY)));
+    }
+}

@@ -1,0 +1,360 @@
+//! How sure the four-corner scales are: the corner rays cast again under drawn errors.
+//!
+//! A corner hangs on one place of a rough surface. Moved by a wrong pose or focal length its ray may meet
+//! another stone, and no derivative says so: so it is cast again, at the triangles around. What the
+//! surface adds at the place that it meets is drawn from how far the points around the corner lie from
+//! what their neighbours predict, each as likely: at a rim some of them are far.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::draws::{Draws, deviation, interval_of};
+use super::surface_error::{DepthError, LEAST_POINTS, UNSEEN_BIAS};
+use super::{Interval, UncertainPhoto};
+use crate::geometry::Ray;
+use crate::scale::CornerOutcome;
+use crate::scale::pyramid::Pyramid;
+use crate::surface::{Cloud, Surface};
+
+/// How many times errors are drawn: the ends of a 95 % interval are then known to a tenth of its half.
+const DRAWS: usize = 400;
+
+/// From where the draws follow.
+const SEED: u64 = 14;
+
+/// How many points around a corner tell of the surface there.
+const POINTS_AROUND: usize = 100;
+
+/// The share of draws whose rays may miss the surface.
+const MAY_MISS: f64 = 0.2;
+
+/// The four-corner scales under drawn errors.
+pub(super) struct CornerDraws {
+    /// Of each edge in the order top, right, bottom, left: draws with all errors; empty where the edge
+    /// has no interval.
+    all: [Vec<f64>; 4],
+    /// See `Uncertainty::parts_percent`.
+    parts_percent: [Option<f64>; 4],
+}
+
+/// What is drawn once for all corners.
+struct Shared {
+    /// Of the camera's centre, in its axes.
+    moved: DVec3,
+    turned: DMat3,
+    focal: f64,
+    world: f64,
+}
+
+/// Which errors have a part.
+#[derive(Clone, Copy)]
+struct Parts {
+    pose: bool,
+    lens: bool,
+    surface: bool,
+    world: bool,
+}
+
+/// A corner with what is around it.
+struct Around {
+    /// Its pixel.
+    pixel: DVec2,
+    /// (x, y, 1) in camera axes.
+    direction: DVec3,
+    /// Its depth.
+    depth: f64,
+    /// The triangles near its ray, in camera axes; `None` where no ray will be cast.
+    near: Option<Surface>,
+    /// Depth errors of the points around it, and their root mean square.
+    errors: Vec<f64>,
+    roughness: f64,
+}
+
+impl CornerDraws {
+    pub(super) fn new(
+        photo: &UncertainPhoto<'_>,
+        depths: &[DepthError],
+        surface: &Surface,
+    ) -> Self {
+        let stated = &photo.errors;
+        let has = Parts {
+            pose: stated.pose.position.is_some() || stated.pose.angle.is_some(),
+            lens: stated.focal.is_some(),
+            surface: depths.len() >= LEAST_POINTS,
+            world: stated.world_scale.is_some(),
+        };
+        let mut draws = Draws::new(SEED);
+        let camera_from_world = photo.field.pose().rotation.transpose();
+        let shared: Vec<Shared> = (0..DRAWS)
+            .map(|_| {
+                let position = stated.pose.position.unwrap_or(DVec3::ZERO) * draws.normals();
+                let angle = stated
+                    .pose
+                    .angle
+                    .unwrap_or(DVec3::ZERO)
+                    .map(f64::to_radians);
+                let percent = |percent: Option<f64>, normal: f64| {
+                    1.0 + percent.unwrap_or(0.0) / 100.0 * normal
+                };
+                Shared {
+                    moved: camera_from_world * position,
+                    turned: DMat3::from_quat(glam::DQuat::from_scaled_axis(
+                        angle * draws.normals(),
+                    )),
+                    focal: percent(stated.focal, draws.normal()).max(0.1),
+                    world: percent(stated.world_scale, draws.normal()).max(0.1),
+                }
+            })
+            .collect();
+        let corners: [Option<Around>; 4] = std::array::from_fn(|index| {
+            let corner = &photo.scale.corners[index];
+            let CornerOutcome::OnSurface { distance, .. } = corner.outcome else {
+                // Nobody knows how far the ground is from what the ray would have met.
+                return None;
+            };
+            let direction = camera_from_world * corner.direction?;
+            let depth = distance * direction.z;
+            let direction = direction / direction.z;
+            let errors = match has.surface {
+                true => errors_around(corner.pixel, depths),
+                false => Vec::new(),
+            };
+            let near = (has.pose || has.lens)
+                .then(|| triangles_near(photo, direction, depth, &shared, surface));
+            Some(Around {
+                pixel: corner.pixel,
+                direction,
+                depth,
+                near: near.flatten(),
+                roughness: root_mean_square_of(&errors),
+                errors,
+            })
+        });
+        let mut of_parts = |parts: Parts| -> [Vec<f64>; 4] {
+            edges_under(photo, &corners, &shared, parts, &mut draws)
+        };
+        let nothing = Parts {
+            pose: false,
+            lens: false,
+            surface: false,
+            world: false,
+        };
+        let alone = [
+            has.pose.then_some(Parts {
+                pose: true,
+                ..nothing
+            }),
+            has.lens.then_some(Parts {
+                lens: true,
+                ..nothing
+            }),
+            has.surface.then_some(Parts {
+                surface: true,
+                ..nothing
+            }),
+            has.world.then_some(Parts {
+                world: true,
+                ..nothing
+            }),
+        ];
+        let scale = photo.scale.scale;
+        let parts_percent = alone.map(|parts| {
+            let [mut top, _, mut bottom, _] = of_parts(parts?);
+            let ends =
+                [(&mut top, scale.top), (&mut bottom, scale.bottom)].map(|(drawn, scale)| {
+                    drawn.sort_unstable_by(f64::total_cmp);
+                    Some(deviation(drawn) / scale?)
+                });
+            let squares: Vec<f64> = ends
+                .into_iter()
+                .flatten()
+                .map(|share| share * share)
+                .collect();
+            // An edge on the ground has no draws; where both are, nothing is known.
+            (!squares.is_empty())
+                .then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt() * 100.0)
+        });
+        Self {
+            all: match has.pose || has.lens || has.surface || has.world {
+                true => of_parts(has),
+                false => Default::default(),
+            },
+            parts_percent,
+        }
+    }
+
+    /// See `Uncertainty::parts_percent`.
+    pub(super) fn parts_percent(&self) -> [Option<f64>; 4] {
+        self.parts_percent
+    }
+
+    /// Of an edge (0 top, 1 right, 2 bottom, 3 left) with this scale.
+    pub(super) fn interval(&self, edge: usize, scale: Option<f64>) -> Option<Interval> {
+        let drawn = self.all.get(edge).filter(|drawn| !drawn.is_empty())?;
+        Some(interval_of(drawn.clone(), scale?))
+    }
+}
+
+fn root_mean_square_of(errors: &[f64]) -> f64 {
+    let squares: f64 = errors.iter().map(|error| error * error).sum();
+    (squares / (errors.len() as f64).max(1.0)).sqrt()
+}
+
+/// The depth errors of the points nearest to a pixel.
+fn errors_around(pixel: DVec2, depths: &[DepthError]) -> Vec<f64> {
+    let mut nearest: Vec<(f64, f64)> = depths
+        .iter()
+        .map(|error| (error.pixel.distance_squared(pixel), error.relative))
+        .collect();
+    if nearest.len() > POINTS_AROUND {
+        nearest.select_nth_unstable_by(POINTS_AROUND, |a, b| a.0.total_cmp(&b.0));
+        nearest.truncate(POINTS_AROUND);
+    }
+    nearest.into_iter().map(|(_, relative)| relative).collect()
+}
+
+/// The direction that a corner's ray has under drawn errors, in the camera axes that are written.
+fn drawn_direction(
+    photo: &UncertainPhoto<'_>,
+    corner: &Around,
+    shared: &Shared,
+    parts: Parts,
+) -> DVec3 {
+    let mut direction = corner.direction;
+    if parts.lens {
+        let mut camera = photo.field.camera().clone();
+        camera.fx *= shared.focal;
+        camera.fy *= shared.focal;
+        if let Ok(found) = photo.field.image().direction(&camera, corner.pixel)
+            && found.z > 0.0
+        {
+            direction = found / found.z;
+        }
+    }
+    match parts.pose {
+        true => shared.turned * direction,
+        false => direction,
+    }
+}
+
+/// The triangles that a corner's ray may meet under the drawn errors, in camera axes.
+fn triangles_near(
+    photo: &UncertainPhoto<'_>,
+    direction: DVec3,
+    depth: f64,
+    shared: &[Shared],
+    surface: &Surface,
+) -> Option<Surface> {
+    let mut reach = 0.0_f64;
+    for drawn in shared {
+        let turned = drawn.turned * direction;
+        let turned = turned.truncate() / turned.z.max(0.1);
+        let by_lens = (1.0 / drawn.focal - 1.0).abs() * direction.truncate().length();
+        // What lies at half the depth moves twice as far.
+        let by_position = 2.0 * drawn.moved.length() / depth * direction.length();
+        reach = reach.max((turned - direction.truncate()).length() + by_lens + by_position);
+    }
+    let room = DVec2::splat(reach * 1.2 + 1e-6);
+    let (min, max) = (direction.truncate() - room, direction.truncate() + room);
+    let pose = photo.field.pose();
+    let center = surface.frame().local_from_world(pose.center);
+    let seen = Pyramid::of_directions(min, max, center, pose.rotation);
+    let camera_from_local = pose.rotation.transpose();
+    let mut points = Vec::new();
+    for patch in surface.patches().seen(|bounds| seen.misses(bounds)).ok()? {
+        for triangle in patch.triangles() {
+            let corners = triangle.map(|corner| camera_from_local * (corner - center));
+            // Behind the camera it is met by no ray; beside it in part, and then it is kept.
+            let outside = |is_out: &dyn Fn(DVec3) -> bool| corners.iter().all(|&c| is_out(c));
+            if outside(&|c| c.z <= 0.0)
+                || outside(&|c| c.x < min.x * c.z)
+                || outside(&|c| c.x > max.x * c.z)
+                || outside(&|c| c.y < min.y * c.z)
+                || outside(&|c| c.y > max.y * c.z)
+            {
+                continue;
+            }
+            points.extend(corners);
+        }
+    }
+    let count = u32::try_from(points.len() / 3).ok()?;
+    let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let cloud = Cloud {
+        points,
+        triangles,
+        ..Cloud::default()
+    };
+    Surface::new(cloud).ok()
+}
+
+/// Draws of the four edges' scales under some of the errors; empty where an end is not known.
+fn edges_under(
+    photo: &UncertainPhoto<'_>,
+    corners: &[Option<Around>; 4],
+    shared: &[Shared],
+    parts: Parts,
+    draws: &mut Draws,
+) -> [Vec<f64>; 4] {
+    let mut edges: [Vec<f64>; 4] = Default::default();
+    let mut casters: Vec<_> = corners
+        .iter()
+        .map(|corner| {
+            let near = corner.as_ref()?.near.as_ref()?;
+            near.caster().ok()
+        })
+        .collect();
+    let camera = photo.field.camera();
+    let (width, height) = (f64::from(camera.width), f64::from(camera.height));
+    let casts = parts.pose || parts.lens;
+    for drawn in shared {
+        let mut ends: [Option<DVec3>; 4] = [None; 4];
+        for (index, corner) in corners.iter().enumerate() {
+            let Some(corner) = corner else { continue };
+            let direction = drawn_direction(photo, corner, drawn, parts);
+            let origin = match parts.pose {
+                true => drawn.moved,
+                false => DVec3::ZERO,
+            };
+            let mut along = corner.depth;
+            if casts {
+                let Some(hit) = casters
+                    .get_mut(index)
+                    .and_then(Option::as_mut)
+                    .and_then(|caster| caster.cast(&Ray { origin, direction }))
+                else {
+                    continue;
+                };
+                along = hit.t;
+            }
+            if parts.surface && !corner.errors.is_empty() {
+                let error = corner.errors[draws.place(corner.errors.len())];
+                let stated = photo.errors.surface.unwrap_or(0.0) * draws.normal();
+                let unseen = UNSEEN_BIAS * corner.roughness;
+                along = along * (1.0 + error + unseen) + stated / direction.length();
+            }
+            ends[index] = Some(origin + direction * along);
+        }
+        let world = match parts.world {
+            true => drawn.world,
+            false => 1.0,
+        };
+        let [top_left, top_right, bottom_right, bottom_left] = ends;
+        let of_edges = [
+            (width, top_left, top_right),
+            (height, top_right, bottom_right),
+            (width, bottom_left, bottom_right),
+            (height, top_left, bottom_left),
+        ];
+        for (edge, (pixels, from, to)) in edges.iter_mut().zip(of_edges) {
+            if let (Some(from), Some(to)) = (from, to) {
+                let scale = pixels / ((from - to).length() * world);
+                edge.extend(scale.is_finite().then_some(scale));
+            }
+        }
+    }
+    // Where too many rays leave the surface, the others say too little.
+    let least = (1.0 - MAY_MISS) * shared.len() as f64;
+    edges.map(|edge| match (edge.len() as f64) < least {
+        true => Vec::new(),
+        false => edge,
+    })
+}

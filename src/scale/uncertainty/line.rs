@@ -1,0 +1,168 @@
+//! How sure the best line is: by derivatives.
+//!
+//! Thousands of pixels see the pile as a whole, so what a wrong pose or focal length does to the line is
+//! what it does to the plane that lies best through the field: m·X = 1 in camera axes, with the inverse of
+//! depth m·d at the ray d. Turned by a small w about its axes and moved by v (in its axes) the camera sees
+//! m + m × w + m (m·v), to the first order; `tests.rs` compares with fields that are computed again.
+
+use glam::DVec3;
+
+use super::draws::normal_interval;
+use super::holes::of_holes;
+use super::surface_error::{DepthError, UNSEEN_BIAS, UNSEEN_SPREAD, root_mean_square};
+use super::{Interval, UncertainPhoto};
+use crate::camera::Camera;
+use crate::scale::field::ScaleField;
+use crate::scale::{FittedScale, ImageKind};
+
+/// How sure the top and the bottom of the best line are.
+pub(super) struct LineErrors {
+    ends: [LineEnd; 2],
+}
+
+/// One end of the line.
+struct LineEnd {
+    /// Pixels per world unit.
+    scale: f64,
+    /// Standard deviations that pose, lens, surface and world leave in it, shares of the scale; `None`
+    /// where nobody states them.
+    parts: [Option<f64>; 4],
+    /// By what share the true scale is smaller, in the mean: what lies unseen between fragments.
+    too_large: f64,
+}
+
+/// What the line through a field is, as a function of the plane: top = m·0th, bottom = m·1st.
+type Ends = [DVec3; 2];
+
+impl LineErrors {
+    pub(super) fn new(
+        photo: &UncertainPhoto<'_>,
+        fitted: &FittedScale,
+        plane: DVec3,
+        depths: &[DepthError],
+        is_cloud: bool,
+    ) -> Self {
+        let (field, errors) = (photo.field, &photo.errors);
+        let ends = ends_by_plane(field, field.camera());
+        // By the focal length, numerically: a lens is not linear in it.
+        let step = 1e-4;
+        let with_focal = |factor: f64| {
+            let camera = Camera {
+                fx: field.camera().fx * factor,
+                fy: field.camera().fy * factor,
+                ..field.camera().clone()
+            };
+            ends_by_plane(field, &camera)
+        };
+        let (more, less) = (with_focal(1.0 + step), with_focal(1.0 - step));
+        let rotation = field.pose().rotation;
+        let roughness = root_mean_square(depths);
+        let counted = depths.len() as f64;
+        let holes = of_holes(field, fitted, is_cloud);
+        let end = |index: usize, scale: f64| {
+            let by_plane = ends[index];
+            let share = 1.0 / plane.dot(by_plane);
+            // d(m·T)/dw: (m × w)·T = (T × m)·w.
+            let by_angle = by_plane.cross(plane) * share;
+            // d(m·T)/dv = (m·T) m, v in camera axes; in the world's: rotated back.
+            let by_position = rotation * plane;
+            let of_angle = errors.pose.angle.map(|angle| {
+                let angle = angle.map(f64::to_radians);
+                (by_angle * angle).length_squared()
+            });
+            let of_position = errors
+                .pose
+                .position
+                .map(|position| (by_position * position).length_squared());
+            let pose = match (of_angle, of_position) {
+                (None, None) => None,
+                (a, b) => Some((a.unwrap_or(0.0) + b.unwrap_or(0.0)).sqrt()),
+            };
+            let by_focal = plane.dot(more[index] - less[index]) / (2.0 * step) * share;
+            let lens = errors.focal.map(|focal| (by_focal * focal / 100.0).abs());
+            let surface = roughness.map(|roughness| {
+                // The end of a line through independent values has four times the variance of their mean.
+                let seen = 2.0 * roughness / counted.sqrt();
+                let unseen = UNSEEN_SPREAD * roughness;
+                // Each point has its stated error, and the line is the mean of many.
+                let depth = 1.0 / plane.z.abs().max(f64::MIN_POSITIVE);
+                let stated = 2.0 * errors.surface.unwrap_or(0.0) / depth / counted.sqrt();
+                let parts = [seen, unseen, stated, holes[index]];
+                parts.iter().map(|part| part * part).sum::<f64>().sqrt()
+            });
+            LineEnd {
+                scale,
+                parts: [
+                    pose,
+                    lens,
+                    surface,
+                    errors.world_scale.map(|percent| percent / 100.0),
+                ],
+                too_large: roughness.map_or(0.0, |roughness| UNSEEN_BIAS * roughness),
+            }
+        };
+        Self {
+            ends: [end(0, fitted.top), end(1, fitted.bottom)],
+        }
+    }
+
+    /// Of the line's top.
+    pub(super) fn top(&self) -> Interval {
+        self.ends[0].interval()
+    }
+
+    /// Of its bottom.
+    pub(super) fn bottom(&self) -> Interval {
+        self.ends[1].interval()
+    }
+
+    /// See `Uncertainty::parts_percent`.
+    pub(super) fn parts_percent(&self) -> [Option<f64>; 4] {
+        std::array::from_fn(|source| {
+            let [top, bottom] = [&self.ends[0], &self.ends[1]].map(|end| end.parts[source]);
+            Some(((top?.powi(2) + bottom?.powi(2)) / 2.0).sqrt() * 100.0)
+        })
+    }
+}
+
+impl LineEnd {
+    fn interval(&self) -> Interval {
+        let squares: f64 = self.parts.iter().flatten().map(|part| part * part).sum();
+        let mean = self.scale * (1.0 - self.too_large);
+        normal_interval(mean, self.scale.abs() * squares.sqrt(), self.scale)
+    }
+}
+
+/// The line through a field of the plane m, top and bottom as m·T: by least squares of each of the rays'
+/// three coordinates over the points that the field has.
+fn ends_by_plane(field: &ScaleField, camera: &Camera) -> Ends {
+    let grid = field.grid;
+    let focal = (camera.fx * camera.fy).sqrt();
+    let (mut count, mut v, mut vv) = (0.0, 0.0, 0.0);
+    let (mut d, mut vd) = (DVec3::ZERO, DVec3::ZERO);
+    for row in 0..grid.rows {
+        let down = (f64::from(row) + 0.5) / f64::from(grid.rows);
+        for column in 0..grid.columns {
+            if field.depth_at(column, row).is_none() {
+                continue;
+            }
+            let pixel = grid.pixel(camera, column, row);
+            let Ok(direction) = field.image().direction(camera, pixel) else {
+                continue;
+            };
+            let lens = match field.image() {
+                ImageKind::Undistorted => 1.0,
+                ImageKind::AsShot => camera.lens_area(direction).map_or(0.0, f64::sqrt),
+            };
+            let ray = direction / direction.z * (focal * lens);
+            count += 1.0;
+            v += down;
+            vv += down * down;
+            d += ray;
+            vd += ray * down;
+        }
+    }
+    let slope = (vd * count - d * v) / (vv * count - v * v);
+    let top = (d - slope * v) / count;
+    [top, top + slope]
+}

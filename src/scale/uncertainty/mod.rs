@@ -1,0 +1,186 @@
+//! How sure a photo's scale is (contract, section 8): standard errors, 95 % intervals, and the parts
+//! that pose, lens, surface and world have in them.
+//!
+//! Four corners hang on four places of a rough surface, so their rays are cast again under drawn errors
+//! (`corners`); thousands of pixels behind the best line see the pile as a whole, of which derivatives
+//! tell all (`line`); where the surface ends inside the photo, what is not seen of it is drawn from what
+//! is (`holes`); one pixel hangs on one place as well (`pixels`). What the surface adds comes from the cloud itself (`surface_error`). Draws follow from
+//! one seed: the same on every run.
+
+mod corners;
+mod draws;
+mod holes;
+mod line;
+mod pixels;
+mod surface_error;
+
+use self::corners::CornerDraws;
+use self::line::LineErrors;
+pub use self::pixels::PixelErrors;
+use self::surface_error::{depth_errors, plane_of};
+use super::field::ScaleField;
+use super::{EdgeScales, FittedScale, PhotoScale, ScalePair, StatedErrors};
+use crate::surface::Surface;
+
+/// How sure one scale is, pixels per world unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// One standard deviation.
+    pub standard_error: f64,
+    /// The lower end of the 95 % interval.
+    pub low: f64,
+    /// Its upper end.
+    pub high: f64,
+}
+
+impl Interval {
+    /// How wide it is, in percent of its middle.
+    pub fn width_percent(self) -> f64 {
+        (self.high - self.low) / ((self.high + self.low) / 2.0).abs() * 100.0
+    }
+
+    /// The same times `factor`.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        Self {
+            standard_error: self.standard_error * factor,
+            low: self.low * factor,
+            high: self.high * factor,
+        }
+    }
+}
+
+/// What has a part in a scale's error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ErrorSource {
+    /// Where the camera stands and where it looks.
+    Pose,
+    /// Its focal length.
+    Lens,
+    /// The cloud, and what lies between its points.
+    Surface,
+    /// The length of the world's unit.
+    World,
+}
+
+impl ErrorSource {
+    /// All, in the order of exports.
+    pub const ALL: [Self; 4] = [Self::Pose, Self::Lens, Self::Surface, Self::World];
+
+    /// Its name in exports.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Pose => "pose",
+            Self::Lens => "lens",
+            Self::Surface => "surface",
+            Self::World => "world",
+        }
+    }
+}
+
+/// How sure the scales of one photo are.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Uncertainty {
+    /// Of the edges; `None` where the edge has no scale.
+    pub top: Option<Interval>,
+    /// Of the bottom edge.
+    pub bottom: Option<Interval>,
+    /// Of the left edge.
+    pub left: Option<Interval>,
+    /// Of the right edge.
+    pub right: Option<Interval>,
+    /// Of the best line's top; `None` where there is no line.
+    pub fitted_top: Option<Interval>,
+    /// Of its bottom.
+    pub fitted_bottom: Option<Interval>,
+    /// The standard error that each source alone would leave in the line, percent (root mean square of
+    /// top and bottom), in the order of [`ErrorSource::ALL`]; `None` where nobody states it, so that it
+    /// is not counted, and where there is no line.
+    pub line_parts_percent: [Option<f64>; 4],
+    /// The same of the corners' top and bottom.
+    pub corner_parts_percent: [Option<f64>; 4],
+}
+
+/// What the uncertainty of a photo follows from.
+#[derive(Debug, Clone, Copy)]
+pub struct UncertainPhoto<'a> {
+    /// Its field on the grid of the fit.
+    pub field: &'a ScaleField,
+    /// The line through it.
+    pub fitted: Option<&'a FittedScale>,
+    /// Its corners.
+    pub scale: &'a PhotoScale,
+    /// How sure somebody is of what both are computed from.
+    pub errors: StatedErrors,
+}
+
+impl Uncertainty {
+    /// How sure the scales of a photo are. `None` where nothing is known of
+    /// any source: that is not the same as no error.
+    pub fn compute(photo: &UncertainPhoto<'_>, surface: &Surface) -> Option<Self> {
+        let plane = plane_of(photo.field)?;
+        let depths = depth_errors(photo.field, plane, surface);
+        let corners = CornerDraws::new(photo, &depths, surface);
+        let line = photo
+            .fitted
+            .map(|fitted| LineErrors::new(photo, fitted, plane, &depths, surface.is_cloud()));
+        let line_parts = line.as_ref().map(LineErrors::parts_percent);
+        let line_parts_percent = line_parts.unwrap_or_default();
+        let corner_parts_percent = corners.parts_percent();
+        // Where nothing is counted there is nothing to say.
+        let mut counted = line_parts_percent.iter().chain(&corner_parts_percent);
+        counted.find(|part| part.is_some())?;
+        let EdgeScales {
+            top,
+            right,
+            bottom,
+            left,
+        } = photo.scale.scale;
+        let fitted = |of: fn(&LineErrors) -> Interval| line.as_ref().map(of);
+        Some(Self {
+            top: corners.interval(0, top),
+            right: corners.interval(1, right),
+            bottom: corners.interval(2, bottom),
+            left: corners.interval(3, left),
+            fitted_top: fitted(LineErrors::top),
+            fitted_bottom: fitted(LineErrors::bottom),
+            line_parts_percent,
+            corner_parts_percent,
+        })
+    }
+
+    /// The same with its scales times `factor`.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Self {
+        let times = |interval: Option<Interval>| interval.map(|interval| interval.times(factor));
+        Self {
+            top: times(self.top),
+            bottom: times(self.bottom),
+            left: times(self.left),
+            right: times(self.right),
+            fitted_top: times(self.fitted_top),
+            fitted_bottom: times(self.fitted_bottom),
+            ..*self
+        }
+    }
+
+    /// The standard error that each source alone would leave in the scales that go to Split-Desktop,
+    /// percent, in the order of [`ErrorSource::ALL`]; `None` where it is not counted.
+    pub fn parts_percent(&self, pair: ScalePair) -> [Option<f64>; 4] {
+        match pair {
+            ScalePair::Fitted if self.fitted_top.is_some() => self.line_parts_percent,
+            _ => self.corner_parts_percent,
+        }
+    }
+
+    /// What is not counted, because nobody states it.
+    pub fn not_counted(&self, pair: ScalePair) -> impl Iterator<Item = ErrorSource> {
+        let parts = ErrorSource::ALL.into_iter().zip(self.parts_percent(pair));
+        parts
+            .filter(|(_, part)| part.is_none())
+            .map(|(source, _)| source)
+    }
+}
+
+#[cfg(test)]
+mod tests;

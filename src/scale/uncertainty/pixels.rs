@@ -1,0 +1,138 @@
+//! How sure the scale of one pixel is: the field's value under the mouse.
+//!
+//! A pixel sees one place of a rough surface: what lies there is as unsure as the points around it are
+//! badly predicted. What a wrong pose or focal length does is what it does to the plane through that
+//! place that is parallel to the photo's best plane (`line.rs` has the derivatives: m·X = 1, turned by w
+//! and moved by v the camera sees m + m × w + m (m·v)).
+
+use glam::DVec3;
+
+use super::Interval;
+use super::draws::normal_interval;
+use super::surface_error::{LEAST_POINTS, UNSEEN_BIAS, depth_errors, plane_of, root_mean_square};
+use crate::camera::Camera;
+use crate::scale::field::ScaleField;
+use crate::scale::{ImageKind, StatedErrors};
+use crate::surface::Surface;
+
+/// Into how many squares the photo's width is divided, each of which has a roughness of its own.
+const ACROSS: usize = 16;
+
+/// How sure the scale is at each pixel of a photo.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PixelErrors {
+    stated: StatedErrors,
+    /// Best through the field, in camera axes: m·X = 1.
+    plane: DVec3,
+    /// Root mean square of the depth errors, shares of the depth, square by square; `None` where the
+    /// photo shows too few points.
+    roughness: Option<Vec<f64>>,
+}
+
+impl PixelErrors {
+    /// Of a photo with this field. `None` where nothing is known of any source.
+    pub fn new(field: &ScaleField, stated: &StatedErrors, surface: &Surface) -> Option<Self> {
+        let plane = plane_of(field)?;
+        let depths = depth_errors(field, plane, surface);
+        let roughness = root_mean_square(&depths).map(|of_all| {
+            let camera = field.camera();
+            let mut squares = vec![(0.0, 0_usize); ACROSS * rows(camera)];
+            for error in &depths {
+                if let Some((sum, count)) = squares.get_mut(square(camera, error.pixel)) {
+                    *sum += error.relative * error.relative;
+                    *count += 1;
+                }
+            }
+            let of_square = |(sum, count): (f64, usize)| match count >= LEAST_POINTS {
+                true => (sum / count as f64).sqrt(),
+                false => of_all,
+            };
+            squares.into_iter().map(of_square).collect()
+        });
+        let is_stated = *stated
+            != StatedErrors {
+                surface: stated.surface,
+                ..StatedErrors::default()
+            };
+        (is_stated || roughness.is_some()).then_some(Self {
+            stated: *stated,
+            plane,
+            roughness,
+        })
+    }
+
+    /// The interval of the scale at a column and a row of a field of that photo, pixels per world unit;
+    /// `None` where it has no scale.
+    pub fn at(&self, field: &ScaleField, column: u32, row: u32) -> Option<Interval> {
+        let scale = field.scale_at(column, row)?;
+        let depth = field.depth_at(column, row)?;
+        let direction = field.direction_at(column, row)?;
+        // Through the place itself.
+        let plane = self.plane / (self.plane.dot(direction) * depth);
+        let stated = &self.stated;
+        let by_angle = direction.cross(plane) * depth;
+        let of_angle = stated.pose.angle.map(|angle| {
+            let angle = angle.map(f64::to_radians);
+            (by_angle * angle).length_squared()
+        });
+        let by_position = field.pose().rotation * plane;
+        let of_position = stated.pose.position;
+        let of_position = of_position.map(|position| (by_position * position).length_squared());
+        let of_focal = stated.focal.and_then(|focal| {
+            let step = 1e-4;
+            let more = with_focal(field, plane, column, row, 1.0 + step)?;
+            let less = with_focal(field, plane, column, row, 1.0 - step)?;
+            let by_focal = (more / less).ln() / (2.0 * step);
+            Some((by_focal * focal / 100.0).powi(2))
+        });
+        let of_world = stated.world_scale.map(|percent| (percent / 100.0).powi(2));
+        let pixel = field.grid.pixel(field.camera(), column, row);
+        let roughness = self.roughness.as_ref();
+        let roughness = roughness.and_then(|of| of.get(square(field.camera(), pixel)).copied());
+        let of_surface = roughness.map(|roughness| {
+            let stated = stated.surface.unwrap_or(0.0) / (depth * direction.length());
+            roughness * roughness + stated * stated
+        });
+        let parts = [of_angle, of_position, of_focal, of_world, of_surface];
+        let share = parts.iter().flatten().sum::<f64>().sqrt();
+        let too_large = UNSEEN_BIAS * roughness.unwrap_or(0.0);
+        Some(normal_interval(
+            scale * (1.0 - too_large),
+            scale * share,
+            scale,
+        ))
+    }
+}
+
+/// How many rows of squares a photo has.
+fn rows(camera: &Camera) -> usize {
+    let (width, height) = (camera.width.max(1) as usize, camera.height as usize);
+    // A scanner's line of a photo is no reason for millions.
+    (ACROSS * height).div_ceil(width).clamp(1, 1024)
+}
+
+/// The square that a pixel lies in.
+fn square(camera: &Camera, pixel: glam::DVec2) -> usize {
+    let place = |at: f64, size: u32, count: usize| {
+        // `as` saturates.
+        ((at / f64::from(size) * count as f64) as usize).min(count - 1)
+    };
+    let rows = rows(camera);
+    place(pixel.y, camera.height, rows) * ACROSS + place(pixel.x, camera.width, ACROSS)
+}
+
+/// The scale at a pixel of a camera whose focal length is another, over a plane.
+fn with_focal(field: &ScaleField, plane: DVec3, column: u32, row: u32, factor: f64) -> Option<f64> {
+    let camera = Camera {
+        fx: field.camera().fx * factor,
+        fy: field.camera().fy * factor,
+        ..field.camera().clone()
+    };
+    let pixel = field.grid.pixel(&camera, column, row);
+    let direction = field.image().direction(&camera, pixel).ok()?;
+    let lens = match field.image() {
+        ImageKind::Undistorted => 1.0,
+        ImageKind::AsShot => camera.lens_area(direction)?.sqrt(),
+    };
+    Some(factor * lens * plane.dot(direction / direction.z))
+}

@@ -1,0 +1,467 @@
+use glam::{DMat3, DQuat, DVec2, DVec3};
+
+use super::*;
+use crate::camera::{Brown, Camera, Distortion, Pose};
+use crate::jobs::Progress;
+use crate::scale::{FieldGrid, Ground, GroundFinder, ImageKind, PoseErrors};
+use crate::split_mix::SplitMix;
+use crate::surface::Cloud;
+
+fn camera(distortion: Distortion) -> Camera {
+    Camera {
+        name: String::new(),
+        width: 1280,
+        height: 720,
+        fx: 1000.0,
+        fy: 1000.0,
+        cx: 640.0,
+        cy: 360.0,
+        skew: 0.0,
+        distortion,
+    }
+}
+
+/// 9000 random points on 40 by 40 around the middle, at `height(x, y, uniform)`.
+fn surface(height: impl Fn(f64, f64, f64) -> f64) -> Surface {
+    let mut random = SplitMix(5);
+    let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let points = (0..9000).map(|_| {
+        let (x, y) = ((uniform() - 0.5) * 40.0, (uniform() - 0.5) * 40.0);
+        DVec3::new(x, y, height(x, y, uniform()))
+    });
+    Surface::new(Cloud {
+        points: points.collect(),
+        ..Cloud::default()
+    })
+    .unwrap()
+}
+
+fn nadir(height: f64) -> Pose {
+    Pose {
+        center: DVec3::new(0.0, 0.0, height),
+        rotation: DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
+    }
+}
+
+struct Computed {
+    fitted: FittedScale,
+    scale: PhotoScale,
+    uncertainty: Option<Uncertainty>,
+}
+
+fn compute(
+    surface: &Surface,
+    camera: &Camera,
+    pose: &Pose,
+    image: ImageKind,
+    errors: StatedErrors,
+) -> Computed {
+    let grid = FieldGrid::of_fit(camera);
+    let progress = Progress::default();
+    let field = ScaleField::compute(camera, pose, image, grid, surface, &progress).unwrap();
+    let fitted = FittedScale::of(&field).unwrap();
+    let mut ground = GroundFinder::new(Ground::Auto, surface);
+    let mut caster = surface.caster().unwrap();
+    let scale = PhotoScale::compute(camera, pose, image, &mut ground, &mut caster).unwrap();
+    let photo = UncertainPhoto {
+        field: &field,
+        fitted: Some(&fitted),
+        scale: &scale,
+        errors,
+    };
+    let uncertainty = Uncertainty::compute(&photo, surface);
+    Computed {
+        fitted,
+        scale,
+        uncertainty,
+    }
+}
+
+fn assert_near(found: f64, expected: f64, share: f64) {
+    assert!(
+        (found / expected - 1.0).abs() <= share,
+        "{found} is not {expected}"
+    );
+}
+
+/// From 10 straight down onto a level plane the scale is f / Z: a height that is off by 0.1 (the
+/// standard deviation) is 1 %, a focal length or a world off by 0.5 % is that. Turned by w about its x
+/// axis the photo's scale changes by the share w·y at y above its middle: here 0.36.
+#[test]
+fn over_a_level_plane_all_parts_are_known() {
+    let surface = surface(|_, _, _| 0.0);
+    let (camera, pose) = (camera(Distortion::None), nadir(10.0));
+    let image = ImageKind::Undistorted;
+    let parts = |errors: StatedErrors| {
+        let found = compute(&surface, &camera, &pose, image, errors);
+        let uncertainty = found.uncertainty.unwrap();
+        let top = uncertainty.top.unwrap().standard_error / found.scale.scale.top.unwrap();
+        let line = uncertainty.fitted_top.unwrap().standard_error / found.fitted.top;
+        (top * 100.0, line * 100.0, uncertainty)
+    };
+    let position = |z: f64| StatedErrors {
+        pose: PoseErrors {
+            position: Some(DVec3::new(0.3, 0.2, z)),
+            angle: None,
+        },
+        ..StatedErrors::default()
+    };
+    // 400 draws tell a standard deviation to 3.5 %; the derivatives are exact.
+    let (top, line, uncertainty) = parts(position(0.1));
+    assert_near(top, 1.0, 0.12);
+    assert_near(line, 1.0, 1e-6);
+    let [pose_part, lens, surface_part, world] = uncertainty.parts_percent(ScalePair::Fitted);
+    assert_near(pose_part.unwrap(), 1.0, 1e-6);
+    assert_eq!((lens, world), (None, None));
+    // The plane predicts its points.
+    assert!(surface_part.unwrap() < 1e-6);
+    let not_counted: Vec<_> = uncertainty.not_counted(ScalePair::Fitted).collect();
+    assert_eq!(not_counted, [ErrorSource::Lens, ErrorSource::World]);
+    assert_near(uncertainty.corner_parts_percent[0].unwrap(), 1.0, 0.12);
+    let interval = uncertainty.fitted_top.unwrap();
+    assert_near(interval.low, 100.0 - 1.959_964, 1e-6);
+    assert_near(interval.high, 100.0 + 1.959_964, 1e-6);
+
+    let (top, line, _) = parts(StatedErrors {
+        focal: Some(0.5),
+        ..StatedErrors::default()
+    });
+    assert_near(top, 0.5, 0.12);
+    assert_near(line, 0.5, 1e-5);
+    let (top, line, _) = parts(StatedErrors {
+        world_scale: Some(0.5),
+        ..StatedErrors::default()
+    });
+    assert_near(top, 0.5, 0.12);
+    assert_near(line, 0.5, 1e-9);
+    let (_, line, _) = parts(StatedErrors {
+        pose: PoseErrors {
+            position: None,
+            angle: Some(DVec3::new(1.0, 0.0, 0.0)),
+        },
+        ..StatedErrors::default()
+    });
+    assert_near(line, 0.36 * 1_f64.to_radians() * 100.0, 1e-6);
+    // An error of a surface point along its ray: the corners' rays are 1.2389 times as long as deep, and
+    // of an edge's two ends each has half a part.
+    let (top, _, _) = parts(StatedErrors {
+        surface: Some(0.1),
+        ..StatedErrors::default()
+    });
+    let ray = (1.0_f64 + 0.64 * 0.64 + 0.36 * 0.36).sqrt();
+    assert_near(top, 0.1 / (10.0 * ray) / 2_f64.sqrt() * 100.0, 0.12);
+}
+
+/// The derivatives are those of fields that are computed again, also obliquely and through a lens.
+#[test]
+fn derivatives_are_those_of_fields_computed_again() {
+    let lens = Distortion::Brown(Brown::new([
+        -0.06, 0.02, 0.0004, -0.0003, 0.0, 0.0, 0.0, 0.0,
+    ]));
+    let surface = surface(|x, y, _| 0.1 * x - 0.05 * y);
+    for (image, tilt) in [
+        (ImageKind::Undistorted, 60.0),
+        (ImageKind::AsShot, 75.0),
+        (ImageKind::AsShot, 88.0),
+    ] {
+        let camera = camera(lens);
+        let pose = Pose::from_tilt_pan(DVec3::new(1.0, -3.0, 9.0), [tilt, 20.0]);
+        let fit = |pose: &Pose, camera: &Camera| {
+            let found = compute(&surface, camera, pose, image, StatedErrors::default());
+            (found.fitted.top, found.fitted.bottom)
+        };
+        let (top, bottom) = fit(&pose, &camera);
+        let step = 1e-5;
+        let change = |moved: Pose, camera: &Camera| {
+            let (t, b) = fit(&moved, camera);
+            ((t / top - 1.0) / step, (b / bottom - 1.0) / step)
+        };
+        let moved = |way: DVec3| {
+            let center = pose.center + way * step;
+            change(Pose { center, ..pose }, &camera)
+        };
+        let turned = |axis: DVec3| {
+            let turn = DMat3::from_quat(DQuat::from_scaled_axis(axis * step));
+            let rotation = pose.rotation * turn;
+            change(Pose { rotation, ..pose }, &camera)
+        };
+        let stated = |errors: StatedErrors| {
+            let found = compute(&surface, &camera, &pose, image, errors);
+            let uncertainty = found.uncertainty.unwrap();
+            let part = |interval: Option<Interval>| interval.unwrap().standard_error;
+            (
+                part(uncertainty.fitted_top) / top,
+                part(uncertainty.fitted_bottom) / bottom,
+            )
+        };
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+            let expected = moved(axis);
+            let found = stated(StatedErrors {
+                pose: PoseErrors {
+                    position: Some(axis * 0.01),
+                    angle: None,
+                },
+                ..StatedErrors::default()
+            });
+            assert!(
+                (found.0 - 0.01 * expected.0.abs()).abs() < 3e-6,
+                "{found:?} {expected:?}"
+            );
+            assert!(
+                (found.1 - 0.01 * expected.1.abs()).abs() < 3e-6,
+                "{found:?} {expected:?}"
+            );
+            let expected = turned(axis);
+            let found = stated(StatedErrors {
+                pose: PoseErrors {
+                    position: None,
+                    angle: Some(axis * 0.01_f64.to_degrees()),
+                },
+                ..StatedErrors::default()
+            });
+            assert!(
+                (found.0 - 0.01 * expected.0.abs()).abs() < 3e-5,
+                "{found:?} {expected:?}"
+            );
+            assert!(
+                (found.1 - 0.01 * expected.1.abs()).abs() < 3e-5,
+                "{found:?} {expected:?}"
+            );
+        }
+        let longer = Camera {
+            fx: camera.fx * (1.0 + step),
+            fy: camera.fy * (1.0 + step),
+            ..camera.clone()
+        };
+        let expected = change(pose, &longer);
+        let found = stated(StatedErrors {
+            focal: Some(1.0),
+            ..StatedErrors::default()
+        });
+        assert!(
+            (found.0 - 0.01 * expected.0.abs()).abs() < 3e-6,
+            "{found:?} {expected:?}"
+        );
+        assert!(
+            (found.1 - 0.01 * expected.1.abs()).abs() < 3e-6,
+            "{found:?} {expected:?}"
+        );
+    }
+}
+
+/// Points on a plane with independent noise s: left out, a point of a random triangulation lies
+/// s·sqrt(1 + sum of squared weights) off, the mean sum near a half.
+#[test]
+fn noise_of_the_points_is_found() {
+    let noise = 0.05;
+    // A uniform number of the standard deviation 0.05.
+    let surface = surface(|_, _, u| (u - 0.5) * noise * 12_f64.sqrt());
+    let (camera, pose) = (camera(Distortion::None), nadir(10.0));
+    let image = ImageKind::Undistorted;
+    let found = compute(&surface, &camera, &pose, image, StatedErrors::default());
+    let uncertainty = found.uncertainty.unwrap();
+    let share = |interval: Option<Interval>, scale: f64| {
+        let interval = interval.unwrap();
+        assert!(interval.low <= scale && scale <= interval.high);
+        interval.standard_error / scale
+    };
+    // At either end 0.05 · sqrt(1.5) of 10; the mean of two has 0.707 of it.
+    let expected = noise / 10.0 * 1.5_f64.sqrt() / 2_f64.sqrt();
+    assert_near(
+        share(uncertainty.top, found.scale.scale.top.unwrap()),
+        expected,
+        0.2,
+    );
+    assert_near(
+        share(uncertainty.left, found.scale.scale.left.unwrap()),
+        expected * 1.4,
+        0.6,
+    );
+    // Hundreds of points say far more than two.
+    assert!(share(uncertainty.fitted_top, found.fitted.top) < expected / 4.0);
+}
+
+/// A corner over a step of 2 in the depth of 10, which many of the points around it lie beyond.
+#[test]
+fn a_rim_widens_the_corners_interval() {
+    // The top left corner point is (-6.4, 3.6).
+    let surface = surface(|x, y, u| match x < -3.0 && y > 0.5 && u < 0.5 {
+        true => 2.0,
+        false => 0.0,
+    });
+    let (camera, pose) = (camera(Distortion::None), nadir(10.0));
+    let image = ImageKind::Undistorted;
+    let found = compute(&surface, &camera, &pose, image, StatedErrors::default());
+    let uncertainty = found.uncertainty.unwrap();
+    let width = |interval: Option<Interval>| {
+        let interval = interval.unwrap();
+        interval.high - interval.low
+    };
+    assert!(width(uncertainty.top) > 5.0, "{uncertainty:?}");
+    assert!(width(uncertainty.right) < 0.1, "{uncertainty:?}");
+}
+
+/// The same on every run; nothing is said of an edge that hangs on the ground.
+#[test]
+fn intervals_repeat_and_need_the_surface() {
+    let rough = surface(|x, y, u| (x * 2.0).sin() * 0.2 + (y * 3.0).cos() * 0.2 + u * 0.1);
+    let camera = camera(Distortion::None);
+    let errors = StatedErrors {
+        pose: PoseErrors {
+            position: Some(DVec3::splat(0.05)),
+            angle: Some(DVec3::splat(0.2)),
+        },
+        focal: Some(0.1),
+        surface: Some(0.01),
+        world_scale: Some(0.1),
+    };
+    let image = ImageKind::Undistorted;
+    let [first, again] = [(); 2].map(|()| compute(&rough, &camera, &nadir(10.0), image, errors));
+    assert!(first.uncertainty.is_some());
+    assert_eq!(first.uncertainty, again.uncertainty);
+    assert_eq!(
+        first
+            .uncertainty
+            .unwrap()
+            .not_counted(ScalePair::Corners)
+            .count(),
+        0
+    );
+    // Moved over the rim: the right half of the photo sees nothing.
+    let pose = Pose {
+        center: DVec3::new(17.0, 0.0, 10.0),
+        ..nadir(10.0)
+    };
+    let found = compute(&rough, &camera, &pose, image, errors);
+    let uncertainty = found.uncertainty.unwrap();
+    assert!(found.scale.scale.top.is_some(), "by the ground");
+    assert_eq!((uncertainty.top, uncertainty.right), (None, None));
+    assert!(uncertainty.left.is_some() && uncertainty.fitted_top.is_some());
+    let pixel = DVec2::new(1280.0, 0.0);
+    assert_eq!(found.scale.corners[1].pixel, pixel);
+}
+
+/// Over a level plane 10 below, the camera straight down, the scale at a pixel is f / Z: a height off by
+/// 0.1 is 1 %, focal length and world are their shares; turned by w about x (y) it changes by the share
+/// w·y (w·x) of the pixel's ray (x, y, 1); 0.1 along a ray of the length r is 0.1 / (10 r).
+#[test]
+fn a_pixel_over_a_plane_is_known() {
+    let surface = surface(|_, _, _| 0.0);
+    let (camera, pose) = (camera(Distortion::None), nadir(10.0));
+    let grid = FieldGrid {
+        columns: 8,
+        rows: 4,
+    };
+    let image = ImageKind::Undistorted;
+    let progress = Progress::default();
+    let field = ScaleField::compute(&camera, &pose, image, grid, &surface, &progress).unwrap();
+    let pose_errors = |position: Option<DVec3>, angle: Option<DVec3>| StatedErrors {
+        pose: PoseErrors { position, angle },
+        ..StatedErrors::default()
+    };
+    for (column, row) in [(0, 0), (7, 1), (4, 3)] {
+        let (x, y) = (
+            ((f64::from(column) + 0.5) * 160.0 - 640.0) / 1000.0,
+            ((f64::from(row) + 0.5) * 180.0 - 360.0) / 1000.0,
+        );
+        let share = |errors: StatedErrors| {
+            let errors = PixelErrors::new(&field, &errors, &surface).unwrap();
+            let interval = errors.at(&field, column, row).unwrap();
+            let half = (interval.high - interval.low) / 2.0 / 1.959_963_985;
+            assert_near(half, interval.standard_error, 1e-6);
+            interval.standard_error / 100.0
+        };
+        let degree = 1_f64.to_radians();
+        let height = pose_errors(Some(DVec3::new(0.3, 0.2, 0.1)), None);
+        assert_near(share(height), 0.01, 1e-6);
+        let about = |axis: DVec3| pose_errors(None, Some(axis));
+        assert_near(share(about(DVec3::X)), degree * y.abs(), 1e-6);
+        assert_near(share(about(DVec3::Y)), degree * x.abs(), 1e-6);
+        let focal = StatedErrors {
+            focal: Some(0.5),
+            ..StatedErrors::default()
+        };
+        assert_near(share(focal), 0.005, 1e-5);
+        let world = StatedErrors {
+            world_scale: Some(0.5),
+            ..StatedErrors::default()
+        };
+        assert_near(share(world), 0.005, 1e-6);
+        let along = StatedErrors {
+            surface: Some(0.1),
+            ..StatedErrors::default()
+        };
+        let ray = (1.0 + x * x + y * y).sqrt();
+        assert_near(share(along), 0.1 / (10.0 * ray), 1e-6);
+    }
+    // Beside the surface there is no scale.
+    let away = Pose {
+        center: DVec3::new(18.0, 0.0, 10.0),
+        ..pose
+    };
+    let field = ScaleField::compute(&camera, &away, image, grid, &surface, &progress).unwrap();
+    let errors = PixelErrors::new(&field, &StatedErrors::default(), &surface).unwrap();
+    assert!(errors.at(&field, 0, 1).is_some());
+    assert_eq!(errors.at(&field, 7, 1), None);
+}
+
+/// One half of a plane has noise, the other none: a pixel is as sure as what is around it. A point with
+/// noise s is predicted to s·sqrt(1.5).
+#[test]
+fn a_pixel_is_as_rough_as_what_is_around_it() {
+    let noise = 0.05;
+    let surface = surface(|x, _, u| match x < 0.0 {
+        true => (u - 0.5) * noise * 12_f64.sqrt(),
+        false => 0.0,
+    });
+    let (camera, pose) = (camera(Distortion::None), nadir(10.0));
+    let (grid, image) = (FieldGrid::of_fit(&camera), ImageKind::Undistorted);
+    let progress = Progress::default();
+    let field = ScaleField::compute(&camera, &pose, image, grid, &surface, &progress).unwrap();
+    let errors = PixelErrors::new(&field, &StatedErrors::default(), &surface).unwrap();
+    let places = [(8, 10), (20, 18), (12, 30)];
+    let mean = places.map(|(column, row)| {
+        let interval = errors.at(&field, column, row).unwrap();
+        let scale = field.scale_at(column, row).unwrap();
+        assert!(interval.low <= scale && scale <= interval.high);
+        interval.standard_error / 100.0 / 3.0
+    });
+    assert_near(mean.iter().sum(), noise / 10.0 * 1.5_f64.sqrt(), 0.35);
+}
+
+/// A level plane with a gap, over which one point high above carries long triangles to the rim, as over what
+/// no photo saw. The plane's scale is fx / Z all over; the line that rests on the bridge is off it by more
+/// than the points say, and the interval says so. The same triangles read from a file are what they are.
+#[test]
+fn a_bridge_counts_in_the_interval() {
+    let mut random = SplitMix(9);
+    let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut points: Vec<DVec3> = (0..12_000)
+        .map(|_| {
+            DVec3::new(
+                (uniform() - 0.5) * 40.0,
+                (uniform() - 0.5) * 40.0,
+                0.02 * uniform(),
+            )
+        })
+        .filter(|point| point.truncate().distance(DVec2::new(2.0, -3.0)) > 3.0)
+        .collect();
+    points.push(DVec3::new(2.0, -3.0, 2.0));
+    let cloud = Surface::new(Cloud {
+        points,
+        ..Cloud::default()
+    })
+    .unwrap();
+    let (camera, pose) = (camera(Distortion::None), nadir(20.0));
+    let truth = 1000.0 / (20.0 - 0.01);
+    let holds = |surface: &Surface| {
+        let errors = StatedErrors::default();
+        let found = compute(surface, &camera, &pose, ImageKind::Undistorted, errors);
+        let sure = found.uncertainty.unwrap();
+        let ends = [sure.fitted_top.unwrap(), sure.fitted_bottom.unwrap()];
+        assert!((found.fitted.bottom / truth - 1.0).abs() > 0.003);
+        ends.map(|end| end.low <= truth && truth <= end.high)
+    };
+    assert_eq!(holds(&cloud), [true; 2]);
+    assert!(!holds(&cloud.to_mesh().unwrap())[1]);
+}

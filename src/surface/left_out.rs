@@ -1,0 +1,184 @@
+//! How well a point of the surface is predicted by the points around it when it is left out: what the
+//! cloud itself says of the error that lies between its points.
+//!
+//! A point of a random cloud is a place like any other for the cloud without it, so the difference
+//! between its height and the height of the triangle that takes its place is a draw from the error of
+//! the interpolation, its own noise added. The triangle is that of the Delaunay triangulation of the
+//! points around it (the hole that it leaves is triangulated anew from no others).
+
+use glam::DVec3;
+
+/// A point and what takes its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LeftOut {
+    /// In the surface's local frame.
+    pub point: DVec3,
+    /// How far the point lies above the triangle that takes its place, world units.
+    pub above: f64,
+    /// The area over (x, y) that the triangles at the point cover, a third of which is its share.
+    pub star: f64,
+}
+
+/// Every point of these triangles (indices into `points`) that they surround, left out in turn.
+pub(super) fn leave_out_each(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<LeftOut> {
+    // Each corner of each triangle, sorted by the point: in 64 bits, for sorting is half of the work.
+    let corners = (0_u64..).zip(triangles.iter().flatten());
+    let mut corners: Vec<u64> = corners
+        .map(|(place, &point)| u64::from(point) << 32 | place)
+        .collect();
+    corners.sort_unstable();
+    let mut edges: Vec<[u32; 2]> = Vec::new();
+    let mut ring: Vec<DVec3> = Vec::new();
+    let around = corners.chunk_by(|a, b| a >> 32 == b >> 32);
+    around
+        .filter_map(|around| {
+            let point = points[(around.first()? >> 32) as usize];
+            edges.clear();
+            // The edge opposite to the corner; `as` takes the lower half, the place.
+            edges.extend(around.iter().map(|&corner| {
+                let place = corner as u32 as usize;
+                let triangle = triangles[place / 3];
+                [triangle[(place + 1) % 3], triangle[(place + 2) % 3]]
+            }));
+            walk_around(points, &edges, &mut ring)?;
+            leave_out(point, &mut ring)
+        })
+        .collect()
+}
+
+/// The points around another one, in order; `None` where the triangles do not surround it.
+fn walk_around(points: &[DVec3], edges: &[[u32; 2]], ring: &mut Vec<DVec3>) -> Option<()> {
+    ring.clear();
+    let first = edges.first()?[0];
+    let mut at = first;
+    loop {
+        ring.push(points[at as usize]);
+        at = edges.iter().find(|edge| edge[0] == at)?[1];
+        if at == first {
+            break;
+        }
+        if ring.len() > edges.len() {
+            return None;
+        }
+    }
+    (ring.len() == edges.len()).then_some(())
+}
+
+/// A point and the triangle of its ring that takes its place; the ring is left relative to the point.
+///
+/// Of all triangles of the ring that hold the place, that of the Delaunay triangulation is the one whose
+/// corners, lifted to the height x² + y², lie lowest over the place (Edelsbrunner and Seidel, "Voronoi
+/// diagrams and arrangements", 1986).
+fn leave_out(point: DVec3, ring: &mut [DVec3]) -> Option<LeftOut> {
+    for corner in ring.iter_mut() {
+        *corner -= point;
+    }
+    let doubled = |a: DVec3, b: DVec3| a.truncate().perp_dot(b.truncate());
+    let around = ring.iter().zip(ring.iter().cycle().skip(1));
+    let star = around.map(|(&a, &b)| doubled(a, b)).sum::<f64>() / 2.0;
+    // A mesh may stand on end.
+    if star <= 0.0 || star.is_nan() {
+        return None;
+    }
+    let mut lowest: Option<(f64, f64)> = None;
+    for (i, &a) in ring.iter().enumerate() {
+        for (j, &b) in ring.iter().enumerate().skip(i + 1) {
+            let from_a_to_b = doubled(a, b);
+            if from_a_to_b < 0.0 {
+                continue;
+            }
+            for &c in &ring[j + 1..] {
+                let (from_b_to_c, from_c_to_a) = (doubled(b, c), doubled(c, a));
+                let area = from_a_to_b + from_b_to_c + from_c_to_a;
+                if from_b_to_c < 0.0 || from_c_to_a < 0.0 || area <= 0.0 {
+                    continue;
+                }
+                let over_the_place = |of: &dyn Fn(DVec3) -> f64| -> f64 {
+                    (of(a) * from_b_to_c + of(b) * from_c_to_a + of(c) * from_a_to_b) / area
+                };
+                let lifted = over_the_place(&|corner| corner.truncate().length_squared());
+                if lowest.is_none_or(|(other, _)| lifted < other) {
+                    lowest = Some((lifted, over_the_place(&|corner| corner.z)));
+                }
+            }
+        }
+    }
+    let (_, height) = lowest?;
+    Some(LeftOut {
+        point,
+        above: -height,
+        star,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::delaunay::triangulate;
+
+    fn lattice(height: impl Fn(f64, f64) -> f64) -> Vec<DVec3> {
+        // Every second row is shifted: six neighbours each, at a distance of 1.
+        let rows = (0..20).flat_map(|row| (0..20).map(move |column| (row, column)));
+        rows.map(|(row, column)| {
+            let x = f64::from(column) + if row % 2 == 0 { 0.0 } else { 0.5 };
+            let y = f64::from(row) * 0.75_f64.sqrt();
+            DVec3::new(x, y, height(x, y))
+        })
+        .collect()
+    }
+
+    #[test]
+    fn a_plane_predicts_its_points() {
+        let points = lattice(|x, y| 3.0 + 0.5 * x - 0.25 * y);
+        let triangles = triangulate(&points).unwrap();
+        let left_out = leave_out_each(&points, &triangles);
+        // Of the rows that are shifted outward neither end is surrounded.
+        assert_eq!(left_out.len(), 18 * 19);
+        for found in left_out {
+            assert!(found.above.abs() < 1e-12);
+            // Six triangles of the side 1; fewer at the ends of rows.
+            if (1.0..18.5).contains(&found.point.x) {
+                assert!((found.star - 1.5 * 3_f64.sqrt()).abs() < 1e-9);
+            }
+        }
+    }
+
+    /// Of a paraboloid r² / 2: the hexagon's corners are all half a unit above its middle.
+    #[test]
+    fn a_bowl_is_predicted_too_high() {
+        let points = lattice(|x, y| (x * x + y * y) / 2.0);
+        let triangles = triangulate(&points).unwrap();
+        for found in leave_out_each(&points, &triangles) {
+            assert!((found.above + 0.5).abs() < 1e-9, "{found:?}");
+        }
+    }
+
+    /// The triangle is that of the triangulation of all other points.
+    #[test]
+    fn the_triangle_is_that_of_the_others() {
+        let mut random = crate::split_mix::SplitMix(3);
+        let mut uniform = || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+        let points: Vec<DVec3> = (0..300)
+            .map(|_| DVec3::new(uniform() * 9.0, uniform() * 9.0, uniform()))
+            .collect();
+        let left_out = leave_out_each(&points, &triangulate(&points).unwrap());
+        assert!(left_out.len() > 250);
+        for found in left_out {
+            let others: Vec<DVec3> = points
+                .iter()
+                .copied()
+                .filter(|p| *p != found.point)
+                .collect();
+            let surface = crate::surface::Surface::new(crate::surface::Cloud {
+                points: others,
+                ..Default::default()
+            });
+            let ray = crate::geometry::Ray {
+                origin: found.point.with_z(50.0),
+                direction: DVec3::NEG_Z,
+            };
+            let hit = surface.unwrap().caster().unwrap().cast(&ray).unwrap();
+            assert!((found.point.z - found.above - hit.point.z).abs() < 1e-9);
+        }
+    }
+}

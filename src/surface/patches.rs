@@ -1,0 +1,145 @@
+//! The triangles of a surface in patches of neighbours, each with a box around it: for whoever wants
+//! those in some part of the world, and not the rest. A cloud is triangulated tile by tile; a mesh is
+//! cut into runs of faces as they stand in its file.
+
+use glam::DVec3;
+
+use super::left_out::{LeftOut, leave_out_each};
+use super::made_once::MadeOnce;
+use super::mesh::Mesh;
+use super::tiles::Tiles;
+use super::{Shape, Surface, SurfaceError, longest_edge};
+use crate::geometry::{Bounds, LocalFrame};
+
+/// Faces of a mesh in one patch.
+const FACES: usize = 4096;
+
+/// Triangles near each other.
+#[derive(Debug, Clone, Copy)]
+pub struct Patch<'a> {
+    points: &'a [DVec3],
+    triangles: &'a [[u32; 3]],
+    max_edge: f64,
+    left_out: &'a MadeOnce<Vec<LeftOut>>,
+    /// Around the triangles, in the surface's local frame.
+    pub bounds: Bounds,
+}
+
+impl Patch<'_> {
+    /// The corners of its triangles, in the surface's local frame ([`Surface::frame`]).
+    pub fn triangles(&self) -> impl Iterator<Item = [DVec3; 3]> {
+        let corners = |triangle: &[u32; 3]| triangle.map(|index| self.points[index as usize]);
+        let max_edge = self.max_edge;
+        (self.triangles.iter().map(corners))
+            .filter(move |&corners| max_edge.is_infinite() || longest_edge(corners) <= max_edge)
+    }
+
+    /// The points of patches left out in turn, those that the triangles of their own patch surround; the
+    /// first call does it, on all cores. Of a mesh only those whose triangles stand near each other in its
+    /// file.
+    pub fn left_out<'a>(patches: &'a [Patch<'a>]) -> impl Iterator<Item = &'a LeftOut> {
+        let make = |patch: &Patch<'_>| leave_out_each(patch.points, patch.triangles);
+        MadeOnce::make_all(patches, |patch| patch.left_out, make);
+        patches
+            .iter()
+            .flat_map(move |patch| patch.left_out.get(|| make(patch)))
+    }
+
+    /// How many triangles it has, those among them that are too long to count.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Whether it has none.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+}
+
+/// All triangles of a surface, made where somebody looks.
+#[derive(Debug, Clone, Copy)]
+pub struct Patches<'a> {
+    surface: &'a Surface,
+}
+
+impl<'a> Patches<'a> {
+    /// The patches that may hold triangles in boxes (the surface's local frame) that `misses` does not
+    /// miss: boxes only shrink the answer. What of a cloud is not triangulated yet is now, on all cores.
+    ///
+    /// # Errors
+    /// Where the triangulation fails.
+    pub fn seen(&self, misses: impl Fn(&Bounds) -> bool) -> Result<Vec<Patch<'a>>, SurfaceError> {
+        let Surface { whole, max_edge } = self.surface;
+        let (points, max_edge) = (self.surface.points(), *max_edge);
+        let mut patches: Vec<Patch<'a>> = match &whole.shape {
+            Shape::Cloud(sites) => {
+                let tiles = whole.tiles.get_or_init(|| Tiles::new(sites));
+                let made = tiles.seen(sites, &misses)?.into_iter();
+                made.filter_map(|made| {
+                    Some(Patch {
+                        points,
+                        triangles: &made.triangles,
+                        max_edge,
+                        left_out: &made.left_out,
+                        bounds: made.bounds?,
+                    })
+                })
+                .collect()
+            }
+            Shape::Mesh(mesh) => {
+                let runs = whole.runs.get_or_init(|| runs(mesh));
+                let triangles = mesh.triangles().chunks(FACES).zip(runs);
+                triangles
+                    .map(|(triangles, run)| Patch {
+                        points,
+                        triangles,
+                        max_edge,
+                        left_out: &run.left_out,
+                        bounds: run.bounds,
+                    })
+                    .collect()
+            }
+        };
+        patches.retain(|patch| !misses(&patch.bounds));
+        Ok(patches)
+    }
+}
+
+impl Surface {
+    /// All triangles in patches, none of them made yet.
+    pub fn patches(&self) -> Patches<'_> {
+        Patches { surface: self }
+    }
+
+    /// The frame in which patches count.
+    pub fn frame(&self) -> &LocalFrame {
+        &self.whole.frame
+    }
+
+    /// How far a ray from this world point may pass a triangle and still meet it: what the rounding of
+    /// the input and of a few products can shift it by, sixteenfold. World units.
+    pub fn slack(&self, origin: DVec3) -> f64 {
+        let local = self.whole.frame.local_from_world(origin);
+        16.0 * f64::EPSILON * (self.whole.magnitude + local.length())
+    }
+}
+
+/// A run of faces of a mesh, as they stand in its file.
+#[derive(Debug)]
+pub(super) struct Run {
+    bounds: Bounds,
+    left_out: MadeOnce<Vec<LeftOut>>,
+}
+
+fn runs(mesh: &Mesh) -> Vec<Run> {
+    let points = mesh.points();
+    let runs = mesh.triangles().chunks(FACES);
+    runs.filter_map(|run| {
+        let corners: Vec<DVec3> = run.iter().flatten().map(|&i| points[i as usize]).collect();
+        Some(Run {
+            bounds: Bounds::of(&corners)?,
+            left_out: MadeOnce::default(),
+        })
+    })
+    .collect()
+}

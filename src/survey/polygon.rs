@@ -1,0 +1,160 @@
+//! An outline in plan, without crossings, cut into triangles.
+
+use glam::DVec2;
+use robust::{Coord, orient2d};
+
+use super::SurveyError;
+
+/// The most corners of a polygon: every side is compared with every other.
+pub const MOST_CORNERS: usize = 2000;
+
+/// An outline in plan that does not cross itself, counter-clockwise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polygon {
+    corners: Vec<DVec2>,
+}
+
+impl Polygon {
+    /// The polygon with these corners (x, y in the world), in either direction; a corner that is said
+    /// twice in a row, or again at the end, counts once.
+    ///
+    /// # Errors
+    /// Where it has no area, crosses itself, or has too many corners.
+    pub fn new(corners: &[DVec2]) -> Result<Self, SurveyError> {
+        if let Some(place) = corners.iter().position(|corner| !corner.is_finite()) {
+            return Err(SurveyError::NotFinite(place + 1));
+        }
+        let mut corners = corners.to_vec();
+        corners.dedup();
+        while corners.len() > 1 && corners.first() == corners.last() {
+            corners.pop();
+        }
+        let count = corners.len();
+        if count < 3 {
+            return Err(SurveyError::TooFewCorners(count));
+        }
+        if count > MOST_CORNERS {
+            return Err(SurveyError::TooManyCorners(count));
+        }
+        if corners
+            .iter()
+            .all(|&c| side(corners[0], corners[1], c) == 0.0)
+        {
+            return Err(SurveyError::NoArea);
+        }
+        let ends = |side: usize| (corners[side], corners[(side + 1) % count]);
+        for first in 0..count {
+            for second in first + 1..count {
+                let neighbours = second == first + 1 || (first == 0 && second == count - 1);
+                let (a, b) = ends(first);
+                let (c, d) = ends(second);
+                let meet = match neighbours {
+                    // They share a corner; more than that where one turns back over the other.
+                    true => {
+                        let (before, corner, behind) = if second == first + 1 {
+                            (a, b, d)
+                        } else {
+                            (c, d, b)
+                        };
+                        side(before, corner, behind) == 0.0
+                            && (before - corner).dot(behind - corner) > 0.0
+                    }
+                    false => touch(a, b, c, d),
+                };
+                if meet {
+                    return Err(SurveyError::CrossesItself(first + 1, second + 1));
+                }
+            }
+        }
+        let mut polygon = Self { corners };
+        if polygon.twice_signed_area() < 0.0 {
+            polygon.corners.reverse();
+        }
+        if polygon.area() > 0.0 {
+            Ok(polygon)
+        } else {
+            Err(SurveyError::NoArea)
+        }
+    }
+
+    /// Its corners in the world, counter-clockwise seen from above.
+    pub fn corners(&self) -> &[DVec2] {
+        &self.corners
+    }
+
+    /// Its area in plan, square world units.
+    pub fn area(&self) -> f64 {
+        self.twice_signed_area() / 2.0
+    }
+
+    fn twice_signed_area(&self) -> f64 {
+        // From its first corner: squares of UTM coordinates would lose the digits.
+        let from = self.corners[0];
+        let pairs = self.corners.windows(2);
+        let twice = pairs.map(|pair| (pair[0] - from).perp_dot(pair[1] - from));
+        twice.sum()
+    }
+
+    /// It in triangles that do not overlap, counter-clockwise, less `origin`.
+    pub(super) fn triangles(&self, origin: DVec2) -> Vec<[DVec2; 3]> {
+        let mut left: Vec<DVec2> = self.corners.iter().map(|&c| c - origin).collect();
+        let mut triangles = Vec::new();
+        while left.len() > 3 {
+            let count = left.len();
+            let around = |place: usize| {
+                let before = left[(place + count - 1) % count];
+                (before, left[place], left[(place + 1) % count])
+            };
+            let flat = (0..count).find(|&place| {
+                let (a, b, c) = around(place);
+                side(a, b, c) == 0.0
+            });
+            let ear = flat.or_else(|| (0..count).find(|&place| is_ear(&left, around(place))));
+            // Every polygon without crossings has two ears (Meisters 1975).
+            let Some(ear) = ear else {
+                break;
+            };
+            let (a, b, c) = around(ear);
+            if flat.is_none() {
+                triangles.push([a, b, c]);
+            }
+            left.remove(ear);
+        }
+        if let [a, b, c] = left[..]
+            && side(a, b, c) > 0.0
+        {
+            triangles.push([a, b, c]);
+        }
+        triangles
+    }
+}
+
+/// Whether no other corner lies in the triangle at a corner that is no bay.
+fn is_ear(corners: &[DVec2], (a, b, c): (DVec2, DVec2, DVec2)) -> bool {
+    let inside = |p: DVec2| {
+        p != a
+            && p != b
+            && p != c
+            && side(a, b, p) >= 0.0
+            && side(b, c, p) >= 0.0
+            && side(c, a, p) >= 0.0
+    };
+    side(a, b, c) > 0.0 && !corners.iter().any(|&corner| inside(corner))
+}
+
+/// Over 0 where `c` lies left of the way from `a` to `b`: exact.
+fn side(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    let coord = |p: DVec2| Coord { x: p.x, y: p.y };
+    orient2d(coord(a), coord(b), coord(c))
+}
+
+/// Whether two sides have a point in common.
+fn touch(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
+    let apart = a.max(b).cmplt(c.min(d)).any() || c.max(d).cmplt(a.min(b)).any();
+    if apart {
+        return false;
+    }
+    let crosses =
+        |one: f64, other: f64| (one >= 0.0 && other <= 0.0) || (one <= 0.0 && other >= 0.0);
+    crosses(side(a, b, c), side(a, b, d)) && crosses(side(c, d, a), side(c, d, b))
+}

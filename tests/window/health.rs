@@ -1,0 +1,134 @@
+//! The flight's health: what it says of flights that are known to be ill, and that each remedy is one click
+//! away.
+
+use egui::Key;
+use egui::Modifiers;
+use egui::accesskit::Role;
+use fragscale::app::command::Asking;
+use fragscale::opening::{Health, HealthFinding, HealthItem, Remedy};
+
+use crate::desk::{Desk, copy, flight};
+use crate::{own_frame, wrong_pile};
+
+fn finding(desk: &Desk, item: HealthItem) -> &HealthFinding {
+    let mut health = desk.open().health.iter();
+    health
+        .find(|finding| finding.item == item)
+        .expect("each is there")
+}
+
+fn how(desk: &Desk, item: HealthItem) -> (Health, Option<Remedy>) {
+    let finding = finding(desk, item);
+    (finding.health, finding.remedy)
+}
+
+/// The sample is whole but for the one photo over a hole.
+#[test]
+fn the_sample_is_well_but_for_its_hole() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    let all: Vec<HealthItem> = desk
+        .open()
+        .health
+        .iter()
+        .map(|finding| finding.item)
+        .collect();
+    assert_eq!(
+        all,
+        [
+            HealthItem::Unit,
+            HealthItem::CoordinateSystem,
+            HealthItem::UpAxis,
+            HealthItem::Colours,
+            HealthItem::Exif,
+            HealthItem::Holes,
+            HealthItem::Photos,
+        ]
+    );
+    for good in [
+        HealthItem::Unit,
+        HealthItem::UpAxis,
+        HealthItem::Colours,
+        HealthItem::Exif,
+        HealthItem::Photos,
+    ] {
+        assert_eq!(
+            how(&desk, good),
+            (Health::Good, None),
+            "{:?}",
+            finding(&desk, good)
+        );
+    }
+    // A lab has no coordinate system; its scales need none.
+    assert_eq!(
+        how(&desk, HealthItem::CoordinateSystem),
+        (Health::Unknown, None)
+    );
+    assert_eq!(
+        how(&desk, HealthItem::Holes),
+        (Health::Bad, Some(Remedy::AddSurface))
+    );
+    assert_eq!(finding(&desk, HealthItem::Holes).short, "1 of 9 photos");
+    assert_eq!(finding(&desk, HealthItem::Photos).short, "9 of 9");
+    desk.click(Role::Button, "Holes: Add surface…");
+    assert_eq!(desk.harness.state().state().asking, Some(Asking::Add));
+    desk.press(Modifiers::NONE, Key::Escape);
+    let label = format!("Unit: {}", finding(&desk, HealthItem::Unit).says);
+    assert!(desk.shows(Role::Status, &label));
+    desk.press(Modifiers::NONE, Key::F4);
+    assert!(!desk.shows(Role::Status, &label), "it is put away");
+}
+
+#[test]
+fn without_photos_they_are_added() {
+    let folder = copy("assets/sample");
+    let toml = folder.path().join("flight.toml");
+    let text = std::fs::read_to_string(&toml).expect("the flight");
+    std::fs::write(&toml, text.replace("folder = \"photos\"", "")).expect("written");
+    let mut desk = Desk::new(Some(folder.path()));
+    assert_eq!(
+        how(&desk, HealthItem::Photos),
+        (Health::Bad, Some(Remedy::AddPhotos))
+    );
+    assert_eq!(finding(&desk, HealthItem::Photos).short, "0 of 9");
+    assert_eq!(
+        how(&desk, HealthItem::Exif),
+        (Health::Unknown, Some(Remedy::AddPhotos))
+    );
+    assert_eq!(how(&desk, HealthItem::Colours), (Health::Unknown, None));
+    desk.click(Role::Button, "Photo files: Add photos…");
+    assert_eq!(desk.harness.state().state().asking, Some(Asking::Add));
+}
+
+#[test]
+fn a_frame_of_its_own_is_georeferenced() {
+    let folder = tempfile::tempdir().expect("a folder");
+    own_frame::model(folder.path());
+    let mut desk = Desk::new(Some(folder.path()));
+    for item in [HealthItem::Unit, HealthItem::CoordinateSystem] {
+        assert_eq!(how(&desk, item), (Health::Bad, Some(Remedy::Georeference)));
+    }
+    assert_eq!(finding(&desk, HealthItem::Unit).short, "unknown");
+    assert_eq!(
+        finding(&desk, HealthItem::CoordinateSystem).short,
+        "own frame"
+    );
+    desk.click(Role::Button, "Unit: Georeference…");
+    assert_eq!(
+        desk.harness.state().state().asking,
+        Some(Asking::Georeference)
+    );
+}
+
+#[test]
+fn a_pile_that_is_upside_down_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    wrong_pile::under_surface(folder.path());
+    let desk = Desk::new(Some(folder.path()));
+    let up = finding(&desk, HealthItem::UpAxis);
+    assert_eq!((up.health, up.short.as_str()), (Health::Bad, "?"));
+    assert!(
+        up.says.contains("taken from under the surface"),
+        "{}",
+        up.says
+    );
+}

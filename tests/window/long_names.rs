@@ -1,0 +1,324 @@
+//! Names of up to 300 letters in several scripts, in panels of any width: no number is covered or cut,
+//! no panel stays wider for the next flight.
+
+use std::fs;
+use std::path::Path;
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Rect, pos2};
+use egui_kittest::Harness;
+use fragscale::app::App;
+use fragscale::app::Command;
+use fragscale::app::open_flight::tracing::Trace;
+use fragscale::scale::ScaleObjectKind;
+use glam::DVec2;
+use tempfile::TempDir;
+
+use crate::desk::{Desk, Written, copy};
+use crate::random::Dice;
+
+/// Words that names are made of.
+const WORDS: [&str; 12] = [
+    "IMG",
+    "_",
+    "DJI_0042",
+    "muckpile",
+    " ",
+    "爆破照片",
+    "発破の写真",
+    "발파사진",
+    "взрыв",
+    "صورة التفجير",
+    "Größe",
+    "-7.25",
+];
+
+fn name(dice: &mut Dice, most: usize) -> String {
+    let length = 1 + dice.below(most);
+    let mut name = String::new();
+    while name.chars().count() < length {
+        name.push_str(WORDS[dice.below(WORDS.len())]);
+    }
+    let name: String = name.chars().take(length).collect();
+    // Blanks at the ends of a cell are not part of it.
+    name.trim().replace(' ', "_") + "x"
+}
+
+/// The windrow with other names of flight and photos.
+fn named(dice: &mut Dice, most: usize) -> TempDir {
+    let folder = copy("tests/windrow");
+    let toml = folder.path().join("flight.toml");
+    let text = fs::read_to_string(&toml).expect("the flight");
+    let title = name(dice, most);
+    let text = text.replacen("name = \"Windrow\"", &format!("name = \"{title}\""), 1);
+    assert!(text.contains(&title));
+    fs::write(&toml, text).expect("written");
+    let poses = folder.path().join("poses.csv");
+    let text = fs::read_to_string(&poses).expect("the poses");
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    let mut named = lines.next().expect("a head").to_owned() + "\n";
+    for (number, line) in lines.enumerate() {
+        let (_, rest) = line.split_once(',').expect("a row");
+        named += &format!("{}_{number}.jpg,{rest}\n", name(dice, most));
+    }
+    fs::write(&poses, named).expect("written");
+    folder
+}
+
+fn desk(path: &Path, size: [f32; 2]) -> Desk {
+    let path = path.to_owned();
+    let harness = Harness::builder()
+        .with_size(size)
+        .with_max_steps(30)
+        // Letters that no font on the machine has are boxes.
+        .allow_missing_glyphs()
+        .build_eframe(|context| App::new(context, vec![path]));
+    let mut desk = Desk { harness };
+    desk.settle();
+    let state = desk.harness.state().state();
+    assert!(state.open.is_some(), "{:?}", state.log);
+    desk
+}
+
+/// Drags the edge between the viewport and a panel so that the panel has this width, as far as it goes.
+fn drag_edges(desk: &mut Desk, left: f32, right: f32) {
+    for (is_left, width) in [(true, left), (false, right)] {
+        let viewport = desk.viewport();
+        let whole = desk.harness.ctx.content_rect();
+        let y = viewport.bottom() - 30.0;
+        let (from, to) = match is_left {
+            true => (viewport.left() - 1.5, width),
+            false => (viewport.right() + 1.5, whole.right() - width),
+        };
+        for (step, at) in [from, from, to, to].into_iter().enumerate() {
+            let at = pos2(at, y);
+            match step {
+                1 => desk.harness.drag_at(at),
+                3 => desk.harness.drop_at(at),
+                _ => desk.harness.hover_at(at),
+            }
+            desk.harness.step();
+        }
+        desk.harness.hover_at(viewport.center());
+        desk.harness.run_ok();
+    }
+}
+
+/// The numbers that are seen but not whole, or that lie under the viewport.
+fn cut_numbers(desk: &Desk, what: &str) -> Vec<String> {
+    let viewport = desk.shows(Role::Image, "Viewport").then(|| desk.viewport());
+    let whole = desk.harness.ctx.content_rect();
+    let mut found = Vec::new();
+    for written in desk.written() {
+        let (place, sight) = (written.place, written.seen_in.intersect(whole));
+        let seen = place.intersect(sight);
+        let is_number = written.text.chars().any(|c| c.is_ascii_digit());
+        if !is_number || seen.width() <= 0.5 || seen.height() <= 0.5 {
+            continue;
+        }
+        let text = &written.text;
+        // Rows that are scrolled half away are still read right.
+        if place.left() < sight.left() - 1.0 || place.right() > sight.right() + 1.0 {
+            found.push(format!("{what}: '{text}' at {place} is cut to {sight}"));
+        }
+        let Some(viewport) = viewport else {
+            continue;
+        };
+        // What is written on the viewport is clipped to it.
+        let on_viewport = viewport.expand(1.0).contains_rect(sight);
+        if !on_viewport && viewport.shrink(1.0).intersects(seen) && !is_over(desk, seen) {
+            found.push(format!("{what}: '{text}' at {place} is under the viewport"));
+        }
+    }
+    found
+}
+
+/// A bar on the selected photo, which has numbers of its own.
+fn trace_bar(desk: &mut Desk) {
+    let bar = ScaleObjectKind::Bar;
+    for step in [
+        Trace::Size(bar, 0.25),
+        Trace::Begin(bar),
+        Trace::Add(DVec2::new(300.0, 200.0)),
+        Trace::Add(DVec2::new(500.0, 260.0)),
+    ] {
+        desk.harness.state_mut().apply(Command::Trace(step));
+    }
+}
+
+/// Whether a small window is there.
+fn is_over(desk: &Desk, place: Rect) -> bool {
+    desk.harness
+        .ctx
+        .layer_id_at(place.center())
+        .is_some_and(|layer| layer.order != egui::Order::Background)
+}
+
+#[test]
+fn no_number_is_cut_whatever_the_names_and_widths() {
+    let mut dice = Dice::new(15_006);
+    let (mut found, mut widths) = (Vec::new(), Vec::new());
+    for round in 0..12 {
+        let most = [8, 40, 100, 300][round % 4];
+        let folder = named(&mut dice, most);
+        let size = [
+            dice.between(640.0, 1500.0) as f32,
+            dice.between(480.0, 900.0) as f32,
+        ];
+        let mut desk = desk(folder.path(), size);
+        for step in 0..4 {
+            let (left, right) = (dice.between(200.0, 700.0), dice.between(200.0, 600.0));
+            drag_edges(&mut desk, left as f32, right as f32);
+            desk.harness.state_mut().apply(Command::Select(Some(step)));
+            if step == 2 {
+                trace_bar(&mut desk);
+                desk.harness.state_mut().apply(Command::ToggleTint);
+            }
+            desk.settle();
+            widths.push(desk.viewport().x_range());
+            for tab in ["Photo", "Flight", "Limits"] {
+                desk.click(Role::Tab, tab);
+                let viewport = desk.viewport();
+                let what = format!("round {round}.{step}, {size:?}, {tab}, viewport {viewport}");
+                found.extend(cut_numbers(&desk, &what));
+            }
+        }
+        for key in [Key::O, Key::E, Key::P, Key::L] {
+            desk.press(Modifiers::COMMAND, key);
+            found.extend(cut_numbers(
+                &desk,
+                &format!("round {round}, {size:?}, {key:?}"),
+            ));
+        }
+    }
+    widths.dedup();
+    assert!(widths.len() > 20, "the panels have many widths: {widths:?}");
+    let (count, first) = (found.len(), found.iter().take(40).cloned());
+    let first: Vec<String> = first.collect();
+    assert!(found.is_empty(), "{count}:\n{}", first.join("\n"));
+}
+
+/// A flight with long names leaves the panels as wide as they were.
+#[test]
+fn panels_are_as_wide_for_the_next_flight() {
+    let mut dice = Dice::new(7);
+    let folder = named(&mut dice, 300);
+    let plain = copy("tests/windrow");
+    for size in [[1024.0, 700.0], [1500.0, 950.0]] {
+        let fresh = desk(plain.path(), size).viewport();
+        let mut desk = desk(folder.path(), size);
+        assert_eq!(desk.viewport(), fresh, "with long names");
+        for tab in ["Flight", "Limits", "Photo"] {
+            desk.click(Role::Tab, tab);
+            assert_eq!(desk.viewport(), fresh, "{tab}");
+        }
+        let next = Command::Open(plain.path().to_owned());
+        desk.harness.state_mut().apply(next);
+        desk.settle();
+        assert_eq!(desk.viewport(), fresh, "for the next flight");
+    }
+}
+
+/// The name of the selected photo is cut in the middle: its end, which tells photos apart, is there.
+#[test]
+fn names_are_cut_in_the_middle_and_whole_in_the_hover_text() {
+    let mut dice = Dice::new(3);
+    let folder = named(&mut dice, 300);
+    let mut desk = desk(folder.path(), [1280.0, 720.0]);
+    let photo = (0..9).find(|&photo| desk.open().name(photo).chars().count() > 200);
+    let photo = photo.expect("a long name");
+    desk.harness.state_mut().apply(Command::Select(Some(photo)));
+    desk.settle();
+    let name = desk.open().name(photo).to_owned();
+    let end = format!("_{photo}.jpg");
+    let cut: Vec<_> = desk
+        .written()
+        .into_iter()
+        .filter(|w| w.text.contains('…'))
+        .collect();
+    // In the narrow column of the table the end is shorter.
+    let in_table = |w: &&Written| w.place.right() < desk.viewport().left();
+    let texts: Vec<&str> = cut
+        .iter()
+        .filter(in_table)
+        .map(|w| w.text.as_str())
+        .collect();
+    assert!(texts.iter().any(|text| text.ends_with("pg")), "{texts:?}");
+    let inspector = cut
+        .iter()
+        .find(|w| w.place.left() > desk.viewport().right() && w.text.ends_with(&end))
+        .expect("over the photo");
+    assert!(name.starts_with(inspector.text.split('…').next().expect("a begin")));
+    desk.harness.hover_at(inspector.place.center());
+    for _ in 0..90 {
+        desk.harness.step();
+    }
+    assert!(
+        desk.written().iter().any(|w| w.text == name),
+        "the whole name in the hover text"
+    );
+}
+
+/// The page of size distributions, with methods and files of long names.
+#[test]
+fn no_number_is_cut_beside_the_curves() {
+    let mut dice = Dice::new(99);
+    let mut found = Vec::new();
+    for most in [8, 100, 300] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut table = "method,trial,photo,size_mm,percent_passing\n".to_owned();
+        for method in 0..2 {
+            let method = format!("{}_{method}", name(&mut dice, most));
+            for trial in 1..3 {
+                for photo in ["a", "b"] {
+                    let photo = format!("{}_{photo}", name(&mut dice, most));
+                    for (size, passing) in [(8, 6.25), (16, 14.5), (63, 65.0), (125, 96.125)] {
+                        let passing = passing + f64::from(trial);
+                        table += &format!("{method},{trial},{photo},{size},{passing}\n");
+                    }
+                }
+            }
+        }
+        // A file's name holds 255 bytes.
+        let path = folder
+            .path()
+            .join(format!("{}.csv", name(&mut dice, most.min(60))));
+        fs::write(&path, table).expect("written");
+        let size = [
+            dice.between(640.0, 1500.0) as f32,
+            dice.between(480.0, 900.0) as f32,
+        ];
+        let harness = Harness::builder()
+            .with_size(size)
+            .with_max_steps(30)
+            .allow_missing_glyphs()
+            .build_eframe(|context| App::new(context, Vec::new()));
+        let mut desk = Desk { harness };
+        desk.press(Modifiers::COMMAND, Key::Num2);
+        let paths = vec![path];
+        desk.harness.state_mut().apply(Command::Drop(paths));
+        desk.settle();
+        let log = &desk.harness.state().state().log;
+        assert!(
+            desk.harness
+                .state()
+                .state()
+                .distributions
+                .computed
+                .is_some(),
+            "{log:?}"
+        );
+        for tab in [
+            "Fits",
+            "Against the reference",
+            "Repeatability",
+            "Time effort",
+        ] {
+            desk.click(Role::Tab, tab);
+            found.extend(cut_numbers(&desk, &format!("{most}, {size:?}, {tab}")));
+        }
+    }
+    let (count, first) = (found.len(), found.iter().take(40).cloned());
+    let first: Vec<String> = first.collect();
+    assert!(found.is_empty(), "{count}:\n{}", first.join("\n"));
+}

@@ -1,0 +1,207 @@
+//! The review of doubtful photos: keys alone, one after the other, each with what shows its reason; what
+//! is decided is undone and done again, and after the last the export is one click.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, Theme};
+use fragscale::app::Command;
+use fragscale::app::command::Tab;
+use fragscale::flight::{Along, DecisionKind, Doubt, InView, Limits, OnPhoto};
+
+use crate::desk::{Desk, Screen, flight};
+
+const NONE: Modifiers = Modifiers::NONE;
+
+/// The sample under limits that doubt every photo for its view, and some for more.
+fn strict() -> Limits {
+    Limits {
+        flattest_angle: 80.0,
+        ..Limits::default()
+    }
+}
+
+fn decision(desk: &Desk, photo: usize) -> Option<DecisionKind> {
+    let photo = desk.open().review.photo(photo).expect("a photo");
+    photo.decision.map(|decision| decision.kind)
+}
+
+fn doubtful(desk: &Desk) -> Vec<usize> {
+    desk.open().table.doubtful.clone()
+}
+
+#[test]
+fn doubtful_photos_are_reviewed_with_keys_alone() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.harness.state_mut().apply(Command::Limits(strict()));
+    desk.settle();
+    let photos = doubtful(&desk);
+    let count = photos.len();
+    assert!(count >= 4, "{photos:?}");
+    desk.press(NONE, Key::N);
+    assert_eq!(desk.harness.state().state().tab, Tab::Review);
+    assert_eq!(desk.open().selected, Some(photos[0]));
+    assert!(desk.says(&format!("1 of {count}")), "{:?}", desk.texts());
+
+    // Accepted with a note, all by keys.
+    desk.press(NONE, Key::W);
+    desk.harness.event(Event::Text("level toe".to_owned()));
+    desk.settle();
+    desk.press(NONE, Key::Enter);
+    assert_eq!(decision(&desk, photos[0]), Some(DecisionKind::Accepted));
+    let noted = desk.open().settings().decisions[0].note.clone();
+    assert_eq!(noted, "level toe");
+    assert_eq!(desk.open().selected, Some(photos[1]));
+    assert!(desk.says(&format!("2 of {count}")));
+    assert!(desk.says(&format!("{} to decide, 1 accepted, 0 left out", count - 1)));
+
+    // Left out without a note: that of the photo before is not taken for this one's.
+    desk.press(NONE, Key::Delete);
+    assert_eq!(decision(&desk, photos[1]), Some(DecisionKind::LeftOut));
+    assert_eq!(desk.open().settings().decisions[1].note, "");
+    assert_eq!(desk.open().selected, Some(photos[2]));
+
+    // Undone, which brings the photo back, and done again.
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(decision(&desk, photos[1]), None);
+    assert_eq!(desk.open().selected, Some(photos[1]));
+    desk.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!(decision(&desk, photos[1]), Some(DecisionKind::LeftOut));
+
+    // N goes to those that wait, Shift+N back to any.
+    desk.press(NONE, Key::N);
+    assert_eq!(desk.open().selected, Some(photos[2]));
+    desk.press(Modifiers::SHIFT, Key::N);
+    assert_eq!(desk.open().selected, Some(photos[1]));
+    desk.press(NONE, Key::N);
+
+    assert!(!desk.shows(Role::Button, "Export what was reviewed"));
+    for _ in 2..count {
+        desk.press(NONE, Key::Enter);
+    }
+    assert_eq!(desk.open().review_progress().waiting, 0);
+    assert!(desk.says("All doubtful photos are decided."));
+    let along = desk.open().review.going_along(Along::Trusted);
+    assert!(!along[photos[1]] && along[photos[0]]);
+    desk.click(Role::Button, "Export what was reviewed");
+    assert!(desk.shows(Role::Button, "Export now"), "one click");
+    desk.press(NONE, Key::Escape);
+    assert_eq!(
+        desk.harness.state().state().tab,
+        Tab::Review,
+        "it closed the window"
+    );
+    desk.press(NONE, Key::Escape);
+    assert_eq!(desk.harness.state().state().tab, Tab::Photo);
+    // Outside of the review the same keys decide nothing.
+    let before = desk.open().settings();
+    desk.press(NONE, Key::Delete);
+    desk.press(NONE, Key::Enter);
+    assert_eq!(desk.open().settings(), before);
+}
+
+/// The corner that is meant is in the middle of the view, and near: the rest of the pile is not.
+#[test]
+fn the_view_goes_to_the_corner_that_is_meant() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    let limits = Limits {
+        triangle_share: 0.001,
+        ..Limits::default()
+    };
+    desk.harness.state_mut().apply(Command::Limits(limits));
+    desk.settle();
+    desk.press(NONE, Key::N);
+    let (_, photo) = desk.open().selected_review().expect("a photo");
+    let is_of_corner = |doubt: &Doubt| matches!(doubt, Doubt::LongTriangle { .. });
+    let place = photo.doubts.iter().position(is_of_corner).expect("a hole");
+    let Doubt::LongTriangle { corners, .. } = &photo.doubts[place] else {
+        panic!("another reason");
+    };
+    let corners = corners.clone();
+    let scale = photo.scale().expect("a scale");
+    let points = scale.corners.iter().filter(|c| corners.contains(&c.name));
+    let points: Vec<glam::DVec3> = points.filter_map(|corner| corner.point()).collect();
+    if place > 0 {
+        let said = format!("Show: {}", photo.doubts[place]);
+        desk.click(Role::Button, &said);
+    }
+    let sight = desk.open().sight().expect("a sight");
+    assert_eq!(sight.on_photo, OnPhoto::Corners(corners.clone()));
+    assert_eq!(sight.in_view, InView::Corners(corners));
+    let looking = desk.open().looking;
+    let size = looking.size.expect("a viewport");
+    for point in points {
+        let pixel = looking
+            .orbit
+            .view()
+            .project(point, size)
+            .expect("before the eye");
+        assert!(
+            pixel.cmpge(glam::DVec2::ZERO).all() && pixel.cmple(size).all(),
+            "{pixel} in {size}"
+        );
+    }
+}
+
+#[test]
+fn a_review_of_the_paper_s_lab() {
+    let screen = Screen {
+        size: [1000.0, 520.0],
+        pixels_per_point: 1.0,
+        theme: Theme::Dark,
+    };
+    let mut desk = Desk::drawn(Some(&flight("assets/sample")), &screen);
+    desk.press(NONE, Key::N);
+    desk.harness.remove_cursor();
+    desk.settle();
+    desk.harness.snapshot("window_review");
+}
+
+/// Rows under the right mouse button, and the filter of doubtful photos.
+#[test]
+fn a_row_has_a_menu_and_doubtful_rows_stand_alone() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    let count = desk.open().review.count();
+    desk.click(Role::Button, "Only doubtful photos");
+    assert_eq!(desk.open().table.shown, doubtful(&desk));
+    assert!(desk.photos().len() < count);
+    desk.click(Role::Button, "Only doubtful photos");
+    let name = desk.open().name(2).to_owned();
+    let row = format!("Photo {name}");
+    let open_menu = |desk: &mut Desk| {
+        desk.node(Role::Row, &row).click_secondary();
+        desk.settle();
+    };
+    open_menu(&mut desk);
+    desk.click(Role::Button, "Leave out");
+    assert_eq!(decision(&desk, 2), Some(DecisionKind::LeftOut));
+    open_menu(&mut desk);
+    desk.click(Role::Button, "Take the decision back");
+    assert_eq!(decision(&desk, 2), None);
+    open_menu(&mut desk);
+    desk.click(Role::Button, "Go to");
+    assert_eq!(desk.open().selected, Some(2));
+    open_menu(&mut desk);
+    desk.node(Role::Button, "Copy file name").click();
+    let copied = (0..3).find_map(|_| {
+        desk.harness.step();
+        desk.copied()
+    });
+    assert_eq!(copied, Some(name));
+}
+
+/// The scale's error as the size's, in the review and beside the number that is typed.
+#[test]
+fn what_the_error_does_to_a_size_is_said() {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.press(NONE, Key::N);
+    let unit = desk.harness.state().state().preferences.unit();
+    let (_, photo) = desk.open().selected_review().expect("a photo");
+    let [top, _] = photo.estimates(photo.pair, unit);
+    let top = top.expect("a scale");
+    let error = top.size_error().expect("an interval");
+    let said = format!("top {} px/{unit}: P80 {error}", top.text(5));
+    assert!(desk.says(&said), "{:?}", desk.texts());
+    desk.press(NONE, Key::Escape);
+    let said = format!("P80 {error}").replace(' ', "\u{a0}");
+    let normal = |text: &str| text.replace(' ', "\u{a0}");
+    assert!(desk.texts().iter().any(|(text, _)| normal(text) == said));
+}
