@@ -14,6 +14,17 @@ pub struct Fault {
     pub what: String,
     /// What to do about it.
     pub remedy: String,
+    /// What there is too little of, where adding it mends the fault: so that a window can ask for it.
+    pub lacks: Option<Lacking>,
+}
+
+/// What an input can lack that stands in other files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lacking {
+    /// A cloud or mesh.
+    Surface,
+    /// The image files.
+    Photos,
 }
 
 impl Fault {
@@ -23,6 +34,15 @@ impl Fault {
             line: None,
             what: one_line(&what.into()),
             remedy: one_line(&remedy.into()),
+            lacks: None,
+        }
+    }
+
+    /// The same, for want of something that can be added.
+    pub fn for_want_of(self, lacking: Lacking) -> Self {
+        Self {
+            lacks: Some(lacking),
+            ..self
         }
     }
 
@@ -65,6 +85,18 @@ pub fn one_line(text: &str) -> String {
         }
     }
     line
+}
+
+/// How many of many names a sentence has.
+const NAMED: usize = 3;
+
+/// The first few names, and dots for more: what a sentence says of things that may be hundreds.
+pub fn first_names(names: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    let mut names = names.into_iter();
+    let first: Vec<_> = names.by_ref().take(NAMED).collect();
+    let first: Vec<&str> = first.iter().map(AsRef::as_ref).collect();
+    let dots = if names.next().is_some() { ", ..." } else { "" };
+    first.join(", ") + dots
 }
 
 #[cfg(test)]

@@ -10,8 +10,8 @@ pub fn significant_digits(number: f64, digits: u8) -> String {
 }
 
 /// A number with so many digits as its interval allows, and how sure it is: "19.9 ± 0.4", or
-/// "19.9 (19.2 to 20.3)" where its two sides are not alike. Both have one significant digit of half the
-/// interval's width, two where that begins with 1. Five digits and nothing beside them where the interval
+/// "19.9 (19.2 to 20.3)" where its two sides are not alike. Both have as many decimals as half the
+/// interval's width allows: see [`decimals_of`]. Five digits and nothing beside them where the interval
 /// has no width.
 pub fn with_interval(value: f64, low: f64, high: f64) -> String {
     let half = (high - low) / 2.0;
@@ -43,17 +43,28 @@ pub fn as_its_interval_allows(value: f64, low: f64, high: f64) -> String {
 pub fn interval_percent(value: f64, low: f64, high: f64) -> Option<String> {
     let percent = ((high - low) / 2.0 / value * 100.0).abs();
     let is_some = percent > 0.0 && percent.is_finite();
-    is_some.then(|| format!("{} %", with_decimals(percent, decimals_of(percent).max(0))))
+    // One digit, two of what begins with 1: nobody reads more from a percentage.
+    let digits = if leading(percent) < 1.95 { 2 } else { 1 };
+    let decimals = decimals_for(percent, digits).max(0);
+    is_some.then(|| format!("{} %", with_decimals(percent, decimals)))
 }
 
-/// Down to which decimal place a deviation says something: its first digit, the second where the first
-/// is a 1. Negative for tens and hundreds.
+/// Down to which decimal place a deviation says something: two digits of it below 3.55, one above, so that
+/// rounding the number to that place moves it by little of its deviation (Particle Data Group, Review of
+/// Particle Physics, introduction, section 5.3). Negative for tens and hundreds.
 fn decimals_of(deviation: f64) -> i32 {
-    let exponent = deviation.log10().floor();
-    let first = deviation / 10_f64.powf(exponent);
-    // 1.95 is written 2, with one digit.
-    let digits = if first < 1.95 { 2.0 } else { 1.0 };
-    (digits - 1.0 - exponent).clamp(-12.0, 12.0) as i32
+    decimals_for(deviation, if leading(deviation) < 3.55 { 2 } else { 1 })
+}
+
+/// A number between 1 and 10 with the same digits.
+fn leading(number: f64) -> f64 {
+    number / 10_f64.powf(number.log10().floor())
+}
+
+/// Down to which decimal place a number has so many digits.
+fn decimals_for(number: f64, digits: i32) -> i32 {
+    let exponent = number.log10().floor().clamp(-12.0, 12.0) as i32;
+    digits - 1 - exponent
 }
 
 /// A number rounded to so many decimals; to tens and hundreds where these are negative.
@@ -119,7 +130,7 @@ mod tests {
         assert!(round_down(-1.0).is_none() && round_down(f64::NAN).is_none());
     }
 
-    /// Answers as the guide to the expression of uncertainty rounds (JCGM 100, 7.2.6), by hand.
+    /// Answers by the Particle Data Group's rule, by hand.
     #[test]
     fn numbers_have_the_digits_that_their_intervals_allow() {
         for (value, low, high, text) in [
@@ -129,7 +140,10 @@ mod tests {
             (1991.32, 1953.0, 2030.0, "1990 ± 40"),
             (0.199_132, 0.1951, 0.2031, "0.199 ± 0.004"),
             // The sides differ by less than a last digit: the wider one is stated.
-            (25.0, 24.66, 25.25, "25.0 ± 0.3"),
+            (25.0, 24.56, 25.35, "25.0 ± 0.4"),
+            (20.735, 18.7, 22.8, "20.7 ± 2.1"),
+            (25.0, 21.45, 28.55, "25 ± 4"),
+            (25.0, 21.46, 28.54, "25.0 ± 3.5"),
             // The number itself is outside.
             (20.0, 20.5, 22.5, "20.0 (20.5 to 22.5)"),
             (19.9132, 19.9132, 19.9132, "19.913"),

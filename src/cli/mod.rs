@@ -309,19 +309,12 @@ fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, St
     Ok(Answer::new(text, warnings))
 }
 
-/// What fell back or failed, a line a photo.
-fn notes_of(report: &exports::ScaleReport<'_>) -> Vec<String> {
-    let notes = report.lines().map(|line| (line, line.photo.notes()));
-    notes
-        .filter(|(_, notes)| !notes.is_empty())
-        .map(|(line, notes)| {
-            let verdict = match line.has_top_and_bottom() {
-                true => "",
-                false => "no scale: ",
-            };
-            format!("{}: {verdict}{}", line.photo.name(), notes.join("; "))
-        })
-        .collect()
+/// What fell back or failed.
+fn notes_of(report: &exports::ScaleReport<'_>) -> impl Iterator<Item = String> {
+    report.noted().into_iter().map(|noted| {
+        let verdict = if noted.has_scale { "" } else { "no scale: " };
+        format!("{}: {verdict}{}", noted.whose, noted.notes)
+    })
 }
 
 fn info(arguments: &InfoArguments, progress: &Progress) -> Result<Answer, String> {

@@ -108,7 +108,7 @@ fn interval(
 }
 
 /// All columns, in their order.
-pub static PHOTO_COLUMNS: [PhotoColumn; 29] = [
+pub static PHOTO_COLUMNS: [PhotoColumn; 30] = [
     PhotoColumn {
         name: "Photo",
         hover: "Name of the photo's file",
@@ -232,6 +232,14 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 29] = [
         ..COLUMN
     },
     PhotoColumn {
+        name: "Interval %",
+        hover: "Half the width of the 95 % interval of what goes to Split-Desktop, of the less certain edge",
+        kind: Percent,
+        table: Some("95 % ±"),
+        value: |line| Number(line.interval_percent()),
+        ..COLUMN
+    },
+    PhotoColumn {
         name: "Covered",
         hover: "The share of the photo that shows the surface",
         kind: Share,
@@ -337,6 +345,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 29] = [
         hover: "Whether to trust the scale",
         kind: ColumnKind::Verdict,
         width: Some([84.0, 30.0]),
+        table: Some("verdict"),
         csv: Some("verdict"),
         value: |line| ColumnValue::Verdict(line.photo.verdict, line.photo.settled().is_some()),
         ..COLUMN

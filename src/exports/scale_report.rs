@@ -1,7 +1,9 @@
 //! A list of scales, ready to be written: a review's photos in the unit asked for.
 
+use std::collections::HashMap;
+
 use super::ReportObject;
-use crate::fault::Fault;
+use crate::fault::{Fault, first_names};
 use crate::flight::{PhotoReview, Review, ScaleObject};
 use crate::scale::{EdgeScales, FittedScale, ImageKind, ScaleEstimate, ScalePair, Uncertainty};
 use crate::units::LengthUnit;
@@ -16,6 +18,20 @@ pub struct ScaleReport<'a> {
     photos: Vec<usize>,
     /// Of each photo of the flight; empty where nobody asked.
     scale_objects: Vec<Vec<ReportObject>>,
+}
+
+/// So many photos of one note are said one by one.
+const A_FEW: usize = 3;
+
+/// What is noted of a photo, or of many.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Noted {
+    /// The photo's name, or how many they are with the first names.
+    pub whose: String,
+    /// Whether they have what Split-Desktop asks for.
+    pub has_scale: bool,
+    /// What fell back or failed.
+    pub notes: String,
 }
 
 /// One photo in a list of scales.
@@ -95,6 +111,36 @@ impl<'a> ScaleReport<'a> {
         self.review.flight().parts().image
     }
 
+    /// What fell back or failed, a sentence a photo; one of all photos where more than a few have the same.
+    pub fn noted(&self) -> Vec<Noted> {
+        let mut found: Vec<(String, bool, Vec<&str>)> = Vec::new();
+        let mut places: HashMap<(String, bool), usize> = HashMap::new();
+        for line in self.lines() {
+            let notes = line.photo.notes();
+            if notes.is_empty() {
+                continue;
+            }
+            let key = (notes.join("; "), line.has_top_and_bottom());
+            let place = *places.entry(key.clone()).or_insert(found.len());
+            if place == found.len() {
+                found.push((key.0, key.1, Vec::new()));
+            }
+            found[place].2.push(line.photo.name());
+        }
+        let sentence = |(notes, has_scale, photos): (String, bool, Vec<&str>)| {
+            let noted = |whose: String| Noted {
+                whose,
+                has_scale,
+                notes: notes.clone(),
+            };
+            match photos.len() {
+                0..=A_FEW => photos.iter().map(|&name| noted(name.to_owned())).collect(),
+                count => vec![noted(format!("{count} photos ({})", first_names(&photos)))],
+            }
+        };
+        found.into_iter().flat_map(sentence).collect()
+    }
+
     /// One a photo, in the order of the flight.
     pub fn lines(&self) -> impl Iterator<Item = PhotoLine<'_>> {
         self.photos.iter().filter_map(|&index| {
@@ -157,6 +203,15 @@ impl<'a> PhotoLine<'a> {
             true => [None; 2],
             false => self.photo.estimates(pair, self.unit),
         }
+    }
+
+    /// Half the width of the 95 % interval of what goes to Split-Desktop, of the less certain edge, in
+    /// percent; `None` where an edge has none.
+    pub fn interval_percent(&self) -> Option<f64> {
+        let [top, bottom] = self.estimates(self.photo.pair);
+        let half =
+            |estimate: Option<ScaleEstimate>| Some(estimate?.interval?.width_percent() / 2.0);
+        Some(half(top)?.max(half(bottom)?))
     }
 
     /// Elevation of the ground, where a ray needed it; world units.

@@ -43,17 +43,13 @@ pub fn scales_table(report: &ScaleReport<'_>) -> String {
         text += line.trim_end();
         text.push('\n');
     }
-    let noted: Vec<(&str, Vec<String>)> = report
-        .lines()
-        .map(|line| (line.photo.name(), line.photo.notes()))
-        .filter(|(_, notes)| !notes.is_empty())
-        .collect();
+    let noted = report.noted();
     if !noted.is_empty() {
         text.push('\n');
     }
-    for (photo, notes) in noted {
+    for noted in noted {
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "{photo}: {}", notes.join("; "));
+        let _ = writeln!(text, "{}: {}", noted.whose, noted.notes);
     }
     text
 }

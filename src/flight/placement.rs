@@ -2,15 +2,13 @@
 //! from two exports: in two coordinate systems, or upside down, they still give numbers.
 
 use super::{Doubt, Flight, FlightParts};
+use crate::fault::first_names;
 use crate::geometry::Ray;
 use crate::units::LengthUnit;
 
 /// A photo is in another coordinate system rather than far away, if its distance to the surface is
 /// so many times the surface's extent: a lens that still resolves the rock does not see so little.
 const FAR: f64 = 100.0;
-
-/// How many photos a sentence names.
-const NAMED: usize = 3;
 
 /// Which photos stand where none can, by their index in the flight.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -85,7 +83,7 @@ impl Placement {
                 "{} of {} photos ({}) were taken over {nearest:.0} {unit} from the surface, which is {:.0} {unit} wide: the poses and the surface are in two coordinate systems",
                 self.far.len(),
                 photos.len(),
-                names(self.far.iter().map(|(photo, _)| name(photo))),
+                first_names(self.far.iter().map(|(photo, _)| name(photo))),
                 self.extent,
             ));
         }
@@ -94,18 +92,12 @@ impl Placement {
                 "{} of {} photos ({}) were {}",
                 self.under.len(),
                 photos.len(),
-                names(self.under.iter().map(name)),
+                first_names(self.under.iter().map(name)),
                 Doubt::UnderSurface,
             ));
         }
         warnings
     }
-}
-
-/// The first few names.
-fn names<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
-    let dots = if names.len() > NAMED { ", ..." } else { "" };
-    format!("{}{dots}", names.take(NAMED).collect::<Vec<_>>().join(", "))
 }
 
 #[cfg(test)]

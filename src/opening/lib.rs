@@ -40,9 +40,9 @@ pub use georeferencing::{
 pub use health::{Health, HealthFinding, HealthItem, Remedy, StatedOfFlight, flight_health};
 pub use info::info;
 pub use meant::meant_by;
-pub use open::{FlightReconstruction, OpenOptions, Opened, lacks_surface, open_flight};
+pub use open::{FlightReconstruction, OpenOptions, Opened, open_flight};
 pub use origin::FlightOrigin;
-pub use photo_files::{PhotoFile, lacks_photos};
+pub use photo_files::PhotoFile;
 
 #[cfg(test)]
 mod tests;

@@ -5,14 +5,10 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use crate::camera::Camera;
-use crate::fault::Fault;
-use crate::files::FileError;
+use crate::fault::{Fault, Lacking, first_names};
 use crate::flight::{Photo, PhotoFileState};
 use crate::formats::Reconstruction;
 use crate::formats::photos::photo_folder::{PhotoFolder, size_of_file};
-
-/// How many missing files a warning names.
-const NAMED: usize = 3;
 
 /// The image file of a photo.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -46,15 +42,6 @@ pub(crate) fn files_of(folder: &PhotoFolder<'_>, photos: &[Photo]) -> Vec<PhotoF
         }
     };
     photos.iter().map(file_of).collect()
-}
-
-/// How the fault begins that a folder of photos would mend.
-const NO_SIZE: &str = "the image size of";
-
-/// Whether a flight could not be opened because its package writes no image sizes and its photos are
-/// not there: the folder of the photos mends that.
-pub fn lacks_photos(error: &FileError) -> bool {
-    error.fault.what.starts_with(NO_SIZE)
 }
 
 /// Gives the cameras of a package that writes no image sizes those of their photos; `given` is what a
@@ -95,10 +82,11 @@ pub(crate) fn set_sizes_from_files(
         let (photo, why) = left_out.into_iter().next().unwrap_or_default();
         return Err(Fault::new(
             format!(
-                "{NO_SIZE} '{photo}' is not known: this package writes none, and its file does not tell it ({why})"
+                "the image size of '{photo}' is not known: this package writes none, and its file does not tell it ({why})"
             ),
             "give [photos] folder, or a [[camera]] table with width and height, in a flight.toml",
-        ));
+        )
+        .for_want_of(Lacking::Photos));
     }
     for (photo, why) in left_out {
         warnings.push(format!(
@@ -140,18 +128,12 @@ pub(crate) fn fit_cameras_to_files(
         });
     }
     if !missing.is_empty() {
-        let dots = if missing.len() > NAMED { ", ..." } else { "" };
-        let names = missing
-            .iter()
-            .take(NAMED)
-            .copied()
-            .collect::<Vec<_>>()
-            .join(", ");
         warnings.push(format!(
-            "{}: {} of {} image files are missing ({names}{dots}); their sizes are not checked",
+            "{}: {} of {} image files are missing ({}); their sizes are not checked",
             path.display(),
             missing.len(),
-            sizes.len()
+            sizes.len(),
+            first_names(&missing)
         ));
     }
     for (index, camera) in cameras.iter_mut().enumerate() {

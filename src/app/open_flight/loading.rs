@@ -127,9 +127,8 @@ pub(crate) fn load(
     options.settings = again.map(|(_, settings)| settings);
     options.may_lack_photos = true;
     let not_opened = |error: FileError| {
-        let lacks = opening::lacks_photos(&error) || opening::lacks_surface(&error);
         Box::new(NotOpened {
-            asks: lacks.then_some(Asking::Add),
+            asks: error.fault.lacks.map(|_| Asking::Add),
             choices: Vec::new(),
             why: error.to_string(),
             tried: Some((path.clone(), options.clone())),

@@ -180,7 +180,7 @@ struct Made {
     picture: Vec<u8>,
     world_file: String,
     words: String,
-    warning: Option<String>,
+    warning: Option<&'static str>,
 }
 
 impl Maker<'_> {
@@ -221,15 +221,11 @@ impl Maker<'_> {
         let bytes = formats::read_bytes(path).map_err(|error| error.fault)?;
         let image = picture::decode(&bytes)?;
         drop(bytes);
-        let warning = rectification.is_cut.then(|| {
-            "it is cut: rays near the horizon meet the plane far outside of what they show"
-                .to_owned()
-        });
         Ok(Made {
             picture: rectified.bytes(&image, self.format)?,
             world_file: rectified.world_file(),
             words: rectified.words(),
-            warning,
+            warning: rectification.doubt(),
         })
     }
 }

@@ -45,11 +45,7 @@ pub(super) fn description(photo: &RectifiedPhoto<'_>) -> String {
         program: PROGRAM,
         flight: photo.flight,
         photo: photo.photo,
-        onto: match photo.onto {
-            Onto::FittedPlane => "fit",
-            Onto::HorizontalPlane => "horizontal",
-            Onto::Surface => "surface",
-        },
+        onto: photo.onto.name(),
         pixel: photo.pixel(),
         unit: photo.unit.symbol(),
         rows: raster.rows,

@@ -392,14 +392,18 @@ fn one_photo(
         return Ok(Done::Kept(doubt));
     };
     // Before the photo's memory is given away; without it the others are of use all the same.
-    let (rectified, doubt) = match rectified::files(request, index, names, &photo.image, progress) {
-        Ok(rectified) => (rectified, doubt),
-        Err(fault) => {
-            let why = format!("not rectified: {fault}");
-            let doubts = doubt.into_iter().chain([why]);
-            (Vec::new(), Some(doubts.collect::<Vec<_>>().join("; ")))
-        }
+    let made = rectified::files(request, index, names, &photo.image, objects, progress);
+    let (rectified, of_rectified) = match made {
+        Ok(made) => (
+            made.files,
+            made.doubt.map(|why| format!("rectified: {why}")),
+        ),
+        Err(fault) => (Vec::new(), Some(format!("not rectified: {fault}"))),
     };
+    // What is said of them is said again by the next export: it makes them again.
+    let fingerprint = of_rectified.is_none().then_some(fingerprint);
+    let doubts: Vec<String> = doubt.into_iter().chain(of_rectified).collect();
+    let doubt = (!doubts.is_empty()).then(|| doubts.join("; "));
     let mut files = match source.make(photo, bytes) {
         Ok(files) => files,
         Err(fault) => return Ok(Done::Not(format!("no pictures: {fault}"))),
@@ -410,7 +414,7 @@ fn one_photo(
         // `advance` says so.
         return Ok(Done::Not(String::new()));
     }
-    work.folder.write(&files, Some(&fingerprint))?;
+    work.folder.write(&files, fingerprint.as_deref())?;
     Ok(Done::Made(doubt))
 }
 

@@ -4,7 +4,6 @@
 use glam::DVec2;
 
 use super::ExportRequest;
-use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight::{ComparedObject, ScaleObject};
 use crate::markup::escaped;
@@ -22,6 +21,8 @@ pub(super) struct PhotoObject<'a> {
     compared: ComparedObject,
     /// What it covers in the exported photo, pixels; empty where it is not masked.
     region: Vec<DVec2>,
+    /// The same in the photo as shot.
+    region_as_shot: Vec<DVec2>,
 }
 
 /// For each photo of the flight the scale objects on it, of those that are exported.
@@ -42,21 +43,19 @@ pub(super) fn of_photos<'a>(
             continue;
         };
         let camera = flight.camera(&photos[place]);
-        let region = match &compared.traced {
-            Ok(traced) if object.mask => region(traced, camera, flight.parts().image),
+        let region = |image: ImageKind| match &compared.traced {
+            Ok(traced) if object.mask => traced.region(camera, image, MASK_MARGIN_PX),
             _ => Vec::new(),
         };
+        let (region, region_as_shot) = (region(flight.parts().image), region(ImageKind::AsShot));
         of_photos[place].push(PhotoObject {
             object,
             compared,
             region,
+            region_as_shot,
         });
     }
     Ok(of_photos)
-}
-
-fn region(traced: &Traced, camera: &Camera, image: ImageKind) -> Vec<DVec2> {
-    traced.region(camera, image, MASK_MARGIN_PX)
 }
 
 impl PhotoObject<'_> {
@@ -68,6 +67,11 @@ impl PhotoObject<'_> {
     /// The part of the photo that is painted over, pixels.
     pub(super) fn region(&self) -> &Vec<DVec2> {
         &self.region
+    }
+
+    /// The same of the photo as shot.
+    pub(super) fn region_as_shot(&self) -> &Vec<DVec2> {
+        &self.region_as_shot
     }
 
     /// That it should be masked and is not, and why.

@@ -1,13 +1,18 @@
 //! The rectified photos of an export: for programs that know one scale for the whole image.
 
+use std::borrow::Cow;
+
+use glam::DVec2;
 use image::RgbImage;
 use serde_json::json;
 
 use super::ExportRequest;
+use super::objects::PhotoObject;
 use super::plan::PhotoNames;
 use crate::fault::Fault;
 use crate::jobs::Progress;
-use crate::scale::{Onto, PixelSize};
+use crate::picture;
+use crate::scale::PixelSize;
 use crate::{RectifiedFormat, RectifiedPhoto};
 
 /// A format that every such program reads.
@@ -17,14 +22,9 @@ pub(super) const FORMAT: RectifiedFormat = RectifiedFormat::Png;
 /// `None` where none is asked for.
 pub(super) fn depends_on(request: &ExportRequest<'_>, index: usize) -> Option<String> {
     let parts = request.review.flight().parts();
-    let onto = match request.rectified? {
-        Onto::FittedPlane => "fit",
-        Onto::HorizontalPlane => "horizontal",
-        Onto::Surface => "ortho",
-    };
     let pose = &parts.photos.get(index)?.pose;
     let what = json!([
-        onto,
+        request.rectified?.name(),
         pose.center.to_array(),
         pose.rotation.to_cols_array(),
         parts.name,
@@ -34,8 +34,16 @@ pub(super) fn depends_on(request: &ExportRequest<'_>, index: usize) -> Option<St
     Some(what.to_string())
 }
 
-/// The picture and its world file, with their names below the exported folder; none where they are
-/// not asked for. `photo` is as shot.
+/// A rectified photo's files, with their names below the exported folder.
+#[derive(Default)]
+pub(super) struct Made {
+    pub files: Vec<(String, Vec<u8>)>,
+    /// What is to be said of them.
+    pub doubt: Option<&'static str>,
+}
+
+/// The picture and its world file; none where they are not asked for. `photo` is as shot; of it the
+/// regions of `objects` are painted over.
 ///
 /// # Errors
 /// Where the photo cannot be rectified.
@@ -44,14 +52,15 @@ pub(super) fn files(
     index: usize,
     names: &PhotoNames,
     photo: &RgbImage,
+    objects: &[PhotoObject<'_>],
     progress: &Progress,
-) -> Result<Vec<(String, Vec<u8>)>, Fault> {
+) -> Result<Made, Fault> {
     let flight = request.review.flight();
     let parts = flight.parts();
     let (Some(onto), Some([picture, world]), Some(of)) =
         (request.rectified, &names.rectified, parts.photos.get(index))
     else {
-        return Ok(Vec::new());
+        return Ok(Made::default());
     };
     let size = PixelSize {
         asked: None,
@@ -67,9 +76,20 @@ pub(super) fn files(
         world_unit: parts.unit,
         crs: request.from.crs,
     };
-    let bytes = rectified.bytes(photo, FORMAT)?;
-    Ok(vec![
-        (picture.clone(), bytes),
-        (world.clone(), rectified.world_file().into_bytes()),
-    ])
+    let masked = objects.iter().filter(|object| object.is_masked());
+    let regions: Vec<Vec<DVec2>> = masked
+        .map(|object| object.region_as_shot().clone())
+        .collect();
+    let mut photo = Cow::Borrowed(photo);
+    if !regions.is_empty() {
+        picture::paint_regions(photo.to_mut(), &regions);
+    }
+    let bytes = rectified.bytes(&photo, FORMAT)?;
+    Ok(Made {
+        files: vec![
+            (picture.clone(), bytes),
+            (world.clone(), rectified.world_file().into_bytes()),
+        ],
+        doubt: rectification.doubt(),
+    })
 }

@@ -6,22 +6,13 @@ use super::framing::Framed;
 use super::source::Source;
 use super::{OpenOptions, Opened};
 use crate::evidence::look_up;
-use crate::fault::Fault;
+use crate::fault::{Fault, Lacking};
 use crate::files::{FileError, Inputs};
 use crate::flight::{Flight, FlightParts};
 use crate::jobs::Progress;
 use crate::origin::FlightOrigin;
 use crate::photo_files::PhotoFile;
 use crate::surface::Surface;
-
-/// How the fault begins that a surface would mend.
-const NO_POINTS: &str = "it has no 3D points to make a surface of";
-
-/// Whether a flight could not be opened because its cameras come without points: a cloud or mesh mends
-/// that.
-pub fn lacks_surface(error: &FileError) -> bool {
-    error.fault.what.starts_with(NO_POINTS)
-}
 
 /// Builds the flight.
 ///
@@ -50,9 +41,10 @@ pub(super) fn build(
         let looked = source.surface_note.map(|note| format!(": {note}"));
         let looked = looked.unwrap_or_default();
         return Err(at_surface(Fault::new(
-            format!("{NO_POINTS}{looked}"),
+            format!("it has no 3D points to make a surface of{looked}"),
             "add its cloud or mesh: drop it on the window, or name it with --surface or as [surface] file in a flight.toml",
-        )));
+        )
+        .for_want_of(Lacking::Surface)));
     }
     let settings = options.settings.clone().unwrap_or(source.settings);
     if settings.surface.thinning.is_some() && !cloud.cloud.triangles.is_empty() {

@@ -19,8 +19,6 @@ mod surface;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-pub use self::building::lacks_surface;
-
 use crate::evidence::compare_all_colours;
 use crate::fault::Fault;
 use crate::files::{FileError, Inputs, Recording};

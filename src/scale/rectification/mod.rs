@@ -34,6 +34,17 @@ pub enum Onto {
     Surface,
 }
 
+impl Onto {
+    /// As files name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::FittedPlane => "fit",
+            Self::HorizontalPlane => "horizontal",
+            Self::Surface => "surface",
+        }
+    }
+}
+
 /// How large the pixels of a rectified picture are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PixelSize {
@@ -109,6 +120,13 @@ impl Rectification {
         rectification.raster = PlaneRaster::over(frame, extent, pixel)?;
         rectification.is_cut = is_cut;
         Ok(rectification)
+    }
+
+    /// What should be said of the picture before anybody measures on it.
+    pub fn doubt(&self) -> Option<&'static str> {
+        self.is_cut.then_some(
+            "it is cut: rays near the horizon meet the plane far outside of what they show",
+        )
     }
 
     /// The camera of the photo as shot.

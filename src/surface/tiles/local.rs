@@ -1,6 +1,6 @@
 //! The triangulation of the sites in and around one tile, and which triangles of it are the tile's own.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::DVec2;
 use robust::incircle;
@@ -26,6 +26,8 @@ pub(super) struct Local<'a> {
     is_own: Vec<bool>,
     /// Where each of them is.
     places: Vec<DVec2>,
+    /// Those that joined.
+    joined: HashSet<u32>,
     made: Triangulated,
 }
 
@@ -55,6 +57,7 @@ impl<'a> Local<'a> {
             here,
             is_own,
             places: Vec::new(),
+            joined: HashSet::new(),
             made: Triangulated::default(),
         };
         // At the border it will be asked for.
@@ -64,34 +67,37 @@ impl<'a> Local<'a> {
             || region.rows.start == 0
             || region.columns.end == columns
             || region.rows.end == rows;
-        local.join(match is_at_border {
-            true => sites.hull_indices().to_vec(),
-            false => Vec::new(),
-        })?;
+        if is_at_border {
+            local.add(sites.hull_indices().to_vec());
+        }
+        local.triangulate()?;
         Ok(Some(local))
     }
 
-    /// Adds sites and triangulates anew. Says whether there were any that were not here.
-    fn join(&mut self, mut more: Vec<u32>) -> Result<bool, SurfaceError> {
-        // Those that are here: of the region, and of what joined before.
+    /// Adds sites. Says whether there were any that were not here.
+    fn add(&mut self, mut more: Vec<u32>) -> bool {
+        more.retain(|&site| !self.is_here(site));
         more.sort_unstable();
         more.dedup();
-        let mut here = self.here.clone();
-        here.sort_unstable();
-        more.retain(|site| here.binary_search(site).is_err());
         let is_more = !more.is_empty();
-        if is_more || self.places.is_empty() {
-            self.here.extend(more);
-            let points = self.sites.points();
-            let places = self
-                .here
-                .iter()
-                .map(|&site| points[site as usize].truncate());
-            self.places = places.collect();
-            self.is_own.resize(self.here.len(), false);
-            self.made = Triangulated::new(&self.places)?;
-        }
-        Ok(is_more)
+        self.joined.extend(&more);
+        self.here.extend(more);
+        self.is_own.resize(self.here.len(), false);
+        is_more
+    }
+
+    fn is_here(&self, site: u32) -> bool {
+        let mut of_region = self.sites.ranges_of(&self.region);
+        self.joined.contains(&site) || of_region.any(|range| range.contains(&(site as usize)))
+    }
+
+    /// Triangulates the sites that are here.
+    fn triangulate(&mut self) -> Result<(), SurfaceError> {
+        let points = self.sites.points();
+        let here = self.here.iter();
+        self.places = here.map(|&site| points[site as usize].truncate()).collect();
+        self.made = Triangulated::new(&self.places)?;
+        Ok(())
     }
 
     /// Adds sites until no circle around a triangle at an own site holds one that is not here, and no own
@@ -111,14 +117,14 @@ impl<'a> Local<'a> {
                     self.find_missing(corners, &mut missing);
                 }
             }
-            if missing.is_empty() || !self.join(missing)? {
+            if !self.add(missing) {
                 return Ok(());
             }
+            self.triangulate()?;
         }
     }
 
-    /// Finds sites outside of the region that lie in or on the circle of a triangle. (Those that are
-    /// here already lie on it at most.)
+    /// Finds sites that are not here and lie in or on the circle of a triangle.
     fn find_missing(&self, corners: [u32; 3], missing: &mut Vec<u32>) {
         let [a, b, c] = corners.map(|corner| self.places[corner as usize]);
         let (center, radius_squared) = circle([a, b, c]);
@@ -126,7 +132,6 @@ impl<'a> Local<'a> {
         if self.sites.holds_disc(&self.region, center, radius) {
             return;
         }
-        let corners = corners.map(|corner| self.here[corner as usize]);
         let mut found: Vec<(u32, DVec2)> = Vec::new();
         self.sites.near_disc(center, radius, |index, site| {
             let place = site.truncate();
@@ -134,9 +139,9 @@ impl<'a> Local<'a> {
             if place.distance_squared(center) > radius_squared * (1.0 + 1e-6) {
                 return;
             }
-            if !corners.contains(&index)
-                && incircle(coord(a), coord(b), coord(c), coord(place)) >= 0.0
-            {
+            let is_in = incircle(coord(a), coord(b), coord(c), coord(place)) >= 0.0;
+            // Before they are cut to the nearest: those that are here may all be on the circle.
+            if is_in && !self.is_here(index) {
                 found.push((index, place));
             }
         });

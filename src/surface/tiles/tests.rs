@@ -53,21 +53,39 @@ fn tiles_make_the_whole_triangulation() {
 /// box in the dense middle they are few.
 #[test]
 fn what_is_seen_is_there() {
+    look_into_boxes(|_| 0.0, [-1.0, 3.0]);
+}
+
+/// As well where heights alone tell tiles apart: a slope of 40 degrees with a wall of 60 m across it, seen
+/// through boxes that are 3 m high.
+#[test]
+fn what_is_seen_on_a_slope_is_there() {
+    let wall = |y: f64| if y > 55.0 { 60.0 } else { 0.0 };
+    look_into_boxes(|place| 0.84 * place.x + wall(place.y), [-1.0, 2.0]);
+}
+
+/// Looks through boxes over a ground with gaps, and with a few points far out; `between` are a box's lower
+/// and upper side over the ground at its middle.
+fn look_into_boxes(ground: impl Fn(DVec2) -> f64, between: [f64; 2]) {
     let mut random = crate::split_mix::SplitMix(11);
     let mut uniform = || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
-    let mut points: Vec<DVec3> = (0..150_000)
-        .map(|_| DVec3::new(uniform() * 100.0, uniform() * 100.0, uniform()))
+    let mut points: Vec<DVec3> = (0..60_000)
+        .map(|_| {
+            let place = DVec2::new(uniform(), uniform()) * 100.0;
+            place.extend(ground(place) + uniform())
+        })
         .filter(|p| (p.x - 30.0).abs() > 9.0 || (p.y - 60.0).abs() > 14.0)
         .collect();
     points.extend((0..9).map(|i| DVec3::new(f64::from(i) * 300.0 - 900.0, 500.0, 2.0)));
     let sites = Sites::new(points.clone(), &[]).unwrap();
     let whole = triangulate(sites.points()).unwrap();
     let middle = |t: &[u32; 3]| t.iter().map(|&i| sites.points()[i as usize]).sum::<DVec3>() / 3.0;
-    let mut least = usize::MAX;
-    for _ in 0..60 {
+    let (mut least, mut compared) = (usize::MAX, 0);
+    for _ in 0..30 {
         let size = uniform() * 40.0;
         let from = DVec2::new(uniform() * 140.0 - 20.0, uniform() * 140.0 - 20.0);
-        let (min, max) = (from.extend(-1.0), (from + size).extend(3.0));
+        let [low, high] = between.map(|over| ground(from + size / 2.0) + over);
+        let (min, max) = (from.extend(low), (from + size).extend(high));
         let misses = |bounds: &Bounds| bounds.max.cmplt(min).any() || bounds.min.cmpgt(max).any();
         let tiles = Tiles::new(&sites);
         let made = tiles.seen(&sites, misses).unwrap();
@@ -78,6 +96,7 @@ fn what_is_seen_is_there() {
         for triangle in &whole {
             let place = middle(triangle);
             if place.cmpge(min).all() && place.cmple(max).all() {
+                compared += 1;
                 assert!(
                     seen.contains(&first_first(*triangle, |corner| corner)),
                     "{place} is missing"
@@ -86,6 +105,7 @@ fn what_is_seen_is_there() {
         }
         least = least.min(seen.len());
     }
+    assert!(compared > 10_000, "{compared}");
     assert!(least < whole.len() / 4, "{least} of {}", whole.len());
 }
 

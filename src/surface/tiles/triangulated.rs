@@ -32,13 +32,14 @@ impl Triangulated {
     /// # Errors
     /// Where a coordinate is too large for exact predicates.
     pub(super) fn new(places: &[DVec2]) -> Result<Self, SurfaceError> {
-        let mut fast = Self::fast(places);
-        if fast.is_delaunay(places) {
-            return Ok(fast);
+        let mut made = Self::fast(places);
+        if !made.prove(places) {
+            made = Self::exact(places)?;
+            // Spade's needs no proof, but who shares a circle is found by it. (Of places on one line there
+            // are no triangles, and nothing is proven.)
+            made.prove(places);
         }
-        let mut exact = Self::exact(places)?;
-        exact.is_delaunay(places);
-        Ok(exact)
+        Ok(made)
     }
 
     fn fast(places: &[DVec2]) -> Self {
@@ -88,9 +89,9 @@ impl Triangulated {
         })
     }
 
-    /// Whether it is the Delaunay triangulation of these places, all of them; finds out who shares
-    /// a circle on the way.
-    fn is_delaunay(&mut self, places: &[DVec2]) -> bool {
+    /// Finds out who shares a circle, and on the way whether it is the Delaunay triangulation of these
+    /// places, all of them: says so.
+    fn prove(&mut self, places: &[DVec2]) -> bool {
         let at = |edge: usize| coord(places[self.corners[edge] as usize]);
         let turns_left = |triangle: usize| {
             orient2d(at(3 * triangle), at(3 * triangle + 1), at(3 * triangle + 2)) > 0.0
@@ -217,7 +218,7 @@ mod tests {
     #[test]
     fn of_random_places_the_fast_way_is_right() {
         let places = random(10_000);
-        assert!(Triangulated::fast(&places).is_delaunay(&places));
+        assert!(Triangulated::fast(&places).prove(&places));
     }
 
     #[test]
@@ -263,9 +264,9 @@ mod tests {
         };
         const N: u32 = NONE;
         let mut right = square([0, 1, 3, 1, 2, 3], [N, 5, N, N, N, 1]);
-        let is_right = right.is_delaunay(&places);
+        let is_right = right.prove(&places);
         let mut other = square([0, 1, 2, 0, 2, 3], [N, N, 3, 2, N, N]);
-        assert!(is_right != other.is_delaunay(&places));
+        assert!(is_right != other.prove(&places));
         let exact = Triangulated::exact(&places).unwrap();
         let has_edge_0_2 =
             (0..2).all(|t| exact.corners(t).contains(&0) && exact.corners(t).contains(&2));
@@ -275,9 +276,9 @@ mod tests {
             twins: vec![N; 3],
             shares_circle: vec![false],
         };
-        assert!(!half.is_delaunay(&places), "a place is not used");
-        assert!(!half.is_delaunay(&[places[0], places[1], places[3], places[3]]));
+        assert!(!half.prove(&places), "a place is not used");
+        assert!(!half.prove(&[places[0], places[1], places[3], places[3]]));
         let mut turned = square([0, 3, 1, 1, 2, 3], [N, 5, N, N, N, 1]);
-        assert!(!turned.is_delaunay(&places));
+        assert!(!turned.prove(&places));
     }
 }

@@ -30,7 +30,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
-use crate::fault::Fault;
+use crate::fault::{Fault, first_names};
 use crate::files::FileError;
 use crate::jobs::Progress;
 use crate::packages::pose_covariance::PoseCovariance;
@@ -40,9 +40,6 @@ use crate::packages::reconstruction::{
 use crate::photos::image_names::{Ending, is_ending};
 use crate::photos::photo_metadata::{self, Fix, HeightReference, MeasuredPlace, PhotoMetadata};
 use cameras::Cameras;
-
-/// How many photos a warning names.
-const NAMED: usize = 3;
 
 /// Whether a file is named like a photo.
 pub(crate) fn is_photo(path: &Path) -> bool {
@@ -159,14 +156,30 @@ pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
     })
 }
 
+/// What places of a fix are in words, and the standard deviations that such receivers have towards east,
+/// north and up, metres. `None` without a fix.
+fn usual(fix: Option<Fix>) -> (&'static str, Option<DVec3>) {
+    let (words, deviation) = match fix {
+        Some(Fix::RtkFixed) => ("RTK fixed: a few centimetres", [0.03, 0.03, 0.05]),
+        Some(Fix::RtkFloat) => ("RTK float: decimetres to metres", [0.5, 0.5, 1.0]),
+        Some(Fix::Single) => (
+            "without corrections: some 2 m across and 5 m in height",
+            [2.0, 2.0, 5.0],
+        ),
+        Some(Fix::Nothing) => return ("without a fix: not to be trusted", None),
+        None => (
+            "of unknown quality, most likely some 2 m across and 5 m in height",
+            [2.0, 2.0, 5.0],
+        ),
+    };
+    (words, Some(DVec3::from_array(deviation)))
+}
+
 /// Standard deviations of a place towards east, north and up in metres: as the receiver states them, else
-/// as such receivers have them, which is what [`of_places`] says in words. `None` without a fix.
+/// the usual ones. `None` without either.
 fn expected_deviation(place: MeasuredPlace) -> Option<DVec3> {
-    let usual = match place.fix {
-        Some(Fix::RtkFixed) => DVec3::new(0.03, 0.03, 0.05),
-        Some(Fix::RtkFloat) => DVec3::new(0.5, 0.5, 1.0),
-        Some(Fix::Single) | None => DVec3::new(2.0, 2.0, 5.0),
-        Some(Fix::Nothing) => return place.deviation,
+    let Some(usual) = usual(place.fix).1 else {
+        return place.deviation;
     };
     let height = match place.height {
         // Set at take-off: tens of metres.
@@ -192,7 +205,7 @@ impl LeftOut {
             let count = photos.len();
             format!(
                 "{count} of {all} photos are left out, because they {reason} ({})",
-                named(photos)
+                first_names(photos)
             )
         })
     }
@@ -200,7 +213,11 @@ impl LeftOut {
     /// Why nothing is left.
     fn all(&self, all: usize) -> Fault {
         let reasons = self.by_reason.iter().map(|(reason, photos)| {
-            format!("{} of {all} {reason} ({})", photos.len(), named(photos))
+            format!(
+                "{} of {all} {reason} ({})",
+                photos.len(),
+                first_names(photos)
+            )
         });
         let reasons: Vec<String> = reasons.collect();
         Fault::new(
@@ -222,13 +239,6 @@ fn no_orientation(photo: &PhotoMetadata) -> String {
             uris.join("', '")
         ),
     }
-}
-
-/// The first names, and dots for more.
-fn named(names: &[String]) -> String {
-    let dots = if names.len() > NAMED { ", ..." } else { "" };
-    let first: Vec<&str> = names.iter().take(NAMED).map(String::as_str).collect();
-    first.join(", ") + dots
 }
 
 /// What is to be said of the photos' places: their heights' reference, how far off they may be, and
@@ -256,13 +266,7 @@ fn of_places(photos: &[&PhotoMetadata]) -> Vec<String> {
     }
     for (fix, deviations) in fixes {
         let count = deviations.len();
-        let what = match fix {
-            Some(Fix::RtkFixed) => "RTK fixed: a few centimetres",
-            Some(Fix::RtkFloat) => "RTK float: decimetres to metres",
-            Some(Fix::Single) => "without corrections: some 2 m across and 5 m in height",
-            Some(Fix::Nothing) => "without a fix: not to be trusted",
-            None => "of unknown quality, most likely some 2 m across and 5 m in height",
-        };
+        let (what, _) = usual(fix);
         let worst = deviations.iter().flatten().copied().reduce(DVec3::max);
         let stated = worst.map_or_else(String::new, |worst| {
             let across = worst.x.max(worst.y);
@@ -293,7 +297,11 @@ fn of_photos(photos: &[(String, PhotoMetadata)]) -> Vec<String> {
         }
     }
     let sentence = |(warning, photos): (&str, Vec<String>)| {
-        format!("{} photos ({}): {warning}", photos.len(), named(&photos))
+        format!(
+            "{} photos ({}): {warning}",
+            photos.len(),
+            first_names(&photos)
+        )
     };
     by_warning.into_iter().map(sentence).collect()
 }
