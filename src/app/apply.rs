@@ -99,8 +99,15 @@ impl State {
             Command::Redo if self.page == Page::SizeDistributions => {
                 self.undo_distributions(History::redo);
             }
-            Command::Undo => self.undo_settings(History::undo),
-            Command::Redo => self.undo_settings(History::redo),
+            Command::Undo => {
+                self.undo_settings(History::undo);
+                // Else the last word at the foot of the window may be "saved".
+                self.say(Severity::Note, "undone");
+            }
+            Command::Redo => {
+                self.undo_settings(History::redo);
+                self.say(Severity::Note, "done again");
+            }
             Command::Set(settings) => self.set_settings(settings),
             Command::ExportRectified(on) => self.preferences.export_rectified = on,
             Command::Choose(photo, along) => self.choose(photo, along),
@@ -293,7 +300,9 @@ impl State {
             return;
         };
         let now = open.settings();
-        if open.computed.surface.thinning == now.surface.thinning {
+        let is_same_cloud = open.computed.surface.thinning == now.surface.thinning
+            && open.computed.surface_up == now.surface_up;
+        if is_same_cloud {
             self.start_scales();
         } else {
             // Thinned points are gone from memory: the file has them.

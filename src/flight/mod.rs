@@ -34,7 +34,7 @@ pub use verdict::{Limits, Verdict};
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
 use crate::scale::{Ground, ImageKind, PhotoScale, PoseErrors, ScalePair, StatedErrors};
-use crate::surface::{Surface, SurfaceOptions};
+use crate::surface::{Surface, SurfaceOptions, UpAxis};
 use crate::units::LengthUnit;
 
 /// One image with its camera and pose.
@@ -72,6 +72,8 @@ pub struct FlightSettings {
     pub errors: StatedErrors,
     /// What is left out of the surface.
     pub surface: SurfaceOptions,
+    /// Which axis of the surface's own file points up.
+    pub surface_up: UpAxis,
     /// Traced on photos, to compare with: no scale of the flight depends on them.
     pub scale_objects: Vec<ScaleObject>,
     /// What the engineer has decided of photos, each named once: no scale depends on it.
@@ -89,6 +91,7 @@ impl Default for FlightSettings {
             pair: ScalePair::default(),
             errors: StatedErrors::default(),
             surface: SurfaceOptions::default(),
+            surface_up: UpAxis::default(),
             scale_objects: Vec::new(),
             decisions: Vec::new(),
         }
@@ -124,6 +127,7 @@ impl FlightSettings {
             ground,
             image,
             surface,
+            surface_up,
             pair: _,
             errors: _,
             scale_objects: _,
@@ -131,6 +135,7 @@ impl FlightSettings {
         } = self;
         (*unit, *unit_known) == (other.unit, other.unit_known)
             && (*ground, *image, *surface) == (other.ground, other.image, other.surface)
+            && *surface_up == other.surface_up
     }
 }
 

@@ -64,6 +64,7 @@ fn settings() -> FlightSettings {
         ground: Ground::Auto,
         image: ImageKind::Undistorted,
         surface: SurfaceOptions::default(),
+        surface_up: Default::default(),
         scale_objects: Vec::new(),
         decisions: Vec::new(),
     }

@@ -61,6 +61,8 @@ pub enum Remedy {
     AddPhotos,
     /// Naming another cloud or mesh.
     AddSurface,
+    /// Taking another axis of the surface's file for up.
+    TurnUp(UpAxis),
 }
 
 impl Remedy {
@@ -224,13 +226,13 @@ fn up(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
         let says = format!("{}: {reason}.", share(under, review));
         return of(item, Health::Bad, "?", says);
     }
-    match stated.doubtful_up.map(UpAxis::name) {
+    match stated.doubtful_up {
         Some(axis) => {
+            let name = axis.name();
             let says = format!(
-                "The surface looks as if {axis} were up in its file: then write up = \"{axis}\" below [surface] \
-                 in its flight.toml (a steep wall looks the same)."
+                "The surface looks as if {name} were up in its file (a steep wall looks the same)."
             );
-            of(item, Health::Bad, format!("{axis}?"), says)
+            of(item, Health::Bad, format!("{name}?"), says).with(Remedy::TurnUp(axis))
         }
         None if review.count() == 0 => {
             let says = "z is taken to be up: there are no cameras to say otherwise.".to_owned();

@@ -107,14 +107,15 @@ impl FlightOrigin {
         if self.is_flight_file {
             let at_source = |fault| FileError::new(&self.path, fault);
             let text = read_text(&self.path)?;
-            let text = FlightFile::text_with_settings(&text, settings).map_err(at_source)?;
             let old_folder = folder_of(&self.path);
+            // Before the settings: which axis is up is said of the file that is named then.
             let text = match self.is_changed {
                 true => self
                     .with_other_files(&text, old_folder)
                     .map_err(at_source)?,
                 false => text,
             };
+            let text = FlightFile::text_with_settings(&text, settings).map_err(at_source)?;
             if real(old_folder) == folder {
                 return Ok(text);
             }

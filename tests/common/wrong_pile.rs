@@ -69,3 +69,32 @@ pub fn swapped(folder: &Path) {
         fs::rename(&aside, photo(b)).expect("moved");
     }
 }
+
+/// The photo of [`y_up`], taken straight down from 10 m: its scale is 32 px/m, within the hills' 5 %.
+pub const OVER_HILLS: &str = "over.jpg";
+
+/// One photo of 20 m of hills, 0.5 m high, whose mesh was written with y up.
+pub fn y_up(folder: &Path) {
+    let mut mesh = String::new();
+    for at in 0..21 * 21 {
+        let (x, y) = (f64::from(at % 21), f64::from(at / 21));
+        let z = 0.5 * (x * 0.9).sin() * (y * 0.7).cos();
+        let _ = writeln!(mesh, "v {x} {z} {}", -y);
+    }
+    for at in 0..21 * 20 {
+        // OBJ counts from 1.
+        if at % 21 < 20 {
+            let _ = writeln!(mesh, "f {} {} {} {}", at + 1, at + 2, at + 23, at + 22);
+        }
+    }
+    let poses = format!("photo,x,y,z,tilt,pan\n{OVER_HILLS},10,10,10,90,0\n");
+    let flight = "format = 1\nworld.unit = \"m\"\nsurface.file = \"hills.obj\"\nphotos.poses = \"poses.csv\"\n\
+        [[camera]]\nwidth = 400\nheight = 300\nfx = 320\nfy = 320\ncx = 200\ncy = 150\n";
+    for (name, text) in [
+        ("hills.obj", mesh.as_str()),
+        ("poses.csv", &poses),
+        ("flight.toml", flight),
+    ] {
+        fs::write(folder.join(name), text).expect("written");
+    }
+}

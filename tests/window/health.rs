@@ -6,6 +6,8 @@ use egui::Modifiers;
 use egui::accesskit::Role;
 use fragscale::app::command::Asking;
 use fragscale::opening::{Health, HealthFinding, HealthItem, Remedy};
+use fragscale::surface::UpAxis;
+use fragscale::units::LengthUnit;
 
 use crate::desk::{Desk, copy, flight};
 use crate::{own_frame, wrong_pile};
@@ -131,4 +133,27 @@ fn a_pile_that_is_upside_down_is_said() {
         "{}",
         up.says
     );
+}
+
+/// One click turns the surface; it can be undone, and is saved.
+#[test]
+fn another_axis_is_taken_for_up() {
+    let folder = tempfile::tempdir().expect("a folder");
+    wrong_pile::y_up(folder.path());
+    let mut desk = Desk::new(Some(folder.path()));
+    let remedy = Some(Remedy::TurnUp(UpAxis::Y));
+    assert_eq!(how(&desk, HealthItem::UpAxis), (Health::Bad, remedy));
+    desk.click(Role::Button, "Up axis: Use y as up");
+    desk.settle();
+    assert_eq!(how(&desk, HealthItem::UpAxis), (Health::Good, None));
+    let photo = desk.open().review.photo(0).expect("a photo");
+    let top = photo.edges(LengthUnit::Metre).top.expect("a scale");
+    assert!((top / 32.0 - 1.0).abs() < 0.05, "{top}");
+    desk.press(Modifiers::COMMAND, Key::S);
+    desk.settle();
+    let text = std::fs::read_to_string(folder.path().join("flight.toml")).expect("saved");
+    assert!(text.contains("surface.up = \"y\""), "{text}");
+    desk.press(Modifiers::COMMAND, Key::Z);
+    desk.settle();
+    assert_eq!(how(&desk, HealthItem::UpAxis), (Health::Bad, remedy));
 }

@@ -54,8 +54,8 @@ fn halves() -> HashMap<String, [f64; 4]> {
 /// How many digits a number has down to the first of half its interval, the second where that is a 1.
 fn digits(value: f64, half: f64) -> i32 {
     let first = half.log10().floor();
-    let is_one = half / 10_f64.powf(first) < 1.95;
-    (value.log10().floor() - first) as i32 + 1 + i32::from(is_one)
+    let has_two = half / 10_f64.powf(first) < 3.55;
+    (value.log10().floor() - first) as i32 + 1 + i32::from(has_two)
 }
 
 /// Whether `shown` is `value` to this many significant digits.

@@ -12,7 +12,7 @@ pub fn verdict_color(verdict: Verdict, visuals: &egui::Visuals) -> egui::Color32
         (Verdict::Accepted, false) => egui::Color32::from_rgb(0, 105, 125),
         (Verdict::Check, true) => egui::Color32::from_rgb(255, 190, 80),
         (Verdict::Check, false) => egui::Color32::from_rgb(160, 90, 0),
-        (Verdict::LeftOut, true) => egui::Color32::from_gray(165),
+        (Verdict::LeftOut, true) => egui::Color32::from_rgb(168, 162, 112),
         (Verdict::LeftOut, false) => egui::Color32::from_gray(85),
         (Verdict::NoScale, true) => egui::Color32::from_rgb(255, 110, 110),
         (Verdict::NoScale, false) => egui::Color32::from_rgb(180, 20, 30),

@@ -139,6 +139,8 @@ impl State {
             }
         };
         self.note_step("Computing scales", &flight.parts().name, took);
+        // Whatever was wrong with the settings is not any more.
+        self.notice = None;
         let Some(open) = &mut self.open else {
             return;
         };

@@ -1,9 +1,13 @@
-//! Which photos of a flight a command is for.
+//! Which photos of a flight a command is for, and what becomes of those that it cannot be done for.
+
+use std::path::Path;
 
 use clap::Args;
 
 use crate::fault::Fault;
+use crate::files::FileError;
 use crate::flight::Flight;
+use crate::jobs::Progress;
 
 /// `--photo` or `--all`.
 #[derive(Debug, Clone, Args)]
@@ -17,26 +21,83 @@ pub(super) struct ChosenPhotos {
     pub(super) all: bool,
 }
 
+/// Why a photo's files are not made.
+pub(super) enum NotMade {
+    /// Of this photo: others may do.
+    Photo(Fault),
+    /// A file cannot be written: nothing goes on.
+    File(String),
+}
+
+impl From<Fault> for NotMade {
+    fn from(fault: Fault) -> Self {
+        Self::Photo(fault)
+    }
+}
+
+impl From<String> for NotMade {
+    fn from(error: String) -> Self {
+        Self::File(error)
+    }
+}
+
+/// What is done with each photo, for sentences.
+pub(super) struct Doing {
+    /// "rectifying"
+    pub doing: &'static str,
+    /// "not rectified"
+    pub not_done: &'static str,
+}
+
 impl ChosenPhotos {
-    /// The places of the photos in the flight.
+    /// The places of the photos in the flight, whose lengths mean something.
     ///
     /// # Errors
-    /// Where there is no such photo.
+    /// Where there is no such photo, or the model is in a frame of its own.
     pub(super) fn of(&self, flight: &Flight) -> Result<Vec<usize>, Fault> {
+        if !flight.parts().unit_known {
+            return Err(Fault::new(
+                "the model is in a frame of its own, whose unit nobody states",
+                "georeference it, or say the unit in a flight.toml ([world] unit)",
+            ));
+        }
         match &self.photo {
             Some(name) => Ok(vec![flight.photo_named(name)?]),
             None => Ok((0..flight.parts().photos.len()).collect()),
         }
     }
-}
 
-/// A model in a frame of its own has lengths that mean nothing.
-pub(super) fn check_unit(flight: &Flight) -> Result<(), Fault> {
-    match flight.parts().unit_known {
-        true => Ok(()),
-        false => Err(Fault::new(
-            "the model is in a frame of its own, whose unit nobody states",
-            "georeference it, or say the unit in a flight.toml ([world] unit)",
-        )),
+    /// Makes the files of each chosen photo by `make`, which gets the photo's place among them. Of all
+    /// photos those that cannot be made are left out: returns a sentence of each. `path` is the flight's.
+    ///
+    /// # Errors
+    /// Where the one photo cannot be made, a file cannot be written, or the work was cancelled.
+    pub(super) fn make_each<'a>(
+        &self,
+        names: impl ExactSizeIterator<Item = &'a str>,
+        doing: &Doing,
+        path: &Path,
+        progress: &Progress,
+        mut make: impl FnMut(usize) -> Result<(), NotMade>,
+    ) -> Result<Vec<String>, String> {
+        let in_flight = |fault| FileError::new(path, fault).to_string();
+        let mut failed = Vec::new();
+        let count = names.len() as u64;
+        for (place, name) in names.enumerate() {
+            progress.stage(format!("{} {name}", doing.doing));
+            progress.advance(place as u64, count).map_err(in_flight)?;
+            match make(place) {
+                Ok(()) => {}
+                Err(NotMade::File(error)) => return Err(error),
+                Err(NotMade::Photo(fault)) if progress.is_cancelled() || !self.all => {
+                    let what = format!("{name}: {}", fault.what);
+                    return Err(in_flight(Fault::new(what, fault.remedy)));
+                }
+                Err(NotMade::Photo(fault)) => {
+                    failed.push(format!("{name}: {}: {fault}", doing.not_done));
+                }
+            }
+        }
+        Ok(failed)
     }
 }

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
-use super::chosen_photos::{ChosenPhotos, check_unit};
+use super::chosen_photos::{ChosenPhotos, Doing};
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::outputs::{Force, Outputs};
 use crate::cli::{Answer, OutputUnit};
@@ -101,7 +101,6 @@ pub(in crate::cli) fn rectify(
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let flight = &opened.flight;
-    check_unit(flight).map_err(in_flight)?;
     let chosen = arguments.photos.of(flight).map_err(in_flight)?;
     let format = match arguments.format {
         Format::Png => RectifiedFormat::Png,
@@ -129,35 +128,29 @@ pub(in crate::cli) fn rectify(
         progress,
     };
     let mut warnings = opened.all_warnings();
-    let (mut text, mut written, mut failed) = (String::new(), 0, Vec::new());
-    for (done, (&index, files)) in chosen.iter().zip(&planned).enumerate() {
-        let name = &flight.parts().photos[index].name;
-        progress.stage(format!("rectifying {name}"));
-        let counted = progress.advance(done as u64, chosen.len() as u64);
-        counted.map_err(in_flight)?;
-        match maker.make(index) {
-            Ok(made) => {
-                outputs.make_folder(&arguments.to)?;
-                outputs.write(&files[0], &made.picture, Kind::Result)?;
-                outputs.write(&files[1], made.world_file.as_bytes(), Kind::Result)?;
-                text += &format!("{}: {}\n", files[0].display(), made.words);
-                warnings.extend(made.warning.map(|warning| format!("{name}: {warning}")));
-                written += 1;
-            }
-            Err(fault) if progress.is_cancelled() || !arguments.photos.all => {
-                let what = format!("{name}: {}", fault.what);
-                return Err(in_flight(Fault::new(what, fault.remedy)));
-            }
-            Err(fault) => failed.push(format!("{name}: not rectified: {fault}")),
-        }
-    }
+    let mut text = String::new();
+    let doing = Doing {
+        doing: "rectifying",
+        not_done: "not rectified",
+    };
+    let name = |index: &usize| flight.parts().photos[*index].name.as_str();
+    let names = chosen.iter().map(name);
+    let chosen_photos = &arguments.photos;
+    let failed = chosen_photos.make_each(names, &doing, path, progress, |place| {
+        let made = maker.make(chosen[place])?;
+        let [picture, world_file] = &planned[place];
+        outputs.make_folder(&arguments.to)?;
+        outputs.write(picture, &made.picture, Kind::Result)?;
+        outputs.write(world_file, made.world_file.as_bytes(), Kind::Result)?;
+        text += &format!("{}: {}\n", picture.display(), made.words);
+        let name = name(&chosen[place]);
+        warnings.extend(made.warning.map(|warning| format!("{name}: {warning}")));
+        Ok(())
+    })?;
     let failures = failed.len();
     warnings.extend(failed);
     let failed = (failures > 0).then(|| {
-        let what = format!(
-            "{failures} of {} photos are not rectified",
-            failures + written
-        );
+        let what = format!("{failures} of {} photos are not rectified", chosen.len());
         in_flight(Fault::new(what, "see the warnings above"))
     });
     Ok(Answer {

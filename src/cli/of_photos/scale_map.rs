@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::chosen_photos::{ChosenPhotos, check_unit};
+use super::chosen_photos::{ChosenPhotos, Doing};
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::outputs::{Force, Outputs};
 use crate::cli::{Answer, OutputUnit};
@@ -115,7 +115,6 @@ pub(in crate::cli) fn scale_map(
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let flight = &opened.flight;
-    check_unit(flight).map_err(in_flight)?;
     let chosen = arguments.photos.of(flight).map_err(in_flight)?;
     let planned = plan(arguments, flight, &chosen)?;
     let files = planned.iter().flat_map(|planned| &planned.files);
@@ -132,30 +131,23 @@ pub(in crate::cli) fn scale_map(
         progress,
     };
     let mut warnings = opened.all_warnings();
-    let mut written = 0;
-    for (done, planned) in planned.iter().enumerate() {
-        let name = &planned.photo.name;
-        progress.stage(format!("mapping {name}"));
-        let counted = progress.advance(done as u64, chosen.len() as u64);
-        counted.map_err(in_flight)?;
+    let doing = Doing {
+        doing: "mapping",
+        not_done: "no map",
+    };
+    let names = planned.iter().map(|planned| planned.photo.name.as_str());
+    let chosen_photos = &arguments.photos;
+    let failed = chosen_photos.make_each(names, &doing, path, progress, |place| {
+        let planned = &planned[place];
         for (path, format) in &planned.files {
-            match maker.bytes(planned.photo, *format) {
-                Ok(bytes) => {
-                    outputs.write(path, &bytes, Kind::Result)?;
-                    written += 1;
-                }
-                Err(fault) if progress.is_cancelled() || !arguments.photos.all => {
-                    let what = format!("{name}: {}", fault.what);
-                    return Err(in_flight(Fault::new(what, fault.remedy)));
-                }
-                Err(fault) => {
-                    warnings.push(format!("{name}: no map: {fault}"));
-                    break;
-                }
-            }
+            let bytes = maker.bytes(planned.photo, *format)?;
+            outputs.write(path, &bytes, Kind::Result)?;
         }
-    }
-    if written == 0 {
+        Ok(())
+    })?;
+    let has_none = failed.len() == planned.len();
+    warnings.extend(failed);
+    if has_none {
         let fault = Fault::new("none of its photos has a map", "see the warnings above");
         return Ok(Answer {
             text: String::new(),

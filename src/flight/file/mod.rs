@@ -131,6 +131,12 @@ pub(super) fn unit_word(settings: &FlightSettings) -> &'static str {
     }
 }
 
+/// `surface.up` of these settings; `None` for z, which need not be said.
+pub(super) fn up_word(settings: &FlightSettings) -> Option<&'static str> {
+    let up = settings.surface_up;
+    (up != UpAxis::Z).then(|| up.name())
+}
+
 /// A number or "auto".
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct GroundEntry(pub(super) Ground);
@@ -242,7 +248,9 @@ impl FlightFile {
         let SurfaceOptions { max_edge, thinning } = settings.surface;
         let surface = SurfaceEntry {
             file: flight.surface.map(str::to_owned),
-            up: None,
+            up: up_word(settings)
+                .filter(|_| flight.surface.is_some())
+                .map(str::to_owned),
             max_edge,
             thinning,
         };
@@ -357,6 +365,7 @@ impl FlightFile {
             pair: self.pair(),
             errors: self.errors(),
             surface: self.surface_options(),
+            surface_up: self.surface_up(),
             scale_objects: self.scale_objects.iter().map(ScaleObject::from).collect(),
             decisions: self.decisions.iter().map(Decision::from).collect(),
         }

@@ -4,7 +4,7 @@ use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, Value
 
 use super::decisions_text::set_decisions;
 use super::uncertainty_entry::Axes;
-use super::{FlightFile, FlightSettings, ScaleObject, unit_word};
+use super::{FlightFile, FlightSettings, ScaleObject, unit_word, up_word};
 use crate::fault::Fault;
 use crate::scale::{Ground, ImageKind, ScalePair, StatedErrors};
 
@@ -44,6 +44,12 @@ impl FlightFile {
                 _ if new == old => {}
                 Some(length) => set(&mut document, "surface", key, length)?,
                 None => unset(&mut document, "surface", key),
+            }
+        }
+        if settings.surface_up != old.surface_up {
+            match up_word(settings) {
+                Some(axis) => set(&mut document, "surface", "up", axis)?,
+                None => unset(&mut document, "surface", "up"),
             }
         }
         if settings.image != old.image {
@@ -310,7 +316,7 @@ mod tests {
     use crate::flight::{Date, Decision, DecisionKind, ReconstructionFlight};
     use crate::scale::PoseErrors;
     use crate::scale::ScaleObjectKind;
-    use crate::surface::SurfaceOptions;
+    use crate::surface::{SurfaceOptions, UpAxis};
     use crate::units::LengthUnit;
     use glam::DVec2;
 
@@ -387,6 +393,24 @@ folder = "photos"
         assert!(FlightFile::text_with_settings("format = 1", &settings).is_err());
     }
 
+    /// Said of the surface's own file; z need not be said, and without a file nothing can be.
+    #[test]
+    fn another_axis_is_up() {
+        let up = |surface_up| FlightSettings {
+            surface_up,
+            ..settings()
+        };
+        let text = FlightFile::text_with_settings(COMMENTED, &up(UpAxis::Y)).unwrap();
+        assert_eq!(FlightFile::parse(&text).unwrap().surface_up(), UpAxis::Y);
+        let back = FlightFile::text_with_settings(&text, &up(UpAxis::Z)).unwrap();
+        let expected = FlightFile::text_with_settings(COMMENTED, &settings()).unwrap();
+        assert_eq!(back, expected);
+        let other = FlightFile::text_with_files(&text, Some("other.ply"), None).unwrap();
+        assert_eq!(FlightFile::parse(&other).unwrap().surface_up(), UpAxis::Z);
+        let without = "format = 1\nworld.unit = \"m\"\nphotos.reconstruction = \"a.nvm\"\n";
+        assert!(FlightFile::text_with_settings(without, &up(UpAxis::Y)).is_err());
+    }
+
     #[test]
     fn paths_are_replaced_wherever_they_stand() {
         let moved = |path: &str| Ok(format!("../old/{path}"));
@@ -457,6 +481,7 @@ folder = "photos"
                     ground,
                     image,
                     surface: SurfaceOptions { max_edge, thinning },
+                    surface_up: UpAxis::Z,
                     scale_objects,
                     decisions,
                 }

@@ -68,7 +68,6 @@ fn of_file(path: &Path, options: &OpenOptions, progress: &Progress) -> Result<So
     source.photo_folder_is_named = source.photo_folder.is_some();
     source.unit_is_stated = file.unit().is_some();
     source.topic = source.topic.or(file.topic().map(str::to_owned));
-    source.surface_up = file.surface_up();
     match file.photo_source() {
         PhotoSource::Poses(name) => {
             let names = cameras::read_tables(&mut source, path, folder, &file.cameras)?;

@@ -34,8 +34,6 @@ pub(super) struct Source {
     pub(super) inputs: Vec<PathBuf>,
     /// The surface's file; `None` for the reconstruction's own points.
     pub(super) surface: Option<PathBuf>,
-    /// The axis of that file that points up.
-    pub(super) surface_up: UpAxis,
     /// What the surface's triangles say is up, where that is not z.
     pub(super) doubtful_up: Option<UpAxis>,
     /// Whether `surface` is what the package left, not what somebody named.
@@ -80,7 +78,6 @@ impl Source {
             preferred_crs: None,
             inputs: Vec::new(),
             surface: options.surface.clone(),
-            surface_up: UpAxis::Z,
             doubtful_up: None,
             surface_is_packages: false,
             surface_note: None,

@@ -18,14 +18,16 @@ pub(super) fn read(
 ) -> Result<Option<CloudFile>, FileError> {
     if options.surface.is_some() {
         // What is said of the flight's own file does not hold for another.
-        source.surface_up = UpAxis::Z;
+        source.settings.surface_up = UpAxis::Z;
     }
+    let settings = options.settings.as_ref().unwrap_or(&source.settings);
+    let up = settings.surface_up;
     let Some(path) = source.surface.clone() else {
         return Ok(None);
     };
     let mut file = read_cloud(&path, progress)?;
     for point in &mut file.cloud.points {
-        *point = source.surface_up.to_z_up(*point);
+        *point = up.to_z_up(*point);
     }
     // The package's own cloud is in the frame of its poses, unless it says otherwise.
     if let Some(similarity) = &source.package_surface_to_world

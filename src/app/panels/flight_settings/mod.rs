@@ -9,6 +9,7 @@ use crate::names;
 use crate::panels::field::{combo_box, number_field};
 use crate::scale::{Ground, ImageKind, ScalePair};
 use crate::state::State;
+use crate::surface::UpAxis;
 use crate::units::LengthUnit;
 use files_of_flight::files_of_flight;
 use stated_errors::stated_errors;
@@ -161,6 +162,9 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
     }
     ui.add_space(8.0);
     ui.strong("Surface");
+    if open.files.origin.surface().is_some() {
+        up_axis(&now, ui, &mut set);
+    }
     let mut surface = now.surface;
     let mut changed = false;
     let size = open.extent.surface.size().truncate().max_element();
@@ -209,4 +213,26 @@ pub(super) fn flight_settings(state: &State, ui: &mut egui::Ui, commands: &mut V
     commands.extend(changed_to.map(Command::Set));
     ui.add_space(8.0);
     stated_errors(state, &now, ui, commands);
+}
+
+/// Which axis of the surface's file points up.
+fn up_axis(now: &FlightSettings, ui: &mut egui::Ui, set: &mut impl FnMut(FlightSettings)) {
+    ui.horizontal(|ui| {
+        ui.label("Up in its file:");
+        for axis in [UpAxis::X, UpAxis::Y, UpAxis::Z] {
+            let chosen = now.surface_up == axis;
+            let button = ui.radio(chosen, axis.name());
+            button.widget_info(|| {
+                let label = format!("{} is up in the surface's file", axis.name());
+                egui::WidgetInfo::selected(egui::Role::RadioButton, true, chosen, label)
+            });
+            let hover = "Which axis of the surface's file points up: the file is read again";
+            if button.on_hover_text(hover).clicked() && !chosen {
+                set(FlightSettings {
+                    surface_up: axis,
+                    ..now.clone()
+                });
+            }
+        }
+    });
 }

@@ -2,9 +2,10 @@
 
 use crate::actions;
 use crate::command::{Command, Tab};
-use crate::flight::Doubt;
+use crate::flight::{Doubt, FlightSettings};
 use crate::opening::Remedy;
 use crate::state::State;
+use crate::surface::UpAxis;
 
 /// A remedy as this window offers it.
 pub(in crate::panels) struct Offer {
@@ -41,6 +42,18 @@ impl Offer {
                 name: "Add photos…",
                 hover: "Name the folder that the photos of this flight are in",
                 command: add()?,
+            },
+            Remedy::TurnUp(up) => Self {
+                name: match up {
+                    UpAxis::X => "Use x as up",
+                    UpAxis::Y => "Use y as up",
+                    UpAxis::Z => "Use z as up",
+                },
+                hover: "Turn the surface so that this axis of its file points up; Flight has the same choice",
+                command: Command::Set(FlightSettings {
+                    surface_up: up,
+                    ..state.open.as_ref()?.settings()
+                }),
             },
             Remedy::AddSurface => Self {
                 name: "Add surface…",
