@@ -42,7 +42,8 @@ struct Frame {
     project: u32,
     // Eye-dome lighting: 0 is off.
     relief: f32,
-    spare: f32,
+    // Radius of a point of the cloud at least, texels: where nearer neighbours are not there.
+    least: f32,
     viridis: array<vec4<f32>, 17>,
 }
 

@@ -18,7 +18,8 @@ fn vertex(
 ) -> Point {
     let corner = vec2(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
     let clip = frame.clip_from_local * vec4(local, 1.0);
-    let radius = clamp(frame.radius / (frame.texel * clip.w), 0.7 * frame.point, 16.0 * frame.point);
+    let least = max(0.7 * frame.point, frame.least);
+    let radius = clamp(frame.radius / (frame.texel * clip.w), least, max(16.0 * frame.point, least));
     var point: Point;
     point.clip = vec4(clip.xy + corner * radius * 2.0 / frame.size * clip.w, clip.zw);
     point.corner = corner;

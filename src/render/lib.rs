@@ -20,6 +20,7 @@ mod primitives;
 mod renderer;
 mod scene;
 mod show;
+mod streamed;
 mod surface_buffers;
 mod view;
 
@@ -41,6 +42,7 @@ pub use scene::photo_geometry::PhotoGeometry;
 pub use scene::photo_image::PhotoImage;
 pub use scene::{CloudGeometry, MeshGeometry, Normals};
 pub use show::{Background, ColorBy, PhotoLook, Scope, Show};
-pub use surface_buffers::{Shapes, SurfaceBuffers};
+pub use streamed::{MEMORY as STREAMED_MEMORY, POINTS as STREAMED_POINTS};
+pub use surface_buffers::{MOST_TRIANGULATED, Shapes, SurfaceBuffers};
 pub use view::orbit::Orbit;
 pub use view::{PhotoZoom, Projection, View};

@@ -7,7 +7,12 @@ use crate::jobs::Progress;
 use crate::primitives::mesh::MeshBuffers;
 use crate::primitives::points::CloudBuffers;
 use crate::scene::{CloudGeometry, MeshGeometry, Normals};
-use crate::surface::Surface;
+use crate::streamed::StreamSource;
+use crate::surface::{Levels, Surface};
+
+/// A cloud of more points is not triangulated to be shown: its points are, by levels of detail. (Triangles
+/// and edges of so many take 1.5 GB and ten seconds on two cores.)
+pub const MOST_TRIANGULATED: usize = 4_000_000;
 
 /// What of a surface is wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,6 +53,13 @@ impl SurfaceBuffers {
         wanted: Shapes,
         progress: &Progress,
     ) -> Result<Self, Fault> {
+        let points = surface.vertices().len();
+        if surface.is_cloud() && points > MOST_TRIANGULATED {
+            progress.stage("sorting the points into levels of detail");
+            if let Some(levels) = Levels::new(surface, progress)? {
+                return Ok(Self::streamed(levels, frame));
+            }
+        }
         progress.stage("triangulating the surface for the picture");
         let triangles = surface
             .triangles()
@@ -71,7 +83,16 @@ impl SurfaceBuffers {
         Ok(Self {
             cloud,
             mesh,
-            points: surface.vertices().len(),
+            points,
         })
+    }
+
+    /// Of a cloud that is shown by its levels of detail, however few they are.
+    pub(crate) fn streamed(levels: Levels, frame: &LocalFrame) -> Self {
+        Self {
+            points: levels.surface().vertices().len(),
+            cloud: Some(CloudBuffers::streamed(StreamSource::new(levels, frame))),
+            mesh: None,
+        }
     }
 }

@@ -11,6 +11,7 @@ mod cloud;
 mod delaunay;
 mod hull;
 mod left_out;
+mod levels;
 mod made_once;
 mod mesh;
 mod patches;
@@ -28,6 +29,7 @@ use glam::DVec3;
 pub use blocks::VertexBlock;
 pub use cloud::Cloud;
 pub use left_out::LeftOut;
+pub use levels::{Chosen, LevelNode, Levels};
 pub use patches::{Patch, Patches};
 pub use up_axis::{UpAxis, doubtful_up};
 

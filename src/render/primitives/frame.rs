@@ -33,7 +33,7 @@ pub(crate) struct FrameUniform {
     pub(crate) color_by: u32,
     pub(crate) project: u32,
     pub(crate) relief: f32,
-    pub(crate) spare: f32,
+    pub(crate) least: f32,
     pub(crate) viridis: [[f32; 4]; 17],
 }
 

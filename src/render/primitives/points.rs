@@ -11,6 +11,7 @@ use crate::device::gpu::Gpu;
 use crate::device::pipeline::Shader;
 use crate::device::pipeline::{Recipe, buffer, count, module, pipeline};
 use crate::scene::{CloudGeometry, CloudTile, Extent, Vertex};
+use crate::streamed::{Looking, Present, StreamSource, Streamed};
 
 pub(crate) const SHADER: Shader = (
     "points",
@@ -25,6 +26,8 @@ pub(crate) const SHADER: Shader = (
 #[derive(Debug, Clone, Default)]
 pub struct CloudBuffers {
     tiles: Vec<Tile>,
+    /// Of a cloud too large to be there whole: where the tiles come from.
+    source: Option<StreamSource>,
     /// See [`CloudGeometry`].
     pub(crate) spacing: f64,
     /// See [`CloudGeometry`].
@@ -34,17 +37,24 @@ pub struct CloudBuffers {
 impl CloudBuffers {
     /// Uploads a cloud.
     pub fn new(gpu: &Gpu, cloud: &CloudGeometry) -> Self {
-        let upload = |tile: &CloudTile| Tile {
-            points: buffer(&gpu.device, "points", BufferUsages::VERTEX, &tile.points),
-            count: count(&tile.points),
-            extent: tile.extent,
-        };
+        let upload = |tile: &CloudTile| Tile::new(gpu, &tile.points, tile.extent);
         let tiles = cloud.tiles.iter().map(upload).collect();
         gpu.hand_over();
         Self {
             tiles,
+            source: None,
             spacing: cloud.spacing,
             elevation: cloud.elevation,
+        }
+    }
+
+    /// Of a cloud that is streamed.
+    pub(crate) fn streamed(source: StreamSource) -> Self {
+        Self {
+            tiles: Vec::new(),
+            spacing: source.spacing,
+            elevation: source.elevation,
+            source: Some(source),
         }
     }
 }
@@ -53,13 +63,31 @@ impl CloudBuffers {
 pub(crate) struct Points {
     pipeline: RenderPipeline,
     pub(crate) cloud: CloudBuffers,
+    /// What brings the cloud's tiles, where not all are there.
+    streamed: Option<Streamed>,
 }
 
+/// Points near each other on the graphics card; clones share them.
 #[derive(Debug, Clone)]
-struct Tile {
+pub(crate) struct Tile {
     points: Buffer,
     count: u32,
     extent: Extent,
+}
+
+impl Tile {
+    pub(crate) fn new(gpu: &Gpu, points: &[Vertex], extent: Extent) -> Self {
+        Self {
+            points: buffer(&gpu.device, "points", BufferUsages::VERTEX, points),
+            count: count(points),
+            extent,
+        }
+    }
+
+    /// How much memory it takes.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.points.size()
+    }
 }
 
 impl Points {
@@ -87,14 +115,46 @@ impl Points {
         Self {
             pipeline,
             cloud: CloudBuffers::default(),
+            streamed: None,
         }
     }
 
+    /// Takes another cloud, or none.
+    pub(crate) fn set(&mut self, gpu: &Gpu, cloud: CloudBuffers) {
+        let source = cloud.source.as_ref();
+        self.streamed = source.map(|source| Streamed::new(gpu, source));
+        self.cloud = cloud;
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
-        self.cloud.tiles.is_empty()
+        self.cloud.tiles.is_empty() && self.streamed.is_none()
+    }
+
+    /// Whether the cloud is too large to be there whole; then it stands for the surface's triangles.
+    pub(crate) fn is_streamed(&self) -> bool {
+        self.streamed.is_some()
+    }
+
+    /// Has the tiles of a streamed cloud there that a picture of at most `most` points is made of, as far
+    /// as they have come; see [`Streamed::present`].
+    pub(crate) fn look(
+        &mut self,
+        looking: &Looking<'_>,
+        most: Option<usize>,
+        wait: bool,
+    ) -> Present {
+        let Some(streamed) = &mut self.streamed else {
+            return Present::default();
+        };
+        let mut present = streamed.present(looking, most.unwrap_or(usize::MAX), wait);
+        self.cloud.tiles = std::mem::take(&mut present.tiles);
+        present
     }
 
     pub(crate) fn extent(&self) -> Option<Extent> {
+        if let Some(streamed) = &self.streamed {
+            return streamed.extent();
+        }
         self.cloud
             .tiles
             .iter()
@@ -104,6 +164,10 @@ impl Points {
 
     /// Which share of the points in sight is drawn when at most `most` are.
     pub(crate) fn share(&self, most: Option<usize>, in_sight: &impl Fn(&Extent) -> bool) -> f64 {
+        if self.is_streamed() {
+            // Chosen to be few enough.
+            return 1.0;
+        }
         let tiles = self
             .cloud
             .tiles

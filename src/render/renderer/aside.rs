@@ -3,7 +3,7 @@
 use wgpu::TextureView;
 
 use super::Renderer;
-use super::part::Part;
+use super::part::{Most, Part};
 use super::targets::Targets;
 use crate::show::Show;
 use crate::view::View;
@@ -26,7 +26,8 @@ impl Renderer {
         let kept = aside.take().filter(|Aside(targets)| targets.size == size);
         let Aside(mut targets) =
             kept.unwrap_or_else(|| Aside(Targets::new(&self.gpu.device, size, samples)));
-        self.draw_part(&mut targets, view, show, Part::whole(size), usize::MAX);
+        let most = Most::Portion(usize::MAX);
+        self.draw_part(&mut targets, view, show, Part::whole(size), most);
         let Aside(targets) = aside.insert(Aside(targets));
         &targets.picture_view
     }

@@ -37,7 +37,7 @@ use crate::show::{ColorBy, PhotoLook, Show};
 use crate::surface_buffers::SurfaceBuffers;
 use crate::view::View;
 pub use aside::Aside;
-use part::{Part, pair};
+use part::{Most, Part, pair};
 use targets::Targets;
 
 /// More texels than this are too many to draw again and again: then a pixel has one sample.
@@ -93,6 +93,8 @@ pub struct Drawn {
     pub triangles: usize,
     /// Whether the surface is whole; else an earlier picture of it still stands in.
     pub whole: bool,
+    /// Whether finer points of a large cloud are on their way: draw again in a moment.
+    pub awaited: bool,
 }
 
 impl Renderer {
@@ -153,7 +155,7 @@ impl Renderer {
     }
 
     fn set_cloud_buffers(&mut self, cloud: Option<CloudBuffers>) {
-        self.points.cloud = cloud.unwrap_or_default();
+        self.points.set(&self.gpu, cloud.unwrap_or_default());
         self.version += 1;
     }
 
@@ -250,7 +252,8 @@ impl Renderer {
         let kept = self.targets.take().filter(|t| t.size == size);
         let new_texture = kept.is_none();
         let mut targets = kept.unwrap_or_else(|| Targets::new(&self.gpu.device, size, samples));
-        let whole = self.draw_part(&mut targets, view, show, Part::whole(size), most);
+        let most = Most::Portion(most);
+        let [whole, awaited] = self.draw_part(&mut targets, view, show, Part::whole(size), most);
         let [triangles, points] = targets.surface.drawn;
         self.targets = Some(targets);
         Drawn {
@@ -258,6 +261,7 @@ impl Renderer {
             points,
             triangles,
             whole,
+            awaited,
         }
     }
 
@@ -308,7 +312,7 @@ impl Renderer {
                     of: size,
                 };
                 let mut targets = Targets::new(&self.gpu.device, part.size, 2);
-                self.draw_part(&mut targets, view, show, part, usize::MAX);
+                self.draw_part(&mut targets, view, show, part, Most::All);
                 let pixels = read_back(&self.gpu, &targets.picture)?;
                 self.gpu.check()?;
                 image::imageops::replace(

@@ -34,6 +34,16 @@ impl Part {
     }
 }
 
+/// How much of the surface is drawn in one call.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Most {
+    /// All that there is, and what of a streamed cloud is missing is brought before: for files.
+    All,
+    /// About so many triangles or points, where an earlier picture can stand in; what is missing comes
+    /// later.
+    Portion(usize),
+}
+
 pub(crate) fn pair([x, y]: [u32; 2]) -> DVec2 {
     DVec2::new(f64::from(x), f64::from(y))
 }

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use wgpu::CommandEncoder;
 
 use super::Renderer;
-use super::part::{Part, pair};
+use super::part::{Most, Part, pair};
 use super::pass::{depth, is_in_sight, opaque, pass};
 use super::sight::Sight;
 use super::targets::{SurfaceTarget, Targets};
@@ -19,6 +19,7 @@ use crate::primitives::lines::StrokeBuffer;
 use crate::scene::photo_geometry::PhotoGeometry;
 use crate::scene::{Extent, narrow, narrow_matrix, narrow_number};
 use crate::show::{Background, ColorBy, Show};
+use crate::streamed::Looking;
 use crate::view::{Projection, View};
 
 impl Renderer {
@@ -34,16 +35,16 @@ impl Renderer {
         (distance(&self.photos[nearest]) < radius * 1e-9).then_some(nearest)
     }
 
-    /// Draws a part of a picture, of the surface about `most` triangles or points where that will do.
-    /// Returns whether the surface is whole.
+    /// Draws a part of a picture, of the surface about as much as `most` says where that will do.
+    /// Returns whether the surface is whole, and whether points of it are on their way.
     pub(crate) fn draw_part(
         &mut self,
         targets: &mut Targets,
         view: &View,
         show: &Show,
         part: Part,
-        most: usize,
-    ) -> bool {
+        most: Most,
+    ) -> [bool; 2] {
         let (middle, radius) = self.sphere();
         let whole = pair(part.of);
         let samples = f64::from(targets.samples);
@@ -64,12 +65,25 @@ impl Renderer {
             view_from_world.z_axis.extend(0.0),
             (-(view_from_world * eye)).extend(1.0),
         );
-        let clip_from_local = part.crop() * view.clip_from_view(whole, near, far) * view_from_local;
+        let clip_of_whole = view.clip_from_view(whole, near, far) * view_from_local;
+        let clip_from_local = part.crop() * clip_of_whole;
         let sight = narrow_matrix(clip_from_local);
         let in_sight = |extent: &Extent| is_in_sight(&sight, extent);
 
-        let share = self.points.share(show.max_points, &in_sight);
         let texel = 1.0 / (view.pixels_per_unit(whole, 1.0) * samples);
+        // The same points for all parts, so that there are no seams.
+        let sight_of_whole = narrow_matrix(clip_of_whole);
+        let looking = Looking {
+            eye,
+            ahead: axis,
+            parallel: view.is_parallel(),
+            texel,
+            nearest: near.max(radius * 1e-6),
+            in_sight: &|extent| is_in_sight(&sight_of_whole, extent),
+        };
+        let wait = matches!(most, Most::All);
+        let present = self.points.look(&looking, show.max_points, wait);
+        let share = self.points.share(show.max_points, &in_sight);
         // Strokes are lifted off the surface by a few texels.
         let lift = if view.is_parallel() {
             [1.0, 3.0 * texel / (far - near)]
@@ -132,7 +146,7 @@ impl Renderer {
             color_by,
             project: u32::from(project),
             relief: if show.eye_dome { 0.8 } else { 0.0 },
-            spare: 0.0,
+            least: narrow_number(present.least.min(40.0 * samples)),
             viridis: VIRIDIS_STOPS.map(opaque),
         };
         let queue = &self.gpu.queue;
@@ -162,9 +176,10 @@ impl Renderer {
         let too_many = show.max_points.is_some_and(|most| {
             show.mesh && !self.points.is_empty() && self.mesh.count(&in_sight) > 2 * most
         });
-        let shapes = [show.mesh && !too_many, show.cloud || too_many];
+        let stands_for_mesh = too_many || (show.mesh && self.points.is_streamed());
+        let shapes = [show.mesh && !too_many, show.cloud || stands_for_mesh];
         let version = (self.version, if project { self.photo_version } else { 0 });
-        let sight = Sight::new(&main, show.color_by, version, shapes, share);
+        let sight = Sight::new(&main, show.color_by, version, shapes, (share, present.key));
         let shown = targets.surface.sight.as_ref();
         let mut complete = shown == Some(&sight);
         if !complete {
@@ -172,7 +187,10 @@ impl Renderer {
             if targets.next.sight.as_ref() != Some(&sight) {
                 targets.next.begin(sight);
             }
-            let most = if stands_in { most } else { usize::MAX };
+            let most = match most {
+                Most::Portion(most) if stands_in => most,
+                _ => usize::MAX,
+            };
             self.draw_surface(&mut encoder, &mut targets.next, most, &in_sight);
             complete = targets.next.is_whole();
             if complete {
@@ -207,7 +225,7 @@ impl Renderer {
             self.resolve.draw(&mut pass, &group);
         }
         self.gpu.queue.submit([encoder.finish()]);
-        complete
+        [complete, present.awaited]
     }
 
     /// How deep the selected photo sees, where that is not known yet.

@@ -14,16 +14,19 @@ pub(crate) struct Sight {
     pub(crate) cloud: bool,
     /// How much of the cloud is drawn.
     pub(crate) share: f64,
+    /// Which nodes of a streamed cloud are.
+    nodes: u64,
 }
 
 impl Sight {
-    /// `shapes` says whether mesh and cloud are drawn, `share` how much of the cloud.
+    /// `shapes` says whether mesh and cloud are drawn, `share` how much of the cloud and which
+    /// nodes of it.
     pub(crate) fn new(
         frame: &FrameUniform,
         by: ColorBy,
         version: (u64, u64),
         shapes: [bool; 2],
-        share: f64,
+        (share, nodes): (f64, u64),
     ) -> Self {
         let mut frame = FrameUniform {
             // Other passes' concern.
@@ -49,6 +52,7 @@ impl Sight {
             mesh,
             cloud,
             share,
+            nodes,
         }
     }
 

@@ -261,7 +261,7 @@ fn indices(count: usize) -> Vec<u32> {
     (0..u32::try_from(count).unwrap_or(u32::MAX)).collect()
 }
 
-fn vertex(place: Vec3, index: u32, colors: &[[u8; 3]], normals: &Normals) -> Vertex {
+pub(crate) fn vertex(place: Vec3, index: u32, colors: &[[u8; 3]], normals: &Normals) -> Vertex {
     let [r, g, b] = colors.get(index as usize).copied().unwrap_or(GREY);
     Vertex {
         position: place.to_array(),
@@ -272,7 +272,7 @@ fn vertex(place: Vec3, index: u32, colors: &[[u8; 3]], normals: &Normals) -> Ver
 
 /// The hundredth and the ninety-ninth hundredth of the elevations, in the world: single outliers
 /// would take all the colours.
-fn elevation(frame: &LocalFrame, places: &[Vec3]) -> [f64; 2] {
+pub(crate) fn elevation(frame: &LocalFrame, places: &[Vec3]) -> [f64; 2] {
     // Every so many-th is enough for a colour map.
     let step = (places.len() / 100_000).max(1);
     let mut z: Vec<f32> = places.iter().step_by(step).map(|p| p.z).collect();
