@@ -89,8 +89,9 @@ impl SurfaceBuffers {
 
     /// Of a cloud that is shown by its levels of detail, however few they are.
     pub(crate) fn streamed(levels: Levels, frame: &LocalFrame) -> Self {
+        let points = levels.surface().vertices().len();
         Self {
-            points: levels.surface().vertices().len(),
+            points,
             cloud: Some(CloudBuffers::streamed(StreamSource::new(levels, frame))),
             mesh: None,
         }

@@ -12,7 +12,7 @@ use crate::primitives::points::Tile;
 use crate::scene::{Normals, vertex};
 
 /// Nodes that may have arrived and not been taken: a frame takes no more.
-pub(crate) const IN_FLIGHT: usize = 16;
+const IN_FLIGHT: usize = 16;
 
 /// What the picture wants.
 #[derive(Debug, Default)]
@@ -80,8 +80,8 @@ impl Loader {
     }
 
     /// The nodes that have arrived since the last call.
-    pub(super) fn arrived(&self) -> impl Iterator<Item = (usize, Tile)> {
-        self.arrived.try_iter().take(IN_FLIGHT)
+    pub(super) fn arrived(&self) -> Vec<(usize, Tile)> {
+        self.arrived.try_iter().take(IN_FLIGHT).collect()
     }
 
     /// Wishes for these nodes, the most wanted first, and for no others.

@@ -4,7 +4,7 @@
 //! Each picture chooses its nodes anew, from the top, the coarsest first, until they are as fine as a texel
 //! or the budget of points is spent ([`POINTS`], or less while the view moves). What of them is on the
 //! card is drawn; the others are wished for, and [`loader`], a thread, makes their vertices and uploads
-//! them. A frame takes what has arrived, at most [`IN_FLIGHT`] nodes of at most 0.7 MB, so it never waits,
+//! them. A frame takes what has arrived, at most 16 nodes of at most 0.7 MB, so it never waits,
 //! and its own work grows with the nodes that are looked at (for six million points 1500: under
 //! a millisecond). Nodes that were not wanted for longest leave the card when there are more than
 //! [`MEMORY`] bytes.
@@ -26,7 +26,6 @@ use crate::primitives::points::Tile;
 use crate::scene::{Extent, elevation, narrow};
 use crate::surface::{LevelNode, Levels};
 use loader::Loader;
-pub(crate) use loader::IN_FLIGHT;
 
 /// Most points in a picture, with a graphics card and without one.
 pub const POINTS: [usize; 2] = [6_000_000, 1_000_000];
@@ -131,6 +130,8 @@ pub(crate) struct Streamed {
     gpu: Gpu,
     residents: HashMap<usize, Resident>,
     bytes: u64,
+    /// Most of them: [`MEMORY`].
+    memory: u64,
     /// How many pictures were made.
     pictures: u64,
     loader: Loader,
@@ -145,6 +146,7 @@ impl Streamed {
             gpu: gpu.clone(),
             residents: HashMap::new(),
             bytes: 0,
+            memory: MEMORY,
             pictures: 0,
         }
     }
@@ -225,7 +227,7 @@ impl Streamed {
 
     /// Nodes that were not wanted for longest leave the card until there is room.
     fn let_go(&mut self) {
-        if self.bytes <= MEMORY {
+        if self.bytes <= self.memory {
             return;
         }
         let unwanted = self.residents.iter();
@@ -235,7 +237,7 @@ impl Streamed {
             .collect();
         unwanted.sort_unstable();
         for (_, node) in unwanted {
-            if self.bytes <= MEMORY {
+            if self.bytes <= self.memory {
                 break;
             }
             if let Some(gone) = self.residents.remove(&node) {
