@@ -123,6 +123,11 @@ impl State {
                 }
             }
             Command::Photo(command) => self.apply_to_photo(command),
+            Command::View(change) if self.opening_preview().is_some() => {
+                if let Some(preview) = &mut self.preview {
+                    preview.change_view(change);
+                }
+            }
             Command::Select(photo) => self.select(|open| open.select(photo)),
             Command::SelectBy(rows) => self.select(|open| open.select_by(rows)),
             Command::Click(_)

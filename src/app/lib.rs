@@ -6,6 +6,7 @@
 //! actions             menu entry, shortcut and tooltip in one
 //! apply               the one function that applies a Command
 //! open_flight/        the flight on the screen, and what commands do to it alone
+//! opening_preview     a sample of a large surface, while it is read
 //! tasks/              long work as jobs; poll takes their results
 //! state/              everything that panels read
 //! linked/             the point under the mouse, in the pile and in the photos
@@ -26,6 +27,7 @@ pub mod frame_times;
 pub mod linked;
 mod names;
 pub mod open_flight;
+pub mod opening_preview;
 pub mod panels;
 pub mod photo_view;
 pub mod poll;
@@ -249,7 +251,9 @@ impl eframe::App for App {
             let (viewport, times) = (&mut self.viewport, &mut self.times);
             egui::CentralPanel::no_frame().show(ui, |ui| {
                 let place = ui.available_rect_before_wrap();
-                if state.middle.has_pile() {
+                if let Some(preview) = state.opening_preview() {
+                    viewport.show_preview(state, preview, ui, out, times);
+                } else if state.middle.has_pile() {
                     viewport.show(state, ui, out, times);
                     overlays(state, ui, place, out);
                     panels::survey_panel(state, ui.ctx(), place, out);
@@ -259,6 +263,11 @@ impl eframe::App for App {
                     panels::notice(state, ui, out);
                     photo_panel.show(state, ui, out);
                 }
+            });
+        } else if let Some(preview) = state.opening_preview() {
+            let (viewport, times) = (&mut self.viewport, &mut self.times);
+            egui::CentralPanel::no_frame().show(ui, |ui| {
+                viewport.show_preview(state, preview, ui, out, times);
             });
         } else {
             self.viewport.clear();

@@ -21,6 +21,9 @@ impl State {
         for step in self.work.steps(STEPS_A_FRAME) {
             step(self);
         }
+        if !self.is_opening() {
+            self.preview = None;
+        }
         if let Some(open) = &mut self.open {
             if !open.photo_view.tiles.take(&self.context) {
                 self.context.request_repaint();

@@ -45,6 +45,17 @@ pub fn read_cloud(path: &Path, progress: &Progress) -> Result<CloudFile, FileErr
         .map_err(|fault| FileError::new(path, known_places(path, format).unwrap_or(fault)))
 }
 
+/// A sample of a LAS, LAZ or COPC file of millions of points, in a second or two, with how many it has in all:
+/// to be looked at while it is read. `None` of other files, and where anything is wrong with it.
+pub fn read_cloud_sample(path: &Path, progress: &Progress) -> Option<(CloudFile, u64)> {
+    let Ok(Kind::Cloud(CloudFormat::Las)) = detect(path) else {
+        return None;
+    };
+    progress.stage(format!("looking at {}", path.display()));
+    let input = BufReader::with_capacity(1 << 18, open_file(path).ok()?);
+    las::sample::read_sample(input, progress)
+}
+
 /// What to do with a text that is no cloud because it lists places for georeferencing.
 fn known_places(path: &Path, format: CloudFormat) -> Option<Fault> {
     if format != CloudFormat::Xyz {

@@ -1,5 +1,7 @@
 //! A surface made ready and uploaded, for the window and for pictures alike.
 
+use glam::DVec3;
+
 use crate::device::gpu::Gpu;
 use crate::fault::Fault;
 use crate::geometry::LocalFrame;
@@ -85,6 +87,22 @@ impl SurfaceBuffers {
             mesh,
             points,
         })
+    }
+
+    /// Of points (world) with their colours or none, to be looked at alone.
+    pub fn of_points(
+        gpu: &Gpu,
+        frame: &LocalFrame,
+        points: &[DVec3],
+        colors: &[[u8; 3]],
+    ) -> Self {
+        let places = points.iter().copied();
+        let cloud = CloudGeometry::new(frame, places, colors, &Normals::default());
+        Self {
+            cloud: Some(CloudBuffers::new(gpu, &cloud)),
+            mesh: None,
+            points: points.len(),
+        }
     }
 
     /// Of a cloud that is shown by its levels of detail, however few they are.

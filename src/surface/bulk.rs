@@ -17,6 +17,12 @@ const MARGIN: f64 = 0.1;
 /// So many points stand for all.
 const SAMPLE: usize = 200_000;
 
+/// The box around all of these points but outliers, as [`Surface::bulk_bounds`](super::Surface::bulk_bounds);
+/// `None` without points.
+pub fn bulk_of(points: &[DVec3]) -> Option<Bounds> {
+    Some(bulk(points.iter().copied(), Bounds::of(points)?))
+}
+
 /// The box around all points but the outliers; `whole` is the box around all. Without outliers it is
 /// `whole`, to the last bit.
 pub(super) fn bulk(points: impl ExactSizeIterator<Item = DVec3>, whole: Bounds) -> Bounds {

@@ -27,6 +27,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use glam::DVec3;
 
 pub use blocks::VertexBlock;
+pub use bulk::bulk_of;
 pub use cloud::Cloud;
 pub use left_out::LeftOut;
 pub use levels::{Chosen, LevelNode, Levels};

@@ -134,6 +134,7 @@ impl Sites {
         for cell in 1..starts.len() {
             starts[cell] += starts[cell - 1];
         }
+        // Freed before the points are sorted: there may be hundreds of millions.
         let mut next = starts.clone();
         let mut order = vec![0_u32; points.len()];
         for (index, point) in (0..).zip(&points) {
@@ -141,6 +142,7 @@ impl Sites {
             order[*place as usize] = index;
             *place += 1;
         }
+        drop(next);
 
         // Equal (x, y) share a cell: sort each cell, highest first, and keep the first of equals.
         let mut kept = 0;
@@ -170,6 +172,7 @@ impl Sites {
         }
         order.truncate(kept);
         let sorted: Vec<DVec3> = order.iter().map(|&i| points[i as usize]).collect();
+        drop(points);
         let colors = match colors {
             [] => Vec::new(),
             colors => order.iter().map(|&i| colors[i as usize]).collect(),

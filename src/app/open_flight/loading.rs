@@ -9,7 +9,7 @@ use crate::flight::{FlightSettings, Outcome};
 use crate::formats::{Candidate, FileError, Kind, detect};
 use crate::geometry::Bounds;
 use crate::jobs::Progress;
-use crate::opening::{self, Dropped, OpenOptions, Opened};
+use crate::opening::{self, Dropped, OnSample, OpenOptions, Opened};
 
 /// A flight with its scales.
 #[derive(Debug)]
@@ -116,11 +116,12 @@ fn is_cloud(path: &Path) -> bool {
 }
 
 /// Reads a flight and computes its scales; `again` for the open flight of this number, with these
-/// settings.
+/// settings. A sample of a large surface is handed to `on_sample`, where somebody wants it.
 pub(crate) fn load(
     path: PathBuf,
     mut options: OpenOptions,
     again: Option<(u64, FlightSettings)>,
+    on_sample: Option<OnSample<'_>>,
     progress: &Progress,
 ) -> Result<Loaded, Box<NotOpened>> {
     let again_for = again.as_ref().map(|(number, _)| *number);
@@ -135,7 +136,8 @@ pub(crate) fn load(
         })
     };
     let begun = Instant::now();
-    let opened = opening::open_flight(&path, &options, progress).map_err(not_opened)?;
+    let opened = opening::open_flight_sampled(&path, &options, on_sample, progress)
+        .map_err(not_opened)?;
     let read = begun.elapsed();
     let at_path = |fault: Fault| not_opened(FileError::new(&path, fault));
     let outcomes = opened.flight.scales(progress).map_err(at_path)?;

@@ -12,6 +12,7 @@ use crate::command::{Asking, Command, PictureRequest, Tab};
 use crate::fault::one_line;
 use crate::formats::Candidate;
 use crate::open_flight::OpenFlight;
+use crate::opening_preview::OpeningPreview;
 use crate::opening::OpenOptions;
 use crate::photo_view::Middle;
 use crate::render::Gpu;
@@ -114,6 +115,8 @@ pub struct State {
     pub choices: Vec<Candidate>,
     /// Whether the flight that is being read is another one than that on the screen.
     pub reads_other: bool,
+    /// A first look at the surface that is being read.
+    pub preview: Option<OpeningPreview>,
     /// How many flights were opened.
     pub opened: u64,
     /// A picture of the viewport that was asked for; the viewport draws it.
@@ -143,6 +146,7 @@ impl State {
             tried: None,
             choices: Vec::new(),
             reads_other: false,
+            preview: None,
             opened: 0,
             picture: None,
         };

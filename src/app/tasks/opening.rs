@@ -10,6 +10,8 @@ use crate::open_flight::OpenFlight;
 use crate::open_flight::loading::{Loaded, NotOpened, load, named};
 use crate::open_flight::picker::Picker;
 use crate::open_flight::survey::surveyor::Surveyor;
+use crate::opening::SurfaceSample;
+use crate::opening_preview::OpeningPreview;
 use crate::state::{Severity, State};
 
 impl Task {
@@ -27,9 +29,21 @@ impl State {
         let base = self.tried.clone().or(base);
         self.notice = None;
         self.reads_other = true;
+        let (steps, gpu) = (self.work.steps_of_a_job(), self.gpu.clone());
         let work = move |progress: &Progress| {
+            let on_sample = |sample: SurfaceSample, progress: &Progress| {
+                let preview = OpeningPreview::new(gpu.as_ref(), sample);
+                let of_job = progress.clone();
+                let take = move |state: &mut Self| {
+                    if !of_job.is_cancelled() {
+                        state.preview = preview;
+                    }
+                };
+                // Where nobody wants it any more, nobody misses it.
+                let _ = steps.offer(take, progress);
+            };
             named(&paths, base, added)
-                .and_then(|(path, options)| load(path, options, None, progress))
+                .and_then(|(path, options)| load(path, options, None, Some(&on_sample), progress))
         };
         self.start(Task::OPEN, work, Self::take_opened);
     }
@@ -43,7 +57,7 @@ impl State {
         let again = (open_now.number, settings);
         self.notice = None;
         self.reads_other = false;
-        let work = move |progress: &Progress| load(path, options, Some(again), progress);
+        let work = move |progress: &Progress| load(path, options, Some(again), None, progress);
         self.start(Task::OPEN, work, Self::take_opened);
     }
 
@@ -164,6 +178,11 @@ impl State {
             }
             Err(fault) => self.say(Severity::Error, &fault.to_string()),
         }
+    }
+
+    /// A first look at the surface that is being read, where there is one.
+    pub fn opening_preview(&self) -> Option<&OpeningPreview> {
+        self.preview.as_ref().filter(|_| self.is_opening())
     }
 
     /// Whether a flight is being read.

@@ -3,7 +3,7 @@
 use egui::TextureId;
 use glam::DVec2;
 
-use super::graphics::Graphics;
+use super::graphics::{AWAITED, Graphics};
 use super::{Viewport, show};
 use crate::corner_loupe::CROP;
 use crate::open_flight::OpenFlight;
@@ -53,8 +53,11 @@ impl Viewport {
         let of = Some((open.number, photo, surface, outcomes, show.clone()));
         if self.crops.of != of {
             graphics.upload(open, ui.visuals());
-            draw(&mut self.crops, graphics, open, photo, &show)?;
-            self.crops.of = of;
+            let awaited = draw(&mut self.crops, graphics, open, photo, &show)?;
+            if awaited {
+                ui.ctx().request_repaint_after(AWAITED);
+            }
+            self.crops.of = of.filter(|_| !awaited);
         }
         let [a, b, c, d] = self.crops.textures;
         Some(Crops {
@@ -64,17 +67,19 @@ impl Viewport {
     }
 }
 
+/// Says whether finer points are on their way.
 fn draw(
     crops: &mut Drawn,
     graphics: &mut Graphics,
     open: &OpenFlight,
     photo: usize,
     show: &Show,
-) -> Option<()> {
+) -> Option<bool> {
     let reviewed = open.review.photo(photo)?;
     let camera = reviewed.camera;
     let image = DVec2::new(f64::from(camera.width), f64::from(camera.height));
     let view = View::through(&reviewed, open.looking.orbit.distance);
+    let mut awaited = false;
     for (index, name) in CornerName::ALL.into_iter().enumerate() {
         let middle = open.corner_in_view(photo, name)?;
         let view = view.into_photo(PhotoZoom {
@@ -83,9 +88,11 @@ fn draw(
             middle: middle / image,
         });
         let aside = &mut crops.asides[index];
-        let texture = graphics
-            .renderer
-            .draw_aside(aside, &view, show, [SIDE, SIDE]);
+        let (texture, is_coarse) =
+            graphics
+                .renderer
+                .draw_aside(aside, &view, show, [SIDE, SIDE]);
+        awaited |= is_coarse;
         let mut renderer = graphics.state.renderer.write();
         let device = &graphics.state.device;
         let filter = eframe::wgpu::FilterMode::Linear;
@@ -101,5 +108,5 @@ fn draw(
     }
     // The main picture's lines were made for another sight.
     graphics.drawn = None;
-    Some(())
+    Some(awaited)
 }

@@ -9,6 +9,7 @@ use egui::{Color32, Pos2, Rect, pos2};
 use super::Scene;
 use crate::flight::Outcome;
 use crate::open_flight::OpenFlight;
+use crate::opening_preview::OpeningPreview;
 use crate::panels::line_color;
 use crate::render::{Gpu, PhotoGeometry, PhotoLook, Renderer, Show, SurfaceBuffers, View};
 use crate::scale::ViewFacts;
@@ -23,6 +24,9 @@ const MOVING_POINTS: [usize; 2] = [2_000_000, 100_000];
 /// Triangles or points drawn in one frame when the view has come to rest, likewise: the window
 /// answers meanwhile.
 const PORTION: [usize; 2] = [usize::MAX, 400_000];
+
+/// How soon a picture is drawn again for which points are on their way.
+pub(super) const AWAITED: Duration = Duration::from_millis(16);
 
 pub(super) struct Graphics {
     pub(super) state: RenderState,
@@ -39,6 +43,8 @@ pub(super) struct Graphics {
 #[derive(Default)]
 pub(super) struct Uploaded {
     pub(super) flight: Option<u64>,
+    /// The first look at a surface that is read, instead of a flight.
+    pub(super) preview: Option<Arc<SurfaceBuffers>>,
     pub(super) geometry: Option<Arc<SurfaceBuffers>>,
     /// The scales and views that the photos' lines were made of.
     pub(super) outcomes: Option<Arc<Vec<Outcome>>>,
@@ -129,6 +135,21 @@ impl Graphics {
         }
     }
 
+    /// Uploads a first look at a surface, where that is new.
+    pub(super) fn upload_preview(&mut self, preview: &OpeningPreview) {
+        if preview.points.is_none() || same(self.uploaded.preview.as_ref(), preview.points.as_ref()) {
+            return;
+        }
+        self.uploaded = Uploaded {
+            preview: preview.points.clone(),
+            geometry: preview.points.clone(),
+            ..Uploaded::default()
+        };
+        self.renderer.start(&preview.frame);
+        self.renderer.set_surface(preview.points.as_deref());
+        (self.drawn, self.moved) = (None, None);
+    }
+
     /// Draws the scene where it has changed, and shows it.
     pub(super) fn draw(&mut self, scene: &Scene, show: &Show, ui: &egui::Ui) {
         let mut show = show.clone();
@@ -172,7 +193,11 @@ impl Graphics {
                     Some(_) => {}
                 }
             }
-            self.drawn = drawn.whole.then_some(wanted);
+            if drawn.awaited {
+                // Points of a large cloud are on their way; an idle window draws nothing once they are here.
+                ui.ctx().request_repaint_after(AWAITED);
+            }
+            self.drawn = (drawn.whole && !drawn.awaited).then_some(wanted);
         }
         if let Some(texture) = self.texture {
             let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));

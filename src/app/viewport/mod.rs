@@ -7,6 +7,7 @@ mod crops;
 mod drawn;
 mod graphics;
 mod mouse;
+mod preview;
 mod words;
 
 use eframe::egui_wgpu::RenderState;
@@ -61,7 +62,7 @@ impl Viewport {
     /// Lets go of what was uploaded of a flight that is closed.
     pub fn clear(&mut self) {
         if let Some(graphics) = &mut self.graphics
-            && graphics.uploaded.flight.is_some()
+            && (graphics.uploaded.flight.is_some() || graphics.uploaded.preview.is_some())
         {
             graphics.uploaded = Uploaded::default();
             graphics.renderer.clear();

@@ -26,7 +26,7 @@ use crate::flight::{Flight, FlightFile, FlightSettings, Limits, LookedUp, Review
 use crate::jobs::Progress;
 use crate::origin::FlightOrigin;
 use crate::photo_files::PhotoFile;
-use crate::surface::UpAxis;
+use crate::surface::{Cloud, UpAxis};
 
 /// What the user says beside the flight itself.
 #[derive(Debug, Clone, Default)]
@@ -42,6 +42,18 @@ pub struct OpenOptions {
     /// Whether a cloud without photos is opened, to be looked at: there is no scale in it.
     pub may_lack_photos: bool,
 }
+
+/// A sample of a large surface, in its file's coordinates with z up: to be looked at while it is read.
+#[derive(Debug, Clone)]
+pub struct SurfaceSample {
+    /// Some of its points.
+    pub cloud: Cloud,
+    /// How many points the file has.
+    pub of: u64,
+}
+
+/// Takes a sample of a large surface before the surface is read.
+pub type OnSample<'a> = &'a dyn Fn(SurfaceSample, &Progress);
 
 /// The reconstruction that a flight's poses are from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -114,10 +126,23 @@ pub fn open_flight(
     options: &OpenOptions,
     progress: &Progress,
 ) -> Result<Opened, FileError> {
+    open_flight_sampled(path, options, None, progress)
+}
+
+/// [`open_flight`], which hands over a sample of a surface of millions of points as soon as it can.
+///
+/// # Errors
+/// With the file and the place in it.
+pub fn open_flight_sampled(
+    path: &Path,
+    options: &OpenOptions,
+    on_sample: Option<OnSample<'_>>,
+    progress: &Progress,
+) -> Result<Opened, FileError> {
     let recording = Recording::start();
     let mut source = reading::read(path, options, progress)?;
     let photo_files = cameras::fit(&mut source)?;
-    let surface = surface::read(&mut source, options, progress)?;
+    let surface = surface::read(&mut source, options, on_sample, progress)?;
     let framed = framing::bring_to_world(&mut source, surface, progress)?;
     let mut opened = building::build(source, framed, photo_files, options, progress)?;
     let photos = opened.photo_files.iter().flat_map(|file| &file.path);

@@ -1,9 +1,9 @@
 //! The surface's file, with its z up.
 
-use super::OpenOptions;
 use super::source::Source;
+use super::{OnSample, OpenOptions, SurfaceSample};
 use crate::files::FileError;
-use crate::formats::{CloudFile, read_cloud};
+use crate::formats::{CloudFile, read_cloud, read_cloud_sample};
 use crate::jobs::Progress;
 use crate::surface::{UpAxis, doubtful_up};
 
@@ -14,6 +14,7 @@ use crate::surface::{UpAxis, doubtful_up};
 pub(super) fn read(
     source: &mut Source,
     options: &OpenOptions,
+    on_sample: Option<OnSample<'_>>,
     progress: &Progress,
 ) -> Result<Option<CloudFile>, FileError> {
     if options.surface.is_some() {
@@ -25,6 +26,15 @@ pub(super) fn read(
     let Some(path) = source.surface.clone() else {
         return Ok(None);
     };
+    if let Some(on_sample) = on_sample
+        && let Some((mut sample, of)) = read_cloud_sample(&path, progress)
+    {
+        for point in &mut sample.cloud.points {
+            *point = source.surface_up.to_z_up(*point);
+        }
+        let cloud = sample.cloud;
+        on_sample(SurfaceSample { cloud, of }, progress);
+    }
     let mut file = read_cloud(&path, progress)?;
     for point in &mut file.cloud.points {
         *point = up.to_z_up(*point);

@@ -11,6 +11,7 @@ use crate::device::gpu::Gpu;
 use crate::device::pipeline::Shader;
 use crate::device::pipeline::{Recipe, buffer, count, module, pipeline};
 use crate::scene::{CloudGeometry, CloudTile, Extent, Vertex};
+use crate::renderer::Most;
 use crate::streamed::{Looking, Present, StreamSource, Streamed};
 
 pub(crate) const SHADER: Shader = (
@@ -141,12 +142,12 @@ impl Points {
         &mut self,
         looking: &Looking<'_>,
         most: Option<usize>,
-        wait: bool,
+        for_what: Most,
     ) -> Present {
         let Some(streamed) = &mut self.streamed else {
             return Present::default();
         };
-        let mut present = streamed.present(looking, most.unwrap_or(usize::MAX), wait);
+        let mut present = streamed.present(looking, most.unwrap_or(usize::MAX), for_what);
         self.cloud.tiles = std::mem::take(&mut present.tiles);
         present
     }

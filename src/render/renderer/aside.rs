@@ -14,21 +14,21 @@ pub struct Aside(Targets);
 
 impl Renderer {
     /// Draws a picture of `size` pixels into textures that the caller keeps; returns what to show of them,
-    /// as [`Renderer::color_view`]. Unlike [`Renderer::picture`] nothing is read back, so nobody waits.
+    /// as [`Renderer::color_view`]. Unlike [`Renderer::picture`] nothing is read back, so nobody waits. Says
+    /// whether finer points of a large cloud are on their way: draw it again in a moment.
     pub fn draw_aside<'a>(
         &mut self,
         aside: &'a mut Option<Aside>,
         view: &View,
         show: &Show,
         size: [u32; 2],
-    ) -> &'a TextureView {
+    ) -> (&'a TextureView, bool) {
         let samples = if self.gpu.software { 1 } else { 2 };
         let kept = aside.take().filter(|Aside(targets)| targets.size == size);
         let Aside(mut targets) =
             kept.unwrap_or_else(|| Aside(Targets::new(&self.gpu.device, size, samples)));
-        let most = Most::Portion(usize::MAX);
-        self.draw_part(&mut targets, view, show, Part::whole(size), most);
+        let [_, awaited] = self.draw_part(&mut targets, view, show, Part::whole(size), Most::Aside);
         let Aside(targets) = aside.insert(Aside(targets));
-        &targets.picture_view
+        (&targets.picture_view, awaited)
     }
 }

@@ -37,7 +37,8 @@ use crate::show::{ColorBy, PhotoLook, Show};
 use crate::surface_buffers::SurfaceBuffers;
 use crate::view::View;
 pub use aside::Aside;
-use part::{Most, Part, pair};
+pub(crate) use part::Most;
+use part::{Part, pair};
 use targets::Targets;
 
 /// More texels than this are too many to draw again and again: then a pixel has one sample.

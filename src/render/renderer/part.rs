@@ -42,6 +42,8 @@ pub(crate) enum Most {
     /// About so many triangles or points, where an earlier picture can stand in; what is missing comes
     /// later.
     Portion(usize),
+    /// All that is there, of a picture beside the main one; what is missing comes later.
+    Aside,
 }
 
 pub(crate) fn pair([x, y]: [u32; 2]) -> DVec2 {

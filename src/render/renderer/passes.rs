@@ -81,8 +81,7 @@ impl Renderer {
             nearest: near.max(radius * 1e-6),
             in_sight: &|extent| is_in_sight(&sight_of_whole, extent),
         };
-        let wait = matches!(most, Most::All);
-        let present = self.points.look(&looking, show.max_points, wait);
+        let present = self.points.look(&looking, show.max_points, most);
         let share = self.points.share(show.max_points, &in_sight);
         // Strokes are lifted off the surface by a few texels.
         let lift = if view.is_parallel() {

@@ -23,6 +23,7 @@ use glam::DVec3;
 use crate::device::gpu::Gpu;
 use crate::geometry::{Bounds, LocalFrame};
 use crate::primitives::points::Tile;
+use crate::renderer::Most;
 use crate::scene::{Extent, elevation, narrow};
 use crate::surface::{LevelNode, Levels};
 use loader::Loader;
@@ -134,6 +135,8 @@ pub(crate) struct Streamed {
     memory: u64,
     /// How many pictures were made.
     pictures: u64,
+    /// The nodes that the main picture lacks, and those beside it.
+    wishes: [Vec<usize>; 2],
     loader: Loader,
 }
 
@@ -148,6 +151,7 @@ impl Streamed {
             bytes: 0,
             memory: MEMORY,
             pictures: 0,
+            wishes: Default::default(),
         }
     }
 
@@ -157,9 +161,15 @@ impl Streamed {
         Some(self.source.extent(&root.bounds))
     }
 
-    /// What is there for a picture of at most `most` points. With `wait` all of it is, and this call
-    /// brings what is missing: for files, not for the window.
-    pub(crate) fn present(&mut self, looking: &Looking<'_>, most: usize, wait: bool) -> Present {
+    /// What is there for a picture of at most `most` points. For a file all of it is: this call brings what
+    /// is missing.
+    pub(crate) fn present(
+        &mut self,
+        looking: &Looking<'_>,
+        most: usize,
+        for_what: Most,
+    ) -> Present {
+        let wait = for_what == Most::All;
         self.pictures += 1;
         for (node, tile) in self.loader.arrived() {
             self.keep(node, tile);
@@ -190,9 +200,20 @@ impl Streamed {
         present.key = key.finish();
         present.least = 0.5 * self.gap(&chosen.nodes, looking);
         present.awaited = !missing.is_empty();
-        if !wait {
-            self.loader.wish(missing);
+        match for_what {
+            Most::All => {}
+            Most::Portion(_) => self.wishes[0] = missing,
+            Most::Aside => {
+                // Several of them may follow each other; what has come is no wish any more.
+                let residents = &self.residents;
+                let aside = &mut self.wishes[1];
+                aside.retain(|node| !residents.contains_key(node) && !missing.contains(node));
+                aside.extend(missing);
+            }
         }
+        self.wishes[1].retain(|node| !self.residents.contains_key(node));
+        let [of_main, aside] = &self.wishes;
+        self.loader.wish(aside.iter().chain(of_main).copied().collect());
         self.let_go();
         present
     }

@@ -153,20 +153,20 @@ fn nodes_come_and_go() {
     let nodes = source.levels.nodes().len();
     let mut streamed = Streamed::new(&gpu, &source);
     let everywhere = |_: &Extent| true;
-    let first = streamed.present(&looking(&everywhere), 20_000, true);
+    let first = streamed.present(&looking(&everywhere), 20_000, Most::All);
     assert!(!first.awaited && first.least > 0.0);
-    let all = streamed.present(&looking(&everywhere), usize::MAX, true);
+    let all = streamed.present(&looking(&everywhere), usize::MAX, Most::All);
     assert_eq!((all.tiles.len(), all.awaited, all.least), (nodes, false, 0.0));
     assert!(all.key != first.key);
     let bytes = streamed.bytes;
     assert_eq!(bytes, 160_000 * 20);
     let of_the_west = |extent: &Extent| extent.min.x < -1.0;
-    let west = streamed.present(&looking(&of_the_west), usize::MAX, true);
+    let west = streamed.present(&looking(&of_the_west), usize::MAX, Most::All);
     assert!(west.tiles.len() < nodes);
     // Still there.
     assert_eq!(streamed.bytes, bytes);
     streamed.memory = bytes / 10;
-    let west_again = streamed.present(&looking(&of_the_west), usize::MAX, true);
+    let west_again = streamed.present(&looking(&of_the_west), usize::MAX, Most::All);
     assert_eq!(west_again.key, west.key);
     let kept: u64 = west.tiles.iter().map(Tile::bytes).sum();
     assert_eq!(streamed.bytes, kept);

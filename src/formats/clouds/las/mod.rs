@@ -13,6 +13,7 @@
 //! and becomes an error like any other.
 
 mod claims;
+pub(crate) mod sample;
 
 use std::io::{Read, Seek};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -81,7 +82,7 @@ fn decode(
     file.set_geographic(in_degrees);
     let mut portion = PointDataBuilder::new().for_header(reader.header()).build();
     let portion_size = PORTION.min(PORTION_BYTES / portion.record_len().max(1) as u64);
-    let mut wide_colors: Vec<[u16; 3]> = Vec::new();
+    let mut colors = Colors::default();
     loop {
         progress.advance(file.cloud.points.len() as u64, total)?;
         let read = reader.fill_points(portion_size, &mut portion).map_err(|error| {
@@ -98,8 +99,8 @@ fn decode(
         file.cloud
             .points
             .extend(coordinates.map(|((x, y), z)| DVec3::new(x, y, z)));
-        if let Some(colors) = portion.rgb() {
-            wide_colors.extend(colors.map(|(r, g, b)| [r, g, b]));
+        if let Some(wide) = portion.rgb() {
+            colors.extend(wide.map(|(r, g, b)| [r, g, b]));
         }
     }
     if let Some(index) = first_not_finite(&file.cloud.points) {
@@ -108,13 +109,35 @@ fn decode(
             "check the scale and offset in its header",
         ));
     }
-    let eight_bits = wide_colors.iter().flatten().all(|&channel| channel < 256);
-    let shift = if eight_bits { 0 } else { 8 };
-    file.cloud.colors = wide_colors
-        .iter()
-        .map(|color| color.map(|channel| (channel >> shift) as u8))
-        .collect();
+    file.cloud.colors = colors.finish();
     Ok(file)
+}
+
+/// Colours of 16 bits, of which eight are kept: the lower ones as long as all channels fit into them, and the
+/// higher ones of all as soon as one does not. (Twice the memory would be in use otherwise.)
+#[derive(Debug, Default)]
+struct Colors {
+    kept: Vec<[u8; 3]>,
+    is_wide: bool,
+}
+
+impl Colors {
+    fn extend(&mut self, colors: impl Iterator<Item = [u16; 3]>) {
+        for color in colors {
+            if !self.is_wide && color.iter().any(|&channel| channel >= 256) {
+                self.is_wide = true;
+                // The higher eight bits of those before.
+                self.kept.fill([0; 3]);
+            }
+            let shift = if self.is_wide { 8 } else { 0 };
+            // Both fit.
+            self.kept.push(color.map(|channel| (channel >> shift) as u8));
+        }
+    }
+
+    fn finish(self) -> Vec<[u8; 3]> {
+        self.kept
+    }
 }
 
 /// The coordinate system as "EPSG:n" or WKT.
