@@ -23,7 +23,7 @@ use fragscale::formats::read_cloud;
 use fragscale::geometry::Ray;
 use fragscale::jobs::Progress;
 use fragscale::opening::{OpenOptions, open_flight};
-use fragscale::surface::{Cloud, Surface};
+use fragscale::surface::{Cloud, Levels, Surface};
 use glam::DVec3;
 
 mod pile;
@@ -168,6 +168,36 @@ fn cast(surface: &Surface, count: u32) -> usize {
         .count()
 }
 
+/// Levels of detail: made once for each cloud, and chosen from for each picture, from afar and from near.
+fn levels(c: &mut Criterion) {
+    let mut group = c.benchmark_group("levels of detail");
+    group.sample_size(10);
+    for count in [1_000_000, 10_000_000] {
+        let surface = Surface::new(cloud(count)).expect("a surface");
+        let make = || Levels::new(&surface, &Progress::default());
+        group.bench_function(BenchmarkId::new("make", count), |b| b.iter(make));
+        let levels = make().expect("not cancelled").expect("a cloud");
+        let bounds = surface.bounds();
+        let size = bounds.size().x;
+        for (name, height) in [("far", size), ("near", size / 50.0)] {
+            let eye = bounds.center().with_z(bounds.max.z + height);
+            let choose = || {
+                levels.choose(6_000_000, 1.0, |node| {
+                    let distance = eye.distance(eye.clamp(node.bounds.min, node.bounds.max));
+                    Some(1200.0 * node.spacing / distance.max(0.01))
+                })
+            };
+            let id = BenchmarkId::new(format!("choose from {name}"), count);
+            group.bench_function(id, |b| b.iter(choose));
+        }
+        let largest = levels.nodes().iter().max_by_key(|node| node.count);
+        let largest = largest.expect("a node");
+        let id = BenchmarkId::new("points of the largest node", count);
+        group.bench_function(id, |b| b.iter(|| levels.points_of(largest)));
+    }
+    group.finish();
+}
+
 fn scales(c: &mut Criterion) {
     let mut group = c.benchmark_group("scales of 9 photos");
     group.sample_size(10);
@@ -196,5 +226,5 @@ fn scales(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, reading, surfaces, scales);
+criterion_group!(benches, reading, surfaces, levels, scales);
 criterion_main!(benches);

@@ -31,6 +31,7 @@ mod export;
 mod fields;
 mod georeference;
 mod health;
+mod large_clouds;
 mod linked;
 mod long_names;
 mod looks;

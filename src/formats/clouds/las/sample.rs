@@ -24,8 +24,8 @@ pub(crate) const SAMPLED_FROM: u64 = 2_000_000;
 /// About how many points a sample has.
 const POINTS: u64 = 800_000;
 
-/// Pieces of a file without octree, at most.
-const PIECES: u64 = 4000;
+/// Pieces of a file without octree, at most: of LAZ the bytes of a whole chunk are read for each.
+const PIECES: u64 = 1000;
 
 /// Bytes of an entry of COPC's hierarchy.
 const ENTRY: usize = 32;
