@@ -40,7 +40,10 @@ pub use georeferencing::{
 pub use health::{Health, HealthFinding, HealthItem, Remedy, StatedOfFlight, flight_health};
 pub use info::info;
 pub use meant::meant_by;
-pub use open::{FlightReconstruction, OnSample, OpenOptions, Opened, SurfaceSample, lacks_surface, open_flight, open_flight_sampled};
+pub use open::{
+    FlightReconstruction, OnSample, OpenOptions, Opened, SurfaceSample, open_flight,
+    open_flight_sampled,
+};
 pub use origin::FlightOrigin;
 pub use photo_files::PhotoFile;
 

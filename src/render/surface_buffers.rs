@@ -90,12 +90,7 @@ impl SurfaceBuffers {
     }
 
     /// Of points (world) with their colours or none, to be looked at alone.
-    pub fn of_points(
-        gpu: &Gpu,
-        frame: &LocalFrame,
-        points: &[DVec3],
-        colors: &[[u8; 3]],
-    ) -> Self {
+    pub fn of_points(gpu: &Gpu, frame: &LocalFrame, points: &[DVec3], colors: &[[u8; 3]]) -> Self {
         let places = points.iter().copied();
         let cloud = CloudGeometry::new(frame, places, colors, &Normals::default());
         Self {

@@ -39,7 +39,11 @@ fn open(desk: &mut Desk, cloud: &Path) {
         .apply(Command::Open(cloud.to_owned()));
     let start = Instant::now();
     while desk.harness.state().state().opening_preview().is_none() {
-        assert!(start.elapsed() < Duration::from_secs(60), "{:?}", desk.texts());
+        assert!(
+            start.elapsed() < Duration::from_secs(60),
+            "{:?}",
+            desk.texts()
+        );
         assert!(desk.harness.state().state().is_opening());
         desk.harness.step();
         std::thread::sleep(Duration::from_millis(1));

@@ -136,8 +136,8 @@ pub(crate) fn load(
         })
     };
     let begun = Instant::now();
-    let opened = opening::open_flight_sampled(&path, &options, on_sample, progress)
-        .map_err(not_opened)?;
+    let opened =
+        opening::open_flight_sampled(&path, &options, on_sample, progress).map_err(not_opened)?;
     let read = begun.elapsed();
     let at_path = |fault: Fault| not_opened(FileError::new(&path, fault));
     let outcomes = opened.flight.scales(progress).map_err(at_path)?;

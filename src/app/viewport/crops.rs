@@ -88,10 +88,9 @@ fn draw(
             middle: middle / image,
         });
         let aside = &mut crops.asides[index];
-        let (texture, is_coarse) =
-            graphics
-                .renderer
-                .draw_aside(aside, &view, show, [SIDE, SIDE]);
+        let (texture, is_coarse) = graphics
+            .renderer
+            .draw_aside(aside, &view, show, [SIDE, SIDE]);
         awaited |= is_coarse;
         let mut renderer = graphics.state.renderer.write();
         let device = &graphics.state.device;

@@ -137,7 +137,8 @@ impl Graphics {
 
     /// Uploads a first look at a surface, where that is new.
     pub(super) fn upload_preview(&mut self, preview: &OpeningPreview) {
-        if preview.points.is_none() || same(self.uploaded.preview.as_ref(), preview.points.as_ref()) {
+        if preview.points.is_none() || same(self.uploaded.preview.as_ref(), preview.points.as_ref())
+        {
             return;
         }
         self.uploaded = Uploaded {

@@ -69,9 +69,7 @@ impl Viewport {
         let text = ui
             .painter()
             .layout(words, font, color, place.width() - 24.0);
-        let behind = Align2::LEFT_TOP
-            .anchor_size(at, text.size())
-            .expand(5.0);
+        let behind = Align2::LEFT_TOP.anchor_size(at, text.size()).expand(5.0);
         let fill = ui.visuals().window_fill;
         ui.painter().rect_filled(behind, 4.0, fill);
         ui.painter().galley(at, text, color);

@@ -10,8 +10,8 @@ use super::surface;
 use crate::device::gpu::Gpu;
 use crate::device::pipeline::Shader;
 use crate::device::pipeline::{Recipe, buffer, count, module, pipeline};
-use crate::scene::{CloudGeometry, CloudTile, Extent, Vertex};
 use crate::renderer::Most;
+use crate::scene::{CloudGeometry, CloudTile, Extent, Vertex};
 use crate::streamed::{Looking, Present, StreamSource, Streamed};
 
 pub(crate) const SHADER: Shader = (

@@ -213,7 +213,8 @@ impl Streamed {
         }
         self.wishes[1].retain(|node| !self.residents.contains_key(node));
         let [of_main, aside] = &self.wishes;
-        self.loader.wish(aside.iter().chain(of_main).copied().collect());
+        self.loader
+            .wish(aside.iter().chain(of_main).copied().collect());
         self.let_go();
         present
     }
@@ -227,10 +228,15 @@ impl Streamed {
             resident.is_some_and(|resident| resident.wanted == self.pictures)
         };
         let in_sight = |node: &usize| (looking.in_sight)(&self.source.extent(&nodes[*node].bounds));
-        let lacks = chosen.iter().filter(|node| is_drawn(node)).filter(|&&node| {
-            let below = nodes[node].children.clone();
-            below.into_iter().any(|child| !is_drawn(&child) && in_sight(&child))
-        });
+        let lacks = chosen
+            .iter()
+            .filter(|node| is_drawn(node))
+            .filter(|&&node| {
+                let below = nodes[node].children.clone();
+                below
+                    .into_iter()
+                    .any(|child| !is_drawn(&child) && in_sight(&child))
+            });
         let mut apart: Vec<f64> = lacks
             .map(|&node| looking.apart(&nodes[node], &self.source.frame))
             .collect();

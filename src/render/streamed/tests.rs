@@ -135,7 +135,10 @@ fn fewer_points_are_drawn_on_demand() {
     };
     let few = wait(&mut renderer, &show(Some(20_000)));
     let all = wait(&mut renderer, &show(None));
-    assert!(few > 5000 && few <= 20_000 && all > 2 * few, "{few} of {all}");
+    assert!(
+        few > 5000 && few <= 20_000 && all > 2 * few,
+        "{few} of {all}"
+    );
     // What was there for all is there for few.
     assert_eq!(wait(&mut renderer, &show(Some(20_000))), few);
     orbit.orbit(DVec2::new(40.0, 0.0));
@@ -156,7 +159,10 @@ fn nodes_come_and_go() {
     let first = streamed.present(&looking(&everywhere), 20_000, Most::All);
     assert!(!first.awaited && first.least > 0.0);
     let all = streamed.present(&looking(&everywhere), usize::MAX, Most::All);
-    assert_eq!((all.tiles.len(), all.awaited, all.least), (nodes, false, 0.0));
+    assert_eq!(
+        (all.tiles.len(), all.awaited, all.least),
+        (nodes, false, 0.0)
+    );
     assert!(all.key != first.key);
     let bytes = streamed.bytes;
     assert_eq!(bytes, 160_000 * 20);

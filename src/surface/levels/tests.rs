@@ -130,7 +130,10 @@ fn the_root_is_an_even_sample() {
     }
     let mean = root.count / 100;
     // A fair draw would have a standard deviation of 13.
-    assert!(cells.iter().all(|&count| count.abs_diff(mean) < 30), "{cells:?}");
+    assert!(
+        cells.iter().all(|&count| count.abs_diff(mean) < 30),
+        "{cells:?}"
+    );
     assert!((root.spacing - 10.0 / GROUPS as f64).abs() < 0.01);
 }
 

@@ -84,12 +84,13 @@ impl Tiles {
     ) -> Result<Vec<&Made>, SurfaceError> {
         let Reach {
             over_closed,
-            is_open,
-            open,
+            fields,
+            ..
         } = &self.reach;
-        let sees_open = !open.iter().all(&misses);
-        let wanted = (self.tiles.iter().zip(over_closed).zip(is_open))
-            .filter(|((_, bounds), is_open)| (sees_open && **is_open) || !misses(bounds))
+        let seen = self.reach.seen_fields(&misses);
+        let is_seen = |field: &u32| seen[*field as usize];
+        let wanted = (self.tiles.iter().zip(over_closed).zip(fields))
+            .filter(|((_, bounds), fields)| fields.iter().any(is_seen) || !misses(bounds))
             .map(|((tile, _), _)| tile);
         let wanted: Vec<&Tile> = wanted.collect();
         let make = |tile: &&Tile| make(sites, &tile.cells);

@@ -6,8 +6,14 @@
 //! triangle over the place has an empty circle around it that holds the place. Were its radius √2 squares
 //! or more, it would hold a circle of that radius within 2.83 squares of the place, and in that a whole
 //! square, which is not empty. So it is smaller, and the triangle's corners lie within 2.83 squares, in
-//! the three squares to each side. Over other places (at the rim of the cloud, around a hole) triangles of
-//! any tile near such places may lie.
+//! the three squares to each side.
+//!
+//! Over other, *open* places (at the rim of the cloud, around a hole) triangles may be large, but they do not
+//! reach from one hole to another: take a triangle whose first corner lies in an open square and which covers
+//! an open place elsewhere, and the line between the two, all of it under the triangle. Where the line passes a
+//! closed square, the triangle lies over a closed place and is as small as said above. Else it passes open
+//! squares only, so both are in one *field* of open squares that touch each other. So a tile's triangles lie over
+//! its closed squares' surroundings, or over the fields that it has squares of.
 
 use crate::geometry::Bounds;
 use crate::surface::sites::{Cells, Sites};
@@ -23,10 +29,24 @@ const AROUND: usize = 3;
 pub(super) struct Reach {
     /// Of each tile: around its triangles over closed squares.
     pub(super) over_closed: Vec<Bounds>,
-    /// Of each tile: whether it may have triangles over other places.
-    pub(super) is_open: Vec<bool>,
-    /// Around these places: rows of squares that are not closed.
-    pub(super) open: Vec<Bounds>,
+    /// Of each tile: the fields of open squares that it may have triangles over.
+    pub(super) fields: Vec<Vec<u32>>,
+    /// Around these fields: each with boxes around rows of its squares.
+    pub(super) open: Vec<(u32, Bounds)>,
+    /// How many fields there are.
+    pub(super) field_count: usize,
+}
+
+impl Reach {
+    /// Which fields are seen where `misses` does not miss.
+    pub(super) fn seen_fields(&self, misses: impl Fn(&Bounds) -> bool) -> Vec<bool> {
+        let mut seen = vec![false; self.field_count];
+        for (field, bounds) in &self.open {
+            let seen = &mut seen[*field as usize];
+            *seen = *seen || !misses(bounds);
+        }
+        seen
+    }
 }
 
 /// The squares.
@@ -34,6 +54,9 @@ struct Squares {
     columns: usize,
     rows: usize,
     closed: Vec<bool>,
+    /// Of each square that is not closed: its field.
+    field: Vec<u32>,
+    field_count: usize,
 }
 
 impl Squares {
@@ -64,12 +87,46 @@ impl Squares {
                         .all(|&holds| holds)
                 })
         };
+        let closed: Vec<bool> = all.map(is_closed).collect();
+        let (field, field_count) = fields(&closed, columns, rows);
         Self {
             columns,
             rows,
-            closed: all.map(is_closed).collect(),
+            closed,
+            field,
+            field_count,
         }
     }
+}
+
+/// The field of each square that is not closed, and how many there are. Squares touch at corners, too.
+fn fields(closed: &[bool], columns: usize, rows: usize) -> (Vec<u32>, usize) {
+    const NONE: u32 = u32::MAX;
+    let mut field = vec![NONE; closed.len()];
+    let mut count = 0_u32;
+    let mut waiting = Vec::new();
+    for first in 0..closed.len() {
+        if closed[first] || field[first] != NONE {
+            continue;
+        }
+        field[first] = count;
+        waiting.push(first);
+        while let Some(square) = waiting.pop() {
+            let (column, row) = (square % columns, square / columns);
+            for row in row.saturating_sub(1)..=(row + 1).min(rows - 1) {
+                for column in column.saturating_sub(1)..=(column + 1).min(columns - 1) {
+                    let next = row * columns + column;
+                    if !closed[next] && field[next] == NONE {
+                        field[next] = count;
+                        waiting.push(next);
+                    }
+                }
+            }
+        }
+        // Each field has a square, and of squares there are fewer.
+        count += 1;
+    }
+    (field, count as usize)
 }
 
 /// The cells of a square.
@@ -85,17 +142,19 @@ impl Reach {
     /// Of tiles that are these blocks of cells.
     pub(super) fn new<'a>(sites: &Sites, tiles: impl Iterator<Item = &'a Cells>) -> Self {
         let squares = Squares::new(sites);
-        let (mut over_closed, mut is_open) = (Vec::new(), Vec::new());
+        let (mut over_closed, mut fields) = (Vec::new(), Vec::new());
         for tile in tiles {
             let columns = tile.columns.start / SIDE..tile.columns.end.div_ceil(SIDE);
-            let mut rows = tile.rows.start / SIDE..tile.rows.end.div_ceil(SIDE);
-            let row_is_closed = |row: usize| {
+            let rows = tile.rows.start / SIDE..tile.rows.end.div_ceil(SIDE);
+            let own = rows.flat_map(|row| {
                 let first = row * squares.columns;
-                squares.closed[first + columns.start..first + columns.end]
-                    .iter()
-                    .all(|&closed| closed)
-            };
-            is_open.push(!rows.all(row_is_closed));
+                first + columns.start..first + columns.end
+            });
+            let open = own.filter(|&square| !squares.closed[square]);
+            let mut own_fields: Vec<u32> = open.map(|square| squares.field[square]).collect();
+            own_fields.sort_unstable();
+            own_fields.dedup();
+            fields.push(own_fields);
             // A triangle over a closed place has all corners in one circle smaller than three squares, one
             // of them in the tile: so neither the place nor a corner lies further out. (Tiles are made of
             // whole squares.)
@@ -123,13 +182,16 @@ impl Reach {
                     columns: from.columns.start..to.columns.end,
                     rows: from.rows,
                 };
-                open.push(sites.bounds_between(&run, all_heights));
+                // A run of them touch each other.
+                let field = squares.field[row * squares.columns + first];
+                open.push((field, sites.bounds_between(&run, all_heights)));
             }
         }
         Self {
             over_closed,
-            is_open,
+            fields,
             open,
+            field_count: squares.field_count,
         }
     }
 }

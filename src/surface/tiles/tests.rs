@@ -166,3 +166,33 @@ proptest! {
         prop_assert!((a - b).abs() < 1e-9);
     }
 }
+
+/// Who looks into one hole makes the triangles over it and not those over another hole far away.
+#[test]
+fn a_hole_elsewhere_is_not_looked_into() {
+    let mut random = crate::split_mix::SplitMix(5);
+    let mut uniform = || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let points: Vec<DVec3> = (0..200_000)
+        .map(|_| DVec3::new(uniform(), uniform(), 0.0) * 100.0)
+        .filter(|p| {
+            (p.y - 50.0).abs() > 4.0 || ((p.x - 20.0).abs() > 4.0 && (p.x - 80.0).abs() > 4.0)
+        })
+        .collect();
+    let sites = Sites::new(points, &[]).unwrap();
+    let tiles = Tiles::new(&sites);
+    let near = |x: f64, bounds: &Bounds| bounds.min.x < x + 1.0 && bounds.max.x > x - 1.0;
+    let misses =
+        |bounds: &Bounds| !near(20.0, bounds) || bounds.min.y > 51.0 || bounds.max.y < 49.0;
+    let made = tiles.seen(&sites, misses).unwrap();
+    let middles = made
+        .iter()
+        .flat_map(|made| &made.triangles)
+        .map(|t| t.iter().map(|&i| sites.points()[i as usize]).sum::<DVec3>() / 3.0);
+    let middles: Vec<DVec3> = middles.collect();
+    assert!(
+        middles
+            .iter()
+            .any(|m| (m.x - 20.0).abs() < 1.0 && (m.y - 50.0).abs() < 1.0)
+    );
+    assert!(middles.iter().all(|m| m.x < 60.0));
+}

@@ -131,7 +131,8 @@ impl Colors {
             }
             let shift = if self.is_wide { 8 } else { 0 };
             // Both fit.
-            self.kept.push(color.map(|channel| (channel >> shift) as u8));
+            self.kept
+                .push(color.map(|channel| (channel >> shift) as u8));
         }
     }
 

@@ -213,13 +213,18 @@ impl Taken {
         );
         let slack = (max - min).max_element() * 1e-6 + 1e-3;
         let is_inside = |point: &DVec3| {
-            point.is_finite()
-                && point.cmpge(min - slack).all()
-                && point.cmple(max + slack).all()
+            point.is_finite() && point.cmpge(min - slack).all() && point.cmple(max + slack).all()
         };
         let mut file = CloudFile::default();
         let mut colors = self.colors.finish();
-        colors.resize(if colors.is_empty() { 0 } else { self.points.len() }, [128; 3]);
+        colors.resize(
+            if colors.is_empty() {
+                0
+            } else {
+                self.points.len()
+            },
+            [128; 3],
+        );
         for (index, point) in self.points.iter().enumerate() {
             if is_inside(point) {
                 file.cloud.points.push(*point);

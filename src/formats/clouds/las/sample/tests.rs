@@ -92,7 +92,9 @@ fn octree(coarse: usize, fine: usize) -> Vec<u8> {
     ];
     let header = builder.into_header().unwrap();
     let mut writer = Writer::new(Cursor::new(Vec::new()), header).unwrap();
-    let places = (0..fine * 4).map(|i| (i, 2.0)).chain((0..coarse).map(|i| (i, 1.0)));
+    let places = (0..fine * 4)
+        .map(|i| (i, 2.0))
+        .chain((0..coarse).map(|i| (i, 1.0)));
     for (i, z) in places {
         let point = Point {
             x: (i % 1000) as f64,
