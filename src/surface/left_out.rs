@@ -19,8 +19,28 @@ pub struct LeftOut {
     pub star: f64,
 }
 
+/// What is kept of a point that was left out: there may be a hundred million of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Kept {
+    /// Which point.
+    index: u32,
+    above: f64,
+    star: f64,
+}
+
+impl Kept {
+    /// As it is told; `points` are those that it was made of.
+    pub(super) fn of(self, points: &[DVec3]) -> LeftOut {
+        LeftOut {
+            point: points[self.index as usize],
+            above: self.above,
+            star: self.star,
+        }
+    }
+}
+
 /// Every point of these triangles (indices into `points`) that they surround, left out in turn.
-pub(super) fn leave_out_each(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<LeftOut> {
+pub(super) fn leave_out_each(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Kept> {
     // Each corner of each triangle, sorted by the point: in 64 bits, for sorting is half of the work.
     let corners = (0_u64..).zip(triangles.iter().flatten());
     let mut corners: Vec<u64> = corners
@@ -30,9 +50,11 @@ pub(super) fn leave_out_each(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Le
     let mut edges: Vec<[u32; 2]> = Vec::new();
     let mut ring: Vec<DVec3> = Vec::new();
     let around = corners.chunk_by(|a, b| a >> 32 == b >> 32);
-    around
+    let kept = around
         .filter_map(|around| {
-            let point = points[(around.first()? >> 32) as usize];
+            // The upper half, which came from a u32.
+            let index = (around.first()? >> 32) as u32;
+            let point = points[index as usize];
             edges.clear();
             // The edge opposite to the corner; `as` takes the lower half, the place.
             edges.extend(around.iter().map(|&corner| {
@@ -41,9 +63,12 @@ pub(super) fn leave_out_each(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Le
                 [triangle[(place + 1) % 3], triangle[(place + 2) % 3]]
             }));
             walk_around(points, &edges, &mut ring)?;
-            leave_out(point, &mut ring)
+            let LeftOut { above, star, .. } = leave_out(point, &mut ring)?;
+            Some(Kept { index, above, star })
         })
-        .collect()
+        .collect::<Vec<Kept>>();
+    // Without the room that a growing list has.
+    kept.into_boxed_slice().into_vec()
 }
 
 /// The points around another one, in order; `None` where the triangles do not surround it.
@@ -116,6 +141,11 @@ mod tests {
     use super::*;
     use crate::surface::delaunay::triangulate;
 
+    fn each(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<LeftOut> {
+        let kept = leave_out_each(points, triangles).into_iter();
+        kept.map(|kept| kept.of(points)).collect()
+    }
+
     fn lattice(height: impl Fn(f64, f64) -> f64) -> Vec<DVec3> {
         // Every second row is shifted: six neighbours each, at a distance of 1.
         let rows = (0..20).flat_map(|row| (0..20).map(move |column| (row, column)));
@@ -131,7 +161,7 @@ mod tests {
     fn a_plane_predicts_its_points() {
         let points = lattice(|x, y| 3.0 + 0.5 * x - 0.25 * y);
         let triangles = triangulate(&points).unwrap();
-        let left_out = leave_out_each(&points, &triangles);
+        let left_out = each(&points, &triangles);
         // Of the rows that are shifted outward neither end is surrounded.
         assert_eq!(left_out.len(), 18 * 19);
         for found in left_out {
@@ -148,7 +178,7 @@ mod tests {
     fn a_bowl_is_predicted_too_high() {
         let points = lattice(|x, y| (x * x + y * y) / 2.0);
         let triangles = triangulate(&points).unwrap();
-        for found in leave_out_each(&points, &triangles) {
+        for found in each(&points, &triangles) {
             assert!((found.above + 0.5).abs() < 1e-9, "{found:?}");
         }
     }
@@ -161,7 +191,7 @@ mod tests {
         let points: Vec<DVec3> = (0..300)
             .map(|_| DVec3::new(uniform() * 9.0, uniform() * 9.0, uniform()))
             .collect();
-        let left_out = leave_out_each(&points, &triangulate(&points).unwrap());
+        let left_out = each(&points, &triangulate(&points).unwrap());
         assert!(left_out.len() > 250);
         for found in left_out {
             let others: Vec<DVec3> = points

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use super::left_out::{LeftOut, leave_out_each};
+use super::left_out::{Kept, LeftOut, leave_out_each};
 use super::made_once::MadeOnce;
 use super::mesh::Mesh;
 use super::tiles::Tiles;
@@ -20,7 +20,7 @@ pub struct Patch<'a> {
     points: &'a [DVec3],
     triangles: &'a [[u32; 3]],
     max_edge: f64,
-    left_out: &'a MadeOnce<Vec<LeftOut>>,
+    left_out: &'a MadeOnce<Vec<Kept>>,
     /// Around the triangles, in the surface's local frame.
     pub bounds: Bounds,
 }
@@ -37,12 +37,13 @@ impl Patch<'_> {
     /// The points of patches left out in turn, those that the triangles of their own patch surround; the
     /// first call does it, on all cores. Of a mesh only those whose triangles stand near each other in its
     /// file.
-    pub fn left_out<'a>(patches: &'a [Patch<'a>]) -> impl Iterator<Item = &'a LeftOut> {
+    pub fn left_out<'a>(patches: &'a [Patch<'a>]) -> impl Iterator<Item = LeftOut> {
         let make = |patch: &Patch<'_>| leave_out_each(patch.points, patch.triangles);
         MadeOnce::make_all(patches, |patch| patch.left_out, make);
-        patches
-            .iter()
-            .flat_map(move |patch| patch.left_out.get(|| make(patch)))
+        patches.iter().flat_map(move |patch| {
+            let kept = patch.left_out.get(|| make(patch)).iter();
+            kept.map(|kept| kept.of(patch.points))
+        })
     }
 
     /// How many triangles it has, those among them that are too long to count.
@@ -128,7 +129,7 @@ impl Surface {
 #[derive(Debug)]
 pub(super) struct Run {
     bounds: Bounds,
-    left_out: MadeOnce<Vec<LeftOut>>,
+    left_out: MadeOnce<Vec<Kept>>,
 }
 
 fn runs(mesh: &Mesh) -> Vec<Run> {

@@ -19,7 +19,7 @@ mod triangulated;
 use self::local::Local;
 use self::reach::Reach;
 use super::SurfaceError;
-use super::left_out::LeftOut;
+use super::left_out::Kept;
 use super::made_once::MadeOnce;
 use super::sites::{Cells, Sites};
 use crate::geometry::Bounds;
@@ -50,7 +50,7 @@ pub(super) struct Made {
     /// Around them.
     pub(super) bounds: Option<Bounds>,
     /// Its sites left out in turn, once somebody asked.
-    pub(super) left_out: MadeOnce<Vec<LeftOut>>,
+    pub(super) left_out: MadeOnce<Vec<Kept>>,
 }
 
 impl Tiles {
@@ -112,7 +112,8 @@ fn make(sites: &Sites, cells: &Cells) -> Result<Made, SurfaceError> {
         return Ok(nothing);
     };
     local.settle()?;
-    let triangles = local.owned();
+    // Without the room for those of the margin.
+    let triangles = local.owned().into_boxed_slice().into_vec();
     let points = sites.points();
     let corners = triangles
         .iter()
