@@ -87,7 +87,10 @@ fn a_large_cloud_is_looked_at_while_it_is_read() {
     open(&mut desk, &cloud);
     assert!(desk.shows(Role::Image, FIRST_LOOK));
     desk.settle();
+    // A surface alone is for the flight on the screen.
     let vertices = desk.open().flight().parts().surface.vertices().len();
-    assert_eq!((vertices, desk.open().review.count()), (2_000_000, 0));
+    assert_eq!((vertices, desk.open().review.count()), (2_000_000, 9));
+    assert!(desk.open().number != number);
+    assert!(desk.harness.state().state().opening_preview().is_none());
     assert!(desk.shows(Role::Image, "Viewport") && !desk.shows(Role::Image, FIRST_LOOK));
 }

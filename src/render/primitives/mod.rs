@@ -1,5 +1,6 @@
 //! What is drawn, one file a shader of the same name in `shaders/`: its pipeline, its buffers, its draw
-//! calls. `frame` and `surface` are what shaders share; `cover` draws over the whole picture.
+//! calls. `frame` and `surface` are what shaders share; `cover` draws over the whole picture, a `tile` is a
+//! piece of a cloud.
 
 pub(crate) mod cover;
 pub(crate) mod edl;
@@ -11,6 +12,7 @@ pub(crate) mod mesh;
 pub(crate) mod points;
 pub(crate) mod resolve;
 pub(crate) mod surface;
+pub(crate) mod tile;
 
 #[cfg(test)]
 mod tests {

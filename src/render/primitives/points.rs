@@ -1,15 +1,16 @@
 //! The cloud's points (`shaders/points.wgsl`).
 
 use wgpu::{
-    BindGroupLayout, Buffer, BufferUsages, CompareFunction, Device, PrimitiveTopology, RenderPass,
-    RenderPipeline, VertexStepMode, vertex_attr_array,
+    BindGroupLayout, CompareFunction, Device, PrimitiveTopology, RenderPass, RenderPipeline,
+    VertexStepMode, vertex_attr_array,
 };
 
 use super::frame;
 use super::surface;
+use super::tile::Tile;
 use crate::device::gpu::Gpu;
 use crate::device::pipeline::Shader;
-use crate::device::pipeline::{Recipe, buffer, count, module, pipeline};
+use crate::device::pipeline::{Recipe, module, pipeline};
 use crate::renderer::Most;
 use crate::scene::{CloudGeometry, CloudTile, Extent, Vertex};
 use crate::streamed::{Looking, Present, StreamSource, Streamed};
@@ -66,29 +67,6 @@ pub(crate) struct Points {
     pub(crate) cloud: CloudBuffers,
     /// What brings the cloud's tiles, where not all are there.
     streamed: Option<Streamed>,
-}
-
-/// Points near each other on the graphics card; clones share them.
-#[derive(Debug, Clone)]
-pub(crate) struct Tile {
-    points: Buffer,
-    count: u32,
-    extent: Extent,
-}
-
-impl Tile {
-    pub(crate) fn new(gpu: &Gpu, points: &[Vertex], extent: Extent) -> Self {
-        Self {
-            points: buffer(&gpu.device, "points", BufferUsages::VERTEX, points),
-            count: count(points),
-            extent,
-        }
-    }
-
-    /// How much memory it takes.
-    pub(crate) fn bytes(&self) -> u64 {
-        self.points.size()
-    }
 }
 
 impl Points {

@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::StreamSource;
 use crate::device::gpu::Gpu;
-use crate::primitives::points::Tile;
+use crate::primitives::tile::Tile;
 use crate::scene::{Normals, vertex};
 
 /// Nodes that may have arrived and not been taken: a frame takes no more.

@@ -22,7 +22,7 @@ use glam::DVec3;
 
 use crate::device::gpu::Gpu;
 use crate::geometry::{Bounds, LocalFrame};
-use crate::primitives::points::Tile;
+use crate::primitives::tile::Tile;
 use crate::renderer::Most;
 use crate::scene::{Extent, elevation, narrow};
 use crate::surface::{LevelNode, Levels};

@@ -152,7 +152,7 @@ fn of_an_octree_the_coarse_levels_come_first() {
     let progress = Progress::default();
     let (coarse, fine) = (1_000_000, 250_001);
     let bytes = octree(coarse, fine);
-    let whole = super::super::read(Cursor::new(bytes.clone()), &progress).unwrap();
+    let whole = crate::clouds::las::read(Cursor::new(bytes.clone()), &progress).unwrap();
     assert_eq!(whole.cloud.points.len(), coarse + 4 * fine);
     let (file, total) = read_sample(Cursor::new(bytes.clone()), &progress).unwrap();
     assert_eq!(total, (coarse + 4 * fine) as u64);
