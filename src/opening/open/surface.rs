@@ -30,7 +30,7 @@ pub(super) fn read(
         && let Some((mut sample, of)) = read_cloud_sample(&path, progress)
     {
         for point in &mut sample.cloud.points {
-            *point = source.settings.surface_up.to_z_up(*point);
+            *point = up.to_z_up(*point);
         }
         let cloud = sample.cloud;
         on_sample(SurfaceSample { cloud, of }, progress);
