@@ -115,14 +115,15 @@ fn octree(coarse: usize, fine: usize) -> Vec<u8> {
     let mut compressor = LasZipCompressor::new(&mut file, laz).unwrap();
     let (mut entries, mut from) = (Vec::new(), 0);
     compressor.reserve_offset_to_chunk_table().unwrap();
-    for (level, count) in [(1, fine), (1, fine), (1, fine), (1, fine), (0, coarse)] {
+    for (level, count) in [(1_i32, fine), (1, fine), (1, fine), (1, fine), (0, coarse)] {
         let at = compressor.get_mut().position();
         compressor
             .compress_many(&points[from * record..(from + count) * record])
             .unwrap();
         compressor.finish_current_chunk().unwrap();
         let size = compressor.get_mut().position() - at;
-        entries.push((i32::from(level), at, size as i32, count as i32));
+        let size = i32::try_from(size).unwrap();
+        entries.push((level, at, size, i32::try_from(count).unwrap()));
         from += count;
     }
     compressor.done().unwrap();
