@@ -38,6 +38,7 @@ impl State {
                 self.load_preview();
             }
         }
+        self.look_at_values();
         if !self.work.is_idle() {
             // Often enough for a progress bar; idle windows draw nothing. A dialog can take minutes.
             let only_dialog = self.work.running().all(|(task, _)| task == Task::DIALOG);

@@ -56,6 +56,9 @@ pub struct Show {
     pub wireframe: bool,
     /// What the colours of both mean.
     pub color_by: ColorBy,
+    /// The values at the colour map's ends, in world units, degrees or pixels per world unit; `None` is
+    /// where the values themselves end.
+    pub color_limits: Option<[f64; 2]>,
     /// Relief: darker where a neighbouring pixel is nearer.
     pub eye_dome: bool,
     /// The cameras.
@@ -84,8 +87,11 @@ pub struct Show {
     pub lengths_in: &'static str,
     /// The unit that the legend says scales in; `None` is the world's.
     pub scale_unit: Option<LengthUnit>,
-    /// The points of the distance tool, in the world: one is marked, between two the distance is told.
+    /// The points of the distance tool, in the world: one is marked, between two the distance is told
+    /// with its level and its upright part.
     pub measured: Vec<DVec3>,
+    /// Points that were picked, with their names.
+    pub picked: Vec<(String, DVec3)>,
     /// Lines that are drawn on the surface, in the world.
     pub drawn_lines: Vec<Vec<DVec3>>,
     /// Their points, which are marked.
@@ -115,6 +121,7 @@ impl Default for Show {
             mesh: true,
             wireframe: false,
             color_by: ColorBy::Rgb,
+            color_limits: None,
             eye_dome: true,
             frusta: Scope::All,
             images: Scope::None,
@@ -130,6 +137,7 @@ impl Default for Show {
             lengths_in: "m",
             scale_unit: None,
             measured: Vec::new(),
+            picked: Vec::new(),
             drawn_lines: Vec::new(),
             drawn_points: Vec::new(),
             project_photo: false,
@@ -138,6 +146,19 @@ impl Default for Show {
             hovered: None,
             background: Background::Color([24, 26, 30]),
             pixels_per_point: 1.0,
+        }
+    }
+}
+
+impl Show {
+    /// The same without what is measured and drawn on the surface.
+    pub(crate) fn without_marks(&self) -> Self {
+        Self {
+            measured: Vec::new(),
+            picked: Vec::new(),
+            drawn_lines: Vec::new(),
+            drawn_points: Vec::new(),
+            ..self.clone()
         }
     }
 }

@@ -38,6 +38,7 @@ mod opening;
 mod overwriting;
 mod photo_view;
 mod photos;
+mod points;
 mod random;
 mod reviewing;
 mod scale_object;

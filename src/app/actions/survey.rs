@@ -4,6 +4,7 @@ use egui::{Key, Modifiers};
 
 use super::{Action, keys, on_pile};
 use crate::command::Command;
+use crate::open_flight::survey::picked::PickStep;
 use crate::open_flight::survey::{SurveyStep, SurveyTool};
 
 actions! {
@@ -12,6 +13,12 @@ actions! {
         hover: "Draw a line on the surface: its profile, crest, toe and angle of repose",
         shortcut: keys(Modifiers::NONE, Key::L),
         command: |state| on_pile(state, Command::Survey(SurveyStep::Toggle(SurveyTool::Profile))),
+    }
+    POINTS {
+        label: "Pick points",
+        hover: "Click points on the surface: a list with their coordinates to copy and save",
+        shortcut: keys(Modifiers::NONE, Key::K),
+        command: |state| on_pile(state, Command::Pick(PickStep::Toggle)),
     }
     VOLUME {
         label: "Volume inside a polygon",

@@ -16,7 +16,9 @@ impl OpenFlight {
     pub(crate) fn apply(&mut self, command: Command) {
         match command {
             Command::Click(ray) => {
-                let purpose = if self.pointer.drawn.is_some() {
+                let purpose = if self.pointer.picked.is_on {
+                    Purpose::Pick
+                } else if self.pointer.drawn.is_some() {
                     Purpose::Draw
                 } else if self.pointer.measure == Measure::Off {
                     Purpose::Select
@@ -37,6 +39,7 @@ impl OpenFlight {
                 self.survey(SurveyStep::Finish);
             }
             Command::Survey(step) => self.survey(step),
+            Command::Pick(step) => self.pick_step(step),
             Command::DoubleClick(ray) => self.pick(Purpose::Center, ray),
             Command::HoverPhoto(photo) => self.table.hovered = photo,
             Command::Sort(column) => {
@@ -65,6 +68,7 @@ impl OpenFlight {
             Command::View(change) => self.change_view(change),
             Command::ToggleMeasure => {
                 self.pointer.drawn = None;
+                self.pointer.picked.is_on = false;
                 self.pointer.measure = if self.pointer.measure == Measure::Off {
                     Measure::First
                 } else {
@@ -161,6 +165,10 @@ impl OpenFlight {
                     ViewChange::Top => orbit.top(),
                     ViewChange::Front => orbit.front(),
                     ViewChange::Side => orbit.side(),
+                    ViewChange::Opposite => orbit.opposite(),
+                    ViewChange::Turn { left, up } => {
+                        orbit.turn(left.to_radians(), up.to_radians());
+                    }
                     ViewChange::Fit => self.fit(),
                     ViewChange::FitAll => self.fit_box(self.extent.surface),
                     ViewChange::FitSelected => self.fit_selected(),

@@ -1,6 +1,7 @@
 //! The flight that is open: what was read, what was computed, what the engineer has done with it.
 
 pub mod apply;
+pub mod colors;
 pub mod files;
 mod flight_line;
 pub mod georeferencing;
@@ -31,6 +32,7 @@ use crate::photo_view::PhotoView;
 use crate::render::{LargePhoto, Orbit, PhotoImage, PhotoZoom, SurfaceBuffers, drawn_ground};
 use crate::scale::{FieldFacts, PhotoScale, ViewFacts};
 use crate::state::history::History;
+use colors::Colors;
 use files::FlightFiles;
 use georeferencing::Georeferencing;
 use loading::Loaded;
@@ -38,6 +40,7 @@ pub use measure::Measure;
 use picker::Picker;
 use reviewing::Reviewing;
 use survey::Drawn;
+use survey::picked::PickedPoints;
 use survey::surveyor::Surveyor;
 use table::{PhotosTable, Row};
 use tint::PhotoTint;
@@ -119,6 +122,8 @@ pub struct Pointer {
     pub measure: Measure,
     /// What is drawn on the surface to measure there.
     pub drawn: Option<Drawn>,
+    /// Points that were picked on the surface.
+    pub picked: PickedPoints,
     /// Its rays.
     pub picker: Option<Picker>,
     /// Measures what is drawn.
@@ -159,6 +164,8 @@ pub struct OpenFlight {
     pub tint: Option<PhotoTint>,
     /// How many such fields were asked for.
     pub tints: u64,
+    /// What the surface's colours mean.
+    pub colors: Colors,
     /// What the viewport draws.
     pub geometry: Option<Arc<SurfaceBuffers>>,
     /// The photos in the order of the flight line.
@@ -220,6 +227,7 @@ impl OpenFlight {
             corners: None,
             tint: None,
             tints: 0,
+            colors: Colors::default(),
             geometry: None,
             line: Arc::default(),
             extent: Extent {

@@ -26,6 +26,8 @@ pub enum Purpose {
     Measure,
     /// A point of what is drawn on the surface.
     Draw,
+    /// A point for the list.
+    Pick,
 }
 
 /// A ray and what it met.

@@ -5,6 +5,8 @@ pub mod computing;
 pub mod dialog;
 pub mod exporting;
 pub mod georeferencing;
+pub mod histogram;
+pub mod measured;
 pub mod opening;
 pub mod photos;
 pub mod picture;

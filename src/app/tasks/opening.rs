@@ -184,6 +184,8 @@ impl OpenFlight {
         self.files.read.extend(&before.files.read);
         self.files.bundled = before.files.bundled;
         self.pointer.measure = before.pointer.measure;
+        std::mem::swap(&mut self.pointer.picked, &mut before.pointer.picked);
+        self.colors.keep_limits(&before.colors);
         self.objects.tracing = before.objects.tracing.take();
         self.objects.sizes = before.objects.sizes;
         std::mem::swap(&mut self.georeferencing, &mut before.georeferencing);

@@ -7,6 +7,7 @@ pub(crate) mod image_edge;
 pub(crate) mod labels;
 mod measured;
 pub(crate) mod photo_lines;
+mod picked;
 pub(crate) mod words;
 
 use glam::{DVec2, DVec3};
@@ -90,6 +91,7 @@ pub(crate) fn on_screen(view: &View, show: &Show, size: DVec2) -> Vec<Stroke> {
     }
     strokes.extend(drawn::strokes(view, show, size));
     strokes.extend(measured::strokes(view, show, size));
+    strokes.extend(picked::strokes(view, show, size));
     strokes
 }
 
@@ -117,7 +119,8 @@ pub(crate) fn labels(view: &View, show: &Show, size: DVec2) -> Vec<Label> {
             color: ink(show),
         });
     }
-    labels.extend(measured::label(view, show, size));
+    labels.extend(measured::labels(view, show, size));
+    labels.extend(picked::labels(view, show, size));
     labels
 }
 

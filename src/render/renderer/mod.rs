@@ -369,6 +369,8 @@ impl Renderer {
     pub(crate) fn range(&self, show: &Show) -> Option<[f64; 2]> {
         let range = match show.color_by {
             ColorBy::Rgb => return None,
+            ColorBy::Scale if show.selected.is_none() => return None,
+            _ if let Some(limits) = show.color_limits => limits,
             ColorBy::Elevation if self.mesh.is_empty() => self.points.cloud.elevation,
             ColorBy::Elevation => self.mesh.mesh.elevation,
             ColorBy::Slope => [0.0, 90.0],

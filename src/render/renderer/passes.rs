@@ -352,7 +352,8 @@ impl Renderer {
         } = *overlay;
         let device = &self.gpu.device;
         let cameras = camera_depth(&self.photos, overlay.radius) * show.frustum_size;
-        let wanted = (show.clone(), looked_through);
+        // What is measured follows the mouse; the photos' lines do not depend on it.
+        let wanted = (show.without_marks(), looked_through);
         if self.strokes_for.as_ref() != Some(&wanted) {
             let strokes = photo_lines(
                 &self.photos,

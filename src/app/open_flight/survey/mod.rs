@@ -1,6 +1,8 @@
 //! The tools that draw a line or a polygon on the surface and say what is measured there.
 
+pub mod picked;
 pub mod surveyor;
+mod tables;
 
 use glam::{DVec2, DVec3};
 
@@ -121,6 +123,7 @@ impl OpenFlight {
                 let base = before.map_or_else(BaseChoice::default, |drawn| drawn.base);
                 *drawn = (!same).then(|| Drawn::new(tool, base));
                 self.pointer.measure = super::Measure::Off;
+                self.pointer.picked.is_on = false;
             }
             (SurveyStep::Leave, _) => *drawn = None,
             (SurveyStep::RemoveLast, Some(drawn)) => {

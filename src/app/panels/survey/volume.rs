@@ -1,7 +1,7 @@
 //! Area and volume inside the polygon.
 
-use super::{copy, numbers};
-use crate::command::Command;
+use super::{copy, numbers, save};
+use crate::command::{Command, MeasuredTable};
 use crate::exports::{VolumeReport, volume_table};
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
@@ -76,5 +76,6 @@ pub(super) fn volume(
     ui.horizontal(|ui| {
         let hover = "The numbers as text, with the polygon's corners";
         copy("Copy numbers", hover, Some(text), ui, commands);
+        save(MeasuredTable::Volume, ui, commands);
     });
 }
