@@ -70,6 +70,14 @@ fn a_profile_is_drawn_and_measured() {
         copied.starts_with("distance_m,x_m,y_m,height_m,part\n"),
         "{copied}"
     );
+    // The file is that of the command.
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("profile.csv");
+    desk.settle();
+    desk.click(Role::Button, "Save CSV…");
+    desk.type_path(&path);
+    desk.click(Role::Button, "Write table");
+    assert_eq!(std::fs::read_to_string(&path).expect("a table"), copied);
     desk.press(Modifiers::NONE, Key::Backspace);
     let points = |desk: &Desk| {
         desk.open()
