@@ -143,6 +143,7 @@ impl State {
             | Command::View(_)
             | Command::ToggleMeasure
             | Command::Survey(_)
+            | Command::Clip(_)
             | Command::Pick(_) => {
                 if let Some(open) = &mut self.open {
                     open.apply(command);

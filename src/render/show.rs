@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use crate::geometry::LevelBox;
 use crate::units::LengthUnit;
 
 /// Which photos something is drawn for. Hidden photos ([`PhotoLook::visible`]) have nothing drawn.
@@ -90,6 +91,8 @@ pub struct Show {
     /// The points of the distance tool, in the world: one is marked, between two the distance is told
     /// with its level and its upright part.
     pub measured: Vec<DVec3>,
+    /// Of surface and points nothing is drawn outside of this box, whose edges are drawn.
+    pub clip: Option<LevelBox>,
     /// Points that were picked, with their names.
     pub picked: Vec<(String, DVec3)>,
     /// Lines that are drawn on the surface, in the world.
@@ -137,6 +140,7 @@ impl Default for Show {
             lengths_in: "m",
             scale_unit: None,
             measured: Vec::new(),
+            clip: None,
             picked: Vec::new(),
             drawn_lines: Vec::new(),
             drawn_points: Vec::new(),
@@ -156,6 +160,7 @@ impl Show {
         Self {
             measured: Vec::new(),
             picked: Vec::new(),
+            clip: None,
             drawn_lines: Vec::new(),
             drawn_points: Vec::new(),
             ..self.clone()

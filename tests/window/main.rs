@@ -22,6 +22,7 @@ mod own_frame;
 mod wrong_pile;
 
 mod broken;
+mod clip;
 mod colors;
 mod corner_loupe;
 mod decisions;

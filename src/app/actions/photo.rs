@@ -130,6 +130,7 @@ pub const MENU: &[Option<Action>] = &[
     Some(survey::POINTS),
     Some(survey::PROFILE),
     Some(survey::VOLUME),
+    Some(survey::CLIP),
     Some(TINT),
     None,
     Some(TRACE_SPHERE),

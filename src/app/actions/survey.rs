@@ -4,6 +4,7 @@ use egui::{Key, Modifiers};
 
 use super::{Action, keys, on_pile};
 use crate::command::Command;
+use crate::open_flight::survey::clip::ClipStep;
 use crate::open_flight::survey::picked::PickStep;
 use crate::open_flight::survey::{SurveyStep, SurveyTool};
 
@@ -19,6 +20,13 @@ actions! {
         hover: "Click points on the surface: a list with their coordinates to copy and save",
         shortcut: keys(Modifiers::NONE, Key::K),
         command: |state| on_pile(state, Command::Pick(PickStep::Toggle)),
+    }
+    CLIP {
+        label: "Clipping box",
+        hover: "Show only what lies in a box: its limits, its turn, or the footprint of the selected photo. \
+                Scales never depend on it",
+        shortcut: keys(Modifiers::NONE, Key::X),
+        command: |state| on_pile(state, Command::Clip(ClipStep::Window)),
     }
     VOLUME {
         label: "Volume inside a polygon",

@@ -20,6 +20,7 @@ use crate::geometry::Ray;
 use crate::linked::PointFrom;
 use crate::open_flight::georeferencing::GeoreferenceForm;
 use crate::open_flight::survey::SurveyStep;
+use crate::open_flight::survey::clip::ClipStep;
 use crate::open_flight::survey::picked::PickStep;
 use crate::open_flight::table::SortBy;
 use crate::open_flight::tracing::Trace;
@@ -185,6 +186,8 @@ pub enum Command {
     ToggleMeasure,
     /// A step of drawing a line or polygon on the surface, to measure there.
     Survey(SurveyStep),
+    /// Does something with the clipping box.
+    Clip(ClipStep),
     /// Does something with the picked points.
     Pick(PickStep),
     /// A step of tracing a scale object on the selected photo.

@@ -4,7 +4,8 @@ use glam::{DVec2, DVec3};
 
 use crate::command::{Command, ViewChange};
 use crate::flight::ScaleObject;
-use crate::geometry::Bounds;
+use crate::geometry::{Bounds, LevelBox, Ray};
+use crate::linked::PointFrom;
 use crate::open_flight::picker::Purpose;
 use crate::open_flight::survey::SurveyStep;
 use crate::open_flight::table::SortBy;
@@ -27,6 +28,11 @@ impl OpenFlight {
                 };
                 self.pick(purpose, ray);
             }
+            // What a photo shows is not clipped.
+            Command::Hover(from, Some(ray)) if from != PointFrom::Pile => {
+                self.pointer.from = Some(from);
+                self.pick_in(Purpose::Hover, ray, None);
+            }
             Command::Hover(from, Some(ray)) => {
                 self.pointer.from = Some(from);
                 self.pick(Purpose::Hover, ray);
@@ -40,6 +46,7 @@ impl OpenFlight {
             }
             Command::Survey(step) => self.survey(step),
             Command::Pick(step) => self.pick_step(step),
+            Command::Clip(step) => self.clip_step(step),
             Command::DoubleClick(ray) => self.pick(Purpose::Center, ray),
             Command::HoverPhoto(photo) => self.table.hovered = photo,
             Command::Sort(column) => {
@@ -90,10 +97,14 @@ impl OpenFlight {
         Some(Command::Set(settings))
     }
 
-    fn pick(&mut self, purpose: Purpose, ray: crate::geometry::Ray) {
+    fn pick(&mut self, purpose: Purpose, ray: Ray) {
+        self.pick_in(purpose, ray, self.clip.clipping());
+    }
+
+    fn pick_in(&mut self, purpose: Purpose, ray: Ray, clip: Option<LevelBox>) {
         let flight = self.flight().clone();
         if let Some(picker) = &mut self.pointer.picker {
-            picker.ask(purpose, ray, &flight);
+            picker.ask(purpose, ray, clip, &flight);
         }
     }
 

@@ -40,6 +40,7 @@ pub use measure::Measure;
 use picker::Picker;
 use reviewing::Reviewing;
 use survey::Drawn;
+use survey::clip::Clip;
 use survey::picked::PickedPoints;
 use survey::surveyor::Surveyor;
 use table::{PhotosTable, Row};
@@ -164,6 +165,8 @@ pub struct OpenFlight {
     pub tint: Option<PhotoTint>,
     /// How many such fields were asked for.
     pub tints: u64,
+    /// The clipping box.
+    pub clip: Clip,
     /// What the surface's colours mean.
     pub colors: Colors,
     /// What the viewport draws.
@@ -227,6 +230,7 @@ impl OpenFlight {
             corners: None,
             tint: None,
             tints: 0,
+            clip: Clip::around(&bulk_bounds),
             colors: Colors::default(),
             geometry: None,
             line: Arc::default(),

@@ -55,6 +55,8 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     button(actions::survey::PROFILE, "Profile", profile, ui);
     let volume = drawn == Some(SurveyTool::Volume);
     button(actions::survey::VOLUME, "Volume", volume, ui);
+    let clip = open.clip.is_on || open.clip.is_open;
+    button(actions::survey::CLIP, "Clip", clip, ui);
 }
 
 /// How much of the photo lies over a look through its camera.

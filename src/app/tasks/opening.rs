@@ -186,6 +186,7 @@ impl OpenFlight {
         self.pointer.measure = before.pointer.measure;
         std::mem::swap(&mut self.pointer.picked, &mut before.pointer.picked);
         self.colors.keep_limits(&before.colors);
+        self.clip = before.clip;
         self.objects.tracing = before.objects.tracing.take();
         self.objects.sizes = before.objects.sizes;
         std::mem::swap(&mut self.georeferencing, &mut before.georeferencing);

@@ -160,6 +160,7 @@ impl Viewport {
         show.lengths_in = open.flight().parts().unit_of_lengths();
         show.scale_unit = Some(state.preferences.unit());
         show.color_limits = open.colors.limits(show.color_by);
+        show.clip = open.clip.clipping();
         if !corner_rays {
             show.measured = open.pointer.measure.points(open.pointer.hover);
             show_picked(open, &mut show);
@@ -257,6 +258,7 @@ fn show(state: &State, open: &OpenFlight, ui: &egui::Ui, pixels_per_point: f64) 
     show.measured = open.pointer.measure.points(open.pointer.hover);
     show_picked(open, &mut show);
     show.color_limits = open.colors.limits(show.color_by);
+    show.clip = open.clip.clipping();
     show_drawn(open, &mut show);
     show.selected = open.selected;
     show.hovered = open.table.hovered;

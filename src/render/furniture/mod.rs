@@ -1,5 +1,6 @@
 //! What helps to read a picture and is no data: the ground's grid, the axes, the scale bar.
 
+mod clip_box;
 pub(crate) mod crowd;
 mod drawn;
 pub(crate) mod flight_line;
@@ -89,6 +90,7 @@ pub(crate) fn on_screen(view: &View, show: &Show, size: DVec2) -> Vec<Stroke> {
             strokes.extend(parts.map(|(from, to)| pen.line(at(from), at(to))));
         }
     }
+    strokes.extend(clip_box::strokes(view, show, size));
     strokes.extend(drawn::strokes(view, show, size));
     strokes.extend(measured::strokes(view, show, size));
     strokes.extend(picked::strokes(view, show, size));

@@ -11,6 +11,7 @@ use super::targets::{SurfaceTarget, Targets};
 use crate::furniture;
 use crate::furniture::crowd::{LEAST_PLANE, presence};
 use crate::furniture::photo_lines::{camera_depth, fill_colors, ink, photo_lines};
+use crate::geometry::LocalFrame;
 use crate::picture::VIRIDIS_STOPS;
 use crate::primitives::fill::{CellCorner, Pyramid};
 use crate::primitives::frame::FrameUniform;
@@ -93,6 +94,7 @@ impl Renderer {
             Background::Transparent => [0.0; 4],
         };
         let image_from_local = selected.map_or(DMat4::ZERO, PhotoGeometry::image_from_local);
+        let [box_middle, box_half, box_turn] = clip_box(show, &self.frame);
         let main = FrameUniform {
             clip_from_local: sight.to_cols_array_2d(),
             local_from_clip: narrow_matrix(clip_from_local.inverse()).to_cols_array_2d(),
@@ -105,6 +107,9 @@ impl Renderer {
                 narrow(eye).extend(1.0)
             }
             .to_array(),
+            box_middle,
+            box_half,
+            box_turn,
             size: targets.sampled_size().map(|edge| edge as f32),
             depths: if view.is_parallel() {
                 [narrow_number(far), narrow_number(far - near)]
@@ -437,6 +442,19 @@ impl Renderer {
         pass.set_bind_group(0, &self.screen_frame.group, &[]);
         self.lines.draw_over(&mut pass, &on_screen);
     }
+}
+
+/// The clipping box for the shaders: its middle, half of its edges, its turn and whether it is on.
+fn clip_box(show: &Show, frame: &LocalFrame) -> [[f32; 4]; 3] {
+    show.clip.map_or([[0.0; 4]; 3], |clip| {
+        let (sin, cos) = clip.turn.sin_cos();
+        [
+            narrow(frame.local_from_world(clip.middle())).extend(0.0),
+            narrow(clip.half()).extend(0.0),
+            narrow(DVec3::new(cos, sin, 1.0)).extend(0.0),
+        ]
+        .map(|row| row.to_array())
+    })
 }
 
 /// What [`Renderer::draw_overlay`] goes by.

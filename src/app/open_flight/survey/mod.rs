@@ -1,5 +1,6 @@
 //! The tools that draw a line or a polygon on the surface and say what is measured there.
 
+pub mod clip;
 pub mod picked;
 pub mod surveyor;
 mod tables;

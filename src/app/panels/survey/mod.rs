@@ -1,5 +1,6 @@
 //! What the tools that draw on the surface have measured: numbers and a plot, beside the viewport.
 
+mod clip;
 mod picked;
 mod profile;
 mod volume;
@@ -18,6 +19,7 @@ pub fn survey_panel(
     let Some(open) = &state.open else {
         return;
     };
+    clip::clip_panel(open, context, place, commands);
     picked::picked_panel(open, context, place, commands);
     let Some(drawn) = &open.pointer.drawn else {
         return;
