@@ -48,6 +48,7 @@ impl State {
             Command::SaveAs(to) => self.save_as(to),
             Command::Export(to) => self.export(to),
             Command::Picture(request) => self.ask_picture(request),
+            Command::VolumeBase(path) => self.read_volume_base(path),
             Command::SaveMeasured(table, to) => self.save_measured(table, to),
             Command::FillGeoreference(form) => self.fill_georeference(form),
             Command::Georeference(request) => self.start_georeference(request),
@@ -235,7 +236,13 @@ impl State {
     pub(crate) fn ask(&mut self, asking: Option<Asking>) {
         let needs_flight = matches!(
             asking,
-            Some(Asking::Export | Asking::SaveAs | Asking::Picture | Asking::SaveMeasured(_))
+            Some(
+                Asking::Export
+                    | Asking::SaveAs
+                    | Asking::Picture
+                    | Asking::SaveMeasured(_)
+                    | Asking::VolumeBase
+            )
         );
         if needs_flight && self.open.is_none() {
             return;

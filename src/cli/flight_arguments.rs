@@ -52,12 +52,3 @@ impl FlightArguments {
         opening::open_flight(&self.flight, &options, progress).map_err(|error| error.to_string())
     }
 }
-
-/// Opens a surface with or without photos; an error is one line.
-pub(super) fn open_cloud(path: &Path, progress: &Progress) -> Result<Opened, String> {
-    let options = OpenOptions {
-        may_lack_photos: true,
-        ..OpenOptions::default()
-    };
-    opening::open_flight(path, &options, progress).map_err(|error| error.to_string())
-}

@@ -8,6 +8,7 @@
 //! health       a flight's unit, coordinates, colours, ... at a glance
 //! info         what a file holds, for `fragscale info`
 //! origin       from which files a flight came, and the flight.toml that says so
+//! second_surface  another surface brought to the world of a flight
 //! world        the coordinate system that surface and photos share
 //! ```
 
@@ -22,6 +23,7 @@ mod open;
 mod origin;
 mod photo_checks;
 mod photo_files;
+mod second_surface;
 mod world;
 
 use fragscale_core::{
@@ -42,7 +44,12 @@ pub use info::info;
 pub use meant::meant_by;
 pub use open::{FlightReconstruction, OpenOptions, Opened, open_flight};
 pub use origin::FlightOrigin;
+<<<<<<< HEAD
 pub use photo_files::PhotoFile;
+=======
+pub use photo_files::{PhotoFile, lacks_photos};
+pub use second_surface::{SecondSurface, StatedWorld, second_surface};
+>>>>>>> 3347121 (Volumes over a second cloud, in window and command by the same function; profile and volume are saved as CSV)
 
 #[cfg(test)]
 mod tests;

@@ -86,6 +86,8 @@ pub enum Command {
     Export(Destination),
     /// Writes a picture of the viewport.
     Picture(PictureRequest),
+    /// Reads a second surface for volumes to be over.
+    VolumeBase(PathBuf),
     /// Writes a table of what was measured.
     SaveMeasured(MeasuredTable, Destination),
     /// Where the colours of the surface end, in world units, degrees or pixels per world unit; `None` is

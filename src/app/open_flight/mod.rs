@@ -39,10 +39,10 @@ use loading::Loaded;
 pub use measure::Measure;
 use picker::Picker;
 use reviewing::Reviewing;
-use survey::Drawn;
 use survey::clip::Clip;
 use survey::picked::PickedPoints;
 use survey::surveyor::Surveyor;
+use survey::{Drawn, SecondBase};
 use table::{PhotosTable, Row};
 use tint::PhotoTint;
 use tracing::TracedObjects;
@@ -123,6 +123,8 @@ pub struct Pointer {
     pub measure: Measure,
     /// What is drawn on the surface to measure there.
     pub drawn: Option<Drawn>,
+    /// A second surface that volumes can be over.
+    pub second: Option<SecondBase>,
     /// Points that were picked on the surface.
     pub picked: PickedPoints,
     /// Its rays.

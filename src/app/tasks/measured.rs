@@ -1,18 +1,55 @@
-//! Writing what was measured on the surface.
+//! Writing what was measured on the surface, and reading what volumes are over.
+
+use std::path::PathBuf;
 
 use super::work::Task;
 use crate::command::{Command, Destination, MeasuredTable};
 use crate::files::{self, Kind};
 use crate::formats::FileError;
 use crate::jobs::Progress;
+use crate::open_flight::survey::SecondBase;
+use crate::opening::{StatedWorld, second_surface};
 use crate::state::{Severity, State};
 
 impl Task {
     /// Writing a table of what was measured.
     pub const SAVE_MEASURED: Self = Self::new("Writing the table").writing();
+    /// Reading the second surface that a volume is over.
+    pub const VOLUME_BASE: Self = Self::new("Base of the volume").of_flight();
 }
 
 impl State {
+    /// Reads a second surface for volumes to be over, as the command does.
+    pub(crate) fn read_volume_base(&mut self, path: PathBuf) {
+        self.asking = None;
+        let Some(open) = &self.open else {
+            return;
+        };
+        let (flight, crs) = (open.flight().clone(), open.files.crs.clone());
+        let work = move |progress: &Progress| {
+            let parts = flight.parts();
+            let world = StatedWorld {
+                crs: crs.as_deref(),
+                unit: parts.unit_known.then_some(parts.unit),
+                around: parts.surface.bounds(),
+            };
+            second_surface(&path, &world, progress).map(|second| (path, second))
+        };
+        self.start(Task::VOLUME_BASE, work, |state, read| match read {
+            Ok((path, second)) => {
+                for warning in &second.warnings {
+                    state.say(Severity::Warning, warning);
+                }
+                if let Some(open) = &mut state.open {
+                    open.files.read.extend(&second.read);
+                    let surface = second.surface;
+                    open.take_second_base(SecondBase { path, surface });
+                }
+            }
+            Err(error) => state.say(Severity::Error, &error.to_string()),
+        });
+    }
+
     /// Writes a table as CSV; asks before a file is replaced.
     pub(crate) fn save_measured(&mut self, table: MeasuredTable, to: Destination) {
         self.asking = None;

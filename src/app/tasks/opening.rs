@@ -187,6 +187,7 @@ impl OpenFlight {
         std::mem::swap(&mut self.pointer.picked, &mut before.pointer.picked);
         self.colors.keep_limits(&before.colors);
         self.clip = before.clip;
+        self.pointer.second = before.pointer.second.take();
         self.objects.tracing = before.objects.tracing.take();
         self.objects.sizes = before.objects.sizes;
         std::mem::swap(&mut self.georeferencing, &mut before.georeferencing);

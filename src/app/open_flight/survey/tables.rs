@@ -20,6 +20,7 @@ impl OpenFlight {
         let drawn = self.pointer.drawn.as_ref();
         let flight = &self.flight().parts().name;
         let unit = self.measured_unit();
+        let base = drawn.and_then(|drawn| self.base_name(drawn));
         let csv = match table {
             MeasuredTable::Points => {
                 let is_some = !self.pointer.picked.list().is_empty();
@@ -34,7 +35,7 @@ impl OpenFlight {
                 flight,
                 unit,
                 volume: drawn?.volume()?,
-                base: None,
+                base: base.as_deref(),
             }),
         };
         Some(csv.map_err(|error| error.to_string()))

@@ -1,4 +1,4 @@
-//! Where a table of what was measured goes.
+//! Where a table of what was measured goes, and what a volume is over.
 
 use super::proposed;
 use crate::command::{Command, Dialog, MeasuredTable};
@@ -40,5 +40,20 @@ pub(super) fn save_measured(
         && (button.clicked() || entered)
     {
         commands.push(Command::SaveMeasured(table, path.into()));
+    }
+}
+
+/// Which cloud the volume is over.
+pub(super) fn volume_base(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.label("A cloud or mesh that the volume is over, such as the floor before:");
+    let browse = [("Browse…", Dialog::file("Base of the volume"))];
+    let (path, entered) = path_field(state, ui, "", &browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Use it"));
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::VolumeBase(path));
     }
 }
