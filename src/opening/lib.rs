@@ -44,12 +44,8 @@ pub use info::info;
 pub use meant::meant_by;
 pub use open::{FlightReconstruction, OpenOptions, Opened, open_flight};
 pub use origin::FlightOrigin;
-<<<<<<< HEAD
 pub use photo_files::PhotoFile;
-=======
-pub use photo_files::{PhotoFile, lacks_photos};
 pub use second_surface::{SecondSurface, StatedWorld, second_surface};
->>>>>>> 3347121 (Volumes over a second cloud, in window and command by the same function; profile and volume are saved as CSV)
 
 #[cfg(test)]
 mod tests;
