@@ -48,6 +48,7 @@ impl State {
             Command::SaveAs(to) => self.save_as(to),
             Command::Export(to) => self.export(to),
             Command::Picture(request) => self.ask_picture(request),
+            Command::AddLayer(path) => self.add_beside(path),
             Command::VolumeBase(path) => self.read_volume_base(path),
             Command::SaveMeasured(table, to) => self.save_measured(table, to),
             Command::FillGeoreference(form) => self.fill_georeference(form),
@@ -144,6 +145,7 @@ impl State {
             | Command::View(_)
             | Command::ToggleMeasure
             | Command::Survey(_)
+            | Command::Beside(_)
             | Command::Clip(_)
             | Command::Pick(_) => {
                 if let Some(open) = &mut self.open {
@@ -155,6 +157,7 @@ impl State {
             open.looking.orbit.orthographic = self.preferences.layers.orthographic;
         }
         self.look_at_values();
+        self.upload_beside();
     }
 
     /// Leaves the flight on the screen, unless something would be lost: then asks first.
@@ -242,6 +245,7 @@ impl State {
                     | Asking::Picture
                     | Asking::SaveMeasured(_)
                     | Asking::VolumeBase
+                    | Asking::AddLayer
             )
         );
         if needs_flight && self.open.is_none() {

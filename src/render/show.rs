@@ -91,6 +91,8 @@ pub struct Show {
     /// The points of the distance tool, in the world: one is marked, between two the distance is told
     /// with its level and its upright part.
     pub measured: Vec<DVec3>,
+    /// The clouds beside the surface ([`super::Renderer::set_beside`]).
+    pub beside: bool,
     /// Of surface and points nothing is drawn outside of this box, whose edges are drawn.
     pub clip: Option<LevelBox>,
     /// Points that were picked, with their names.
@@ -140,6 +142,7 @@ impl Default for Show {
             lengths_in: "m",
             scale_unit: None,
             measured: Vec::new(),
+            beside: false,
             clip: None,
             picked: Vec::new(),
             drawn_lines: Vec::new(),

@@ -21,6 +21,7 @@ mod own_frame;
 #[path = "../common/wrong_pile.rs"]
 mod wrong_pile;
 
+mod beside;
 mod broken;
 mod clip;
 mod colors;

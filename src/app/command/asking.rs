@@ -32,6 +32,8 @@ pub enum Asking {
     SaveFigure,
     /// Where the report on them goes.
     SaveReport,
+    /// Which cloud is drawn beside the surface.
+    AddLayer,
     /// Which cloud a volume is over.
     VolumeBase,
     /// Where a table of what was measured goes.

@@ -18,6 +18,7 @@ pub use view_change::ViewChange;
 use crate::flight::{DecisionKind, FlightSettings, Limits, Verdict};
 use crate::geometry::Ray;
 use crate::linked::PointFrom;
+use crate::open_flight::beside::BesideStep;
 use crate::open_flight::georeferencing::GeoreferenceForm;
 use crate::open_flight::survey::SurveyStep;
 use crate::open_flight::survey::clip::ClipStep;
@@ -86,6 +87,8 @@ pub enum Command {
     Export(Destination),
     /// Writes a picture of the viewport.
     Picture(PictureRequest),
+    /// Reads a cloud to be drawn beside the surface.
+    AddLayer(PathBuf),
     /// Reads a second surface for volumes to be over.
     VolumeBase(PathBuf),
     /// Writes a table of what was measured.
@@ -188,6 +191,8 @@ pub enum Command {
     ToggleMeasure,
     /// A step of drawing a line or polygon on the surface, to measure there.
     Survey(SurveyStep),
+    /// Does something with the clouds beside the surface.
+    Beside(BesideStep),
     /// Does something with the clipping box.
     Clip(ClipStep),
     /// Does something with the picked points.

@@ -47,6 +47,7 @@ impl OpenFlight {
             Command::Survey(step) => self.survey(step),
             Command::Pick(step) => self.pick_step(step),
             Command::Clip(step) => self.clip_step(step),
+            Command::Beside(step) => self.beside_step(step),
             Command::DoubleClick(ray) => self.pick(Purpose::Center, ray),
             Command::HoverPhoto(photo) => self.table.hovered = photo,
             Command::Sort(column) => {

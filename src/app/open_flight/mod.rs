@@ -1,6 +1,7 @@
 //! The flight that is open: what was read, what was computed, what the engineer has done with it.
 
 pub mod apply;
+pub mod beside;
 pub mod colors;
 pub mod files;
 mod flight_line;
@@ -32,6 +33,7 @@ use crate::photo_view::PhotoView;
 use crate::render::{LargePhoto, Orbit, PhotoImage, PhotoZoom, SurfaceBuffers, drawn_ground};
 use crate::scale::{FieldFacts, PhotoScale, ViewFacts};
 use crate::state::history::History;
+use beside::Beside;
 use colors::Colors;
 use files::FlightFiles;
 use georeferencing::Georeferencing;
@@ -167,6 +169,8 @@ pub struct OpenFlight {
     pub tint: Option<PhotoTint>,
     /// How many such fields were asked for.
     pub tints: u64,
+    /// Clouds beside the surface.
+    pub beside: Vec<Beside>,
     /// The clipping box.
     pub clip: Clip,
     /// What the surface's colours mean.
@@ -232,6 +236,7 @@ impl OpenFlight {
             corners: None,
             tint: None,
             tints: 0,
+            beside: Vec::new(),
             clip: Clip::around(&bulk_bounds),
             colors: Colors::default(),
             geometry: None,

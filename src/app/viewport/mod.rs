@@ -161,6 +161,7 @@ impl Viewport {
         show.scale_unit = Some(state.preferences.unit());
         show.color_limits = open.colors.limits(show.color_by);
         show.clip = open.clip.clipping();
+        show.beside = true;
         if !corner_rays {
             show.measured = open.pointer.measure.points(open.pointer.hover);
             show_picked(open, &mut show);
@@ -259,6 +260,7 @@ fn show(state: &State, open: &OpenFlight, ui: &egui::Ui, pixels_per_point: f64) 
     show_picked(open, &mut show);
     show.color_limits = open.colors.limits(show.color_by);
     show.clip = open.clip.clipping();
+    show.beside = true;
     show_drawn(open, &mut show);
     show.selected = open.selected;
     show.hovered = open.table.hovered;

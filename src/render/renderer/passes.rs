@@ -142,6 +142,7 @@ impl Renderer {
         };
         let queue = &self.gpu.queue;
         self.main_frame.write(queue, &main);
+        self.write_beside(&main, show);
         let pixels = part.crop()
             * DMat4::from_cols(
                 DVec4::new(2.0 / whole.x, 0.0, 0.0, 0.0),
@@ -168,7 +169,16 @@ impl Renderer {
             show.mesh && !self.points.is_empty() && self.mesh.count(&in_sight) > 2 * most
         });
         let shapes = [show.mesh && !too_many, show.cloud || too_many];
-        let version = (self.version, if project { self.photo_version } else { 0 });
+        // 0 is for nothing of that kind.
+        let version = [
+            self.version,
+            if project { self.photo_version } else { 0 },
+            if show.beside {
+                self.beside.version + 1
+            } else {
+                0
+            },
+        ];
         let sight = Sight::new(&main, show.color_by, version, shapes, share);
         let shown = targets.surface.sight.as_ref();
         let mut complete = shown == Some(&sight);
@@ -178,7 +188,7 @@ impl Renderer {
                 targets.next.begin(sight);
             }
             let most = if stands_in { most } else { usize::MAX };
-            self.draw_surface(&mut encoder, &mut targets.next, most, &in_sight);
+            self.draw_surface(&mut encoder, &mut targets.next, most, show, &in_sight);
             complete = targets.next.is_whole();
             if complete {
                 std::mem::swap(&mut targets.surface, &mut targets.next);
@@ -261,6 +271,7 @@ impl Renderer {
         encoder: &mut CommandEncoder,
         target: &mut SurfaceTarget,
         most: usize,
+        show: &Show,
         in_sight: &impl Fn(&Extent) -> bool,
     ) {
         let begins = target.drawn == [0; 2];
@@ -285,6 +296,9 @@ impl Renderer {
             let (drawn, next) = self.points.draw(&mut pass, share, from, left, in_sight);
             target.next[1] = next;
             target.drawn[1] += drawn;
+        }
+        if show.beside && target.is_whole() {
+            self.draw_beside(&mut pass, show.max_points, in_sight);
         }
     }
 

@@ -20,7 +20,7 @@ use crate::state::{HeldBack, State};
 use crate::typed::typed;
 use choose::choose;
 use georeference::{georeference, save_georeferenced};
-use save_measured::{save_measured, volume_base};
+use save_measured::{add_layer, save_measured, volume_base};
 
 /// Draws the small window that is open, and the question before losing changes.
 pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) {
@@ -39,6 +39,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::AddEffort => "Add times of steps",
             Asking::SaveFigure => "Save figure",
             Asking::SaveReport => "Save report",
+            Asking::AddLayer => "Add cloud as layer",
             Asking::VolumeBase => "Base of the volume",
             Asking::SaveMeasured(MeasuredTable::Points) => "Save points",
             Asking::SaveMeasured(MeasuredTable::Profile) => "Save profile",
@@ -70,6 +71,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::AddEffort => add_effort(state, ui, commands),
                     Asking::SaveFigure => save_figure(state, ui, commands),
                     Asking::SaveReport => save_report(state, ui, commands),
+                    Asking::AddLayer => add_layer(state, ui, commands),
                     Asking::VolumeBase => volume_base(state, ui, commands),
                     Asking::SaveMeasured(table) => save_measured(table, state, ui, commands),
                     Asking::Keys => keys(ui),

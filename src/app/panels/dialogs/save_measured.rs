@@ -1,4 +1,7 @@
-//! Where a table of what was measured goes, and what a volume is over.
+//! Where a table of what was measured goes, and which cloud comes
+//! beside the surface or under a volume.
+
+use std::path::PathBuf;
 
 use super::proposed;
 use crate::command::{Command, Dialog, MeasuredTable};
@@ -45,15 +48,35 @@ pub(super) fn save_measured(
 
 /// Which cloud the volume is over.
 pub(super) fn volume_base(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    ui.label("A cloud or mesh that the volume is over, such as the floor before:");
-    let browse = [("Browse…", Dialog::file("Base of the volume"))];
+    let what = "A cloud or mesh that the volume is over, such as the floor before:";
+    let dialog = Dialog::file("Base of the volume");
+    if let Some(path) = cloud(what, dialog, "Use it", state, ui, commands) {
+        commands.push(Command::VolumeBase(path));
+    }
+}
+
+/// Which cloud is drawn beside the surface.
+pub(super) fn add_layer(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let what = "A cloud or mesh whose points are drawn beside the flight's surface. Scales never depend on it.";
+    let dialog = Dialog::file("Cloud to draw beside the surface");
+    if let Some(path) = cloud(what, dialog, "Add layer", state, ui, commands) {
+        commands.push(Command::AddLayer(path));
+    }
+}
+
+fn cloud(
+    what: &str,
+    dialog: Dialog,
+    done: &str,
+    state: &State,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) -> Option<PathBuf> {
+    ui.label(what);
+    let browse = [("Browse…", dialog)];
     let (path, entered) = path_field(state, ui, "", &browse, commands);
     ui.separator();
     let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new("Use it"));
-    if let Some(path) = path
-        && (button.clicked() || entered)
-    {
-        commands.push(Command::VolumeBase(path));
-    }
+    let button = ui.add_enabled(path.is_some(), egui::Button::new(done));
+    path.filter(|_| button.clicked() || entered)
 }

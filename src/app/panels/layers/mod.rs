@@ -1,5 +1,6 @@
 //! What the viewport shows, in one small panel.
 
+mod beside;
 mod color_range;
 
 use super::field::combo_box;
@@ -127,6 +128,8 @@ pub fn layers_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
             next = Layers::default();
         }
     });
+    ui.separator();
+    beside::beside(state, ui, commands);
     if next != now {
         commands.push(Command::Layers(next));
     }
