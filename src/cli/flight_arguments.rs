@@ -1,6 +1,6 @@
 //! Which flight, with which surface and photos: what every command that opens a flight understands.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
