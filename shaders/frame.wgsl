@@ -12,6 +12,11 @@ struct Frame {
     ink: vec4<f32>,
     // The eye in the local frame and 1; in parallel projection the way to it and 0.
     eye: vec4<f32>,
+    // The clipping box: its middle in the local frame; half of its edges; cosine and sine of its turn about
+    // the vertical, and 1 where it is on.
+    box_middle: vec4<f32>,
+    box_half: vec4<f32>,
+    box_turn: vec4<f32>,
     // Of the picture, in texels.
     size: vec2<f32>,
     // Perspective: (near, 0). Parallel: (far, far - near).
@@ -48,6 +53,14 @@ struct Frame {
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
+
+// Whether a piece of surface lies outside of the clipping box.
+fn is_clipped(local: vec3<f32>) -> bool {
+    let turn = frame.box_turn;
+    let off = local - frame.box_middle.xyz;
+    let along = vec3(turn.x * off.x + turn.y * off.y, turn.x * off.y - turn.y * off.x, off.z);
+    return turn.z > 0.5 && any(abs(along) > frame.box_half.xyz);
+}
 
 // Distance along the view axis of a depth.
 fn distance_of(depth: f32) -> f32 {

@@ -27,6 +27,9 @@ fn vertex(
     point.color = color.rgb;
     point.normal = normal.xyz;
     point.radius = radius;
+    if is_clipped(local) {
+        point.clip = vec4(2.0, 2.0, 2.0, 1.0);
+    }
     return point;
 }
 

@@ -3,6 +3,7 @@
 use crate::command::{Asking, Command, ReviewStep, Tab};
 use crate::flight::FlightSettings;
 use crate::open_flight::OpenFlight;
+use crate::open_flight::survey::picked::PickedPoint;
 use crate::scale::ScalePair;
 use crate::size_distributions::Page;
 use crate::state::bundled::sample_flight;
@@ -47,6 +48,9 @@ impl State {
             Command::SaveAs(to) => self.save_as(to),
             Command::Export(to) => self.export(to),
             Command::Picture(request) => self.ask_picture(request),
+            Command::AddLayer(path) => self.add_beside(path),
+            Command::VolumeBase(path) => self.read_volume_base(path),
+            Command::SaveMeasured(table, to) => self.save_measured(table, to),
             Command::FillGeoreference(form) => self.fill_georeference(form),
             Command::Georeference(request) => self.start_georeference(request),
             Command::SaveGeoreferenced { to, keep_surface } => {
@@ -72,6 +76,11 @@ impl State {
                 }
             }
             Command::Layers(layers) => self.preferences.layers = layers,
+            Command::ColorLimits(by, limits) => {
+                if let Some(open) = &mut self.open {
+                    open.colors.set(by, limits);
+                }
+            }
             Command::Theme(theme) => {
                 self.preferences.theme = theme;
                 self.apply_theme();
@@ -100,12 +109,12 @@ impl State {
                 self.undo_distributions(History::redo);
             }
             Command::Undo => {
-                self.undo_settings(History::undo);
+                self.undo_picks_or_settings(History::undo, History::undo);
                 // Else the last word at the foot of the window may be "saved".
                 self.say(Severity::Note, "undone");
             }
             Command::Redo => {
-                self.undo_settings(History::redo);
+                self.undo_picks_or_settings(History::redo, History::redo);
                 self.say(Severity::Note, "done again");
             }
             Command::Set(settings) => self.set_settings(settings),
@@ -140,7 +149,10 @@ impl State {
             | Command::FilterDoubtful(_)
             | Command::View(_)
             | Command::ToggleMeasure
-            | Command::Survey(_) => {
+            | Command::Survey(_)
+            | Command::Beside(_)
+            | Command::Clip(_)
+            | Command::Pick(_) => {
                 if let Some(open) = &mut self.open {
                     open.apply(command);
                 }
@@ -149,6 +161,8 @@ impl State {
         if let Some(open) = &mut self.open {
             open.looking.orbit.orthographic = self.preferences.layers.orthographic;
         }
+        self.look_at_values();
+        self.upload_beside();
     }
 
     /// Leaves the flight on the screen, unless something would be lost: then asks first.
@@ -230,7 +244,14 @@ impl State {
     pub(crate) fn ask(&mut self, asking: Option<Asking>) {
         let needs_flight = matches!(
             asking,
-            Some(Asking::Export | Asking::SaveAs | Asking::Picture)
+            Some(
+                Asking::Export
+                    | Asking::SaveAs
+                    | Asking::Picture
+                    | Asking::SaveMeasured(_)
+                    | Asking::VolumeBase
+                    | Asking::AddLayer
+            )
         );
         if needs_flight && self.open.is_none() {
             return;
@@ -259,6 +280,21 @@ impl State {
         self.edit_settings(|history| {
             history.set(settings);
         });
+    }
+
+    /// While points are picked, undo is theirs as far as it goes.
+    fn undo_picks_or_settings(
+        &mut self,
+        picks: impl FnOnce(&mut History<Vec<PickedPoint>>) -> bool,
+        settings: impl FnOnce(&mut History<FlightSettings>) -> bool,
+    ) {
+        let picked = self.open.as_mut().map(|open| &mut open.pointer.picked);
+        let undone = picked
+            .filter(|picked| picked.is_on)
+            .is_some_and(|picked| picks(&mut picked.history));
+        if !undone {
+            self.undo_settings(settings);
+        }
     }
 
     fn undo_settings(&mut self, step: impl FnOnce(&mut History<FlightSettings>) -> bool) {

@@ -41,6 +41,8 @@ impl State {
                 self.load_preview();
             }
         }
+        self.look_at_values();
+        self.upload_beside();
         if !self.work.is_idle() {
             // Often enough for a progress bar; idle windows draw nothing. A dialog can take minutes.
             let only_dialog = self.work.running().all(|(task, _)| task == Task::DIALOG);

@@ -1,6 +1,6 @@
 //! Which flight, with which surface and photos: what every command that opens a flight understands.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
@@ -51,13 +51,4 @@ impl FlightArguments {
         };
         opening::open_flight(&self.flight, &options, progress).map_err(|error| error.to_string())
     }
-}
-
-/// Opens a surface with or without photos; an error is one line.
-pub(super) fn open_cloud(path: &Path, progress: &Progress) -> Result<Opened, String> {
-    let options = OpenOptions {
-        may_lack_photos: true,
-        ..OpenOptions::default()
-    };
-    opening::open_flight(path, &options, progress).map_err(|error| error.to_string())
 }

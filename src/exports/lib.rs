@@ -24,8 +24,8 @@ use fragscale_core::{
 use fragscale_fragmentation as fragmentation;
 
 pub use measured::{
-    MeasuredUnit, ProfileReport, VolumeReport, profile_csv, profile_json, profile_table,
-    volume_csv, volume_json, volume_table, volume_warning,
+    MeasuredUnit, PointsReport, ProfileReport, VolumeReport, points_csv, points_table, profile_csv,
+    profile_json, profile_table, volume_csv, volume_json, volume_table, volume_warning,
 };
 pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};
 pub use photo_file_names::photo_file_stems;

@@ -105,6 +105,10 @@ fn is_csv(first: &str) -> bool {
         )
         // Times.
         || first.starts_with("step,") && first.ends_with(",total_min,average_min")
+        // A profile, a volume, picked points.
+        || first.starts_with("distance_") && first.ends_with(",part")
+        || first.starts_with("flight,base,fill_")
+        || first.starts_with("point,x_") && first.contains(",y_") && first.contains(",z_")
         // Of the window's frames.
         || first.starts_with("start_s,logic,panels,upload,draw,commands,")
 }

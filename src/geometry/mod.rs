@@ -1,12 +1,14 @@
 //! Points, rays and frames, all f64.
 
 mod bounds;
+mod level_box;
 mod local_frame;
 mod median;
 mod ray;
 mod similarity;
 
 pub use bounds::Bounds;
+pub use level_box::LevelBox;
 pub use local_frame::LocalFrame;
 pub use median::median;
 pub use ray::Ray;

@@ -8,6 +8,7 @@
 //! health       a flight's unit, coordinates, colours, ... at a glance
 //! info         what a file holds, for `fragscale info`
 //! origin       from which files a flight came, and the flight.toml that says so
+//! second_surface  another surface brought to the world of a flight
 //! world        the coordinate system that surface and photos share
 //! ```
 
@@ -22,6 +23,7 @@ mod open;
 mod origin;
 mod photo_checks;
 mod photo_files;
+mod second_surface;
 mod world;
 
 use fragscale_core::{
@@ -46,6 +48,7 @@ pub use open::{
 };
 pub use origin::FlightOrigin;
 pub use photo_files::PhotoFile;
+pub use second_surface::{SecondSurface, StatedWorld, second_surface};
 
 #[cfg(test)]
 mod tests;

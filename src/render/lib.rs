@@ -36,7 +36,7 @@ pub use furniture::photo_lines::SELECTED;
 pub use primitives::mesh::MeshBuffers;
 pub use primitives::points::CloudBuffers;
 pub use primitives::surface::LargePhoto;
-pub use renderer::{Aside, Drawn, MOST_PIXELS, Renderer};
+pub use renderer::{Aside, BesideCloud, Drawn, MOST_PIXELS, Renderer};
 pub use scene::ground::drawn_ground;
 pub use scene::photo_geometry::PhotoGeometry;
 pub use scene::photo_image::PhotoImage;

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use crate::geometry::LevelBox;
 use crate::units::LengthUnit;
 
 /// Which photos something is drawn for. Hidden photos ([`PhotoLook::visible`]) have nothing drawn.
@@ -56,6 +57,9 @@ pub struct Show {
     pub wireframe: bool,
     /// What the colours of both mean.
     pub color_by: ColorBy,
+    /// The values at the colour map's ends, in world units, degrees or pixels per world unit; `None` is
+    /// where the values themselves end.
+    pub color_limits: Option<[f64; 2]>,
     /// Relief: darker where a neighbouring pixel is nearer.
     pub eye_dome: bool,
     /// The cameras.
@@ -84,8 +88,15 @@ pub struct Show {
     pub lengths_in: &'static str,
     /// The unit that the legend says scales in; `None` is the world's.
     pub scale_unit: Option<LengthUnit>,
-    /// The points of the distance tool, in the world: one is marked, between two the distance is told.
+    /// The points of the distance tool, in the world: one is marked, between two the distance is told
+    /// with its level and its upright part.
     pub measured: Vec<DVec3>,
+    /// The clouds beside the surface ([`super::Renderer::set_beside`]).
+    pub beside: bool,
+    /// Of surface and points nothing is drawn outside of this box, whose edges are drawn.
+    pub clip: Option<LevelBox>,
+    /// Points that were picked, with their names.
+    pub picked: Vec<(String, DVec3)>,
     /// Lines that are drawn on the surface, in the world.
     pub drawn_lines: Vec<Vec<DVec3>>,
     /// Their points, which are marked.
@@ -115,6 +126,7 @@ impl Default for Show {
             mesh: true,
             wireframe: false,
             color_by: ColorBy::Rgb,
+            color_limits: None,
             eye_dome: true,
             frusta: Scope::All,
             images: Scope::None,
@@ -130,6 +142,9 @@ impl Default for Show {
             lengths_in: "m",
             scale_unit: None,
             measured: Vec::new(),
+            beside: false,
+            clip: None,
+            picked: Vec::new(),
             drawn_lines: Vec::new(),
             drawn_points: Vec::new(),
             project_photo: false,
@@ -138,6 +153,20 @@ impl Default for Show {
             hovered: None,
             background: Background::Color([24, 26, 30]),
             pixels_per_point: 1.0,
+        }
+    }
+}
+
+impl Show {
+    /// The same without what is measured and drawn on the surface.
+    pub(crate) fn without_marks(&self) -> Self {
+        Self {
+            measured: Vec::new(),
+            picked: Vec::new(),
+            clip: None,
+            drawn_lines: Vec::new(),
+            drawn_points: Vec::new(),
+            ..self.clone()
         }
     }
 }

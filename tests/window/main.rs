@@ -21,7 +21,10 @@ mod own_frame;
 #[path = "../common/wrong_pile.rs"]
 mod wrong_pile;
 
+mod beside;
 mod broken;
+mod clip;
+mod colors;
 mod corner_loupe;
 mod decisions;
 mod desk;
@@ -39,6 +42,7 @@ mod opening;
 mod overwriting;
 mod photo_view;
 mod photos;
+mod points;
 mod random;
 mod reviewing;
 mod scale_object;

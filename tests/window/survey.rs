@@ -70,6 +70,14 @@ fn a_profile_is_drawn_and_measured() {
         copied.starts_with("distance_m,x_m,y_m,height_m,part\n"),
         "{copied}"
     );
+    // The file is that of the command.
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("profile.csv");
+    desk.settle();
+    desk.click(Role::Button, "Save CSV…");
+    desk.type_path(&path);
+    desk.click(Role::Button, "Write table");
+    assert_eq!(std::fs::read_to_string(&path).expect("a table"), copied);
     desk.press(Modifiers::NONE, Key::Backspace);
     let points = |desk: &Desk| {
         desk.open()
@@ -123,4 +131,70 @@ fn a_volume_is_drawn_and_measured() {
     // Measuring puts it away.
     desk.press(Modifiers::NONE, Key::M);
     assert!(desk.open().pointer.drawn.is_none());
+}
+
+/// The same surface half a unit lower: as much volume as half of the area, over the file as over a level.
+#[test]
+fn a_volume_is_over_a_second_cloud_and_saved() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (base, table) = (
+        folder.path().join("before.xyz"),
+        folder.path().join("volume.csv"),
+    );
+    let mut desk = Desk::new(Some(&flight("tests/windrow")));
+    let vertices = desk.open().flight().parts().surface.clone();
+    let lower = vertices
+        .vertices()
+        .map(|p| format!("{} {} {}\n", p.x, p.y, p.z - 0.5));
+    std::fs::write(&base, lower.collect::<String>()).expect("a cloud");
+    desk.press(Modifiers::NONE, Key::F2);
+    desk.press(Modifiers::NONE, Key::T);
+    desk.click(Role::Button, "Volume inside a polygon");
+    for (x, y) in [(-0.3, -0.2), (0.2, -0.2), (0.2, 0.3), (-0.3, 0.3)] {
+        click(&mut desk, on_windrow(x, y));
+    }
+    desk.press(Modifiers::NONE, Key::Enter);
+    desk.click(Role::Button, "Choose…");
+    desk.type_path(&base);
+    desk.click(Role::Button, "Use it");
+    let drawn = desk.open().pointer.drawn.as_ref().expect("a tool");
+    assert_eq!(drawn.base, BaseChoice::Second);
+    let volume = *drawn.volume().expect("a volume");
+    assert!(
+        (volume.fill - 0.5 * volume.plan_area).abs() < 1e-6 && volume.cut.abs() < 1e-9,
+        "{volume:?}"
+    );
+    assert!(desk.says("before.xyz"));
+    assert!(desk.logged("neither of the two states a coordinate system"));
+    desk.click(Role::Button, "Save CSV…");
+    desk.type_path(&table);
+    desk.click(Role::Button, "Write table");
+    let written = std::fs::read_to_string(&table).expect("a table");
+    assert!(
+        written.starts_with("flight,base,fill_m3,cut_m3"),
+        "{written}"
+    );
+    assert!(written.contains(&volume.fill.to_string()) && written.contains("before.xyz"));
+    // What is read is not written over.
+    desk.click(Role::Button, "Save CSV…");
+    desk.type_path(&base);
+    desk.click(Role::Button, "Write table");
+    assert!(
+        std::fs::read_to_string(&base)
+            .expect("the cloud")
+            .starts_with(|c: char| c != 'f')
+    );
+    // One that lies far away is in another world.
+    let far = folder.path().join("far.xyz");
+    std::fs::write(
+        &far,
+        "500000 5000000 1\n500001 5000000 1\n500000 5000001 1\n",
+    )
+    .expect("a cloud");
+    desk.click(Role::Button, "Choose…");
+    desk.type_path(&far);
+    desk.click(Role::Button, "Use it");
+    assert!(desk.logged("far.xyz: it is not in the flight's frame"));
+    let drawn = desk.open().pointer.drawn.as_ref().expect("a tool");
+    assert_eq!(drawn.volume(), Some(&volume));
 }

@@ -81,6 +81,68 @@ fn keys_turn_the_view_to_the_sides_of_the_map() {
     assert_eq!(orbit(&desk).view(), before.view());
 }
 
+/// The keypad of CloudCompare and Blender; egui tells its digits as those over the letters.
+#[test]
+fn the_keypad_turns_the_view() {
+    let mut desk = Desk::new(Some(&flight("tests/windrow")));
+    let forward = |desk: &Desk| orbit(desk).view().world_from_view.z_axis;
+    for (key, expected) in [
+        (Key::Num7, DVec3::NEG_Z),
+        (Key::Num9, DVec3::Z),
+        (Key::Num1, DVec3::Y),
+        (Key::Num9, DVec3::NEG_Y),
+        (Key::Num3, DVec3::NEG_X),
+        (Key::Num9, DVec3::X),
+    ] {
+        desk.press(Modifiers::NONE, key);
+        let seen = forward(&desk);
+        assert!(seen.distance(expected) < 1e-9, "{key:?}: {seen}");
+    }
+    // From the south six steps to the left are the west, then two up are 30 degrees down.
+    desk.press(Modifiers::NONE, Key::Num1);
+    for _ in 0..6 {
+        desk.press(Modifiers::NONE, Key::Num4);
+    }
+    assert!(forward(&desk).distance(DVec3::X) < 1e-9);
+    for _ in 0..2 {
+        desk.press(Modifiers::NONE, Key::Num8);
+    }
+    let slope = 30_f64.to_radians();
+    let down = DVec3::new(slope.cos(), 0.0, -slope.sin());
+    assert!(forward(&desk).distance(down) < 1e-9);
+    let before = orbit(&desk);
+    for key in [Key::Num6, Key::Num2] {
+        desk.press(Modifiers::NONE, key);
+    }
+    assert!((orbit(&desk).pitch - 15_f64.to_radians()).abs() < 1e-9);
+    let turned = (before.yaw - orbit(&desk).yaw).to_degrees();
+    assert!((turned - 15.0).abs() < 1e-9, "{turned}");
+    // Parallel and back; everything in sight.
+    for parallel in [true, false] {
+        desk.press(Modifiers::NONE, Key::Num5);
+        assert_eq!(orbit(&desk).orthographic, parallel);
+    }
+    let apply = |desk: &mut Desk| {
+        let to = fragscale::app::command::ViewChange::Center(DVec3::splat(50.0));
+        let app = desk.harness.state_mut();
+        app.apply(fragscale::app::Command::View(to));
+    };
+    apply(&mut desk);
+    desk.press(Modifiers::NONE, Key::Num0);
+    assert!(orbit(&desk).target.length() < 5.0);
+    // Digits are text in a field, and with Ctrl they are the pages.
+    let before = orbit(&desk);
+    desk.fill("Filter photos", "7");
+    desk.press(Modifiers::COMMAND, Key::Num1);
+    assert_eq!(orbit(&desk).view(), before.view());
+    // While a number is dragged or typed, too.
+    desk.press(Modifiers::COMMAND, Key::P);
+    desk.node(Role::SpinButton, "Picture width").click();
+    desk.harness.run();
+    desk.press(Modifiers::NONE, Key::Num3);
+    assert_eq!(orbit(&desk).view(), before.view());
+}
+
 #[test]
 fn the_wheel_zooms_to_what_is_under_the_cursor() {
     let mut desk = Desk::new(Some(&flight("tests/windrow")));
@@ -171,10 +233,23 @@ fn the_distance_of_two_known_points_is_measured() {
     assert!(desk.says("click the first point"));
     let (first, second) = (on_windrow(-1.2, -0.5), on_windrow(0.1, 0.5));
     let before = desk.selected().to_owned();
-    for point in [first, second] {
-        let at = on_screen(&desk, &orbit(&desk).view(), point);
-        desk.click_at(at);
+    let at = on_screen(&desk, &orbit(&desk).view(), first);
+    desk.click_at(at);
+    assert!(desk.says("click the second point") || desk.says("Distance 0.0"));
+    // Live: the mouse is the second point. The first step brings it there, the second moves it.
+    let at = on_screen(&desk, &orbit(&desk).view(), second);
+    for step in [6.0, 0.0] {
+        desk.harness.hover_at(at + vec2(step, 0.0));
+        desk.settle();
     }
+    // sqrt(1.3^2 + 1^2) level, 0.26 up, to the pixel.
+    assert!(
+        desk.says("Distance 1.66") && desk.says("(level 1.64") && desk.says("up 0.2"),
+        "{:?}",
+        desk.texts()
+    );
+    assert!(matches!(desk.open().pointer.measure, Measure::Second(_)));
+    desk.click_at(at);
     let Measure::Both(a, b) = desk.open().pointer.measure else {
         panic!("{:?}", desk.open().pointer.measure);
     };

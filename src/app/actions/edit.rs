@@ -9,8 +9,8 @@ use crate::size_distributions::{DistributionCommand, Page};
 actions! {
     UNDO {
         label: "Undo",
-        hover: "Undo the last change: of the flight's settings and photos to export, or of the size \
-                distributions on their page",
+        hover: "Undo the last change: of the flight's settings and photos to export, of the points while they \
+                are picked, or of the size distributions on their page",
         shortcut: keys(Modifiers::COMMAND, Key::Z),
         command: |state| {
             if state.page == Page::SizeDistributions {
@@ -18,7 +18,9 @@ actions! {
                 return can.then_some(Command::Undo);
             }
             let open = state.open.as_ref()?;
-            open.history.can_undo().then_some(Command::Undo)
+            let picked = &open.pointer.picked;
+            let can = open.history.can_undo() || picked.is_on && picked.history.can_undo();
+            can.then_some(Command::Undo)
         },
     }
     REDO {
@@ -31,7 +33,9 @@ actions! {
                 return can.then_some(Command::Redo);
             }
             let open = state.open.as_ref()?;
-            open.history.can_redo().then_some(Command::Redo)
+            let picked = &open.pointer.picked;
+            let can = open.history.can_redo() || picked.is_on && picked.history.can_redo();
+            can.then_some(Command::Redo)
         },
     }
     COPY_SCALES {

@@ -42,6 +42,12 @@ actions! {
             wanted.then_some(Command::Ask(Some(Asking::Add)))
         },
     }
+    ADD_LAYER {
+        label: "Add cloud as layer…",
+        hover: "Draw another cloud or mesh beside the flight's surface; scales never depend on it",
+        shortcut: None,
+        command: |state| on_pile(state, Command::Ask(Some(Asking::AddLayer))),
+    }
     GEOREFERENCE {
         label: "Georeference…",
         hover: "Bring a reconstruction in a frame of its own to the world, or to its true scale, by what \
@@ -139,6 +145,7 @@ pub const MENU: &[Option<Action>] = &[
     Some(OPEN_FILE),
     Some(OPEN_FOLDER),
     Some(ADD),
+    Some(ADD_LAYER),
     Some(GEOREFERENCE),
     Some(OPEN_SAMPLE),
     None,

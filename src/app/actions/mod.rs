@@ -6,6 +6,7 @@ macro_rules! actions {
         label: $label:literal,
         hover: $hover:literal,
         shortcut: $shortcut:expr,
+        $(keypad: $keypad:expr,)?
         command: $command:expr,
     })*) => {$(
         #[doc = $hover]
@@ -13,9 +14,12 @@ macro_rules! actions {
             label: $label,
             hover: $hover,
             shortcut: $shortcut,
+            keypad: actions!(@keypad $($keypad)?),
             command: $command,
         };
     )*};
+    (@keypad) => { None };
+    (@keypad $key:expr) => { Some($key) };
 }
 
 pub mod edit;
@@ -24,6 +28,7 @@ pub mod help;
 pub mod photo;
 pub mod review;
 pub mod survey;
+pub mod turning;
 pub mod view;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
@@ -41,8 +46,28 @@ pub struct Action {
     pub hover: &'static str,
     /// Its keys.
     pub shortcut: Option<KeyboardShortcut>,
+    /// Its digit on the numeric keypad, as in CloudCompare and Blender; egui does not tell it from the
+    /// digits over the letters.
+    pub keypad: Option<Key>,
     /// What it sends; `None` where it makes no sense now, and the entry is grey.
     pub command: fn(&State) -> Option<Command>,
+}
+
+impl Action {
+    /// Its keys as text, for menus and tooltips: "T or 7".
+    pub fn keys_in_words(&self, context: &egui::Context) -> Option<String> {
+        let shortcut = self.shortcut.map(|keys| context.format_shortcut(&keys));
+        let keypad = self.keypad.map(|key| key.name().to_owned());
+        match (shortcut, keypad) {
+            (Some(shortcut), Some(keypad)) => Some(format!("{shortcut} or {keypad}")),
+            (shortcut, keypad) => shortcut.or(keypad),
+        }
+    }
+
+    fn all_keys(self) -> impl Iterator<Item = KeyboardShortcut> {
+        let keypad = |key| KeyboardShortcut::new(Modifiers::NONE, key);
+        self.shortcut.into_iter().chain(self.keypad.map(keypad))
+    }
 }
 
 const fn keys(modifiers: Modifiers, key: Key) -> Option<KeyboardShortcut> {
@@ -99,17 +124,12 @@ pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
     let typing = context.egui_wants_keyboard_input();
     // A text field has an undo of its own.
     let editing = context.text_edit_focused();
-    let mut actions: Vec<Action> = all().filter(|action| action.shortcut.is_some()).collect();
+    let keys_of = |action: Action| action.all_keys().map(move |keys| (action, keys));
+    let mut actions: Vec<(Action, KeyboardShortcut)> = all().flat_map(keys_of).collect();
     // Ctrl+Shift+Z before Ctrl+Z: egui takes the first that fits, and more modifiers fit less.
-    actions.sort_by_key(|action| {
-        let shift = action.shortcut.is_some_and(|keys| keys.modifiers.shift);
-        std::cmp::Reverse(shift)
-    });
+    actions.sort_by_key(|(_, keys)| std::cmp::Reverse(keys.modifiers.shift));
     let mut commands = Vec::new();
-    for action in actions {
-        let Some(shortcut) = action.shortcut else {
-            continue;
-        };
+    for (action, shortcut) in actions {
         let undoes = [edit::UNDO.shortcut, edit::REDO.shortcut].contains(&action.shortcut);
         // An open menu is closed by it first.
         let closes = shortcut.logical_key == Key::Escape && egui::Popup::is_any_open(context);
@@ -137,7 +157,7 @@ mod tests {
         for action in all() {
             assert!(names.insert(action.label), "{} twice", action.label);
             assert!(action.hover.len() > 5, "{} says nothing", action.label);
-            if let Some(keys) = action.shortcut {
+            for keys in action.all_keys() {
                 assert!(
                     shortcuts.insert(format!("{keys:?}")),
                     "{} shares its keys",

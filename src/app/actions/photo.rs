@@ -6,6 +6,7 @@ use super::{Action, keys, on_pile, survey, with_photo};
 use crate::command::{Command, ReviewStep, ViewChange};
 use crate::open_flight::Measure;
 use crate::open_flight::survey::SurveyStep;
+use crate::open_flight::survey::picked::PickStep;
 use crate::open_flight::tracing::Trace;
 use crate::photo_view::{Middle, PhotoCommand};
 use crate::scale::ScaleObjectKind;
@@ -96,6 +97,9 @@ actions! {
             if open.objects.tracing.is_some() {
                 return Some(Command::Trace(Trace::GiveUp));
             }
+            if open.pointer.picked.is_on {
+                return on_pile(state, Command::Pick(PickStep::Toggle));
+            }
             if open.pointer.drawn.is_some() {
                 return on_pile(state, Command::Survey(SurveyStep::Leave));
             }
@@ -123,8 +127,10 @@ pub const MENU: &[Option<Action>] = &[
     Some(PREVIOUS),
     None,
     Some(MEASURE),
+    Some(survey::POINTS),
     Some(survey::PROFILE),
     Some(survey::VOLUME),
+    Some(survey::CLIP),
     Some(TINT),
     None,
     Some(TRACE_SPHERE),

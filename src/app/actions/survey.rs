@@ -4,6 +4,8 @@ use egui::{Key, Modifiers};
 
 use super::{Action, keys, on_pile};
 use crate::command::Command;
+use crate::open_flight::survey::clip::ClipStep;
+use crate::open_flight::survey::picked::PickStep;
 use crate::open_flight::survey::{SurveyStep, SurveyTool};
 
 actions! {
@@ -12,6 +14,19 @@ actions! {
         hover: "Draw a line on the surface: its profile, crest, toe and angle of repose",
         shortcut: keys(Modifiers::NONE, Key::L),
         command: |state| on_pile(state, Command::Survey(SurveyStep::Toggle(SurveyTool::Profile))),
+    }
+    POINTS {
+        label: "Pick points",
+        hover: "Click points on the surface: a list with their coordinates to copy and save",
+        shortcut: keys(Modifiers::NONE, Key::K),
+        command: |state| on_pile(state, Command::Pick(PickStep::Toggle)),
+    }
+    CLIP {
+        label: "Clipping box",
+        hover: "Show only what lies in a box: its limits, its turn, or the footprint of the selected photo. \
+                Scales never depend on it",
+        shortcut: keys(Modifiers::NONE, Key::X),
+        command: |state| on_pile(state, Command::Clip(ClipStep::Window)),
     }
     VOLUME {
         label: "Volume inside a polygon",

@@ -2,7 +2,7 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, keys, on_pile, with_photo};
+use super::{Action, keys, on_pile, turning, with_photo};
 use crate::command::{Command, ViewChange};
 use crate::photo_view::{Middle, PhotoCommand};
 use crate::size_distributions::Page;
@@ -46,24 +46,28 @@ actions! {
         label: "From above",
         hover: "Look straight down, north up",
         shortcut: keys(Modifiers::NONE, Key::T),
+        keypad: Key::Num7,
         command: |state| on_pile(state, Command::View(ViewChange::Top)),
     }
     FRONT {
         label: "From the front",
         hover: "Look to the north, level",
         shortcut: keys(Modifiers::NONE, Key::F),
+        keypad: Key::Num1,
         command: |state| on_pile(state, Command::View(ViewChange::Front)),
     }
     SIDE {
         label: "From the side",
         hover: "Look to the west, level",
         shortcut: keys(Modifiers::NONE, Key::S),
+        keypad: Key::Num3,
         command: |state| on_pile(state, Command::View(ViewChange::Side)),
     }
     FIT {
         label: "Show everything",
         hover: "Bring the whole flight into sight, without points that lie far off it",
         shortcut: keys(Modifiers::NONE, Key::Home),
+        keypad: Key::Num0,
         command: |state| on_pile(state, Command::View(ViewChange::Fit)),
     }
     FIT_ALL {
@@ -142,6 +146,13 @@ pub const MENU: &[Option<Action>] = &[
     Some(TOP),
     Some(FRONT),
     Some(SIDE),
+    Some(turning::OPPOSITE),
+    Some(turning::PARALLEL),
+    Some(turning::LEFT),
+    Some(turning::RIGHT),
+    Some(turning::UP),
+    Some(turning::DOWN),
+    None,
     Some(FIT),
     Some(FIT_ALL),
     Some(FIT_SELECTED),

@@ -1,5 +1,7 @@
 //! The small windows.
 
+use super::MeasuredTable;
+
 /// A small window that asks for a place; beside the desktop's own dialog, which not every desktop
 /// has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,6 +32,12 @@ pub enum Asking {
     SaveFigure,
     /// Where the report on them goes.
     SaveReport,
+    /// Which cloud is drawn beside the surface.
+    AddLayer,
+    /// Which cloud a volume is over.
+    VolumeBase,
+    /// Where a table of what was measured goes.
+    SaveMeasured(MeasuredTable),
     /// Which keys do what.
     Keys,
     /// What this program is.

@@ -21,6 +21,28 @@ impl From<PathBuf> for Destination {
     }
 }
 
+/// A table of what is measured on the surface, to be written as CSV.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeasuredTable {
+    /// The picked points.
+    Points,
+    /// The profile that is drawn.
+    Profile,
+    /// The volume that is drawn.
+    Volume,
+}
+
+impl MeasuredTable {
+    /// How its file is called if nobody types another name.
+    pub const fn file_name(self) -> &'static str {
+        match self {
+            Self::Points => "points.csv",
+            Self::Profile => "profile.csv",
+            Self::Volume => "volume.csv",
+        }
+    }
+}
+
 /// A picture of the viewport to be written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureRequest {

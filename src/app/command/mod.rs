@@ -10,7 +10,7 @@ mod view_change;
 use std::path::PathBuf;
 
 pub use asking::Asking;
-pub use destination::{Destination, PictureRequest};
+pub use destination::{Destination, MeasuredTable, PictureRequest};
 pub use dialog::{Answers, Chooses, Dialog};
 pub use review_step::ReviewStep;
 pub use view_change::ViewChange;
@@ -18,12 +18,16 @@ pub use view_change::ViewChange;
 use crate::flight::{DecisionKind, FlightSettings, Limits, Verdict};
 use crate::geometry::Ray;
 use crate::linked::PointFrom;
+use crate::open_flight::beside::BesideStep;
 use crate::open_flight::georeferencing::GeoreferenceForm;
 use crate::open_flight::survey::SurveyStep;
+use crate::open_flight::survey::clip::ClipStep;
+use crate::open_flight::survey::picked::PickStep;
 use crate::open_flight::table::SortBy;
 use crate::open_flight::tracing::Trace;
 use crate::opening::GeoreferenceRequest;
 use crate::photo_view::PhotoCommand;
+use crate::render::ColorBy;
 use crate::scale::CornerName;
 use crate::size_distributions::{DistributionCommand, Page};
 use crate::state::layers::Layers;
@@ -83,6 +87,15 @@ pub enum Command {
     Export(Destination),
     /// Writes a picture of the viewport.
     Picture(PictureRequest),
+    /// Reads a cloud to be drawn beside the surface.
+    AddLayer(PathBuf),
+    /// Reads a second surface for volumes to be over.
+    VolumeBase(PathBuf),
+    /// Writes a table of what was measured.
+    SaveMeasured(MeasuredTable, Destination),
+    /// Where the colours of the surface end, in world units, degrees or pixels per world unit; `None` is
+    /// where they do of themselves.
+    ColorLimits(ColorBy, Option<[f64; 2]>),
     /// Types into the small window for georeferencing.
     FillGeoreference(GeoreferenceForm),
     /// Fits the reconstruction on the screen to the world.
@@ -178,6 +191,12 @@ pub enum Command {
     ToggleMeasure,
     /// A step of drawing a line or polygon on the surface, to measure there.
     Survey(SurveyStep),
+    /// Does something with the clouds beside the surface.
+    Beside(BesideStep),
+    /// Does something with the clipping box.
+    Clip(ClipStep),
+    /// Does something with the picked points.
+    Pick(PickStep),
     /// A step of tracing a scale object on the selected photo.
     Trace(Trace),
     /// Shows the corners enlarged, or does no longer.

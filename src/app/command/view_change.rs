@@ -26,6 +26,15 @@ pub enum ViewChange {
     Front,
     /// To the west.
     Side,
+    /// From the opposite side.
+    Opposite,
+    /// The eye goes around what is in the middle, degrees.
+    Turn {
+        /// To the left.
+        left: f64,
+        /// Up, to straight above at most.
+        up: f64,
+    },
     /// Cameras and surface in sight, without its outliers.
     Fit,
     /// Everything in sight, outliers too.

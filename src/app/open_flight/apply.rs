@@ -4,7 +4,8 @@ use glam::{DVec2, DVec3};
 
 use crate::command::{Command, ViewChange};
 use crate::flight::ScaleObject;
-use crate::geometry::Bounds;
+use crate::geometry::{Bounds, LevelBox, Ray};
+use crate::linked::PointFrom;
 use crate::open_flight::picker::Purpose;
 use crate::open_flight::survey::SurveyStep;
 use crate::open_flight::table::SortBy;
@@ -16,7 +17,9 @@ impl OpenFlight {
     pub(crate) fn apply(&mut self, command: Command) {
         match command {
             Command::Click(ray) => {
-                let purpose = if self.pointer.drawn.is_some() {
+                let purpose = if self.pointer.picked.is_on {
+                    Purpose::Pick
+                } else if self.pointer.drawn.is_some() {
                     Purpose::Draw
                 } else if self.pointer.measure == Measure::Off {
                     Purpose::Select
@@ -24,6 +27,11 @@ impl OpenFlight {
                     Purpose::Measure
                 };
                 self.pick(purpose, ray);
+            }
+            // What a photo shows is not clipped.
+            Command::Hover(from, Some(ray)) if from != PointFrom::Pile => {
+                self.pointer.from = Some(from);
+                self.pick_in(Purpose::Hover, ray, None);
             }
             Command::Hover(from, Some(ray)) => {
                 self.pointer.from = Some(from);
@@ -37,6 +45,9 @@ impl OpenFlight {
                 self.survey(SurveyStep::Finish);
             }
             Command::Survey(step) => self.survey(step),
+            Command::Pick(step) => self.pick_step(step),
+            Command::Clip(step) => self.clip_step(step),
+            Command::Beside(step) => self.beside_step(step),
             Command::DoubleClick(ray) => self.pick(Purpose::Center, ray),
             Command::HoverPhoto(photo) => self.table.hovered = photo,
             Command::Sort(column) => {
@@ -65,6 +76,7 @@ impl OpenFlight {
             Command::View(change) => self.change_view(change),
             Command::ToggleMeasure => {
                 self.pointer.drawn = None;
+                self.pointer.picked.is_on = false;
                 self.pointer.measure = if self.pointer.measure == Measure::Off {
                     Measure::First
                 } else {
@@ -86,10 +98,14 @@ impl OpenFlight {
         Some(Command::Set(settings))
     }
 
-    fn pick(&mut self, purpose: Purpose, ray: crate::geometry::Ray) {
+    fn pick(&mut self, purpose: Purpose, ray: Ray) {
+        self.pick_in(purpose, ray, self.clip.clipping());
+    }
+
+    fn pick_in(&mut self, purpose: Purpose, ray: Ray, clip: Option<LevelBox>) {
         let flight = self.flight().clone();
         if let Some(picker) = &mut self.pointer.picker {
-            picker.ask(purpose, ray, &flight);
+            picker.ask(purpose, ray, clip, &flight);
         }
     }
 
@@ -161,6 +177,10 @@ impl OpenFlight {
                     ViewChange::Top => orbit.top(),
                     ViewChange::Front => orbit.front(),
                     ViewChange::Side => orbit.side(),
+                    ViewChange::Opposite => orbit.opposite(),
+                    ViewChange::Turn { left, up } => {
+                        orbit.turn(left.to_radians(), up.to_radians());
+                    }
                     ViewChange::Fit => self.fit(),
                     ViewChange::FitAll => self.fit_box(self.extent.surface),
                     ViewChange::FitSelected => self.fit_selected(),

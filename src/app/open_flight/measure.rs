@@ -17,11 +17,11 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// The points that it has.
-    pub fn points(self) -> Vec<DVec3> {
+    /// The points that it has; the mouse is the second until that is clicked.
+    pub fn points(self, hover: Option<DVec3>) -> Vec<DVec3> {
         match self {
             Self::Off | Self::First => Vec::new(),
-            Self::Second(first) => vec![first],
+            Self::Second(first) => std::iter::once(first).chain(hover).collect(),
             Self::Both(first, second) => vec![first, second],
         }
     }

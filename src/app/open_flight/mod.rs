@@ -1,6 +1,8 @@
 //! The flight that is open: what was read, what was computed, what the engineer has done with it.
 
 pub mod apply;
+pub mod beside;
+pub mod colors;
 pub mod files;
 mod flight_line;
 pub mod georeferencing;
@@ -31,14 +33,18 @@ use crate::photo_view::PhotoView;
 use crate::render::{LargePhoto, Orbit, PhotoImage, PhotoZoom, SurfaceBuffers, drawn_ground};
 use crate::scale::{FieldFacts, PhotoScale, ViewFacts};
 use crate::state::history::History;
+use beside::Beside;
+use colors::Colors;
 use files::FlightFiles;
 use georeferencing::Georeferencing;
 use loading::Loaded;
 pub use measure::Measure;
 use picker::Picker;
 use reviewing::Reviewing;
-use survey::Drawn;
+use survey::clip::Clip;
+use survey::picked::PickedPoints;
 use survey::surveyor::Surveyor;
+use survey::{Drawn, SecondBase};
 use table::{PhotosTable, Row};
 use tint::PhotoTint;
 use tracing::TracedObjects;
@@ -119,6 +125,10 @@ pub struct Pointer {
     pub measure: Measure,
     /// What is drawn on the surface to measure there.
     pub drawn: Option<Drawn>,
+    /// A second surface that volumes can be over.
+    pub second: Option<SecondBase>,
+    /// Points that were picked on the surface.
+    pub picked: PickedPoints,
     /// Its rays.
     pub picker: Option<Picker>,
     /// Measures what is drawn.
@@ -159,6 +169,12 @@ pub struct OpenFlight {
     pub tint: Option<PhotoTint>,
     /// How many such fields were asked for.
     pub tints: u64,
+    /// Clouds beside the surface.
+    pub beside: Vec<Beside>,
+    /// The clipping box.
+    pub clip: Clip,
+    /// What the surface's colours mean.
+    pub colors: Colors,
     /// What the viewport draws.
     pub geometry: Option<Arc<SurfaceBuffers>>,
     /// The photos in the order of the flight line.
@@ -220,6 +236,9 @@ impl OpenFlight {
             corners: None,
             tint: None,
             tints: 0,
+            beside: Vec::new(),
+            clip: Clip::around(&bulk_bounds),
+            colors: Colors::default(),
             geometry: None,
             line: Arc::default(),
             extent: Extent {

@@ -9,9 +9,9 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::fault::Fault;
 use crate::flight::Flight;
-use crate::geometry::Ray;
+use crate::geometry::{LevelBox, Ray};
 use crate::linked::LinkedPoint;
-use crate::surface::{Hit, Surface};
+use crate::surface::{Caster, Hit, Surface};
 
 /// What a ray is cast for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +26,8 @@ pub enum Purpose {
     Measure,
     /// A point of what is drawn on the surface.
     Draw,
+    /// A point for the list.
+    Pick,
 }
 
 /// A ray and what it met.
@@ -43,8 +45,8 @@ pub struct Picked {
     answered: usize,
 }
 
-/// A ray to cast, in this flight.
-type Asked = (Purpose, Ray, Arc<Flight>);
+/// A ray to cast, in this flight, and the box that it meets the surface in.
+type Asked = (Purpose, Ray, Option<LevelBox>, Arc<Flight>);
 
 /// Casts rays for the window.
 #[derive(Debug)]
@@ -74,14 +76,14 @@ impl Picker {
                     let mut batch = vec![first];
                     batch.extend(asked.try_iter());
                     let mut answered = 0;
-                    for (place, (purpose, ray, flight)) in batch.iter().enumerate() {
+                    for (place, (purpose, ray, clip, flight)) in batch.iter().enumerate() {
                         let (purpose, ray) = (*purpose, *ray);
                         answered += 1;
                         let newer = batch[place + 1..].iter().any(|(p, ..)| *p == purpose);
                         if purpose == Purpose::Hover && newer {
                             continue;
                         }
-                        let hit = caster.cast(&ray);
+                        let hit = cast(&mut caster, &ray, clip.as_ref());
                         let hovered = hit.filter(|_| purpose == Purpose::Hover);
                         let linked = hovered
                             .map(|hit| LinkedPoint::new(hit.point, flight, &surface, &mut caster));
@@ -107,10 +109,16 @@ impl Picker {
         })
     }
 
-    /// Asks what a ray meets.
-    pub fn ask(&mut self, purpose: Purpose, ray: Ray, flight: &Arc<Flight>) {
+    /// Asks what a ray meets, in the clipping box where there is one.
+    pub fn ask(
+        &mut self,
+        purpose: Purpose,
+        ray: Ray,
+        clip: Option<LevelBox>,
+        flight: &Arc<Flight>,
+    ) {
         // The thread is gone only where the surface has no caster.
-        if self.ask.send((purpose, ray, flight.clone())).is_ok() {
+        if self.ask.send((purpose, ray, clip, flight.clone())).is_ok() {
             self.waiting += 1;
         }
     }
@@ -129,6 +137,21 @@ impl Picker {
     }
 }
 
+/// What a ray meets first in the clipping box.
+fn cast(caster: &mut Caster<'_>, ray: &Ray, clip: Option<&LevelBox>) -> Option<Hit> {
+    let Some(clip) = clip else {
+        return caster.cast(ray);
+    };
+    let [from, to] = clip.inside(ray)?;
+    let inside = Ray {
+        origin: ray.at(from),
+        ..*ray
+    };
+    let hit = caster.cast(&inside)?;
+    let t = from + hit.t;
+    (t <= to).then_some(Hit { t, ..hit })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -138,6 +161,41 @@ mod tests {
     use crate::surface::Cloud;
     use crate::units::LengthUnit;
     use glam::{DVec2, DVec3};
+
+    /// Two level squares, at z = 2 and 0: from above the upper is met; where the box ends under it, the
+    /// lower; where the box has neither, nothing.
+    #[test]
+    fn what_is_clipped_is_not_met() {
+        let square = |z: f64| {
+            [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(|(x, y)| DVec3::new(x, y, z))
+        };
+        let surface = Surface::new(Cloud {
+            points: [square(2.0), square(0.0)].concat(),
+            triangles: vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
+            ..Cloud::default()
+        });
+        let surface = surface.unwrap();
+        let mut caster = surface.caster().unwrap();
+        let ray = Ray {
+            origin: DVec3::new(1.5, 2.5, 10.0),
+            direction: DVec3::NEG_Z,
+        };
+        let mut met = |low: f64, high: f64| {
+            let clip = LevelBox {
+                pivot: DVec2::ZERO,
+                turn: 0.0,
+                low: DVec3::new(0.0, 0.0, low),
+                high: DVec3::new(4.0, 4.0, high),
+            };
+            let hit = cast(&mut caster, &ray, Some(&clip))?;
+            assert!((hit.t - (10.0 - hit.point.z)).abs() < 1e-12);
+            Some(hit.point.z)
+        };
+        assert_eq!(met(-1.0, 3.0), Some(2.0));
+        assert_eq!(met(-1.0, 1.0), Some(0.0));
+        assert_eq!(met(0.5, 1.0), None);
+        assert_eq!(cast(&mut caster, &ray, None).unwrap().point.z, 2.0);
+    }
 
     /// A level square at z = 2 under a camera 10 above its middle, 1000 px a unit at 1: the answers are
     /// known.
@@ -190,7 +248,7 @@ mod tests {
             direction: DVec3::NEG_Z,
         };
         for purpose in [Purpose::Select, Purpose::Hover] {
-            picker.ask(purpose, ray, &flight);
+            picker.ask(purpose, ray, None, &flight);
             assert!(picker.is_waiting());
             let picked = loop {
                 if let Some(picked) = picker.answers().pop() {

@@ -22,6 +22,14 @@ impl OpenFlight {
                     self.draw_at(point);
                 }
             }
+            Purpose::Pick => {
+                // A double click picks its place once.
+                let last = self.pointer.picked.list().last();
+                let again = last.is_some_and(|last| Some(last.point) == point);
+                if let Some(point) = point.filter(|_| !again) {
+                    self.pointer.picked.pick(point);
+                }
+            }
             Purpose::Center => {
                 if let Some(point) = point {
                     self.looking.through = None;

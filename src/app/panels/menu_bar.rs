@@ -37,8 +37,8 @@ pub fn menu_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 fn entry_of(state: &State, action: Action, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let command = (action.command)(state);
     let mut button = egui::Button::new(action.label);
-    if let Some(shortcut) = action.shortcut {
-        button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+    if let Some(keys) = action.keys_in_words(ui.ctx()) {
+        button = button.shortcut_text(keys);
     }
     let entry = ui.add_enabled(command.is_some(), button);
     if entry.on_hover_text(action.hover).clicked() {

@@ -51,18 +51,18 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
                     ui.label("Distance: click the first point");
                     ui.separator();
                 }
-                Measure::Second(_) => {
-                    ui.label("Distance: click the second point");
-                    ui.separator();
-                }
-                Measure::Both(a, b) => {
-                    let way = b - a;
-                    ui.label(format!(
-                        "Distance {:.3} {unit} (level {:.3}, up {:.3})",
-                        way.length(),
-                        way.truncate().length(),
-                        way.z
-                    ));
+                measure @ (Measure::Second(_) | Measure::Both(..)) => {
+                    if let [a, b] = measure.points(open.pointer.hover)[..] {
+                        let way = b - a;
+                        ui.label(format!(
+                            "Distance {:.3} {unit} (level {:.3}, up {:.3})",
+                            way.length(),
+                            way.truncate().length(),
+                            way.z
+                        ));
+                    } else {
+                        ui.label("Distance: click the second point");
+                    }
                     ui.separator();
                 }
             }

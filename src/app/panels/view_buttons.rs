@@ -18,7 +18,7 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         button.widget_info(|| {
             egui::WidgetInfo::selected(egui::Role::Button, command.is_some(), on, action.label)
         });
-        let keys = action.shortcut.map(|keys| ui.ctx().format_shortcut(&keys));
+        let keys = action.keys_in_words(ui.ctx());
         let hover = match keys {
             Some(keys) => format!("{} ({keys})", action.hover),
             None => action.hover.to_owned(),
@@ -48,11 +48,15 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         open.pointer.measure != Measure::Off,
         ui,
     );
+    let points = open.pointer.picked.is_on;
+    button(actions::survey::POINTS, "Points", points, ui);
     let drawn = open.pointer.drawn.as_ref().map(|drawn| drawn.tool);
     let profile = drawn == Some(SurveyTool::Profile);
     button(actions::survey::PROFILE, "Profile", profile, ui);
     let volume = drawn == Some(SurveyTool::Volume);
     button(actions::survey::VOLUME, "Volume", volume, ui);
+    let clip = open.clip.is_on || open.clip.is_open;
+    button(actions::survey::CLIP, "Clip", clip, ui);
 }
 
 /// How much of the photo lies over a look through its camera.

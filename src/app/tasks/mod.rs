@@ -1,10 +1,13 @@
 //! Long work of the window, one file a job: what is handed to it, what it does, and what its result
 //! does to the state.
 
+pub mod beside;
 pub mod computing;
 pub mod dialog;
 pub mod exporting;
 pub mod georeferencing;
+pub mod histogram;
+pub mod measured;
 pub mod opening;
 pub mod photos;
 pub mod picture;

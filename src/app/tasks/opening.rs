@@ -203,6 +203,15 @@ impl OpenFlight {
         self.files.read.extend(&before.files.read);
         self.files.bundled = before.files.bundled;
         self.pointer.measure = before.pointer.measure;
+        std::mem::swap(&mut self.pointer.picked, &mut before.pointer.picked);
+        self.colors.keep_limits(&before.colors);
+        self.clip = before.clip;
+        std::mem::swap(&mut self.beside, &mut before.beside);
+        for beside in &mut self.beside {
+            // The local frame may be another one.
+            beside.uploaded = None;
+        }
+        self.pointer.second = before.pointer.second.take();
         self.objects.tracing = before.objects.tracing.take();
         self.objects.sizes = before.objects.sizes;
         std::mem::swap(&mut self.georeferencing, &mut before.georeferencing);

@@ -47,7 +47,8 @@ impl Viewport {
         }
         (show.flight_line, show.axes, show.scale_bar) = (false, false, false);
         (show.photo_blend, show.project_photo, show.ground) = (0.0, false, None);
-        (show.hovered, show.measured) = (None, Vec::new());
+        (show.clip, show.beside) = (None, false);
+        (show.hovered, show.measured, show.picked) = (None, Vec::new(), Vec::new());
         let outcomes = std::sync::Arc::as_ptr(open.review.outcomes()).addr();
         let surface = std::sync::Arc::as_ptr(geometry).addr();
         let of = Some((open.number, photo, surface, outcomes, show.clone()));

@@ -33,3 +33,11 @@ pub(super) fn show_drawn(open: &OpenFlight, show: &mut Show) {
         }
     }
 }
+
+/// Adds the points that were picked.
+pub(super) fn show_picked(open: &OpenFlight, show: &mut Show) {
+    let picked = open.pointer.picked.list().iter();
+    show.picked = picked
+        .map(|picked| (picked.name.clone(), picked.point))
+        .collect();
+}

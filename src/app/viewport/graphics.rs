@@ -11,7 +11,9 @@ use crate::flight::Outcome;
 use crate::open_flight::OpenFlight;
 use crate::opening_preview::OpeningPreview;
 use crate::panels::line_color;
-use crate::render::{Gpu, PhotoGeometry, PhotoLook, Renderer, Show, SurfaceBuffers, View};
+use crate::render::{
+    BesideCloud, Gpu, PhotoGeometry, PhotoLook, Renderer, Show, SurfaceBuffers, View,
+};
 use crate::scale::ViewFacts;
 
 /// How long the view must rest before everything is drawn.
@@ -54,6 +56,8 @@ pub(super) struct Uploaded {
     pub(super) images: Vec<bool>,
     pub(super) projected: Option<(usize, u64)>,
     pub(super) looks: Vec<PhotoLook>,
+    /// The clouds beside the surface.
+    pub(super) beside: Vec<Arc<BesideCloud>>,
 }
 
 impl Graphics {
@@ -75,6 +79,16 @@ impl Graphics {
             uploaded.geometry.clone_from(&open.geometry);
             self.renderer.set_surface(open.geometry.as_deref());
             (self.drawn, self.moved) = (None, None);
+        }
+        let beside = open.shown_beside();
+        let both = || uploaded.beside.iter().zip(&beside);
+        let same_beside =
+            uploaded.beside.len() == beside.len() && both().all(|(a, b)| Arc::ptr_eq(a, b));
+        if !same_beside {
+            let clouds = beside.iter().map(|cloud| BesideCloud::clone(cloud));
+            self.renderer.set_beside(clouds);
+            uploaded.beside = beside;
+            self.drawn = None;
         }
         let same_photos = same(uploaded.outcomes.as_ref(), Some(open.review.outcomes()))
             && same(uploaded.views.as_ref(), open.review.views());

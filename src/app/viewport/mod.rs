@@ -22,7 +22,7 @@ use crate::panels::linked;
 use crate::render::{Background, Gpu, Renderer, Show, View};
 use crate::state::State;
 use crate::tasks::Task;
-use drawn::show_drawn;
+use drawn::{show_drawn, show_picked};
 use graphics::{Graphics, Uploaded};
 use mouse::mouse;
 use words::{legend, write};
@@ -160,8 +160,12 @@ impl Viewport {
         show.unit = open.flight().parts().unit;
         show.lengths_in = open.flight().parts().unit_of_lengths();
         show.scale_unit = Some(state.preferences.unit());
+        show.color_limits = open.colors.limits(show.color_by);
+        show.clip = open.clip.clipping();
+        show.beside = true;
         if !corner_rays {
-            show.measured = open.pointer.measure.points();
+            show.measured = open.pointer.measure.points(open.pointer.hover);
+            show_picked(open, &mut show);
             show_drawn(open, &mut show);
         }
         show.selected = if corner_rays { None } else { open.selected };
@@ -253,7 +257,11 @@ fn show(state: &State, open: &OpenFlight, ui: &egui::Ui, pixels_per_point: f64) 
     show.unit = open.flight().parts().unit;
     show.lengths_in = open.flight().parts().unit_of_lengths();
     show.scale_unit = Some(state.preferences.unit());
-    show.measured = open.pointer.measure.points();
+    show.measured = open.pointer.measure.points(open.pointer.hover);
+    show_picked(open, &mut show);
+    show.color_limits = open.colors.limits(show.color_by);
+    show.clip = open.clip.clipping();
+    show.beside = true;
     show_drawn(open, &mut show);
     show.selected = open.selected;
     show.hovered = open.table.hovered;

@@ -6,13 +6,13 @@ use clap::Args;
 
 use super::places::places;
 use crate::cli::Answer;
-use crate::cli::flight_arguments::{FlightArguments, open_cloud};
+use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::outputs::NamedAnswerArguments;
 use crate::exports::{self, MeasuredUnit, VolumeReport};
 use crate::fault::Fault;
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::Opened;
+use crate::opening::{StatedWorld, second_surface};
 use crate::survey::{self, Base, Polygon};
 
 #[derive(Debug, Args)]
@@ -23,7 +23,7 @@ pub(in crate::cli) struct VolumeArguments {
     #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
     polygon: String,
     /// What the volume is over: an elevation; "rim", the plane that is nearest to the surface along the
-    /// polygon's sides; or the file of another surface in the same world.
+    /// polygon's sides; or the file of another surface, which is brought to the flight's coordinate system.
     #[arg(
         long,
         value_name = "HEIGHT|rim|FILE",
@@ -68,18 +68,23 @@ pub(in crate::cli) fn volume(
     outputs.read(&opened.read)?;
     let other = match base_file {
         Some(path) => {
-            let other = open_cloud(path, progress)?;
+            let parts = opened.flight.parts();
+            let world = StatedWorld {
+                crs: opened.crs.as_deref(),
+                unit: parts.unit_known.then_some(parts.unit),
+                around: parts.surface.bounds(),
+            };
+            let other = second_surface(path, &world, progress).map_err(|e| e.to_string())?;
             outputs.read(&other.read)?;
-            warnings.extend(in_one_world(&opened, &other)?);
-            warnings.extend(other.all_warnings());
-            Some(other)
+            warnings.extend(other.warnings);
+            Some(other.surface)
         }
         None => None,
     };
     let parts = opened.flight.parts();
     let base = match (&arguments.base, &other) {
         (BaseArgument::Height(height), _) => Base::Height(*height),
-        (_, Some(other)) => Base::Surface(&other.flight.parts().surface),
+        (_, Some(other)) => Base::Surface(other),
         _ => Base::Rim,
     };
     progress.stage("measuring");
@@ -107,32 +112,4 @@ pub(in crate::cli) fn volume(
     )?;
     warnings.extend(opened.all_warnings());
     Ok(Answer::new(text, warnings))
-}
-
-/// Refuses two surfaces that say of themselves that they lie in different worlds; warns where one of them
-/// does not say.
-fn in_one_world(one: &Opened, other: &Opened) -> Result<Option<String>, String> {
-    let path = other.origin.file().to_owned();
-    let refused = |what: String, remedy: &str| {
-        Err(FileError::new(&path, Fault::new(what, remedy)).to_string())
-    };
-    let parts = [&one.flight, &other.flight].map(|flight| flight.parts());
-    if parts.iter().all(|parts| parts.unit_known) && parts[0].unit != parts[1].unit {
-        let what = format!(
-            "it is in {}, the flight in {}",
-            parts[1].unit, parts[0].unit
-        );
-        return refused(what, "give both in the same unit");
-    }
-    match (&one.crs, &other.crs) {
-        (Some(one), Some(other)) if one != other => {
-            let what = format!("its coordinate system is {other}, the flight's {one}");
-            refused(what, "give both in the same coordinate system")
-        }
-        (Some(_), None) | (None, Some(_)) => Ok(Some(format!(
-            "{}: taken to be in the flight's coordinate system: only one of the two states its own",
-            path.display()
-        ))),
-        _ => Ok(None),
-    }
 }

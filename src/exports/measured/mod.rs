@@ -1,9 +1,11 @@
 //! What was measured on a surface, going out: tables for people, CSV, JSON. Lengths are in the world's
 //! unit, which is always said.
 
+mod points;
 mod profile;
 mod volume;
 
+pub use points::{PointsReport, points_csv, points_table};
 pub use profile::{ProfileReport, profile_csv, profile_json, profile_table};
 pub use volume::{VolumeReport, volume_csv, volume_json, volume_table, volume_warning};
 

@@ -1,6 +1,7 @@
-//! The distance tool on the picture: its points, the line between them, the distance.
+//! The distance tool on the picture: its points, the line between them, the distance with its level and
+//! upright parts.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::labels::Label;
 use super::photo_lines::ink;
@@ -12,11 +13,19 @@ use crate::view::View;
 
 /// Of the points and the line.
 const COLOR: [u8; 3] = [255, 60, 180];
+/// From here on a part is drawn: nearly along the line it would only thicken that, in pixels.
+const LEAST_PART: f64 = 6.0;
 
 /// Where the points are seen, in pixels.
 fn places(view: &View, show: &Show, size: DVec2) -> Vec<DVec2> {
     let points = show.measured.iter();
     points.filter_map(|&p| view.project(p, size)).collect()
+}
+
+/// Where the level and the upright part meet: beside the lower point, under or over the other.
+fn elbow([a, b]: [DVec3; 2]) -> DVec3 {
+    let (low, high) = if a.z <= b.z { (a, b) } else { (b, a) };
+    high.with_z(low.z)
 }
 
 /// The line and its points, in pixels of the picture; over everything, wherever the points are.
@@ -26,6 +35,17 @@ pub(super) fn strokes(view: &View, show: &Show, size: DVec2) -> Vec<Stroke> {
     let rim = ink(show).map(|channel| 255 - channel);
     let pens = [Pen::new(rim, 4.5).pale(0.55), Pen::new(COLOR, 2.0)];
     let mut strokes = Vec::new();
+    if let ([from, to], [a, b]) = (&places[..], &show.measured[..])
+        && let Some(corner) = view.project(elbow([*a, *b]), size)
+    {
+        let least = LEAST_PART * show.pixels_per_point;
+        for end in [*from, *to] {
+            if end.distance(corner) > least {
+                strokes.push(Pen::new(rim, 3.0).pale(0.4).line(at(end), at(corner)));
+                strokes.push(Pen::new(COLOR, 1.2).pale(0.8).line(at(end), at(corner)));
+            }
+        }
+    }
     for pen in pens {
         if let [from, to] = places[..] {
             strokes.push(pen.line(at(from), at(to)));
@@ -41,21 +61,38 @@ pub(super) fn strokes(view: &View, show: &Show, size: DVec2) -> Vec<Stroke> {
     strokes
 }
 
-/// The distance, over the middle of the line.
-pub(super) fn label(view: &View, show: &Show, size: DVec2) -> Option<Label> {
+/// The distance over the middle of the line, and under it how far that is level and up.
+pub(super) fn labels(view: &View, show: &Show, size: DVec2) -> Vec<Label> {
     let [a, b] = show.measured[..] else {
-        return None;
+        return Vec::new();
     };
     let [from, to] = places(view, show, size)[..] else {
-        return None;
+        return Vec::new();
     };
-    let distance = significant_digits(a.distance(b), 4);
-    Some(Label {
-        at: (from + to) * 0.5 - DVec2::Y * 8.0 * show.pixels_per_point,
-        text: format!("{distance} {}", show.lengths_in),
-        anchor: Anchor::BottomMiddle,
+    let unit = show.lengths_in;
+    let way = b - a;
+    let [distance, level, up] =
+        [way.length(), way.truncate().length(), way.z].map(|length| significant_digits(length, 4));
+    let middle = (from + to) * 0.5;
+    let away = DVec2::Y * 8.0 * show.pixels_per_point;
+    let label = |at, text, anchor| Label {
+        at,
+        text,
+        anchor,
         color: COLOR,
-    })
+    };
+    vec![
+        label(
+            middle - away,
+            format!("{distance} {unit}"),
+            Anchor::BottomMiddle,
+        ),
+        label(
+            middle + away,
+            format!("level {level}, up {up}"),
+            Anchor::TopMiddle,
+        ),
+    ]
 }
 
 #[cfg(test)]
@@ -81,18 +118,29 @@ mod tests {
             measured: vec![origin, origin + DVec3::new(3.0, 4.0, 12.0)],
             ..Show::default()
         };
-        let told = label(&view, &show, size).unwrap();
+        let [told, parts] = &labels(&view, &show, size)[..] else {
+            panic!("two labels");
+        };
         assert_eq!(told.text, "13.00 m");
+        // 3 and 4 give 5.
+        assert_eq!(parts.text, "level 5.000, up 12.00");
+        assert!(parts.at.distance(DVec2::new(315.0, 228.0)) < 1e-6);
         // Ten pixels a unit: 1.5 and 2 units off the middle, and 8 pixels up.
         assert!(
             told.at.distance(DVec2::new(315.0, 212.0)) < 1e-6,
             "{}",
             told.at
         );
-        assert_eq!(strokes(&view, &show, size).len(), 6);
+        // The line and two dots with their rims, and the level part; the upright one is along the view.
+        assert_eq!(strokes(&view, &show, size).len(), 8);
+        let down = Show {
+            measured: show.measured.iter().rev().copied().collect(),
+            ..Show::default()
+        };
+        assert_eq!(labels(&view, &down, size)[1].text, "level 5.000, up -12.00");
         view.projection = Projection::Perspective { fov_y: 0.8 };
         view.eye = origin + DVec3::Z * 6.0;
-        assert_eq!(label(&view, &show, size), None);
+        assert_eq!(labels(&view, &show, size), []);
         assert_eq!(strokes(&view, &show, size).len(), 2);
     }
 }

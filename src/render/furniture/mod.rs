@@ -1,5 +1,6 @@
 //! What helps to read a picture and is no data: the ground's grid, the axes, the scale bar.
 
+mod clip_box;
 pub(crate) mod crowd;
 mod drawn;
 pub(crate) mod flight_line;
@@ -7,6 +8,7 @@ pub(crate) mod image_edge;
 pub(crate) mod labels;
 mod measured;
 pub(crate) mod photo_lines;
+mod picked;
 pub(crate) mod words;
 
 use glam::{DVec2, DVec3};
@@ -88,8 +90,10 @@ pub(crate) fn on_screen(view: &View, show: &Show, size: DVec2) -> Vec<Stroke> {
             strokes.extend(parts.map(|(from, to)| pen.line(at(from), at(to))));
         }
     }
+    strokes.extend(clip_box::strokes(view, show, size));
     strokes.extend(drawn::strokes(view, show, size));
     strokes.extend(measured::strokes(view, show, size));
+    strokes.extend(picked::strokes(view, show, size));
     strokes
 }
 
@@ -117,7 +121,8 @@ pub(crate) fn labels(view: &View, show: &Show, size: DVec2) -> Vec<Label> {
             color: ink(show),
         });
     }
-    labels.extend(measured::label(view, show, size));
+    labels.extend(measured::labels(view, show, size));
+    labels.extend(picked::labels(view, show, size));
     labels
 }
 

@@ -77,6 +77,10 @@ mod tests {
             member.unwrap().offset as usize
         };
         use frame::FrameUniform;
+        assert_eq!(
+            offset("box_turn"),
+            std::mem::offset_of!(FrameUniform, box_turn)
+        );
         assert_eq!(offset("range"), std::mem::offset_of!(FrameUniform, range));
         assert_eq!(
             offset("color_by"),

@@ -61,6 +61,14 @@ impl CloudBuffers {
     }
 }
 
+impl CloudBuffers {
+    /// Around all of it.
+    pub(crate) fn extent(&self) -> Option<Extent> {
+        let extents = self.tiles.iter().map(|tile| tile.extent);
+        extents.reduce(Extent::with)
+    }
+}
+
 #[derive(Debug)]
 pub(crate) struct Points {
     pipeline: RenderPipeline,
@@ -131,14 +139,29 @@ impl Points {
     }
 
     pub(crate) fn extent(&self) -> Option<Extent> {
-        if let Some(streamed) = &self.streamed {
-            return streamed.extent();
+        match &self.streamed {
+            Some(streamed) => streamed.extent(),
+            None => self.cloud.extent(),
         }
-        self.cloud
-            .tiles
-            .iter()
-            .map(|tile| tile.extent)
-            .reduce(Extent::with)
+    }
+
+    /// Draws another cloud than its own: what is in sight of it, about `most` points of all.
+    pub(crate) fn draw_cloud(
+        &self,
+        cloud: &CloudBuffers,
+        pass: &mut RenderPass<'_>,
+        most: Option<usize>,
+        in_sight: &impl Fn(&Extent) -> bool,
+    ) {
+        let all: u64 = cloud.tiles.iter().map(|tile| u64::from(tile.count)).sum();
+        let share = most.map_or(1.0, |most| (most as f64 / all.max(1) as f64).min(1.0));
+        pass.set_pipeline(&self.pipeline);
+        for tile in cloud.tiles.iter().filter(|tile| in_sight(&tile.extent)) {
+            // `as` saturates.
+            let count = (f64::from(tile.count) * share).ceil() as u32;
+            pass.set_vertex_buffer(0, tile.points.slice(..));
+            pass.draw(0..4, 0..count);
+        }
     }
 
     /// Which share of the points in sight is drawn when at most `most` are.

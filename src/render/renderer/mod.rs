@@ -1,6 +1,7 @@
 //! What is drawn, frame by frame or into a picture; how is in `passes`.
 
 mod aside;
+mod beside;
 mod part;
 mod pass;
 mod passes;
@@ -37,6 +38,7 @@ use crate::show::{ColorBy, PhotoLook, Show};
 use crate::surface_buffers::SurfaceBuffers;
 use crate::view::View;
 pub use aside::Aside;
+pub use beside::BesideCloud;
 pub(crate) use part::Most;
 use part::{Part, pair};
 use targets::Targets;
@@ -56,6 +58,7 @@ pub struct Renderer {
     pub(crate) frame: LocalFrame,
     pub(crate) points: Points,
     pub(crate) mesh: Mesh,
+    pub(crate) beside: beside::Beside,
     pub(crate) photos: Vec<PhotoGeometry>,
     pub(crate) looks: Vec<PhotoLook>,
     /// The photos in the order of the flight line.
@@ -111,6 +114,7 @@ impl Renderer {
             }),
             points: Points::new(device, &[&frame, &surface_photo.layout]),
             mesh: Mesh::new(device, &frame, &surface_photo.layout),
+            beside: beside::Beside::default(),
             photos: Vec::new(),
             looks: Vec::new(),
             line: Vec::new(),
@@ -144,6 +148,7 @@ impl Renderer {
     pub fn clear(&mut self) {
         self.set_cloud(None);
         self.set_mesh(None);
+        self.set_beside([]);
         self.set_photos(Vec::new());
         self.bulk = None;
         self.images.clear();
@@ -374,6 +379,8 @@ impl Renderer {
     pub(crate) fn range(&self, show: &Show) -> Option<[f64; 2]> {
         let range = match show.color_by {
             ColorBy::Rgb => return None,
+            ColorBy::Scale if show.selected.is_none() => return None,
+            _ if let Some(limits) = show.color_limits => limits,
             ColorBy::Elevation if self.mesh.is_empty() => self.points.cloud.elevation,
             ColorBy::Elevation => self.mesh.mesh.elevation,
             ColorBy::Slope => [0.0, 90.0],
@@ -404,6 +411,7 @@ impl Renderer {
         let extent = [self.points.extent(), self.mesh.extent(), photos]
             .into_iter()
             .flatten()
+            .chain(self.beside.extents())
             .reduce(Extent::with);
         match extent {
             Some(Extent { min, max }) => {

@@ -11,6 +11,7 @@ use super::targets::{SurfaceTarget, Targets};
 use crate::furniture;
 use crate::furniture::crowd::{LEAST_PLANE, presence};
 use crate::furniture::photo_lines::{camera_depth, fill_colors, ink, photo_lines};
+use crate::geometry::LocalFrame;
 use crate::picture::VIRIDIS_STOPS;
 use crate::primitives::fill::{CellCorner, Pyramid};
 use crate::primitives::frame::FrameUniform;
@@ -106,6 +107,7 @@ impl Renderer {
             Background::Transparent => [0.0; 4],
         };
         let image_from_local = selected.map_or(DMat4::ZERO, PhotoGeometry::image_from_local);
+        let [box_middle, box_half, box_turn] = clip_box(show, &self.frame);
         let main = FrameUniform {
             clip_from_local: sight.to_cols_array_2d(),
             local_from_clip: narrow_matrix(clip_from_local.inverse()).to_cols_array_2d(),
@@ -118,6 +120,9 @@ impl Renderer {
                 narrow(eye).extend(1.0)
             }
             .to_array(),
+            box_middle,
+            box_half,
+            box_turn,
             size: targets.sampled_size().map(|edge| edge as f32),
             depths: if view.is_parallel() {
                 [narrow_number(far), narrow_number(far - near)]
@@ -150,6 +155,7 @@ impl Renderer {
         };
         let queue = &self.gpu.queue;
         self.main_frame.write(queue, &main);
+        self.write_beside(&main, show);
         let pixels = part.crop()
             * DMat4::from_cols(
                 DVec4::new(2.0 / whole.x, 0.0, 0.0, 0.0),
@@ -177,7 +183,16 @@ impl Renderer {
         });
         let stands_for_mesh = too_many || (show.mesh && self.points.is_streamed());
         let shapes = [show.mesh && !too_many, show.cloud || stands_for_mesh];
-        let version = (self.version, if project { self.photo_version } else { 0 });
+        // 0 is for nothing of that kind.
+        let version = [
+            self.version,
+            if project { self.photo_version } else { 0 },
+            if show.beside {
+                self.beside.version + 1
+            } else {
+                0
+            },
+        ];
         let sight = Sight::new(&main, show.color_by, version, shapes, (share, present.key));
         let shown = targets.surface.sight.as_ref();
         let mut complete = shown == Some(&sight);
@@ -190,7 +205,7 @@ impl Renderer {
                 Most::Portion(most) if stands_in => most,
                 _ => usize::MAX,
             };
-            self.draw_surface(&mut encoder, &mut targets.next, most, &in_sight);
+            self.draw_surface(&mut encoder, &mut targets.next, most, show, &in_sight);
             complete = targets.next.is_whole();
             if complete {
                 std::mem::swap(&mut targets.surface, &mut targets.next);
@@ -273,6 +288,7 @@ impl Renderer {
         encoder: &mut CommandEncoder,
         target: &mut SurfaceTarget,
         most: usize,
+        show: &Show,
         in_sight: &impl Fn(&Extent) -> bool,
     ) {
         let begins = target.drawn == [0; 2];
@@ -297,6 +313,9 @@ impl Renderer {
             let (drawn, next) = self.points.draw(&mut pass, share, from, left, in_sight);
             target.next[1] = next;
             target.drawn[1] += drawn;
+        }
+        if show.beside && target.is_whole() {
+            self.draw_beside(&mut pass, show.max_points, in_sight);
         }
     }
 
@@ -369,7 +388,8 @@ impl Renderer {
         } = *overlay;
         let device = &self.gpu.device;
         let cameras = camera_depth(&self.photos, overlay.radius) * show.frustum_size;
-        let wanted = (show.clone(), looked_through);
+        // What is measured follows the mouse; the photos' lines do not depend on it.
+        let wanted = (show.without_marks(), looked_through);
         if self.strokes_for.as_ref() != Some(&wanted) {
             let strokes = photo_lines(
                 &self.photos,
@@ -453,6 +473,19 @@ impl Renderer {
         pass.set_bind_group(0, &self.screen_frame.group, &[]);
         self.lines.draw_over(&mut pass, &on_screen);
     }
+}
+
+/// The clipping box for the shaders: its middle, half of its edges, its turn and whether it is on.
+fn clip_box(show: &Show, frame: &LocalFrame) -> [[f32; 4]; 3] {
+    show.clip.map_or([[0.0; 4]; 3], |clip| {
+        let (sin, cos) = clip.turn.sin_cos();
+        [
+            narrow(frame.local_from_world(clip.middle())).extend(0.0),
+            narrow(clip.half()).extend(0.0),
+            narrow(DVec3::new(cos, sin, 1.0)).extend(0.0),
+        ]
+        .map(|row| row.to_array())
+    })
 }
 
 /// What [`Renderer::draw_overlay`] goes by.

@@ -8,8 +8,8 @@ use crate::show::ColorBy;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Sight {
     frame: FrameUniform,
-    /// Counts what was uploaded: surfaces, and photos to lay on them.
-    version: (u64, u64),
+    /// Counts what was uploaded: surfaces, photos to lay on them, clouds beside them.
+    version: [u64; 3],
     pub(crate) mesh: bool,
     pub(crate) cloud: bool,
     /// How much of the cloud is drawn.
@@ -24,7 +24,7 @@ impl Sight {
     pub(crate) fn new(
         frame: &FrameUniform,
         by: ColorBy,
-        version: (u64, u64),
+        version: [u64; 3],
         shapes: [bool; 2],
         (share, nodes): (f64, u64),
     ) -> Self {

@@ -144,6 +144,11 @@ impl PhotoGeometry {
             .copied()
     }
 
+    /// Pixels per world unit of the photo all over its footprint.
+    pub fn scales(&self) -> impl Iterator<Item = f64> {
+        self.depths.iter().map(|&depth| self.scale_at(depth))
+    }
+
     /// Pixels per world unit of the photo at a depth along its axis.
     pub(crate) fn scale_at(&self, depth: f64) -> f64 {
         (self.camera.fx * self.camera.fy).sqrt() / depth

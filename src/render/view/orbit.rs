@@ -153,6 +153,19 @@ impl Orbit {
         (self.yaw, self.pitch) = (TAU * 0.75, 0.0);
     }
 
+    /// Looks from the opposite side: from below where it was from above, from the north where it was from
+    /// the south.
+    pub fn opposite(&mut self) {
+        self.yaw = (self.yaw + TAU * 0.5).rem_euclid(TAU);
+        self.pitch = -self.pitch;
+    }
+
+    /// The eye goes so far around the target to the left and up, radians; not beyond straight above.
+    pub fn turn(&mut self, left: f64, up: f64) {
+        self.yaw = (self.yaw + left).rem_euclid(TAU);
+        self.pitch = (self.pitch + up).clamp(-FRAC_PI_2, FRAC_PI_2);
+    }
+
     /// The view from here.
     pub fn view(&self) -> View {
         let axes = self.axes();
@@ -266,6 +279,20 @@ mod tests {
             assert!(right(seen(&orbit, DVec3::X)) && up(seen(&orbit, DVec3::Z)));
             orbit.side();
             assert!(right(seen(&orbit, DVec3::Y)) && up(seen(&orbit, DVec3::Z)));
+            // From the west, the north, and from below with north up.
+            orbit.opposite();
+            assert!(right(seen(&orbit, DVec3::NEG_Y)) && up(seen(&orbit, DVec3::Z)));
+            orbit.front();
+            orbit.opposite();
+            assert!(right(seen(&orbit, DVec3::NEG_X)) && up(seen(&orbit, DVec3::Z)));
+            orbit.top();
+            orbit.opposite();
+            assert!(right(seen(&orbit, DVec3::NEG_X)) && up(seen(&orbit, DVec3::Y)));
+            // A quarter to the left of the south is the west.
+            orbit.front();
+            orbit.turn(TAU / 4.0, 0.1);
+            assert!(orbit.view().eye.x < orbit.target.x && orbit.view().eye.z > orbit.target.z);
+            assert!(seen(&orbit, DVec3::NEG_Y).x > 1.0);
             // Beyond straight down the world does not turn over.
             orbit.orbit(DVec2::new(10.0, 1e6));
             assert_eq!(orbit.pitch, FRAC_PI_2);

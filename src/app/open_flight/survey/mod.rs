@@ -1,11 +1,18 @@
 //! The tools that draw a line or a polygon on the surface and say what is measured there.
 
+pub mod clip;
+pub mod picked;
 pub mod surveyor;
+mod tables;
+
+use std::path::PathBuf;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
 use super::OpenFlight;
 use crate::exports::MeasuredUnit;
+use crate::surface::Surface;
 use crate::survey::{Profile, Volume};
 use surveyor::{Measured, Request};
 
@@ -26,6 +33,17 @@ pub enum BaseChoice {
     Rim,
     /// An elevation, world units.
     Height(f64),
+    /// The second surface that was read for it.
+    Second,
+}
+
+/// A second surface that volumes can be over, in the flight's world.
+#[derive(Debug, Clone)]
+pub struct SecondBase {
+    /// Its file.
+    pub path: PathBuf,
+    /// Its triangles.
+    pub surface: Arc<Surface>,
 }
 
 /// Something to do with them.
@@ -121,6 +139,7 @@ impl OpenFlight {
                 let base = before.map_or_else(BaseChoice::default, |drawn| drawn.base);
                 *drawn = (!same).then(|| Drawn::new(tool, base));
                 self.pointer.measure = super::Measure::Off;
+                self.pointer.picked.is_on = false;
             }
             (SurveyStep::Leave, _) => *drawn = None,
             (SurveyStep::RemoveLast, Some(drawn)) => {
@@ -132,6 +151,7 @@ impl OpenFlight {
             }
             // What is no number would never be the same as before.
             (SurveyStep::Base(BaseChoice::Height(height)), _) if !height.is_finite() => {}
+            (SurveyStep::Base(BaseChoice::Second), _) if self.pointer.second.is_none() => {}
             (SurveyStep::Base(base), Some(drawn)) => drawn.base = base,
             (_, None) => {}
         }
@@ -174,10 +194,30 @@ impl OpenFlight {
             tool: drawn.tool,
             places,
             base: drawn.base,
+            second: self
+                .pointer
+                .second
+                .as_ref()
+                .map(|base| base.surface.clone()),
         };
         if let Some(surveyor) = &mut self.pointer.surveyor {
             surveyor.ask(request);
         }
+    }
+
+    /// Takes a second surface for volumes to be over, and the one that is drawn is.
+    pub(crate) fn take_second_base(&mut self, second: SecondBase) {
+        self.pointer.second = Some(second);
+        if let Some(drawn) = &mut self.pointer.drawn {
+            drawn.base = BaseChoice::Second;
+        }
+        self.survey_anew();
+    }
+
+    /// How the second surface is called that the volume is over.
+    pub fn base_name(&self, drawn: &Drawn) -> Option<String> {
+        let second = self.pointer.second.as_ref()?;
+        (drawn.base == BaseChoice::Second).then(|| second.path.display().to_string())
     }
 
     /// Measures again, on another surface.

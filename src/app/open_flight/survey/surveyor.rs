@@ -12,7 +12,7 @@ use crate::surface::Surface;
 use crate::survey::{Base, Polygon, Profile, SurveyError, Volume, volume};
 
 /// What to measure.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Request {
     /// A line or a polygon.
     pub tool: SurveyTool,
@@ -20,6 +20,8 @@ pub struct Request {
     pub places: Vec<DVec2>,
     /// What the volume is over.
     pub base: BaseChoice,
+    /// The second surface that it may be over.
+    pub second: Option<Arc<Surface>>,
 }
 
 /// What was measured.
@@ -111,9 +113,10 @@ fn measure(surface: &Surface, request: &Request) -> Result<Measured, SurveyError
         SurveyTool::Profile => Profile::along(surface, &request.places).map(Measured::Profile),
         SurveyTool::Volume => {
             let polygon = Polygon::new(&request.places)?;
-            let base = match request.base {
-                BaseChoice::Rim => Base::Rim,
-                BaseChoice::Height(height) => Base::Height(height),
+            let base = match (request.base, &request.second) {
+                (BaseChoice::Height(height), _) => Base::Height(height),
+                (BaseChoice::Second, Some(second)) => Base::Surface(second),
+                (BaseChoice::Rim | BaseChoice::Second, _) => Base::Rim,
             };
             volume(surface, &polygon, base).map(Measured::Volume)
         }

@@ -4,11 +4,12 @@
 mod choose;
 mod georeference;
 mod residuals;
+mod save_measured;
 
 use std::path::PathBuf;
 
 use crate::actions;
-use crate::command::{Answers, Asking, Command, Dialog, PictureRequest};
+use crate::command::{Answers, Asking, Command, Dialog, MeasuredTable, PictureRequest};
 use crate::names;
 use crate::open_flight::OpenFlight;
 use crate::panels::path_field::path_field;
@@ -19,6 +20,7 @@ use crate::state::{HeldBack, State};
 use crate::typed::typed;
 use choose::choose;
 use georeference::{georeference, save_georeferenced};
+use save_measured::{add_layer, save_measured, volume_base};
 
 /// Draws the small window that is open, and the question before losing changes.
 pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) {
@@ -37,6 +39,11 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::AddEffort => "Add times of steps",
             Asking::SaveFigure => "Save figure",
             Asking::SaveReport => "Save report",
+            Asking::AddLayer => "Add cloud as layer",
+            Asking::VolumeBase => "Base of the volume",
+            Asking::SaveMeasured(MeasuredTable::Points) => "Save points",
+            Asking::SaveMeasured(MeasuredTable::Profile) => "Save profile",
+            Asking::SaveMeasured(MeasuredTable::Volume) => "Save volume",
             Asking::Keys => "Keys and mouse",
             Asking::About => "About fragscale",
         };
@@ -64,6 +71,9 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::AddEffort => add_effort(state, ui, commands),
                     Asking::SaveFigure => save_figure(state, ui, commands),
                     Asking::SaveReport => save_report(state, ui, commands),
+                    Asking::AddLayer => add_layer(state, ui, commands),
+                    Asking::VolumeBase => volume_base(state, ui, commands),
+                    Asking::SaveMeasured(table) => save_measured(table, state, ui, commands),
                     Asking::Keys => keys(ui),
                     Asking::About => about(ui),
                 }
@@ -363,9 +373,9 @@ fn list_of_keys(ui: &mut egui::Ui) {
                 ui.end_row();
             }
             for action in actions::all() {
-                if let Some(shortcut) = action.shortcut {
+                if let Some(keys) = action.keys_in_words(ui.ctx()) {
                     ui.label(action.label.trim_end_matches('…'));
-                    ui.label(ui.ctx().format_shortcut(&shortcut));
+                    ui.label(keys);
                     ui.end_row();
                 }
             }

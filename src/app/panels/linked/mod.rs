@@ -154,7 +154,9 @@ pub(crate) fn copy(
     response: &egui::Response,
     commands: &mut Vec<Command>,
 ) {
-    let Some(linked) = &open.pointer.linked else {
+    // While points are picked, their table is copied.
+    let picks = open.pointer.picked.is_on && !open.pointer.picked.list().is_empty();
+    let Some(linked) = open.pointer.linked.as_ref().filter(|_| !picks) else {
         return;
     };
     let asks = |input: &egui::InputState| {

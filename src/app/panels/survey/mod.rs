@@ -1,9 +1,11 @@
 //! What the tools that draw on the surface have measured: numbers and a plot, beside the viewport.
 
+mod clip;
+mod picked;
 mod profile;
 mod volume;
 
-use crate::command::Command;
+use crate::command::{Asking, Command, MeasuredTable};
 use crate::open_flight::survey::{SurveyStep, SurveyTool};
 use crate::state::State;
 
@@ -17,6 +19,8 @@ pub fn survey_panel(
     let Some(open) = &state.open else {
         return;
     };
+    clip::clip_panel(open, context, place, commands);
+    picked::picked_panel(open, context, place, commands);
     let Some(drawn) = &open.pointer.drawn else {
         return;
     };
@@ -79,5 +83,13 @@ fn copy(
     let button = ui.add_enabled(text.is_some(), egui::Button::new(name));
     if button.on_hover_text(hover).clicked() {
         commands.extend(text.map(Command::Copy));
+    }
+}
+
+/// A button that asks where a table goes.
+fn save(table: MeasuredTable, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let hover = "The numbers as a CSV file, as the command writes it";
+    if ui.button("Save CSV…").on_hover_text(hover).clicked() {
+        commands.push(Command::Ask(Some(Asking::SaveMeasured(table))));
     }
 }

@@ -2,8 +2,8 @@
 
 use egui_plot::{AxisHints, Line, Plot, PlotPoints, Points};
 
-use super::{copy, numbers};
-use crate::command::Command;
+use super::{copy, numbers, save};
+use crate::command::{Command, MeasuredTable};
 use crate::exports::{ProfileReport, profile_csv, profile_table};
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::Drawn;
@@ -98,5 +98,6 @@ pub(super) fn profile(
         if button.on_hover_text(hover).clicked() {
             commands.extend(profile_csv(&report).ok().map(Command::Copy));
         }
+        save(MeasuredTable::Profile, ui, commands);
     });
 }

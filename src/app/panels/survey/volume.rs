@@ -1,8 +1,9 @@
 //! Area and volume inside the polygon.
 
-use super::{copy, numbers};
-use crate::command::Command;
+use super::{copy, numbers, save};
+use crate::command::{Asking, Command, MeasuredTable};
 use crate::exports::{VolumeReport, volume_table};
+use crate::names;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::{BaseChoice, Drawn, SurveyStep};
@@ -22,10 +23,11 @@ pub(super) fn volume(
         if rim.on_hover_text(hover).clicked() {
             commands.push(Command::Survey(SurveyStep::Base(BaseChoice::Rim)));
         }
-        let level = ui.radio(!is_rim, "a level");
+        let is_second = drawn.base == BaseChoice::Second;
+        let level = ui.radio(!is_rim && !is_second, "a level");
         let mut height = match drawn.base {
             BaseChoice::Height(height) => height,
-            BaseChoice::Rim => open.ground(),
+            BaseChoice::Rim | BaseChoice::Second => open.ground(),
         };
         let before = height;
         let field = egui::DragValue::new(&mut height)
@@ -42,6 +44,25 @@ pub(super) fn volume(
             commands.push(Command::Survey(SurveyStep::Base(BaseChoice::Height(
                 height,
             ))));
+        }
+    });
+    ui.horizontal(|ui| {
+        let is_second = drawn.base == BaseChoice::Second;
+        let has = open.pointer.second.is_some();
+        let radio = ui.add_enabled(has, egui::RadioButton::new(is_second, "a second cloud"));
+        let hover = "The surface of another cloud or mesh, such as the floor before: fill is what came, cut \
+                     what went";
+        if radio.on_hover_text(hover).clicked() {
+            commands.push(Command::Survey(SurveyStep::Base(BaseChoice::Second)));
+        }
+        let choose = ui.button("Choose…");
+        let hover = "Read a cloud or mesh; it is brought to the flight's coordinate system";
+        if choose.on_hover_text(hover).clicked() {
+            commands.push(Command::Ask(Some(Asking::VolumeBase)));
+        }
+        if let Some(second) = &open.pointer.second {
+            let name = second.path.file_name().unwrap_or_default();
+            names::name(ui, &name.to_string_lossy());
         }
     });
     let Some(volume) = drawn.volume() else {
@@ -62,11 +83,12 @@ pub(super) fn volume(
         rows.push(("Not covered, not counted", format!("{holes} %")));
     }
     numbers("volume numbers", &rows, ui);
+    let base = open.base_name(drawn);
     let report = VolumeReport {
         flight: &parts.name,
         unit,
         volume,
-        base: None,
+        base: base.as_deref(),
     };
     let mut text = volume_table(&report);
     text += "\nx,y\n";
@@ -76,5 +98,6 @@ pub(super) fn volume(
     ui.horizontal(|ui| {
         let hover = "The numbers as text, with the polygon's corners";
         copy("Copy numbers", hover, Some(text), ui, commands);
+        save(MeasuredTable::Volume, ui, commands);
     });
 }

@@ -1,5 +1,8 @@
 //! What the viewport shows, in one small panel.
 
+mod beside;
+mod color_range;
+
 use super::field::combo_box;
 use crate::command::Command;
 use crate::render::{ColorBy, Scope};
@@ -45,6 +48,7 @@ pub fn layers_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         .response
         .on_hover_text("What the colours of surface and points mean")
         .widget_info(|| combo_box("Colour by", color_name(now.color_by)));
+    color_range::color_range(state, ui, commands);
     ui.checkbox(&mut next.eye_dome, "Relief shading")
         .on_hover_text("Eye-dome lighting: edges in depth are darkened");
     ui.checkbox(&mut next.project_photo, "Photo on the surface")
@@ -107,7 +111,7 @@ pub fn layers_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
             .on_hover_text("A bar of known length");
     });
     ui.checkbox(&mut next.orthographic, "Parallel view")
-        .on_hover_text("Without perspective: the scale bar is true everywhere");
+        .on_hover_text("Without perspective: the scale bar is true everywhere (5)");
     ui.horizontal(|ui| {
         if ui
             .button("Corner-ray figure")
@@ -124,6 +128,8 @@ pub fn layers_panel(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
             next = Layers::default();
         }
     });
+    ui.separator();
+    beside::beside(state, ui, commands);
     if next != now {
         commands.push(Command::Layers(next));
     }

@@ -1,0 +1,86 @@
+//! Reading and uploading clouds that are drawn beside the flight's surface.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::work::Task;
+use crate::jobs::Progress;
+use crate::opening::{StatedWorld, second_surface};
+use crate::render::BesideCloud;
+use crate::state::{Severity, State};
+
+impl Task {
+    /// Reading a cloud to be drawn beside the surface.
+    pub const BESIDE: Self = Self::new("Cloud beside").of_flight();
+    /// Uploading one.
+    pub const UPLOAD_BESIDE: Self = Self::new("Preparing a cloud").of_flight().to_the_end();
+}
+
+impl State {
+    /// Reads a cloud to be drawn beside the surface, in the flight's world.
+    pub(crate) fn add_beside(&mut self, path: PathBuf) {
+        self.asking = None;
+        if self.is_busy(Task::BESIDE) {
+            return;
+        }
+        let Some(open) = &self.open else {
+            return;
+        };
+        let (flight, crs) = (open.flight().clone(), open.files.crs.clone());
+        let work = move |progress: &Progress| {
+            let parts = flight.parts();
+            let world = StatedWorld {
+                crs: crs.as_deref(),
+                unit: parts.unit_known.then_some(parts.unit),
+                around: parts.surface.bounds(),
+            };
+            second_surface(&path, &world, progress).map(|second| (path, second))
+        };
+        self.start(Task::BESIDE, work, |state, read| match read {
+            Ok((path, second)) => {
+                for warning in &second.warnings {
+                    state.say(Severity::Warning, warning);
+                }
+                if let Some(open) = &mut state.open {
+                    open.files.read.extend(&second.read);
+                    open.add_beside(path, second.surface);
+                }
+            }
+            Err(error) => state.say(Severity::Error, &error.to_string()),
+        });
+    }
+
+    /// Uploads the next cloud beside the surface that is not, or has another colour by now.
+    pub(crate) fn upload_beside(&mut self) {
+        let (Some(open), Some(gpu)) = (&self.open, self.gpu.clone()) else {
+            return;
+        };
+        let is_as_wanted = |uploaded: Option<Option<[u8; 3]>>, wanted| uploaded == Some(wanted);
+        let next = open.beside.iter().find(|beside| {
+            let uploaded = beside.uploaded.as_ref().map(|(color, _)| *color);
+            beside.is_shown && !is_as_wanted(uploaded, beside.color)
+        });
+        let Some(next) = next.filter(|_| !self.work.is_running(Task::UPLOAD_BESIDE)) else {
+            return;
+        };
+        let (number, color, frame) = (next.number, next.color, open.extent.frame);
+        let surface = next.surface.clone();
+        let work = move |progress: &Progress| {
+            progress.stage("uploading the cloud");
+            let vertices = surface.vertices();
+            let one = color.map(|color| vec![color; vertices.len()]);
+            let colors = one.as_deref().unwrap_or(surface.colors());
+            BesideCloud::new(&gpu, &frame, vertices, colors)
+        };
+        self.start(Task::UPLOAD_BESIDE, work, move |state, cloud| {
+            let open = state.open.as_mut();
+            let beside = open.and_then(|open| {
+                let mut all = open.beside.iter_mut();
+                all.find(|beside| beside.number == number)
+            });
+            if let Some(beside) = beside {
+                beside.uploaded = Some((color, Arc::new(cloud)));
+            }
+        });
+    }
+}
