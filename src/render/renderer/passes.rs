@@ -81,6 +81,7 @@ impl Renderer {
             texel,
             nearest: near.max(radius * 1e-6),
             in_sight: &|extent| is_in_sight(&sight_of_whole, extent),
+            clip: show.clip,
         };
         let present = self.points.look(&looking, show.max_points, most);
         let share = self.points.share(show.max_points, &in_sight);

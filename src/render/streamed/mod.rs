@@ -21,7 +21,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::device::gpu::Gpu;
-use crate::geometry::{Bounds, LocalFrame};
+use crate::geometry::{Bounds, LevelBox, LocalFrame};
 use crate::primitives::tile::Tile;
 use crate::renderer::Most;
 use crate::scene::{Extent, elevation, narrow};
@@ -86,9 +86,22 @@ pub(crate) struct Looking<'a> {
     pub(crate) nearest: f64,
     /// Whether a box may be in the picture.
     pub(crate) in_sight: &'a dyn Fn(&Extent) -> bool,
+    /// What is outside of it is cut away.
+    pub(crate) clip: Option<LevelBox>,
 }
 
 impl Looking<'_> {
+    /// Whether anything of a node may be seen.
+    fn sees(&self, node: &LevelNode, source: &StreamSource) -> bool {
+        let is_cut_away = self.clip.is_some_and(|clip| {
+            let middle = clip.from_world(node.bounds.center());
+            let off = middle.distance(middle.clamp(clip.low, clip.high));
+            // A box is within the ball around it, however the clipping box is turned.
+            off > node.bounds.size().length() * 0.5
+        });
+        !is_cut_away && (self.in_sight)(&source.extent(&node.bounds))
+    }
+
     /// How far points of a node appear to be apart at its nearest place, in texels.
     fn apart(&self, node: &LevelNode, frame: &LocalFrame) -> f64 {
         if self.parallel {
@@ -177,7 +190,7 @@ impl Streamed {
         let source = self.source.clone();
         let budget = POINTS[usize::from(self.gpu.software)].min(most);
         let chosen = source.levels.choose(budget, FINE, |node| {
-            let seen = (looking.in_sight)(&source.extent(&node.bounds));
+            let seen = looking.sees(node, &source);
             seen.then(|| looking.apart(node, &source.frame))
         });
         let mut present = Present::default();
@@ -227,7 +240,7 @@ impl Streamed {
             let resident = self.residents.get(node);
             resident.is_some_and(|resident| resident.wanted == self.pictures)
         };
-        let in_sight = |node: &usize| (looking.in_sight)(&self.source.extent(&nodes[*node].bounds));
+        let in_sight = |node: &usize| looking.sees(&nodes[*node], &self.source);
         let lacks = chosen
             .iter()
             .filter(|node| is_drawn(node))

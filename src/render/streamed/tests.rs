@@ -57,6 +57,7 @@ fn looking(in_sight: &dyn Fn(&Extent) -> bool) -> Looking<'_> {
         texel: 1e-9,
         nearest: 0.1,
         in_sight,
+        clip: None,
     }
 }
 
@@ -171,6 +172,20 @@ fn nodes_come_and_go() {
     assert!(west.tiles.len() < nodes);
     // Still there.
     assert_eq!(streamed.bytes, bytes);
+    // What is cut away is not brought either, however the box is turned.
+    let clip = LevelBox {
+        turn: 0.7,
+        ..LevelBox::of(&Bounds {
+            min: DVec3::new(-9.0, -9.0, 0.0),
+            max: DVec3::new(-8.0, -8.0, 4.0),
+        })
+    };
+    let clipped = Looking {
+        clip: Some(clip),
+        ..looking(&everywhere)
+    };
+    let corner = streamed.present(&clipped, usize::MAX, Most::All);
+    assert!(!corner.tiles.is_empty() && corner.tiles.len() < west.tiles.len());
     streamed.memory = bytes / 10;
     let west_again = streamed.present(&looking(&of_the_west), usize::MAX, Most::All);
     assert_eq!(west_again.key, west.key);
