@@ -79,6 +79,8 @@ impl Renderer {
             ahead: axis,
             parallel: view.is_parallel(),
             texel,
+            // Half a pixel.
+            fine: 0.5 * samples,
             nearest: near.max(radius * 1e-6),
             in_sight: &|extent| is_in_sight(&sight_of_whole, extent),
             clip: show.clip,

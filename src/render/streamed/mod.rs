@@ -1,7 +1,7 @@
 //! A cloud of any size on the graphics card: of its levels of detail (`surface::Levels`) those nodes that
 //! the picture is made of, brought there as they are wanted.
 //!
-//! Each picture chooses its nodes anew, from the top, the coarsest first, until they are as fine as a texel
+//! Each picture chooses its nodes anew, from the top, the coarsest first, until they are as fine as half a pixel
 //! or the budget of points is spent ([`POINTS`], or less while the view moves). What of them is on the
 //! card is drawn; the others are wished for, and [`loader`], a thread, makes their vertices and uploads
 //! them. A frame takes what has arrived, at most 16 nodes of at most 0.7 MB, so it never waits,
@@ -33,9 +33,6 @@ pub const POINTS: [usize; 2] = [6_000_000, 1_000_000];
 
 /// Most bytes of points on the card: 25 million.
 pub const MEMORY: u64 = 512 << 20;
-
-/// Points this near to each other, in texels, need no others between them.
-const FINE: f64 = 1.0;
 
 /// A cloud made ready to be streamed: its levels, and the frame that its pictures are made in. Clones share
 /// the levels.
@@ -82,6 +79,8 @@ pub(crate) struct Looking<'a> {
     pub(crate) parallel: bool,
     /// World size of a texel at distance 1, in parallel projection everywhere.
     pub(crate) texel: f64,
+    /// Points this near to each other, in texels, need no others between them.
+    pub(crate) fine: f64,
     /// Nearer than this along the axis nothing is seen.
     pub(crate) nearest: f64,
     /// Whether a box may be in the picture.
@@ -189,7 +188,7 @@ impl Streamed {
         }
         let source = self.source.clone();
         let budget = POINTS[usize::from(self.gpu.software)].min(most);
-        let chosen = source.levels.choose(budget, FINE, |node| {
+        let chosen = source.levels.choose(budget, looking.fine, |node| {
             let seen = looking.sees(node, &source);
             seen.then(|| looking.apart(node, &source.frame))
         });

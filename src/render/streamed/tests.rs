@@ -55,6 +55,7 @@ fn looking(in_sight: &dyn Fn(&Extent) -> bool) -> Looking<'_> {
         parallel: false,
         // So fine that every point is wanted.
         texel: 1e-9,
+        fine: 1.0,
         nearest: 0.1,
         in_sight,
         clip: None,
