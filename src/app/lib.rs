@@ -314,7 +314,11 @@ fn overlays(state: &State, ui: &mut egui::Ui, place: egui::Rect, commands: &mut 
         ui.set_max_width(220.0);
         egui::CollapsingHeader::new("Layers")
             .default_open(false)
-            .show(ui, |ui| panels::layers_panel(state, ui, commands));
+            .show(ui, |ui| {
+                // On a small screen it is higher than the viewport.
+                egui::ScrollArea::vertical()
+                    .show(ui, |ui| panels::layers_panel(state, ui, commands));
+            });
     });
 }
 
