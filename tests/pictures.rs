@@ -88,7 +88,16 @@ impl Scene {
         for (camera, pose) in &cameras {
             let scale = PhotoScale::compute(camera, pose, image, &mut ground, &mut caster).unwrap();
             views.push(
-                ViewFacts::compute(camera, pose, image, &scale, &mut ground, &mut caster).unwrap(),
+                ViewFacts::compute(
+                    camera,
+                    pose,
+                    image,
+                    &scale,
+                    &mut ground,
+                    &mut caster,
+                    &Progress::default(),
+                )
+                .unwrap(),
             );
             scales.push(scale);
         }

@@ -65,31 +65,23 @@ impl Flight {
             photos,
             ..
         } = &self.parts;
-        progress.stage("making the surface ready for many rays");
-        let rays = photos.len() * ViewFacts::RAYS;
-        surface.triangulate_for(rays).map_err(unusable)?;
-        progress.advance(0, photos.len() as u64)?;
-        let mut caster = surface.caster_for(rays).map_err(unusable)?;
-        let mut finder = GroundFinder::new(*ground, surface);
-        let mut views = Vec::with_capacity(photos.len());
         progress.stage("draping footprints");
-        for (photo, outcome) in photos.iter().zip(outcomes) {
-            progress.advance(views.len() as u64, photos.len() as u64)?;
+        let done = AtomicU64::new(0);
+        let all = photos.par_iter().zip(outcomes);
+        let tools = || (surface.caster(), GroundFinder::new(*ground, surface));
+        all.map_init(tools, |(caster, finder), (photo, outcome)| {
             let Some(scale) = outcome.scale() else {
-                views.push(None);
-                continue;
+                return Ok(None);
             };
-            let view = ViewFacts::compute(
-                self.camera(photo),
-                &photo.pose,
-                *image,
-                scale,
-                &mut finder,
-                &mut caster,
-            );
-            views.push(Some(view.map_err(unusable)?));
-        }
-        Ok(views)
+            let caster = caster.as_mut().map_err(|error| unusable(error.clone()))?;
+            let camera = self.camera(photo);
+            let pose = &photo.pose;
+            let view = ViewFacts::compute(camera, pose, *image, scale, finder, caster, progress);
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            progress.advance(done, photos.len() as u64)?;
+            view.map(Some).map_err(no_field)
+        })
+        .collect()
     }
 
     /// What the scale field of each photo says, in their order; `None` where `outcomes`, those of

@@ -32,6 +32,17 @@ impl Bounds {
         self.min * 0.5 + self.max * 0.5
     }
 
+    /// Its eight corners.
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|corner| {
+            let side = |axis: usize| match corner >> axis & 1 {
+                0 => self.min[axis],
+                _ => self.max[axis],
+            };
+            DVec3::new(side(0), side(1), side(2))
+        })
+    }
+
     /// Whether a point is inside, or on its sides.
     pub fn contains(&self, point: DVec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()

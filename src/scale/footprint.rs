@@ -5,10 +5,12 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{CornerOutcome, GroundFinder, ImageKind, PhotoScale};
+use super::field::meet_rays;
+use super::{CornerOutcome, FieldError, GroundFinder, ImageKind, PhotoScale};
 use crate::camera::{Camera, Pose};
 use crate::geometry::Ray;
-use crate::surface::{Caster, SurfaceError};
+use crate::jobs::Progress;
+use crate::surface::Caster;
 
 /// How closely a footprint is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,11 +66,12 @@ pub struct Footprint {
 }
 
 impl Footprint {
-    /// Casts the rays of a footprint. Rays that miss the surface are met with the ground, as those
+    /// Meets the rays of a footprint with the surface of a caster; the corners' longest triangle edges
+    /// beside it, in the contract's order. Rays that miss the surface are met with the ground, as those
     /// of the corners are.
     ///
     /// # Errors
-    /// Where no ground can be found although it is needed.
+    /// Where no ground can be found although it is needed, or the work was cancelled.
     pub fn compute(
         camera: &Camera,
         pose: &Pose,
@@ -76,58 +79,46 @@ impl Footprint {
         detail: FootprintDetail,
         ground: &mut GroundFinder<'_>,
         caster: &mut Caster<'_>,
-    ) -> Result<Self, SurfaceError> {
-        let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
-        let mut meet = |pixel: DVec2| -> Result<FootprintPoint, SurfaceError> {
-            let outcome = match super::world_direction(camera, pose, image, pixel) {
-                Err(not_invertible) => CornerOutcome::NoRay(not_invertible),
-                Ok(direction) => {
+        progress: &Progress,
+    ) -> Result<(Self, [Option<f64>; 4]), FieldError> {
+        let pixels = pixels(camera, detail);
+        let directions: Vec<_> = (pixels.iter())
+            .map(|&pixel| image.direction(camera, pixel))
+            .collect();
+        let rays: Vec<Option<DVec3>> = directions
+            .iter()
+            .map(|direction| Some(direction.as_ref().ok()?.normalize()))
+            .collect();
+        let hits = meet_rays(&rays, pose, caster, progress)?;
+        let mut points = Vec::with_capacity(pixels.len());
+        for ((&pixel, hit), direction) in pixels.iter().zip(&hits).zip(directions) {
+            let outcome = match (direction, hit) {
+                (Err(not_invertible), _) => CornerOutcome::NoRay(not_invertible),
+                (Ok(_), Some(hit)) => CornerOutcome::OnSurface {
+                    distance: hit.distance,
+                    point: hit.point,
+                },
+                (Ok(direction), None) => {
                     let ray = Ray {
                         origin: pose.center,
-                        direction,
+                        direction: (pose.rotation * direction).normalize(),
                     };
-                    match caster.cast(&ray) {
-                        Some(hit) => CornerOutcome::OnSurface {
-                            distance: hit.t,
-                            point: hit.point,
-                        },
-                        None => super::meet_ground(&ray, ground.under(camera, pose)?),
-                    }
+                    super::meet_ground(&ray, ground.under(camera, pose)?)
                 }
             };
-            Ok(FootprintPoint { pixel, outcome })
-        };
-        let corners = [
-            DVec2::ZERO,
-            DVec2::new(size.x, 0.0),
-            size,
-            DVec2::new(0.0, size.y),
-        ];
-        let per_edge = detail.per_edge.max(1);
-        let mut outline = Vec::with_capacity(4 * per_edge as usize);
-        for edge in 0..4 {
-            let (from, to) = (corners[edge], corners[(edge + 1) % 4]);
-            for step in 0..per_edge {
-                outline.push(meet(from.lerp(to, f64::from(step) / f64::from(per_edge)))?);
-            }
+            points.push(FootprintPoint { pixel, outcome });
         }
-        let (columns, rows) = (detail.columns.max(1), detail.rows.max(1));
-        let mut grid = Vec::with_capacity((columns as usize + 1) * (rows as usize + 1));
-        for row in 0..=rows {
-            for column in 0..=columns {
-                let share = DVec2::new(
-                    f64::from(column) / f64::from(columns),
-                    f64::from(row) / f64::from(rows),
-                );
-                grid.push(meet(size * share)?);
-            }
-        }
-        Ok(Self {
-            outline,
+        let per_edge = detail.per_edge.max(1) as usize;
+        let edges =
+            std::array::from_fn(|corner| Some(hits.get(corner * per_edge)?.as_ref()?.longest_edge));
+        let grid = points.split_off((4 * per_edge).min(points.len()));
+        let footprint = Self {
+            outline: points,
             grid,
-            columns,
-            rows,
-        })
+            columns: detail.columns.max(1),
+            rows: detail.rows.max(1),
+        };
+        Ok((footprint, edges))
     }
 
     /// How far the surface within the footprint is from the plane of the corner points: the root mean
@@ -154,6 +145,33 @@ impl Footprint {
         }
         (count > 0).then(|| (sum / f64::from(count)).sqrt())
     }
+}
+
+/// The pixels of a footprint: its outline, and its grid.
+fn pixels(camera: &Camera, detail: FootprintDetail) -> Vec<DVec2> {
+    let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+    let corners = [
+        DVec2::ZERO,
+        DVec2::new(size.x, 0.0),
+        size,
+        DVec2::new(0.0, size.y),
+    ];
+    let per_edge = detail.per_edge.max(1);
+    let outline = (0..4).flat_map(|edge| {
+        let (from, to) = (corners[edge], corners[(edge + 1) % 4]);
+        (0..per_edge).map(move |step| from.lerp(to, f64::from(step) / f64::from(per_edge)))
+    });
+    let (columns, rows) = (detail.columns.max(1), detail.rows.max(1));
+    let grid = (0..=rows).flat_map(|row| {
+        (0..=columns).map(move |column| {
+            let share = DVec2::new(
+                f64::from(column) / f64::from(columns),
+                f64::from(row) / f64::from(rows),
+            );
+            size * share
+        })
+    });
+    outline.chain(grid).collect()
 }
 
 /// The plane through three or four corner points, as a point and a unit normal: through their mean,

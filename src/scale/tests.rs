@@ -238,7 +238,16 @@ fn look(surface: &Surface, camera: &Camera, pose: &Pose) -> (PhotoScale, ViewFac
     let mut finder = GroundFinder::new(Ground::Auto, surface);
     let image = ImageKind::Undistorted;
     let scale = PhotoScale::compute(camera, pose, image, &mut finder, &mut caster).unwrap();
-    let view = ViewFacts::compute(camera, pose, image, &scale, &mut finder, &mut caster).unwrap();
+    let view = ViewFacts::compute(
+        camera,
+        pose,
+        image,
+        &scale,
+        &mut finder,
+        &mut caster,
+        &crate::jobs::Progress::default(),
+    )
+    .unwrap();
     (scale, view)
 }
 

@@ -3,10 +3,13 @@
 use glam::DVec3;
 
 use super::footprint::plane_through;
-use super::{CornerOutcome, Footprint, FootprintDetail, GroundFinder, ImageKind, PhotoScale};
+use super::{
+    CornerOutcome, FieldError, Footprint, FootprintDetail, GroundFinder, ImageKind, PhotoScale,
+};
 use crate::camera::{Camera, Pose};
 use crate::geometry::Ray;
-use crate::surface::{Caster, SurfaceError};
+use crate::jobs::Progress;
+use crate::surface::Caster;
 
 /// Facts about one photo's view. Lengths in world units, angles in degrees.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,13 +36,10 @@ pub struct ViewFacts {
 }
 
 impl ViewFacts {
-    /// About how many rays one photo's facts take.
-    pub const RAYS: usize = 350;
-
     /// Looks at a photo whose scale is known.
     ///
     /// # Errors
-    /// Where no ground can be found although it is needed.
+    /// Where no ground can be found although it is needed, or the work was cancelled.
     pub fn compute(
         camera: &Camera,
         pose: &Pose,
@@ -47,7 +47,8 @@ impl ViewFacts {
         scale: &PhotoScale,
         ground: &mut GroundFinder<'_>,
         caster: &mut Caster<'_>,
-    ) -> Result<Self, SurfaceError> {
+        progress: &Progress,
+    ) -> Result<Self, FieldError> {
         let axis = pose.rotation.z_axis;
         let below = caster.cast(&Ray {
             origin: pose.center,
@@ -57,13 +58,14 @@ impl ViewFacts {
             Some(hit) => (Some(hit.t), false),
             None => (Some(pose.center.z - ground.under(camera, pose)?), true),
         };
-        let footprint = Footprint::compute(
+        let (footprint, edges) = Footprint::compute(
             camera,
             pose,
             image,
             FootprintDetail::default(),
             ground,
             caster,
+            progress,
         )?;
         let corners: Vec<DVec3> = scale
             .corners
@@ -79,19 +81,14 @@ impl ViewFacts {
                 .map(|direction| direction.dot(normal).abs().min(1.0).asin().to_degrees())
                 .min_by(f64::total_cmp)
         });
-        let triangle_edges = std::array::from_fn(|index| {
-            let corner = &scale.corners[index];
-            match (corner.outcome, corner.direction) {
-                (CornerOutcome::OnSurface { .. }, Some(direction)) => {
-                    let ray = Ray {
-                        origin: pose.center,
-                        direction,
-                    };
-                    caster.cast(&ray).map(|hit| hit.longest_edge)
-                }
-                _ => None,
-            }
-        });
+        let is_on_surface = |index: usize| {
+            matches!(
+                scale.corners[index].outcome,
+                CornerOutcome::OnSurface { .. }
+            )
+        };
+        let triangle_edges =
+            std::array::from_fn(|index| edges[index].filter(|_| is_on_surface(index)));
         let footprint_size = (corners.len() == 4).then(|| {
             (0..4)
                 .map(|i| corners[i].distance(corners[(i + 1) % 4]))

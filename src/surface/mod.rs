@@ -279,17 +279,6 @@ impl Surface {
         Ok(Caster { surface: self, way })
     }
 
-    /// The first half of the work of [`Self::caster_for`]: a job can be cancelled between them.
-    ///
-    /// # Errors
-    /// Where the triangulation fails.
-    pub fn triangulate_for(&self, rays: usize) -> Result<(), SurfaceError> {
-        if self.pays_whole(rays) {
-            self.mesh()?;
-        }
-        Ok(())
-    }
-
     /// Whether its triangles were put between points here, and not read.
     pub fn is_cloud(&self) -> bool {
         matches!(self.whole.shape, Shape::Cloud(_))
@@ -460,7 +449,12 @@ enum Way<'a> {
     Mesh(&'a Mesh),
 }
 
-impl Caster<'_> {
+impl<'a> Caster<'a> {
+    /// The surface that it casts at.
+    pub fn surface(&self) -> &'a Surface {
+        self.surface
+    }
+
     /// The nearest intersection in front of the ray's origin. Edges, vertices and the rim belong to
     /// the surface.
     pub fn cast(&mut self, ray: &Ray) -> Option<Hit> {

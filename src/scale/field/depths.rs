@@ -2,7 +2,8 @@
 //!
 //! Triangles come to the pixels, not rays to the triangles: a photo's grid has thousands of rays that
 //! start at one place, and each triangle knows which few of them can meet it. That costs a look at each
-//! triangle under the footprint and no hierarchy (measured beside walking the rays; see `benches/`).
+//! block of triangles under the footprint and no hierarchy (measured beside walking the rays; see
+//! `benches/`).
 //!
 //! The test is exact in the camera's frame, without a division: a ray d meets the triangle a, b, c where
 //! d·(a×b), d·(b×c) and d·(c×a) have the sign of a·(b×c). Depth along the optical axis follows from the
@@ -13,6 +14,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::FieldError;
 use super::samples::{Samples, ray};
+use crate::geometry::Bounds;
 use crate::jobs::Progress;
 use crate::scale::pyramid::{Pyramid, inward};
 use crate::surface::{Patches, longest_edge};
@@ -64,12 +66,29 @@ pub(super) fn depths(
         if progress.is_cancelled() {
             return Err(FieldError::Cancelled);
         }
-        for triangle in patch.triangles() {
-            let corners = triangle.map(|corner| camera_from_local * (corner - stand.center));
-            nearest.meet(corners, &sides);
+        let in_camera = |point: DVec3| camera_from_local * (point - stand.center);
+        let misses = |bounds: &Bounds| no_samples_in(bounds, in_camera, samples, stand.slack);
+        for triangle in patch.triangles_seen(misses) {
+            nearest.meet(triangle.map(in_camera), &sides);
         }
     }
     Ok(nearest.met)
+}
+
+/// Whether no sample's ray can meet what lies in a box. Of what the grid is fine for, that is none.
+fn no_samples_in(
+    bounds: &Bounds,
+    in_camera: impl Fn(DVec3) -> DVec3,
+    samples: &Samples,
+    slack: f64,
+) -> bool {
+    let corners = bounds.corners().map(in_camera);
+    // Behind the camera or beside it, it is clipped triangle by triangle.
+    if !corners.iter().all(|corner| corner.z > slack) {
+        return false;
+    }
+    let (columns, rows) = samples.near(&corners.map(|corner| corner.truncate() / corner.z));
+    columns.is_empty() || rows.is_empty()
 }
 
 struct Nearest<'a> {

@@ -7,11 +7,13 @@
 //! and nothing is filled in.
 
 mod depths;
+mod rays;
 mod samples;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
+pub(super) use self::rays::meet_rays;
 pub use self::samples::FieldGrid;
 
 use self::depths::{Met, Stand, depths};
@@ -77,11 +79,7 @@ impl ScaleField {
         progress: &Progress,
     ) -> Result<Self, FieldError> {
         let patches = surface.patches();
-        let stand = Stand {
-            center: surface.frame().local_from_world(pose.center),
-            rotation: pose.rotation,
-            slack: surface.slack(pose.center),
-        };
+        let stand = stand(pose, surface);
         let rows = (BAND / grid.columns.max(1)).clamp(1, grid.rows.max(1));
         let bands: Vec<u32> = (0..grid.rows).step_by(rows as usize).collect();
         let with_edges = grid.len() <= EDGES_UP_TO;
@@ -180,6 +178,15 @@ impl ScaleField {
     /// Which image it is of.
     pub fn image(&self) -> ImageKind {
         self.image
+    }
+}
+
+/// Where the camera of a photo stands before a surface.
+fn stand(pose: &Pose, surface: &Surface) -> Stand {
+    Stand {
+        center: surface.frame().local_from_world(pose.center),
+        rotation: pose.rotation,
+        slack: surface.slack(pose.center),
     }
 }
 

@@ -77,6 +77,11 @@ enum Layout {
     /// Through a lens: each pixel's point (NaN where there is none), row by row, and bins over the
     /// plane that know which pixels' points they hold.
     Listed { points: Vec<DVec2>, bins: Bins },
+    /// In one row, bin by bin.
+    Scattered {
+        points: Vec<DVec2>,
+        bins: ScatteredBins,
+    },
 }
 
 impl Samples {
@@ -119,6 +124,25 @@ impl Samples {
         samples
     }
 
+    /// Of single rays, given as points of the plane, without a grid (NaN where there is none), and the
+    /// order in which they stand in the one row.
+    pub(super) fn scattered(points: &[DVec2]) -> (Self, Vec<usize>) {
+        let (bins, order) = ScatteredBins::new(points);
+        let sorted: Vec<DVec2> = order.iter().map(|&place| points[place]).collect();
+        let mut samples = Self {
+            // No photo has four billion rays.
+            columns: u32::try_from(sorted.len()).unwrap_or(u32::MAX),
+            rows: 0..1,
+            extent: None,
+            layout: Layout::Scattered {
+                points: sorted,
+                bins,
+            },
+        };
+        samples.extent = samples.find_extent();
+        (samples, order)
+    }
+
     fn find_extent(&self) -> Option<[DVec2; 2]> {
         let around = |points: &mut dyn Iterator<Item = DVec2>| {
             points.filter(|point| point.is_finite()).fold(
@@ -130,7 +154,9 @@ impl Samples {
             )
         };
         match &self.layout {
-            Layout::Listed { points, .. } => around(&mut points.iter().copied()),
+            Layout::Listed { points, .. } | Layout::Scattered { points, .. } => {
+                around(&mut points.iter().copied())
+            }
             Layout::Affine { .. } => {
                 let (last, end) = (self.columns.checked_sub(1)?, self.rows.end.checked_sub(1)?);
                 let corners = [
@@ -164,7 +190,9 @@ impl Samples {
             Layout::Affine { camera, grid } => camera
                 .direction_undistorted(grid.pixel(camera, column, row))
                 .truncate(),
-            Layout::Listed { points, .. } => points[self.place(column, row)],
+            Layout::Listed { points, .. } | Layout::Scattered { points, .. } => {
+                points[self.place(column, row)]
+            }
         }
     }
 
@@ -211,52 +239,118 @@ impl Samples {
                 let first = self.rows.start;
                 (columns, rows.start + first..rows.end + first)
             }
+            Layout::Scattered { bins, .. } => (bins.near(corners), self.rows.clone()),
         }
     }
 }
 
-/// Bins over the plane, each with a box around the columns and rows of the pixels whose points it holds.
-/// They are even in the angles of x and of y: a wide lens puts its rim far out.
-struct Bins {
+/// Bins over the plane, even in the angles of x and of y: a wide lens puts its rim far out.
+struct BinGrid {
     min: DVec2,
     /// Bins a radian.
     density: DVec2,
     size: [usize; 2],
-    /// Row by row: columns and rows, the ends excluded; empty bins are empty.
-    held: Vec<[u32; 4]>,
 }
-
-const EMPTY: [u32; 4] = [u32::MAX, 0, u32::MAX, 0];
 
 /// The angles of x and of y.
 fn angles(point: DVec2) -> DVec2 {
     DVec2::new(point.x.atan(), point.y.atan())
 }
 
+impl BinGrid {
+    /// So many columns and rows of bins around all points that are finite.
+    fn new(points: &[DVec2], size: [usize; 2]) -> Self {
+        let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for &point in points.iter().filter(|point| point.is_finite()) {
+            (min, max) = (min.min(angles(point)), max.max(angles(point)));
+        }
+        let count = DVec2::new(size[0] as f64, size[1] as f64);
+        let density = count / (max - min).max(DVec2::splat(1e-12));
+        Self { min, density, size }
+    }
+
+    fn bin(&self, angles: DVec2) -> [usize; 2] {
+        let at = (angles - self.min) * self.density;
+        // `as` saturates.
+        [
+            (at.x as usize).min(self.size[0] - 1),
+            (at.y as usize).min(self.size[1] - 1),
+        ]
+    }
+
+    /// The first and the last bin of the box around these points.
+    fn around(&self, corners: &[DVec2]) -> ([usize; 2], [usize; 2]) {
+        let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for &corner in corners {
+            (min, max) = (min.min(angles(corner)), max.max(angles(corner)));
+        }
+        // Room for rounding.
+        let room = DVec2::splat(1e-12);
+        (self.bin(min - room), self.bin(max + room))
+    }
+}
+
+/// Bins that know where in one row the points stand that they hold.
+struct ScatteredBins {
+    grid: BinGrid,
+    /// Row by row the place of each bin's first point, and the count of all.
+    starts: Vec<u32>,
+}
+
+impl ScatteredBins {
+    /// With the order of the points, bin by bin; those that are not finite come last.
+    fn new(points: &[DVec2]) -> (Self, Vec<usize>) {
+        // About a point in each.
+        let side = (points.len() as f64).sqrt().ceil().max(1.0) as usize;
+        let grid = BinGrid::new(points, [side, side]);
+        let bins: Vec<usize> = points
+            .iter()
+            .map(|&point| match point.is_finite() {
+                true => {
+                    let [x, y] = grid.bin(angles(point));
+                    y * side + x
+                }
+                false => side * side,
+            })
+            .collect();
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.sort_by_key(|&place| bins[place]);
+        let starts = (0..=side * side)
+            .map(|bin| order.partition_point(|&place| bins[place] < bin))
+            .map(|start| u32::try_from(start).unwrap_or(u32::MAX));
+        let starts = starts.collect();
+        (Self { grid, starts }, order)
+    }
+
+    /// The points of all bins from the first to the last of the box around the corners: more than those in
+    /// the box where it has several rows of bins, which that of a triangle hardly has.
+    fn near(&self, corners: &[DVec2]) -> Range<u32> {
+        let ([x0, y0], [x1, y1]) = self.grid.around(corners);
+        let columns = self.grid.size[0];
+        self.starts[y0 * columns + x0]..self.starts[y1 * columns + x1 + 1]
+    }
+}
+
+/// Bins, each with a box around the columns and rows of the pixels whose points it holds.
+struct Bins {
+    grid: BinGrid,
+    /// Row by row: columns and rows, the ends excluded; empty bins are empty.
+    held: Vec<[u32; 4]>,
+}
+
+const EMPTY: [u32; 4] = [u32::MAX, 0, u32::MAX, 0];
+
 impl Bins {
     fn new(points: &[DVec2], columns: u32) -> Self {
         let columns = columns.max(1) as usize;
-        let seen = || {
-            points
-                .iter()
-                .enumerate()
-                .filter(|(_, point)| point.is_finite())
-        };
-        let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        for (_, &point) in seen() {
-            (min, max) = (min.min(angles(point)), max.max(angles(point)));
-        }
         let size = [columns, points.len().div_ceil(columns).max(1)];
-        let count = DVec2::new(size[0] as f64, size[1] as f64);
-        let density = count / (max - min).max(DVec2::splat(1e-12));
         let mut bins = Self {
-            min,
-            density,
-            size,
+            grid: BinGrid::new(points, size),
             held: vec![EMPTY; size[0] * size[1]],
         };
-        for (place, &point) in seen() {
-            let [x, y] = bins.bin(angles(point));
+        let seen = points.iter().enumerate();
+        for (place, &point) in seen.filter(|(_, point)| point.is_finite()) {
+            let [x, y] = bins.grid.bin(angles(point));
             let (column, row) = ((place % columns) as u32, (place / columns) as u32);
             let held = &mut bins.held[y * size[0] + x];
             *held = [
@@ -269,26 +363,12 @@ impl Bins {
         bins
     }
 
-    fn bin(&self, angles: DVec2) -> [usize; 2] {
-        let at = (angles - self.min) * self.density;
-        // `as` saturates.
-        [
-            (at.x as usize).min(self.size[0] - 1),
-            (at.y as usize).min(self.size[1] - 1),
-        ]
-    }
-
     fn near(&self, corners: &[DVec2]) -> (Range<u32>, Range<u32>) {
-        let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        for &corner in corners {
-            (min, max) = (min.min(angles(corner)), max.max(angles(corner)));
-        }
-        // Room for rounding.
-        let room = DVec2::splat(1e-12);
-        let ([x0, y0], [x1, y1]) = (self.bin(min - room), self.bin(max + room));
+        let ([x0, y0], [x1, y1]) = self.grid.around(corners);
+        let columns = self.grid.size[0];
         let mut all = EMPTY;
         for y in y0..=y1 {
-            for held in &self.held[y * self.size[0] + x0..=y * self.size[0] + x1] {
+            for held in &self.held[y * columns + x0..=y * columns + x1] {
                 all = [
                     all[0].min(held[0]),
                     all[1].max(held[1]),

@@ -261,7 +261,7 @@ fn triangles_near(
     let camera_from_local = pose.rotation.transpose();
     let mut points = Vec::new();
     for patch in surface.patches().seen(|bounds| seen.misses(bounds)).ok()? {
-        for triangle in patch.triangles() {
+        for triangle in patch.triangles_seen(|bounds| seen.misses(bounds)) {
             let corners = triangle.map(|corner| camera_from_local * (corner - center));
             // Behind the camera it is met by no ray; beside it in part, and then it is kept.
             let outside = |is_out: &dyn Fn(DVec3) -> bool| corners.iter().all(|&c| is_out(c));

@@ -35,7 +35,7 @@ impl Surface {
             bounds.min.cmpgt(around.max).any() || bounds.max.cmplt(around.min).any()
         };
         for patch in self.patches().seen(apart)? {
-            for corners in patch.triangles() {
+            for corners in patch.triangles_seen(apart) {
                 let [a, b, c] = corners;
                 let low = a.min(b).min(c);
                 let high = a.max(b).max(c);

@@ -29,7 +29,7 @@ impl Surface {
             .patches()
             .seen(|bounds| apart(bounds.min, bounds.max))?
         {
-            for corners in patch.triangles() {
+            for corners in patch.triangles_seen(|b| apart(b.min, b.max)) {
                 let [a, b, c] = corners;
                 if apart(a.min(b).min(c), a.max(b).max(c)) {
                     continue;

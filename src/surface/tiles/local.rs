@@ -195,7 +195,7 @@ impl<'a> Local<'a> {
         let mut next = 0;
         while let Some(&triangle) = found.get(next) {
             next += 1;
-            for neighbour in self.made.on_its_circle(triangle, &self.places) {
+            for neighbour in self.made.on_its_circle(triangle) {
                 if !found.contains(&neighbour) {
                     found.push(neighbour);
                 }

@@ -21,6 +21,7 @@ use self::reach::Reach;
 use super::SurfaceError;
 use super::left_out::Kept;
 use super::made_once::MadeOnce;
+use super::patches::{TriangleBlock, sort_into_blocks};
 use super::sites::{Cells, Sites};
 use crate::geometry::Bounds;
 
@@ -45,8 +46,9 @@ struct Tile {
 /// The triangles that a tile owns.
 #[derive(Debug)]
 pub(super) struct Made {
-    /// Indices of sites, counter-clockwise seen from above, the first corner first.
+    /// Indices of sites, counter-clockwise seen from above, the first corner first; block by block.
     pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) blocks: Vec<TriangleBlock>,
     /// Around them.
     pub(super) bounds: Option<Bounds>,
     /// Its sites left out in turn, once somebody asked.
@@ -105,6 +107,7 @@ impl Tiles {
 fn make(sites: &Sites, cells: &Cells) -> Result<Made, SurfaceError> {
     let nothing = Made {
         triangles: Vec::new(),
+        blocks: Vec::new(),
         bounds: None,
         left_out: MadeOnce::default(),
     };
@@ -113,8 +116,9 @@ fn make(sites: &Sites, cells: &Cells) -> Result<Made, SurfaceError> {
     };
     local.settle()?;
     // Without the room for those of the margin.
-    let triangles = local.owned().into_boxed_slice().into_vec();
+    let mut triangles = local.owned().into_boxed_slice().into_vec();
     let points = sites.points();
+    let blocks = sort_into_blocks(&mut triangles, points);
     let corners = triangles
         .iter()
         .flatten()
@@ -133,6 +137,7 @@ fn make(sites: &Sites, cells: &Cells) -> Result<Made, SurfaceError> {
     });
     Ok(Made {
         triangles,
+        blocks,
         bounds,
         left_out: MadeOnce::default(),
     })

@@ -1,11 +1,13 @@
 //! The Delaunay triangulation of places, proven.
 //!
-//! Delaunator is the fastest that there is, but its test for circles is not exact. So what it makes is
-//! checked with exact predicates: a triangulation whose triangles turn left, whose rim is convex and none
-//! of whose edges can be flipped to advantage is Delaunay (Delaunay, 1934). Where the check fails (places
-//! on lattices and on circles, or nearly so) spade makes it, which is exact and takes twice as long.
+//! Delaunator is the fastest that there is, but its test for circles is not exact: of places that were
+//! rounded, as those of LAZ files are, every tenth four lie nearly on one circle. So what it makes is
+//! checked with exact predicates, and edges that can be flipped to advantage are (Lawson, 1977): a
+//! triangulation whose triangles turn left, whose rim is convex and none of whose edges can be flipped is
+//! Delaunay (Delaunay, 1934). Where its triangles are no triangulation at all (places on lattices and on
+//! lines) spade makes it, which is exact and takes twice as long.
 
-use delaunator::{EMPTY, Point, next_halfedge};
+use delaunator::{EMPTY, Point, next_halfedge, prev_halfedge};
 use glam::DVec2;
 use robust::{Coord, incircle, orient2d};
 use spade::{DelaunayTriangulation, Point2, Triangulation};
@@ -22,8 +24,8 @@ pub(super) struct Triangulated {
     corners: Vec<u32>,
     /// The same edge of the neighbour, in the other direction; `NONE` at the rim.
     twins: Vec<u32>,
-    /// Of each triangle: whether a neighbour has its circle.
-    shares_circle: Vec<bool>,
+    /// Of each edge: whether the triangles to both sides have one circle.
+    on_circle: Vec<bool>,
 }
 
 impl Triangulated {
@@ -33,12 +35,10 @@ impl Triangulated {
     /// Where a coordinate is too large for exact predicates.
     pub(super) fn new(places: &[DVec2]) -> Result<Self, SurfaceError> {
         let mut made = Self::fast(places);
-        if !made.prove(places) {
+        if !made.is_triangulation(places) {
             made = Self::exact(places)?;
-            // Spade's needs no proof, but who shares a circle is found by it. (Of places on one line there
-            // are no triangles, and nothing is proven.)
-            made.prove(places);
         }
+        made.flip(places);
         Ok(made)
     }
 
@@ -60,7 +60,7 @@ impl Triangulated {
         });
         Self {
             twins: twins.collect(),
-            shares_circle: vec![false; corners.len() / 3],
+            on_circle: vec![false; corners.len()],
             corners,
         }
     }
@@ -84,14 +84,13 @@ impl Triangulated {
         let twins = edges.iter().map(|edge| numbers[edge.rev().index()]);
         Ok(Self {
             twins: twins.collect(),
-            shares_circle: vec![false; corners.len() / 3],
+            on_circle: vec![false; corners.len()],
             corners,
         })
     }
 
-    /// Finds out who shares a circle, and on the way whether it is the Delaunay triangulation of these
-    /// places, all of them: says so.
-    fn prove(&mut self, places: &[DVec2]) -> bool {
+    /// Whether it is a triangulation of these places, all of them.
+    fn is_triangulation(&self, places: &[DVec2]) -> bool {
         let at = |edge: usize| coord(places[self.corners[edge] as usize]);
         let turns_left = |triangle: usize| {
             orient2d(at(3 * triangle), at(3 * triangle + 1), at(3 * triangle + 2)) > 0.0
@@ -106,26 +105,14 @@ impl Triangulated {
         // Where each corner at the rim goes to.
         let mut rim = vec![NONE; places.len()];
         let mut on_the_rim = 0;
-        for (edge, &twin) in self.twins.iter().enumerate() {
-            let next = next_halfedge(edge);
-            if twin == NONE {
-                rim[self.corners[edge] as usize] = self.corners[next];
-                on_the_rim += 1;
-                continue;
-            }
-            let twin = twin as usize;
-            if twin < edge {
-                continue;
-            }
-            let opposite = at(next_halfedge(next_halfedge(twin)));
-            let inside = incircle(at(edge), at(next), at(next_halfedge(next)), opposite);
-            if inside > 0.0 {
-                return false;
-            }
-            if inside == 0.0 {
-                self.shares_circle[edge / 3] = true;
-                self.shares_circle[twin / 3] = true;
-            }
+        for (edge, _) in self
+            .twins
+            .iter()
+            .enumerate()
+            .filter(|(_, twin)| **twin == NONE)
+        {
+            rim[self.corners[edge] as usize] = self.corners[next_halfedge(edge)];
+            on_the_rim += 1;
         }
         // Euler: a disc without holes, of all places.
         let is_disc = self.len() + 2 + on_the_rim == 2 * places.len();
@@ -138,6 +125,67 @@ impl Triangulated {
         });
         let rim_is_one_way = rim.iter().filter(|&&to| to != NONE).count() == on_the_rim;
         is_used.iter().all(|&used| used) && is_disc && rim_is_one_way && is_convex
+    }
+
+    /// Flips edges of a triangulation until it is Delaunay, and finds out which triangles share a circle.
+    fn flip(&mut self, places: &[DVec2]) {
+        let mut pending = Vec::new();
+        for edge in 0..self.twins.len() {
+            let twin = self.twins[edge];
+            if twin == NONE || (twin as usize) < edge {
+                continue;
+            }
+            pending.push(edge);
+            // Of exact tests there is an end to flipping.
+            while let Some(edge) = pending.pop() {
+                self.flip_edge(edge, places, &mut pending);
+            }
+        }
+    }
+
+    /// Flips an edge if that is to advantage; then those around it are `pending`.
+    fn flip_edge(&mut self, edge: usize, places: &[DVec2], pending: &mut Vec<usize>) {
+        let twin = self.twins[edge];
+        if twin == NONE {
+            self.on_circle[edge] = false;
+            return;
+        }
+        let twin = twin as usize;
+        let inside = self.in_circle(edge, twin, places);
+        if inside <= 0.0 {
+            self.on_circle[edge] = inside == 0.0;
+            self.on_circle[twin] = inside == 0.0;
+            return;
+        }
+        // Edges of both triangles, in turn: edge, after, before; twin, after_twin, before_twin. The edge
+        // from one opposite corner to the other takes the places of before and before_twin; the outer
+        // edges that were there move to edge and twin.
+        let (before, before_twin) = (prev_halfedge(edge), prev_halfedge(twin));
+        let (after, after_twin) = (next_halfedge(edge), next_halfedge(twin));
+        let (corner, corner_of_twin) = (self.corners[before], self.corners[before_twin]);
+        self.corners[edge] = corner_of_twin;
+        self.corners[twin] = corner;
+        self.link(edge, self.twins[before_twin]);
+        self.link(twin, self.twins[before]);
+        self.link(before, u32::try_from(before_twin).unwrap_or(NONE));
+        self.on_circle[before] = false;
+        self.on_circle[before_twin] = false;
+        pending.extend([edge, after, twin, after_twin]);
+    }
+
+    fn link(&mut self, edge: usize, twin: u32) {
+        self.twins[edge] = twin;
+        if twin != NONE {
+            self.twins[twin as usize] = u32::try_from(edge).unwrap_or(NONE);
+        }
+    }
+
+    /// Positive where the corner opposite the twin of an edge lies in the circle of the edge's triangle, 0
+    /// on it.
+    fn in_circle(&self, edge: usize, twin: usize, places: &[DVec2]) -> f64 {
+        let at = |edge: usize| coord(places[self.corners[edge] as usize]);
+        let (next, before) = (next_halfedge(edge), prev_halfedge(edge));
+        incircle(at(edge), at(next), at(before), at(prev_halfedge(twin)))
     }
 
     /// How many triangles there are.
@@ -170,27 +218,15 @@ impl Triangulated {
     }
 
     /// The neighbours that lie on the circle of a triangle.
-    pub(super) fn on_its_circle(
-        &self,
-        triangle: usize,
-        places: &[DVec2],
-    ) -> impl Iterator<Item = usize> {
-        let [a, b, c] = self.corners(triangle).map(|i| coord(places[i as usize]));
-        let shares = self.shares_circle[triangle];
-        (0..3).filter(move |_| shares).filter_map(move |k| {
-            let twin = self.twins[3 * triangle + k];
-            if twin == NONE {
-                return None;
-            }
-            let opposite = self.corners[next_halfedge(next_halfedge(twin as usize))];
-            let opposite = coord(places[opposite as usize]);
-            (incircle(a, b, c, opposite) == 0.0).then_some(twin as usize / 3)
-        })
+    pub(super) fn on_its_circle(&self, triangle: usize) -> impl Iterator<Item = usize> {
+        let edges = 3 * triangle..3 * triangle + 3;
+        let on_circle = edges.filter(|&edge| self.on_circle[edge]);
+        on_circle.map(|edge| self.twins[edge] as usize / 3)
     }
 
     /// Whether a neighbour lies on the circle of a triangle.
     pub(super) fn shares_circle(&self, triangle: usize) -> bool {
-        self.shares_circle[triangle]
+        self.on_its_circle(triangle).next().is_some()
     }
 }
 
@@ -214,11 +250,57 @@ mod tests {
             .collect()
     }
 
-    /// Else every cloud would take twice as long, and no test would say so.
+    /// Else every cloud would take twice as long, and no test would say so: spade is for lattices.
     #[test]
-    fn of_random_places_the_fast_way_is_right() {
-        let places = random(10_000);
-        assert!(Triangulated::fast(&places).prove(&places));
+    fn of_random_and_of_rounded_places_the_fast_way_is_right() {
+        for places in [random(10_000), rounded(10_000)] {
+            assert!(Triangulated::fast(&places).is_triangulation(&places));
+        }
+    }
+
+    /// In the metres of UTM with three decimals, as LAZ files have them: 0.1 m from each other.
+    fn rounded(count: usize) -> Vec<DVec2> {
+        let side = (count as f64).sqrt() * 100.0;
+        let places = random(count).into_iter();
+        let mut places: Vec<[u64; 2]> = places
+            .map(|p| [(p.x * side) as u64, (p.y * side) as u64])
+            .collect();
+        places.sort_unstable();
+        places.dedup();
+        let metres = |[x, y]: [u64; 2]| {
+            DVec2::new(
+                452_000.0 + x as f64 / 1000.0,
+                5_411_000.0 + y as f64 / 1000.0,
+            )
+        };
+        places.into_iter().map(metres).collect()
+    }
+
+    /// No corner of a neighbour in a circle, by the exact predicate, whatever triangulation one begins with:
+    /// here that of the places stretched fourfold.
+    #[test]
+    fn wrong_edges_are_flipped() {
+        let places = rounded(10_000);
+        let stretched: Vec<DVec2> = places.iter().map(|p| DVec2::new(p.x, 4.0 * p.y)).collect();
+        let wrong = |made: &Triangulated| {
+            let edges = made
+                .twins
+                .iter()
+                .enumerate()
+                .filter(|(_, twin)| **twin != NONE);
+            edges
+                .filter(|&(edge, &twin)| made.in_circle(edge, twin as usize, &places) > 0.0)
+                .count()
+        };
+        let mut made = Triangulated::fast(&stretched);
+        assert!(made.is_triangulation(&places) && wrong(&made) > 5000);
+        made.flip(&places);
+        assert!(made.is_triangulation(&places));
+        assert_eq!(wrong(&made), 0);
+        for (edge, &twin) in made.twins.iter().enumerate() {
+            let on_circle = twin != NONE && made.in_circle(edge, twin as usize, &places) == 0.0;
+            assert_eq!(made.on_circle[edge], on_circle);
+        }
     }
 
     #[test]
@@ -236,7 +318,7 @@ mod tests {
             triangles
         };
         let exact = Triangulated::exact(&places).unwrap();
-        assert_eq!(sorted(Triangulated::fast(&places)), sorted(exact));
+        assert_eq!(sorted(Triangulated::new(&places).unwrap()), sorted(exact));
     }
 
     /// Of all squares of a lattice one knows that the four corners are on a circle.
@@ -248,37 +330,42 @@ mod tests {
         let made = Triangulated::new(&places).unwrap();
         assert_eq!(made.len(), 19 * 19 * 2);
         for triangle in 0..made.len() {
-            assert_eq!(made.on_its_circle(triangle, &places).count(), 1);
+            assert_eq!(made.on_its_circle(triangle).count(), 1);
         }
     }
 
-    /// Four places have two triangulations, one of them Delaunay. The other is refused, and so are a triangle
-    /// that is missing, one that turns right and a place that nobody uses.
+    /// Four places have two triangulations, one of them Delaunay: from either it is found. A triangle that
+    /// is missing, one that turns right and a place that nobody uses are refused.
     #[test]
-    fn what_is_not_delaunay_is_refused() {
+    fn from_every_triangulation_delaunays_is_found() {
         let places = [(0.0, 0.0), (1.0, 0.0), (1.2, 0.9), (0.0, 1.0)].map(DVec2::from);
         let square = |corners: [u32; 6], twins: [u32; 6]| Triangulated {
             corners: corners.to_vec(),
             twins: twins.to_vec(),
-            shares_circle: vec![false; 2],
+            on_circle: vec![false; 6],
         };
         const N: u32 = NONE;
-        let mut right = square([0, 1, 3, 1, 2, 3], [N, 5, N, N, N, 1]);
-        let is_right = right.prove(&places);
-        let mut other = square([0, 1, 2, 0, 2, 3], [N, N, 3, 2, N, N]);
-        assert!(is_right != other.prove(&places));
         let exact = Triangulated::exact(&places).unwrap();
-        let has_edge_0_2 =
-            (0..2).all(|t| exact.corners(t).contains(&0) && exact.corners(t).contains(&2));
-        assert_eq!(is_right, !has_edge_0_2);
-        let mut half = Triangulated {
+        let has_edge_0_2 = |made: &Triangulated| {
+            (0..2).all(|t| made.corners(t).contains(&0) && made.corners(t).contains(&2))
+        };
+        for mut made in [
+            square([0, 1, 3, 1, 2, 3], [N, 5, N, N, N, 1]),
+            square([0, 1, 2, 0, 2, 3], [N, N, 3, 2, N, N]),
+        ] {
+            assert!(made.is_triangulation(&places));
+            made.flip(&places);
+            assert!(made.is_triangulation(&places));
+            assert_eq!(has_edge_0_2(&made), has_edge_0_2(&exact));
+        }
+        let half = Triangulated {
             corners: vec![0, 1, 3],
             twins: vec![N; 3],
-            shares_circle: vec![false],
+            on_circle: vec![false; 3],
         };
-        assert!(!half.prove(&places), "a place is not used");
-        assert!(!half.prove(&[places[0], places[1], places[3], places[3]]));
-        let mut turned = square([0, 3, 1, 1, 2, 3], [N, 5, N, N, N, 1]);
-        assert!(!turned.prove(&places));
+        assert!(!half.is_triangulation(&places), "a place is not used");
+        assert!(!half.is_triangulation(&[places[0], places[1], places[3], places[3]]));
+        let turned = square([0, 3, 1, 1, 2, 3], [N, 5, N, N, N, 1]);
+        assert!(!turned.is_triangulation(&places));
     }
 }

@@ -2,8 +2,13 @@
 //! those in some part of the world, and not the rest. A cloud is triangulated tile by tile; a mesh is
 //! cut into runs of faces as they stand in its file.
 
+mod triangle_blocks;
+
 use glam::DVec3;
 
+pub(super) use self::triangle_blocks::{TriangleBlock, sort_into_blocks};
+
+use self::triangle_blocks::blocks_of;
 use super::left_out::{Kept, LeftOut, leave_out_each};
 use super::made_once::MadeOnce;
 use super::mesh::Mesh;
@@ -19,6 +24,7 @@ const FACES: usize = 4096;
 pub struct Patch<'a> {
     points: &'a [DVec3],
     triangles: &'a [[u32; 3]],
+    blocks: &'a [TriangleBlock],
     max_edge: f64,
     left_out: &'a MadeOnce<Vec<Kept>>,
     /// Around the triangles, in the surface's local frame.
@@ -28,9 +34,23 @@ pub struct Patch<'a> {
 impl Patch<'_> {
     /// The corners of its triangles, in the surface's local frame ([`Surface::frame`]).
     pub fn triangles(&self) -> impl Iterator<Item = [DVec3; 3]> {
+        self.triangles_seen(|_| false)
+    }
+
+    /// Those without the ones in boxes that `misses` misses: blocks of about 64 neighbours are looked at.
+    pub fn triangles_seen(
+        &self,
+        misses: impl Fn(&Bounds) -> bool,
+    ) -> impl Iterator<Item = [DVec3; 3]> {
         let corners = |triangle: &[u32; 3]| triangle.map(|index| self.points[index as usize]);
         let max_edge = self.max_edge;
-        (self.triangles.iter().map(corners))
+        let blocks = self
+            .blocks
+            .iter()
+            .filter(move |block| !misses(&block.bounds));
+        blocks
+            .flat_map(|block| &self.triangles[block.triangles.clone()])
+            .map(corners)
             .filter(move |&corners| max_edge.is_infinite() || longest_edge(corners) <= max_edge)
     }
 
@@ -80,6 +100,7 @@ impl<'a> Patches<'a> {
                     Some(Patch {
                         points,
                         triangles: &made.triangles,
+                        blocks: &made.blocks,
                         max_edge,
                         left_out: &made.left_out,
                         bounds: made.bounds?,
@@ -94,6 +115,7 @@ impl<'a> Patches<'a> {
                     .map(|(triangles, run)| Patch {
                         points,
                         triangles,
+                        blocks: &run.blocks,
                         max_edge,
                         left_out: &run.left_out,
                         bounds: run.bounds,
@@ -129,6 +151,7 @@ impl Surface {
 #[derive(Debug)]
 pub(super) struct Run {
     bounds: Bounds,
+    blocks: Vec<TriangleBlock>,
     left_out: MadeOnce<Vec<Kept>>,
 }
 
@@ -139,6 +162,7 @@ fn runs(mesh: &Mesh) -> Vec<Run> {
         let corners: Vec<DVec3> = run.iter().flatten().map(|&i| points[i as usize]).collect();
         Some(Run {
             bounds: Bounds::of(&corners)?,
+            blocks: blocks_of(run, points),
             left_out: MadeOnce::default(),
         })
     })
