@@ -9,6 +9,7 @@ mod blocks;
 mod bulk;
 mod cloud;
 mod delaunay;
+mod from_above;
 mod hull;
 mod left_out;
 mod made_once;
@@ -27,6 +28,7 @@ use glam::DVec3;
 
 pub use blocks::VertexBlock;
 pub use cloud::Cloud;
+pub use from_above::{Light, MapRaster, hillshade};
 pub use left_out::LeftOut;
 pub use patches::{Patch, Patches};
 pub use up_axis::{UpAxis, doubtful_up};

@@ -37,6 +37,7 @@ mod health;
 mod linked;
 mod long_names;
 mod looks;
+mod map;
 mod opening;
 mod overwriting;
 mod photo_view;
