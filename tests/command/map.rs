@@ -83,7 +83,7 @@ fn what_cannot_be_a_map_is_refused_in_a_line() {
         fine.contains("more than 40 million; give a larger --pixel"),
         "{fine}"
     );
-    let page = error_of(&["map", &flight, "-o", &at("map.svg"), "--pixel", "1mm"]);
+    let page = error_of(&["map", &flight, "-o", &at("map.svg"), "--pixel", "0.5mm"]);
     assert!(page.contains("the 10 million that go on a page"), "{page}");
     fs::write(at("note.pdf"), "%PDF-1.4 of somebody else").expect("a file");
     let foreign = error_of(&["map", &flight, "-o", &at("note.pdf")]);

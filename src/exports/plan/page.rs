@@ -247,11 +247,12 @@ impl Page {
     }
 }
 
-/// 1, 2, 2.5 or 5 times a power of ten, the least that is no less.
+/// 1, 1.25, 1.5, 2, 2.5, 3, 4, 5 or 7.5 times a power of ten, the least that is no less.
 fn round_above(number: f64) -> Option<f64> {
     let below = round_down(number)?;
     let power = 10_f64.powf(below.log10().floor());
-    let all = [1.0, 2.0, 2.5, 5.0, 10.0, 20.0].map(|digits| digits * power);
+    let all = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 7.5, 10.0];
+    let all = all.map(|digits| digits * power);
     let found = all
         .into_iter()
         .find(|round| *round >= number * (1.0 - 1e-12))?;
@@ -350,9 +351,9 @@ mod tests {
             (183.0, 200.0),
             (200.0, 200.0),
             (201.0, 250.0),
-            (251.0, 500.0),
-            (700.0, 1000.0),
-            (1.2, 2.0),
+            (251.0, 300.0),
+            (700.0, 750.0),
+            (1.2, 1.25),
             (0.09, 0.1),
             (9999.0, 10_000.0),
         ] {

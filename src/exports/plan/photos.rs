@@ -5,7 +5,7 @@ use super::{MapFrame, Plan, PlanInks, PlanPhoto, clip};
 use crate::drawing::{Anchor, Dash, Marker, Pen, png};
 
 /// Height of a name's line, units.
-pub(super) const NAME: f64 = 12.5;
+pub(super) const NAME: f64 = 13.5;
 /// Of a footprint's outline.
 const OUTLINE: f64 = 1.6;
 const SHADE: f64 = 0.10;

@@ -32,30 +32,22 @@ pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.painter().rect_filled(place, 0.0, fill);
     super::notice(state, ui, commands);
     want_plan(state, open, commands);
-    let head = ui.horizontal(|ui| {
+    ui.horizontal(|ui| {
         ui.add_space(6.0);
         let fit = ui.button("Fit");
         fit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Fit map"));
         if fit.on_hover_text("Show all of the map").clicked() {
             commands.push(Command::Map(MapCommand::Fit));
         }
-        action_button(
-            state,
-            actions::file::EXPORT_MAP,
-            "Export map…",
-            ui,
-            commands,
-        );
-        ui.separator();
+        action_button(state, actions::file::EXPORT_MAP, "Export map…", ui, commands);
         if let Some(made) = &open.map.made {
-            let words = made.plan.crs_in_words();
-            ui.weak(words)
-                .on_hover_text("The coordinate system of the map");
+            let words = egui::RichText::new(made.plan.crs_in_words()).weak();
+            let words = ui.add(egui::Label::new(words).truncate());
+            words.on_hover_text("The coordinate system of the map");
         }
-        ui.available_rect_before_wrap()
     });
-    let words_at = head.inner;
-    let frame = ui.available_rect_before_wrap();
+    // However wide the row above would be.
+    let frame = Rect::from_min_max(pos2(place.left(), ui.cursor().top()), place.max);
     let response = ui.allocate_rect(frame, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Map"));
     let painter = ui.painter().with_clip_rect(frame);
@@ -96,7 +88,7 @@ pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         commands.push(Command::Select(Some(photo)));
     }
     screen.outline(open, made, photo, &painter, 1.5);
-    over::words(made, point, photo, words_at, ui);
+    over::words(made, point, photo, &painter, frame, ui);
 }
 
 /// Asks for a plan where there is none of the review as it is now.

@@ -20,7 +20,7 @@ pub(super) fn grid(map: &MapFrame, painter: &egui::Painter, frame: Rect, ui: &eg
         let x = map.place(DVec2::new(across.at, 0.0))[0] as f32;
         painter.vline(x, frame.y_range(), line);
         let at = pos2(x, frame.bottom() - 3.0);
-        text(painter, at, Align2::CENTER_BOTTOM, &across.label, ui);
+        text(painter, at, Align2::CENTER_BOTTOM, LABEL, &across.label, ui);
     }
     for up in &grid.up {
         let y = map.place(DVec2::new(0.0, up.at))[1] as f32;
@@ -31,6 +31,7 @@ pub(super) fn grid(map: &MapFrame, painter: &egui::Painter, frame: Rect, ui: &eg
                 painter,
                 pos2(frame.left() + 3.0, y),
                 Align2::LEFT_CENTER,
+                LABEL,
                 &up.label,
                 ui,
             );
@@ -39,9 +40,16 @@ pub(super) fn grid(map: &MapFrame, painter: &egui::Painter, frame: Rect, ui: &eg
 }
 
 /// Words that are read on any ground.
-fn text(painter: &egui::Painter, at: egui::Pos2, anchor: Align2, words: &str, ui: &egui::Ui) {
+fn text(
+    painter: &egui::Painter,
+    at: egui::Pos2,
+    anchor: Align2,
+    size: f32,
+    words: &str,
+    ui: &egui::Ui,
+) {
     let color = ui.visuals().strong_text_color();
-    let galley = painter.layout_no_wrap(words.to_owned(), FontId::proportional(LABEL), color);
+    let galley = painter.layout_no_wrap(words.to_owned(), FontId::proportional(size), color);
     let place = anchor.anchor_size(at, galley.size());
     painter.rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, behind(ui));
     painter.galley(place.min, galley, color);
@@ -107,24 +115,21 @@ pub(super) fn bar(
     painter.text(middle, Align2::CENTER_BOTTOM, bar.words(), font, color);
 }
 
-/// Coordinates and photo under the mouse.
+/// Coordinates and photo under the mouse, in the upper left.
 pub(super) fn words(
     made: &MadePlan,
     point: DVec2,
     photo: Option<usize>,
-    place: Rect,
-    ui: &mut egui::Ui,
+    painter: &egui::Painter,
+    frame: Rect,
+    ui: &egui::Ui,
 ) {
     let unit = made.plan.unit_of_lengths();
     let mut words = format!("x {:.2}  y {:.2} {unit}", point.x, point.y);
     if let Some(photo) = photo.and_then(|photo| made.plan.photos.get(photo)) {
-        let verdict = photo
-            .verdict
-            .map_or("not settled", |verdict| verdict.as_str());
+        let verdict = photo.verdict.map_or("not settled", |verdict| verdict.as_str());
         words = format!("{words}   {}: {verdict}", photo.name);
     }
-    ui.put(
-        place,
-        egui::Label::new(words).truncate().halign(egui::Align::LEFT),
-    );
+    let at = inside(frame, 6.0, 5.0);
+    text(painter, at, Align2::LEFT_TOP, 13.0, &words, ui);
 }
