@@ -39,7 +39,13 @@ pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         if fit.on_hover_text("Show all of the map").clicked() {
             commands.push(Command::Map(MapCommand::Fit));
         }
-        action_button(state, actions::file::EXPORT_MAP, "Export map…", ui, commands);
+        action_button(
+            state,
+            actions::file::EXPORT_MAP,
+            "Export map…",
+            ui,
+            commands,
+        );
         if let Some(made) = &open.map.made {
             let words = egui::RichText::new(made.plan.crs_in_words()).weak();
             let words = ui.add(egui::Label::new(words).truncate());

@@ -83,7 +83,11 @@ pub(super) fn north(plan: &Plan, painter: &egui::Painter, frame: Rect, ui: &egui
     painter.add(egui::Shape::convex_polygon(half, color, Stroke::NONE));
     let around = vec![tip, right, notch, left];
     painter.add(egui::Shape::closed_line(around, Stroke::new(1.2, color)));
-    let hint = ui.interact(back, ui.scope_id().with("north of the map"), egui::Sense::hover());
+    let hint = ui.interact(
+        back,
+        ui.scope_id().with("north of the map"),
+        egui::Sense::hover(),
+    );
     hint.on_hover_text(words);
 }
 
@@ -127,7 +131,9 @@ pub(super) fn words(
     let unit = made.plan.unit_of_lengths();
     let mut words = format!("x {:.2}  y {:.2} {unit}", point.x, point.y);
     if let Some(photo) = photo.and_then(|photo| made.plan.photos.get(photo)) {
-        let verdict = photo.verdict.map_or("not settled", |verdict| verdict.as_str());
+        let verdict = photo
+            .verdict
+            .map_or("not settled", |verdict| verdict.as_str());
         words = format!("{words}   {}: {verdict}", photo.name);
     }
     let at = inside(frame, 6.0, 5.0);
