@@ -35,19 +35,18 @@ pub fn hillshade(raster: &MapRaster, heights: &[f64], light: Light) -> Vec<f64> 
     // Towards the light, east and north.
     let to_light = DVec2::new(azimuth.sin(), azimuth.cos()) * altitude.cos();
     let up = altitude.sin();
-    let at = |column: isize, row: isize| {
-        let column = usize::try_from(column).ok().filter(|c| *c < columns)?;
-        let row = usize::try_from(row).ok().filter(|r| *r < rows)?;
-        let height = heights.get(row * columns + column).copied();
-        height.filter(|height| !height.is_nan())
-    };
     let shade = |index: usize| {
-        let (column, row) = ((index % columns) as isize, (index / columns) as isize);
-        let own = at(column, row)?;
+        let (column, row) = (index % columns, index / columns);
+        let at = |east: isize, south: isize| {
+            let column = column.checked_add_signed(east).filter(|c| *c < columns)?;
+            let row = row.checked_add_signed(south).filter(|r| *r < rows)?;
+            let height = heights.get(row * columns + column).copied();
+            height.filter(|height| !height.is_nan())
+        };
+        let own = at(0, 0)?;
         let known = |east: isize, south: isize| {
-            let there = at(column + east, row + south);
-            let opposite = || Some(2.0 * own - at(column - east, row - south)?);
-            there.or_else(opposite)
+            let opposite = || Some(2.0 * own - at(-east, -south)?);
+            at(east, south).or_else(opposite)
         };
         let beside = |east, south| known(east, south).unwrap_or(own);
         let near = |east, south| {
