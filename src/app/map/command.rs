@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::PartInSight;
+use super::part::PartInSight;
 use crate::command::Destination;
 
 /// One thing to do on the page of the map.

@@ -4,7 +4,8 @@
 //! command   what the engineer does on it
 //! applying  does that
 //! making    the plan, as a job, whenever the review of the flight has changed
-//! drawing   the part of it that is in sight as a picture, as a job
+//! part      the part of it that is in sight
+//! drawing   draws that, as a job
 //! found     which photos lie at a place
 //! saving    the plan as a file
 //! ```
@@ -16,6 +17,7 @@ mod command;
 mod drawing;
 mod found;
 mod making;
+mod part;
 mod saving;
 
 use std::sync::Arc;
@@ -23,8 +25,8 @@ use std::sync::Arc;
 use glam::DVec2;
 
 pub use command::MapCommand;
-pub use drawing::{DrawnPart, PartInSight};
 pub use found::PhotosAt;
+pub use part::{DrawnPart, PartInSight};
 
 use crate::exports::Plan;
 use crate::surface::Surface;
