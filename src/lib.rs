@@ -21,7 +21,7 @@
 //!     render/                    wgpu: scene -> picture; knows no egui, reads no file
 //!     sample/                    the paper's lab, simulated
 //! F4  formats/                   bytes -> types: clouds cameras packages poses photos tables text
-//!     exports/                   what goes out: table, CSV, JSON, sheet, Split-Desktop, figures
+//!     exports/                   what goes out: table, CSV, JSON, sheet, Split-Desktop, figures, maps
 //!     --- the core (core.rs) and fragmentation/ ---
 //! F3  flight/                    Flight, validated when made; review: doubts, verdicts; flight.toml
 //!     picture/                   pixels of photos: undistorting, reducing, drawing on them

@@ -87,6 +87,7 @@ impl State {
             }
             Command::Zoom(factor) => self.context.set_zoom_factor(factor.clamp(0.5, 3.0)),
             Command::Page(page) => self.page = page,
+            Command::Map(command) => self.apply_to_map(command),
             Command::Distributions(command) => self.apply_to_distributions(command),
             Command::Tab(tab) => self.show_tab(tab),
             Command::ToggleLog => self.preferences.log_open ^= true,
@@ -248,6 +249,7 @@ impl State {
                 Asking::Export
                     | Asking::SaveAs
                     | Asking::Picture
+                    | Asking::Map
                     | Asking::SaveMeasured(_)
                     | Asking::VolumeBase
                     | Asking::AddLayer

@@ -11,7 +11,8 @@
 //! state/              everything that panels read
 //! linked/             the point under the mouse, in the pile and in the photos
 //! photo_view/         the selected photo in the middle of the window
-//! size_distributions/ the other page
+//! map/                the page of the map
+//! size_distributions/ the page of size distributions
 //! ```
 //!
 //! So a test is a list of commands, undo is a list of states, and no frame does work that grows with
@@ -25,6 +26,7 @@ mod deciding;
 mod fonts;
 pub mod frame_times;
 pub mod linked;
+pub mod map;
 mod names;
 pub mod open_flight;
 pub mod opening_preview;
@@ -234,7 +236,7 @@ impl eframe::App for App {
                     .show(ui, |ui| panels::right_panel(state, inspector, ui, out));
             }
             let photo_panel = &mut self.photo_panel;
-            if state.middle == Middle::Both {
+            if state.middle == Middle::Both && state.page == Page::Pile {
                 // Below each other where there is more height than width.
                 let rest = ui.available_size();
                 let (panel, length) = match rest.x >= rest.y {
@@ -251,7 +253,9 @@ impl eframe::App for App {
             let (viewport, times) = (&mut self.viewport, &mut self.times);
             egui::CentralPanel::no_frame().show(ui, |ui| {
                 let place = ui.available_rect_before_wrap();
-                if let Some(preview) = state.opening_preview() {
+                if state.page == Page::Map {
+                    panels::map(state, ui, out);
+                } else if let Some(preview) = state.opening_preview() {
                     viewport.show_preview(state, preview, ui, out, times);
                 } else if state.middle.has_pile() {
                     viewport.show(state, ui, out, times);
@@ -345,7 +349,7 @@ fn drop_hint(state: &State, context: &egui::Context) {
             place.center(),
             egui::Align2::CENTER_CENTER,
             match state.page {
-                Page::Pile => "Let go to open this flight",
+                Page::Pile | Page::Map => "Let go to open this flight",
                 Page::SizeDistributions if state.distributions.tab == ResultTab::Effort => {
                     "Let go to add these times of steps"
                 }

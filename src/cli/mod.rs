@@ -36,7 +36,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use flight_arguments::FlightArguments;
-use of_photos::{rectify, scale_map};
+use of_photos::{map, rectify, scale_map};
 use on_surface::{profile, volume};
 use outputs::OutputArguments;
 
@@ -79,6 +79,8 @@ enum Command {
     ScaleMap(scale_map::ScaleMapArguments),
     /// Show a photo squarely, with one scale everywhere: onto a plane or from straight above.
     Rectify(rectify::RectifyArguments),
+    /// Draw the flight as a plan: hillshade, footprints, grid, scale bar; GeoTIFF, SVG, PDF or PNG.
+    Map(map::MapArguments),
     /// Look for what makes a flight's scales wrong: places, cameras, colours that do not match.
     Check(check::CheckArguments),
     /// Bring a reconstruction in a frame of its own to the world by known positions or distances.
@@ -231,6 +233,7 @@ pub fn run() -> ExitCode {
         Command::Rectify(arguments) => {
             Box::new(move |progress| rectify::rectify(&arguments, progress))
         }
+        Command::Map(arguments) => Box::new(move |progress| map::map(&arguments, progress)),
         Command::Check(arguments) => Box::new(move |progress| check::check(&arguments, progress)),
         Command::Georeference(arguments) => {
             Box::new(move |progress| georeference::georeference(&arguments, progress))

@@ -1,10 +1,12 @@
 //! What goes out: the scales of a flight as a table, CSV and JSON, the folder for Split-Desktop, and
 //! what is learnt from size distributions.
 
+mod drawing;
 mod markup;
 mod measured;
 mod photo_columns;
 mod photo_file_names;
+mod plan;
 mod rectified;
 mod report_object;
 mod scale_map;
@@ -16,10 +18,9 @@ mod size_distributions;
 mod split_desktop;
 mod tiff_pages;
 
-#[cfg(test)]
-use fragscale_core::surface;
 use fragscale_core::{
-    camera, fault, files, flight, geodesy, jobs, numbers, picture, scale, survey, units,
+    camera, fault, files, flight, geodesy, geometry, jobs, numbers, picture, scale, surface,
+    survey, units,
 };
 use fragscale_fragmentation as fragmentation;
 
@@ -29,6 +30,10 @@ pub use measured::{
 };
 pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};
 pub use photo_file_names::photo_file_stems;
+pub use plan::{
+    Grid, GridLine, MOST_MAP_PIXELS, MapFrame, Plan, PlanBar, PlanFormat, PlanInks, PlanPhoto,
+    PlanRequest, lit, taken_in_words,
+};
 pub use rectified::{RectifiedFormat, RectifiedPhoto};
 pub use report_object::{PointCloudScale, ReportObject};
 pub use scale_map::{MapLayer, ScaleMap, scale_map_png, scale_map_tiff};

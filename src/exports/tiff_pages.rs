@@ -45,6 +45,21 @@ pub(crate) struct Page<'a> {
     pub(crate) description: String,
     /// Pixels per centimetre, as a fraction.
     pub(crate) resolution: Option<[u32; 2]>,
+    /// Where it lies on the map.
+    pub(crate) georeference: Option<GeoTags>,
+}
+
+/// The tags of GeoTIFF (OGC 19-008r4, 7.1 and 7.2).
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct GeoTags {
+    /// The sides of a pixel in x, y and z.
+    pub(crate) pixel_scale: [f64; 3],
+    /// Column, row and 0 of a place of the picture, and its x, y and z.
+    pub(crate) tie_point: [f64; 6],
+    /// The directory of keys.
+    pub(crate) keys: Vec<u16>,
+    /// The texts of keys.
+    pub(crate) texts: String,
 }
 
 /// The bytes of a file of these pages, which are made one after the other.
@@ -131,6 +146,14 @@ fn write<W: Write + io::Seek>(
     directory.write_tag(Tag::RowsPerStrip, u32::try_from(rows)?)?;
     directory.write_tag(Tag::StripOffsets, &offsets[..])?;
     directory.write_tag(Tag::StripByteCounts, &counts[..])?;
+    if let Some(geo) = &page.georeference {
+        directory.write_tag(Tag::ModelPixelScaleTag, &geo.pixel_scale[..])?;
+        directory.write_tag(Tag::ModelTiepointTag, &geo.tie_point[..])?;
+        directory.write_tag(Tag::GeoKeyDirectoryTag, &geo.keys[..])?;
+        if !geo.texts.is_empty() {
+            directory.write_tag(Tag::GeoAsciiParamsTag, geo.texts.as_str())?;
+        }
+    }
     directory.finish()
 }
 

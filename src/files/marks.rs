@@ -8,6 +8,9 @@ pub const FLIGHT_MARK: &str = "# Written by fragscale.\n";
 /// Inside a figure, after the first tag.
 pub const SVG_MARK: &str = "<!-- Written by fragscale. -->\n";
 
+/// A line of a PDF, below the one that says its version and the one that says that it is no text.
+pub const PDF_MARK: &str = "% Written by fragscale.\n";
+
 /// In the head of a page.
 pub const HTML_MARK: &str = "<meta name=\"generator\" content=\"fragscale\"/>\n";
 
@@ -42,7 +45,8 @@ impl Kind {
         if beginning.starts_with(FLIGHT_MARK.trim_end().as_bytes()) {
             return Some(Self::Flight);
         }
-        let is_result = is_png(beginning) || is_tiff(beginning) || is_text(beginning);
+        let is_picture = is_png(beginning) || is_tiff(beginning) || is_pdf(beginning);
+        let is_result = is_picture || is_text(beginning);
         is_result.then_some(Self::Result)
     }
 }
@@ -63,6 +67,11 @@ fn is_png(beginning: &[u8]) -> bool {
 fn is_tiff(beginning: &[u8]) -> bool {
     (beginning.starts_with(b"II*\0") || beginning.starts_with(b"MM\0*"))
         && (beginning.get(TIFF_HEAD..)).is_some_and(|rest| rest.starts_with(b"fragscale "))
+}
+
+fn is_pdf(beginning: &[u8]) -> bool {
+    let mut lines = beginning.split_inclusive(|byte| *byte == b'\n');
+    beginning.starts_with(b"%PDF-") && lines.nth(2) == Some(PDF_MARK.as_bytes())
 }
 
 fn is_text(beginning: &[u8]) -> bool {
@@ -167,6 +176,7 @@ mod tests {
             "[{\"cameras\": {}}]",
             "<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>",
             "<!DOCTYPE html>\n<html><head></head></html>",
+            "%PDF-1.7\n%\u{e2}\n1 0 obj\n",
             "NVM_V3\n",
             "ply\nformat ascii 1.0\n",
         ] {

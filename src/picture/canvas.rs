@@ -2,8 +2,8 @@
 
 use image::RgbaImage;
 use tiny_skia::{
-    FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, PixmapMut, Rect, Stroke, StrokeDash,
-    Transform,
+    FillRule, FilterQuality, LineCap, LineJoin, Paint, Path, PathBuilder, PixmapMut, PixmapPaint,
+    PixmapRef, Rect, Stroke, StrokeDash, Transform,
 };
 
 use super::text::{Anchor, Typeface, text_path};
@@ -130,6 +130,31 @@ impl<'a> Canvas<'a> {
         if let Some(path) = path.and_then(|path| path.transform(turn)) {
             self.fill(&path, color);
         }
+    }
+
+    /// Another picture over a rectangle, stretched to it between its pixels; `at` is the rectangle's left
+    /// upper corner. One that is much larger than the rectangle has to be reduced first.
+    pub fn picture(&mut self, at: [f32; 2], size: [f32; 2], picture: &RgbaImage) {
+        let mut premultiplied = picture.clone();
+        for pixel in premultiplied.pixels_mut() {
+            let [r, g, b, a] = pixel.0;
+            pixel.0 = [times(r, a), times(g, a), times(b, a), a];
+        }
+        let (width, height) = picture.dimensions();
+        let Some(source) = PixmapRef::from_bytes(&premultiplied, width, height) else {
+            return;
+        };
+        let scale = [size[0] / width as f32, size[1] / height as f32];
+        let place = Transform::from_row(scale[0], 0.0, 0.0, scale[1], at[0], at[1]);
+        let is_exact = scale == [1.0, 1.0] && at.iter().all(|at| at.fract() == 0.0);
+        let paint = PixmapPaint {
+            quality: match is_exact {
+                true => FilterQuality::Nearest,
+                false => FilterQuality::Bilinear,
+            },
+            ..PixmapPaint::default()
+        };
+        self.on_pixels(|pixels| pixels.draw_pixmap(0, 0, source, &paint, place, None));
     }
 
     fn stroke(&mut self, path: &Path, width: f32, color: Color, dash: Option<StrokeDash>) {
@@ -339,6 +364,25 @@ mod tests {
         let mut empty = RgbaImage::new(4, 4);
         Canvas::new(&mut empty).line([0.0, 0.0], [4.0, 0.0], 1.0, RED);
         assert_eq!(empty.get_pixel(2, 3).0, [0; 4]);
+    }
+
+    /// A picture of 2 x 1 over 8 x 4: in the middle of each half its colour, and nothing beside it.
+    #[test]
+    fn a_picture_is_stretched_over_its_rectangle() {
+        let mut image = black();
+        let mut two = RgbaImage::from_pixel(2, 1, Rgba(WHITE));
+        two.put_pixel(1, 0, Rgba(RED));
+        Canvas::new(&mut image).picture([10.0, 20.0], [8.0, 4.0], &two);
+        assert_eq!(image.get_pixel(10, 22).0, WHITE);
+        assert_eq!(image.get_pixel(17, 22).0, RED);
+        for beside in [(9, 22), (18, 22), (14, 19), (14, 24)] {
+            assert_eq!(image.get_pixel(beside.0, beside.1).0, [0, 0, 0, 255]);
+        }
+        let mut same = black();
+        Canvas::new(&mut same).picture([3.0, 5.0], [2.0, 1.0], &two);
+        assert_eq!(same.get_pixel(3, 5).0, WHITE);
+        assert_eq!(same.get_pixel(4, 5).0, RED);
+        assert!((area(&same) - 1.0).abs() < 1e-9);
     }
 
     /// The picture of words that read upwards, turned by a quarter to the right, is that of the words.

@@ -28,6 +28,7 @@ mod georeference;
 mod geotiff;
 mod independent_answers;
 mod intervals;
+mod map;
 mod on_surface;
 mod overwriting;
 mod psd_compare;

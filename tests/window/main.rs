@@ -38,6 +38,7 @@ mod large_clouds;
 mod linked;
 mod long_names;
 mod looks;
+mod map;
 mod opening;
 mod overwriting;
 mod photo_view;

@@ -2,7 +2,7 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, SHIFT, keys, on_pile, with_flight};
+use super::{Action, SHIFT, beside_photos, keys, with_flight};
 use crate::command::{Choice, Command};
 use crate::size_distributions::{DistributionCommand, Page};
 
@@ -52,7 +52,7 @@ actions! {
             let open = state.open.as_ref()?;
             let photo = open.selected?;
             let goes_along = open.row(photo)?.goes_along();
-            on_pile(state, Command::Choose(photo, !goes_along))
+            beside_photos(state, Command::Choose(photo, !goes_along))
         },
     }
     CHOOSE_TRUSTED {

@@ -125,6 +125,12 @@ actions! {
         shortcut: keys(Modifiers::COMMAND, Key::P),
         command: |state| on_pile(state, Command::Ask(Some(Asking::Picture))),
     }
+    EXPORT_MAP {
+        label: "Export map…",
+        hover: "Write the flight as a plan: a page for a report (SVG, PDF, PNG) or pixels for map programs (GeoTIFF)",
+        shortcut: None,
+        command: |state| with_flight(state, Command::Ask(Some(Asking::Map))),
+    }
     CLOSE {
         label: "Close flight",
         hover: "Go back to the start page",
@@ -160,6 +166,7 @@ pub const MENU: &[Option<Action>] = &[
     None,
     Some(EXPORT),
     Some(PICTURE),
+    Some(EXPORT_MAP),
     None,
     Some(CLOSE),
     Some(QUIT),

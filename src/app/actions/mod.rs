@@ -91,6 +91,12 @@ fn on_pile(state: &State, command: Command) -> Option<Command> {
     in_sight.then(|| with_flight(state, command)).flatten()
 }
 
+/// What is done with the table of photos beside it, or beside the map.
+fn beside_photos(state: &State, command: Command) -> Option<Command> {
+    let in_sight = state.page != Page::SizeDistributions;
+    in_sight.then(|| with_flight(state, command)).flatten()
+}
+
 fn with_photo(state: &State, command: Command) -> Option<Command> {
     let open = state.open.as_ref().filter(|_| state.page == Page::Pile)?;
     open.selected.map(|_| command)

@@ -2,7 +2,7 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, keys, on_pile, survey, with_photo};
+use super::{Action, beside_photos, keys, on_pile, survey, with_photo};
 use crate::command::{Command, ReviewStep, ViewChange};
 use crate::open_flight::Measure;
 use crate::open_flight::survey::SurveyStep;
@@ -23,13 +23,13 @@ actions! {
         label: "Next photo",
         hover: "Select the next photo of the table",
         shortcut: keys(Modifiers::NONE, Key::ArrowDown),
-        command: |state| on_pile(state, Command::SelectBy(1)),
+        command: |state| beside_photos(state, Command::SelectBy(1)),
     }
     PREVIOUS {
         label: "Previous photo",
         hover: "Select the photo above in the table",
         shortcut: keys(Modifiers::NONE, Key::ArrowUp),
-        command: |state| on_pile(state, Command::SelectBy(-1)),
+        command: |state| beside_photos(state, Command::SelectBy(-1)),
     }
     MEASURE {
         label: "Measure a distance",

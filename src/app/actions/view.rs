@@ -2,7 +2,7 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, keys, on_pile, turning, with_photo};
+use super::{Action, keys, on_pile, turning, with_flight, with_photo};
 use crate::command::{Command, ViewChange};
 use crate::photo_view::{Middle, PhotoCommand};
 use crate::size_distributions::Page;
@@ -23,7 +23,7 @@ fn in_photo(state: &State, command: PhotoCommand) -> Option<Command> {
 
 fn has_panels(state: &State, command: Command) -> Option<Command> {
     let has = match state.page {
-        Page::Pile => state.open.is_some(),
+        Page::Pile | Page::Map => state.open.is_some(),
         Page::SizeDistributions => !state.distributions.sources().is_empty(),
     };
     has.then_some(command)
@@ -35,6 +35,12 @@ actions! {
         hover: "Show the flight over the pile",
         shortcut: keys(Modifiers::COMMAND, Key::Num1),
         command: |_| Some(Command::Page(Page::Pile)),
+    }
+    MAP {
+        label: "Map",
+        hover: "Show the flight as a plan: hillshade, footprints, grid, scale bar",
+        shortcut: keys(Modifiers::COMMAND, Key::Num3),
+        command: |state| with_flight(state, Command::Page(Page::Map)),
     }
     SIZE_DISTRIBUTIONS {
         label: "Size distributions",
@@ -141,6 +147,7 @@ actions! {
 /// The menu's entries.
 pub const MENU: &[Option<Action>] = &[
     Some(PILE),
+    Some(MAP),
     Some(SIZE_DISTRIBUTIONS),
     None,
     Some(TOP),

@@ -22,6 +22,8 @@ pub enum Asking {
     SaveAs,
     /// Where a picture goes, and how large it is.
     Picture,
+    /// Where the map goes.
+    Map,
     /// Which files of size distributions to add.
     AddDistributions,
     /// A table of size distributions.

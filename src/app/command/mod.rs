@@ -18,6 +18,7 @@ pub use view_change::ViewChange;
 use crate::flight::{DecisionKind, FlightSettings, Limits, Verdict};
 use crate::geometry::Ray;
 use crate::linked::PointFrom;
+use crate::map::MapCommand;
 use crate::open_flight::beside::BesideStep;
 use crate::open_flight::georeferencing::GeoreferenceForm;
 use crate::open_flight::survey::SurveyStep;
@@ -170,6 +171,8 @@ pub enum Command {
     Zoom(f32),
     /// Shows a page of the window.
     Page(Page),
+    /// Does something on the map.
+    Map(MapCommand),
     /// Does something with the size distributions.
     Distributions(DistributionCommand),
     /// Shows a tab of the right panel.

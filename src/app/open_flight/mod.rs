@@ -28,6 +28,7 @@ use crate::flight::{
 };
 use crate::geometry::{Bounds, LocalFrame};
 use crate::linked::{LinkedPoint, PointFrom};
+use crate::map::FlightMap;
 use crate::opening::{Colours, HealthFinding, StatedOfFlight, flight_health};
 use crate::photo_view::PhotoView;
 use crate::render::{LargePhoto, Orbit, PhotoImage, PhotoZoom, SurfaceBuffers, drawn_ground};
@@ -163,6 +164,8 @@ pub struct OpenFlight {
     pub pictures: Pictures,
     /// The selected photo in the middle of the window.
     pub photo_view: PhotoView,
+    /// The flight as a plan.
+    pub map: FlightMap,
     /// What the selected photo's corners lie on, where that is looked at.
     pub corners: Option<CornerFacts>,
     /// The scale field of the selected photo, where it is to be tinted.
@@ -233,6 +236,7 @@ impl OpenFlight {
                 preview: None,
             },
             photo_view: PhotoView::default(),
+            map: FlightMap::default(),
             corners: None,
             tint: None,
             tints: 0,
@@ -404,6 +408,7 @@ impl OpenFlight {
 
     /// Sorts and filters the table.
     pub fn arrange(&mut self) {
+        self.map.revision += 1;
         let rows: Vec<Row<'_>> = (0..self.review.count())
             .filter_map(|photo| self.row(photo))
             .collect();

@@ -116,12 +116,17 @@ fn why_no_export(open: &OpenFlight) -> &'static str {
 fn pages(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     for (page, name, action) in [
         (Page::Pile, "Pile", actions::view::PILE),
+        (Page::Map, "Map", actions::view::MAP),
         (
             Page::SizeDistributions,
             "Size distributions",
             actions::view::SIZE_DISTRIBUTIONS,
         ),
     ] {
+        // Without a flight there is no map.
+        if page == Page::Map && state.open.is_none() {
+            continue;
+        }
         let chosen = state.page == page;
         let button = ui
             .selectable_label(chosen, name)

@@ -40,6 +40,8 @@ pub enum Page {
     /// The flight over the pile, or the start page.
     #[default]
     Pile,
+    /// The flight as a plan, or the start page.
+    Map,
     /// The size distributions.
     SizeDistributions,
 }

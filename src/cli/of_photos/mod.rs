@@ -1,5 +1,7 @@
-//! Commands that write files for single photos of a flight, or for all of them.
+//! Commands that write files for single photos of a flight, for all of them, or of all together.
 
 mod chosen_photos;
+mod length;
+pub(super) mod map;
 pub(super) mod rectify;
 pub(super) mod scale_map;

@@ -106,6 +106,7 @@ impl RectifiedPhoto<'_> {
                     pixels: Pixels::Colors(Cow::Owned(picture.into_raw())),
                     description: description(self),
                     resolution,
+                    georeference: None,
                 };
                 tiff_of(std::iter::once(Ok(page)))
             }

@@ -46,6 +46,7 @@ pub fn scale_map_tiff(
             pixels: Pixels::Values(Cow::Owned(values_of(map, layer, origin))),
             description: description(map, layer, origin.to_array()),
             resolution: None,
+            georeference: None,
         })
     }))
 }

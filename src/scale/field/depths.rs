@@ -87,8 +87,7 @@ fn no_samples_in(
     if !corners.iter().all(|corner| corner.z > slack) {
         return false;
     }
-    let (columns, rows) = samples.near(&corners.map(|corner| corner.truncate() / corner.z));
-    columns.is_empty() || rows.is_empty()
+    !samples.any_near(&corners.map(|corner| corner.truncate() / corner.z))
 }
 
 struct Nearest<'a> {

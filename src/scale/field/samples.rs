@@ -201,6 +201,23 @@ impl Samples {
         (0..self.columns, self.rows.clone())
     }
 
+    /// Whether a pixel's point may lie within the box around these points.
+    pub(super) fn any_near(&self, corners: &[DVec2]) -> bool {
+        let (columns, rows) = self.near(corners);
+        let Layout::Scattered { points, .. } = &self.layout else {
+            return !columns.is_empty() && !rows.is_empty();
+        };
+        let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for &corner in corners {
+            (min, max) = (min.min(corner), max.max(corner));
+        }
+        // Room for rays that pass an edge by no more than rounding.
+        let room = 1e-9 * (DVec2::ONE + min.abs().max(max.abs()));
+        let (min, max) = (min - room, max + room);
+        let mut near = points[columns.start as usize..columns.end as usize].iter();
+        near.any(|point| point.cmpge(min).all() && point.cmple(max).all())
+    }
+
     /// Columns and rows that hold every pixel whose point lies within the box around these points.
     pub(super) fn near(&self, corners: &[DVec2]) -> (Range<u32>, Range<u32>) {
         match &self.layout {
@@ -244,33 +261,45 @@ impl Samples {
     }
 }
 
-/// Bins over the plane, even in the angles of x and of y: a wide lens puts its rim far out.
+/// Bins over the plane: even in x and y, or, where a wide lens puts its rim far out, in their angles.
 struct BinGrid {
+    is_wide: bool,
     min: DVec2,
-    /// Bins a radian.
+    /// Bins a unit of the plane, or a radian.
     density: DVec2,
     size: [usize; 2],
 }
 
-/// The angles of x and of y.
-fn angles(point: DVec2) -> DVec2 {
-    DVec2::new(point.x.atan(), point.y.atan())
-}
+/// Points further out than this are a wide lens's: 63 degrees beside the axis.
+const WIDE: f64 = 2.0;
 
 impl BinGrid {
     /// So many columns and rows of bins around all points that are finite.
     fn new(points: &[DVec2], size: [usize; 2]) -> Self {
+        let seen = || points.iter().copied().filter(|point| point.is_finite());
+        let is_wide = seen().any(|point| point.abs().max_element() > WIDE);
         let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        for &point in points.iter().filter(|point| point.is_finite()) {
-            (min, max) = (min.min(angles(point)), max.max(angles(point)));
+        for at in seen().map(|point| even(point, is_wide)) {
+            (min, max) = (min.min(at), max.max(at));
         }
         let count = DVec2::new(size[0] as f64, size[1] as f64);
         let density = count / (max - min).max(DVec2::splat(1e-12));
-        Self { min, density, size }
+        Self {
+            is_wide,
+            min,
+            density,
+            size,
+        }
     }
 
-    fn bin(&self, angles: DVec2) -> [usize; 2] {
-        let at = (angles - self.min) * self.density;
+    /// Where bins are even.
+    fn even(&self, point: DVec2) -> DVec2 {
+        even(point, self.is_wide)
+    }
+
+    /// The bin of an even place.
+    fn bin(&self, even: DVec2) -> [usize; 2] {
+        let at = (even - self.min) * self.density;
         // `as` saturates.
         [
             (at.x as usize).min(self.size[0] - 1),
@@ -282,11 +311,22 @@ impl BinGrid {
     fn around(&self, corners: &[DVec2]) -> ([usize; 2], [usize; 2]) {
         let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for &corner in corners {
-            (min, max) = (min.min(angles(corner)), max.max(angles(corner)));
+            (min, max) = (min.min(corner), max.max(corner));
         }
         // Room for rounding.
         let room = DVec2::splat(1e-12);
-        (self.bin(min - room), self.bin(max + room))
+        (
+            self.bin(self.even(min) - room),
+            self.bin(self.even(max) + room),
+        )
+    }
+}
+
+/// A point, or its angles.
+fn even(point: DVec2, is_wide: bool) -> DVec2 {
+    match is_wide {
+        true => DVec2::new(point.x.atan(), point.y.atan()),
+        false => point,
     }
 }
 
@@ -307,7 +347,7 @@ impl ScatteredBins {
             .iter()
             .map(|&point| match point.is_finite() {
                 true => {
-                    let [x, y] = grid.bin(angles(point));
+                    let [x, y] = grid.bin(grid.even(point));
                     y * side + x
                 }
                 false => side * side,
@@ -350,7 +390,7 @@ impl Bins {
         };
         let seen = points.iter().enumerate();
         for (place, &point) in seen.filter(|(_, point)| point.is_finite()) {
-            let [x, y] = bins.grid.bin(angles(point));
+            let [x, y] = bins.grid.bin(bins.grid.even(point));
             let (column, row) = ((place % columns) as u32, (place / columns) as u32);
             let held = &mut bins.held[y * size[0] + x];
             *held = [

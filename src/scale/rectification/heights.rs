@@ -6,13 +6,9 @@ use rayon::prelude::*;
 use super::raster::{MOST_PIXELS, PlaneRaster, around};
 use crate::camera::{Camera, Distortion, Pose};
 use crate::fault::Fault;
-use crate::geometry::Bounds;
 use crate::jobs::Progress;
 use crate::scale::{FieldError, FieldGrid, ImageKind, ScaleField};
-use crate::surface::Surface;
-
-/// Rows of the picture that one thread works on at a time.
-const BAND: u32 = 64;
+use crate::surface::{MapRaster, Surface};
 
 /// How much farther than what is seen beside it a point may be and still be seen, in pixels' widths at its
 /// distance: in a crease all that is seen beside a point is nearer.
@@ -39,7 +35,7 @@ impl Heights {
         progress: &Progress,
     ) -> Result<Self, Fault> {
         progress.stage("looking at the surface from above");
-        let mut heights = heights(raster, surface, progress)?;
+        let mut heights = surface.heights_from_above(&map_raster(raster), progress)?;
         progress.stage("finding what the camera sees");
         let sight = Sight::new(field, surface, progress)?;
         let columns = raster.columns as usize;
@@ -70,77 +66,14 @@ impl Heights {
     }
 }
 
-/// The highest of the surface at each pixel's middle; NaN where there is none.
-fn heights(
-    raster: &PlaneRaster,
-    surface: &Surface,
-    progress: &Progress,
-) -> Result<Vec<f64>, Fault> {
-    let frame = surface.frame();
-    let origin = frame.local_from_world(raster.world_from_picture(DVec2::ZERO));
-    // A place of the picture, of a point of the surface's frame.
-    let place = |point: DVec3| DVec2::new(point.x - origin.x, origin.y - point.y) / raster.pixel;
-    let columns = raster.columns;
-    let end = DVec2::new(f64::from(columns), f64::from(raster.rows));
-    let misses = |bounds: &Bounds| {
-        let (a, b) = (place(bounds.min), place(bounds.max));
-        b.y > end.y || a.y < 0.0 || b.x < 0.0 || a.x > end.x
-    };
-    let patches = surface.patches().seen(misses);
-    let patches =
-        patches.map_err(|error| Fault::new(error.to_string(), "check the surface file"))?;
-    let bands: Vec<u32> = (0..raster.rows).step_by(BAND as usize).collect();
-    let bands = bands.into_par_iter().map(|first| {
-        let rows = first..(first + BAND).min(raster.rows);
-        let mut highest = vec![f64::NAN; columns as usize * rows.len()];
-        let (top, bottom) = (f64::from(rows.start), f64::from(rows.end));
-        for patch in &patches {
-            let (a, b) = (place(patch.bounds.min), place(patch.bounds.max));
-            if b.y > bottom || a.y < top || b.x < 0.0 || a.x > f64::from(columns) {
-                continue;
-            }
-            if progress.is_cancelled() {
-                return Err(Fault::new("cancelled", "start it again when you want it"));
-            }
-            for corners in patch.triangles() {
-                let on_picture = corners.map(place);
-                let Some([min, max]) = around(on_picture.into_iter()) else {
-                    continue;
-                };
-                // Middles at + 0.5; `as` saturates.
-                let range = |min: f64, max: f64, from: u32, to: u32| {
-                    let first = ((min - 0.5).ceil() as u32).max(from);
-                    first..(((max - 0.5).floor() + 1.0) as u32).min(to)
-                };
-                for row in range(min.y, max.y, rows.start, rows.end) {
-                    for column in range(min.x, max.x, 0, columns) {
-                        let middle = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
-                        let Some(shares) = shares(&on_picture, middle) else {
-                            continue;
-                        };
-                        let z: f64 = (0..3).map(|i| corners[i].z * shares[i]).sum();
-                        let z = z + frame.origin().z;
-                        let index =
-                            (row - rows.start) as usize * columns as usize + column as usize;
-                        // NaN gives way.
-                        highest[index] = highest[index].max(z);
-                    }
-                }
-            }
-        }
-        Ok(highest)
-    });
-    let bands: Result<Vec<Vec<f64>>, Fault> = bands.collect();
-    Ok(bands?.concat())
-}
-
-/// How much of each corner is in a place inside a triangle, edges included; `None` outside.
-fn shares([a, b, c]: &[DVec2; 3], place: DVec2) -> Option<[f64; 3]> {
-    let whole = (*b - *a).perp_dot(*c - *a);
-    let share = |from: DVec2, to: DVec2| (to - from).perp_dot(place - from) / whole;
-    let shares = [share(*b, *c), share(*c, *a), share(*a, *b)];
-    // Edges belong to both sides; NaN, of a triangle that is seen edge-on, to none.
-    shares.iter().all(|share| *share >= -1e-9).then_some(shares)
+/// A horizontal raster, as the map has it.
+fn map_raster(raster: &PlaneRaster) -> MapRaster {
+    MapRaster {
+        corner: raster.world_from_picture(DVec2::ZERO).truncate(),
+        pixel: raster.pixel,
+        columns: raster.columns,
+        rows: raster.rows,
+    }
 }
 
 /// What the camera sees: depths in an image without a lens that shows all that the photo shows.

@@ -10,6 +10,7 @@ use std::path::PathBuf;
 
 use crate::actions;
 use crate::command::{Answers, Asking, Command, Dialog, MeasuredTable, PictureRequest};
+use crate::map::MapCommand;
 use crate::names;
 use crate::open_flight::OpenFlight;
 use crate::panels::path_field::path_field;
@@ -34,6 +35,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::SaveGeoreferenced => "Save georeferenced flight",
             Asking::SaveAs => "Save flight",
             Asking::Picture => "Save picture",
+            Asking::Map => "Export map",
             Asking::AddDistributions => "Add size distributions",
             Asking::PasteTable => "Paste table",
             Asking::AddEffort => "Add times of steps",
@@ -66,6 +68,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::SaveGeoreferenced => save_georeferenced(state, ui, commands),
                     Asking::SaveAs => save_as(state, ui, commands),
                     Asking::Picture => picture(state, ui, commands),
+                    Asking::Map => map(state, ui, commands),
                     Asking::AddDistributions => add_distributions(state, ui, commands),
                     Asking::PasteTable => paste(state, ui, commands),
                     Asking::AddEffort => add_effort(state, ui, commands),
@@ -341,6 +344,31 @@ fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             transparent: options.2,
             corner_rays: options.3,
         }));
+    }
+}
+
+fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    let unit = state.preferences.unit();
+    ui.label(format!(
+        "A name that ends in .tif is written as GeoTIFF for map programs; .svg, .pdf and .png are a page of A4 \
+         with grid, legend and a scale bar in {unit}."
+    ));
+    if open.files.crs.is_none() {
+        ui.weak("No coordinate system is stated: the file is in the flight's own frame.");
+    }
+    let start = proposed(open, Some("map.pdf"));
+    let browse = [("Browse…", Dialog::new_file("Export map", "map.pdf"))];
+    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Write map"));
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::Map(MapCommand::Save(path.into())));
     }
 }
 

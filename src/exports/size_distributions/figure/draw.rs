@@ -1,8 +1,8 @@
 //! The contents of a figure as shapes: on paper and in pixels the same ones.
 
 use super::layout::{Entry, EntryOf, Layout, PlotArea, TEXT, TITLE};
-use super::shapes::{Anchor, Colour, Pen, Shape};
 use super::{Band, Dash, FigureContents, Marker, Panel, Series, SizeAxis};
+use crate::drawing::{Anchor, Colour, Pen, Shape};
 
 const INK: Colour = [34, 34, 34];
 const LEVEL: Colour = [110, 110, 110];

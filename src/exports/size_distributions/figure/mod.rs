@@ -6,9 +6,7 @@
 //! of_comparison, of_fits  what is shown of them
 //! panels      what the panels of both have in common
 //! layout      where everything is
-//! shapes      lines, areas, markers and words
-//! draw        the contents as shapes, the same on paper (SVG) and in pixels (PNG)
-//! svg, png    the shapes as a document and in pixels
+//! draw        the contents as shapes (`crate::drawing`), the same on paper (SVG) and in pixels (PNG)
 //! picture     a figure as a file
 //! ```
 //!
@@ -20,11 +18,8 @@ mod of_comparison;
 mod of_fits;
 mod panels;
 mod picture;
-mod png;
-mod shapes;
 mod size_axis;
 mod style;
-mod svg;
 #[cfg(test)]
 #[allow(
     clippy::expect_used,
@@ -33,11 +28,12 @@ mod svg;
 )]
 mod tests;
 
+pub use crate::drawing::{Dash, Marker};
 pub use of_comparison::figure_of_comparison;
 pub use of_fits::{FittedDistribution, figure_of_fits};
 pub use picture::{FigureFormat, figure_png, figure_svg};
 pub use size_axis::{SizeAxis, SizeTick};
-pub use style::{Dash, FigureStyle, Marker};
+pub use style::FigureStyle;
 
 /// What a figure shows. All sizes are in the unit of the size axis.
 #[derive(Debug, Clone, PartialEq)]

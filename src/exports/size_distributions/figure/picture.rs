@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use super::FigureContents;
 use super::draw::drawn;
 use super::layout::{Layout, TEXT, WIDTH};
-use super::{FigureContents, png, svg};
+use crate::drawing::{png, svg};
 use crate::fault::Fault;
 
 /// What a figure is written as.
@@ -53,7 +54,8 @@ impl FigureFormat {
 pub fn figure_svg(contents: &FigureContents) -> String {
     let layout = layout(contents);
     let shapes = drawn(contents, &layout);
-    svg::document(&shapes, size(&layout), &spoken(contents))
+    // Only pictures can fail, and there is none in it.
+    svg::document(&shapes, size(&layout), &spoken(contents)).unwrap_or_default()
 }
 
 /// The figure as the bytes of a PNG, 1800 pixels wide.

@@ -1,5 +1,7 @@
 //! How a curve looks: never by its colour alone.
 
+use crate::drawing::{Dash, Marker};
+
 /// Colour, marker and dash of a series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FigureStyle {
@@ -9,36 +11,6 @@ pub struct FigureStyle {
     pub marker: Marker,
     /// Of its line.
     pub dash: Dash,
-}
-
-/// The shape of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Marker {
-    /// A disc.
-    Circle,
-    /// A square on its side.
-    Square,
-    /// A triangle on its side.
-    Triangle,
-    /// A square on its corner.
-    Diamond,
-    /// A triangle on its corner.
-    TriangleDown,
-    /// Two strokes from corner to corner.
-    Cross,
-}
-
-/// The pattern of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Dash {
-    /// Without gaps.
-    Solid,
-    /// Long strokes.
-    Long,
-    /// Short strokes.
-    Short,
-    /// A long and a short stroke in turn.
-    DashDot,
 }
 
 /// Okabe and Ito, "Color Universal Design" (2008), without the yellow, which is too light on white,
@@ -83,18 +55,6 @@ impl FigureStyle {
                 .copied()
                 .unwrap_or(Marker::Circle),
             dash: DASHES.get(of(DASHES.len())).copied().unwrap_or(Dash::Solid),
-        }
-    }
-}
-
-impl Dash {
-    /// Lengths of stroke and gap in turn, in widths of the line; empty without gaps.
-    pub fn pattern(self) -> &'static [f64] {
-        match self {
-            Self::Solid => &[],
-            Self::Long => &[6.0, 3.0],
-            Self::Short => &[2.5, 2.5],
-            Self::DashDot => &[6.0, 2.5, 1.5, 2.5],
         }
     }
 }

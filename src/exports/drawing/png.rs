@@ -1,4 +1,4 @@
-//! The shapes of a figure in the pixels of a PNG.
+//! Shapes in the pixels of a PNG, or of any picture.
 
 use image::codecs::png::PngEncoder;
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, Rgba, RgbaImage};
@@ -10,7 +10,7 @@ use crate::markup::printable;
 use crate::picture::{self, Canvas, Typeface};
 
 /// Pixels to a unit of the figure: 1800 across, which are 300 dpi at 15 cm.
-const PIXELS: f64 = 2.0;
+pub(crate) const PIXELS: f64 = 2.0;
 
 /// Heights of a line to an em of the font.
 const LINE: f64 = 1.121;
@@ -19,7 +19,7 @@ const LINE: f64 = 1.121;
 const TYPEFACE: Typeface = Typeface::Proportional;
 
 /// The width of a line of text, units of the figure.
-pub(super) fn text_width(size: f64, text: &str) -> f64 {
+pub(crate) fn text_width(size: f64, text: &str) -> f64 {
     f64::from(picture::text_width(TYPEFACE, (size / LINE) as f32, text))
 }
 
@@ -28,28 +28,47 @@ pub(super) fn text_width(size: f64, text: &str) -> f64 {
 /// # Errors
 ///
 /// Only where the encoder fails.
-pub(super) fn bytes(shapes: &[Shape], size: [f64; 2]) -> Result<Vec<u8>, Fault> {
+pub(crate) fn bytes(shapes: &[Shape], size: [f64; 2]) -> Result<Vec<u8>, Fault> {
     let [width, height] = size.map(|length| (length * PIXELS) as u32);
     let mut pixels = RgbaImage::from_pixel(width, height, Rgba([255; 4]));
-    let mut canvas = Canvas::new(&mut pixels);
-    canvas.set_typeface(TYPEFACE);
-    for shape in shapes {
-        draw(&mut canvas, shape);
-    }
-    drop(canvas);
+    draw_all(&mut pixels, shapes, PIXELS);
     let picture = DynamicImage::from(pixels).into_rgb8();
     let mut bytes = Vec::new();
     PngEncoder::new(&mut bytes)
         .write_image(&picture, width, height, ExtendedColorType::Rgb8)
-        .map_err(|e| {
-            let what = format!("the figure cannot be encoded ({e})");
-            Fault::new(what, "report it: this is a defect")
-        })?;
+        .map_err(not_encoded)?;
     Ok(marked_png(bytes))
 }
 
-fn draw(canvas: &mut Canvas<'_>, shape: &Shape) {
-    let pixels = |length: f64| (length * PIXELS) as f32;
+/// A picture with its opacity, for the inside of a document.
+///
+/// # Errors
+/// Only where the encoder fails.
+pub(super) fn picture_bytes(pixels: &RgbaImage) -> Result<Vec<u8>, Fault> {
+    let (width, height) = pixels.dimensions();
+    let mut bytes = Vec::new();
+    PngEncoder::new(&mut bytes)
+        .write_image(pixels, width, height, ExtendedColorType::Rgba8)
+        .map_err(not_encoded)?;
+    Ok(bytes)
+}
+
+fn not_encoded(error: image::ImageError) -> Fault {
+    let what = format!("the figure cannot be encoded ({error})");
+    Fault::new(what, "report it: this is a defect")
+}
+
+/// Draws shapes over a picture, with so many of its pixels to a unit.
+pub(crate) fn draw_all(picture: &mut RgbaImage, shapes: &[Shape], pixels: f64) {
+    let mut canvas = Canvas::new(picture);
+    canvas.set_typeface(TYPEFACE);
+    for shape in shapes {
+        draw(&mut canvas, shape, pixels);
+    }
+}
+
+fn draw(canvas: &mut Canvas<'_>, shape: &Shape, to_a_unit: f64) {
+    let pixels = |length: f64| (length * to_a_unit) as f32;
     let place = |point: &[f64; 2]| point.map(pixels);
     let opaque = |[red, green, blue]: [u8; 3]| [red, green, blue, u8::MAX];
     match shape {
@@ -96,5 +115,10 @@ fn draw(canvas: &mut Canvas<'_>, shape: &Shape) {
                 false => canvas.text(at, em, opaque(*colour), &text, anchor),
             }
         }
+        Shape::Picture {
+            at,
+            size,
+            pixels: picture,
+        } => canvas.picture(place(at), place(size), picture),
     }
 }

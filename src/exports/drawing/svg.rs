@@ -1,8 +1,11 @@
-//! The shapes of a figure as the elements of an SVG 1.1 document: `polyline`, `polygon` and `text`.
+//! Shapes as the elements of an SVG 1.1 document: `polyline`, `polygon`, `text` and `image`.
 
 use std::fmt::Write;
 
+use super::base64::base64;
+use super::png::picture_bytes;
 use super::shapes::{Anchor, Colour, Shape};
+use crate::fault::Fault;
 use crate::files::SVG_MARK;
 use crate::markup::escaped;
 
@@ -13,7 +16,14 @@ const LINE: f64 = 1.24;
 const HALF_CAPITAL: f64 = 0.36;
 
 /// A document of this size, a CSS pixel a unit; `title` is for those who hear pages.
-pub(super) fn document(shapes: &[Shape], [width, height]: [f64; 2], title: &str) -> String {
+///
+/// # Errors
+/// Only where a picture cannot be encoded.
+pub(crate) fn document(
+    shapes: &[Shape],
+    [width, height]: [f64; 2],
+    title: &str,
+) -> Result<String, Fault> {
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
          viewBox=\"0 0 {width} {height}\" role=\"img\" font-family=\"sans-serif\" \
@@ -22,10 +32,25 @@ pub(super) fn document(shapes: &[Shape], [width, height]: [f64; 2], title: &str)
     );
     svg += &format!("<rect width=\"{width}\" height=\"{height}\" fill=\"#FFFFFF\"/>\n");
     for shape in shapes {
-        // Writing to a string does not fail.
-        let _ = element(&mut svg, shape);
+        match shape {
+            Shape::Picture { at, size, pixels } => {
+                // `href` without a prefix is of SVG 2; with it, of 1.1, all programs know it.
+                svg += &format!(
+                    "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" \
+                     preserveAspectRatio=\"none\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
+                     xlink:href=\"data:image/png;base64,{}\"/>\n",
+                    short(at[0]),
+                    short(at[1]),
+                    short(size[0]),
+                    short(size[1]),
+                    base64(&picture_bytes(pixels)?)
+                );
+            }
+            // Writing to a string does not fail.
+            _ => drop(element(&mut svg, shape)),
+        }
     }
-    svg + "</svg>\n"
+    Ok(svg + "</svg>\n")
 }
 
 fn element(svg: &mut String, shape: &Shape) -> std::fmt::Result {
@@ -92,6 +117,8 @@ fn element(svg: &mut String, shape: &Shape) -> std::fmt::Result {
             }
             writeln!(svg, ">{}</text>", escaped(text))
         }
+        // Written by who knows what to do where it fails.
+        Shape::Picture { .. } => Ok(()),
     }
 }
 
@@ -115,7 +142,7 @@ fn hex([red, green, blue]: Colour) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::size_distributions::figure::Dash;
+    use crate::drawing::Dash;
 
     /// SVG 1.1, sections 9.6, 9.7, 10.4 and 11.4.
     #[test]
@@ -142,7 +169,7 @@ mod tests {
                 colour: [0; 3],
             },
         ];
-        let svg = document(&shapes, [30.0, 40.0], "A & B");
+        let svg = document(&shapes, [30.0, 40.0], "A & B").unwrap();
         for line in [
             "<title>A &amp; B</title>",
             "<polyline fill=\"none\" stroke=\"#0080FF\" stroke-width=\"2\" stroke-dasharray=\"5 5\" \

@@ -1,14 +1,18 @@
-//! What a figure is drawn with: lines, areas and words, in units of the figure; `svg` and `png` write
-//! them.
+//! What figures and maps are drawn with: lines, areas, words and pictures, in units of the figure, x to the
+//! right and y down; `svg`, `png` and `pdf` write them.
 
-use super::{Dash, Marker};
+use std::sync::Arc;
+
+use image::RgbaImage;
+
+use super::strokes::{Dash, Marker};
 
 /// sRGB.
-pub(super) type Colour = [u8; 3];
+pub(crate) type Colour = [u8; 3];
 
 /// Which end of a text is meant; always at half the height of its capitals.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Anchor {
+pub(crate) enum Anchor {
     Left,
     Middle,
     Right,
@@ -16,7 +20,7 @@ pub(super) enum Anchor {
 
 /// One of them.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Shape {
+pub(crate) enum Shape {
     /// From point to point.
     Line {
         points: Vec<[f64; 2]>,
@@ -39,16 +43,22 @@ pub(super) enum Shape {
         upwards: bool,
         colour: Colour,
     },
+    /// Pixels over a rectangle, stretched to it; `at` is its left upper corner.
+    Picture {
+        at: [f64; 2],
+        size: [f64; 2],
+        pixels: Arc<RgbaImage>,
+    },
 }
 
 /// Collects shapes, the first at the back.
 #[derive(Debug, Default)]
-pub(super) struct Pen {
-    pub(super) shapes: Vec<Shape>,
+pub(crate) struct Pen {
+    pub(crate) shapes: Vec<Shape>,
 }
 
 impl Pen {
-    pub(super) fn line(&mut self, points: &[[f64; 2]], colour: Colour, width: f64, dash: Dash) {
+    pub(crate) fn line(&mut self, points: &[[f64; 2]], colour: Colour, width: f64, dash: Dash) {
         if points.len() > 1 {
             self.shapes.push(Shape::Line {
                 points: points.to_vec(),
@@ -60,7 +70,7 @@ impl Pen {
     }
 
     /// A filled outline. `opacity` is 0 to 1.
-    pub(super) fn area(&mut self, outline: &[[f64; 2]], colour: Colour, opacity: f64) {
+    pub(crate) fn area(&mut self, outline: &[[f64; 2]], colour: Colour, opacity: f64) {
         if outline.len() > 2 {
             self.shapes.push(Shape::Area {
                 outline: outline.to_vec(),
@@ -71,7 +81,7 @@ impl Pen {
     }
 
     /// A marker with a white rim, `radius` being half a circle's width.
-    pub(super) fn marker(&mut self, at: [f64; 2], marker: Marker, radius: f64, colour: Colour) {
+    pub(crate) fn marker(&mut self, at: [f64; 2], marker: Marker, radius: f64, colour: Colour) {
         let white = [255; 3];
         if marker == Marker::Cross {
             for (width, colour) in [(4.4, white), (2.2, colour)] {
@@ -92,7 +102,7 @@ impl Pen {
     }
 
     /// A line of text.
-    pub(super) fn text(
+    pub(crate) fn text(
         &mut self,
         at: [f64; 2],
         size: f64,
@@ -111,7 +121,7 @@ impl Pen {
     }
 
     /// A line of text that reads upwards, its middle at a point.
-    pub(super) fn text_upwards(&mut self, at: [f64; 2], size: f64, text: &str, colour: Colour) {
+    pub(crate) fn text_upwards(&mut self, at: [f64; 2], size: f64, text: &str, colour: Colour) {
         self.shapes.push(Shape::Text {
             at,
             size,

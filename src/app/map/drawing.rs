@@ -1,0 +1,84 @@
+//! The part of the plan that is in sight, as a picture: a thread draws it, so that no frame waits for many
+//! photos.
+
+use super::part::{DrawnPart, LONGEST, PartInSight};
+use crate::exports::{PlanInks, lit};
+use crate::jobs::Progress;
+use crate::state::{Severity, State};
+use crate::surface::MapRaster;
+use crate::tasks::Task;
+
+impl Task {
+    /// Drawing the part of the map that is in sight.
+    pub const MAP_PART: Self = Self::new("Drawing the map").of_flight().to_the_end();
+}
+
+/// How much coarser than the screen the ground may be before the part in sight is lit anew.
+const COARSE: f64 = 1.4;
+
+impl State {
+    /// Draws a part of the plan.
+    pub(super) fn draw_map(&mut self, part: PartInSight) {
+        let made = self.open.as_ref().and_then(|open| open.map.made.as_ref());
+        let Some(made) = made else {
+            return;
+        };
+        let (plan, surface) = (made.plan.clone(), made.surface.clone());
+        let context = self.context.clone();
+        let work = move |progress: &Progress| {
+            progress.stage("drawing the map");
+            let frame = part.frame();
+            let inks = match part.dark {
+                true => PlanInks::DARK,
+                false => PlanInks::PAPER,
+            };
+            let options = egui::TextureOptions::LINEAR;
+            let texture = |name: &str, picture: &image::RgbaImage| {
+                let size = [picture.width() as usize, picture.height() as usize];
+                let pixels = egui::ColorImage::from_rgba_unmultiplied(size, picture.as_raw());
+                context.load_texture(name, pixels, options)
+            };
+            let picture = plan.photos_picture(&frame, &inks, part.pixels);
+            let photos = texture("photos of the map", &picture);
+            // A pixel of the screen, world units.
+            let pixel = 1.0 / (part.scale * part.pixels);
+            let ground = if plan.raster.pixel > COARSE * pixel {
+                let ([min, max], whole) = (frame.bounds(), plan.raster.bounds());
+                let seen = [min.max(whole[0]), max.min(whole[1])];
+                let raster = seen[0].cmplt(seen[1]).all().then(|| {
+                    let most = (LONGEST * LONGEST) as u64;
+                    MapRaster::over(seen, pixel, most)
+                });
+                match raster.transpose()? {
+                    Some(raster) => {
+                        let picture = lit(&surface, &raster, plan.light, progress)?;
+                        Some((texture("ground of the map", &picture), raster.bounds()))
+                    }
+                    None => None,
+                }
+            } else {
+                None
+            };
+            Ok(DrawnPart {
+                part,
+                frame,
+                photos,
+                ground,
+            })
+        };
+        type Drawn = Result<DrawnPart, crate::fault::Fault>;
+        self.start(Task::MAP_PART, work, move |state, drawn: Drawn| {
+            match (drawn, &mut state.open) {
+                (Ok(drawn), Some(open)) => open.map.drawn = Some(drawn),
+                (Ok(_), None) => {}
+                (Err(fault), open) => {
+                    // Not tried again before something moves.
+                    if let Some(open) = open {
+                        open.map.not_drawn = Some(part);
+                    }
+                    state.say(Severity::Error, &fault.to_string());
+                }
+            }
+        });
+    }
+}

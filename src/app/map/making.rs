@@ -1,0 +1,70 @@
+//! The plan of the flight on the screen, as a job.
+
+use std::sync::Arc;
+
+use super::{MadePlan, PhotosAt};
+use crate::exports::{Plan, PlanRequest};
+use crate::fault::Fault;
+use crate::jobs::Progress;
+use crate::state::{Severity, State};
+use crate::tasks::Task;
+
+impl Task {
+    /// Making the plan of a flight.
+    pub const MAP: Self = Self::new("Map").of_flight().to_the_end();
+}
+
+impl State {
+    /// Makes the plan of the review as it is now; its ground only where the surface is another one.
+    pub(super) fn make_map(&mut self) {
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        let revision = open.map.revision;
+        let before = open.map.made.as_ref().map(|made| {
+            let same = Arc::ptr_eq(&made.surface, &open.review.flight().parts().surface);
+            (same.then(|| made.plan.clone()), made.ground.clone())
+        });
+        let (review, crs) = (open.review.clone(), open.files.crs.clone());
+        let context = self.context.clone();
+        let work = move |progress: &Progress| {
+            let request = PlanRequest {
+                crs: crs.as_deref(),
+                ..PlanRequest::default()
+            };
+            let kept = before.and_then(|(plan, ground)| Some((plan?, ground)));
+            let (plan, ground) = match kept {
+                Some((plan, ground)) => (plan.with_photos_of(&review), ground),
+                None => {
+                    let plan = Plan::new(&review, request, progress)?;
+                    let size = [plan.ground.width() as usize, plan.ground.height() as usize];
+                    let pixels =
+                        egui::ColorImage::from_rgba_unmultiplied(size, plan.ground.as_raw());
+                    let options = egui::TextureOptions::LINEAR;
+                    let ground = context.load_texture("ground of the map", pixels, options);
+                    (plan, ground)
+                }
+            };
+            Ok(MadePlan {
+                revision,
+                photos: Arc::new(PhotosAt::new(&plan)),
+                surface: review.flight().parts().surface.clone(),
+                plan: Arc::new(plan),
+                ground,
+            })
+        };
+        self.start(Task::MAP, work, |state, made: Result<MadePlan, Fault>| {
+            match (made, &mut state.open) {
+                (Ok(made), Some(open)) => open.map.made = Some(made),
+                (Ok(_), None) => {}
+                (Err(fault), open) => {
+                    // Not tried again before something changes.
+                    if let Some(open) = open {
+                        open.map.refused = Some((open.map.revision, fault.to_string()));
+                    }
+                    state.say(Severity::Error, &fault.to_string());
+                }
+            }
+        });
+    }
+}

@@ -1,0 +1,141 @@
+//! What lies over the map: grid with coordinates, north, scale bar, and what the mouse points at.
+
+use egui::{Align2, Color32, FontId, Rect, Stroke, pos2, vec2};
+use glam::DVec2;
+
+use super::inside;
+use crate::exports::{Grid, MapFrame, Plan};
+use crate::map::MadePlan;
+use crate::units::LengthUnit;
+
+const LABEL: f32 = 11.0;
+/// The longest bar, points.
+const BAR: f64 = 160.0;
+
+/// Lines at round coordinates, which are written at the left and the lower edge.
+pub(super) fn grid(map: &MapFrame, painter: &egui::Painter, frame: Rect, ui: &egui::Ui) {
+    let grid = Grid::of(map);
+    let line = Stroke::new(1.0, ui.visuals().text_color().gamma_multiply(0.22));
+    for across in &grid.across {
+        let x = map.place(DVec2::new(across.at, 0.0))[0] as f32;
+        painter.vline(x, frame.y_range(), line);
+        let at = pos2(x, frame.bottom() - 3.0);
+        text(painter, at, Align2::CENTER_BOTTOM, LABEL, &across.label, ui);
+    }
+    for up in &grid.up {
+        let y = map.place(DVec2::new(0.0, up.at))[1] as f32;
+        painter.hline(frame.x_range(), y, line);
+        // The corner belongs to the other edge's labels.
+        if y < frame.bottom() - 24.0 {
+            text(
+                painter,
+                pos2(frame.left() + 3.0, y),
+                Align2::LEFT_CENTER,
+                LABEL,
+                &up.label,
+                ui,
+            );
+        }
+    }
+}
+
+/// Words that are read on any ground.
+fn text(
+    painter: &egui::Painter,
+    at: egui::Pos2,
+    anchor: Align2,
+    size: f32,
+    words: &str,
+    ui: &egui::Ui,
+) {
+    let color = ui.visuals().strong_text_color();
+    let galley = painter.layout_no_wrap(words.to_owned(), FontId::proportional(size), color);
+    let place = anchor.anchor_size(at, galley.size());
+    painter.rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, behind(ui));
+    painter.galley(place.min, galley, color);
+}
+
+fn behind(ui: &egui::Ui) -> Color32 {
+    ui.visuals().extreme_bg_color.gamma_multiply(0.75)
+}
+
+/// An arrow to the grid's north; in a frame of its own, along y.
+pub(super) fn north(plan: &Plan, painter: &egui::Painter, frame: Rect, ui: &egui::Ui) {
+    let (letter, words) = match plan.is_on_map() {
+        true => ("N", "grid north"),
+        false => ("y", "y of the flight's frame"),
+    };
+    let color = ui.visuals().strong_text_color();
+    let tip = inside(frame, frame.width() - 24.0, 26.0);
+    let back = Rect::from_min_max(tip + vec2(-14.0, -24.0), tip + vec2(14.0, 34.0));
+    painter.rect_filled(back, 3.0, behind(ui));
+    let font = FontId::proportional(14.0);
+    painter.text(
+        tip - vec2(0.0, 4.0),
+        Align2::CENTER_BOTTOM,
+        letter,
+        font,
+        color,
+    );
+    let (right, left) = (tip + vec2(7.0, 30.0), tip + vec2(-7.0, 30.0));
+    let notch = tip + vec2(0.0, 23.0);
+    let half = vec![tip, right, notch];
+    painter.add(egui::Shape::convex_polygon(half, color, Stroke::NONE));
+    let around = vec![tip, right, notch, left];
+    painter.add(egui::Shape::closed_line(around, Stroke::new(1.2, color)));
+    let hint = ui.interact(
+        back,
+        ui.scope_id().with("north of the map"),
+        egui::Sense::hover(),
+    );
+    hint.on_hover_text(words);
+}
+
+/// A bar of a round length.
+pub(super) fn bar(
+    plan: &Plan,
+    map: &MapFrame,
+    unit: LengthUnit,
+    painter: &egui::Painter,
+    frame: Rect,
+    ui: &egui::Ui,
+) {
+    let Some(bar) = plan.bar(map.scale, BAR, unit) else {
+        return;
+    };
+    let color = ui.visuals().strong_text_color();
+    let end = frame.max - vec2(14.0, 30.0);
+    let long = bar.long as f32;
+    let start = end - vec2(long, 0.0);
+    let back = Rect::from_min_max(start - vec2(8.0, 20.0), end + vec2(8.0, 8.0));
+    painter.rect_filled(back, 3.0, behind(ui));
+    let stroke = Stroke::new(2.0, color);
+    painter.line_segment([start, end], stroke);
+    for tip in [start, end] {
+        painter.line_segment([tip - vec2(0.0, 4.0), tip + vec2(0.0, 4.0)], stroke);
+    }
+    let middle = start + vec2(long / 2.0, -4.0);
+    let font = FontId::proportional(12.0);
+    painter.text(middle, Align2::CENTER_BOTTOM, bar.words(), font, color);
+}
+
+/// Coordinates and photo under the mouse, in the upper left.
+pub(super) fn words(
+    made: &MadePlan,
+    point: DVec2,
+    photo: Option<usize>,
+    painter: &egui::Painter,
+    frame: Rect,
+    ui: &egui::Ui,
+) {
+    let unit = made.plan.unit_of_lengths();
+    let mut words = format!("x {:.2}  y {:.2} {unit}", point.x, point.y);
+    if let Some(photo) = photo.and_then(|photo| made.plan.photos.get(photo)) {
+        let verdict = photo
+            .verdict
+            .map_or("not settled", |verdict| verdict.as_str());
+        words = format!("{words}   {}: {verdict}", photo.name);
+    }
+    let at = inside(frame, 6.0, 5.0);
+    text(painter, at, Align2::LEFT_TOP, 13.0, &words, ui);
+}

@@ -1,0 +1,290 @@
+//! The flight as a plan, seen from straight above in its own coordinates: the surface's hillshade, where
+//! every photo lies with its verdict, and where it was taken from. The window shows it, a report takes it
+//! along: on a page (SVG, PDF, PNG), or as pixels that map programs put in their place (GeoTIFF).
+//!
+//! ```text
+//! extent    what a plan holds
+//! frame     which part of the map is drawn where
+//! grid      lines at round coordinates
+//! inks      colours and dashes of verdicts
+//! clip      outlines within a frame
+//! photos    footprints, cameras and names, drawn
+//! page      title, grid, north, bar and legend around it
+//! geotiff   pixels with their place on the Earth
+//! format    which of them a file's name asks for
+//! ```
+//!
+//! Nothing in it knows the window.
+
+mod clip;
+mod extent;
+mod format;
+mod frame;
+mod geotiff;
+mod grid;
+mod inks;
+mod page;
+mod photos;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use image::{Rgba, RgbaImage};
+
+pub use format::PlanFormat;
+pub use frame::MapFrame;
+pub use grid::{Grid, GridLine};
+pub use inks::PlanInks;
+
+use crate::fault::Fault;
+use crate::flight::{Date, Review, Verdict};
+use crate::geodesy::{Crs, CrsKind, is_stated};
+use crate::jobs::Progress;
+use crate::numbers::{round_down, round_near};
+use crate::surface::{Light, MapRaster, Surface, hillshade};
+use crate::units::LengthUnit;
+
+/// The most pixels of the ground: 160 MB of colours, and twice as much of heights.
+pub const MOST_MAP_PIXELS: u64 = 40_000_000;
+
+/// About how many pixels the longer side of the ground has if nobody says.
+const SIDE: f64 = 1300.0;
+
+/// Grey of the ground where no light falls on it, and what full light adds.
+const DARKEST: f64 = 60.0;
+const LIGHT: f64 = 190.0;
+
+/// What is not in the review, or can be chosen.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PlanRequest<'a> {
+    /// The side of a pixel of the ground, world units; `None` for about 1300 of them along the longer side.
+    pub pixel: Option<f64>,
+    /// The coordinate system of the world: "EPSG:n" or WKT.
+    pub crs: Option<&'a str>,
+    /// When the photos were taken, in words, where they say it.
+    pub taken: Option<&'a str>,
+}
+
+/// The days of "YYYY:MM:DD HH:MM:SS", as EXIF writes times: "2024-05-06" or "2024-05-06 to 2024-05-07"; `None`
+/// where none is a day of the calendar.
+pub fn taken_in_words<'a>(times: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let day = |time: &str| time.get(..10)?.replace(':', "-").parse::<Date>().ok();
+    let days: Vec<Date> = times.into_iter().filter_map(day).collect();
+    let (first, last) = (days.iter().min()?, days.iter().max()?);
+    Some(match first == last {
+        true => first.to_string(),
+        false => format!("{first} to {last}"),
+    })
+}
+
+/// A flight as a plan. Coordinates are x and y of the world.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The flight's name.
+    pub flight: String,
+    /// The coordinate system: "EPSG:n" or WKT; `None` in a frame of its own.
+    pub crs: Option<String>,
+    /// When the photos were taken.
+    pub taken: Option<String>,
+    /// Of the coordinates.
+    pub unit: LengthUnit,
+    /// Whether somebody says that it is this unit.
+    pub unit_known: bool,
+    /// Least and greatest coordinates of what the plan holds.
+    pub extent: [DVec2; 2],
+    /// Where the ground's pixels lie.
+    pub raster: MapRaster,
+    /// The hillshade, grey, transparent where there is no surface.
+    pub ground: Arc<RgbaImage>,
+    /// The light on it.
+    pub light: Light,
+    /// In the order of the flight.
+    pub photos: Vec<PlanPhoto>,
+}
+
+/// A scale bar.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanBar {
+    /// In its unit.
+    pub length: f64,
+    /// Of that unit.
+    pub symbol: &'static str,
+    /// Units of the drawing.
+    pub long: f64,
+}
+
+impl PlanBar {
+    /// What is written at it.
+    pub fn words(&self) -> String {
+        format!("{} {}", self.length, self.symbol)
+    }
+}
+
+/// A photo on the plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanPhoto {
+    /// Its name.
+    pub name: String,
+    /// `None` while it is not settled.
+    pub verdict: Option<Verdict>,
+    /// The outline of what it shows, closed; empty where it shows nothing.
+    pub outline: Vec<DVec2>,
+    /// What its middle shows.
+    pub middle: Option<DVec2>,
+    /// Where the camera stood.
+    pub camera: DVec2,
+}
+
+impl Plan {
+    /// The plan of a reviewed flight; footprints are on it once the review has looked at them.
+    ///
+    /// # Errors
+    /// Where the surface cannot be triangulated, the ground would have more than [`MOST_MAP_PIXELS`], or the
+    /// work was cancelled.
+    pub fn new(
+        review: &Review,
+        request: PlanRequest<'_>,
+        progress: &Progress,
+    ) -> Result<Self, Fault> {
+        let parts = review.flight().parts();
+        let photos = Self::photos_of(review);
+        let extent = extent::of(&parts.surface.bulk_bounds(), &photos);
+        let longest = (extent[1] - extent[0]).max_element();
+        let pixel = match request.pixel {
+            Some(pixel) => pixel,
+            None => round_near(longest / SIDE).unwrap_or(1.0),
+        };
+        let raster = MapRaster::over(extent, pixel, MOST_MAP_PIXELS)?;
+        let light = Light::default();
+        let ground = lit(&parts.surface, &raster, light, progress)?;
+        Ok(Self {
+            flight: parts.name.clone(),
+            crs: request.crs.filter(|crs| is_stated(crs)).map(str::to_owned),
+            taken: request.taken.map(str::to_owned),
+            unit: parts.unit,
+            unit_known: parts.unit_known,
+            extent,
+            raster,
+            ground: Arc::new(ground),
+            light,
+            photos,
+        })
+    }
+
+    /// The same plan with the photos of another review of the same surface: other verdicts cost no other ground.
+    #[must_use]
+    pub fn with_photos_of(&self, review: &Review) -> Self {
+        Self {
+            photos: Self::photos_of(review),
+            ..self.clone()
+        }
+    }
+
+    fn photos_of(review: &Review) -> Vec<PlanPhoto> {
+        let views = review.views();
+        let photos = review.photos().enumerate().map(|(index, photo)| {
+            let view = views.and_then(|views| views.get(index)?.as_ref());
+            let footprint = view.map(|view| &view.footprint);
+            let points = footprint.iter().flat_map(|footprint| &footprint.outline);
+            let points = points.filter_map(|point| Some(point.point()?.truncate()));
+            let middle = footprint.and_then(|footprint| {
+                let (columns, rows) = (footprint.columns, footprint.rows);
+                let index = rows / 2 * (columns + 1) + columns / 2;
+                Some(footprint.grid.get(index as usize)?.point()?.truncate())
+            });
+            PlanPhoto {
+                name: photo.name().to_owned(),
+                verdict: photo.settled(),
+                outline: points.filter(|point| point.is_finite()).collect(),
+                middle: middle.filter(|point| point.is_finite()),
+                camera: photo.photo.pose.center.truncate(),
+            }
+        });
+        photos.collect()
+    }
+
+    /// Whether the coordinates are those of a map, so that y is its north.
+    pub fn is_on_map(&self) -> bool {
+        self.projected().is_some()
+    }
+
+    fn projected(&self) -> Option<Crs> {
+        let crs = Crs::understand(self.crs.as_deref()?).ok()?;
+        (crs.kind() == CrsKind::Projected).then_some(crs)
+    }
+
+    /// What to call the coordinate system: its code, the name that its WKT has, or that none is stated.
+    pub fn crs_in_words(&self) -> String {
+        match self.crs.as_deref() {
+            None => "own frame, no coordinate system is stated".to_owned(),
+            Some(text) if text.contains('[') => {
+                let name = text.split('"').nth(1).unwrap_or("WKT");
+                name.to_owned()
+            }
+            Some(text) => text.to_owned(),
+        }
+    }
+
+    /// What lengths on it are counted in, for people.
+    pub fn unit_of_lengths(&self) -> &'static str {
+        match self.unit_known {
+            true => self.unit.symbol(),
+            false => "units of the file",
+        }
+    }
+
+    /// A bar of a round length in `unit`, at most `longest` units of the drawing, where `scale` of them are a
+    /// unit of the world. Where nobody knows the world's unit, the bar is in that.
+    pub fn bar(&self, scale: f64, longest: f64, unit: LengthUnit) -> Option<PlanBar> {
+        let (one, symbol) = match self.unit_known {
+            true => (unit.in_units_of(self.unit), unit.symbol()),
+            false => (1.0, self.unit_of_lengths()),
+        };
+        let length = round_down(longest / (scale * one))?;
+        Some(PlanBar {
+            length,
+            symbol,
+            long: length * one * scale,
+        })
+    }
+
+    /// Photos, cameras and names of a part of the map as a picture without ground, with so many pixels to a
+    /// unit of the frame.
+    pub fn photos_picture(&self, frame: &MapFrame, inks: &PlanInks, pixels: f64) -> RgbaImage {
+        let [width, height] = frame
+            .size
+            .map(|side| (side * pixels).round().max(1.0) as u32);
+        let mut picture = RgbaImage::new(width, height);
+        let mut pen = crate::drawing::Pen::default();
+        photos::draw(self, frame, inks, &mut pen);
+        crate::drawing::png::draw_all(&mut picture, &pen.shapes, pixels);
+        picture
+    }
+}
+
+/// The hillshade of a surface on a raster.
+///
+/// # Errors
+/// Where the surface cannot be triangulated, or the work was cancelled.
+pub fn lit(
+    surface: &Surface,
+    raster: &MapRaster,
+    light: Light,
+    progress: &Progress,
+) -> Result<RgbaImage, Fault> {
+    progress.stage("looking at the surface from above");
+    let heights = surface.heights_from_above(raster, progress)?;
+    progress.stage("lighting the surface");
+    let shades = hillshade(raster, &heights, light);
+    let mut ground = RgbaImage::new(raster.columns, raster.rows);
+    for (pixel, shade) in ground.pixels_mut().zip(&shades) {
+        if !shade.is_nan() {
+            // At most 250.
+            let grey = (DARKEST + LIGHT * shade).round() as u8;
+            *pixel = Rgba([grey, grey, grey, 255]);
+        }
+    }
+    Ok(ground)
+}

@@ -1,0 +1,119 @@
+//! The map of the bundled flight, as a user asks for it.
+
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use tiff::decoder::Decoder;
+use tiff::tags::Tag;
+
+use crate::common::{fragscale, scales_json, stdout_of};
+use crate::own_frame;
+
+fn sample() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample")
+}
+
+fn error_of(arguments: &[&str]) -> String {
+    let output = fragscale(arguments);
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    let text = String::from_utf8(output.stderr).expect("UTF-8");
+    let errors: Vec<&str> = text.lines().filter(|l| l.starts_with("error: ")).collect();
+    assert_eq!(errors.len(), 1, "{text}");
+    errors[0].to_owned()
+}
+
+/// The corner points that `scales` says lie inside the GeoTIFF that its tags describe, and its pixels are as
+/// large as asked for; the same command again writes over its own file.
+#[test]
+fn a_geotiff_holds_the_flight() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tif = folder.path().join("map.tif");
+    let (flight, output) = (sample(), tif.to_string_lossy().into_owned());
+    let flight_text = flight.to_string_lossy().into_owned();
+    for _ in 0..2 {
+        let said = stdout_of(&["map", &flight_text, "-o", &output, "--pixel", "5mm"]);
+        assert!(
+            said.contains("map.tif: ") && said.contains("pixels of 0.005 m"),
+            "{said}"
+        );
+    }
+    let bytes = fs::read(&tif).expect("a map");
+    let mut decoder = Decoder::new(Cursor::new(&bytes)).expect("a TIFF");
+    let (width, height) = decoder.dimensions().expect("a size");
+    let mut numbers = |tag| {
+        let value = decoder.find_tag(tag).expect("tags").expect("a tag");
+        value.into_f64_vec().expect("numbers")
+    };
+    let scale = numbers(Tag::ModelPixelScaleTag);
+    let tie = numbers(Tag::ModelTiepointTag);
+    assert_eq!(scale[..2], [0.005, 0.005]);
+    let (west, north) = (tie[3], tie[4]);
+    let (east, south) = (
+        west + f64::from(width) * scale[0],
+        north - f64::from(height) * scale[1],
+    );
+    let scales = scales_json(&flight, &[]);
+    let mut corners = 0;
+    for photo in scales["photos"].as_array().expect("photos") {
+        for corner in photo["corners"].as_array().into_iter().flatten() {
+            let at = |i: usize| corner["point"][i].as_f64();
+            let (Some(x), Some(y)) = (at(0), at(1)) else {
+                continue;
+            };
+            assert!(x > west && x < east && y > south && y < north, "{x} {y}");
+            corners += 1;
+        }
+    }
+    assert!(corners > 20, "{corners}");
+}
+
+#[test]
+fn what_cannot_be_a_map_is_refused_in_a_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let flight = sample().to_string_lossy().into_owned();
+    let jpg = error_of(&["map", &flight, "-o", &at("map.jpg")]);
+    assert!(
+        jpg.contains("written as GeoTIFF, SVG, PDF or PNG; let its name end in"),
+        "{jpg}"
+    );
+    let fine = error_of(&["map", &flight, "-o", &at("map.tif"), "--pixel", "0.1mm"]);
+    assert!(
+        fine.contains("more than 40 million; give a larger --pixel"),
+        "{fine}"
+    );
+    let page = error_of(&["map", &flight, "-o", &at("map.svg"), "--pixel", "0.5mm"]);
+    assert!(page.contains("the 10 million that go on a page"), "{page}");
+    fs::write(at("note.pdf"), "%PDF-1.4 of somebody else").expect("a file");
+    let foreign = error_of(&["map", &flight, "-o", &at("note.pdf")]);
+    assert!(foreign.contains("--force"), "{foreign}");
+    stdout_of(&["map", &flight, "-o", &at("note.pdf"), "--force"]);
+    // An interrupted or refused map leaves nothing.
+    for name in ["map.jpg", "map.tif", "map.svg"] {
+        assert!(!Path::new(&at(name)).exists(), "{name}");
+    }
+}
+
+/// Of a model whose unit nobody states the page says so; a pixel of so many centimetres is none of it.
+#[test]
+fn an_unknown_unit_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let unknown = folder.path().join("model");
+    fs::create_dir(&unknown).expect("a folder");
+    own_frame::model(&unknown);
+    let unknown = unknown.to_string_lossy().into_owned();
+    let svg = folder.path().join("map.svg").to_string_lossy().into_owned();
+    let error = error_of(&["map", &unknown, "-o", &svg, "--pixel", "1cm"]);
+    assert!(
+        error.contains("frame of its own, whose unit nobody states"),
+        "{error}"
+    );
+    let said = stdout_of(&["map", &unknown, "-o", &svg]);
+    assert!(
+        said.contains("own frame, no coordinate system is stated"),
+        "{said}"
+    );
+    let text = fs::read_to_string(&svg).expect("an SVG");
+    assert!(text.contains("units of the file") && !text.contains("on A4"));
+}

@@ -1,0 +1,227 @@
+//! The page of the map: what lies under the mouse, moving it, and the files that are made of it.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, MouseWheelUnit, Pos2, Rect, Theme, vec2};
+use fragscale::app::Command;
+use fragscale::app::map::MapCommand;
+use fragscale::app::size_distributions::Page;
+use glam::DVec2;
+
+use crate::desk::{Desk, Screen, flight};
+
+fn on_map() -> Desk {
+    let mut desk = Desk::new(Some(&flight("assets/sample")));
+    desk.press(Modifiers::COMMAND, Key::Num3);
+    desk
+}
+
+fn place(desk: &Desk) -> Rect {
+    desk.node(Role::Image, "Map").rect()
+}
+
+/// The point of the map under a place of the screen.
+fn under(desk: &Desk, at: Pos2) -> DVec2 {
+    let frame = place(desk);
+    let size = DVec2::new(f64::from(frame.width()), f64::from(frame.height()));
+    let map = &desk.open().map;
+    let (middle, scale) = map
+        .looking
+        .seen(&map.made.as_ref().expect("a plan").plan, size);
+    let off = at - frame.center();
+    middle + DVec2::new(f64::from(off.x), -f64::from(off.y)) / scale
+}
+
+/// The place on the screen of a point of the map.
+fn screen_of(desk: &Desk, point: DVec2) -> Pos2 {
+    let center = place(desk).center();
+    let (origin, right) = (under(desk, center), under(desk, center + vec2(1.0, 0.0)));
+    let off = (point - origin) / (right - origin).length();
+    center + vec2(off.x as f32, -off.y as f32)
+}
+
+#[test]
+fn the_map_shows_every_photo_where_it_lies() {
+    let desk = on_map();
+    assert_eq!(desk.harness.state().state().page, Page::Map);
+    let open = desk.open();
+    let made = open.map.made.as_ref().expect("a plan");
+    assert_eq!(made.plan.photos.len(), open.review.count());
+    assert_eq!(made.revision, open.map.revision);
+    assert!(open.map.drawn.is_some());
+    for (index, photo) in made.plan.photos.iter().enumerate() {
+        let view = open.view(index).expect("a view");
+        assert_eq!(photo.outline.len(), view.footprint.outline.len());
+        assert_eq!(
+            photo.verdict,
+            open.review.photo(index).expect("a photo").settled()
+        );
+    }
+    // All of it is in the frame.
+    let frame = place(&desk);
+    for corner in made.plan.extent {
+        assert!(frame.contains(screen_of(&desk, corner)));
+    }
+    // Table and inspector stay beside it.
+    assert_eq!(desk.photos().len(), open.review.count());
+}
+
+#[test]
+fn a_click_selects_the_photo_and_the_mouse_tells_where_it_is() {
+    let mut desk = on_map();
+    for photo in [4, 7] {
+        let made = desk.open().map.made.as_ref().expect("a plan");
+        let (name, middle) = {
+            let photo = &made.plan.photos[photo];
+            (photo.name.clone(), photo.middle.expect("a middle"))
+        };
+        let at = screen_of(&desk, middle);
+        desk.click_at(at);
+        assert_eq!(desk.selected(), name);
+        desk.harness.hover_at(at);
+        desk.settle();
+        let words = desk.written();
+        let said = words
+            .iter()
+            .find(|text| text.text.starts_with("x "))
+            .expect("coordinates");
+        assert!(said.text.contains(&name), "{}", said.text);
+        let numbers: Vec<f64> = said
+            .text
+            .split_whitespace()
+            .filter_map(|word| word.parse().ok())
+            .collect();
+        let apart = DVec2::new(numbers[0], numbers[1]).distance(middle);
+        // A point of the screen, and two decimals.
+        assert!(apart < 0.05, "{} is {apart} from {middle}", said.text);
+    }
+    // The arrows go through the table as beside the pile.
+    let before = desk.open().selected;
+    desk.press(Modifiers::NONE, Key::ArrowUp);
+    assert_ne!(desk.open().selected, before);
+}
+
+#[test]
+fn the_wheel_zooms_at_the_cursor_a_drag_moves_and_fit_shows_all() {
+    let mut desk = on_map();
+    let at = place(&desk).center() + vec2(60.0, -40.0);
+    let before = under(&desk, at);
+    desk.harness.hover_at(at);
+    desk.harness.event(Event::MouseWheel {
+        unit: MouseWheelUnit::Point,
+        delta: vec2(0.0, 300.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    desk.settle();
+    assert!(desk.open().map.looking.at.is_some());
+    assert!(under(&desk, at).distance(before) < 1e-6);
+    let drawn = desk.open().map.drawn.as_ref().expect("a part");
+    let [min, max] = drawn.frame.bounds();
+    assert!(before.cmpge(min).all() && before.cmple(max).all());
+    let to = at + vec2(-30.0, 20.0);
+    desk.harness.drag_at(at);
+    desk.harness.hover_at(to);
+    desk.harness.drop_at(to);
+    desk.settle();
+    assert!(under(&desk, to).distance(before) < 1e-6);
+    desk.click(Role::Button, "Fit map");
+    assert_eq!(desk.open().map.looking.at, None);
+}
+
+/// A decision changes the verdict on the map; another ground is made only for another surface.
+#[test]
+fn the_map_follows_the_review() {
+    let mut desk = on_map();
+    let ground = |desk: &Desk| desk.open().map.made.as_ref().expect("a plan").ground.id();
+    let before = ground(&desk);
+    let verdict =
+        |desk: &Desk| desk.open().map.made.as_ref().expect("a plan").plan.photos[0].verdict;
+    let first = verdict(&desk);
+    desk.harness.state_mut().apply(Command::Decide(
+        0,
+        Some((fragscale::flight::DecisionKind::LeftOut, String::new())),
+    ));
+    desk.settle();
+    assert_ne!(verdict(&desk), first);
+    assert_eq!(ground(&desk), before);
+    let mut settings = desk.open().settings();
+    settings.surface.max_edge = Some(0.02);
+    desk.harness.state_mut().apply(Command::Set(settings));
+    desk.settle();
+    assert_ne!(ground(&desk), before);
+}
+
+#[test]
+fn the_map_is_written_in_every_format() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = on_map();
+    for (name, begins) in [
+        ("map.tif", &b"II*\0"[..]),
+        ("map.svg", b"<svg "),
+        ("map.pdf", b"%PDF-1.4"),
+        ("map.png", b"\x89PNG"),
+    ] {
+        desk.click(Role::Button, "Export map…");
+        let path = folder.path().join(name);
+        desk.type_path(&path);
+        desk.click(Role::Button, "Write map");
+        let bytes = std::fs::read(&path).expect(name);
+        assert!(bytes.starts_with(begins), "{name}");
+        assert!(desk.logged("written"));
+    }
+    let svg = std::fs::read_to_string(folder.path().join("map.svg")).expect("an SVG");
+    for photo in &desk.open().map.made.as_ref().expect("a plan").plan.photos {
+        assert!(
+            svg.contains(&format!(">{}</text>", photo.name)),
+            "{}",
+            photo.name
+        );
+    }
+    let jpg = folder.path().join("map.jpg");
+    let save = MapCommand::Save(jpg.clone().into());
+    desk.harness.state_mut().apply(Command::Map(save));
+    desk.settle();
+    assert!(desk.logged("a map is written as GeoTIFF, SVG, PDF or PNG"));
+    assert!(!jpg.exists());
+}
+
+/// Looked at by people: FRAGSCALE_MAP_PICTURES=FOLDER keeps them.
+#[test]
+fn it_is_drawn_light_and_dark() {
+    for (theme, size) in [
+        (Theme::Light, [1024.0, 700.0]),
+        (Theme::Dark, [1500.0, 950.0]),
+    ] {
+        let screen = Screen {
+            size,
+            pixels_per_point: 1.0,
+            theme,
+        };
+        let mut desk = Desk::drawn(Some(&flight("assets/sample")), &screen);
+        desk.press(Modifiers::COMMAND, Key::Num3);
+        desk.harness.hover_at(place(&desk).center());
+        desk.settle();
+        let picture = desk.harness.render().expect("a picture");
+        if let Some(folder) = std::env::var_os("FRAGSCALE_MAP_PICTURES") {
+            let name = format!("map-{}-{}.png", size[0], matches!(theme, Theme::Dark));
+            picture
+                .save(std::path::Path::new(&folder).join(name))
+                .expect("a place");
+        }
+        // Where the first photo's outline is, there is a colour; the ground is grey.
+        let made = desk.open().map.made.as_ref().expect("a plan");
+        let colourful = |at: Pos2| {
+            let pixel = picture.get_pixel(at.x as u32, at.y as u32).0;
+            pixel[..3].iter().max().expect("three") - pixel[..3].iter().min().expect("three") > 40
+        };
+        let outline = made.plan.photos[3].outline.iter();
+        let on_lines = outline
+            .filter(|point| colourful(screen_of(&desk, **point)))
+            .count();
+        assert!(
+            on_lines * 3 > made.plan.photos[3].outline.len(),
+            "{on_lines}"
+        );
+    }
+}
