@@ -11,7 +11,7 @@ pub fn significant_digits(number: f64, digits: u8) -> String {
 
 /// A number with so many digits as its interval allows, and how sure it is: "19.9 ± 0.4", or
 /// "19.9 (19.2 to 20.3)" where its two sides are not alike. Both have as many decimals as half the
-/// interval's width allows: see [`decimals_of`]. Five digits and nothing beside them where the interval
+/// interval's width allows: two digits of it where it begins with 1 to 3.5, else one. Five digits and nothing beside them where the interval
 /// has no width.
 pub fn with_interval(value: f64, low: f64, high: f64) -> String {
     let half = (high - low) / 2.0;

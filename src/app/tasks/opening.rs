@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::work::Task;
 use crate::command::Asking;
-use crate::flight::{FlightSettings, Verdict};
+use crate::flight::FlightSettings;
 use crate::jobs::Progress;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::loading::{Loaded, NotOpened, load, named};
@@ -153,12 +153,9 @@ impl State {
             self.settings_changed();
             return;
         }
-        let sentence = format!(
-            "{}: {} photos, {} without a scale",
-            open.flight().parts().name,
-            open.review.count(),
-            open.review.count_of(Verdict::NoScale)
-        );
+        // How many have no scale is not known before their fields are: the tool bar counts them.
+        let name = &open.flight().parts().name;
+        let sentence = format!("{name}: {} photos", open.review.count());
         self.say(Severity::Note, &sentence);
     }
 
