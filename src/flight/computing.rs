@@ -62,26 +62,17 @@ impl Flight {
             surface,
             ground,
             image,
-            photos,
             ..
         } = &self.parts;
         progress.stage("draping footprints");
-        let done = AtomicU64::new(0);
-        let all = photos.par_iter().zip(outcomes);
         let tools = || (surface.caster(), GroundFinder::new(*ground, surface));
-        all.map_init(tools, |(caster, finder), (photo, outcome)| {
-            let Some(scale) = outcome.scale() else {
-                return Ok(None);
-            };
+        self.each_with_a_scale(outcomes, progress, tools, |tools, photo, scale| {
+            let (caster, finder) = tools;
             let caster = caster.as_mut().map_err(|error| unusable(error.clone()))?;
-            let camera = self.camera(photo);
-            let pose = &photo.pose;
+            let (camera, pose) = (self.camera(photo), &photo.pose);
             let view = ViewFacts::compute(camera, pose, *image, scale, finder, caster, progress);
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            progress.advance(done, photos.len() as u64)?;
-            view.map(Some).map_err(no_field)
+            view.map_err(no_field)
         })
-        .collect()
     }
 
     /// What the scale field of each photo says, in their order; `None` where `outcomes`, those of
@@ -94,32 +85,40 @@ impl Flight {
         outcomes: &[Outcome],
         progress: &Progress,
     ) -> Result<Vec<Option<FieldFacts>>, Fault> {
-        let FlightParts {
-            surface,
-            image,
-            photos,
-            ..
-        } = &self.parts;
+        let FlightParts { surface, image, .. } = &self.parts;
         progress.stage("computing scale fields");
+        self.each_with_a_scale(
+            outcomes,
+            progress,
+            || (),
+            |_, photo, scale| {
+                let (camera, pose, errors) = (self.camera(photo), &photo.pose, self.errors(photo));
+                FieldFacts::compute(camera, pose, *image, scale, &errors, surface, progress)
+                    .map_err(no_field)
+            },
+        )
+    }
+
+    /// What `compute` finds of each photo that has a scale, on all cores, in the photos' order; `tools` are
+    /// made for each thread.
+    fn each_with_a_scale<T: Send, Tools>(
+        &self,
+        outcomes: &[Outcome],
+        progress: &Progress,
+        tools: impl Fn() -> Tools + Send + Sync,
+        compute: impl Fn(&mut Tools, &Photo, &PhotoScale) -> Result<T, Fault> + Send + Sync,
+    ) -> Result<Vec<Option<T>>, Fault> {
+        let photos = &self.parts.photos;
         let done = AtomicU64::new(0);
         let all = photos.par_iter().zip(outcomes);
-        all.map(|(photo, outcome)| {
+        all.map_init(tools, |tools, (photo, outcome)| {
             let Some(scale) = outcome.scale() else {
                 return Ok(None);
             };
-            let camera = self.camera(photo);
-            let facts = FieldFacts::compute(
-                camera,
-                &photo.pose,
-                *image,
-                scale,
-                &self.errors(photo),
-                surface,
-                progress,
-            );
+            let found = compute(tools, photo, scale);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             progress.advance(done, photos.len() as u64)?;
-            facts.map(Some).map_err(no_field)
+            found.map(Some)
         })
         .collect()
     }

@@ -3,8 +3,9 @@
 
 use std::fmt::Write as _;
 use std::fs;
+use std::path::Path;
 
-use crate::common::{scales_json, shared_data};
+use crate::common::{scales_json, shared_data, stdout_of};
 use fragscale::formats::read_cloud;
 use fragscale::jobs::Progress;
 use fragscale::opening::{OpenOptions, open_flight};
@@ -222,4 +223,38 @@ fn brightons_lines_are_as_sure_as_what_is_seen() {
     }
     assert_eq!(compared, 6);
     assert!(held >= 5, "{held} of 6");
+}
+
+/// The percentage of the table is half the width of the wider of the two intervals in the CSV, over its
+/// middle.
+#[test]
+fn the_tables_percentage_is_that_of_the_csv() {
+    let flight = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");
+    let flight = flight.to_str().expect("UTF-8");
+    let csv = stdout_of(&["scales", flight, "--format", "csv"]);
+    let mut lines = csv.lines();
+    let heading: Vec<&str> = lines.next().expect("a heading").split(',').collect();
+    let table = stdout_of(&["scales", flight]);
+    let mut compared = 0;
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        let number = |name: &str| -> f64 {
+            let place = heading.iter().position(|column| *column == name);
+            cells[place.expect(name)].parse().expect("a number")
+        };
+        let half = |end: &str| {
+            let ends = ["low", "high"].map(|side| number(&format!("fitted_{end}_{side}")));
+            (ends[1] - ends[0]) / (ends[1] + ends[0]) * 100.0
+        };
+        let expected = format!("{:.1} %", half("top").max(half("bottom")));
+        let row = table.lines().find(|row| row.starts_with(cells[0]));
+        let row: Vec<&str> = row
+            .expect("a row")
+            .split("  ")
+            .filter(|c| !c.is_empty())
+            .collect();
+        assert_eq!(row[9].trim(), expected, "{row:?}");
+        compared += 1;
+    }
+    assert_eq!(compared, 9);
 }

@@ -7,20 +7,11 @@ use std::path::{Path, PathBuf};
 use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
-use crate::common::{fragscale, scales_json, stdout_of};
+use crate::common::{error_of, scales_json, stdout_of};
 use crate::own_frame;
 
 fn sample() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample")
-}
-
-fn error_of(arguments: &[&str]) -> String {
-    let output = fragscale(arguments);
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
-    let text = String::from_utf8(output.stderr).expect("UTF-8");
-    let errors: Vec<&str> = text.lines().filter(|l| l.starts_with("error: ")).collect();
-    assert_eq!(errors.len(), 1, "{text}");
-    errors[0].to_owned()
 }
 
 /// The corner points that `scales` says lie inside the GeoTIFF that its tags describe, and its pixels are as

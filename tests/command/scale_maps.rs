@@ -4,21 +4,11 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use crate::common::{fragscale, scales_json, stdout_of};
+use crate::common::{error_of, scales_json, stdout_of};
 use crate::own_frame;
 
 fn sample() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample")
-}
-
-/// The error of a run that must fail, one line.
-fn error_of(arguments: &[&str]) -> String {
-    let output = fragscale(arguments);
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
-    let text = String::from_utf8(output.stderr).expect("UTF-8");
-    let errors: Vec<&str> = text.lines().filter(|l| l.starts_with("error: ")).collect();
-    assert_eq!(errors.len(), 1, "{text}");
-    errors[0].to_owned()
 }
 
 /// The mean of a photo's map is near the fitted scale of `scales`, in the unit asked for; a second run

@@ -23,6 +23,17 @@ pub fn stdout_of(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
+/// The error of a run that must fail, one line; warnings may stand beside it.
+#[allow(dead_code, reason = "not every test binary has a run that fails")]
+pub fn error_of(arguments: &[&str]) -> String {
+    let output = fragscale(arguments);
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    let text = String::from_utf8(output.stderr).expect("UTF-8");
+    let errors: Vec<&str> = text.lines().filter(|l| l.starts_with("error: ")).collect();
+    assert_eq!(errors.len(), 1, "{text}");
+    errors[0].to_owned()
+}
+
 /// `scales --format json` of a flight.
 #[allow(dead_code, reason = "not every test binary asks for JSON")]
 pub fn scales_json(flight: &Path, more: &[&str]) -> Value {

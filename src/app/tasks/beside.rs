@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use super::work::Task;
 use crate::jobs::Progress;
-use crate::opening::{StatedWorld, second_surface};
+use crate::open_flight::OpenFlight;
 use crate::render::BesideCloud;
-use crate::state::{Severity, State};
+use crate::state::State;
 
 impl Task {
     /// Reading a cloud to be drawn beside the surface.
@@ -23,31 +23,7 @@ impl State {
         if self.is_busy(Task::BESIDE) {
             return;
         }
-        let Some(open) = &self.open else {
-            return;
-        };
-        let (flight, crs) = (open.flight().clone(), open.files.crs.clone());
-        let work = move |progress: &Progress| {
-            let parts = flight.parts();
-            let world = StatedWorld {
-                crs: crs.as_deref(),
-                unit: parts.unit_known.then_some(parts.unit),
-                around: parts.surface.bounds(),
-            };
-            second_surface(&path, &world, progress).map(|second| (path, second))
-        };
-        self.start(Task::BESIDE, work, |state, read| match read {
-            Ok((path, second)) => {
-                for warning in &second.warnings {
-                    state.say(Severity::Warning, warning);
-                }
-                if let Some(open) = &mut state.open {
-                    open.files.read.extend(&second.read);
-                    open.add_beside(path, second.surface);
-                }
-            }
-            Err(error) => state.say(Severity::Error, &error.to_string()),
-        });
+        self.read_second_surface(Task::BESIDE, path, OpenFlight::add_beside);
     }
 
     /// Uploads the next cloud beside the surface that is not, or has another colour by now.

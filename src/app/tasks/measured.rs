@@ -1,15 +1,18 @@
 //! Writing what was measured on the surface, and reading what volumes are over.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::work::Task;
 use crate::command::{Command, Destination, MeasuredTable};
 use crate::files::{self, Kind};
 use crate::formats::FileError;
 use crate::jobs::Progress;
+use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::SecondBase;
 use crate::opening::{StatedWorld, second_surface};
 use crate::state::{Severity, State};
+use crate::surface::Surface;
 
 impl Task {
     /// Writing a table of what was measured.
@@ -22,6 +25,18 @@ impl State {
     /// Reads a second surface for volumes to be over, as the command does.
     pub(crate) fn read_volume_base(&mut self, path: PathBuf) {
         self.asking = None;
+        self.read_second_surface(Task::VOLUME_BASE, path, |open, path, surface| {
+            open.take_second_base(SecondBase { path, surface });
+        });
+    }
+
+    /// Reads a second surface in the flight's world; `take` gets it.
+    pub(super) fn read_second_surface(
+        &mut self,
+        task: Task,
+        path: PathBuf,
+        take: impl FnOnce(&mut OpenFlight, PathBuf, Arc<Surface>) + Send + 'static,
+    ) {
         let Some(open) = &self.open else {
             return;
         };
@@ -35,15 +50,14 @@ impl State {
             };
             second_surface(&path, &world, progress).map(|second| (path, second))
         };
-        self.start(Task::VOLUME_BASE, work, |state, read| match read {
+        self.start(task, work, |state, read| match read {
             Ok((path, second)) => {
                 for warning in &second.warnings {
                     state.say(Severity::Warning, warning);
                 }
                 if let Some(open) = &mut state.open {
                     open.files.read.extend(&second.read);
-                    let surface = second.surface;
-                    open.take_second_base(SecondBase { path, surface });
+                    take(open, path, second.surface);
                 }
             }
             Err(error) => state.say(Severity::Error, &error.to_string()),

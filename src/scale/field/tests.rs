@@ -351,6 +351,45 @@ fn a_cancelled_field_says_so() {
     assert_eq!(field, Err(FieldError::Cancelled));
 }
 
+/// Single rays in any direction, beside and behind the camera too, meet what a caster meets.
+#[test]
+fn single_rays_meet_what_a_caster_meets() {
+    let surface = Surface::new(pile(3, 3000, 40.0)).unwrap();
+    let mut random = SplitMix(8);
+    let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+    let mut met = [0; 2];
+    for tilt in [85.0, 40.0, 5.0] {
+        let center = DVec3::new(500_000.0 + uniform(), 5_000_000.0 + uniform(), 108.0);
+        let pose = Pose::from_tilt_pan(center, [tilt, 30.0]);
+        let mut directions: Vec<Option<DVec3>> = (0..300)
+            .map(|_| DVec3::new(uniform(), uniform(), uniform()).try_normalize())
+            .collect();
+        directions.push(None);
+        let mut caster = surface.caster().unwrap();
+        let hits = meet_rays(&directions, &pose, &mut caster, &Progress::default()).unwrap();
+        assert_eq!(hits.len(), directions.len());
+        for (hit, direction) in hits.iter().zip(directions) {
+            let Some(direction) = direction else {
+                assert!(hit.is_none());
+                continue;
+            };
+            let ray = Ray {
+                origin: pose.center,
+                direction: pose.rotation * direction,
+            };
+            let expected = caster.cast(&ray);
+            assert_eq!(hit.is_some(), expected.is_some(), "{direction}");
+            if let (Some(hit), Some(expected)) = (hit, expected) {
+                met[usize::from(direction.z <= 0.0)] += 1;
+                assert!((hit.point - expected.point).length() < 2e-8, "{direction}");
+                assert!((hit.distance - expected.t).abs() < 2e-8, "{direction}");
+                assert!((hit.longest_edge - expected.longest_edge).abs() < 1e-8);
+            }
+        }
+    }
+    assert!(met[0] > 100 && met[1] > 20, "{met:?}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 

@@ -54,15 +54,18 @@ impl Surface {
             let rows = first..(first + BAND).min(raster.rows);
             let mut highest = vec![f64::NAN; columns as usize * rows.len()];
             let (top, bottom) = (f64::from(rows.start), f64::from(rows.end));
+            let beside = |bounds: &Bounds| {
+                let (a, b) = (place(bounds.min), place(bounds.max));
+                b.y > bottom || a.y < top || b.x < 0.0 || a.x > end.x
+            };
             for patch in &patches {
-                let (a, b) = (place(patch.bounds.min), place(patch.bounds.max));
-                if b.y > bottom || a.y < top || b.x < 0.0 || a.x > f64::from(columns) {
+                if beside(&patch.bounds) {
                     continue;
                 }
                 if progress.is_cancelled() {
                     return Err(Fault::new("cancelled", "start it again when you want it"));
                 }
-                for corners in patch.triangles() {
+                for corners in patch.triangles_seen(beside) {
                     let on_picture = corners.map(place);
                     let [p, q, r] = on_picture;
                     let (min, max) = (p.min(q).min(r), p.max(q).max(r));
