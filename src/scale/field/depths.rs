@@ -29,12 +29,24 @@ pub(super) struct Stand {
     pub(super) slack: f64,
 }
 
+/// So many rays are met as fast as the box around them is looked at.
+const FEW: usize = 4;
+
 /// What the samples of a band meet.
 pub(super) struct Met {
     /// The depth of each sample, infinite where its ray meets nothing.
     pub(super) depths: Vec<f64>,
     /// The longest edge of the triangle that each sample met, world units; empty where nobody asks.
     pub(super) edges: Vec<f64>,
+}
+
+impl Met {
+    fn nothing(samples: &Samples, with_edges: bool) -> Self {
+        Self {
+            depths: vec![f64::INFINITY; samples.len()],
+            edges: vec![f64::INFINITY; if with_edges { samples.len() } else { 0 }],
+        }
+    }
 }
 
 /// What each sample meets.
@@ -48,16 +60,14 @@ pub(super) fn depths(
     with_edges: bool,
     progress: &Progress,
 ) -> Result<Met, FieldError> {
+    let Some([min, max]) = samples.extent else {
+        return Ok(Met::nothing(samples, with_edges));
+    };
     let mut nearest = Nearest {
         samples,
         slack: stand.slack,
-        met: Met {
-            depths: vec![f64::INFINITY; samples.len()],
-            edges: vec![f64::INFINITY; if with_edges { samples.len() } else { 0 }],
-        },
-    };
-    let Some([min, max]) = samples.extent else {
-        return Ok(nearest.met);
+        longest_ray: ray(min.abs().max(max.abs())).length(),
+        met: Met::nothing(samples, with_edges),
     };
     let seen = Pyramid::of_directions(min, max, stand.center, stand.rotation);
     let sides = inward(min, max);
@@ -93,6 +103,8 @@ fn no_samples_in(
 struct Nearest<'a> {
     samples: &'a Samples,
     slack: f64,
+    /// No ray (x, y, 1) is longer.
+    longest_ray: f64,
     met: Met,
 }
 
@@ -121,27 +133,48 @@ impl Nearest<'_> {
         let normal = (b - a).cross(c - a);
         let volume = normal.dot(a);
         let side = volume.signum();
-        let edges = [(a, b - a), (b, c - b), (c, a - c)]
-            .map(|(from, way)| (from.cross(way) * side, self.slack * way.length()));
+        let ways = [(a, b - a), (b, c - b), (c, a - c)];
+        // A ray (x, y, 1) times this: how far it lies inside of each edge.
+        let [along, next, last] = ways.map(|(from, way)| from.cross(way) * side);
+        let inside = DMat3::from_cols(along, next, last).transpose();
+        let [along, next, last] = ways.map(|(_, way)| -self.slack * way.length());
+        let slacks = DVec3::new(along, next, last);
+        let least = slacks * self.longest_ray;
         let (near, far) = (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z));
+        // Whether all rays of a box of points do, twice the slack left for rounding.
+        let passes_by = |[min, max]: [DVec2; 2]| {
+            let half = (max - min) / 2.0;
+            let most = inside.x_axis.abs() * half.x
+                + inside.y_axis.abs() * half.y
+                + inside * ray((min + max) / 2.0);
+            // (Of no rays that is NaN.)
+            !most.cmpge(2.0 * least).all()
+        };
         for row in rows {
-            for column in columns.clone() {
-                let d = ray(self.samples.point(column, row));
-                // The distance between the ray and an edge's line is the product over the length of
-                // d × way, which is at most that of both.
-                let length = d.length();
-                let is_inside = |(edge, slack): &(DVec3, f64)| edge.dot(d) >= -slack * length;
-                if !edges.iter().all(is_inside) {
+            for (run, around) in self.samples.runs(columns.clone(), row) {
+                if run.len() > FEW && passes_by(around) {
                     continue;
                 }
-                // Within the slack of a sliver the plane can run away. NaN, of a triangle that is seen
-                // edge-on: its neighbours have its edges.
-                let depth = (volume / normal.dot(d)).clamp(near, far);
-                let place = self.samples.place(column, row);
-                if depth > 0.0 && depth < self.met.depths[place] {
-                    self.met.depths[place] = depth;
-                    if let Some(edge) = self.met.edges.get_mut(place) {
-                        *edge = longest_edge(corners);
+                for column in run {
+                    let d = ray(self.samples.point(column, row));
+                    // The distance between the ray and an edge's line is the product over the length of
+                    // d × way, which is at most that of both. (Roots are slow, and hardly ever needed.)
+                    let products = inside * d;
+                    if !products.cmpge(least).all() {
+                        continue;
+                    }
+                    if products.min_element() < 0.0 && !products.cmpge(slacks * d.length()).all() {
+                        continue;
+                    }
+                    // Within the slack of a sliver the plane can run away. NaN, of a triangle that is seen
+                    // edge-on: its neighbours have its edges.
+                    let depth = (volume / normal.dot(d)).clamp(near, far);
+                    let place = self.samples.place(column, row);
+                    if depth > 0.0 && depth < self.met.depths[place] {
+                        self.met.depths[place] = depth;
+                        if let Some(edge) = self.met.edges.get_mut(place) {
+                            *edge = longest_edge(corners);
+                        }
                     }
                 }
             }

@@ -66,22 +66,25 @@ pub(super) struct Samples {
     columns: u32,
     /// Of the grid.
     rows: Range<u32>,
+    /// Row by row, NaN where a pixel has no ray forward.
+    points: Vec<DVec2>,
+    /// Row by row the boxes around the points of so many columns: see [`RUN`].
+    runs: Vec<[DVec2; 2]>,
     /// Around all points; `None` where no pixel has a ray forward.
     pub(super) extent: Option<[DVec2; 2]>,
     layout: Layout,
 }
 
+/// Columns of a row that have a box around their points: a long thin triangle passes most of its own box by.
+const RUN: u32 = 16;
+
 enum Layout {
     /// Of an undistorted image: column and row are affine in the point.
     Affine { camera: Camera, grid: FieldGrid },
-    /// Through a lens: each pixel's point (NaN where there is none), row by row, and bins over the
-    /// plane that know which pixels' points they hold.
-    Listed { points: Vec<DVec2>, bins: Bins },
+    /// Through a lens: bins over the plane that know which pixels' points they hold.
+    Listed { bins: Bins },
     /// In one row, bin by bin.
-    Scattered {
-        points: Vec<DVec2>,
-        bins: ScatteredBins,
-    },
+    Scattered { bins: ScatteredBins },
 }
 
 impl Samples {
@@ -92,36 +95,26 @@ impl Samples {
         grid: FieldGrid,
         rows: Range<u32>,
     ) -> Self {
-        let layout = match image {
-            ImageKind::Undistorted => Layout::Affine {
-                camera: camera.clone(),
-                grid,
-            },
+        let pixels = rows
+            .clone()
+            .flat_map(|row| (0..grid.columns).map(move |column| grid.pixel(camera, column, row)));
+        let (points, layout) = match image {
+            ImageKind::Undistorted => {
+                let point = |pixel| camera.direction_undistorted(pixel).truncate();
+                let camera = camera.clone();
+                (pixels.map(point).collect(), Layout::Affine { camera, grid })
+            }
             ImageKind::AsShot => {
-                let points = rows.clone().flat_map(|row| {
-                    (0..grid.columns).map(move |column| {
-                        let direction = camera.direction_as_shot(grid.pixel(camera, column, row));
-                        match direction {
-                            Ok(direction) if direction.z > 0.0 => {
-                                direction.truncate() / direction.z
-                            }
-                            _ => DVec2::NAN,
-                        }
-                    })
-                });
-                let points: Vec<DVec2> = points.collect();
+                let point = |pixel| match camera.direction_as_shot(pixel) {
+                    Ok(direction) if direction.z > 0.0 => direction.truncate() / direction.z,
+                    _ => DVec2::NAN,
+                };
+                let points: Vec<DVec2> = pixels.map(point).collect();
                 let bins = Bins::new(&points, grid.columns);
-                Layout::Listed { points, bins }
+                (points, Layout::Listed { bins })
             }
         };
-        let mut samples = Self {
-            columns: grid.columns,
-            rows,
-            extent: None,
-            layout,
-        };
-        samples.extent = samples.find_extent();
-        samples
+        Self::of(points, grid.columns, rows, layout)
     }
 
     /// Of single rays, given as points of the plane, without a grid (NaN where there is none), and the
@@ -129,48 +122,27 @@ impl Samples {
     pub(super) fn scattered(points: &[DVec2]) -> (Self, Vec<usize>) {
         let (bins, order) = ScatteredBins::new(points);
         let sorted: Vec<DVec2> = order.iter().map(|&place| points[place]).collect();
-        let mut samples = Self {
-            // No photo has four billion rays.
-            columns: u32::try_from(sorted.len()).unwrap_or(u32::MAX),
-            rows: 0..1,
-            extent: None,
-            layout: Layout::Scattered {
-                points: sorted,
-                bins,
-            },
-        };
-        samples.extent = samples.find_extent();
+        // No photo has four billion rays.
+        let columns = u32::try_from(sorted.len()).unwrap_or(u32::MAX);
+        let samples = Self::of(sorted, columns, 0..1, Layout::Scattered { bins });
         (samples, order)
     }
 
-    fn find_extent(&self) -> Option<[DVec2; 2]> {
-        let around = |points: &mut dyn Iterator<Item = DVec2>| {
-            points.filter(|point| point.is_finite()).fold(
-                None,
-                |extent: Option<[DVec2; 2]>, point| {
-                    let [min, max] = extent.unwrap_or([point; 2]);
-                    Some([min.min(point), max.max(point)])
-                },
-            )
-        };
-        match &self.layout {
-            Layout::Listed { points, .. } | Layout::Scattered { points, .. } => {
-                around(&mut points.iter().copied())
-            }
-            Layout::Affine { .. } => {
-                let (last, end) = (self.columns.checked_sub(1)?, self.rows.end.checked_sub(1)?);
-                let corners = [
-                    (0, self.rows.start),
-                    (last, self.rows.start),
-                    (0, end),
-                    (last, end),
-                ];
-                around(
-                    &mut corners
-                        .into_iter()
-                        .map(|(column, row)| self.point(column, row)),
-                )
-            }
+    fn of(points: Vec<DVec2>, columns: u32, rows: Range<u32>, layout: Layout) -> Self {
+        let in_runs = points.chunks(columns.max(1) as usize);
+        let runs: Vec<[DVec2; 2]> = in_runs
+            .flat_map(|row| row.chunks(RUN as usize).map(around))
+            .collect();
+        let [min, max] = runs.iter().fold(NOTHING, |[min, max], run| {
+            [min.min(run[0]), max.max(run[1])]
+        });
+        Self {
+            columns,
+            rows,
+            points,
+            runs,
+            extent: (min.cmple(max).all()).then_some([min, max]),
+            layout,
         }
     }
 
@@ -186,14 +158,25 @@ impl Samples {
 
     /// The point of a pixel's ray; NaN where it has none.
     pub(super) fn point(&self, column: u32, row: u32) -> DVec2 {
-        match &self.layout {
-            Layout::Affine { camera, grid } => camera
-                .direction_undistorted(grid.pixel(camera, column, row))
-                .truncate(),
-            Layout::Listed { points, .. } | Layout::Scattered { points, .. } => {
-                points[self.place(column, row)]
-            }
-        }
+        self.points[self.place(column, row)]
+    }
+
+    /// Columns in runs, each with a box around its points in a row and those beside them; empty where none
+    /// of them has a ray (then the least is above the greatest).
+    pub(super) fn runs(
+        &self,
+        columns: Range<u32>,
+        row: u32,
+    ) -> impl Iterator<Item = (Range<u32>, [DVec2; 2])> {
+        let in_row = self.columns.div_ceil(RUN);
+        let first = (row - self.rows.start) * in_row;
+        (columns.start / RUN..columns.end.div_ceil(RUN)).map(move |run| {
+            let (start, end) = (
+                (run * RUN).max(columns.start),
+                (run * RUN + RUN).min(columns.end),
+            );
+            (start..end, self.runs[(first + run) as usize])
+        })
     }
 
     /// All columns and rows.
@@ -204,7 +187,7 @@ impl Samples {
     /// Whether a pixel's point may lie within the box around these points.
     pub(super) fn any_near(&self, corners: &[DVec2]) -> bool {
         let (columns, rows) = self.near(corners);
-        let Layout::Scattered { points, .. } = &self.layout else {
+        let Layout::Scattered { .. } = &self.layout else {
             return !columns.is_empty() && !rows.is_empty();
         };
         let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
@@ -214,7 +197,7 @@ impl Samples {
         // Room for rays that pass an edge by no more than rounding.
         let room = 1e-9 * (DVec2::ONE + min.abs().max(max.abs()));
         let (min, max) = (min - room, max + room);
-        let mut near = points[columns.start as usize..columns.end as usize].iter();
+        let mut near = self.points[columns.start as usize..columns.end as usize].iter();
         near.any(|point| point.cmpge(min).all() && point.cmple(max).all())
     }
 
@@ -251,12 +234,12 @@ impl Samples {
                     range(min.y, max.y, &self.rows),
                 )
             }
-            Layout::Listed { bins, .. } => {
+            Layout::Listed { bins } => {
                 let (columns, rows) = bins.near(corners);
                 let first = self.rows.start;
                 (columns, rows.start + first..rows.end + first)
             }
-            Layout::Scattered { bins, .. } => (bins.near(corners), self.rows.clone()),
+            Layout::Scattered { bins } => (bins.near(corners), self.rows.clone()),
         }
     }
 }
@@ -422,6 +405,17 @@ impl Bins {
             false => (0..0, 0..0),
         }
     }
+}
+
+/// The box of no points.
+const NOTHING: [DVec2; 2] = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+
+/// The box around those points that are finite.
+fn around(points: &[DVec2]) -> [DVec2; 2] {
+    let seen = points.iter().filter(|point| point.is_finite());
+    seen.fold(NOTHING, |[min, max], &point| {
+        [min.min(point), max.max(point)]
+    })
 }
 
 /// The ray of a point of the plane, in camera axes.
