@@ -8,7 +8,7 @@ use crate::scale::ScalePair;
 use crate::size_distributions::Page;
 use crate::state::bundled::sample_flight;
 use crate::state::history::History;
-use crate::state::{HeldBack, Leaving, Severity, State};
+use crate::state::{HeldBack, Leaving, Named, Severity, State};
 use crate::tasks::Task;
 
 impl State {
@@ -17,17 +17,15 @@ impl State {
         match command {
             Command::Drop(paths) if self.may_be_distributions(&paths) => self.read_dropped(paths),
             Command::Drop(paths) => self.apply(Command::DropFlight(paths)),
-            Command::Open(path) => self.leave(Leaving::Read {
-                paths: vec![path],
-                added: false,
-            }),
-            Command::DropFlight(paths) => self.leave(Leaving::Read {
-                paths,
-                added: false,
-            }),
+            Command::Open(path) => self.open_or_ask(vec![path]),
+            Command::DropFlight(paths) => self.open_or_ask(paths),
             Command::Add(path) => self.leave(Leaving::Read {
                 paths: vec![path],
-                added: true,
+                named: Named::Added,
+            }),
+            Command::OpenAlone(path) => self.leave(Leaving::Read {
+                paths: vec![path],
+                named: Named::Alone,
             }),
             Command::OpenSample => self.leave(Leaving::Sample),
             Command::Close => self.leave(Leaving::Close),
@@ -167,7 +165,7 @@ impl State {
     }
 
     /// Leaves the flight on the screen, unless something would be lost: then asks first.
-    fn leave(&mut self, leaving: Leaving) {
+    pub(crate) fn leave(&mut self, leaving: Leaving) {
         let writes = leaving == Leaving::Quit && self.work.is_writing();
         if self.is_changed() || writes {
             self.held_back = Some(HeldBack::Leave(leaving));
@@ -183,9 +181,9 @@ impl State {
             self.page = Page::Pile;
         }
         match leaving {
-            Leaving::Read { paths, added } => self.start_opening(paths, added),
+            Leaving::Read { paths, named } => self.start_opening(paths, named),
             Leaving::Sample => match sample_flight() {
-                Some(path) => self.start_opening(vec![path], false),
+                Some(path) => self.start_opening(vec![path], Named::ToOpen),
                 None => self.say(
                     Severity::Error,
                     "the bundled flight is not beside the program; make one with 'fragscale sample DIR'",
@@ -252,6 +250,7 @@ impl State {
                     | Asking::Map
                     | Asking::SaveMeasured(_)
                     | Asking::VolumeBase
+                    | Asking::CloudUse
                     | Asking::AddLayer
             )
         );

@@ -36,6 +36,8 @@ pub enum Asking {
     SaveReport,
     /// Which cloud is drawn beside the surface.
     AddLayer,
+    /// What the cloud is to be that was dropped or opened beside a flight.
+    CloudUse,
     /// Which cloud a volume is over.
     VolumeBase,
     /// Where a table of what was measured goes.

@@ -69,11 +69,13 @@ pub enum Command {
     /// Takes what was dropped: size distributions, or something of a flight.
     Drop(Vec<PathBuf>),
     /// Opens what was dropped: a flight, perhaps with its surface and photos; a surface alone is for
-    /// the flight that could not be opened last, else for the one on the screen.
+    /// the flight that could not be opened last. Beside a flight on the screen it is asked what it is to be.
     DropFlight(Vec<PathBuf>),
     /// Gives the flight on the screen, or the one that could not be opened last, this surface or this
     /// folder of photos.
     Add(PathBuf),
+    /// Opens this cloud by itself, whatever flight is on the screen.
+    OpenAlone(PathBuf),
     /// Opens the bundled flight.
     OpenSample,
     /// Goes back to the start page.

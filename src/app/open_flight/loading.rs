@@ -111,7 +111,7 @@ pub(crate) fn named(
 }
 
 /// Whether this is a cloud or mesh.
-fn is_cloud(path: &Path) -> bool {
+pub(crate) fn is_cloud(path: &Path) -> bool {
     matches!(detect(path), Ok(Kind::Cloud(_)))
 }
 

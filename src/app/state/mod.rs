@@ -57,6 +57,17 @@ pub enum HeldBack {
     },
 }
 
+/// How something was named that is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Named {
+    /// To be opened; a surface alone is for the flight that could not be opened last, or that is on the screen.
+    ToOpen,
+    /// As the surface or the photos of the flight on the screen.
+    Added,
+    /// A cloud, to be looked at by itself.
+    Alone,
+}
+
 /// What the flight on the screen is left for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Leaving {
@@ -64,8 +75,8 @@ pub enum Leaving {
     Read {
         /// What was named.
         paths: Vec<PathBuf>,
-        /// Whether it is a surface or photos for the flight on the screen.
-        added: bool,
+        /// How.
+        named: Named,
     },
     /// The bundled flight.
     Sample,
@@ -113,6 +124,8 @@ pub struct State {
     pub tried: Option<(PathBuf, OpenOptions)>,
     /// The flights of the folder that was named last, to choose from.
     pub choices: Vec<Candidate>,
+    /// The cloud that was dropped or opened beside the flight on the screen: it is asked what it is to be.
+    pub cloud: Option<PathBuf>,
     /// Whether the flight that is being read is another one than that on the screen.
     pub reads_other: bool,
     /// A first look at the surface that is being read.
@@ -145,6 +158,7 @@ impl State {
             may_quit: false,
             tried: None,
             choices: Vec::new(),
+            cloud: None,
             reads_other: false,
             preview: None,
             opened: 0,

@@ -2,6 +2,7 @@
 //! only the question before unsaved changes are lost does.
 
 mod choose;
+mod cloud_use;
 mod georeference;
 mod residuals;
 mod save_measured;
@@ -20,6 +21,7 @@ use crate::panels::size_distributions::{
 use crate::state::{HeldBack, State};
 use crate::typed::typed;
 use choose::choose;
+use cloud_use::cloud_use;
 use georeference::{georeference, save_georeferenced};
 use save_measured::{add_layer, save_measured, volume_base};
 
@@ -42,6 +44,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::SaveFigure => "Save figure",
             Asking::SaveReport => "Save report",
             Asking::AddLayer => "Add cloud as layer",
+            Asking::CloudUse => "What is this cloud?",
             Asking::VolumeBase => "Base of the volume",
             Asking::SaveMeasured(MeasuredTable::Points) => "Save points",
             Asking::SaveMeasured(MeasuredTable::Profile) => "Save profile",
@@ -75,6 +78,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::SaveFigure => save_figure(state, ui, commands),
                     Asking::SaveReport => save_report(state, ui, commands),
                     Asking::AddLayer => add_layer(state, ui, commands),
+                    Asking::CloudUse => cloud_use(state, ui, commands),
                     Asking::VolumeBase => volume_base(state, ui, commands),
                     Asking::SaveMeasured(table) => save_measured(table, state, ui, commands),
                     Asking::Keys => keys(ui),
