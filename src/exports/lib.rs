@@ -31,8 +31,8 @@ pub use measured::{
 pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};
 pub use photo_file_names::photo_file_stems;
 pub use plan::{
-    Grid, GridLine, MOST_MAP_PIXELS, MapFrame, Plan, PlanBar, PlanFormat, PlanInks, PlanPhoto,
-    PlanRequest, lit, taken_in_words,
+    Grid, GridLine, GroundOf, MOST_MAP_PIXELS, MapFrame, MeasuredOutline, PhotoPixels, Plan,
+    PlanBar, PlanFormat, PlanGround, PlanInks, PlanPhoto, PlanRequest, ground, taken_in_words,
 };
 pub use rectified::{RectifiedFormat, RectifiedPhoto};
 pub use report_object::{PointCloudScale, ReportObject};

@@ -74,6 +74,16 @@ fn beginning(path: &Path) -> io::Result<Vec<u8>> {
 /// Why not.
 pub fn may_write(path: &Path, kind: Kind, inputs: &Inputs, force: bool) -> Result<(), Fault> {
     let another = "write to another file";
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        let what = match folder.exists() {
+            true => format!("{} is no folder", folder.display()),
+            false => format!("there is no folder {}", folder.display()),
+        };
+        return Err(Fault::new(what, "make it, or choose another folder"));
+    }
     match standing(path, kind, inputs) {
         Standing::Free | Standing::Ours => Ok(()),
         Standing::Foreign if force => Ok(()),
@@ -165,6 +175,15 @@ mod tests {
         ] {
             assert_eq!(may(name, kind, false), without, "{name} {kind:?}");
             assert_eq!(may(name, kind, true), with, "{name} {kind:?} --force");
+        }
+        for (name, why) in [
+            ("no/such/a.csv", "there is no folder"),
+            ("mine.txt/a.csv", "is no folder"),
+        ] {
+            let error = may_write(&at(name), Kind::Result, &inputs, true).unwrap_err();
+            let folder = at(name).parent().unwrap().display().to_string();
+            let error = error.to_string();
+            assert!(error.contains(why) && error.contains(&folder), "{error}");
         }
         let error = write(&at("mine.txt"), b"y", Kind::Result, &inputs, false);
         assert!(error.unwrap_err().to_string().contains("--force"));

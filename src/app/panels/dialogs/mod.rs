@@ -20,6 +20,7 @@ use crate::panels::size_distributions::{
 };
 use crate::state::{HeldBack, State};
 use crate::typed::typed;
+use crate::units::LengthUnit;
 use choose::choose;
 use cloud_use::cloud_use;
 use georeference::{georeference, save_georeferenced};
@@ -363,6 +364,15 @@ fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if open.files.crs.is_none() {
         ui.weak("No coordinate system is stated: the file is in the flight's own frame.");
     }
+    let pixel = map_pixel(open, unit, ui);
+    if open
+        .pointer
+        .drawn
+        .as_ref()
+        .is_some_and(|drawn| drawn.points.len() > 1)
+    {
+        ui.weak("The line or polygon that is measured goes along.");
+    }
     let start = proposed(open, Some("map.pdf"));
     let browse = [("Browse…", Dialog::new_file("Export map", "map.pdf"))];
     let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
@@ -372,8 +382,43 @@ fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if let Some(path) = path
         && (button.clicked() || entered)
     {
-        commands.push(Command::Map(MapCommand::Save(path.into())));
+        let to = path.into();
+        commands.push(Command::Map(MapCommand::Save { to, pixel }));
     }
+}
+
+/// The side of a pixel of the map's ground, world units, typed in `unit`; `None` as on the screen.
+fn map_pixel(open: &OpenFlight, unit: LengthUnit, ui: &mut egui::Ui) -> Option<f64> {
+    let plan = &open.map.made.as_ref()?.plan;
+    let (one, symbol) = match plan.unit_known {
+        true => (unit.in_units_of(plan.unit), unit.symbol()),
+        false => (1.0, plan.unit_of_lengths()),
+    };
+    let id = ui.scope_id().with("map pixel");
+    let mut pixel: Option<f64> = ui.data(|data| data.get_temp(id)).flatten();
+    let mut typed = pixel.unwrap_or(plan.raster.pixel) / one;
+    let before = typed;
+    ui.horizontal(|ui| {
+        ui.label("Pixel size");
+        let field = egui::DragValue::new(&mut typed)
+            .speed(before * 0.01)
+            .range(1e-6..=1e6)
+            .max_decimals(6)
+            .suffix(format!(" {symbol}"));
+        let field = ui.add(field);
+        field.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Pixel size of the map")
+        });
+        field.on_hover_text("The side of a pixel of the ground");
+        if typed != before {
+            pixel = Some(typed * one);
+        }
+        let [low, high] = plan.extent;
+        let size = (high - low) / pixel.unwrap_or(plan.raster.pixel);
+        ui.weak(format!("{:.0} x {:.0} pixels", size.x, size.y));
+    });
+    ui.data_mut(|data| data.insert_temp(id, pixel));
+    pixel
 }
 
 fn keys(ui: &mut egui::Ui) {
