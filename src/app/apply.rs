@@ -2,6 +2,7 @@
 
 use crate::command::{Asking, Command, ReviewStep, Tab};
 use crate::flight::FlightSettings;
+use crate::geometry::LevelBox;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::picked::PickedPoint;
 use crate::scale::ScalePair;
@@ -108,12 +109,12 @@ impl State {
                 self.undo_distributions(History::redo);
             }
             Command::Undo => {
-                self.undo_picks_or_settings(History::undo, History::undo);
+                self.undo_picks_or_settings(History::undo, History::undo, History::undo);
                 // Else the last word at the foot of the window may be "saved".
                 self.say(Severity::Note, "undone");
             }
             Command::Redo => {
-                self.undo_picks_or_settings(History::redo, History::redo);
+                self.undo_picks_or_settings(History::redo, History::redo, History::redo);
                 self.say(Severity::Note, "done again");
             }
             Command::Set(settings) => self.set_settings(settings),
@@ -283,16 +284,23 @@ impl State {
         });
     }
 
-    /// While points are picked, undo is theirs as far as it goes.
+    /// While points are picked, undo is theirs as far as it goes; then the clipping box's, while its window is
+    /// shown.
     fn undo_picks_or_settings(
         &mut self,
         picks: impl FnOnce(&mut History<Vec<PickedPoint>>) -> bool,
+        limits: impl FnOnce(&mut History<LevelBox>) -> bool,
         settings: impl FnOnce(&mut History<FlightSettings>) -> bool,
     ) {
         let picked = self.open.as_mut().map(|open| &mut open.pointer.picked);
         let undone = picked
             .filter(|picked| picked.is_on)
             .is_some_and(|picked| picks(&mut picked.history));
+        let undone = undone
+            || self
+                .open
+                .as_mut()
+                .is_some_and(|open| open.undo_clip(limits));
         if !undone {
             self.undo_settings(settings);
         }

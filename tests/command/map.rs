@@ -123,7 +123,7 @@ fn photos_are_the_ground_of_a_map() {
     let coloured = |picture: &image::RgbaImage| {
         let pixels = picture.pixels().filter(|pixel| pixel[3] == 255);
         let far =
-            pixels.filter(|p| p[..3].iter().max().unwrap() - p[..3].iter().min().unwrap() > 12);
+            pixels.filter(|p| p.0[..3].iter().max().unwrap() - p.0[..3].iter().min().unwrap() > 12);
         far.count()
     };
     assert!(coloured(&photos) > 2 * coloured(&relief));

@@ -207,7 +207,7 @@ fn the_ground_is_chosen_and_the_file_has_it() {
             .ground
             .clone();
         let far = |pixel: &&image::Rgba<u8>| {
-            pixel[..3].iter().max().unwrap() - pixel[..3].iter().min().unwrap() > 12
+            pixel.0[..3].iter().max().unwrap() - pixel.0[..3].iter().min().unwrap() > 12
         };
         ground.pixels().filter(far).count() as f64 / ground.pixels().len() as f64
     };
@@ -238,9 +238,9 @@ fn the_ground_is_chosen_and_the_file_has_it() {
         picture.width()
     );
     desk.click(Role::Button, "Ground: plain");
-    assert!(plan.ground.pixels().any(|pixel| pixel[3] > 0));
+    assert!(plan.ground.pixels().any(|pixel| pixel.0[3] > 0));
     let plan = desk.open().map.of_now().expect("made").plan.clone();
-    assert!(plan.ground.pixels().all(|pixel| pixel[3] == 0));
+    assert!(plan.ground.pixels().all(|pixel| pixel.0[3] == 0));
 }
 
 /// Coordinates stand beside the map, where they hide nothing.

@@ -7,6 +7,7 @@ use crate::exports::{Plan, PlanRequest};
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::opening::PhotoFile;
+use crate::picture::reduced_size;
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 
@@ -22,6 +23,18 @@ pub(super) fn pixels_of(
 ) -> Option<Result<image::RgbImage, Fault>> {
     let pixels = files.get(photo)?.pixels()?;
     Some(pixels.map_err(|error| error.fault))
+}
+
+/// A picture as the graphics device takes it: no side longer than its textures can be.
+fn on_screen(picture: &image::RgbaImage, context: &egui::Context) -> egui::ColorImage {
+    let most = context.input(|input| input.max_texture_side) as u32;
+    let (width, height) = reduced_size(picture.width(), picture.height(), most);
+    let small = ((width, height) != picture.dimensions()).then(|| {
+        let filter = image::imageops::FilterType::Triangle;
+        image::imageops::resize(picture, width, height, filter)
+    });
+    let picture = small.as_ref().unwrap_or(picture);
+    egui::ColorImage::from_rgba_unmultiplied([width as usize, height as usize], picture.as_raw())
 }
 
 impl State {
@@ -51,9 +64,7 @@ impl State {
                 Some((plan, ground)) => (plan.with_photos_of(&review), ground),
                 None => {
                     let plan = Plan::new(&review, request, &pixels, progress)?;
-                    let size = [plan.ground.width() as usize, plan.ground.height() as usize];
-                    let pixels =
-                        egui::ColorImage::from_rgba_unmultiplied(size, plan.ground.as_raw());
+                    let pixels = on_screen(&plan.ground, &context);
                     let options = egui::TextureOptions::LINEAR;
                     let ground = context.load_texture("ground of the map", pixels, options);
                     (plan, ground)

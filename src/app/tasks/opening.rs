@@ -236,6 +236,7 @@ impl OpenFlight {
         std::mem::swap(&mut self.pointer.picked, &mut before.pointer.picked);
         self.colors.keep_limits(&before.colors);
         self.clip = before.clip;
+        std::mem::swap(&mut self.clip_history, &mut before.clip_history);
         std::mem::swap(&mut self.beside, &mut before.beside);
         for beside in &mut self.beside {
             // The local frame may be another one.

@@ -431,9 +431,16 @@ fn keys(ui: &mut egui::Ui) {
 }
 
 fn list_of_keys(ui: &mut egui::Ui) {
+    // Long words go on below, where the window is narrow.
+    let column = (ui.available_width() / 2.0 - 12.0).max(60.0);
+    let said = |text: String, ui: &mut egui::Ui| {
+        ui.add(egui::Label::new(text).wrap());
+    };
     egui::Grid::new("keys")
         .striped(true)
         .num_columns(2)
+        .min_col_width(column)
+        .max_col_width(column)
         .show(ui, |ui| {
             for (what, how) in [
                 ("Turn the view", "drag with the left button"),
@@ -445,14 +452,14 @@ fn list_of_keys(ui: &mut egui::Ui) {
                 ("Turn around a place", "double click on it"),
                 ("Select a photo", "click its camera or its footprint"),
             ] {
-                ui.label(what);
-                ui.label(how);
+                said(what.to_owned(), ui);
+                said(how.to_owned(), ui);
                 ui.end_row();
             }
             for action in actions::all() {
                 if let Some(keys) = action.keys_in_words(ui.ctx()) {
-                    ui.label(action.label.trim_end_matches('…'));
-                    ui.label(keys);
+                    said(action.label.trim_end_matches('…').to_owned(), ui);
+                    said(keys, ui);
                     ui.end_row();
                 }
             }
