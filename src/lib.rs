@@ -75,6 +75,7 @@ pub use fragscale_exports as exports;
 pub use fragscale_formats as formats;
 pub use fragscale_fragmentation as fragmentation;
 pub use fragscale_opening as opening;
+pub use fragscale_reconstruct as reconstruct;
 #[cfg(feature = "render")]
 pub use fragscale_render as render;
 pub use fragscale_sample as sample;

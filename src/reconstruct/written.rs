@@ -1,0 +1,151 @@
+//! The folder that comes out: `flight.toml`, and `reconstruction/` with COLMAP's text files. While the work
+//! goes on it has `unfinished/`, which a second run goes on with.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::engine::{Engine, Sparse};
+use crate::fault::Fault;
+use crate::files::{self, FileError};
+use crate::formats::read_project;
+use crate::jobs::Progress;
+use crate::opening::{GeoreferenceRequest, flight_text_of, georeference};
+use crate::photo_set::PhotoSet;
+use crate::{Reconstructed, Request};
+
+const FLIGHT: &str = "flight.toml";
+const MODEL: &str = "reconstruction";
+const UNFINISHED: &str = "unfinished";
+/// What the unfinished work is of: a line a photo.
+const OF: &str = "photos.txt";
+
+/// The folder that comes out.
+pub(crate) struct Folder {
+    path: PathBuf,
+    /// For what an engine keeps.
+    pub(crate) work: PathBuf,
+}
+
+/// Makes the folder, or takes the one of a run that did not end.
+///
+/// # Errors
+/// Where it holds other things, or cannot be made.
+pub(crate) fn folder(to: &Path) -> Result<Folder, FileError> {
+    let at = |fault| FileError::new(to, fault);
+    let work = to.join(UNFINISHED);
+    if to.join(FLIGHT).exists() {
+        let fault = Fault::new("there is a flight in it already", "name a new folder");
+        return Err(at(fault));
+    }
+    let is_empty = match fs::read_dir(to) {
+        Ok(mut entries) => entries.next().is_none(),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => true,
+        Err(error) => return Err(at(cannot("read", &error))),
+    };
+    if !is_empty && !work.join(OF).exists() {
+        let fault = Fault::new("the folder is not empty", "name a new folder");
+        return Err(at(fault));
+    }
+    fs::create_dir_all(&work).map_err(|error| at(cannot("be made", &error)))?;
+    Ok(Folder {
+        path: to.to_owned(),
+        work,
+    })
+}
+
+impl Folder {
+    /// Throws unfinished work away that is of other photos, or of another engine's.
+    ///
+    /// # Errors
+    /// Where the folder cannot be written.
+    pub(crate) fn go_on_with(
+        &self,
+        photos: &PhotoSet,
+        engine: &dyn Engine,
+    ) -> Result<(), FileError> {
+        let mut text = format!("{}\n", engine.name());
+        for photo in &photos.photos {
+            let size = fs::metadata(&photo.path).map_or(0, |file| file.len());
+            text += &format!("{} {size} {}\n", photo.camera, photo.name);
+        }
+        let of = self.work.join(OF);
+        let written = |error: io::Error| FileError::new(&of, cannot("be written", &error));
+        if fs::read_to_string(&of).is_ok_and(|before| before == text) {
+            return Ok(());
+        }
+        fs::remove_dir_all(&self.work).map_err(written)?;
+        fs::create_dir_all(&self.work).map_err(written)?;
+        fs::write(&of, text).map_err(written)
+    }
+}
+
+fn cannot(what: &str, error: &io::Error) -> Fault {
+    let what = format!("the folder cannot {what} ({error})");
+    Fault::new(what, "choose a folder that may be written to")
+}
+
+/// Writes what was found, brings it to the world, and takes the unfinished work away.
+///
+/// # Errors
+/// Where the folder cannot be written.
+pub(crate) fn write(
+    request: &Request,
+    folder: &Folder,
+    photos: PhotoSet,
+    sparse: Sparse,
+    progress: &Progress,
+) -> Result<Reconstructed, FileError> {
+    let model = folder.path.join(MODEL);
+    let flight = folder.path.join(FLIGHT);
+    let at = |error: &io::Error| FileError::new(&folder.path, cannot("be written", error));
+    fs::create_dir_all(&model).map_err(|error| at(&error))?;
+    for (name, bytes) in &sparse.files {
+        files::write_whole(&model.join(name), bytes).map_err(|error| at(&error))?;
+    }
+    let placed = georeference(
+        &model,
+        &GeoreferenceRequest {
+            photos: Some(request.photos.clone()),
+            crs: request.crs.clone(),
+            ..GeoreferenceRequest::default()
+        },
+        progress,
+    );
+    let mut warnings = Vec::new();
+    match &placed {
+        Ok(placed) => warnings.extend(placed.warnings.iter().cloned()),
+        Err(error) => warnings.push(format!(
+            "the model has no unit and no place in the world: {}",
+            error.fault
+        )),
+    }
+    let name = request.photos.canonicalize().unwrap_or_default();
+    let name = name.file_name().unwrap_or_default().to_string_lossy();
+    let placed = placed.ok();
+    let (folder_of_photos, name) = (Some(request.photos.as_path()), Some(name.as_ref()));
+    let text = flight_text_of(
+        placed.as_ref(),
+        name,
+        &flight,
+        &model,
+        folder_of_photos,
+        None,
+    )?;
+    files::write_whole(&flight, text.as_bytes()).map_err(|error| at(&error))?;
+    let read = read_project(&model, progress)?.reconstruction;
+    let mut left_out = photos.left_out;
+    left_out.extend(sparse.left_out);
+    // The flight is whole: what is left over harms nobody.
+    let _ = fs::remove_dir_all(&folder.work);
+    Ok(Reconstructed {
+        flight,
+        registered: read.photos.len(),
+        photos: photos.count,
+        left_out,
+        points: read.cloud.points.len(),
+        reprojection_px: read.median_reprojection_px(),
+        world: placed,
+        warnings,
+    })
+}
