@@ -2,6 +2,7 @@
 //! what is learnt from size distributions.
 
 mod drawing;
+mod flight_files;
 mod markup;
 mod measured;
 mod photo_columns;
@@ -24,6 +25,7 @@ use fragscale_core::{
 };
 use fragscale_fragmentation as fragmentation;
 
+pub use flight_files::{Orientation, PoseRow, StatedDeviations, laz, ply, poses_csv};
 pub use measured::{
     MeasuredUnit, PointsReport, ProfileReport, VolumeReport, points_csv, points_table, profile_csv,
     profile_json, profile_table, volume_csv, volume_json, volume_table, volume_warning,

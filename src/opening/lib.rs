@@ -46,7 +46,7 @@ pub use open::{
     FlightReconstruction, OnSample, OpenOptions, Opened, SurfaceSample, open_flight,
     open_flight_sampled,
 };
-pub use origin::FlightOrigin;
+pub use origin::{FlightOrigin, path_from};
 pub use photo_files::PhotoFile;
 pub use second_surface::{SecondSurface, StatedWorld, second_surface};
 

@@ -6,7 +6,9 @@
 //! pairs       which photos are compared: neighbours, not all with all
 //! engine      what an engine has to do
 //! embedded    the engine that is always there: cumulus3d's parts, in pure Rust
+//! covariance  how sure poses and lenses are
 //! in_world    the photos' own positions as a place in the world
+//! flight_files  poses.csv, pile.laz and flight.toml of a model in the world
 //! written     the folder that comes out
 //! ```
 //!
@@ -18,14 +20,19 @@
 //! Pixels of photos are counted as everywhere here: (0, 0) is the outer corner of the first. cumulus3d
 //! and COLMAP's files count likewise.
 
+mod covariance;
 mod embedded;
 mod engine;
+mod flight_files;
 mod in_world;
 mod pairs;
 mod photo_set;
 mod written;
 
-use fragscale_core::{camera, fault, files, geodesy, georeference, jobs};
+use fragscale_core::{
+    camera, fault, files, flight, geodesy, geometry, georeference, jobs, surface,
+};
+use fragscale_exports as exports;
 use fragscale_formats as formats;
 use fragscale_opening as opening;
 

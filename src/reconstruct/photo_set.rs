@@ -74,6 +74,12 @@ pub struct PhotoSet {
 const GUESSED_FOCAL: f64 = 1.0;
 
 impl PhotoSet {
+    /// The photo of that name.
+    pub fn named(&self, name: &str) -> Option<&SurveyPhoto> {
+        // Sorted as paths are: not quite as names.
+        self.photos.iter().find(|photo| photo.name == name)
+    }
+
     /// The photos that lie in a folder. `crs` is the world's, else the zone of UTM of the first place.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! The folder that comes out: `flight.toml`, and `reconstruction/` with COLMAP's text files. While the work
+//! The folder that comes out: `flight.toml` and what it names, and `reconstruction/` with COLMAP's text files. While the work
 //! goes on it has `unfinished/`, which a second run goes on with.
 
 use std::fs;
@@ -8,9 +8,10 @@ use std::path::{Path, PathBuf};
 use crate::engine::{Engine, Sparse};
 use crate::fault::Fault;
 use crate::files::{self, FileError};
+use crate::flight_files::flight_files;
 use crate::formats::read_project;
 use crate::jobs::Progress;
-use crate::opening::{GeoreferenceRequest, flight_text_of, georeference};
+use crate::opening::{GeoreferenceRequest, flight_text_of, georeference, path_from};
 use crate::photo_set::PhotoSet;
 use crate::{Reconstructed, Request};
 
@@ -113,38 +114,49 @@ pub(crate) fn write(
         progress,
     );
     let mut warnings = Vec::new();
-    match &placed {
-        Ok(placed) => warnings.extend(placed.warnings.iter().cloned()),
-        Err(error) => warnings.push(format!(
-            "the model has no unit and no place in the world: {}",
-            error.fault
-        )),
-    }
+    let read = read_project(&model, progress)?.reconstruction;
+    let (registered, points) = (read.photos.len(), read.cloud.points.len());
+    let reprojection_px = read.median_reprojection_px();
     let name = request.photos.canonicalize().unwrap_or_default();
     let name = name.file_name().unwrap_or_default().to_string_lossy();
-    let placed = placed.ok();
-    let (folder_of_photos, name) = (Some(request.photos.as_path()), Some(name.as_ref()));
-    let text = flight_text_of(
-        placed.as_ref(),
-        name,
-        &flight,
-        &model,
-        folder_of_photos,
-        None,
-    )?;
-    files::write_whole(&flight, text.as_bytes()).map_err(|error| at(&error))?;
-    let read = read_project(&model, progress)?.reconstruction;
+    let placed = match placed {
+        Ok(placed) => {
+            progress.stage("finding how sure the poses are");
+            warnings.extend(placed.warnings.iter().cloned());
+            let here = fs::canonicalize(&folder.path).map_err(|error| at(&error))?;
+            let to_photos = path_from(&here, &request.photos);
+            let made = to_photos
+                .and_then(|to_photos| flight_files(&name, &to_photos, read, &placed, &photos))
+                .map_err(|fault| FileError::new(&folder.path, fault))?;
+            warnings.extend(made.warnings);
+            // flight.toml is the last: with it the folder is a flight.
+            for (name, bytes) in &made.files {
+                files::write_whole(&folder.path.join(name), bytes).map_err(|error| at(&error))?;
+            }
+            Some(placed)
+        }
+        Err(error) => {
+            warnings.push(format!(
+                "the model has no unit and no place in the world: {}",
+                error.fault
+            ));
+            let photos = Some(request.photos.as_path());
+            let text = flight_text_of(None, Some(&name), &flight, &model, photos, None)?;
+            files::write_whole(&flight, text.as_bytes()).map_err(|error| at(&error))?;
+            None
+        }
+    };
     let mut left_out = photos.left_out;
     left_out.extend(sparse.left_out);
     // The flight is whole: what is left over harms nobody.
     let _ = fs::remove_dir_all(&folder.work);
     Ok(Reconstructed {
         flight,
-        registered: read.photos.len(),
+        registered,
         photos: photos.count,
         left_out,
-        points: read.cloud.points.len(),
-        reprojection_px: read.median_reprojection_px(),
+        points,
+        reprojection_px,
         world: placed,
         warnings,
     })

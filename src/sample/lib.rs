@@ -26,6 +26,7 @@ mod written;
 #[cfg(test)]
 use fragscale_core::scale;
 use fragscale_core::{camera, fault, flight, geodesy, geometry, jobs, surface, units};
+use fragscale_exports as exports;
 #[cfg(test)]
 use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
@@ -336,8 +337,8 @@ fn write_surface(
         *point = *point * written.world_factor() + recipe.origin;
     }
     let bytes = match recipe.epsg.filter(|_| cloud.triangles.is_empty()) {
-        Some(epsg) => files::laz::laz(&cloud, epsg),
-        None => files::ply::ply(&cloud, "simulated by fragscale"),
+        Some(epsg) => exports::laz(&cloud, epsg, "simulated"),
+        None => exports::ply(&cloud, "simulated by fragscale"),
     };
     write(path, &bytes.map_err(|e| Fault::new(e, "report this"))?)
 }
@@ -356,7 +357,7 @@ fn write_texts(
     let rows = written.pose_rows(shots, recipe.origin);
     write(
         &folder.join("poses.csv"),
-        files::poses::poses_csv(&rows).map_err(report)?.as_bytes(),
+        exports::poses_csv(&rows).map_err(report)?.as_bytes(),
     )?;
     write(
         &folder.join("ost.yaml"),

@@ -17,8 +17,10 @@ use crate::photo_set::{LeftOut, PhotoSet, SurveyCamera};
 /// Longer side of what features are looked for in, pixels.
 const SIDE: usize = 3200;
 
-/// Features kept of a photo, the largest first.
+/// Features kept of a photo, the strongest of each part of it: whole parts without would bend the model.
 const FEATURES: usize = 8192;
+/// Parts along each side.
+const CELLS: u32 = 16;
 
 /// A photo with fewer is blurred, or of something without texture: 30 matches make a pose.
 const FEWEST: usize = 100;
@@ -125,7 +127,7 @@ pub(super) fn keep(store: &FeatureStore, kept: &Path) -> Result<(), Fault> {
 fn options() -> SiftOptions {
     SiftOptions {
         max_num_features: FEATURES,
-        selection: FeatureSelection::default(),
+        selection: FeatureSelection::SpatialGrid { cells: CELLS },
         ..SiftOptions::default()
     }
 }
