@@ -16,7 +16,6 @@ use rayon::prelude::*;
 
 use crate::camera::{Brown, Camera, Distortion, Pose};
 use crate::formats::{Observation, Reconstruction};
-use crate::geometry::median;
 
 /// What receivers and makers say.
 pub(crate) struct Known {
@@ -130,24 +129,25 @@ fn inverse(mut matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
     Some(inverse)
 }
 
-/// Standard deviation of an observation along an axis: from the median of residuals' lengths, which
-/// wrong matches do not move, of a Rayleigh distribution (its median is 1.1774 of that), and the number of
-/// unknowns.
+/// Standard deviation of an observation along an axis: the root of the sum of squares over what is left of
+/// the numbers when the unknowns are taken off. Engines take away what lies pixels off, so that it is a
+/// sum over good matches, long tails and all: a median would say half of it.
 fn pixel_deviation(model: &Reconstruction) -> Option<f64> {
-    let mut lengths: Vec<f64> = model
+    let squares: Vec<f64> = model
         .observations
         .iter()
         .filter_map(|seen| {
             let (camera, pose, point) = of(model, seen);
             let pixel = camera.pixel_as_shot(pose.camera_from_world(point))?;
-            Some(pixel.distance(seen.pixel))
+            Some(pixel.distance_squared(seen.pixel))
         })
         .collect();
-    let count = lengths.len() as f64;
-    let unknown = (model.photos.len() * POSE + model.cloud.points.len() * 3) as f64;
-    let free = (2.0 * count - unknown).max(1.0) / (2.0 * count);
+    let unknown = model.photos.len() * POSE + model.cloud.points.len() * 3;
+    let free = (2 * squares.len())
+        .checked_sub(unknown)
+        .filter(|&free| free > 0)?;
     // Exact data of tests have none.
-    Some((median(&mut lengths)? / 1.177_41 / free.sqrt()).max(1e-6))
+    Some((squares.iter().sum::<f64>() / free as f64).sqrt().max(1e-6))
 }
 
 fn of<'a>(model: &'a Reconstruction, seen: &Observation) -> (&'a Camera, &'a Pose, DVec3) {
@@ -408,8 +408,10 @@ mod tests {
                 }
             }
         }
-        // All residuals are 0.8 px long: 0.68 px along an axis before the unknowns are counted.
-        assert!((0.68..0.9).contains(&found.pixel), "{}", found.pixel);
+        // All residuals are 0.8 px long.
+        let free = rows - photos * 6 - points * 3;
+        let expected = (0.64 * model.observations.len() as f64 / free as f64).sqrt();
+        assert!((found.pixel - expected).abs() < 1e-9, "{}", found.pixel);
         assert!(found.focal[0] < 0.03);
     }
 

@@ -99,3 +99,6 @@ pub fn reconstruct(
         .map_err(at)?;
     written::write(request, &folder, photos, sparse, progress)
 }
+
+#[cfg(test)]
+mod tests;

@@ -28,10 +28,10 @@ pub(crate) struct Folder {
     pub(crate) work: PathBuf,
 }
 
-/// Makes the folder, or takes the one of a run that did not end.
+/// The folder: one to be made, an empty one, or that of a run that did not end.
 ///
 /// # Errors
-/// Where it holds other things, or cannot be made.
+/// Where it holds other things.
 pub(crate) fn folder(to: &Path) -> Result<Folder, FileError> {
     let at = |fault| FileError::new(to, fault);
     let work = to.join(UNFINISHED);
@@ -48,7 +48,6 @@ pub(crate) fn folder(to: &Path) -> Result<Folder, FileError> {
         let fault = Fault::new("the folder is not empty", "name a new folder");
         return Err(at(fault));
     }
-    fs::create_dir_all(&work).map_err(|error| at(cannot("be made", &error)))?;
     Ok(Folder {
         path: to.to_owned(),
         work,
@@ -56,7 +55,7 @@ pub(crate) fn folder(to: &Path) -> Result<Folder, FileError> {
 }
 
 impl Folder {
-    /// Throws unfinished work away that is of other photos, or of another engine's.
+    /// Makes the folder; throws unfinished work away that is of other photos, or of another engine's.
     ///
     /// # Errors
     /// Where the folder cannot be written.
@@ -75,7 +74,9 @@ impl Folder {
         if fs::read_to_string(&of).is_ok_and(|before| before == text) {
             return Ok(());
         }
-        fs::remove_dir_all(&self.work).map_err(written)?;
+        if self.work.exists() {
+            fs::remove_dir_all(&self.work).map_err(written)?;
+        }
         fs::create_dir_all(&self.work).map_err(written)?;
         fs::write(&of, text).map_err(written)
     }
