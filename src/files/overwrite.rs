@@ -67,6 +67,27 @@ fn beginning(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Whether the folder of a file is there, which nobody is going to make.
+///
+/// # Errors
+/// Where it is not.
+pub fn has_folder(path: &Path) -> Result<(), Fault> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir());
+    let Some(folder) = folder else {
+        return Ok(());
+    };
+    let what = match folder.exists() {
+        true => format!("it cannot be written: {} is no folder", folder.display()),
+        false => format!(
+            "it cannot be written: there is no folder {}",
+            folder.display()
+        ),
+    };
+    Err(Fault::new(what, "make it, or choose another folder"))
+}
+
 /// Whether a file of this kind may be written to `path`. With `force` a file of others may be replaced;
 /// one that was read never.
 ///
@@ -74,16 +95,6 @@ fn beginning(path: &Path) -> io::Result<Vec<u8>> {
 /// Why not.
 pub fn may_write(path: &Path, kind: Kind, inputs: &Inputs, force: bool) -> Result<(), Fault> {
     let another = "write to another file";
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-        let what = match folder.exists() {
-            true => format!("{} is no folder", folder.display()),
-            false => format!("there is no folder {}", folder.display()),
-        };
-        return Err(Fault::new(what, "make it, or choose another folder"));
-    }
     match standing(path, kind, inputs) {
         Standing::Free | Standing::Ours => Ok(()),
         Standing::Foreign if force => Ok(()),
@@ -127,6 +138,7 @@ pub fn write(
     inputs: &Inputs,
     force: bool,
 ) -> Result<(), Fault> {
+    has_folder(path)?;
     may_write(path, kind, inputs, force)?;
     write_whole(path, contents).map_err(|error| cannot_be("written", &error))
 }
@@ -180,7 +192,7 @@ mod tests {
             ("no/such/a.csv", "there is no folder"),
             ("mine.txt/a.csv", "is no folder"),
         ] {
-            let error = may_write(&at(name), Kind::Result, &inputs, true).unwrap_err();
+            let error = has_folder(&at(name)).unwrap_err();
             let folder = at(name).parent().unwrap().display().to_string();
             let error = error.to_string();
             assert!(error.contains(why) && error.contains(&folder), "{error}");
