@@ -21,6 +21,7 @@
 //!     render/                    wgpu: scene -> picture; knows no egui, reads no file
 //!     reconstruct/               photos alone -> a flight: engines behind a trait
 //!     sample/                    the paper's lab, simulated
+//!     reconstruct/               photos -> poses, lenses, a cloud: engines behind a trait
 //! F4  formats/                   bytes -> types: clouds cameras packages poses photos tables text
 //!     exports/                   what goes out: table, CSV, JSON, sheet, Split-Desktop, figures, maps
 //!     --- the core (core.rs) and fragmentation/ ---

@@ -42,7 +42,7 @@ const FLOORS: [(&str, i32); 16] = [
 
 /// The other members and what they may be built on. Cargo holds that nobody uses what is not in its
 /// list; this table, that the lists do not grow unseen.
-const MEMBERS: [(&str, &[&str]); 8] = [
+const MEMBERS: [(&str, &[&str]); 9] = [
     ("core", &[]),
     ("fragmentation", &["core"]),
     ("formats", &["core", "fragmentation"]),
@@ -51,6 +51,10 @@ const MEMBERS: [(&str, &[&str]); 8] = [
     ("render", &["core"]),
     ("sample", &["core", "fragmentation", "formats"]),
     (
+        "reconstruct",
+        &["core", "exports", "formats", "opening"],
+    ),
+    (
         "app",
         &[
             "core",
@@ -58,6 +62,7 @@ const MEMBERS: [(&str, &[&str]); 8] = [
             "formats",
             "fragmentation",
             "opening",
+            "reconstruct",
             "render",
         ],
     ),

@@ -2,6 +2,7 @@
 
 use crate::command::{Asking, Command, ReviewStep, Tab};
 use crate::flight::FlightSettings;
+use crate::from_photos::Ended;
 use crate::geometry::LevelBox;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::picked::PickedPoint;
@@ -55,6 +56,7 @@ impl State {
             Command::SaveGeoreferenced { to, keep_surface } => {
                 self.save_georeferenced(to, keep_surface);
             }
+            Command::FromPhotos(step) => self.from_photos_step(step),
             Command::Ask(asking) => self.ask(asking),
             Command::Browse(dialog) => self.browse(dialog),
             Command::Cancel(task) => {
@@ -64,6 +66,9 @@ impl State {
                     self.take_back_settings();
                     if task == Task::SAVE {
                         self.after_saving = None;
+                    }
+                    if task == Task::RECONSTRUCT {
+                        self.from_photos.ended = Some(Ended::Cancelled);
                     }
                 }
             }

@@ -10,6 +10,8 @@
 //! in_world    the photos' own positions as a place in the world
 //! flight_files  poses.csv, pile.laz and flight.toml of a model in the world
 //! written     the folder that comes out
+//! proposed    where that folder goes, if nobody says otherwise
+//! said        what is said of the photos, and of what came out
 //! ```
 //!
 //! An engine leaves COLMAP's text files, which `formats` reads as it reads COLMAP's own: so that an
@@ -27,10 +29,12 @@ mod flight_files;
 mod in_world;
 mod pairs;
 mod photo_set;
+mod proposed;
+mod said;
 mod written;
 
 use fragscale_core::{
-    camera, fault, files, flight, geodesy, geometry, georeference, jobs, surface,
+    camera, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, surface,
 };
 use fragscale_exports as exports;
 use fragscale_formats as formats;
@@ -41,6 +45,8 @@ use std::path::PathBuf;
 pub use self::embedded::Embedded;
 pub use self::engine::{Engine, Sparse};
 pub use self::photo_set::{LeftOut, PhotoSet, SurveyPhoto};
+pub use self::proposed::{may_be_made, proposed_folder};
+pub use self::said::{found, left_out, summary};
 
 use self::files::FileError;
 use self::jobs::Progress;

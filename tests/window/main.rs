@@ -32,6 +32,7 @@ mod dropping;
 mod everyday;
 mod export;
 mod fields;
+mod from_photos;
 mod georeference;
 mod health;
 mod large_clouds;

@@ -14,6 +14,8 @@ pub enum Asking {
     Choose,
     /// Where the export goes.
     Export,
+    /// Which photos a new flight is made of.
+    FromPhotos,
     /// What is known of the reconstruction's place in the world.
     Georeference,
     /// Where the georeferenced flight goes.

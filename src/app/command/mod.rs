@@ -16,6 +16,7 @@ pub use review_step::ReviewStep;
 pub use view_change::ViewChange;
 
 use crate::flight::{DecisionKind, FlightSettings, Limits, Verdict};
+use crate::from_photos::FromPhotosStep;
 use crate::geometry::Ray;
 use crate::linked::PointFrom;
 use crate::map::MapCommand;
@@ -110,6 +111,8 @@ pub enum Command {
         /// Whether the surface's file is in the world already.
         keep_surface: bool,
     },
+    /// A step of making a new flight from photos.
+    FromPhotos(FromPhotosStep),
     /// Opens a small window that asks for a place, or closes it.
     Ask(Option<Asking>),
     /// Opens the desktop's own dialog.

@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use crate::command::{Asking, Command, PictureRequest, Tab};
 use crate::fault::one_line;
 use crate::formats::Candidate;
+use crate::from_photos::FromPhotos;
 use crate::open_flight::OpenFlight;
 use crate::opening::OpenOptions;
 use crate::opening_preview::OpeningPreview;
@@ -122,6 +123,8 @@ pub struct State {
     pub may_quit: bool,
     /// The flight that could not be opened last, with what was named beside it.
     pub tried: Option<(PathBuf, OpenOptions)>,
+    /// What the small window for a new flight from photos holds.
+    pub from_photos: FromPhotos,
     /// The flights of the folder that was named last, to choose from.
     pub choices: Vec<Candidate>,
     /// The cloud that was dropped or opened beside the flight on the screen: it is asked what it is to be.
@@ -157,6 +160,7 @@ impl State {
             after_saving: None,
             may_quit: false,
             tried: None,
+            from_photos: FromPhotos::default(),
             choices: Vec::new(),
             cloud: None,
             reads_other: false,
@@ -176,6 +180,8 @@ impl State {
         };
         if severity == Severity::Error {
             self.notice = Some(line.clone());
+            // Offered beside another error.
+            self.from_photos.offered = None;
         }
         if self.log.len() == LOG_LINES {
             self.log.remove(0);

@@ -32,6 +32,7 @@ impl State {
         let base = base.filter(|_| how != Named::Alone);
         let added = how == Named::Added;
         self.notice = None;
+        self.from_photos.offered = None;
         self.reads_other = true;
         let (steps, gpu) = (self.work.steps_of_a_job(), self.gpu.clone());
         let work = move |progress: &Progress| {
@@ -102,6 +103,7 @@ impl State {
                     why,
                     asks,
                     choices,
+                    photos,
                     tried,
                 } = *not_opened;
                 if !choices.is_empty() {
@@ -111,6 +113,7 @@ impl State {
                     return;
                 }
                 self.say(Severity::Error, &why);
+                self.from_photos.offered = photos;
                 // A wrong surface does not make forget the flight that it was for.
                 self.tried = tried.or_else(|| self.tried.take());
                 self.take_back_settings();

@@ -3,6 +3,7 @@
 
 mod choose;
 mod cloud_use;
+mod from_photos;
 mod georeference;
 mod residuals;
 mod save_measured;
@@ -15,6 +16,7 @@ use crate::map::MapCommand;
 use crate::names;
 use crate::open_flight::OpenFlight;
 use crate::panels::path_field::path_field;
+use crate::panels::reconstruct_offer;
 use crate::panels::size_distributions::{
     add_distributions, add_effort, paste, save_figure, save_report,
 };
@@ -23,6 +25,7 @@ use crate::typed::typed;
 use crate::units::LengthUnit;
 use choose::choose;
 use cloud_use::cloud_use;
+use from_photos::from_photos;
 use georeference::{georeference, save_georeferenced};
 use save_measured::{add_layer, save_measured, volume_base};
 
@@ -34,6 +37,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::Add => "Add surface or photos",
             Asking::Choose => "Which of them?",
             Asking::Export => "Export for Split-Desktop",
+            Asking::FromPhotos => "New flight from photos",
             Asking::Georeference => "Georeference",
             Asking::SaveGeoreferenced => "Save georeferenced flight",
             Asking::SaveAs => "Save flight",
@@ -61,13 +65,14 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             .pivot(egui::Align2::CENTER_CENTER)
             .default_pos(context.content_rect().center())
             .show(context, |ui| {
-                let wide = asking == Asking::Georeference;
+                let wide = matches!(asking, Asking::Georeference | Asking::FromPhotos);
                 ui.set_max_width(if wide { 540.0 } else { 460.0 });
                 match asking {
                     Asking::Open => open(state, ui, commands),
                     Asking::Add => add(state, ui, commands),
                     Asking::Choose => choose(state, ui, commands),
                     Asking::Export => export(state, ui, commands),
+                    Asking::FromPhotos => from_photos(state, ui, commands),
                     Asking::Georeference => georeference(state, ui, commands),
                     Asking::SaveGeoreferenced => save_georeferenced(state, ui, commands),
                     Asking::SaveAs => save_as(state, ui, commands),
@@ -138,7 +143,7 @@ fn unsaved(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 
 fn writing(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.heading("Still writing");
-    ui.label("Files are being written. An export that is stopped goes on where it was next time.");
+    ui.label("Files are being written. An export or a reconstruction that is stopped goes on where it was next time.");
     ui.add_space(8.0);
     ui.horizontal(|ui| {
         if ui.button("Stop and quit").clicked() {
@@ -248,6 +253,11 @@ fn add(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         && (button.clicked() || entered)
     {
         commands.push(Command::Add(path));
+    }
+    if state.from_photos.offered.is_some() {
+        ui.separator();
+        ui.label("Without a cloud, where the photos overlap, one can be made from them:");
+        reconstruct_offer(state, ui, commands);
     }
 }
 
@@ -477,4 +487,14 @@ fn about(ui: &mut egui::Ui) {
     ui.label("After Bamford, Esmaeili & Schoellig (2017), Point-Cloud-Based Aerial Fragmentation Analysis for Application in the Minerals Industry.");
     ui.add_space(6.0);
     ui.weak("MIT OR Apache-2.0");
+}
+
+/// What a screen reader says of a text field, and what the mouse finds out.
+fn named_field(field: egui::Response, label: &str, hover: &str, text: &str) {
+    field.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, label);
+        info.current_text_value = Some(text.to_owned());
+        info
+    });
+    field.on_hover_text(hover);
 }

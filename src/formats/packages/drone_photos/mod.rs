@@ -225,7 +225,7 @@ impl LeftOut {
                 "photos that do not say enough to place them: {}",
                 reasons.join(", ")
             ),
-            "give the reconstruction that was made from them, or a poses.csv",
+            "give the reconstruction that was made from them, or a poses.csv, or reconstruct them",
         )
     }
 }
