@@ -50,10 +50,7 @@ const MEMBERS: [(&str, &[&str]); 9] = [
     ("exports", &["core", "fragmentation"]),
     ("render", &["core"]),
     ("sample", &["core", "fragmentation", "formats"]),
-    (
-        "reconstruct",
-        &["core", "exports", "formats", "opening"],
-    ),
+    ("reconstruct", &["core", "exports", "formats", "opening"]),
     (
         "app",
         &[

@@ -9,14 +9,14 @@ use egui::{Key, Modifiers, Theme};
 use fragscale::app::command::Asking;
 use fragscale::app::from_photos::Ended;
 use fragscale::app::tasks::work::Task;
-use fragscale::jobs::Progress;
-use fragscale::sample::{DrawnErrors, Lens, Preset, SampleOptions, make};
+use glam::DVec3;
 use tempfile::TempDir;
 
 use crate::desk::{Desk, Screen, copy_files};
 use crate::dropping::drop_on;
+use crate::rough_ground::photograph;
 
-/// Nine photos of the sample flight, which do not overlap, as a folder of their own.
+/// Nine photos of the sample flight, which do not overlap and do not say where they were taken.
 fn nine_photos() -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("a folder");
     let photos = folder.path().join("face");
@@ -56,14 +56,17 @@ fn start(desk: &mut Desk) {
 #[test]
 fn photos_without_overlap_are_a_line() {
     let (folder, photos) = nine_photos();
+    for number in 4..=9 {
+        fs::remove_file(photos.join(format!("IMG_000{number}.jpg"))).expect("removed");
+    }
     fs::write(photos.join("IMG_0010.jpg"), "").expect("written");
     let mut desk = desk(&photos);
     for words in [
-        "9 of 10 photos can be read",
-        "9 by ",
+        "3 of 4 photos can be read",
+        "3 by ",
         "1280 x 720 px",
         "no photo says where it was taken",
-        "1 of 10 photos left out: it cannot be read (",
+        "1 of 4 photos left out: it cannot be read (",
     ] {
         assert!(desk.says(words), "{words}");
     }
@@ -78,7 +81,7 @@ fn photos_without_overlap_are_a_line() {
     // Beside the photos, and nothing among them.
     assert!(folder.path().join("face flight").is_dir());
     assert!(!folder.path().join("face flight/flight.toml").exists());
-    assert_eq!(fs::read_dir(&photos).expect("a folder").count(), 10);
+    assert_eq!(fs::read_dir(&photos).expect("a folder").count(), 4);
     // Another folder is another matter.
     desk.fill("Folder of the photos", "");
     assert!(ended(&desk).is_none());
@@ -104,34 +107,15 @@ fn a_folder_that_is_none_is_said() {
     assert!(desk.says("is no projected coordinate system"));
 }
 
-/// Eight photos around a small pile: cancelled at once, started again, and the flight is open.
+/// Six photos with RTK: cancelled at once, started again, and the flight is open, in metres.
 #[test]
 fn a_flight_comes_out() {
     let folder = tempfile::tempdir().expect("a folder");
-    let sample = folder.path().join("sample");
-    let options = SampleOptions {
-        preset: Preset::Lab,
-        seed: 3,
-        lens: Lens::Brown,
-        true_mesh: true,
-        noise_px: None,
-        points: Some(2000),
-        ring: 16,
-        survey: None,
-        photos: true,
-        labels: false,
-        at_origin: true,
-        errors: DrawnErrors::default(),
-    };
-    make(&sample, &options, &Progress::default()).expect("a sample");
-    let photos = folder.path().join("ring");
-    fs::create_dir(&photos).expect("a folder");
-    for number in 1..=8 {
-        let name = format!("RING_{number:04}.jpg");
-        fs::copy(sample.join("photos").join(&name), photos.join(&name)).expect("a copy");
-    }
+    let photos = folder.path().join("ground");
+    photograph(&photos);
     let mut desk = desk(&photos);
-    assert!(desk.says("8 photos"));
+    assert!(desk.says("6 photos"));
+    assert!(desk.says("6 of 6 say where they were taken, to 0.015 m level and 0.025 m up"));
 
     start(&mut desk);
     let begun = Instant::now();
@@ -155,35 +139,48 @@ fn a_flight_comes_out() {
     let Some(Ended::Made(made)) = ended(&desk) else {
         panic!("{:?}", ended(&desk));
     };
-    assert!(made.registered >= 6, "{} of 8 photos", made.registered);
-    assert!(made.reprojection_px.is_some_and(|px| px < 1.5));
-    assert_eq!(desk.open().review.count(), made.registered);
-    assert_eq!(
-        desk.open()
-            .files
-            .origin
-            .flight_file()
-            .map(|file| file.canonicalize().expect("a file")),
-        Some(
-            folder
-                .path()
-                .join("ring flight/flight.toml")
-                .canonicalize()
-                .expect("a file")
-        )
-    );
-    assert!(desk.logged(&format!("{} of 8 photos", made.registered)));
-    assert!(desk.logged("has no unit"));
+    assert_eq!(made.registered, 6, "{:?}", made.left_out);
+    assert!(made.reprojection_px.is_some_and(|px| px < 1.0));
+    assert!(desk.logged("6 of 6 photos"));
+    let whole = |path: &Path| path.canonicalize().expect("a file");
+    let made = folder.path().join("ground flight/flight.toml");
+    let opened = desk.open().files.origin.flight_file().map(whole);
+    assert_eq!(opened, Some(whole(&made)));
+    // Where the cameras were is known: 6 m lie between the first and the third.
+    let parts = desk.open().flight().parts();
+    assert_eq!(parts.unit_of_lengths(), "m");
+    let center = |name: &str| {
+        let its = |photo: &&fragscale::flight::Photo| photo.name == name;
+        let photo = parts.photos.iter().find(its).expect("a photo");
+        photo.pose.center
+    };
+    let apart = center("DJI_0003.jpg") - center("DJI_0001.jpg");
+    assert!((apart - DVec3::X * 6.0).length() < 0.06, "{apart}");
+
     // The next one goes elsewhere.
     desk.click(Role::Button, "File");
     desk.click(Role::Button, "New from photos…");
     let found = desk.harness.state().state().from_photos.found.as_ref();
     let proposed = &found.expect("looked at").proposed;
     assert!(
-        proposed.ends_with("ring flight 2"),
+        proposed.ends_with("ground flight 2"),
         "{}",
         proposed.display()
     );
+}
+
+/// Photos with places and angles want a cloud, which can be made from them.
+#[test]
+fn dropped_photos_without_a_cloud_can_be_reconstructed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let photos = folder.path().join("ground");
+    photograph(&photos);
+    let mut desk = Desk::new(None);
+    drop_on(&mut desk, &[&photos]);
+    assert_eq!(asking(&desk), Some(Asking::Add));
+    desk.click(Role::Button, "Reconstruct…");
+    assert_eq!(asking(&desk), Some(Asking::FromPhotos));
+    assert!(desk.says("6 photos"));
 }
 
 /// Photos that say nothing are no flight: one click leads to what can be done.

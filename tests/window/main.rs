@@ -47,6 +47,7 @@ mod photos;
 mod points;
 mod random;
 mod reviewing;
+mod rough_ground;
 mod scale_object;
 mod settings;
 mod size_distributions;

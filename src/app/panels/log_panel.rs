@@ -1,6 +1,6 @@
 //! The log, which keeps every warning, and the last error over the viewport.
 
-use crate::command::Command;
+use crate::command::{Asking, Command};
 use crate::from_photos::FromPhotosStep;
 use crate::names;
 use crate::state::{LogLine, Severity, State};
@@ -69,7 +69,10 @@ pub fn notice(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
                 let text = egui::RichText::new(&line.text).color(ui.visuals().error_fg_color);
                 ui.add(egui::Label::new(text).wrap());
             });
-            reconstruct_offer(state, ui, commands);
+            // The small window that asks for a surface has it, too.
+            if state.asking != Some(Asking::Add) {
+                reconstruct_offer(state, ui, commands);
+            }
         });
 }
 
