@@ -49,7 +49,7 @@ const MEMBERS: [(&str, &[&str]); 9] = [
     ("opening", &["core", "formats", "fragmentation"]),
     ("exports", &["core", "fragmentation"]),
     ("render", &["core"]),
-    ("sample", &["core", "fragmentation", "formats"]),
+    ("sample", &["core", "exports", "fragmentation", "formats"]),
     ("reconstruct", &["core", "exports", "formats", "opening"]),
     (
         "app",

@@ -108,10 +108,7 @@ fn what_was_found(state: &State, ui: &mut egui::Ui) {
     let held = &state.from_photos;
     let Some(photos) = &held.found else {
         if state.work.is_running(Task::LOOK_AT_PHOTOS) {
-            ui.horizontal(|ui| {
-                ui.spinner();
-                ui.label("reading the headers of the photos");
-            });
+            ui.weak("Reading the headers of the photos…");
         } else if typed(&held.form.photos).is_some() {
             ui.weak("There is no such folder.");
         }
