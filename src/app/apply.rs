@@ -56,7 +56,7 @@ impl State {
             Command::SaveGeoreferenced { to, keep_surface } => {
                 self.save_georeferenced(to, keep_surface);
             }
-            Command::FromPhotos(step) => self.from_photos_step(step),
+            Command::FromPhotos(step) => self.step_from_photos(step),
             Command::Ask(asking) => self.ask(asking),
             Command::Browse(dialog) => self.browse(dialog),
             Command::Cancel(task) => {

@@ -25,7 +25,7 @@ impl Task {
 
 impl State {
     /// Does a step of making a flight from photos.
-    pub(crate) fn from_photos_step(&mut self, step: FromPhotosStep) {
+    pub(crate) fn step_from_photos(&mut self, step: FromPhotosStep) {
         match step {
             FromPhotosStep::Ask(photos) => {
                 self.ask(Some(Asking::FromPhotos));
