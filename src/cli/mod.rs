@@ -13,14 +13,13 @@ mod distribution_arguments;
 mod effort;
 mod export;
 mod flight_arguments;
-mod georeference;
+mod models;
 mod of_photos;
 mod on_surface;
 mod outputs;
 mod psd;
 mod psd_compare;
 mod psd_fit;
-mod reconstruct;
 #[cfg(feature = "render")]
 mod render;
 mod sample;
@@ -37,6 +36,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use flight_arguments::FlightArguments;
+use models::{georeference, reconstruct};
 use of_photos::{map, rectify, scale_map};
 use on_surface::{profile, volume};
 use outputs::OutputArguments;

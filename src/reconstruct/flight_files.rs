@@ -1,7 +1,6 @@
 //! What an engineer opens, and other programs read: `poses.csv` with standard deviations, `pile.laz` in the
 //! world's coordinate system (`pile.ply` where LAS has no name for it), and the `flight.toml` of both.
 
-use crate::camera::{Brown, Camera, Distortion};
 use crate::covariance::{Deviations, Known, deviations};
 use crate::exports::{PoseRow, StatedDeviations, laz, ply, poses_csv};
 use crate::fault::Fault;
@@ -60,11 +59,10 @@ pub(crate) fn flight_files(
         .collect();
     let poses = poses_csv(&rows).map_err(report)?;
     let (surface, cloud) = surface(&model.cloud, placed).map_err(report)?;
-    let cameras: Vec<Camera> = model.cameras.iter().map(plain).collect();
     let flight = PosesFlight {
         name,
         poses: "poses.csv",
-        cameras: &cameras,
+        cameras: &model.cameras,
         folder: Some(folder),
         surface,
         crs: placed.crs.as_deref(),
@@ -99,19 +97,6 @@ fn stated(sure: &Deviations, photo: usize) -> StatedDeviations {
 fn percent(part: f64) -> f64 {
     let percent = 100.0 * part;
     format!("{percent:.3e}").parse().unwrap_or(percent)
-}
-
-/// A camera as flight.toml has it: OpenCV's model, whose unused coefficients COLMAP's readers may leave out.
-fn plain(camera: &Camera) -> Camera {
-    let distortion = match &camera.distortion {
-        Distortion::Brown(brown) if brown.coefficients() == [0.0; 8] => Distortion::None,
-        Distortion::Brown(brown) => Distortion::Brown(Brown::new(brown.coefficients())),
-        other => other.clone(),
-    };
-    Camera {
-        distortion,
-        ..camera.clone()
-    }
 }
 
 fn surface(cloud: &Cloud, placed: &Georeferenced) -> Result<(&'static str, Vec<u8>), String> {

@@ -33,9 +33,7 @@ mod proposed;
 mod said;
 mod written;
 
-use fragscale_core::{
-    camera, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, surface,
-};
+use fragscale_core::{camera, fault, files, flight, geodesy, georeference, jobs, numbers, surface};
 use fragscale_exports as exports;
 use fragscale_formats as formats;
 use fragscale_opening as opening;
@@ -95,7 +93,7 @@ pub fn reconstruct(
     engine: &dyn Engine,
     progress: &Progress,
 ) -> Result<Reconstructed, FileError> {
-    let folder = written::folder(&request.to)?;
+    let folder = written::folder(&request.to, &request.photos)?;
     let photos = PhotoSet::read(&request.photos, request.crs.as_deref(), progress)?;
     folder.go_on_with(&photos, engine)?;
     let pairs = pairs::pairs(&photos);

@@ -215,7 +215,7 @@ fn rendered_photos_become_their_flight() {
         .map(|point| (point.z - height(point.truncate())).abs())
         .collect();
     assert!(off.len() > 2000, "{}", off.len());
-    let median = geometry::median(&mut off).unwrap();
+    let median = fragscale_core::geometry::median(&mut off).unwrap();
     assert!(median < ground_pixel, "{median}");
 
     // The same again, cut off when the features are found.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::engine::{Engine, Sparse};
 use crate::fault::Fault;
-use crate::files::{self, FileError};
+use crate::files::{self, FileError, Inputs, Kind};
 use crate::flight_files::flight_files;
 use crate::formats::read_project;
 use crate::jobs::Progress;
@@ -26,13 +26,15 @@ pub(crate) struct Folder {
     path: PathBuf,
     /// For what an engine keeps.
     pub(crate) work: PathBuf,
+    /// The photos, which are never written over.
+    read: Inputs,
 }
 
 /// The folder: one to be made, an empty one, or that of a run that did not end.
 ///
 /// # Errors
 /// Where it holds other things.
-pub(crate) fn folder(to: &Path) -> Result<Folder, FileError> {
+pub(crate) fn folder(to: &Path, photos: &Path) -> Result<Folder, FileError> {
     let at = |fault| FileError::new(to, fault);
     let work = to.join(UNFINISHED);
     if to.join(FLIGHT).exists() {
@@ -48,9 +50,13 @@ pub(crate) fn folder(to: &Path) -> Result<Folder, FileError> {
         let fault = Fault::new("the folder is not empty", "name a new folder");
         return Err(at(fault));
     }
+    let read = Inputs::of([photos]);
+    // Said before the work, not after it.
+    files::may_write(&to.join(FLIGHT), Kind::Flight, &read, false).map_err(at)?;
     Ok(Folder {
         path: to.to_owned(),
         work,
+        read,
     })
 }
 
@@ -78,7 +84,13 @@ impl Folder {
             fs::remove_dir_all(&self.work).map_err(written)?;
         }
         fs::create_dir_all(&self.work).map_err(written)?;
-        fs::write(&of, text).map_err(written)
+        self.write(&of, text.as_bytes(), Kind::Result)
+    }
+
+    /// Writes a file of the folder, which nobody else's files lie in.
+    fn write(&self, path: &Path, bytes: &[u8], kind: Kind) -> Result<(), FileError> {
+        let written = files::write(path, bytes, kind, &self.read, true);
+        written.map_err(|fault| FileError::new(path, fault))
     }
 }
 
@@ -103,7 +115,7 @@ pub(crate) fn write(
     let at = |error: &io::Error| FileError::new(&folder.path, cannot("be written", error));
     fs::create_dir_all(&model).map_err(|error| at(&error))?;
     for (name, bytes) in &sparse.files {
-        files::write_whole(&model.join(name), bytes).map_err(|error| at(&error))?;
+        folder.write(&model.join(name), bytes, Kind::Result)?;
     }
     let placed = georeference(
         &model,
@@ -132,7 +144,7 @@ pub(crate) fn write(
             warnings.extend(made.warnings);
             // flight.toml is the last: with it the folder is a flight.
             for (name, bytes) in &made.files {
-                files::write_whole(&folder.path.join(name), bytes).map_err(|error| at(&error))?;
+                folder.write(&folder.path.join(name), bytes, Kind::Result)?;
             }
             Some(placed)
         }
@@ -143,7 +155,7 @@ pub(crate) fn write(
             ));
             let photos = Some(request.photos.as_path());
             let text = flight_text_of(None, Some(&name), &flight, &model, photos, None)?;
-            files::write_whole(&flight, text.as_bytes()).map_err(|error| at(&error))?;
+            folder.write(&flight, text.as_bytes(), Kind::Flight)?;
             None
         }
     };

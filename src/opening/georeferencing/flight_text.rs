@@ -8,6 +8,7 @@ use crate::fault::Fault;
 use crate::flight::{FlightFile, FlightSettings, ReconstructionFlight};
 use crate::formats::FileError;
 use crate::origin::{folder_of, path_from, real};
+use crate::scale::StatedErrors;
 
 impl Georeferenced {
     /// [`flight_text_of`] this.
@@ -72,13 +73,18 @@ pub fn flight_text_of(
         surface: surface.as_deref(),
         crs: placed.and_then(|placed| placed.crs.as_deref()),
     };
-    // Scale objects have sizes in the unit of another world.
-    let mut settings = FlightSettings::default();
-    settings.unit_known = placed.is_some();
-    if let Some(placed) = placed {
-        settings.unit = placed.unit;
-        settings.errors.world_scale = placed.scale_error.map(percent);
-    }
+    let errors = StatedErrors {
+        world_scale: placed.and_then(|placed| placed.scale_error.map(percent)),
+        ..StatedErrors::default()
+    };
+    let usual = FlightSettings::default();
+    let settings = FlightSettings {
+        unit: placed.map_or(usual.unit, |placed| placed.unit),
+        unit_known: placed.is_some(),
+        errors,
+        // Scale objects have sizes in the unit of another world.
+        ..usual
+    };
     FlightFile::for_reconstruction(&flight, &settings)
         .to_toml()
         .map_err(at)

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::Answer;
+use crate::cli::Answer;
 use crate::jobs::Progress;
 use crate::reconstruct::{Embedded, Request, left_out, reconstruct, summary};
 
 #[derive(Debug, Args)]
-pub(super) struct ReconstructArguments {
+pub(in crate::cli) struct ReconstructArguments {
     /// The folder of the photos.
     photos: PathBuf,
     /// The folder to make, with a flight.toml; new or empty, or one of a run that was interrupted, which
@@ -22,7 +22,10 @@ pub(super) struct ReconstructArguments {
     crs: Option<String>,
 }
 
-pub(super) fn run(arguments: &ReconstructArguments, progress: &Progress) -> Result<Answer, String> {
+pub(in crate::cli) fn run(
+    arguments: &ReconstructArguments,
+    progress: &Progress,
+) -> Result<Answer, String> {
     let request = Request {
         photos: arguments.photos.clone(),
         to: arguments.to.clone(),

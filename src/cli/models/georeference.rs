@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
-use super::Answer;
-use super::outputs::{Force, Outputs};
+use crate::cli::Answer;
+use crate::cli::outputs::{Force, Outputs};
 use crate::fault::Fault;
 use crate::files::{Inputs, Kind, Recording};
 use crate::formats::FileError;
@@ -15,7 +15,7 @@ use crate::jobs::Progress;
 use crate::opening::{self, GeoreferenceRequest, Georeferenced, KnownDistance, KnownKind};
 
 #[derive(Debug, Args)]
-pub(super) struct GeoreferenceArguments {
+pub(in crate::cli) struct GeoreferenceArguments {
     /// A reconstruction in a frame of its own: an NVM file, a COLMAP folder, ...
     reconstruction: PathBuf,
     /// The folder of the photos: their own positions, where no list is given, and their sizes.
@@ -60,7 +60,7 @@ enum GeoreferenceFormat {
     Json,
 }
 
-pub(super) fn georeference(
+pub(in crate::cli) fn georeference(
     arguments: &GeoreferenceArguments,
     progress: &Progress,
 ) -> Result<Answer, String> {
