@@ -68,7 +68,6 @@ pub fn depth_maps(
                     .map(|i| Sweep {
                         amplitude: 0.5 * 0.5_f32.powi(i.cast_signed()),
                         anywhere: false,
-                        fresh: i == 0,
                         geometric: GEOMETRIC,
                         salt: salt(which, 100 + i),
                     })
@@ -256,7 +255,6 @@ fn search(
             .map(|i| Sweep {
                 amplitude: widest * 0.6_f32.powi(i.cast_signed()),
                 anywhere: is_first,
-                fresh: i == 0,
                 geometric: 0.0,
                 salt: salt(which, 1000 + 32 * u32::try_from(level).unwrap_or(0) + i),
             })

@@ -7,7 +7,7 @@ use super::plane::{Plane, Planes};
 use super::random::Random;
 use super::window::{Fours, Weights, Window};
 use super::{
-    BEST, Backend, FARTHEST, MOST_SOURCES, Problem, REACH, SAME, Source, Sweep, UNSEEN,
+    BEST, Backend, FARTHEST, GATE, MOST_SOURCES, Problem, REACH, SAME, Source, Sweep, UNSEEN,
 };
 use crate::fault::Fault;
 use crate::jobs::Progress;
@@ -136,23 +136,22 @@ impl Half<'_> {
         let problem = self.problem;
         let window = Window::at(&problem.luma, self.weights, x, y);
         let place = [x as f32 + 0.5, y as f32 + 0.5];
-        if self.sweep.fresh || best.cost.is_nan() {
-            best.cost = self.cost(&window, place, best);
-        }
+        let (cost, order) = self.costs(&window, place, best);
+        best.cost = cost;
         for (right, down) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
             if let Some(candidate) = self.candidate(x, y, right, down) {
-                self.consider(&window, place, candidate, &mut best);
+                self.consider(&window, place, candidate, &order, &mut best);
             }
         }
         let mut random = Random::at(x as u32, y as u32, self.sweep.salt);
         let reach = self.sweep.amplitude * problem.per_pixel;
         for (depth, slope) in [(1.0, 1.0), (0.5, 0.0), (0.0, 0.5)] {
             let tried = best.near(depth * reach, slope * reach, &mut random);
-            self.consider(&window, place, tried, &mut best);
+            self.consider(&window, place, tried, &order, &mut best);
         }
         if self.sweep.anywhere {
             let tried = Plane::anywhere(problem, &mut random);
-            self.consider(&window, place, tried, &mut best);
+            self.consider(&window, place, tried, &order, &mut best);
         }
         best
     }
@@ -183,7 +182,14 @@ impl Half<'_> {
         found
     }
 
-    fn consider(&self, window: &Window, place: [f32; 2], tried: Plane, best: &mut Plane) {
+    fn consider(
+        &self,
+        window: &Window,
+        place: [f32; 2],
+        tried: Plane,
+        order: &[usize; MOST_SOURCES],
+        best: &mut Plane,
+    ) {
         let least = SAME * self.problem.per_pixel;
         let is_same = (tried.inverse_depth - best.inverse_depth).abs() < least
             && (tried.slope[0] - best.slope[0]).abs() * 5.0 < least
@@ -191,40 +197,75 @@ impl Half<'_> {
         if is_same || !tried.is_possible(self.problem) {
             return;
         }
-        let cost = self.cost(window, place, tried);
+        let cost = self.cost(window, place, tried, best.cost, order);
         if cost < best.cost {
             *best = Plane { cost, ..tried };
         }
     }
 
-    /// The mean cost of the best views.
-    fn cost(&self, window: &Window, place: [f32; 2], plane: Plane) -> f32 {
+    /// The mean cost of the best views; with the views in the order of their costs.
+    fn costs(&self, window: &Window, place: [f32; 2], plane: Plane) -> (f32, [usize; MOST_SOURCES]) {
         let mut costs = [UNSEEN; MOST_SOURCES];
-        for (view, cost) in self.sources.iter().zip(&mut costs) {
-            *cost = window.cost(
-                &view.fours,
-                &view.source.pair.there,
-                place,
-                plane.inverse_depth,
-                plane.slope,
-            );
-            if self.sweep.geometric > 0.0 {
-                *cost += self.sweep.geometric * miss(view.source, place, plane.inverse_depth);
-            }
+        let mut order: [usize; MOST_SOURCES] = std::array::from_fn(|i| i);
+        for (i, cost) in costs.iter_mut().enumerate().take(self.sources.len()) {
+            *cost = self.cost_in(i, window, place, plane);
         }
-        let costs = &mut costs[..self.sources.len().min(MOST_SOURCES)];
-        let wanted = BEST.min(costs.len());
-        let mut sum = 0.0;
-        for i in 0..wanted {
-            // The next cheapest to the front.
-            for j in i + 1..costs.len() {
-                if costs[j] < costs[i] {
-                    costs.swap(i, j);
+        let count = self.sources.len().min(MOST_SOURCES);
+        // The next cheapest to the front.
+        for i in 0..count {
+            for j in i + 1..count {
+                if costs[order[j]] < costs[order[i]] {
+                    order.swap(i, j);
                 }
             }
-            sum += costs[i];
         }
-        sum / wanted.max(1) as f32
+        let wanted = BEST.min(count);
+        let sum: f32 = order[..wanted].iter().map(|i| costs[*i]).sum();
+        (sum / wanted.max(1) as f32, order)
+    }
+
+    /// The mean cost of the best views where it is below `bound`. Whether the others are looked at is
+    /// decided by those that were the best so far.
+    fn cost(
+        &self,
+        window: &Window,
+        place: [f32; 2],
+        plane: Plane,
+        bound: f32,
+        order: &[usize; MOST_SOURCES],
+    ) -> f32 {
+        let count = self.sources.len().min(MOST_SOURCES);
+        let wanted = BEST.min(count);
+        // The cheapest, in order.
+        let mut cheapest = [f32::MAX; BEST];
+        for (looked, i) in order[..count].iter().enumerate() {
+            if looked == wanted && cheapest[0] > bound + GATE {
+                break;
+            }
+            let mut cost = self.cost_in(*i, window, place, plane);
+            for cheap in &mut cheapest {
+                if cost < *cheap {
+                    std::mem::swap(cheap, &mut cost);
+                }
+            }
+        }
+        cheapest[..wanted].iter().sum::<f32>() / wanted.max(1) as f32
+    }
+
+    #[inline(always)]
+    fn cost_in(&self, i: usize, window: &Window, place: [f32; 2], plane: Plane) -> f32 {
+        let view = &self.sources[i];
+        let cost = window.cost(
+            &view.fours,
+            &view.source.pair.there,
+            place,
+            plane.inverse_depth,
+            plane.slope,
+        );
+        if self.sweep.geometric > 0.0 {
+            return cost + self.sweep.geometric * miss(view.source, place, plane.inverse_depth);
+        }
+        cost
     }
 }
 

@@ -56,8 +56,6 @@ pub struct Sweep {
     pub(crate) amplitude: f32,
     /// Whether to try a plane from anywhere, too.
     pub(crate) anywhere: bool,
-    /// Whether the costs that planes bring along are of another size or of other costs.
-    pub(crate) fresh: bool,
     /// The weight of the reprojection error, per pixel.
     pub(crate) geometric: f32,
     /// Distinguishes sweeps in the random numbers.
@@ -75,6 +73,8 @@ pub(crate) const SIGMA_PIXELS: f32 = 5.0;
 pub(crate) const NOISE: f32 = 4.0;
 /// How many views have to agree.
 pub(crate) const BEST: usize = 2;
+/// A plane that is dearer by more in the two best views of the plane so far is not looked at in the others.
+pub(crate) const GATE: f32 = 0.05;
 /// The cost of a view that does not see the point.
 pub(crate) const UNSEEN: f32 = 2.0;
 /// The reprojection error beyond which it costs no more, pixels.
@@ -84,7 +84,7 @@ pub(crate) const REACH: [i32; 4] = [1, 3, 5, 9];
 /// The steepest plane: growth of depth per depth and per unit of the image plane.
 pub(crate) const STEEPEST: f32 = 4.0;
 /// Candidates nearer than this, in pixels of other views, are the same plane.
-pub(crate) const SAME: f32 = 0.02;
+pub(crate) const SAME: f32 = 0.04;
 /// The most other views.
 pub(crate) const MOST_SOURCES: usize = 8;
 
