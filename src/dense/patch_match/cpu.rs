@@ -16,6 +16,9 @@ use crate::jobs::Progress;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Cpu;
 
+/// Where candidates come from.
+const DIRECTIONS: [(isize, isize); 4] = [(1, 0), (-1, 0), (0, 1), (0, -1)];
+
 /// A view as the inner loop reads it.
 struct Prepared<'a> {
     source: &'a Source,
@@ -77,6 +80,7 @@ impl Backend for Cpu {
             })
             .collect();
         let weights = Weights::new();
+        let arch = pulp::Arch::new();
         let mut colours = [Colour::of(planes, 0), Colour::of(planes, 1)];
         for sweep in sweeps {
             for parity in 0..2 {
@@ -101,7 +105,7 @@ impl Backend for Cpu {
                         if progress.is_cancelled() {
                             return Err(());
                         }
-                        half.row(y, row);
+                        arch.dispatch(Row { half: &half, y, row });
                         Ok(())
                     })
                     .or_else(|()| progress.advance(0, 1))?;
@@ -123,7 +127,24 @@ struct Half<'a> {
     other: &'a Colour,
 }
 
+/// A row's work, compiled once for every kind of processor: all below is inlined into it.
+struct Row<'a> {
+    half: &'a Half<'a>,
+    y: usize,
+    row: &'a mut [Plane],
+}
+
+impl pulp::NullaryFnOnce for Row<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.half.row(self.y, self.row);
+    }
+}
+
 impl Half<'_> {
+    #[inline(always)]
     fn row(&self, y: usize, row: &mut [Plane]) {
         let first = (y + self.parity) % 2;
         for (x, plane) in (first..self.problem.luma.width).step_by(2).zip(row) {
@@ -132,25 +153,30 @@ impl Half<'_> {
     }
 
     /// The best plane that one sweep finds at a pixel.
+    #[inline(always)]
     fn pixel(&self, x: usize, y: usize, mut best: Plane) -> Plane {
         let problem = self.problem;
         let window = Window::at(&problem.luma, self.weights, x, y);
         let place = [x as f32 + 0.5, y as f32 + 0.5];
         let (cost, order) = self.costs(&window, place, best);
         best.cost = cost;
-        for (right, down) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
-            if let Some(candidate) = self.candidate(x, y, right, down) {
-                self.consider(&window, place, candidate, &order, &mut best);
-            }
-        }
         let mut random = Random::at(x as u32, y as u32, self.sweep.salt);
         let reach = self.sweep.amplitude * problem.per_pixel;
-        for (depth, slope) in [(1.0, 1.0), (0.5, 0.0), (0.0, 0.5)] {
-            let tried = best.near(depth * reach, slope * reach, &mut random);
-            self.consider(&window, place, tried, &order, &mut best);
-        }
-        if self.sweep.anywhere {
-            let tried = Plane::anywhere(problem, &mut random);
+        // One place where planes are tried, so that it can be inlined.
+        for trial in 0..if self.sweep.anywhere { 8 } else { 7 } {
+            let tried = match trial {
+                0..4 => {
+                    let (right, down) = DIRECTIONS[trial];
+                    let Some(candidate) = self.candidate(x, y, right, down) else {
+                        continue;
+                    };
+                    candidate
+                }
+                4 => best.near(reach, reach, &mut random),
+                5 => best.near(0.5 * reach, 0.0, &mut random),
+                6 => best.near(0.0, 0.5 * reach, &mut random),
+                _ => Plane::anywhere(problem, &mut random),
+            };
             self.consider(&window, place, tried, &order, &mut best);
         }
         best
@@ -182,6 +208,7 @@ impl Half<'_> {
         found
     }
 
+    #[inline(always)]
     fn consider(
         &self,
         window: &Window,
@@ -204,6 +231,7 @@ impl Half<'_> {
     }
 
     /// The mean cost of the best views; with the views in the order of their costs.
+    #[inline(always)]
     fn costs(&self, window: &Window, place: [f32; 2], plane: Plane) -> (f32, [usize; MOST_SOURCES]) {
         let mut costs = [UNSEEN; MOST_SOURCES];
         let mut order: [usize; MOST_SOURCES] = std::array::from_fn(|i| i);
@@ -226,6 +254,7 @@ impl Half<'_> {
 
     /// The mean cost of the best views where it is below `bound`. Whether the others are looked at is
     /// decided by those that were the best so far.
+    #[inline(always)]
     fn cost(
         &self,
         window: &Window,

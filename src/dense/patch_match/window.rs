@@ -69,6 +69,7 @@ pub(crate) struct Window {
 
 impl Window {
     /// About pixel (x, y), which lies in the image; what lies outside has no weight.
+    #[inline(always)]
     pub(crate) fn at(luma: &Luma, weights: &Weights, x: usize, y: usize) -> Self {
         let base = luma.levels[y * luma.width + x];
         let mut own = [0.0_f32; SAMPLES];
@@ -169,21 +170,30 @@ impl Window {
             let at = row[i] as usize * image.width + column[i] as usize;
             fours[i] = image.fours.get(at).copied().unwrap_or_default();
         }
+        let mut levels = [0.0_f32; SAMPLES];
+        for i in 0..SAMPLES {
+            let four = fours[i].cast_signed();
+            let left = (four & 0xff) as f32;
+            let right = ((four >> 8) & 0xff) as f32;
+            let above = left + part_u[i] * (right - left);
+            let left = ((four >> 16) & 0xff) as f32;
+            let right = ((four >> 24) & 0xff) as f32;
+            let below = left + part_u[i] * (right - left);
+            levels[i] = above + part_v[i] * (below - above) - self.base;
+        }
         let mut mean = [0.0_f32; LANES];
         let mut square = [0.0_f32; LANES];
         let mut product = [0.0_f32; LANES];
-        for begin in (0..SAMPLES).step_by(LANES) {
+        let weights = self.weights.as_chunks::<LANES>().0;
+        let centred = self.centred.as_chunks::<LANES>().0;
+        for ((weights, centred), levels) in
+            weights.iter().zip(centred).zip(levels.as_chunks::<LANES>().0)
+        {
             for lane in 0..LANES {
-                let i = begin + lane;
-                let four = fours[i];
-                let byte = |shift: u32| ((four >> shift) & 0xff).cast_signed() as f32;
-                let above = byte(0) + part_u[i] * (byte(8) - byte(0));
-                let below = byte(16) + part_u[i] * (byte(24) - byte(16));
-                let level = above + part_v[i] * (below - above) - self.base;
-                let weighted = self.weights[i] * level;
+                let weighted = weights[lane] * levels[lane];
                 mean[lane] += weighted;
-                square[lane] += weighted * level;
-                product[lane] += self.centred[i] * level;
+                square[lane] += weighted * levels[lane];
+                product[lane] += centred[lane] * levels[lane];
             }
         }
         let (mean, square, product) = (sum(mean), sum(square), sum(product));
@@ -193,8 +203,10 @@ impl Window {
 }
 
 /// Sums run in so many lanes, side by side.
-const LANES: usize = 4;
+const LANES: usize = 12;
 
-fn sum([a, b, c, d]: [f32; LANES]) -> f32 {
-    (a + b) + (c + d)
+#[inline(always)]
+fn sum(lanes: [f32; LANES]) -> f32 {
+    let four: [f32; 4] = std::array::from_fn(|i| lanes[i] + lanes[i + 4] + lanes[i + 8]);
+    (four[0] + four[1]) + (four[2] + four[3])
 }
