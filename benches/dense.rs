@@ -151,8 +151,19 @@ fn main() {
         report(&names, &maps, &truths);
         maps
     };
-    if !has("--no-cpu") {
-        run(&Cpu);
+    let on_cpu = (!has("--no-cpu")).then(|| run(&Cpu));
+    #[cfg(feature = "gpu")]
+    if has("--gpu") {
+        let on_gpu = run(&fragscale_dense::Gpu::best().expect("a graphics device"));
+        if let Some(on_cpu) = on_cpu {
+            compare(&on_cpu, &on_gpu);
+        }
+        return;
+    }
+    if let Some(maps) = on_cpu
+        && has("--fuse")
+    {
+        fused(&views, maps, &photos);
     }
 }
 
@@ -187,6 +198,37 @@ fn report(names: &[&str], maps: &[DepthMap], truths: &[Vec<f32>]) {
     println!(
         "  mean of {} photos: median error {:.3} %, within 1 %: {:.1} %; confident half {:.3} %, {:.1} %",
         names.len(), sums[0], sums[1], sums[2], sums[3]
+    );
+}
+
+/// Where two back ends differ.
+#[cfg(feature = "gpu")]
+fn compare(a: &[DepthMap], b: &[DepthMap]) {
+    let pairs = || a.iter().zip(b).flat_map(|(a, b)| a.depths.iter().zip(&b.depths));
+    let share = |most: f32| {
+        let same = pairs().filter(|(a, b)| (*a / *b - 1.0).abs() <= most).count();
+        100.0 * same as f64 / pairs().count() as f64
+    };
+    println!(
+        "processor and card: {:.2} % within 1e-5, {:.2} % within 0.1 %, {:.2} % within 1 %",
+        share(1e-5),
+        share(1e-3),
+        share(1e-2)
+    );
+}
+
+fn fused(views: &[View], maps: Vec<DepthMap>, photos: &Files) {
+    let maps: Vec<_> = maps.into_iter().map(Some).collect();
+    let begin = Instant::now();
+    let fused = fragscale_dense::fuse(views, &maps, photos, &Progress::default()).expect("points");
+    let mut errors = fused.standard_errors.clone();
+    errors.sort_by(f32::total_cmp);
+    println!(
+        "fused: {} points in {:.1} s, matching noise {:.3} px, median standard error {:.4}",
+        fused.points.len(),
+        begin.elapsed().as_secs_f64(),
+        fused.noise_pixels,
+        errors[errors.len() / 2]
     );
 }
 

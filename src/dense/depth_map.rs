@@ -20,6 +20,9 @@ pub struct DepthMap {
     pub supports: Vec<u8>,
     /// 0 to 1: how far to trust the depth, by cost and support. It orders pixels; it is no probability.
     pub confidences: Vec<f32>,
+    /// The inverse depth that moves a pixel by one in a typical neighbour: what a pixel of matching noise
+    /// does to the inverse depths.
+    pub per_pixel: f32,
     /// The photos that it was compared with.
     pub neighbours: Vec<usize>,
 }

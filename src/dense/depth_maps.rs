@@ -3,9 +3,12 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use crate::camera::Pose;
 use crate::depth_map::DepthMap;
 use crate::fault::Fault;
+use crate::fusion::agreements;
 use crate::jobs::Progress;
 use crate::luma::Luma;
 use crate::options::DenseOptions;
@@ -78,9 +81,41 @@ pub fn depth_maps(
         }
     }
     let maps = found.into_iter().enumerate().map(|(which, planes)| {
-        planes.map(|planes| DepthMap::of(&views[which], images[which].halvings, planes, own(which)))
+        planes.map(|planes| {
+            let per_pixel = problem(views, &images, which, own(which), 0).per_pixel;
+            DepthMap::of(&views[which], images[which].halvings, planes, per_pixel, own(which))
+        })
     });
-    Ok(maps.collect())
+    let mut maps: Vec<_> = maps.collect();
+    support(views, &mut maps);
+    Ok(maps)
+}
+
+/// Counts who agrees, and grades the pixels by it.
+fn support(views: &[View], maps: &mut [Option<DepthMap>]) {
+    let all: Vec<Vec<u8>> = (0..maps.len())
+        .map(|which| {
+            let agreements = agreements(views, maps, which);
+            let Some(map) = &maps[which] else {
+                return Vec::new();
+            };
+            let count = |at: usize| {
+                let same = agreements.iter().filter_map(|other| other.look(map, at));
+                u8::try_from(same.filter(|seen| seen.is_same).count()).unwrap_or(u8::MAX)
+            };
+            (0..map.depths.len()).into_par_iter().map(count).collect()
+        })
+        .collect();
+    for (map, supports) in maps.iter_mut().zip(all) {
+        if let Some(map) = map {
+            let most = map.neighbours.len().max(1) as f32;
+            let grades = map.costs.iter().zip(&supports).map(|(cost, support)| {
+                (1.0 - cost).clamp(0.0, 1.0) * (0.2 + 0.8 * f32::from(*support) / most)
+            });
+            map.confidences = grades.collect();
+            map.supports = supports;
+        }
+    }
 }
 
 /// How much is done, over all stages.
@@ -270,7 +305,7 @@ fn inverse_depths(planes: &Planes) -> Arc<Vec<f32>> {
 }
 
 impl DepthMap {
-    fn of(view: &View, halvings: u32, planes: Planes, neighbours: &[usize]) -> Self {
+    fn of(view: &View, halvings: u32, planes: Planes, per_pixel: f32, neighbours: &[usize]) -> Self {
         let list = |of: fn(&Plane) -> f32| planes.planes.iter().map(of).collect();
         let costs: Vec<f32> = list(|plane| plane.cost);
         Self {
@@ -281,6 +316,7 @@ impl DepthMap {
             supports: vec![0; costs.len()],
             confidences: costs.iter().map(|cost| (1.0 - cost).clamp(0.0, 1.0)).collect(),
             costs,
+            per_pixel,
             neighbours: neighbours.to_vec(),
         }
     }

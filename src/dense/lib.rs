@@ -4,10 +4,10 @@
 //! # Floors
 //!
 //! ```text
-//! D3  fusion/        depth maps -> points
+//! D3  fusion.rs      depth maps -> points
 //! D2  depth_maps.rs  the schedule: coarse to fine, photos alone first, then with the other photos' depths
 //! D1  patch_match/   the search for a plane at every pixel; `cpu` and `gpu/` are its two back ends
-//! D0  view.rs  neighbours.rs  options.rs  luma.rs  depth_map.rs
+//! D0  view.rs  neighbours.rs  options.rs  luma.rs  depth_map.rs  agreement.rs
 //! ```
 //!
 //! # Frames and numbers
@@ -26,6 +26,7 @@
 //! geometric consistency guided multi-view stereo" (CVPR 2019, ACMM): candidates by their cost, coarse to
 //! fine.
 
+mod agreement;
 mod depth_map;
 mod depth_maps;
 mod fusion;

@@ -183,26 +183,25 @@ impl Half<'_> {
     }
 
     /// The cheapest of the other colour's planes in a direction, brought here.
+    #[inline(always)]
     fn candidate(&self, x: usize, y: usize, right: isize, down: isize) -> Option<Plane> {
         let mut found: Option<Plane> = None;
+        let mut cheapest = f32::MAX;
         for reach in REACH {
-            let reach = reach as isize;
-            let (dx, dy) = (right * reach, down * reach);
-            let Some(x) = x.checked_add_signed(dx) else {
-                break;
-            };
-            let Some(y) = y.checked_add_signed(dy) else {
-                break;
-            };
-            if x >= self.problem.luma.width || y >= self.problem.luma.height {
+            let (dx, dy) = (right * reach as isize, down * reach as isize);
+            let (column, row) = (x as isize + dx, y as isize + dy);
+            if column < 0 || row < 0 {
                 break;
             }
-            let plane = self.other.planes[y * self.other.columns + x / 2];
-            if found.is_none_or(|best| plane.cost < best.cost) {
-                found = Some(Plane {
-                    cost: plane.cost,
-                    ..plane.moved(-dx as f32, -dy as f32)
-                });
+            let (column, row) = (column as usize, row as usize);
+            if column >= self.problem.luma.width || row >= self.problem.luma.height {
+                break;
+            }
+            let plane = self.other.planes[row * self.other.columns + column / 2];
+            // The first also where its cost is not counted yet.
+            if found.is_none() || plane.cost < cheapest {
+                cheapest = if plane.cost.is_nan() { f32::MAX } else { plane.cost };
+                found = Some(plane.moved(-dx as f32, -dy as f32));
             }
         }
         found
@@ -234,11 +233,13 @@ impl Half<'_> {
     #[inline(always)]
     fn costs(&self, window: &Window, place: [f32; 2], plane: Plane) -> (f32, [usize; MOST_SOURCES]) {
         let mut costs = [UNSEEN; MOST_SOURCES];
-        let mut order: [usize; MOST_SOURCES] = std::array::from_fn(|i| i);
-        for (i, cost) in costs.iter_mut().enumerate().take(self.sources.len()) {
-            *cost = self.cost_in(i, window, place, plane);
-        }
+        let mut order = [0, 1, 2, 3, 4, 5, 6, 7];
         let count = self.sources.len().min(MOST_SOURCES);
+        let mut i = 0;
+        while i < count {
+            costs[i] = self.cost_in(i, window, place, plane);
+            i += 1;
+        }
         // The next cheapest to the front.
         for i in 0..count {
             for j in i + 1..count {
@@ -248,7 +249,10 @@ impl Half<'_> {
             }
         }
         let wanted = BEST.min(count);
-        let sum: f32 = order[..wanted].iter().map(|i| costs[*i]).sum();
+        let mut sum = 0.0;
+        for i in 0..wanted {
+            sum += costs[order[i]];
+        }
         (sum / wanted.max(1) as f32, order)
     }
 
@@ -267,18 +271,22 @@ impl Half<'_> {
         let wanted = BEST.min(count);
         // The cheapest, in order.
         let mut cheapest = [f32::MAX; BEST];
-        for (looked, i) in order[..count].iter().enumerate() {
+        for looked in 0..count {
             if looked == wanted && cheapest[0] > bound + GATE {
                 break;
             }
-            let mut cost = self.cost_in(*i, window, place, plane);
-            for cheap in &mut cheapest {
-                if cost < *cheap {
-                    std::mem::swap(cheap, &mut cost);
+            let mut cost = self.cost_in(order[looked], window, place, plane);
+            for i in 0..BEST {
+                if cost < cheapest[i] {
+                    (cheapest[i], cost) = (cost, cheapest[i]);
                 }
             }
         }
-        cheapest[..wanted].iter().sum::<f32>() / wanted.max(1) as f32
+        let mut sum = 0.0;
+        for i in 0..wanted {
+            sum += cheapest[i];
+        }
+        sum / wanted.max(1) as f32
     }
 
     #[inline(always)]

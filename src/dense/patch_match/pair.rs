@@ -67,7 +67,12 @@ impl Pair {
 #[inline(always)]
 pub(crate) fn project(columns: &[[f32; 3]; 4], [u, v]: [f32; 2], inverse_depth: f32) -> [f32; 3] {
     let [x, y, one, b] = columns;
-    std::array::from_fn(|i| x[i] * u + y[i] * v + one[i] + b[i] * inverse_depth)
+    // Written out: closures are not inlined into code for another kind of processor.
+    [
+        x[0] * u + y[0] * v + one[0] + b[0] * inverse_depth,
+        x[1] * u + y[1] * v + one[1] + b[1] * inverse_depth,
+        x[2] * u + y[2] * v + one[2] + b[2] * inverse_depth,
+    ]
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@ pub struct Plane {
 
 impl Plane {
     /// The same plane, at a pixel that is so many to the right and below.
+    #[inline(always)]
     pub(crate) fn moved(self, x: f32, y: f32) -> Self {
         let inverse_depth = self.inverse_depth + self.slope[0] * x + self.slope[1] * y;
         Self {
@@ -25,6 +26,7 @@ impl Plane {
     }
 
     /// Whether it lies in the range of depths and is not seen edge on.
+    #[inline(always)]
     pub(crate) fn is_possible(self, problem: &Problem) -> bool {
         let [least, most] = problem.range;
         let steepest = STEEPEST * self.inverse_depth / problem.focal;
@@ -35,6 +37,7 @@ impl Plane {
     }
 
     /// A plane from anywhere.
+    #[inline(always)]
     pub(crate) fn anywhere(problem: &Problem, random: &mut Random) -> Self {
         let [least, most] = problem.range;
         let inverse_depth = least + (most - least) * (0.5 * random.signed() + 0.5);
@@ -48,6 +51,7 @@ impl Plane {
 
     /// A plane nearby, the depth and the slopes off by up to so many pixels of other views, the slopes
     /// at the window's edge.
+    #[inline(always)]
     pub(crate) fn near(self, depth: f32, slope: f32, random: &mut Random) -> Self {
         let slope = slope / 5.0;
         let (a, b, c) = (random.signed(), random.signed(), random.signed());

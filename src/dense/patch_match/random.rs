@@ -3,6 +3,7 @@
 //! The mixing is Chris Wellons' "lowbias32" (2018), a bijection of 32 bits; `shaders/patch_match.wgsl` has
 //! it too.
 
+#[inline(always)]
 const fn mix(bits: u32) -> u32 {
     let bits = (bits ^ (bits >> 16)).wrapping_mul(0x7feb_352d);
     let bits = (bits ^ (bits >> 15)).wrapping_mul(0x846c_a68b);
@@ -14,11 +15,13 @@ const fn mix(bits: u32) -> u32 {
 pub(crate) struct Random(u32);
 
 impl Random {
+    #[inline(always)]
     pub(crate) const fn at(x: u32, y: u32, salt: u32) -> Self {
         Self(mix(x ^ mix(y ^ mix(salt))))
     }
 
     /// The next number in [-1, 1), a multiple of 2^-23.
+    #[inline(always)]
     pub(crate) fn signed(&mut self) -> f32 {
         self.0 = self.0.wrapping_add(0x9e37_79b9);
         (mix(self.0) >> 8) as f32 * (1.0 / 8_388_608.0) - 1.0

@@ -30,9 +30,12 @@ pub(crate) struct Weights {
     grey: [f32; 256],
 }
 
+/// Windows are filled up with pixels of no weight to whole registers.
+const PADDED: usize = SAMPLES.next_multiple_of(LANES);
+
 /// Where the window's pixels lie.
-const fn places() -> [[f32; SAMPLES]; 2] {
-    let mut places = [[0.0; SAMPLES]; 2];
+const fn places() -> [[f32; PADDED]; 2] {
+    let mut places = [[0.0; PADDED]; 2];
     let mut i = 0;
     while i < SAMPLES {
         places[0][i] = OFFSETS[i % OFFSETS.len()] as f32;
@@ -42,7 +45,7 @@ const fn places() -> [[f32; SAMPLES]; 2] {
     places
 }
 
-const PLACES: [[f32; SAMPLES]; 2] = places();
+const PLACES: [[f32; PADDED]; 2] = places();
 
 impl Weights {
     pub(crate) fn new() -> Self {
@@ -58,9 +61,9 @@ impl Weights {
 /// A window of the reference, ready to be compared.
 pub(crate) struct Window {
     /// Weights that sum to 1.
-    weights: [f32; SAMPLES],
+    weights: [f32; PADDED],
     /// Weighted grey levels about their mean.
-    centred: [f32; SAMPLES],
+    centred: [f32; PADDED],
     /// The centre's grey level: taken off first, so that squares lose no digits.
     base: f32,
     /// The window's weighted variance plus that of noise.
@@ -72,33 +75,35 @@ impl Window {
     #[inline(always)]
     pub(crate) fn at(luma: &Luma, weights: &Weights, x: usize, y: usize) -> Self {
         let base = luma.levels[y * luma.width + x];
-        let mut own = [0.0_f32; SAMPLES];
-        let mut levels = [0.0_f32; SAMPLES];
-        for (row, dy) in OFFSETS.into_iter().enumerate() {
-            let Some(y) = y
-                .checked_add_signed(dy as isize)
-                .filter(|y| *y < luma.height)
-            else {
-                continue;
-            };
-            let line = &luma.levels[y * luma.width..(y + 1) * luma.width];
-            for (column, dx) in OFFSETS.into_iter().enumerate() {
-                let Some(level) = x
-                    .checked_add_signed(dx as isize)
-                    .and_then(|x| line.get(x).copied())
-                else {
-                    continue;
-                };
-                let i = row * OFFSETS.len() + column;
-                own[i] = weights.place[i] * weights.grey[usize::from(level.abs_diff(base))];
-                levels[i] = f32::from(level) - f32::from(base);
+        let mut own = [0.0_f32; PADDED];
+        let mut levels = [0.0_f32; PADDED];
+        // Plain loops, here and below: closures are not inlined into code for another kind of processor.
+        let (mut total, mut mean, mut i) = (1e-12_f32, 0.0_f32, 0);
+        while i < SAMPLES {
+            let row = y as i32 + OFFSETS[i / OFFSETS.len()];
+            let column = x as i32 + OFFSETS[i % OFFSETS.len()];
+            if row >= 0 && column >= 0 {
+                let (row, column) = (row as usize, column as usize);
+                if row < luma.height && column < luma.width {
+                    let level = luma.levels[row * luma.width + column];
+                    let weight = weights.place[i] * weights.grey[usize::from(level.abs_diff(base))];
+                    own[i] = weight;
+                    levels[i] = f32::from(level) - f32::from(base);
+                    total += weight;
+                    mean += weight * levels[i];
+                }
             }
+            i += 1;
         }
-        let total: f32 = own.iter().sum::<f32>().max(1e-12);
-        let own = own.map(|weight| weight / total);
-        let mean: f32 = own.iter().zip(&levels).map(|(w, l)| w * l).sum();
-        let centred: [f32; SAMPLES] = std::array::from_fn(|i| own[i] * (levels[i] - mean));
-        let variance: f32 = centred.iter().zip(&levels).map(|(c, l)| c * l).sum();
+        mean /= total;
+        let by = total.recip();
+        let mut centred = [0.0_f32; PADDED];
+        let mut variance = 0.0_f32;
+        for i in 0..PADDED {
+            own[i] *= by;
+            centred[i] = own[i] * (levels[i] - mean);
+            variance += centred[i] * levels[i];
+        }
         Self {
             weights: own,
             centred,
@@ -131,13 +136,13 @@ impl Window {
             return UNSEEN;
         }
         // How the place grows per pixel of the reference, to the right and downwards.
-        let grow = |i: usize| {
-            let z = there[i][2] + there[3][2] * slope[i];
-            let x = there[i][0] + there[3][0] * slope[i];
-            let y = there[i][1] + there[3][1] * slope[i];
-            [(x - u * z) * by, (y - v * z) * by]
-        };
-        let (right, down) = (grow(0), grow(1));
+        let (mut right, mut down) = ([0.0; 2], [0.0; 2]);
+        let z = there[0][2] + there[3][2] * slope[0];
+        right[0] = (there[0][0] + there[3][0] * slope[0] - u * z) * by;
+        right[1] = (there[0][1] + there[3][1] * slope[0] - v * z) * by;
+        let z = there[1][2] + there[3][2] * slope[1];
+        down[0] = (there[1][0] + there[3][0] * slope[1] - u * z) * by;
+        down[1] = (there[1][1] + there[3][1] * slope[1] - v * z) * by;
         self.compare(image, [u - 0.5, v - 0.5], right, down)
     }
 
@@ -147,12 +152,12 @@ impl Window {
         // Adding 2^23 leaves no bits for fractions: it rounds, in any width of registers.
         const WHOLE: f32 = 8_388_608.0;
         let (last_u, last_v) = (image.width as f32 - 1.0, image.height as f32 - 1.0);
-        let mut part_u = [0.0_f32; SAMPLES];
-        let mut part_v = [0.0_f32; SAMPLES];
-        let mut column = [0_u32; SAMPLES];
-        let mut row = [0_u32; SAMPLES];
+        let mut part_u = [0.0_f32; PADDED];
+        let mut part_v = [0.0_f32; PADDED];
+        let mut column = [0_u32; PADDED];
+        let mut row = [0_u32; PADDED];
         let [places_x, places_y] = &PLACES;
-        for i in 0..SAMPLES {
+        for i in 0..PADDED {
             let x = u + right[0] * places_x[i] + down[0] * places_y[i];
             let y = v + right[1] * places_x[i] + down[1] * places_y[i];
             let x = if x > 0.0 { x } else { 0.0 };
@@ -165,13 +170,15 @@ impl Window {
             column[i] = whole_x.to_bits() & 0x7f_ffff;
             row[i] = whole_y.to_bits() & 0x7f_ffff;
         }
-        let mut fours = [0_u32; SAMPLES];
-        for i in 0..SAMPLES {
+        let mut fours = [0_u32; PADDED];
+        for i in 0..PADDED {
             let at = row[i] as usize * image.width + column[i] as usize;
-            fours[i] = image.fours.get(at).copied().unwrap_or_default();
+            if at < image.fours.len() {
+                fours[i] = image.fours[at];
+            }
         }
-        let mut levels = [0.0_f32; SAMPLES];
-        for i in 0..SAMPLES {
+        let mut levels = [0.0_f32; PADDED];
+        for i in 0..PADDED {
             let four = fours[i].cast_signed();
             let left = (four & 0xff) as f32;
             let right = ((four >> 8) & 0xff) as f32;
@@ -184,29 +191,31 @@ impl Window {
         let mut mean = [0.0_f32; LANES];
         let mut square = [0.0_f32; LANES];
         let mut product = [0.0_f32; LANES];
-        let weights = self.weights.as_chunks::<LANES>().0;
-        let centred = self.centred.as_chunks::<LANES>().0;
-        for ((weights, centred), levels) in
-            weights.iter().zip(centred).zip(levels.as_chunks::<LANES>().0)
-        {
+        let mut begin = 0;
+        while begin < PADDED {
             for lane in 0..LANES {
-                let weighted = weights[lane] * levels[lane];
+                let level = levels[begin + lane];
+                let weighted = self.weights[begin + lane] * level;
                 mean[lane] += weighted;
-                square[lane] += weighted * levels[lane];
-                product[lane] += centred[lane] * levels[lane];
+                square[lane] += weighted * level;
+                product[lane] += self.centred[begin + lane] * level;
             }
+            begin += LANES;
         }
-        let (mean, square, product) = (sum(mean), sum(square), sum(product));
+        let (mean, square, product) = (sum(&mean), sum(&square), sum(&product));
         let variance = (square - mean * mean).max(0.0) + NOISE;
         1.0 - product / (variance * self.variance).sqrt()
     }
 }
 
 /// Sums run in so many lanes, side by side.
-const LANES: usize = 12;
+const LANES: usize = 8;
 
 #[inline(always)]
-fn sum(lanes: [f32; LANES]) -> f32 {
-    let four: [f32; 4] = std::array::from_fn(|i| lanes[i] + lanes[i + 4] + lanes[i + 8]);
-    (four[0] + four[1]) + (four[2] + four[3])
+fn sum(lanes: &[f32; LANES]) -> f32 {
+    let mut sum = 0.0;
+    for i in 0..4 {
+        sum += lanes[i] + lanes[i + 4];
+    }
+    sum
 }
