@@ -99,15 +99,15 @@ fn prepare(at: vec2<u32>) {
     var total = 1e-12;
     var mean = 0.0;
     for (var i = 0u; i < SAMPLES; i++) {
-        let from = offset(i);
-        let place = vec2<i32>(at) + vec2<i32>(from);
+        let offs = offset(i);
+        let place = vec2<i32>(at) + vec2<i32>(offs);
         var weight = 0.0;
         var level = 0.0;
         if all(place >= vec2(0)) && all(place < vec2<i32>(settings.size)) {
             let here = vec2<u32>(place) - settings.crop_origin;
             level = level_at(0u, here.y * settings.crop.x + here.x) - base;
             let far = level / SIGMA_GREY;
-            weight = exp(-0.5 * dot(from, from) / (SIGMA_PIXELS * SIGMA_PIXELS)) * exp(-0.5 * far * far);
+            weight = exp(-0.5 * dot(offs, from) / (SIGMA_PIXELS * SIGMA_PIXELS)) * exp(-0.5 * far * far);
         }
         weights[i] = weight;
         centred[i] = level;
@@ -166,8 +166,8 @@ fn photometric(which: u32, m: vec3<f32>, plane: vec4<f32>) -> f32 {
     let origin = sources[which].crop_origin;
     let crop = sources[which].crop;
     for (var i = 0u; i < SAMPLES; i++) {
-        let from = offset(i);
-        let at = clamp(middle - 0.5 + right * from.x + down * from.y, vec2(0.0), size - 1.0);
+        let offs = offset(i);
+        let at = clamp(middle - 0.5 + right * offs.x + down * offs.y, vec2(0.0), size - 1.0);
         let whole = floor(at);
         let part = at - whole;
         let corner = clamp(vec2<u32>(whole), origin, origin + crop - 1u) - origin;
@@ -280,8 +280,8 @@ fn candidate(at: vec2<i32>, direction: vec2<i32>) -> vec4<f32> {
     var reaches = array<i32, 4>(1, 3, 5, 9);
     var found = vec4(0.0, 0.0, 0.0, -1.0);
     for (var i = 0u; i < 4u; i++) {
-        let from = direction * reaches[i];
-        let there = at + from;
+        let offs = direction * reaches[i];
+        let there = at + offs;
         let in_photo = there + vec2<i32>(settings.origin);
         if any(there < vec2(0)) || any(there >= vec2<i32>(settings.tile))
             || any(in_photo >= vec2<i32>(settings.size)) {
@@ -289,7 +289,7 @@ fn candidate(at: vec2<i32>, direction: vec2<i32>) -> vec4<f32> {
         }
         let plane = planes[u32(there.y) * settings.tile.x + u32(there.x)];
         if found.w < 0.0 || plane.w < found.w {
-            found = vec4(plane.x - plane.y * f32(from.x) - plane.z * f32(from.y), plane.yz, plane.w);
+            found = vec4(plane.x - plane.y * f32(offs.x) - plane.z * f32(offs.y), plane.yz, plane.w);
         }
     }
     return found;

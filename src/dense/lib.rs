@@ -34,6 +34,8 @@ mod luma;
 mod neighbours;
 mod options;
 mod patch_match;
+#[cfg(test)]
+mod tests;
 mod view;
 
 use fragscale_core::{camera, fault, jobs};
