@@ -96,7 +96,10 @@ fn truth(folder: &Path, name: &str) -> Vec<f32> {
 }
 
 fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
+    let arguments: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| a != "--bench")
+        .collect();
     let value = |name: &str| {
         let at = arguments.iter().position(|argument| argument == name)?;
         arguments.get(at + 1).cloned()
@@ -109,15 +112,25 @@ fn main() {
     let (folder, depth_folder) = (Path::new(folder), Path::new(depth_folder));
     let wanted = value("--views").unwrap_or_else(|| "RING".to_owned());
     let is_wanted = |name: &str| wanted.split(',').any(|part| name.contains(part));
-    let poses: Vec<_> = poses(folder).into_iter().filter(|(n, _)| is_wanted(n)).collect();
-    let names: Vec<&str> = poses.iter().map(|(name, _)| name.trim_end_matches(".jpg")).collect();
+    let poses: Vec<_> = poses(folder)
+        .into_iter()
+        .filter(|(n, _)| is_wanted(n))
+        .collect();
+    let names: Vec<&str> = poses
+        .iter()
+        .map(|(name, _)| name.trim_end_matches(".jpg"))
+        .collect();
     let truths: Vec<_> = names.iter().map(|name| truth(depth_folder, name)).collect();
     let camera = camera(folder);
     let views: Vec<_> = poses
         .iter()
         .zip(&truths)
         .map(|((_, pose), truth)| {
-            let seen = || truth.iter().filter(|depth| depth.is_finite() && **depth > 0.0);
+            let seen = || {
+                truth
+                    .iter()
+                    .filter(|depth| depth.is_finite() && **depth > 0.0)
+            };
             let near = seen().fold(f32::MAX, |a, b| a.min(*b));
             let far = seen().fold(0.0_f32, |a, b| a.max(*b));
             View {
@@ -127,7 +140,12 @@ fn main() {
             }
         })
         .collect();
-    let photos = Files(poses.iter().map(|(name, _)| folder.join("photos").join(name)).collect());
+    let photos = Files(
+        poses
+            .iter()
+            .map(|(name, _)| folder.join("photos").join(name))
+            .collect(),
+    );
     let mut options = DenseOptions::of(Quality::Best);
     if let Some(sweeps) = value("--sweeps") {
         options.sweeps = sweeps.parse().expect("a number");
@@ -139,7 +157,14 @@ fn main() {
     println!("{:?} {:?} {:?}", views[0].depths, &neighbours[..2], options);
     let run = |backend: &dyn Backend| {
         let begin = (Instant::now(), cpu_seconds());
-        let maps = depth_maps(&views, &photos, &neighbours, &options, backend, &Progress::default());
+        let maps = depth_maps(
+            &views,
+            &photos,
+            &neighbours,
+            &options,
+            backend,
+            &Progress::default(),
+        );
         let maps: Vec<DepthMap> = maps.expect("depths").into_iter().flatten().collect();
         let megapixels: f64 = maps.iter().map(|map| map.depths.len() as f64 / 1e6).sum();
         println!(
@@ -189,7 +214,10 @@ fn report(names: &[&str], maps: &[DepthMap], truths: &[Vec<f32>]) {
         errors.sort_by(|a, b| b.0.total_cmp(&a.0));
         let half = figures(&errors[..errors.len() / 2]);
         if names.len() < 6 {
-            println!("  {name}: all {:.3} % {:.1} %, half {:.3} % {:.1} %", all[0], all[1], half[0], half[1]);
+            println!(
+                "  {name}: all {:.3} % {:.1} %, half {:.3} % {:.1} %",
+                all[0], all[1], half[0], half[1]
+            );
         }
         for (sum, figure) in sums.iter_mut().zip(all.into_iter().chain(half)) {
             *sum += figure / names.len() as f64;
@@ -197,16 +225,26 @@ fn report(names: &[&str], maps: &[DepthMap], truths: &[Vec<f32>]) {
     }
     println!(
         "  mean of {} photos: median error {:.3} %, within 1 %: {:.1} %; confident half {:.3} %, {:.1} %",
-        names.len(), sums[0], sums[1], sums[2], sums[3]
+        names.len(),
+        sums[0],
+        sums[1],
+        sums[2],
+        sums[3]
     );
 }
 
 /// Where two back ends differ.
 #[cfg(feature = "gpu")]
 fn compare(a: &[DepthMap], b: &[DepthMap]) {
-    let pairs = || a.iter().zip(b).flat_map(|(a, b)| a.depths.iter().zip(&b.depths));
+    let pairs = || {
+        a.iter()
+            .zip(b)
+            .flat_map(|(a, b)| a.depths.iter().zip(&b.depths))
+    };
     let share = |most: f32| {
-        let same = pairs().filter(|(a, b)| (*a / *b - 1.0).abs() <= most).count();
+        let same = pairs()
+            .filter(|(a, b)| (*a / *b - 1.0).abs() <= most)
+            .count();
         100.0 * same as f64 / pairs().count() as f64
     };
     println!(
@@ -235,7 +273,17 @@ fn fused(views: &[View], maps: Vec<DepthMap>, photos: &Files) {
 /// Of this process, all threads; 0 where the system does not say.
 fn cpu_seconds() -> f64 {
     let stat = fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or_default().split_whitespace().collect();
-    let ticks = |i: usize| fields.get(i).and_then(|f| f.parse::<f64>().ok()).unwrap_or(0.0);
+    let fields: Vec<&str> = stat
+        .rsplit(')')
+        .next()
+        .unwrap_or_default()
+        .split_whitespace()
+        .collect();
+    let ticks = |i: usize| {
+        fields
+            .get(i)
+            .and_then(|f| f.parse::<f64>().ok())
+            .unwrap_or(0.0)
+    };
     (ticks(11) + ticks(12)) / 100.0
 }

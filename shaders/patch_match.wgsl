@@ -107,7 +107,7 @@ fn prepare(at: vec2<u32>) {
             let here = vec2<u32>(place) - settings.crop_origin;
             level = level_at(0u, here.y * settings.crop.x + here.x) - base;
             let far = level / SIGMA_GREY;
-            weight = exp(-0.5 * dot(offs, from) / (SIGMA_PIXELS * SIGMA_PIXELS)) * exp(-0.5 * far * far);
+            weight = exp(-0.5 * dot(offs, offs) / (SIGMA_PIXELS * SIGMA_PIXELS)) * exp(-0.5 * far * far);
         }
         weights[i] = weight;
         centred[i] = level;

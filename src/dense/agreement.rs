@@ -103,9 +103,8 @@ impl<'a> Agreement<'a> {
         let found = row * width + column;
         let from_center = pixel - center(self.theirs, found);
         let [x, y] = self.theirs.slopes[found].map(f64::from);
-        let theirs = f64::from(self.theirs.depths[found]).recip()
-            + x * from_center.x
-            + y * from_center.y;
+        let theirs =
+            f64::from(self.theirs.depths[found]).recip() + x * from_center.x + y * from_center.y;
         let ours = (depth * m.z).recip();
         if theirs.is_nan() || theirs <= 0.0 {
             return None;

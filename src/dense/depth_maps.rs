@@ -60,7 +60,10 @@ pub fn depth_maps(
     if options.geometric_sweeps > 0 {
         progress.stage("depths that agree between photos");
         // All from the first answer, so that the order of the photos has no part in it.
-        let depths: Vec<_> = found.iter().map(|planes| planes.as_ref().map(inverse_depths)).collect();
+        let depths: Vec<_> = found
+            .iter()
+            .map(|planes| planes.as_ref().map(inverse_depths))
+            .collect();
         for which in 0..views.len() {
             if let Some(planes) = &mut found[which] {
                 let mut problem = problem(views, &images, which, own(which), 0);
@@ -83,7 +86,13 @@ pub fn depth_maps(
     let maps = found.into_iter().enumerate().map(|(which, planes)| {
         planes.map(|planes| {
             let per_pixel = problem(views, &images, which, own(which), 0).per_pixel;
-            DepthMap::of(&views[which], images[which].halvings, planes, per_pixel, own(which))
+            DepthMap::of(
+                &views[which],
+                images[which].halvings,
+                planes,
+                per_pixel,
+                own(which),
+            )
         })
     });
     let mut maps: Vec<_> = maps.collect();
@@ -225,7 +234,9 @@ fn problem(
         })
         .collect();
     let [near, far] = views[which].depths;
-    let cameras = others.iter().map(|other| (at(*other).0, &views[*other].pose));
+    let cameras = others
+        .iter()
+        .map(|other| (at(*other).0, &views[*other].pose));
     let per_pixel = pixels_per_inverse_depth(&camera, pose, [near, far], cameras);
     Problem {
         luma,
@@ -255,11 +266,17 @@ pub(crate) fn pixels_per_inverse_depth<'a>(
         .filter(|moved| moved.is_finite() && *moved > 0.0)
         .collect();
     moves.sort_by(f64::total_cmp);
-    moves.get(moves.len() / 2).copied().unwrap_or(camera.fx * near)
+    moves
+        .get(moves.len() / 2)
+        .copied()
+        .unwrap_or(camera.fx * near)
 }
 
 fn salt(which: usize, step: u32) -> u32 {
-    u32::try_from(which).unwrap_or(0).wrapping_mul(1000).wrapping_add(step)
+    u32::try_from(which)
+        .unwrap_or(0)
+        .wrapping_mul(1000)
+        .wrapping_add(step)
 }
 
 /// Coarse to fine, by the photos alone.
@@ -301,11 +318,23 @@ fn search(
 }
 
 fn inverse_depths(planes: &Planes) -> Arc<Vec<f32>> {
-    Arc::new(planes.planes.iter().map(|plane| plane.inverse_depth).collect())
+    Arc::new(
+        planes
+            .planes
+            .iter()
+            .map(|plane| plane.inverse_depth)
+            .collect(),
+    )
 }
 
 impl DepthMap {
-    fn of(view: &View, halvings: u32, planes: Planes, per_pixel: f32, neighbours: &[usize]) -> Self {
+    fn of(
+        view: &View,
+        halvings: u32,
+        planes: Planes,
+        per_pixel: f32,
+        neighbours: &[usize],
+    ) -> Self {
         let list = |of: fn(&Plane) -> f32| planes.planes.iter().map(of).collect();
         let costs: Vec<f32> = list(|plane| plane.cost);
         Self {
@@ -314,7 +343,10 @@ impl DepthMap {
             depths: list(|plane| plane.inverse_depth.recip()),
             slopes: planes.planes.iter().map(|plane| plane.slope).collect(),
             supports: vec![0; costs.len()],
-            confidences: costs.iter().map(|cost| (1.0 - cost).clamp(0.0, 1.0)).collect(),
+            confidences: costs
+                .iter()
+                .map(|cost| (1.0 - cost).clamp(0.0, 1.0))
+                .collect(),
             costs,
             per_pixel,
             neighbours: neighbours.to_vec(),

@@ -43,13 +43,10 @@ fn places(view: &View) -> Vec<DVec3> {
         let depth = (near.recip() + share * (far.recip() - near.recip())).recip();
         for y in 0..LATTICE {
             for x in 0..LATTICE {
-                let part = |i: u32, size: u32| {
-                    f64::from(size) * (f64::from(i) + 0.5) / f64::from(LATTICE)
-                };
-                let pixel = glam::DVec2::new(
-                    part(x, view.camera.width),
-                    part(y, view.camera.height),
-                );
+                let part =
+                    |i: u32, size: u32| f64::from(size) * (f64::from(i) + 0.5) / f64::from(LATTICE);
+                let pixel =
+                    glam::DVec2::new(part(x, view.camera.width), part(y, view.camera.height));
                 let direction = view.camera.direction_undistorted(pixel);
                 places.push(view.pose.center + view.pose.rotation * direction * depth);
             }

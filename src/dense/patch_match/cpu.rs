@@ -105,7 +105,11 @@ impl Backend for Cpu {
                         if progress.is_cancelled() {
                             return Err(());
                         }
-                        arch.dispatch(Row { half: &half, y, row });
+                        arch.dispatch(Row {
+                            half: &half,
+                            y,
+                            row,
+                        });
                         Ok(())
                     })
                     .or_else(|()| progress.advance(0, 1))?;
@@ -200,7 +204,11 @@ impl Half<'_> {
             let plane = self.other.planes[row * self.other.columns + column / 2];
             // The first also where its cost is not counted yet.
             if found.is_none() || plane.cost < cheapest {
-                cheapest = if plane.cost.is_nan() { f32::MAX } else { plane.cost };
+                cheapest = if plane.cost.is_nan() {
+                    f32::MAX
+                } else {
+                    plane.cost
+                };
                 found = Some(plane.moved(-dx as f32, -dy as f32));
             }
         }
@@ -231,7 +239,12 @@ impl Half<'_> {
 
     /// The mean cost of the best views; with the views in the order of their costs.
     #[inline(always)]
-    fn costs(&self, window: &Window, place: [f32; 2], plane: Plane) -> (f32, [usize; MOST_SOURCES]) {
+    fn costs(
+        &self,
+        window: &Window,
+        place: [f32; 2],
+        plane: Plane,
+    ) -> (f32, [usize; MOST_SOURCES]) {
         let mut costs = [UNSEEN; MOST_SOURCES];
         let mut order = [0, 1, 2, 3, 4, 5, 6, 7];
         let count = self.sources.len().min(MOST_SOURCES);

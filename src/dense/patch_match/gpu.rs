@@ -145,12 +145,14 @@ impl Gpu {
     }
 
     fn on(gpu: fragscale_render::Gpu, name: String) -> Result<Self, Fault> {
-        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("patch match"),
-            source: wgpu::ShaderSource::Wgsl(
-                include_str!("../../../shaders/patch_match.wgsl").into(),
-            ),
-        });
+        let module = gpu
+            .device
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("patch match"),
+                source: wgpu::ShaderSource::Wgsl(
+                    include_str!("../../../shaders/patch_match.wgsl").into(),
+                ),
+            });
         let pipeline = gpu
             .device
             .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -203,7 +205,10 @@ impl Gpu {
         for source in &problem.sources {
             let crop = seen(problem, source, outer);
             let begin = word(levels.len());
-            pack(&mut levels, crop.rows(&source.luma.levels, source.luma.width));
+            pack(
+                &mut levels,
+                crop.rows(&source.luma.levels, source.luma.width),
+            );
             let depths_begin = word(depths.len());
             if let Some(theirs) = &source.inverse_depths {
                 for row in crop.rows(theirs, source.luma.width) {
@@ -226,7 +231,11 @@ impl Gpu {
         let mut own_planes: Vec<[f32; 4]> = Vec::with_capacity(outer.pixels());
         for row in outer.rows(&planes.planes, width) {
             own_planes.extend(row.iter().map(|plane| {
-                let cost = if plane.cost.is_nan() { f32::MAX } else { plane.cost };
+                let cost = if plane.cost.is_nan() {
+                    f32::MAX
+                } else {
+                    plane.cost
+                };
                 [plane.inverse_depth, plane.slope[0], plane.slope[1], cost]
             }));
         }
@@ -242,9 +251,21 @@ impl Gpu {
             bytemuck::cast_slice(&own_planes),
             BufferUsages::STORAGE | BufferUsages::COPY_SRC,
         );
-        let levels = buffer("grey levels", bytemuck::cast_slice(&levels), BufferUsages::STORAGE);
-        let depths = buffer("depths", bytemuck::cast_slice(&depths), BufferUsages::STORAGE);
-        let others_buffer = buffer("views", bytemuck::cast_slice(&others), BufferUsages::STORAGE);
+        let levels = buffer(
+            "grey levels",
+            bytemuck::cast_slice(&levels),
+            BufferUsages::STORAGE,
+        );
+        let depths = buffer(
+            "depths",
+            bytemuck::cast_slice(&depths),
+            BufferUsages::STORAGE,
+        );
+        let others_buffer = buffer(
+            "views",
+            bytemuck::cast_slice(&others),
+            BufferUsages::STORAGE,
+        );
         for sweep in sweeps {
             for parity in 0..2 {
                 if progress.is_cancelled() {
@@ -339,7 +360,11 @@ impl Gpu {
             )
         })?;
         let mut planes = Vec::with_capacity(pixels);
-        planes.extend(bytes.chunks_exact(16).map(bytemuck::pod_read_unaligned::<[f32; 4]>));
+        planes.extend(
+            bytes
+                .chunks_exact(16)
+                .map(bytemuck::pod_read_unaligned::<[f32; 4]>),
+        );
         Ok(planes)
     }
 }

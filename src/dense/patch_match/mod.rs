@@ -11,9 +11,9 @@
 //! affine about its centre: over 5 pixels of a focal length of 1000 that is off by under 0.02 px where the
 //! plane is seen at 60 degrees.
 
-pub mod cpu;
+pub(crate) mod cpu;
 #[cfg(feature = "gpu")]
-pub mod gpu;
+pub(crate) mod gpu;
 pub(crate) mod pair;
 pub(crate) mod plane;
 pub(crate) mod random;

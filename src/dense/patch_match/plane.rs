@@ -5,7 +5,7 @@ use super::{Problem, STEEPEST};
 
 /// A plane at a pixel, in the camera of its image.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plane {
+pub(crate) struct Plane {
     /// At the pixel's centre, one over the world's unit.
     pub(crate) inverse_depth: f32,
     /// Its growth per pixel to the right and downwards.
