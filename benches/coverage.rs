@@ -125,6 +125,7 @@ fn one_flight(
                 noise_px: None,
                 points: None,
                 ring: 0,
+                survey: None,
                 photos: false,
                 labels: false,
                 at_origin: false,

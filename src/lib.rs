@@ -9,7 +9,7 @@
 //! # The house
 //!
 //! A workspace whose members lie inside `src/`, so that a changed reader or panel compiles alone: the
-//! core, `fragmentation/`, `formats/`, `opening/`, `exports/`, `render/`, `sample/`, `app/`, and here
+//! core, `fragmentation/`, `formats/`, `opening/`, `exports/`, `render/`, `reconstruct/`, `sample/`, `app/`, and here
 //! `cli/`. This crate re-exports all of them. The compiler holds who may use whom
 //! between members, `tests/floors.rs` the floors within the core, that no circle of imports is longer
 //! than two files, and that no folder has more than 15 files lying flat.
@@ -19,7 +19,9 @@
 //! F6  app/                       the window: state, commands, panels, jobs
 //! F5  opening/                   files -> a flight in one world; what is looked up of its photos
 //!     render/                    wgpu: scene -> picture; knows no egui, reads no file
+//!     reconstruct/               photos alone -> a flight: engines behind a trait
 //!     sample/                    the paper's lab, simulated
+//!     reconstruct/               photos -> poses, lenses, a cloud: engines behind a trait
 //! F4  formats/                   bytes -> types: clouds cameras packages poses photos tables text
 //!     exports/                   what goes out: table, CSV, JSON, sheet, Split-Desktop, figures, maps
 //!     --- the core (core.rs) and fragmentation/ ---
@@ -53,6 +55,7 @@
 //! | a subcommand with progress | `src/cli/mod.rs` | a variant; its work is a file beside it |
 //! | a JSON key of a photo | `src/exports/scales_json.rs` | a field and its value; the contract |
 //! | a distribution function | `src/fragmentation/functions/mod.rs` | the enum of models; the function is a file beside it, its coordinates for fitting in `fit/family.rs` |
+//! | a reconstruction engine | `src/reconstruct/engine.rs` | the trait; the engine is a folder beside it, and leaves COLMAP's text files |
 //! | a job with a panel | `src/app/tasks/mod.rs` | the job with its task and its ending is a file beside it, the panel one in `panels/`; `command/mod.rs` and `apply.rs` start it |
 //!
 //! # Conventions (everywhere)
@@ -75,6 +78,7 @@ pub use fragscale_exports as exports;
 pub use fragscale_formats as formats;
 pub use fragscale_fragmentation as fragmentation;
 pub use fragscale_opening as opening;
+pub use fragscale_reconstruct as reconstruct;
 #[cfg(feature = "render")]
 pub use fragscale_render as render;
 pub use fragscale_sample as sample;

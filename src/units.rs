@@ -72,6 +72,19 @@ impl LengthUnit {
     }
 }
 
+/// A round length as it is written at a scale bar: 2000 cm is 20 m.
+pub fn round_length_in_words(length: f64, unit: LengthUnit) -> String {
+    let metres = match unit {
+        LengthUnit::Millimetre => length / 1000.0,
+        LengthUnit::Centimetre => length / 100.0,
+        _ => 0.0,
+    };
+    match metres >= 1.0 {
+        true => format!("{metres} m"),
+        false => format!("{length} {unit}"),
+    }
+}
+
 impl fmt::Display for LengthUnit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.symbol())
@@ -104,6 +117,22 @@ mod tests {
             assert_eq!(unit.symbol().parse(), Ok(unit));
         }
         assert!("furlong".parse::<LengthUnit>().is_err());
+    }
+
+    #[test]
+    fn long_bars_are_in_metres() {
+        for (length, unit, words) in [
+            (2000.0, LengthUnit::Centimetre, "20 m"),
+            (100.0, LengthUnit::Centimetre, "1 m"),
+            (50.0, LengthUnit::Centimetre, "50 cm"),
+            (500.0, LengthUnit::Millimetre, "500 mm"),
+            (5000.0, LengthUnit::Millimetre, "5 m"),
+            (0.5, LengthUnit::Metre, "0.5 m"),
+            (200.0, LengthUnit::Foot, "200 ft"),
+            (100.0, LengthUnit::Inch, "100 in"),
+        ] {
+            assert_eq!(round_length_in_words(length, unit), words);
+        }
     }
 
     /// NIST Handbook 44, appendix C: 1 ft = 0.3048 m exactly, 1 US survey foot = 1200/3937 m.

@@ -42,7 +42,7 @@ const FLOORS: [(&str, i32); 16] = [
 
 /// The other members and what they may be built on. Cargo holds that nobody uses what is not in its
 /// list; this table, that the lists do not grow unseen.
-const MEMBERS: [(&str, &[&str]); 9] = [
+const MEMBERS: [(&str, &[&str]); 10] = [
     ("core", &[]),
     ("fragmentation", &["core"]),
     ("formats", &["core", "fragmentation"]),
@@ -50,7 +50,8 @@ const MEMBERS: [(&str, &[&str]); 9] = [
     ("exports", &["core", "fragmentation"]),
     ("render", &["core"]),
     ("dense", &["core", "render"]),
-    ("sample", &["core", "fragmentation", "formats"]),
+    ("sample", &["core", "exports", "fragmentation", "formats"]),
+    ("reconstruct", &["core", "exports", "formats", "opening"]),
     (
         "app",
         &[
@@ -59,6 +60,7 @@ const MEMBERS: [(&str, &[&str]); 9] = [
             "formats",
             "fragmentation",
             "opening",
+            "reconstruct",
             "render",
         ],
     ),

@@ -2,13 +2,15 @@
 
 use crate::command::{Asking, Command, ReviewStep, Tab};
 use crate::flight::FlightSettings;
+use crate::from_photos::Ended;
+use crate::geometry::LevelBox;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::picked::PickedPoint;
 use crate::scale::ScalePair;
 use crate::size_distributions::Page;
 use crate::state::bundled::sample_flight;
 use crate::state::history::History;
-use crate::state::{HeldBack, Leaving, Severity, State};
+use crate::state::{HeldBack, Leaving, Named, Severity, State};
 use crate::tasks::Task;
 
 impl State {
@@ -17,17 +19,15 @@ impl State {
         match command {
             Command::Drop(paths) if self.may_be_distributions(&paths) => self.read_dropped(paths),
             Command::Drop(paths) => self.apply(Command::DropFlight(paths)),
-            Command::Open(path) => self.leave(Leaving::Read {
-                paths: vec![path],
-                added: false,
-            }),
-            Command::DropFlight(paths) => self.leave(Leaving::Read {
-                paths,
-                added: false,
-            }),
+            Command::Open(path) => self.open_or_ask(vec![path]),
+            Command::DropFlight(paths) => self.open_or_ask(paths),
             Command::Add(path) => self.leave(Leaving::Read {
                 paths: vec![path],
-                added: true,
+                named: Named::Added,
+            }),
+            Command::OpenAlone(path) => self.leave(Leaving::Read {
+                paths: vec![path],
+                named: Named::Alone,
             }),
             Command::OpenSample => self.leave(Leaving::Sample),
             Command::Close => self.leave(Leaving::Close),
@@ -56,6 +56,7 @@ impl State {
             Command::SaveGeoreferenced { to, keep_surface } => {
                 self.save_georeferenced(to, keep_surface);
             }
+            Command::FromPhotos(step) => self.step_from_photos(step),
             Command::Ask(asking) => self.ask(asking),
             Command::Browse(dialog) => self.browse(dialog),
             Command::Cancel(task) => {
@@ -65,6 +66,9 @@ impl State {
                     self.take_back_settings();
                     if task == Task::SAVE {
                         self.after_saving = None;
+                    }
+                    if task == Task::RECONSTRUCT {
+                        self.from_photos.ended = Some(Ended::Cancelled);
                     }
                 }
             }
@@ -110,12 +114,12 @@ impl State {
                 self.undo_distributions(History::redo);
             }
             Command::Undo => {
-                self.undo_picks_or_settings(History::undo, History::undo);
+                self.undo_picks_or_settings(History::undo, History::undo, History::undo);
                 // Else the last word at the foot of the window may be "saved".
                 self.say(Severity::Note, "undone");
             }
             Command::Redo => {
-                self.undo_picks_or_settings(History::redo, History::redo);
+                self.undo_picks_or_settings(History::redo, History::redo, History::redo);
                 self.say(Severity::Note, "done again");
             }
             Command::Set(settings) => self.set_settings(settings),
@@ -167,7 +171,7 @@ impl State {
     }
 
     /// Leaves the flight on the screen, unless something would be lost: then asks first.
-    fn leave(&mut self, leaving: Leaving) {
+    pub(crate) fn leave(&mut self, leaving: Leaving) {
         let writes = leaving == Leaving::Quit && self.work.is_writing();
         if self.is_changed() || writes {
             self.held_back = Some(HeldBack::Leave(leaving));
@@ -183,9 +187,9 @@ impl State {
             self.page = Page::Pile;
         }
         match leaving {
-            Leaving::Read { paths, added } => self.start_opening(paths, added),
+            Leaving::Read { paths, named } => self.start_opening(paths, named),
             Leaving::Sample => match sample_flight() {
-                Some(path) => self.start_opening(vec![path], false),
+                Some(path) => self.start_opening(vec![path], Named::ToOpen),
                 None => self.say(
                     Severity::Error,
                     "the bundled flight is not beside the program; make one with 'fragscale sample DIR'",
@@ -252,6 +256,7 @@ impl State {
                     | Asking::Map
                     | Asking::SaveMeasured(_)
                     | Asking::VolumeBase
+                    | Asking::CloudUse
                     | Asking::AddLayer
             )
         );
@@ -284,16 +289,23 @@ impl State {
         });
     }
 
-    /// While points are picked, undo is theirs as far as it goes.
+    /// While points are picked, undo is theirs as far as it goes; then the clipping box's, while its window is
+    /// shown.
     fn undo_picks_or_settings(
         &mut self,
         picks: impl FnOnce(&mut History<Vec<PickedPoint>>) -> bool,
+        limits: impl FnOnce(&mut History<LevelBox>) -> bool,
         settings: impl FnOnce(&mut History<FlightSettings>) -> bool,
     ) {
         let picked = self.open.as_mut().map(|open| &mut open.pointer.picked);
         let undone = picked
             .filter(|picked| picked.is_on)
             .is_some_and(|picked| picks(&mut picked.history));
+        let undone = undone
+            || self
+                .open
+                .as_mut()
+                .is_some_and(|open| open.undo_clip(limits));
         if !undone {
             self.undo_settings(settings);
         }

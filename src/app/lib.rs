@@ -12,6 +12,7 @@
 //! linked/             the point under the mouse, in the pile and in the photos
 //! photo_view/         the selected photo in the middle of the window
 //! map/                the page of the map
+//! from_photos         what the small window for a new flight from photos holds
 //! size_distributions/ the page of size distributions
 //! ```
 //!
@@ -25,6 +26,7 @@ pub mod corner_loupe;
 mod deciding;
 mod fonts;
 pub mod frame_times;
+pub mod from_photos;
 pub mod linked;
 pub mod map;
 mod names;
@@ -48,6 +50,7 @@ use fragscale_exports as exports;
 use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
 use fragscale_opening as opening;
+use fragscale_reconstruct as reconstruct;
 use fragscale_render as render;
 
 use std::path::PathBuf;

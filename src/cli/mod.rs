@@ -20,6 +20,7 @@ mod outputs;
 mod psd;
 mod psd_compare;
 mod psd_fit;
+mod reconstruct;
 #[cfg(feature = "render")]
 mod render;
 mod sample;
@@ -98,6 +99,8 @@ enum Command {
     Volume(volume::VolumeArguments),
     /// Say what a file or folder holds.
     Info(InfoArguments),
+    /// Reconstruct a flight from its photos alone: poses, lenses, a cloud.
+    Reconstruct(reconstruct::ReconstructArguments),
     /// Make a simulated flight whose every answer is known.
     Sample(sample::SampleArguments),
     /// Draw a picture of a flight: the surface, cameras, corner rays and footprints.
@@ -248,6 +251,9 @@ pub fn run() -> ExitCode {
             Box::new(move |progress| volume::volume(&arguments, progress))
         }
         Command::Info(arguments) => Box::new(move |progress| info(&arguments, progress)),
+        Command::Reconstruct(arguments) => {
+            Box::new(move |progress| reconstruct::run(&arguments, progress))
+        }
         Command::Sample(arguments) => {
             Box::new(move |progress| sample::sample(&arguments, progress))
         }

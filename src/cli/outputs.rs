@@ -144,6 +144,7 @@ impl<'a> Outputs<'a> {
 
     /// One more file. An error where it may not be written, or is one of the others.
     pub(super) fn and(mut self, path: &'a Path, kind: Kind) -> Result<Self, String> {
+        files::has_folder(path).map_err(|fault| FileError::new(path, fault).to_string())?;
         self.check(path, kind)?;
         let place = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         let twice = |other: &Path| place(other) == place(path) || files::is_same_file(other, path);

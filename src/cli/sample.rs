@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use super::Answer;
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::sample::{self, DrawnErrors, Lens, PoseNoise, Preset, SampleOptions};
+use crate::sample::{self, DrawnErrors, Lens, PoseNoise, Preset, Receiver, SampleOptions};
 
 #[derive(Debug, Args)]
 pub(super) struct SampleArguments {
@@ -34,6 +34,10 @@ pub(super) struct SampleArguments {
     /// Add this many overlapping photos on a ring around the pile.
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
     ring: u32,
+    /// Add the overlapping photos of a mapping flight, and let all photos say where they were taken, as
+    /// such a receiver does: for `fragscale reconstruct`.
+    #[arg(long, value_enum, value_name = "RECEIVER")]
+    survey: Option<SampleReceiver>,
     /// Leave out the photos and their label images.
     #[arg(long)]
     no_photos: bool,
@@ -61,6 +65,14 @@ enum SamplePreset {
     Muckpile,
     Stockpile,
     Bench,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum SampleReceiver {
+    /// Metres.
+    Gps,
+    /// Centimetres.
+    Rtk,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -128,6 +140,10 @@ pub(super) fn sample(arguments: &SampleArguments, progress: &Progress) -> Result
         noise_px: arguments.noise,
         points: arguments.points,
         ring: arguments.ring,
+        survey: arguments.survey.map(|receiver| match receiver {
+            SampleReceiver::Gps => Receiver::Gps,
+            SampleReceiver::Rtk => Receiver::Rtk,
+        }),
         photos: !arguments.no_photos,
         labels: !arguments.no_labels,
         at_origin: arguments.at_origin,

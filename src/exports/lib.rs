@@ -2,6 +2,7 @@
 //! what is learnt from size distributions.
 
 mod drawing;
+mod flight_files;
 mod markup;
 mod measured;
 mod photo_columns;
@@ -24,6 +25,7 @@ use fragscale_core::{
 };
 use fragscale_fragmentation as fragmentation;
 
+pub use flight_files::{Orientation, PoseRow, StatedDeviations, laz, ply, poses_csv};
 pub use measured::{
     MeasuredUnit, PointsReport, ProfileReport, VolumeReport, points_csv, points_table, profile_csv,
     profile_json, profile_table, volume_csv, volume_json, volume_table, volume_warning,
@@ -31,8 +33,8 @@ pub use measured::{
 pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};
 pub use photo_file_names::photo_file_stems;
 pub use plan::{
-    Grid, GridLine, MOST_MAP_PIXELS, MapFrame, Plan, PlanBar, PlanFormat, PlanInks, PlanPhoto,
-    PlanRequest, lit, taken_in_words,
+    Grid, GridLine, GroundOf, MOST_MAP_PIXELS, MapFrame, MeasuredOutline, PhotoPixels, Plan,
+    PlanBar, PlanFormat, PlanGround, PlanInks, PlanPhoto, PlanRequest, ground, taken_in_words,
 };
 pub use rectified::{RectifiedFormat, RectifiedPhoto};
 pub use report_object::{PointCloudScale, ReportObject};

@@ -23,5 +23,5 @@ pub use atomic::{is_unfinished, make_folder_whole, remove_unfinished};
 pub use input::{FileError, cannot_be, open_file, read_bytes, read_text, text_from_bytes};
 pub use inputs::{Inputs, is_same_file};
 pub use marks::{FLIGHT_MARK, HTML_MARK, Kind, PDF_MARK, SVG_MARK, WORLD_FILE_MARK, marked_png};
-pub use overwrite::{Standing, may_write, standing, write};
+pub use overwrite::{Standing, has_folder, may_write, standing, write};
 pub use recording::{Recording, note_opened};

@@ -67,6 +67,27 @@ fn beginning(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Whether the folder of a file is there, which nobody is going to make.
+///
+/// # Errors
+/// Where it is not.
+pub fn has_folder(path: &Path) -> Result<(), Fault> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir());
+    let Some(folder) = folder else {
+        return Ok(());
+    };
+    let what = match folder.exists() {
+        true => format!("it cannot be written: {} is no folder", folder.display()),
+        false => format!(
+            "it cannot be written: there is no folder {}",
+            folder.display()
+        ),
+    };
+    Err(Fault::new(what, "make it, or choose another folder"))
+}
+
 /// Whether a file of this kind may be written to `path`. With `force` a file of others may be replaced;
 /// one that was read never.
 ///
@@ -117,6 +138,7 @@ pub fn write(
     inputs: &Inputs,
     force: bool,
 ) -> Result<(), Fault> {
+    has_folder(path)?;
     may_write(path, kind, inputs, force)?;
     write_whole(path, contents).map_err(|error| cannot_be("written", &error))
 }
@@ -165,6 +187,15 @@ mod tests {
         ] {
             assert_eq!(may(name, kind, false), without, "{name} {kind:?}");
             assert_eq!(may(name, kind, true), with, "{name} {kind:?} --force");
+        }
+        for (name, why) in [
+            ("no/such/a.csv", "there is no folder"),
+            ("mine.txt/a.csv", "is no folder"),
+        ] {
+            let error = has_folder(&at(name)).unwrap_err();
+            let folder = at(name).parent().unwrap().display().to_string();
+            let error = error.to_string();
+            assert!(error.contains(why) && error.contains(&folder), "{error}");
         }
         let error = write(&at("mine.txt"), b"y", Kind::Result, &inputs, false);
         assert!(error.unwrap_err().to_string().contains("--force"));

@@ -24,7 +24,9 @@ pub use decision::{Decision, DecisionKind};
 pub use difference::{Difference, DifferenceReason};
 pub use doubt::{Doubt, InView, OnPhoto, Sight};
 pub use evidence::{ColoursFound, Evidence, LookedUp, MetadataRead, PhotoFileState};
-pub use file::{CameraEntry, CameraSource, FlightFile, PhotoSource, ReconstructionFlight};
+pub use file::{
+    CameraEntry, CameraSource, FlightFile, PhotoSource, PosesFlight, ReconstructionFlight,
+};
 pub use name_order::compare_names;
 pub use placement::Placement;
 pub use review::{Along, PhotoReview, Review};

@@ -33,6 +33,7 @@ pub use clouds::CloudFile;
 pub use detect::{CloudFormat, Kind, detect};
 pub use files::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use packages::Package;
+pub use packages::drone_photos::{Cameras as PhotoCameras, expected_deviation, photos_in};
 pub use packages::pose_covariance::PoseCovariance;
 pub use packages::reconstruction::{
     ImageUnit, MeasuredPosition, Observation, Origin, PosedPhoto, Project, Reconstruction, Sizes,

@@ -5,12 +5,11 @@
 use std::collections::HashSet;
 
 use crate::fault::Fault;
-use crate::files::{FileError, read_bytes};
 use crate::flight::{ColoursFound, Doubt, Evidence, Flight, LookedUp, PhotoFileState, Review};
 use crate::jobs::Progress;
 use crate::photo_checks::photo_checks;
 use crate::photo_files::PhotoFile;
-use crate::picture::{Agreement, Mismatch, decode};
+use crate::picture::{Agreement, Mismatch};
 
 /// Looks up what the files' headers and the places of the photos say; `files` are parallel to the
 /// flight's photos. No photo is decoded: for colours see [`compare_colours`].
@@ -171,14 +170,12 @@ pub fn compare_colours(
         if evidence.colours != ColoursFound::NotCompared {
             continue;
         }
-        let colours = match &file.path {
-            _ if without_colours => Colours::Not("the surface has no colours".to_owned()),
-            None => Colours::Not("no image file".to_owned()),
-            Some(path) => match read_bytes(path)
-                .and_then(|bytes| decode(&bytes).map_err(|fault| FileError::new(path, fault)))
-            {
-                Ok(pixels) => Colours::of_photo(flight, index, &pixels),
-                Err(error) => Colours::Unreadable(error.fault.to_string()),
+        let colours = match without_colours {
+            true => Colours::Not("the surface has no colours".to_owned()),
+            false => match file.pixels() {
+                None => Colours::Not("no image file".to_owned()),
+                Some(Ok(pixels)) => Colours::of_photo(flight, index, &pixels),
+                Some(Err(error)) => Colours::Unreadable(error.fault.to_string()),
             },
         };
         compared.push((index, colours));

@@ -37,7 +37,7 @@ pub use dropped::Dropped;
 pub use evidence::{Colours, compare_all_colours, compare_colours, look_up};
 pub use georeferencing::{
     GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind, LengthResidual,
-    PositionResidual, georeference,
+    PositionResidual, flight_text_of, georeference,
 };
 pub use health::{Health, HealthFinding, HealthItem, Remedy, StatedOfFlight, flight_health};
 pub use info::info;
@@ -46,7 +46,7 @@ pub use open::{
     FlightReconstruction, OnSample, OpenOptions, Opened, SurfaceSample, open_flight,
     open_flight_sampled,
 };
-pub use origin::FlightOrigin;
+pub use origin::{FlightOrigin, path_from};
 pub use photo_files::PhotoFile;
 pub use second_surface::{SecondSurface, StatedWorld, second_surface};
 

@@ -190,7 +190,10 @@ pub(crate) fn real(path: &Path) -> PathBuf {
 
 /// How a file in `folder` (canonical) names `path`: with slashes, relative where the two have more
 /// than the root in common.
-pub(crate) fn path_from(folder: &Path, path: &Path) -> Result<String, Fault> {
+///
+/// # Errors
+/// Where it is not Unicode.
+pub fn path_from(folder: &Path, path: &Path) -> Result<String, Fault> {
     let path = real(path);
     let text = |part: &OsStr| {
         part.to_str().map(str::to_owned).ok_or_else(|| {

@@ -4,11 +4,15 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
+use image::RgbImage;
+
 use crate::camera::Camera;
 use crate::fault::{Fault, Lacking, first_names};
+use crate::files::{FileError, read_bytes};
 use crate::flight::{Photo, PhotoFileState};
 use crate::formats::Reconstruction;
 use crate::formats::photos::photo_folder::{PhotoFolder, size_of_file};
+use crate::picture::decode;
 
 /// The image file of a photo.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -21,6 +25,15 @@ pub struct PhotoFile {
     pub named_size: Option<(u32, u32)>,
     /// Whether the photo's camera may be for a reduced copy of it, as the package is known to make.
     pub may_be_reduced: bool,
+}
+
+impl PhotoFile {
+    /// The photo's pixels as shot; `None` where its file is not there.
+    pub fn pixels(&self) -> Option<Result<RgbImage, FileError>> {
+        let path = self.path.as_deref()?;
+        let decoded = |bytes: Vec<u8>| decode(&bytes).map_err(|fault| FileError::new(path, fault));
+        Some(read_bytes(path).and_then(decoded))
+    }
 }
 
 /// The file of each photo and what is known about it, in their order.

@@ -7,6 +7,7 @@
 mod agreement;
 mod canvas;
 mod decode;
+mod drape;
 mod encode;
 mod exif_size;
 mod image_size;
@@ -27,6 +28,7 @@ mod warp;
 pub use agreement::{Agreement, Flip, Mismatch, NotComparable};
 pub use canvas::{Canvas, Color, Halo};
 pub use decode::{DecodedPhoto, PhotoFormat, decode, decode_photo};
+pub use drape::{Draping, PhotoAbove};
 pub use encode::encode;
 pub use exif_size::{SizeInExif, size_in_exif};
 pub use isolines::{Isoline, isolines, round_levels};

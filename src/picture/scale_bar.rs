@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::numbers::round_down;
 use crate::scale::ScaleEstimate;
-use crate::units::LengthUnit;
+use crate::units::{LengthUnit, round_length_in_words};
 
 /// A bar is at most this share of the image's width.
 const LONGEST_SHARE: f64 = 0.35;
@@ -80,7 +80,11 @@ pub fn scale_bars(
             length_px,
             from: middle - half,
             to: middle + half,
-            text: format!("{length} {unit} · {} px/{unit}", estimate.text(4)),
+            text: format!(
+                "{} · {} px/{unit}",
+                round_length_in_words(length, unit),
+                estimate.text(4)
+            ),
         })
     };
     edges.into_iter().filter_map(bar).collect()

@@ -84,6 +84,49 @@ impl FlightPlan {
             .collect()
     }
 
+    /// Overlapping photos for a reconstruction as a mapping flight takes them: rows straight down, 65 % over
+    /// the neighbouring row and 70 % along it, from half as high again as the flight, then a row on
+    /// each side that looks aslant at the middle. `view` is the width and height of a photo in parts of the
+    /// distance.
+    pub fn survey(&self, view: DVec2, random: &mut Random) -> Vec<Shot> {
+        let height = self.height * 1.5;
+        let step = view * height * DVec2::new(0.35, 0.3);
+        let [columns, rows] = self.count.map(|count| f64::from(count.saturating_sub(1)));
+        // As far as the flight's photos show.
+        let extent = DVec2::new(columns, rows) * self.spacing + view * self.height;
+        let count = (extent / step).ceil().as_uvec2() + 1;
+        let mut shots = Vec::new();
+        let mut add = |place: DVec3, angles: [f64; 2]| {
+            let name = format!("SUR_{:04}.jpg", shots.len() + 1);
+            shots.push(self.shot(name, place, angles, random));
+        };
+        for row in 0..count.y {
+            for along in 0..count.x {
+                let column = if row % 2 == 1 {
+                    count.x - 1 - along
+                } else {
+                    along
+                };
+                let at =
+                    DVec2::new(f64::from(column), f64::from(row)) - (count.as_dvec2() - 1.0) / 2.0;
+                add((at * step).extend(height), [90.0, 0.0]);
+            }
+        }
+        let (aslant, photos) = (50.0_f64, 6);
+        for pan in [0.0_f64, 90.0, 180.0, 270.0] {
+            let (east, north) = pan.to_radians().sin_cos();
+            let looks = DVec2::new(east, north);
+            let across = (looks.perp().abs() * extent).element_sum();
+            for along in 0..photos {
+                let share = f64::from(along) / f64::from(photos - 1) - 0.5;
+                let back = looks * (height / aslant.to_radians().tan());
+                let place = looks.perp() * (share * across) - back;
+                add(place.extend(height), [aslant, pan]);
+            }
+        }
+        shots
+    }
+
     fn shot(&self, name: String, center: DVec3, angles: [f64; 2], random: &mut Random) -> Shot {
         let drift = DVec3::new(random.normal(), random.normal(), random.normal());
         let [tilt, pan] = angles;

@@ -25,7 +25,8 @@ mod written;
 
 #[cfg(test)]
 use fragscale_core::scale;
-use fragscale_core::{camera, fault, flight, geometry, jobs, surface, units};
+use fragscale_core::{camera, fault, flight, geodesy, geometry, jobs, surface, units};
+use fragscale_exports as exports;
 #[cfg(test)]
 use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
@@ -46,13 +47,15 @@ pub use scene::{Meeting, Scene, SceneCaster, Sphere, Thing};
 pub use sfm_cloud::CloudPlan;
 pub use written::{DrawnErrors, PoseNoise};
 
+use crate::camera::Camera;
 use crate::fault::Fault;
+use crate::geodesy::Crs;
 use crate::geometry::Ray;
 use crate::jobs::Progress;
 use crate::surface::Cloud;
 use crate::units::LengthUnit;
 use files::flight::FlightText;
-use files::photo_metadata::{DjiGimbal, PhotoMetadata};
+use files::photo_metadata::{DjiGimbal, GpsPosition, PhotoMetadata};
 use files::reference::openings_mm;
 use fragscale_core::files::make_folder_whole;
 use image_analysis::{Analysis, Outlined, PixelPlaces, Scale};
@@ -79,6 +82,9 @@ pub struct SampleOptions {
     pub points: Option<usize>,
     /// How many photos on a ring around the pile, for reconstruction tests.
     pub ring: u32,
+    /// Overlapping photos of a mapping flight, for reconstruction tests; all photos then say where they
+    /// were taken, as its receiver does.
+    pub survey: Option<Receiver>,
     /// Whether to take the photos.
     pub photos: bool,
     /// Whether to write which fragment each pixel shows.
@@ -87,6 +93,25 @@ pub struct SampleOptions {
     pub at_origin: bool,
     /// Errors of what is written: of poses, of the lens, of the world's lengths.
     pub errors: DrawnErrors,
+}
+
+/// How a drone knows where it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Receiver {
+    /// Without corrections.
+    Gps,
+    /// Corrected by a base station.
+    Rtk,
+}
+
+impl Receiver {
+    /// Standard deviations towards east, north and up, metres.
+    fn deviations(self) -> DVec3 {
+        match self {
+            Self::Gps => DVec3::new(1.5, 1.5, 3.0),
+            Self::Rtk => DVec3::new(0.015, 0.015, 0.025),
+        }
+    }
 }
 
 /// Makes a simulated flight in `folder`, which must be new or empty.
@@ -149,8 +174,21 @@ fn fill(
     let random = Random::new(options.seed);
     let mut shots = recipe.flight.fly(&mut random.fork(20));
     shots.extend(recipe.flight.ring(options.ring, &mut random.fork(21)));
+    let scene_shots = shots.len();
+    if options.survey.is_some() {
+        if recipe.epsg.is_none() {
+            let what = "there is no receiver's position without a coordinate system";
+            let remedy = "leave --survey out, or choose a place outdoors and not --at-origin";
+            return Err(Fault::new(what, remedy));
+        }
+        shots.extend(
+            recipe
+                .flight
+                .survey(view(&recipe.camera), &mut random.fork(22)),
+        );
+    }
     let written = Written::draw(&options.errors, &shots, &random)?;
-    let scene = build_scene(recipe, &shots, &random, progress)?;
+    let scene = build_scene(recipe, &shots[..scene_shots], &random, progress)?;
     let look = look(options.preset, recipe);
 
     let (surface, name) = if options.true_mesh {
@@ -178,6 +216,12 @@ fn fill(
         write(&folder.join("distributions.csv"), text.as_bytes())?;
     }
     Ok(())
+}
+
+/// Width and height of a photo in parts of the distance.
+fn view(camera: &Camera) -> DVec2 {
+    let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+    size / DVec2::new(camera.fx, camera.fy)
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
@@ -293,8 +337,8 @@ fn write_surface(
         *point = *point * written.world_factor() + recipe.origin;
     }
     let bytes = match recipe.epsg.filter(|_| cloud.triangles.is_empty()) {
-        Some(epsg) => files::laz::laz(&cloud, epsg),
-        None => files::ply::ply(&cloud, "simulated by fragscale"),
+        Some(epsg) => exports::laz(&cloud, epsg, "simulated"),
+        None => exports::ply(&cloud, "simulated by fragscale"),
     };
     write(path, &bytes.map_err(|e| Fault::new(e, "report this"))?)
 }
@@ -313,7 +357,7 @@ fn write_texts(
     let rows = written.pose_rows(shots, recipe.origin);
     write(
         &folder.join("poses.csv"),
-        files::poses::poses_csv(&rows).map_err(report)?.as_bytes(),
+        exports::poses_csv(&rows).map_err(report)?.as_bytes(),
     )?;
     write(
         &folder.join("ost.yaml"),
@@ -455,7 +499,9 @@ fn take_photos(
         progress.advance(index as u64, shots.len() as u64)?;
         let noise = options.seed ^ ((index as u64 + 1) << 32);
         let photo = photo::take(scene, camera, &shot.pose(), look, noise, progress)?;
-        let jpeg = files::photo::jpeg(&photo.image, 82, &metadata(recipe, shot)).map_err(report)?;
+        let mut receiver = Random::new(options.seed).fork(23).fork(index as u64);
+        let metadata = metadata(recipe, shot, options.survey, &mut receiver)?;
+        let jpeg = files::photo::jpeg(&photo.image, 82, &metadata).map_err(report)?;
         write(&photos.join(&shot.name), &jpeg)?;
         if options.labels {
             let label = files::label::label_png(camera.width, camera.height, &photo.labels);
@@ -468,13 +514,19 @@ fn take_photos(
 }
 
 /// What the camera writes about a photo.
-fn metadata(recipe: &Recipe, shot: &Shot) -> PhotoMetadata {
+fn metadata(
+    recipe: &Recipe,
+    shot: &Shot,
+    receiver: Option<Receiver>,
+    random: &mut Random,
+) -> Result<PhotoMetadata, Fault> {
     let camera = &recipe.camera;
     // A one-inch-third sensor is 4.8 mm wide.
     let millimetres = camera.fx / f64::from(camera.width) * 4.8;
     let [tilt, pan] = shot.actual.1;
     let outdoors = recipe.epsg.is_some();
-    PhotoMetadata {
+    let gps = receiver.map(|receiver| received(recipe, shot, receiver, random));
+    Ok(PhotoMetadata {
         make: Some("fragscale".to_owned()),
         model: Some("simulated".to_owned()),
         date_time_original: Some("2017:01:01 12:00:00".to_owned()),
@@ -484,14 +536,34 @@ fn metadata(recipe: &Recipe, shot: &Shot) -> PhotoMetadata {
         focal_length_mm: Some(millimetres),
         // 36 mm wide film; `as` saturates.
         focal_length_35mm: Some((camera.fx / f64::from(camera.width) * 36.0).round() as u16),
-        gps: None,
+        gps: gps.transpose()?,
+        rtk: (receiver == Some(Receiver::Rtk)).then(|| Receiver::Rtk.deviations().to_array()),
         dji: outdoors.then_some(DjiGimbal {
             roll: 0.0,
             yaw: pan,
             pitch: -tilt,
             relative_altitude: shot.actual.0.z,
         }),
-    }
+    })
+}
+
+/// Where the receiver says that a photo was taken.
+fn received(
+    recipe: &Recipe,
+    shot: &Shot,
+    receiver: Receiver,
+    random: &mut Random,
+) -> Result<GpsPosition, Fault> {
+    let error = DVec3::new(random.normal(), random.normal(), random.normal());
+    let place = recipe.origin + shot.actual.0 + error * receiver.deviations();
+    let crs = Crs::understand(&format!("EPSG:{}", recipe.epsg.unwrap_or_default()))?;
+    let nowhere = || Fault::new("the sample lies off the map", "report this");
+    let place = crs.to_geographic(place).ok_or_else(nowhere)?;
+    Ok(GpsPosition {
+        latitude: place.latitude,
+        longitude: place.longitude,
+        altitude: place.height,
+    })
 }
 
 #[cfg(test)]

@@ -4,10 +4,10 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::files::poses::{Orientation, PoseRow, StatedDeviations};
 use super::flight_plan::Shot;
 use super::random::Random;
 use crate::camera::{Camera, Pose};
+use crate::exports::{Orientation, PoseRow, StatedDeviations};
 use crate::fault::Fault;
 
 /// Standard deviations of the errors of poses.

@@ -33,6 +33,7 @@ mod on_surface;
 mod overwriting;
 mod psd_compare;
 mod real_data;
+mod reconstruct;
 mod scale_maps;
 mod scale_object;
 mod scale_pair;

@@ -86,6 +86,48 @@ fn what_cannot_be_a_map_is_refused_in_a_line() {
     }
 }
 
+/// A folder that is not there is named as it was typed, before anything is computed.
+#[test]
+fn a_missing_folder_is_named() {
+    let flight = sample().to_string_lossy().into_owned();
+    let error = error_of(&["map", &flight, "-o", "no such folder/map.pdf"]);
+    assert!(
+        error.contains("there is no folder no such folder; make it"),
+        "{error}"
+    );
+    assert!(!error.contains(".part"), "{error}");
+}
+
+/// The photos stand where the relief was, within their footprints; the GeoTIFF says which it is.
+#[test]
+fn photos_are_the_ground_of_a_map() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let flight = sample().to_string_lossy().into_owned();
+    let of = |ground: &str| {
+        let tif = folder.path().join(format!("{ground}.tif"));
+        let to = tif.to_string_lossy().into_owned();
+        stdout_of(&[
+            "map", &flight, "-o", &to, "--ground", ground, "--pixel", "5mm",
+        ]);
+        let picture = image::open(&tif).expect("a TIFF").to_rgba8();
+        let bytes = fs::read(&tif).expect("bytes");
+        let mut decoder = Decoder::new(Cursor::new(&bytes)).expect("a TIFF");
+        let said = decoder
+            .get_tag_ascii_string(Tag::ImageDescription)
+            .expect("words");
+        assert!(said.contains(&format!("\"ground\":\"{ground}\"")), "{said}");
+        picture
+    };
+    let (relief, photos, plain) = (of("relief"), of("photos"), of("plain"));
+    // Nine footprints of about 0.7 m x 0.35 m on 2.8 m x 1.7 m; of another colour than the relief there.
+    let pairs = photos.pixels().zip(relief.pixels());
+    let other = pairs.filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 12));
+    let share = other.count() as f64 / relief.pixels().len() as f64;
+    assert!((0.25..0.65).contains(&share), "{share}");
+    let open = |picture: &image::RgbaImage| picture.pixels().filter(|p| p[3] == 0).count();
+    assert!(open(&plain) > 2 * open(&photos));
+}
+
 /// Of a model whose unit nobody states the page says so; a pixel of so many centimetres is none of it.
 #[test]
 fn an_unknown_unit_is_said() {

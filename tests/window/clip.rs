@@ -76,6 +76,48 @@ fn limits_are_typed_and_the_mouse_meets_what_is_left() {
     assert_eq!(desk.open().review.outcomes(), &scales);
 }
 
+/// A face follows the mouse along its axis: 40 points to the right on the screen, seen from above in parallel.
+/// A drag is one step of undo.
+#[test]
+fn a_face_is_dragged() {
+    let mut desk = Desk::new(Some(&flight("tests/windrow")));
+    desk.press(Modifiers::NONE, Key::F2);
+    desk.press(Modifiers::NONE, Key::Num5);
+    desk.press(Modifiers::NONE, Key::T);
+    desk.press(Modifiers::NONE, Key::X);
+    let before = desk.open().clip.level;
+    let face = |desk: &Desk| {
+        let level = desk.open().clip.level;
+        let middle = level.middle();
+        let face = middle.with_x(level.high.x);
+        on_screen(desk, &desk.open().looking.orbit.view(), face)
+    };
+    let handle = desk.node(Role::Slider, "Face x to").rect().center();
+    assert!((handle - face(&desk)).length() < 1.0);
+    desk.harness.drag_at(handle);
+    desk.harness.run();
+    for step in [-13.0, -29.0, -40.0] {
+        desk.harness.hover_at(handle + egui::vec2(step, 0.0));
+        desk.harness.run();
+    }
+    desk.harness.drop_at(handle + egui::vec2(-40.0, 0.0));
+    desk.settle();
+    let level = desk.open().clip.level;
+    assert!(level.high.x < before.high.x && level.low == before.low);
+    assert_eq!((level.high.y, level.high.z), (before.high.y, before.high.z));
+    assert!((face(&desk).x - handle.x + 40.0).abs() < 1.0);
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(desk.open().clip.level, before);
+    desk.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!(desk.open().clip.level, level);
+    // X again takes the window and the clipping away, and brings both back.
+    desk.press(Modifiers::NONE, Key::X);
+    assert!(!desk.open().clip.is_on && !desk.open().clip.is_open);
+    assert!(!desk.shows(Role::Slider, "Face x to"));
+    desk.press(Modifiers::NONE, Key::X);
+    assert_eq!(desk.open().clip.clipping(), Some(level));
+}
+
 #[test]
 fn the_box_goes_to_the_footprint_and_back() {
     let mut desk = Desk::new(Some(&flight("tests/windrow")));

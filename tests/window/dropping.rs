@@ -4,6 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
 use fragscale::app::Command;
 use fragscale::app::command::Asking;
 
@@ -118,6 +120,9 @@ fn a_surface_that_is_dropped_is_the_flights_surface() {
     let mut desk = Desk::new(Some(&path));
     assert!((top(&desk) - 100.0).abs() < 1e-9);
     drop_on(&mut desk, &[&other]);
+    assert!(desk.says("higher.ply") && desk.says("What is the cloud to it?"));
+    assert!((top(&desk) - 100.0).abs() < 1e-9, "nothing is taken before");
+    desk.click(Role::Button, "Use as the surface");
     // 8 m above the plane now.
     assert!((top(&desk) - 125.0).abs() < 1e-9, "{}", top(&desk));
     assert!(
@@ -133,6 +138,34 @@ fn a_surface_that_is_dropped_is_the_flights_surface() {
     assert!(!desk.open().is_changed());
     drop_on(&mut desk, &[&path]);
     assert!((top(&desk) - 125.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_cloud_beside_an_open_flight_is_what_the_engineer_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = level_flight(folder.path());
+    let other = folder.path().join("higher.ply");
+    plane(&other, 2.0);
+    let mut desk = Desk::new(Some(&path));
+    // Escape takes nothing.
+    drop_on(&mut desk, &[&other]);
+    assert!(desk.shows(Role::Button, "Use as the surface"));
+    desk.press(Modifiers::NONE, Key::Escape);
+    assert!(!desk.shows(Role::Button, "Use as the surface"));
+    assert!(!desk.open().is_changed() && desk.open().beside.is_empty());
+    // File > Open asks as well.
+    act(&mut desk, Command::Open(other.clone()));
+    desk.click(Role::Button, "Show beside the surface");
+    assert_eq!(desk.open().beside[0].path, other);
+    drop_on(&mut desk, &[&other]);
+    desk.click(Role::Button, "Use as the base of volumes");
+    let base = desk.open().pointer.second.as_ref().expect("a base");
+    assert_eq!(base.path, other);
+    assert!((top(&desk) - 100.0).abs() < 1e-9 && !desk.open().is_changed());
+    drop_on(&mut desk, &[&other]);
+    desk.click(Role::Button, "Open on its own");
+    assert!(desk.open().files.origin.is_surface_alone());
+    assert_eq!(desk.open().files.path, other);
 }
 
 #[test]

@@ -36,7 +36,7 @@ fn write_cloud(path: &Path) {
 fn open(desk: &mut Desk, cloud: &Path) {
     desk.harness
         .state_mut()
-        .apply(Command::Open(cloud.to_owned()));
+        .apply(Command::Add(cloud.to_owned()));
     let start = Instant::now();
     while desk.harness.state().state().opening_preview().is_none() {
         assert!(

@@ -5,6 +5,7 @@ use egui::{Event, Key, Modifiers, MouseWheelUnit, Pos2, Rect, Theme, vec2};
 use fragscale::app::Command;
 use fragscale::app::map::MapCommand;
 use fragscale::app::size_distributions::Page;
+use fragscale::exports::PlanGround;
 use glam::DVec2;
 
 use crate::desk::{Desk, Screen, flight};
@@ -179,11 +180,86 @@ fn the_map_is_written_in_every_format() {
         );
     }
     let jpg = folder.path().join("map.jpg");
-    let save = MapCommand::Save(jpg.clone().into());
+    let save = MapCommand::Save {
+        to: jpg.clone().into(),
+        pixel: None,
+    };
     desk.harness.state_mut().apply(Command::Map(save));
     desk.settle();
     assert!(desk.logged("a map is written as GeoTIFF, SVG, PDF or PNG"));
     assert!(!jpg.exists());
+}
+
+/// The same grounds as the command has; the file has the ground of the screen, in pixels of the size that is
+/// typed, and what is measured.
+#[test]
+fn the_ground_is_chosen_and_the_file_has_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = on_map();
+    let colourful = |desk: &Desk| {
+        let ground = desk
+            .open()
+            .map
+            .made
+            .as_ref()
+            .expect("a plan")
+            .plan
+            .ground
+            .clone();
+        let far = |pixel: &&image::Rgba<u8>| {
+            let [red, green, blue, _] = pixel.0;
+            red != green || green != blue
+        };
+        ground.pixels().filter(far).count() as f64 / ground.pixels().len() as f64
+    };
+    assert_eq!(colourful(&desk), 0.0);
+    desk.click(Role::Button, "Ground: photos");
+    assert_eq!(
+        desk.open().map.of_now().expect("made").plan.ground_kind,
+        PlanGround::Photos
+    );
+    assert!(colourful(&desk) > 0.15, "{}", colourful(&desk));
+    desk.click(Role::Button, "Export map…");
+    let path = folder.path().join("photos.tif");
+    desk.node(Role::SpinButton, "Pixel size of the map").click();
+    desk.harness.run();
+    desk.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    desk.harness.event(Event::Text("2".to_owned()));
+    desk.harness.run();
+    desk.press(Modifiers::NONE, Key::Enter);
+    desk.type_path(&path);
+    desk.click(Role::Button, "Write map");
+    // 2 cm, the unit of the window.
+    let plan = desk.open().map.made.as_ref().expect("a plan").plan.clone();
+    let wide = (plan.extent[1] - plan.extent[0]).x / 0.02;
+    let picture = image::open(&path).expect("a TIFF");
+    assert!(
+        (f64::from(picture.width()) - wide).abs() <= 2.0,
+        "{} {wide}",
+        picture.width()
+    );
+    desk.click(Role::Button, "Ground: plain");
+    assert!(plan.ground.pixels().any(|pixel| pixel.0[3] > 0));
+    let plan = desk.open().map.of_now().expect("made").plan.clone();
+    assert!(plan.ground.pixels().all(|pixel| pixel.0[3] == 0));
+}
+
+/// Coordinates stand beside the map, where they hide nothing.
+#[test]
+fn labels_of_the_grid_lie_beside_the_map() {
+    let desk = on_map();
+    let frame = place(&desk);
+    let numbers = desk.written().into_iter().filter(|text| {
+        let beside =
+            text.place.right() <= frame.left() + 0.5 && text.place.left() > frame.left() - 80.0;
+        let below = text.place.top() >= frame.bottom() - 0.5;
+        (beside || below) && text.text.parse::<f64>().is_ok()
+    });
+    assert!(numbers.count() >= 4);
+    let over = desk.written().into_iter().filter(|text| {
+        frame.shrink(1.0).contains(text.place.center()) && text.text.parse::<f64>().is_ok()
+    });
+    assert_eq!(over.count(), 0);
 }
 
 /// Looked at by people: FRAGSCALE_MAP_PICTURES=FOLDER keeps them.

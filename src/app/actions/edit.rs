@@ -10,7 +10,7 @@ actions! {
     UNDO {
         label: "Undo",
         hover: "Undo the last change: of the flight's settings and photos to export, of the points while they \
-                are picked, or of the size distributions on their page",
+                are picked, of the clipping box while its window is shown, or of the size distributions on their page",
         shortcut: keys(Modifiers::COMMAND, Key::Z),
         command: |state| {
             if state.page == Page::SizeDistributions {
@@ -19,7 +19,9 @@ actions! {
             }
             let open = state.open.as_ref()?;
             let picked = &open.pointer.picked;
-            let can = open.history.can_undo() || picked.is_on && picked.history.can_undo();
+            let can = open.history.can_undo()
+                || picked.is_on && picked.history.can_undo()
+                || open.clip.is_open && open.clip_history.can_undo();
             can.then_some(Command::Undo)
         },
     }
@@ -34,7 +36,9 @@ actions! {
             }
             let open = state.open.as_ref()?;
             let picked = &open.pointer.picked;
-            let can = open.history.can_redo() || picked.is_on && picked.history.can_redo();
+            let can = open.history.can_redo()
+                || picked.is_on && picked.history.can_redo()
+                || open.clip.is_open && open.clip_history.can_redo();
             can.then_some(Command::Redo)
         },
     }

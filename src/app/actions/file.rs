@@ -4,6 +4,7 @@ use egui::{Key, Modifiers};
 
 use super::{Action, SHIFT, keys, on_pile, with_distributions, with_flight};
 use crate::command::{Answers, Asking, Command, Dialog};
+use crate::from_photos::FromPhotosStep;
 use crate::size_distributions::DistributionCommand;
 
 actions! {
@@ -32,6 +33,12 @@ actions! {
                 Dialog::folder("Open a flight's folder").answering(Answers::Open),
             ))
         },
+    }
+    FROM_PHOTOS {
+        label: "New from photos…",
+        hover: "Make a flight from its photos alone: a cloud, and where each photo was taken",
+        shortcut: keys(Modifiers::COMMAND, Key::N),
+        command: |_| Some(Command::FromPhotos(FromPhotosStep::Ask(None))),
     }
     ADD {
         label: "Add surface or photos…",
@@ -150,6 +157,7 @@ pub const MENU: &[Option<Action>] = &[
     Some(OPEN),
     Some(OPEN_FILE),
     Some(OPEN_FOLDER),
+    Some(FROM_PHOTOS),
     Some(ADD),
     Some(ADD_LAYER),
     Some(GEOREFERENCE),

@@ -26,7 +26,7 @@ actions! {
         hover: "Show only what lies in a box: its limits, its turn, or the footprint of the selected photo. \
                 Scales never depend on it",
         shortcut: keys(Modifiers::NONE, Key::X),
-        command: |state| on_pile(state, Command::Clip(ClipStep::Window)),
+        command: |state| on_pile(state, Command::Clip(ClipStep::Toggle)),
     }
     VOLUME {
         label: "Volume inside a polygon",

@@ -14,6 +14,8 @@ pub enum Asking {
     Choose,
     /// Where the export goes.
     Export,
+    /// Which photos a new flight is made of.
+    FromPhotos,
     /// What is known of the reconstruction's place in the world.
     Georeference,
     /// Where the georeferenced flight goes.
@@ -36,6 +38,8 @@ pub enum Asking {
     SaveReport,
     /// Which cloud is drawn beside the surface.
     AddLayer,
+    /// What the cloud is to be that was dropped or opened beside a flight.
+    CloudUse,
     /// Which cloud a volume is over.
     VolumeBase,
     /// Where a table of what was measured goes.

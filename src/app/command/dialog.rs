@@ -1,5 +1,6 @@
 //! The desktop's own dialog, as data.
 
+use crate::from_photos::FolderField;
 use crate::open_flight::georeferencing::PathField;
 
 /// The desktop's own dialog for a file or folder.
@@ -33,6 +34,8 @@ pub enum Answers {
     Asking,
     /// It stands in this field of georeferencing.
     Georeference(PathField),
+    /// It stands in this field of a new flight from photos.
+    FromPhotos(FolderField),
 }
 
 impl Dialog {

@@ -16,6 +16,7 @@ pub use review_step::ReviewStep;
 pub use view_change::ViewChange;
 
 use crate::flight::{DecisionKind, FlightSettings, Limits, Verdict};
+use crate::from_photos::FromPhotosStep;
 use crate::geometry::Ray;
 use crate::linked::PointFrom;
 use crate::map::MapCommand;
@@ -69,11 +70,13 @@ pub enum Command {
     /// Takes what was dropped: size distributions, or something of a flight.
     Drop(Vec<PathBuf>),
     /// Opens what was dropped: a flight, perhaps with its surface and photos; a surface alone is for
-    /// the flight that could not be opened last, else for the one on the screen.
+    /// the flight that could not be opened last. Beside a flight on the screen it is asked what it is to be.
     DropFlight(Vec<PathBuf>),
     /// Gives the flight on the screen, or the one that could not be opened last, this surface or this
     /// folder of photos.
     Add(PathBuf),
+    /// Opens this cloud by itself, whatever flight is on the screen.
+    OpenAlone(PathBuf),
     /// Opens the bundled flight.
     OpenSample,
     /// Goes back to the start page.
@@ -108,6 +111,8 @@ pub enum Command {
         /// Whether the surface's file is in the world already.
         keep_surface: bool,
     },
+    /// A step of making a new flight from photos.
+    FromPhotos(FromPhotosStep),
     /// Opens a small window that asks for a place, or closes it.
     Ask(Option<Asking>),
     /// Opens the desktop's own dialog.

@@ -8,7 +8,13 @@ impl State {
         match command {
             MapCommand::Make => self.make_map(),
             MapCommand::Draw(part) => self.draw_map(part),
-            MapCommand::Save(to) => self.save_map(to),
+            MapCommand::Ground(ground) => {
+                if let Some(open) = &mut self.open {
+                    open.map.ground = ground;
+                    open.map.refused = None;
+                }
+            }
+            MapCommand::Save { to, pixel } => self.save_map(to, pixel),
             MapCommand::Fit => self.look_at_map(|_, _| MapLooking::default()),
             MapCommand::Zoom {
                 cursor,

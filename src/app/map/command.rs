@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::part::PartInSight;
 use crate::command::Destination;
+use crate::exports::PlanGround;
 
 /// One thing to do on the page of the map.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +31,13 @@ pub enum MapCommand {
     },
     /// All of it is seen.
     Fit,
+    /// Its ground.
+    Ground(PlanGround),
     /// Writes it: GeoTIFF, SVG, PDF or PNG, by the name's ending.
-    Save(Destination),
+    Save {
+        /// Where to.
+        to: Destination,
+        /// The side of a pixel of the ground, world units; `None` as on the screen.
+        pixel: Option<f64>,
+    },
 }

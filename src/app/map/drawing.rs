@@ -2,7 +2,7 @@
 //! photos.
 
 use super::part::{DrawnPart, LONGEST, PartInSight};
-use crate::exports::{PlanInks, lit};
+use crate::exports::{GroundOf, PlanGround, PlanInks, ground};
 use crate::jobs::Progress;
 use crate::state::{Severity, State};
 use crate::surface::MapRaster;
@@ -23,7 +23,11 @@ impl State {
         let Some(made) = made else {
             return;
         };
-        let (plan, surface) = (made.plan.clone(), made.surface.clone());
+        let plan = made.plan.clone();
+        let review = self.open.as_ref().map(|open| open.review.clone());
+        let Some(review) = review else {
+            return;
+        };
         let context = self.context.clone();
         let work = move |progress: &Progress| {
             progress.stage("drawing the map");
@@ -42,7 +46,9 @@ impl State {
             let photos = texture("photos of the map", &picture);
             // A pixel of the screen, world units.
             let pixel = 1.0 / (part.scale * part.pixels);
-            let ground = if plan.raster.pixel > COARSE * pixel {
+            // Photos are not read anew at every step of the wheel.
+            let is_relief = plan.ground_kind == PlanGround::Relief;
+            let ground = if is_relief && plan.raster.pixel > COARSE * pixel {
                 let ([min, max], whole) = (frame.bounds(), plan.raster.bounds());
                 let seen = [min.max(whole[0]), max.min(whole[1])];
                 let raster = seen[0].cmplt(seen[1]).all().then(|| {
@@ -51,7 +57,13 @@ impl State {
                 });
                 match raster.transpose()? {
                     Some(raster) => {
-                        let picture = lit(&surface, &raster, plan.light, progress)?;
+                        let of = GroundOf {
+                            review: &review,
+                            photos: &|_| None,
+                            kind: plan.ground_kind,
+                            light: plan.light,
+                        };
+                        let (picture, _) = ground(&of, &raster, progress)?;
                         Some((texture("ground of the map", &picture), raster.bounds()))
                     }
                     None => None,

@@ -6,6 +6,8 @@ use super::{MadePlan, PhotosAt};
 use crate::exports::{Plan, PlanRequest};
 use crate::fault::Fault;
 use crate::jobs::Progress;
+use crate::opening::PhotoFile;
+use crate::picture::reduced_size;
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 
@@ -14,32 +16,55 @@ impl Task {
     pub const MAP: Self = Self::new("Map").of_flight().to_the_end();
 }
 
+/// The pixels of a photo as shot, from its file.
+pub(super) fn pixels_of(
+    files: &[PhotoFile],
+    photo: usize,
+) -> Option<Result<image::RgbImage, Fault>> {
+    let pixels = files.get(photo)?.pixels()?;
+    Some(pixels.map_err(|error| error.fault))
+}
+
+/// A picture as the graphics device takes it: no side longer than its textures can be.
+fn on_screen(picture: &image::RgbaImage, context: &egui::Context) -> egui::ColorImage {
+    let most = context.input(|input| input.max_texture_side) as u32;
+    let (width, height) = reduced_size(picture.width(), picture.height(), most);
+    let small = ((width, height) != picture.dimensions()).then(|| {
+        let filter = image::imageops::FilterType::Triangle;
+        image::imageops::resize(picture, width, height, filter)
+    });
+    let picture = small.as_ref().unwrap_or(picture);
+    egui::ColorImage::from_rgba_unmultiplied([width as usize, height as usize], picture.as_raw())
+}
+
 impl State {
     /// Makes the plan of the review as it is now; its ground only where the surface is another one.
     pub(super) fn make_map(&mut self) {
         let Some(open) = &mut self.open else {
             return;
         };
-        let revision = open.map.revision;
+        let (revision, kind) = (open.map.revision, open.map.ground);
         let before = open.map.made.as_ref().map(|made| {
-            let same = Arc::ptr_eq(&made.surface, &open.review.flight().parts().surface);
+            let surface = &open.review.flight().parts().surface;
+            let same = Arc::ptr_eq(&made.surface, surface) && made.plan.ground_kind == kind;
             (same.then(|| made.plan.clone()), made.ground.clone())
         });
         let (review, crs) = (open.review.clone(), open.files.crs.clone());
+        let files = open.files.photo_files.clone();
         let context = self.context.clone();
         let work = move |progress: &Progress| {
             let request = PlanRequest {
                 crs: crs.as_deref(),
+                ground: kind,
                 ..PlanRequest::default()
             };
+            let pixels = |photo: usize| pixels_of(&files, photo);
             let kept = before.and_then(|(plan, ground)| Some((plan?, ground)));
             let (plan, ground) = match kept {
                 Some((plan, ground)) => (plan.with_photos_of(&review), ground),
                 None => {
-                    let plan = Plan::new(&review, request, progress)?;
-                    let size = [plan.ground.width() as usize, plan.ground.height() as usize];
-                    let pixels =
-                        egui::ColorImage::from_rgba_unmultiplied(size, plan.ground.as_raw());
+                    let plan = Plan::new(&review, request, &pixels, progress)?;
+                    let pixels = on_screen(&plan.ground, &context);
                     let options = egui::TextureOptions::LINEAR;
                     let ground = context.load_texture("ground of the map", pixels, options);
                     (plan, ground)
@@ -55,7 +80,13 @@ impl State {
         };
         self.start(Task::MAP, work, |state, made: Result<MadePlan, Fault>| {
             match (made, &mut state.open) {
-                (Ok(made), Some(open)) => open.map.made = Some(made),
+                (Ok(made), Some(open)) => {
+                    let warnings = made.plan.warnings.clone();
+                    open.map.made = Some(made);
+                    for warning in &warnings {
+                        state.say(Severity::Warning, warning);
+                    }
+                }
                 (Ok(_), None) => {}
                 (Err(fault), open) => {
                     // Not tried again before something changes.

@@ -28,7 +28,7 @@ pub use command::MapCommand;
 pub use found::PhotosAt;
 pub use part::{DrawnPart, PartInSight};
 
-use crate::exports::Plan;
+use crate::exports::{Plan, PlanGround};
 use crate::surface::Surface;
 
 /// The map of a flight.
@@ -38,6 +38,8 @@ pub struct FlightMap {
     pub revision: u64,
     /// The plan, once it was made.
     pub made: Option<MadePlan>,
+    /// What lies under it.
+    pub ground: PlanGround,
     /// Where one looks.
     pub looking: MapLooking,
     /// What of it was drawn last.
@@ -60,6 +62,15 @@ pub struct MadePlan {
     pub ground: egui::TextureHandle,
     /// What the ground is of.
     pub surface: Arc<Surface>,
+}
+
+impl FlightMap {
+    /// The plan, if it is of the review and with the ground of now.
+    pub fn of_now(&self) -> Option<&MadePlan> {
+        let made = self.made.as_ref()?;
+        let is_of_now = made.revision == self.revision && made.plan.ground_kind == self.ground;
+        is_of_now.then_some(made)
+    }
 }
 
 /// Which part of the plan is in sight.

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use crate::command::Asking;
 use crate::fault::Fault;
 use crate::flight::{FlightSettings, Outcome};
-use crate::formats::{Candidate, FileError, Kind, detect};
+use crate::formats::{Candidate, FileError, Kind, Package, detect};
 use crate::geometry::Bounds;
 use crate::jobs::Progress;
 use crate::opening::{self, Dropped, OnSample, OpenOptions, Opened};
@@ -41,6 +41,8 @@ pub struct NotOpened {
     pub asks: Option<Asking>,
     /// Which flights a folder holds of which none was named.
     pub choices: Vec<Candidate>,
+    /// The folder of photos that was named as a flight: they can be reconstructed.
+    pub photos: Option<PathBuf>,
     /// What was tried, if a flight was named: its surface or its photos may be named next.
     pub tried: Option<(PathBuf, OpenOptions)>,
 }
@@ -57,6 +59,7 @@ pub(crate) fn named(
             why,
             asks: None,
             choices: Vec::new(),
+            photos: None,
             tried: None,
         })
     };
@@ -111,8 +114,13 @@ pub(crate) fn named(
 }
 
 /// Whether this is a cloud or mesh.
-fn is_cloud(path: &Path) -> bool {
+pub(crate) fn is_cloud(path: &Path) -> bool {
     matches!(detect(path), Ok(Kind::Cloud(_)))
+}
+
+fn is_folder_of_photos(path: &Path) -> bool {
+    let of_photos = |kind| matches!(kind, Kind::Reconstruction(Package::Photos, _));
+    path.is_dir() && detect(path).is_ok_and(of_photos)
 }
 
 /// Reads a flight and computes its scales; `again` for the open flight of this number, with these
@@ -132,6 +140,7 @@ pub(crate) fn load(
             asks: error.fault.lacks.map(|_| Asking::Add),
             choices: Vec::new(),
             why: error.to_string(),
+            photos: is_folder_of_photos(&path).then(|| path.clone()),
             tried: Some((path.clone(), options.clone())),
         })
     };

@@ -26,7 +26,7 @@ use crate::exports::PhotoLine;
 use crate::flight::{
     Along, ColoursFound, Flight, FlightSettings, Limits, LookedUp, Outcome, Review,
 };
-use crate::geometry::{Bounds, LocalFrame};
+use crate::geometry::{Bounds, LevelBox, LocalFrame};
 use crate::linked::{LinkedPoint, PointFrom};
 use crate::map::FlightMap;
 use crate::opening::{Colours, HealthFinding, StatedOfFlight, flight_health};
@@ -176,6 +176,8 @@ pub struct OpenFlight {
     pub beside: Vec<Beside>,
     /// The clipping box.
     pub clip: Clip,
+    /// Its limits of now, with those before: undo goes back over them while its small window is shown.
+    pub clip_history: History<LevelBox>,
     /// What the surface's colours mean.
     pub colors: Colors,
     /// What the viewport draws.
@@ -242,6 +244,7 @@ impl OpenFlight {
             tints: 0,
             beside: Vec::new(),
             clip: Clip::around(&bulk_bounds),
+            clip_history: History::new(Clip::around(&bulk_bounds).level),
             colors: Colors::default(),
             geometry: None,
             line: Arc::default(),

@@ -1,6 +1,7 @@
 //! The log, which keeps every warning, and the last error over the viewport.
 
-use crate::command::Command;
+use crate::command::{Asking, Command};
+use crate::from_photos::FromPhotosStep;
 use crate::names;
 use crate::state::{LogLine, Severity, State};
 
@@ -68,5 +69,23 @@ pub fn notice(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
                 let text = egui::RichText::new(&line.text).color(ui.visuals().error_fg_color);
                 ui.add(egui::Label::new(text).wrap());
             });
+            // The small window that asks for a surface has it, too.
+            if state.asking != Some(Asking::Add) {
+                reconstruct_offer(state, ui, commands);
+            }
         });
+}
+
+/// Photos that could not be opened as a flight can be reconstructed: a button for that.
+pub(super) fn reconstruct_offer(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(photos) = &state.from_photos.offered else {
+        return;
+    };
+    let button = ui.button("Reconstruct…");
+    let hover =
+        "Find from the photos themselves where they were taken, with a cloud of what they show";
+    if button.on_hover_text(hover).clicked() {
+        let step = FromPhotosStep::Ask(Some(photos.clone()));
+        commands.push(Command::FromPhotos(step));
+    }
 }

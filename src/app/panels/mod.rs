@@ -30,6 +30,7 @@ pub use dialogs::ask;
 pub use health::health;
 pub use inspector::Inspector;
 pub use layers::layers_panel;
+use log_panel::reconstruct_offer;
 pub use log_panel::{log_panel, notice};
 pub use map::map;
 pub use menu_bar::menu_bar;

@@ -3,6 +3,7 @@
 use super::menu_bar::{RECENT_WIDTH, short};
 use crate::actions;
 use crate::command::{Asking, Command};
+use crate::from_photos::FromPhotosStep;
 use crate::names;
 use crate::size_distributions::Page;
 use crate::state::State;
@@ -33,6 +34,15 @@ pub fn start_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
             });
             if open.on_hover_text(actions::file::OPEN.hover).clicked() {
                 commands.push(Command::Ask(Some(Asking::Open)));
+            }
+            ui.add_space(4.0);
+            let new = ui.add(big(actions::file::FROM_PHOTOS.label));
+            new.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, true, "New flight from photos")
+            });
+            let new = new.on_hover_text(actions::file::FROM_PHOTOS.hover);
+            if new.clicked() {
+                commands.push(Command::FromPhotos(FromPhotosStep::Ask(None)));
             }
             ui.add_space(4.0);
             let sizes = ui.add(big("Size distributions"));

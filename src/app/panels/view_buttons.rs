@@ -7,10 +7,18 @@ use crate::open_flight::survey::SurveyTool;
 use crate::photo_view::Middle;
 use crate::state::State;
 
+/// A viewport that is narrower, points, has signs in place of the longer words, so that the row does not fill it.
+const NARROW: f32 = 640.0;
+
 /// Draws the buttons.
 pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let Some(open) = &state.open else {
         return;
+    };
+    let is_narrow = ui.available_width() < NARROW;
+    let text = |words: &'static str, sign: &'static str| match is_narrow {
+        true => sign,
+        false => words,
     };
     let mut button = |action: Action, text: &str, on: bool, ui: &mut egui::Ui| {
         let command = (action.command)(state);
@@ -36,27 +44,32 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     button(actions::view::TOP, "Top", false, ui);
     button(actions::view::FRONT, "Front", false, ui);
     button(actions::view::SIDE, "Side", false, ui);
-    button(actions::view::THROUGH, "Through camera", through, ui);
+    button(
+        actions::view::THROUGH,
+        text("Through camera", "📷"),
+        through,
+        ui,
+    );
     let middle = state.middle;
     let photo = actions::view::PHOTO_ALONE;
-    button(photo, "Photo", middle == Middle::Photo, ui);
+    button(photo, text("Photo", "🖼"), middle == Middle::Photo, ui);
     let both = actions::view::PHOTO_BESIDE;
-    button(both, "Photo beside", middle == Middle::Both, ui);
+    button(both, text("Photo beside", "🗗"), middle == Middle::Both, ui);
     button(
         actions::photo::MEASURE,
-        "Measure",
+        text("Measure", "📏"),
         open.pointer.measure != Measure::Off,
         ui,
     );
     let points = open.pointer.picked.is_on;
-    button(actions::survey::POINTS, "Points", points, ui);
+    button(actions::survey::POINTS, text("Points", "📍"), points, ui);
     let drawn = open.pointer.drawn.as_ref().map(|drawn| drawn.tool);
     let profile = drawn == Some(SurveyTool::Profile);
-    button(actions::survey::PROFILE, "Profile", profile, ui);
+    button(actions::survey::PROFILE, text("Profile", "📈"), profile, ui);
     let volume = drawn == Some(SurveyTool::Volume);
-    button(actions::survey::VOLUME, "Volume", volume, ui);
+    button(actions::survey::VOLUME, text("Volume", "🗻"), volume, ui);
     let clip = open.clip.is_on || open.clip.is_open;
-    button(actions::survey::CLIP, "Clip", clip, ui);
+    button(actions::survey::CLIP, text("Clip", "✂"), clip, ui);
 }
 
 /// How much of the photo lies over a look through its camera.

@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use crate::command::{Asking, Command, PictureRequest, Tab};
 use crate::fault::one_line;
 use crate::formats::Candidate;
+use crate::from_photos::FromPhotos;
 use crate::open_flight::OpenFlight;
 use crate::opening::OpenOptions;
 use crate::opening_preview::OpeningPreview;
@@ -57,6 +58,17 @@ pub enum HeldBack {
     },
 }
 
+/// How something was named that is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Named {
+    /// To be opened; a surface alone is for the flight that could not be opened last, or that is on the screen.
+    ToOpen,
+    /// As the surface or the photos of the flight on the screen.
+    Added,
+    /// A cloud, to be looked at by itself.
+    Alone,
+}
+
 /// What the flight on the screen is left for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Leaving {
@@ -64,8 +76,8 @@ pub enum Leaving {
     Read {
         /// What was named.
         paths: Vec<PathBuf>,
-        /// Whether it is a surface or photos for the flight on the screen.
-        added: bool,
+        /// How.
+        named: Named,
     },
     /// The bundled flight.
     Sample,
@@ -111,8 +123,12 @@ pub struct State {
     pub may_quit: bool,
     /// The flight that could not be opened last, with what was named beside it.
     pub tried: Option<(PathBuf, OpenOptions)>,
+    /// What the small window for a new flight from photos holds.
+    pub from_photos: FromPhotos,
     /// The flights of the folder that was named last, to choose from.
     pub choices: Vec<Candidate>,
+    /// The cloud that was dropped or opened beside the flight on the screen: it is asked what it is to be.
+    pub cloud: Option<PathBuf>,
     /// Whether the flight that is being read is another one than that on the screen.
     pub reads_other: bool,
     /// A first look at the surface that is being read.
@@ -144,7 +160,9 @@ impl State {
             after_saving: None,
             may_quit: false,
             tried: None,
+            from_photos: FromPhotos::default(),
             choices: Vec::new(),
+            cloud: None,
             reads_other: false,
             preview: None,
             opened: 0,
@@ -162,6 +180,8 @@ impl State {
         };
         if severity == Severity::Error {
             self.notice = Some(line.clone());
+            // Offered beside another error.
+            self.from_photos.offered = None;
         }
         if self.log.len() == LOG_LINES {
             self.log.remove(0);

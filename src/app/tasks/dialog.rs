@@ -43,6 +43,7 @@ impl State {
         match answers {
             Answers::Open => self.apply(Command::Open(path)),
             Answers::Asking => self.answered = Some(path),
+            Answers::FromPhotos(field) => self.take_folder_of_photos(field, path),
             Answers::Georeference(field) => {
                 if let Some(open) = &self.open {
                     let mut form = open.georeferencing.form.clone();

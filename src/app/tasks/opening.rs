@@ -7,27 +7,32 @@ use crate::command::Asking;
 use crate::flight::FlightSettings;
 use crate::jobs::Progress;
 use crate::open_flight::OpenFlight;
-use crate::open_flight::loading::{Loaded, NotOpened, load, named};
+use crate::open_flight::loading::{Loaded, NotOpened, is_cloud, load, named};
 use crate::open_flight::picker::Picker;
 use crate::open_flight::survey::surveyor::Surveyor;
 use crate::opening::SurfaceSample;
 use crate::opening_preview::OpeningPreview;
-use crate::state::{Severity, State};
+use crate::state::{Leaving, Named, Severity, State};
 
 impl Task {
     /// Reading a flight.
     pub const OPEN: Self = Self::new("Opening");
+    /// Looking whether a file is a cloud, which can be several things to the flight on the screen.
+    pub const LOOK: Self = Self::new("Looking at the file").of_flight();
 }
 
 impl State {
     /// Reads what was named and computes its scales. A surface alone is for the flight that could not
-    /// be opened last, else for the one on the screen; photos alone are, too, if they are to be
-    /// `added`, else a flight of their own.
-    pub fn start_opening(&mut self, paths: Vec<PathBuf>, added: bool) {
+    /// be opened last, else for the one on the screen, unless it is to be looked at [`Named::Alone`]; photos
+    /// alone are, too, if they are [`Named::Added`], else a flight of their own.
+    pub fn start_opening(&mut self, paths: Vec<PathBuf>, how: Named) {
         let on_screen = self.open.as_ref();
         let base = on_screen.map(|open| (open.files.path.clone(), open.files.options.clone()));
         let base = self.tried.clone().or(base);
+        let base = base.filter(|_| how != Named::Alone);
+        let added = how == Named::Added;
         self.notice = None;
+        self.from_photos.offered = None;
         self.reads_other = true;
         let (steps, gpu) = (self.work.steps_of_a_job(), self.gpu.clone());
         let work = move |progress: &Progress| {
@@ -46,6 +51,35 @@ impl State {
                 .and_then(|(path, options)| load(path, options, None, Some(&on_sample), progress))
         };
         self.start(Task::OPEN, work, Self::take_opened);
+    }
+
+    /// Opens what was named; a cloud alone can be several things to the flight on the screen, so it is asked
+    /// which.
+    pub(crate) fn open_or_ask(&mut self, paths: Vec<PathBuf>) {
+        let read = |paths| Leaving::Read {
+            paths,
+            named: Named::ToOpen,
+        };
+        let is_flight = |open: &OpenFlight| !open.files.origin.is_surface_alone();
+        let is_on_screen = self.open.as_deref().is_some_and(is_flight) && self.tried.is_none();
+        let alone = match paths.as_slice() {
+            [path] if is_on_screen && path.is_file() => path.clone(),
+            _ => return self.leave(read(paths)),
+        };
+        // Its bytes say what it is.
+        let work = move |progress: &Progress| {
+            progress.stage("looking what it is");
+            let is_cloud = is_cloud(&alone);
+            (alone, is_cloud)
+        };
+        self.start(Task::LOOK, work, move |state, (path, is_cloud)| {
+            if is_cloud {
+                state.cloud = Some(path);
+                state.ask(Some(Asking::CloudUse));
+            } else {
+                state.leave(read(vec![path]));
+            }
+        });
     }
 
     /// Reads the flight on the screen once more, with other settings.
@@ -69,6 +103,7 @@ impl State {
                     why,
                     asks,
                     choices,
+                    photos,
                     tried,
                 } = *not_opened;
                 if !choices.is_empty() {
@@ -78,6 +113,7 @@ impl State {
                     return;
                 }
                 self.say(Severity::Error, &why);
+                self.from_photos.offered = photos;
                 // A wrong surface does not make forget the flight that it was for.
                 self.tried = tried.or_else(|| self.tried.take());
                 self.take_back_settings();
@@ -203,6 +239,7 @@ impl OpenFlight {
         std::mem::swap(&mut self.pointer.picked, &mut before.pointer.picked);
         self.colors.keep_limits(&before.colors);
         self.clip = before.clip;
+        std::mem::swap(&mut self.clip_history, &mut before.clip_history);
         std::mem::swap(&mut self.beside, &mut before.beside);
         for beside in &mut self.beside {
             // The local frame may be another one.

@@ -3,6 +3,7 @@
 //! The picture is drawn into a texture of its own, and only when something of it has changed; every
 //! other frame of the window shows the same texture again.
 
+mod clip_handles;
 mod crops;
 mod drawn;
 mod graphics;
@@ -22,6 +23,7 @@ use crate::panels::linked;
 use crate::render::{Background, Gpu, Renderer, Show, View};
 use crate::state::State;
 use crate::tasks::Task;
+use clip_handles::clip_handles;
 use drawn::{show_drawn, show_picked};
 use graphics::{Graphics, Uploaded};
 use mouse::mouse;
@@ -125,6 +127,7 @@ impl Viewport {
                 legend(&scene, graphics.renderer.legend(&show).as_ref(), ui);
             }
         }
+        clip_handles(open, &scene, ui, commands);
         point(state, open, &scene, ui, &response, commands);
         if open.geometry.is_none() && state.work.is_running(Task::GEOMETRY) {
             let text = "Preparing the surface…";

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::length::Length;
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::outputs::{Force, Outputs};
 use crate::cli::{Answer, OutputUnit};
-use crate::exports::{Plan, PlanFormat, PlanRequest, taken_in_words};
+use crate::exports::{Plan, PlanFormat, PlanGround, PlanRequest, taken_in_words};
 use crate::fault::Fault;
 use crate::files::Kind;
 use crate::flight::{Limits, Review};
@@ -31,8 +31,32 @@ pub(in crate::cli) struct MapArguments {
     /// side.
     #[arg(long, value_name = "LENGTH")]
     pixel: Option<Length>,
+    /// What lies under it: the surface's relief, the flight's photos from above, the colours of the cloud's own
+    /// points, or nothing.
+    #[arg(long, value_enum, default_value = "relief")]
+    ground: GroundName,
     #[command(flatten)]
     force: Force,
+}
+
+/// What `--ground` takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum GroundName {
+    Relief,
+    Photos,
+    Colours,
+    Plain,
+}
+
+impl From<GroundName> for PlanGround {
+    fn from(name: GroundName) -> Self {
+        match name {
+            GroundName::Relief => Self::Relief,
+            GroundName::Photos => Self::Photos,
+            GroundName::Colours => Self::Colours,
+            GroundName::Plain => Self::Plain,
+        }
+    }
 }
 
 pub(in crate::cli) fn map(arguments: &MapArguments, progress: &Progress) -> Result<Answer, String> {
@@ -67,15 +91,22 @@ pub(in crate::cli) fn map(arguments: &MapArguments, progress: &Progress) -> Resu
     let taken = taken_in_words(times.iter().map(String::as_str));
     let request = PlanRequest {
         pixel: arguments.pixel.map(|pixel| pixel.in_units_of(parts.unit)),
+        ground: arguments.ground.into(),
         crs: opened.crs.as_deref(),
         taken: taken.as_deref(),
     };
-    let plan = Plan::new(&review, request, progress).map_err(in_flight)?;
+    let pixels = |photo: usize| {
+        let pixels = opened.photo_files.get(photo)?.pixels()?;
+        Some(pixels.map_err(|error| error.fault))
+    };
+    let plan = Plan::new(&review, request, &pixels, progress).map_err(in_flight)?;
     progress.stage("drawing the map");
     let bytes = format
         .bytes(&plan, arguments.unit.into())
         .map_err(at_output)?;
     outputs.write(output, &bytes, Kind::Result)?;
     let text = format!("{}: {}\n", output.display(), format.words(&plan));
-    Ok(Answer::new(text, opened.all_warnings()))
+    let mut warnings = opened.all_warnings();
+    warnings.extend(plan.warnings);
+    Ok(Answer::new(text, warnings))
 }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-use super::{Grid, MapFrame, Plan, PlanInks, photos};
+use super::{Grid, MapFrame, Plan, PlanGround, PlanInks, photos};
 use crate::drawing::{Dash, Pen, png};
 use crate::fault::Fault;
 use crate::geodesy::Crs;
@@ -40,10 +40,13 @@ struct Description<'a> {
     world_unit: Option<&'static str>,
     /// "EPSG:n" or WKT; null where nobody says it.
     crs: Option<&'a str>,
-    definition: &'static str,
+    /// "relief", "photos", "colours" or "plain".
+    ground: &'static str,
+    definition: String,
 }
 
-const DEFINITION: &str = "the surface's hillshade from straight above, with the footprints of the photos in the colours of their verdicts, their names, their middles and the cameras; transparent where there is no surface";
+/// What the picture is of, after its ground.
+const DEFINITION: &str = "from straight above, with the footprints of the photos in the colours of their verdicts, their names, their middles and the cameras; transparent where there is no surface";
 
 /// The file's bytes.
 ///
@@ -80,7 +83,8 @@ pub(super) fn bytes(plan: &Plan) -> Result<Vec<u8>, Fault> {
         pixel: raster.pixel,
         world_unit: plan.unit_known.then(|| plan.unit.symbol()),
         crs: plan.crs.as_deref(),
-        definition: DEFINITION,
+        ground: plan.ground_kind.name(),
+        definition: format!("{} {DEFINITION}", of_ground(plan.ground_kind)),
     };
     let page = Page {
         width: raster.columns,
@@ -92,6 +96,15 @@ pub(super) fn bytes(plan: &Plan) -> Result<Vec<u8>, Fault> {
         georeference: Some(georeference(plan)),
     };
     tiff_of(std::iter::once(Ok(page)))
+}
+
+fn of_ground(ground: PlanGround) -> &'static str {
+    match ground {
+        PlanGround::Relief => "the surface's hillshade",
+        PlanGround::Photos => "the photos laid over the surface",
+        PlanGround::Colours => "the colours of the surface's points",
+        PlanGround::Plain => "the flight",
+    }
 }
 
 fn georeference(plan: &Plan) -> GeoTags {

@@ -5,6 +5,7 @@
 //! ```text
 //! extent    what a plan holds
 //! frame     which part of the map is drawn where
+//! ground    what lies under everything: hillshade, photos, colours, nothing
 //! grid      lines at round coordinates
 //! inks      colours and dashes of verdicts
 //! clip      outlines within a frame
@@ -22,6 +23,7 @@ mod format;
 mod frame;
 mod geotiff;
 mod grid;
+mod ground;
 mod inks;
 mod page;
 mod photos;
@@ -31,11 +33,12 @@ mod tests;
 use std::sync::Arc;
 
 use glam::DVec2;
-use image::{Rgba, RgbaImage};
+use image::RgbaImage;
 
 pub use format::PlanFormat;
 pub use frame::MapFrame;
 pub use grid::{Grid, GridLine};
+pub use ground::{GroundOf, PhotoPixels, PlanGround, ground};
 pub use inks::PlanInks;
 
 use crate::fault::Fault;
@@ -43,8 +46,8 @@ use crate::flight::{Date, Review, Verdict};
 use crate::geodesy::{Crs, CrsKind, is_stated};
 use crate::jobs::Progress;
 use crate::numbers::{round_down, round_near};
-use crate::surface::{Light, MapRaster, Surface, hillshade};
-use crate::units::LengthUnit;
+use crate::surface::{Light, MapRaster};
+use crate::units::{LengthUnit, round_length_in_words};
 
 /// The most pixels of the ground: 160 MB of colours, and twice as much of heights.
 pub const MOST_MAP_PIXELS: u64 = 40_000_000;
@@ -52,15 +55,17 @@ pub const MOST_MAP_PIXELS: u64 = 40_000_000;
 /// About how many pixels the longer side of the ground has if nobody says.
 const SIDE: f64 = 1300.0;
 
-/// Grey of the ground where no light falls on it, and what full light adds.
-const DARKEST: f64 = 60.0;
-const LIGHT: f64 = 190.0;
+/// What lengths are in where nobody knows it.
+const UNKNOWN_UNIT: &str = "units of the file";
 
 /// What is not in the review, or can be chosen.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PlanRequest<'a> {
-    /// The side of a pixel of the ground, world units; `None` for about 1300 of them along the longer side.
+    /// The side of a pixel of the ground, world units; `None` for about 1300 of them along the longer side, twice
+    /// as many of photos.
     pub pixel: Option<f64>,
+    /// What the ground is.
+    pub ground: PlanGround,
     /// The coordinate system of the world: "EPSG:n" or WKT.
     pub crs: Option<&'a str>,
     /// When the photos were taken, in words, where they say it.
@@ -96,12 +101,27 @@ pub struct Plan {
     pub extent: [DVec2; 2],
     /// Where the ground's pixels lie.
     pub raster: MapRaster,
-    /// The hillshade, grey, transparent where there is no surface.
+    /// The ground, transparent where there is no surface.
     pub ground: Arc<RgbaImage>,
+    /// What it is.
+    pub ground_kind: PlanGround,
+    /// Which photos should be on the ground and are not, and why.
+    pub warnings: Vec<String>,
     /// The light on it.
     pub light: Light,
     /// In the order of the flight.
     pub photos: Vec<PlanPhoto>,
+    /// Lines and polygons that were measured.
+    pub measured: Vec<MeasuredOutline>,
+}
+
+/// What was measured on the surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredOutline {
+    /// Its corners, in their order.
+    pub points: Vec<DVec2>,
+    /// Whether it is a polygon, whose last corner is joined to the first; else a line.
+    pub is_polygon: bool,
 }
 
 /// A scale bar.
@@ -109,8 +129,8 @@ pub struct Plan {
 pub struct PlanBar {
     /// In its unit.
     pub length: f64,
-    /// Of that unit.
-    pub symbol: &'static str,
+    /// That unit; `None` where nobody knows the world's.
+    pub unit: Option<LengthUnit>,
     /// Units of the drawing.
     pub long: f64,
 }
@@ -118,7 +138,10 @@ pub struct PlanBar {
 impl PlanBar {
     /// What is written at it.
     pub fn words(&self) -> String {
-        format!("{} {}", self.length, self.symbol)
+        match self.unit {
+            Some(unit) => round_length_in_words(self.length, unit),
+            None => format!("{} {UNKNOWN_UNIT}", self.length),
+        }
     }
 }
 
@@ -138,27 +161,42 @@ pub struct PlanPhoto {
 }
 
 impl Plan {
-    /// The plan of a reviewed flight; footprints are on it once the review has looked at them.
+    /// The plan of a reviewed flight; footprints are on it once the review has looked at them. `photos` reads the
+    /// photos' pixels, for a ground of photos.
     ///
     /// # Errors
-    /// Where the surface cannot be triangulated, the ground would have more than [`MOST_MAP_PIXELS`], or the
-    /// work was cancelled.
+    /// Where the surface cannot be triangulated, the ground would have more than [`MOST_MAP_PIXELS`], there is
+    /// nothing that the ground is asked to be of, or the work was cancelled.
     pub fn new(
         review: &Review,
         request: PlanRequest<'_>,
+        photos: PhotoPixels<'_>,
         progress: &Progress,
     ) -> Result<Self, Fault> {
         let parts = review.flight().parts();
-        let photos = Self::photos_of(review);
-        let extent = extent::of(&parts.surface.bulk_bounds(), &photos);
+        let plan_photos = Self::photos_of(review);
+        let extent = extent::of(&parts.surface.bulk_bounds(), &plan_photos);
         let longest = (extent[1] - extent[0]).max_element();
         let pixel = match request.pixel {
             Some(pixel) => pixel,
-            None => round_near(longest / SIDE).unwrap_or(1.0),
+            None => {
+                let finer = if request.ground == PlanGround::Photos {
+                    2.0
+                } else {
+                    1.0
+                };
+                round_near(longest / SIDE / finer).unwrap_or(1.0)
+            }
         };
         let raster = MapRaster::over(extent, pixel, MOST_MAP_PIXELS)?;
         let light = Light::default();
-        let ground = lit(&parts.surface, &raster, light, progress)?;
+        let of = GroundOf {
+            review,
+            photos,
+            kind: request.ground,
+            light,
+        };
+        let (ground, warnings) = ground(&of, &raster, progress)?;
         Ok(Self {
             flight: parts.name.clone(),
             crs: request.crs.filter(|crs| is_stated(crs)).map(str::to_owned),
@@ -168,8 +206,11 @@ impl Plan {
             extent,
             raster,
             ground: Arc::new(ground),
+            ground_kind: request.ground,
+            warnings,
             light,
-            photos,
+            photos: plan_photos,
+            measured: Vec::new(),
         })
     }
 
@@ -231,21 +272,19 @@ impl Plan {
     pub fn unit_of_lengths(&self) -> &'static str {
         match self.unit_known {
             true => self.unit.symbol(),
-            false => "units of the file",
+            false => UNKNOWN_UNIT,
         }
     }
 
     /// A bar of a round length in `unit`, at most `longest` units of the drawing, where `scale` of them are a
     /// unit of the world. Where nobody knows the world's unit, the bar is in that.
     pub fn bar(&self, scale: f64, longest: f64, unit: LengthUnit) -> Option<PlanBar> {
-        let (one, symbol) = match self.unit_known {
-            true => (unit.in_units_of(self.unit), unit.symbol()),
-            false => (1.0, self.unit_of_lengths()),
-        };
+        let unit = self.unit_known.then_some(unit);
+        let one = unit.map_or(1.0, |unit| unit.in_units_of(self.unit));
         let length = round_down(longest / (scale * one))?;
         Some(PlanBar {
             length,
-            symbol,
+            unit,
             long: length * one * scale,
         })
     }
@@ -262,29 +301,4 @@ impl Plan {
         crate::drawing::png::draw_all(&mut picture, &pen.shapes, pixels);
         picture
     }
-}
-
-/// The hillshade of a surface on a raster.
-///
-/// # Errors
-/// Where the surface cannot be triangulated, or the work was cancelled.
-pub fn lit(
-    surface: &Surface,
-    raster: &MapRaster,
-    light: Light,
-    progress: &Progress,
-) -> Result<RgbaImage, Fault> {
-    progress.stage("looking at the surface from above");
-    let heights = surface.heights_from_above(raster, progress)?;
-    progress.stage("lighting the surface");
-    let shades = hillshade(raster, &heights, light);
-    let mut ground = RgbaImage::new(raster.columns, raster.rows);
-    for (pixel, shade) in ground.pixels_mut().zip(&shades) {
-        if !shade.is_nan() {
-            // At most 250.
-            let grey = (DARKEST + LIGHT * shade).round() as u8;
-            *pixel = Rgba([grey, grey, grey, 255]);
-        }
-    }
-    Ok(ground)
 }

@@ -5,8 +5,8 @@
 use glam::DVec2;
 
 use super::inks::dash;
-use super::photos::{self, camera_mark, middle_mark, sample, shortened};
-use super::{Grid, MapFrame, Plan, PlanInks};
+use super::photos::{self, camera_mark, measured_line, middle_mark, sample, shortened};
+use super::{Grid, MapFrame, MeasuredOutline, Plan, PlanGround, PlanInks};
 use crate::drawing::{Anchor, Dash, Pen, Shape};
 use crate::flight::Verdict;
 use crate::numbers::{round_down, significant_digits};
@@ -236,12 +236,20 @@ impl Page {
         let lengths = plan.unit_of_lengths();
         notes.push(format!("Grid every {} {lengths}", grid.step));
         let light = plan.light;
-        notes.push(format!(
-            "Hillshade: light from {}°, {}° high,",
-            light.azimuth, light.altitude
-        ));
-        let pixel = significant_digits(plan.raster.pixel, 1);
-        notes.push(format!("pixels of {pixel} {lengths}"));
+        let ground = match plan.ground_kind {
+            PlanGround::Relief => Some(format!(
+                "Hillshade: light from {}°, {}° high,",
+                light.azimuth, light.altitude
+            )),
+            PlanGround::Photos => Some("Ground: the photos over the surface,".to_owned()),
+            PlanGround::Colours => Some("Ground: the colours of the points,".to_owned()),
+            PlanGround::Plain => None,
+        };
+        if let Some(ground) = ground {
+            notes.push(ground);
+            let pixel = significant_digits(plan.raster.pixel, 1);
+            notes.push(format!("pixels of {pixel} {lengths}"));
+        }
         notes.push(PROGRAM.to_owned());
         notes
     }
@@ -277,6 +285,7 @@ enum Row {
     Footprint(Option<Verdict>, usize),
     Camera,
     Middle,
+    Measured(bool),
 }
 
 fn legend_rows(plan: &Plan) -> Vec<Row> {
@@ -287,7 +296,15 @@ fn legend_rows(plan: &Plan) -> Vec<Row> {
     let verdicts = Verdict::ALL.into_iter().map(Some).chain([None]);
     let verdicts = verdicts.map(|verdict| Row::Footprint(verdict, count(verdict)));
     let there = verdicts.filter(|row| !matches!(row, Row::Footprint(_, 0)));
-    there.chain([Row::Camera, Row::Middle]).collect()
+    let measured = [false, true].into_iter().filter(|is_polygon| {
+        let of_kind = |outline: &MeasuredOutline| outline.is_polygon == *is_polygon;
+        plan.measured.iter().any(of_kind)
+    });
+    let marks = [Row::Camera, Row::Middle].into_iter();
+    there
+        .chain(marks)
+        .chain(measured.map(Row::Measured))
+        .collect()
 }
 
 fn legend(rows: &[Row], [left, top]: [f64; 2], inks: &PlanInks, pen: &mut Pen) {
@@ -308,6 +325,14 @@ fn legend(rows: &[Row], [left, top]: [f64; 2], inks: &PlanInks, pen: &mut Pen) {
             Row::Middle => {
                 middle_mark([left + 13.0, y], inks.ink, pen);
                 "middle of a photo".to_owned()
+            }
+            Row::Measured(is_polygon) => {
+                let ends = [[left, y + 3.0], [left + 26.0, y - 3.0]];
+                measured_line(&ends, inks, pen);
+                match is_polygon {
+                    true => "measured polygon".to_owned(),
+                    false => "measured line".to_owned(),
+                }
             }
         };
         pen.text([left + 34.0, y], TEXT, &words, Anchor::Left, inks.ink);

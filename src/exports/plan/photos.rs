@@ -43,6 +43,14 @@ pub(super) fn draw(plan: &Plan, frame: &MapFrame, inks: &PlanInks, pen: &mut Pen
     let inside = |[x, y]: [f64; 2], room: f64| {
         x >= left + room && x <= left + width - room && y >= top + room && y <= top + height - room
     };
+    for outline in &plan.measured {
+        let first = outline.points.first().filter(|_| outline.is_polygon);
+        let points = outline.points.iter().chain(first);
+        let points: Vec<[f64; 2]> = points.map(|point| frame.place(*point)).collect();
+        for part in clip::line(&points, bounds) {
+            measured_line(&part, inks, pen);
+        }
+    }
     let mut taken: Vec<clip::Box2> = Vec::new();
     for photo in &plan.photos {
         let colour = inks.of(photo.verdict);
@@ -68,6 +76,13 @@ pub(super) fn draw(plan: &Plan, frame: &MapFrame, inks: &PlanInks, pen: &mut Pen
             pen.text([x, y], NAME, &name, Anchor::Left, inks.ink);
             taken.push(place);
         }
+    }
+}
+
+/// A line of what was measured: seen on any ground.
+pub(super) fn measured_line(points: &[[f64; 2]], inks: &PlanInks, pen: &mut Pen) {
+    for (width, colour) in [(4.4, inks.paper), (2.2, inks.ink)] {
+        pen.line(points, colour, width, Dash::Solid);
     }
 }
 

@@ -9,6 +9,7 @@ use roxmltree::{Document, Node};
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::Tag;
 
+use super::ground::{DARKEST, LIGHT};
 use super::page::Page;
 use super::*;
 use crate::camera::{Camera, Distortion, Pose};
@@ -76,8 +77,9 @@ fn plan(slope: f64, crs: Option<&str>) -> Plan {
         pixel: Some(0.1),
         crs,
         taken: Some("2026-05-04"),
+        ..PlanRequest::default()
     };
-    Plan::new(&review(slope), request, &Progress::default()).unwrap()
+    Plan::new(&review(slope), request, &|_| None, &Progress::default()).unwrap()
 }
 
 /// Over the level surface, 10 m below, the image of 160 x 90 pixels with 100 pixels focal length is 16 m x
@@ -328,9 +330,9 @@ fn what_is_too_large_is_refused() {
         ..PlanRequest::default()
     };
     let review = review(0.0);
-    let fault = Plan::new(&review, request(0.001), &Progress::default()).unwrap_err();
+    let fault = Plan::new(&review, request(0.001), &|_| None, &Progress::default()).unwrap_err();
     assert!(fault.what.contains("more than 40 million"), "{fault}");
-    let large = Plan::new(&review, request(0.01), &Progress::default()).unwrap();
+    let large = Plan::new(&review, request(0.01), &|_| None, &Progress::default()).unwrap();
     let fault = PlanFormat::Svg
         .bytes(&large, LengthUnit::Metre)
         .unwrap_err();
@@ -361,4 +363,119 @@ fn an_unknown_unit_has_no_scale() {
         assert!(texts.contains(&words), "{words} in {texts:?}");
     }
     assert!(!svg.contains("on A4"));
+}
+
+/// 10 m over the level surface a pixel of the photo is 0.1 m: the map's pixel has the colour of the photo's, the
+/// one photo's where it reaches, the other's beyond, hillshade beside both. A photo that cannot be read is told.
+#[test]
+fn the_photos_are_the_ground() {
+    let review = review(0.0);
+    let request = PlanRequest {
+        pixel: Some(0.1),
+        ground: PlanGround::Photos,
+        ..PlanRequest::default()
+    };
+    let picture = |photo: usize| {
+        let blue = if photo == 0 { 10 } else { 200 };
+        image::RgbImage::from_fn(160, 90, |x, y| image::Rgb([x as u8, y as u8, blue]))
+    };
+    let progress = Progress::default();
+    let plan = Plan::new(
+        &review,
+        request,
+        &|photo| Some(Ok(picture(photo))),
+        &progress,
+    )
+    .unwrap();
+    let at = |plan: &Plan, x: f64, y: f64| {
+        let at = plan.raster.pixel_from_world(MIDDLE + DVec2::new(x, y));
+        plan.ground.get_pixel(at.x as u32, at.y as u32).0
+    };
+    let near = |found: [u8; 4], known: [u8; 4]| {
+        assert!(
+            found.iter().zip(known).all(|(a, b)| a.abs_diff(b) <= 2),
+            "{found:?} {known:?}"
+        );
+    };
+    // Half a pixel beside the middle, as the pixels lie.
+    near(at(&plan, 3.05, -2.05), [110, 65, 10, 255]);
+    near(at(&plan, -5.05, 9.05), [29, 34, 200, 255]);
+    let grey = (DARKEST + LIGHT / 2_f64.sqrt()).round() as u8;
+    near(at(&plan, 15.0, -15.0), [grey, grey, grey, 255]);
+    assert!(plan.warnings.is_empty());
+    let one = |photo: usize| match photo {
+        0 => None,
+        _ => Some(Ok(picture(photo))),
+    };
+    let plan = Plan::new(&review, request, &one, &progress).unwrap();
+    assert!(plan.warnings[0].contains("1 photos are not on the ground"));
+    assert_eq!(at(&plan, 3.05, -2.05)[0], grey, "only the first showed it");
+    // Without any file there is no such ground, and without colours not that of the points.
+    let none = Plan::new(&review, request, &|_| None, &progress).unwrap_err();
+    assert!(none.to_string().contains("no photo's file"), "{none}");
+    let request = PlanRequest {
+        ground: PlanGround::Colours,
+        ..request
+    };
+    let none = Plan::new(&review, request, &|_| None, &progress).unwrap_err();
+    assert!(none.to_string().contains("no colours"), "{none}");
+}
+
+/// What was measured is on the page and in the legend.
+#[test]
+fn measured_polygons_are_on_the_page() {
+    let mut plan = plan(0.0, None);
+    let svg = |plan: &Plan| {
+        let bytes = PlanFormat::Svg.bytes(plan, LengthUnit::Metre).unwrap();
+        String::from_utf8(bytes).unwrap()
+    };
+    assert!(!svg(&plan).contains("measured"));
+    let corners = [(-5.0, -5.0), (5.0, -5.0), (0.0, 5.0)];
+    plan.measured = vec![MeasuredOutline {
+        points: corners.map(|at| MIDDLE + DVec2::from(at)).to_vec(),
+        is_polygon: true,
+    }];
+    let text = svg(&plan);
+    assert!(text.contains("measured polygon") && !text.contains("measured line"));
+    let page = Page::new(&plan);
+    let line = |shape: &crate::drawing::Shape| match shape {
+        crate::drawing::Shape::Line { points, width, .. } => {
+            let closed = points.len() == 4 && points.first() == points.last();
+            let first = page.frame.place(plan.measured[0].points[0]);
+            closed && *width == 2.2 && (points[0][0] - first[0]).abs() < 1e-6
+        }
+        _ => false,
+    };
+    assert!(page.shapes(&plan, LengthUnit::Metre).iter().any(line));
+}
+
+/// A footprint that reaches far beside the surface is on the map whole; the one of a photo that sees the
+/// horizon does not make all else small.
+#[test]
+fn footprints_are_not_cut() {
+    use crate::geometry::Bounds;
+    let bulk = Bounds {
+        min: DVec3::ZERO,
+        max: DVec3::new(20.0, 10.0, 1.0),
+    };
+    let photo = |low: (f64, f64), high: (f64, f64)| PlanPhoto {
+        name: String::new(),
+        verdict: None,
+        outline: vec![
+            low.into(),
+            (high.0, low.1).into(),
+            high.into(),
+            (low.0, high.1).into(),
+        ],
+        middle: None,
+        camera: DVec2::ZERO,
+    };
+    let beside = photo((15.0, 5.0), (45.0, 30.0));
+    let usual = photo((0.0, 0.0), (30.0, 20.0));
+    let [low, high] = extent::of(&bulk, &[usual.clone(), beside, usual.clone()]);
+    assert!(low.cmple(DVec2::ZERO).all() && high.cmpge(DVec2::new(45.0, 30.0)).all());
+    assert!(high.x < 50.0 && high.y < 35.0, "{high}");
+    let horizon = photo((0.0, 0.0), (9000.0, 4000.0));
+    let [_, high] = extent::of(&bulk, &[usual.clone(), horizon, usual]);
+    assert!(high.x < 100.0, "{high}");
 }

@@ -4,6 +4,7 @@ mod camera_entry;
 mod check;
 mod decisions_text;
 mod known_keys;
+mod poses_flight;
 mod text;
 mod uncertainty_entry;
 
@@ -13,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use toml::de::DeTable;
 
 pub use self::camera_entry::{CameraEntry, CameraSource};
+pub use self::poses_flight::PosesFlight;
 
 use self::known_keys::{key_line, line_of, nth_key_line, refuse_unknown_keys};
 use self::uncertainty_entry::UncertaintyEntry;

@@ -8,18 +8,12 @@ use crate::fault::Fault;
 use crate::flight::{FlightFile, FlightSettings, ReconstructionFlight};
 use crate::formats::FileError;
 use crate::origin::{folder_of, path_from, real};
-use crate::scale::StatedErrors;
 
 impl Georeferenced {
-    /// The text of a flight.toml at `target` with the reconstruction in `reconstruction`, its paths
-    /// relative to `target`, and the standard error of the scale where there is one. The sixteen numbers of the transform read back to the bit. A `surface`
-    /// is taken as it is: it has to be in the world already.
-    ///
-    /// Write it with `files::write`.
+    /// [`flight_text_of`] this.
     ///
     /// # Errors
-    /// Where the folder of `target` does not exist, a path is not Unicode, or `target` would hide the
-    /// reconstruction that it names.
+    /// Likewise.
     pub fn flight_text(
         &self,
         target: &Path,
@@ -27,49 +21,67 @@ impl Georeferenced {
         photos: Option<&Path>,
         surface: Option<&Path>,
     ) -> Result<String, FileError> {
-        let at = |fault| FileError::new(target, fault);
-        let folder = fs::canonicalize(folder_of(target)).map_err(|e| {
-            let what = format!("its folder cannot be found ({e})");
-            at(Fault::new(what, "choose a folder that exists"))
-        })?;
-        // A folder is opened as the flight.toml that lies in it.
-        if target.file_name().is_some_and(|name| name == "flight.toml")
-            && real(reconstruction) == folder
-        {
-            return Err(at(Fault::new(
-                "a flight.toml in the folder of the reconstruction would be opened in its stead",
-                "give the file another name or another folder",
-            )));
-        }
-        let name = real(reconstruction);
-        let name = name
-            .file_stem()
-            .map(|stem| stem.to_string_lossy().into_owned());
-        let named = |path: Option<&Path>| path.map(|path| path_from(&folder, path)).transpose();
-        let photos = named(photos).map_err(at)?;
-        let surface = named(surface).map_err(at)?;
-        let flight = ReconstructionFlight {
-            name: name.as_deref().unwrap_or("flight"),
-            reconstruction: &path_from(&folder, reconstruction).map_err(at)?,
-            transform: Some(self.similarity.to_row_major()),
-            folder: photos.as_deref(),
-            surface: surface.as_deref(),
-            crs: self.crs.as_deref(),
-        };
-        let settings = FlightSettings {
-            unit: self.unit,
-            unit_known: true,
-            errors: StatedErrors {
-                world_scale: self.scale_error.map(percent),
-                ..StatedErrors::default()
-            },
-            // Scale objects have sizes in the unit of another world.
-            ..FlightSettings::default()
-        };
-        FlightFile::for_reconstruction(&flight, &settings)
-            .to_toml()
-            .map_err(at)
+        flight_text_of(Some(self), None, target, reconstruction, photos, surface)
     }
+}
+
+/// The text of a flight.toml at `target` with the reconstruction in `reconstruction`, its paths relative to
+/// `target`, and the standard error of the scale where there is one. The sixteen numbers of the transform
+/// read back to the bit. A `surface` is taken as it is: it has to be in the world already. Not `placed`, the
+/// flight has no unit. Without a `name` it has the reconstruction's.
+///
+/// Write it with `files::write`.
+///
+/// # Errors
+/// Where the folder of `target` does not exist, a path is not Unicode, or `target` would hide the
+/// reconstruction that it names.
+pub fn flight_text_of(
+    placed: Option<&Georeferenced>,
+    name: Option<&str>,
+    target: &Path,
+    reconstruction: &Path,
+    photos: Option<&Path>,
+    surface: Option<&Path>,
+) -> Result<String, FileError> {
+    let at = |fault| FileError::new(target, fault);
+    let folder = fs::canonicalize(folder_of(target)).map_err(|e| {
+        let what = format!("its folder cannot be found ({e})");
+        at(Fault::new(what, "choose a folder that exists"))
+    })?;
+    // A folder is opened as the flight.toml that lies in it.
+    if target.file_name().is_some_and(|name| name == "flight.toml")
+        && real(reconstruction) == folder
+    {
+        return Err(at(Fault::new(
+            "a flight.toml in the folder of the reconstruction would be opened in its stead",
+            "give the file another name or another folder",
+        )));
+    }
+    let own_name = real(reconstruction);
+    let own_name = own_name
+        .file_stem()
+        .map(|stem| stem.to_string_lossy().into_owned());
+    let named = |path: Option<&Path>| path.map(|path| path_from(&folder, path)).transpose();
+    let photos = named(photos).map_err(at)?;
+    let surface = named(surface).map_err(at)?;
+    let flight = ReconstructionFlight {
+        name: name.or(own_name.as_deref()).unwrap_or("flight"),
+        reconstruction: &path_from(&folder, reconstruction).map_err(at)?,
+        transform: placed.map(|placed| placed.similarity.to_row_major()),
+        folder: photos.as_deref(),
+        surface: surface.as_deref(),
+        crs: placed.and_then(|placed| placed.crs.as_deref()),
+    };
+    // Scale objects have sizes in the unit of another world.
+    let mut settings = FlightSettings::default();
+    settings.unit_known = placed.is_some();
+    if let Some(placed) = placed {
+        settings.unit = placed.unit;
+        settings.errors.world_scale = placed.scale_error.map(percent);
+    }
+    FlightFile::for_reconstruction(&flight, &settings)
+        .to_toml()
+        .map_err(at)
 }
 
 /// A relative standard error in percent, with the four digits that such a number can have.

@@ -11,6 +11,8 @@ mod list_world;
 mod marks;
 mod photo_names;
 
+pub use self::flight_text::flight_text_of;
+
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 

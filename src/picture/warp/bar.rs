@@ -5,7 +5,7 @@ use image::{Rgba, RgbaImage};
 use crate::numbers::{round_down, significant_digits};
 use crate::picture::canvas::{Canvas, Color};
 use crate::picture::text::{Anchor, Typeface, text_width};
-use crate::units::LengthUnit;
+use crate::units::{LengthUnit, round_length_in_words};
 
 /// A bar is at most this share of the picture's width.
 const LONGEST_SHARE: f64 = 0.35;
@@ -38,7 +38,8 @@ fn strip_with_bar(
     let Some(length) = round_down(LONGEST_SHARE * f64::from(width) * pixel) else {
         return strip;
     };
-    let text = format!("{length} {unit} · a pixel is {} {unit}", shortest(pixel));
+    let words = round_length_in_words(length, unit);
+    let text = format!("{words} · a pixel is {} {unit}", shortest(pixel));
     let long = (length / pixel) as f32;
     let thick = (letters * 0.3).round().max(2.0);
     let middle = height as f32 / 2.0;

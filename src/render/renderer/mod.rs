@@ -365,6 +365,10 @@ impl Renderer {
         let title = match show.color_by {
             ColorBy::Rgb => return None,
             ColorBy::Elevation => format!("elevation ({unit})"),
+            // A level of detail has points and no triangles, which a slope is of.
+            ColorBy::Slope if self.mesh.is_empty() && self.points.is_streamed() => {
+                "slope: not for streamed points".to_owned()
+            }
             ColorBy::Slope => "slope (°)".to_owned(),
             ColorBy::Scale => format!("scale (px/{})", scales.symbol()),
         };

@@ -6,11 +6,8 @@ pub mod calibration;
 mod exif;
 pub mod flight;
 pub mod label;
-pub mod laz;
 pub mod photo;
 pub mod photo_metadata;
-pub mod ply;
-pub mod poses;
 pub mod reference;
 mod xmp;
 

@@ -41,7 +41,7 @@ pub fn jpeg(image: &RgbImage, quality: u8, metadata: &PhotoMetadata) -> Result<V
         &exif::tiff(width, height, metadata)?,
     )?;
     if let Some(gimbal) = &metadata.dji {
-        let packet = xmp::dji_packet(gimbal, metadata.gps.as_ref())?;
+        let packet = xmp::dji_packet(gimbal, metadata.gps.as_ref(), metadata.rtk)?;
         app1(
             &mut bytes,
             b"http://ns.adobe.com/xap/1.0/\0",
@@ -102,6 +102,7 @@ mod tests {
                 longitude: 79.999_999_999_9,
                 altitude: -12.345_6,
             }),
+            rtk: None,
             dji: Some(DjiGimbal {
                 roll: -0.001,
                 yaw: 1.2,

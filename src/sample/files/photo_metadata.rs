@@ -21,6 +21,8 @@ pub struct PhotoMetadata {
     pub focal_length_35mm: Option<u16>,
     /// Where the camera was.
     pub gps: Option<GpsPosition>,
+    /// Standard deviations of the place that RTK states: east, north, up, metres.
+    pub rtk: Option<[f64; 3]>,
     /// What DJI's XMP says.
     pub dji: Option<DjiGimbal>,
 }

@@ -7,12 +7,23 @@ use super::photo_metadata::{DjiGimbal, GpsPosition};
 ///
 /// # Errors
 /// Where a number is not finite.
-pub(super) fn dji_packet(gimbal: &DjiGimbal, gps: Option<&GpsPosition>) -> Result<String, String> {
+pub(super) fn dji_packet(
+    gimbal: &DjiGimbal,
+    gps: Option<&GpsPosition>,
+    rtk: Option<[f64; 3]>,
+) -> Result<String, String> {
     let mut values = Vec::new();
     if let Some(gps) = gps {
         values.push(("GpsLatitude", gps.latitude, 9));
         values.push(("GpsLongitude", gps.longitude, 9));
         values.push(("AbsoluteAltitude", gps.altitude, 3));
+    }
+    if let Some([east, north, up]) = rtk {
+        // 50: fixed.
+        values.push(("RtkFlag", 50.0, 0));
+        values.push(("RtkStdLon", east, 5));
+        values.push(("RtkStdLat", north, 5));
+        values.push(("RtkStdHgt", up, 5));
     }
     values.push(("RelativeAltitude", gimbal.relative_altitude, 3));
     values.push(("GimbalRollDegree", gimbal.roll, 2));

@@ -21,6 +21,7 @@ fn options() -> SampleOptions {
         noise_px: None,
         points: Some(2000),
         ring: 0,
+        survey: None,
         photos: false,
         labels: false,
         at_origin: false,

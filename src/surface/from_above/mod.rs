@@ -4,8 +4,10 @@
 //! ```text
 //! map_raster  square pixels of the map
 //! hillshade   the light on it
+//! colours     those of its points
 //! ```
 
+mod colours;
 mod hillshade;
 mod map_raster;
 #[cfg(test)]

@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::geometry::{Bounds, LevelBox};
 use crate::open_flight::OpenFlight;
 use crate::scale::FootprintPoint;
+use crate::state::history::History;
 
 /// The box of a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,8 +38,12 @@ impl Clip {
 /// Something to do with the clipping box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ClipStep {
-    /// Shows its small window and clips, or puts the window away; what it clips stays.
-    Window,
+    /// Shows its small window and clips; where it clips or is shown, puts both away.
+    Toggle,
+    /// Puts its small window away; what it clips stays.
+    Close,
+    /// The limits of now are a step that undo goes back over: a drag is one.
+    Settle,
     /// Clips or not.
     On(bool),
     /// Takes these limits.
@@ -53,10 +58,12 @@ impl OpenFlight {
     /// Does something with the clipping box.
     pub(crate) fn clip_step(&mut self, step: ClipStep) {
         match step {
-            ClipStep::Window => {
-                self.clip.is_open ^= true;
-                self.clip.is_on |= self.clip.is_open;
+            ClipStep::Toggle => {
+                let is_there = self.clip.is_open || self.clip.is_on;
+                (self.clip.is_open, self.clip.is_on) = (!is_there, !is_there);
             }
+            ClipStep::Close => self.clip.is_open = false,
+            ClipStep::Settle => self.clip_history.set(self.clip.level),
             ClipStep::On(on) => self.clip.is_on = on,
             ClipStep::Set(level) if level.is_box() => self.clip.level = level,
             ClipStep::Set(_) => {}
@@ -67,6 +74,15 @@ impl OpenFlight {
                 }
             }
         }
+    }
+
+    /// Undo or redo of the box's limits, while its small window is shown; false where there is nothing to undo.
+    pub(crate) fn undo_clip(&mut self, step: impl FnOnce(&mut History<LevelBox>) -> bool) -> bool {
+        let undone = self.clip.is_open && step(&mut self.clip_history);
+        if undone {
+            self.clip.level = *self.clip_history.now();
+        }
+        undone
     }
 
     /// The box around the footprint of the selected photo; `None` where it has none.

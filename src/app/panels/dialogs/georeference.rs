@@ -1,6 +1,7 @@
 //! The small window that brings a reconstruction to the world: what is known of its place, how well
 //! that fits, and where the flight that is made of it goes.
 
+use super::named_field;
 use super::residuals::residuals;
 use crate::command::{Answers, Asking, Command, Dialog};
 use crate::numbers::significant_digits;
@@ -393,14 +394,4 @@ pub(super) fn save_georeferenced(state: &State, ui: &mut egui::Ui, commands: &mu
             commands.push(Command::Ask(Some(Asking::Georeference)));
         }
     });
-}
-
-/// What a screen reader says of a text field, and what the mouse finds out.
-fn named_field(field: egui::Response, label: &str, hover: &str, text: &str) {
-    field.widget_info(|| {
-        let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, label);
-        info.current_text_value = Some(text.to_owned());
-        info
-    });
-    field.on_hover_text(hover);
 }

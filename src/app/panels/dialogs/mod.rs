@@ -2,6 +2,8 @@
 //! only the question before unsaved changes are lost does.
 
 mod choose;
+mod cloud_use;
+mod from_photos;
 mod georeference;
 mod residuals;
 mod save_measured;
@@ -14,12 +16,16 @@ use crate::map::MapCommand;
 use crate::names;
 use crate::open_flight::OpenFlight;
 use crate::panels::path_field::path_field;
+use crate::panels::reconstruct_offer;
 use crate::panels::size_distributions::{
     add_distributions, add_effort, paste, save_figure, save_report,
 };
 use crate::state::{HeldBack, State};
 use crate::typed::typed;
+use crate::units::LengthUnit;
 use choose::choose;
+use cloud_use::cloud_use;
+use from_photos::from_photos;
 use georeference::{georeference, save_georeferenced};
 use save_measured::{add_layer, save_measured, volume_base};
 
@@ -31,6 +37,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::Add => "Add surface or photos",
             Asking::Choose => "Which of them?",
             Asking::Export => "Export for Split-Desktop",
+            Asking::FromPhotos => "New flight from photos",
             Asking::Georeference => "Georeference",
             Asking::SaveGeoreferenced => "Save georeferenced flight",
             Asking::SaveAs => "Save flight",
@@ -42,6 +49,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::SaveFigure => "Save figure",
             Asking::SaveReport => "Save report",
             Asking::AddLayer => "Add cloud as layer",
+            Asking::CloudUse => "What is this cloud?",
             Asking::VolumeBase => "Base of the volume",
             Asking::SaveMeasured(MeasuredTable::Points) => "Save points",
             Asking::SaveMeasured(MeasuredTable::Profile) => "Save profile",
@@ -57,13 +65,14 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             .pivot(egui::Align2::CENTER_CENTER)
             .default_pos(context.content_rect().center())
             .show(context, |ui| {
-                let wide = asking == Asking::Georeference;
+                let wide = matches!(asking, Asking::Georeference | Asking::FromPhotos);
                 ui.set_max_width(if wide { 540.0 } else { 460.0 });
                 match asking {
                     Asking::Open => open(state, ui, commands),
                     Asking::Add => add(state, ui, commands),
                     Asking::Choose => choose(state, ui, commands),
                     Asking::Export => export(state, ui, commands),
+                    Asking::FromPhotos => from_photos(state, ui, commands),
                     Asking::Georeference => georeference(state, ui, commands),
                     Asking::SaveGeoreferenced => save_georeferenced(state, ui, commands),
                     Asking::SaveAs => save_as(state, ui, commands),
@@ -75,6 +84,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::SaveFigure => save_figure(state, ui, commands),
                     Asking::SaveReport => save_report(state, ui, commands),
                     Asking::AddLayer => add_layer(state, ui, commands),
+                    Asking::CloudUse => cloud_use(state, ui, commands),
                     Asking::VolumeBase => volume_base(state, ui, commands),
                     Asking::SaveMeasured(table) => save_measured(table, state, ui, commands),
                     Asking::Keys => keys(ui),
@@ -133,7 +143,7 @@ fn unsaved(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 
 fn writing(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.heading("Still writing");
-    ui.label("Files are being written. An export that is stopped goes on where it was next time.");
+    ui.label("Files are being written. An export or a reconstruction that is stopped goes on where it was next time.");
     ui.add_space(8.0);
     ui.horizontal(|ui| {
         if ui.button("Stop and quit").clicked() {
@@ -243,6 +253,11 @@ fn add(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         && (button.clicked() || entered)
     {
         commands.push(Command::Add(path));
+    }
+    if state.from_photos.offered.is_some() {
+        ui.separator();
+        ui.label("Without a cloud, where the photos overlap, one can be made from them:");
+        reconstruct_offer(state, ui, commands);
     }
 }
 
@@ -359,6 +374,15 @@ fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if open.files.crs.is_none() {
         ui.weak("No coordinate system is stated: the file is in the flight's own frame.");
     }
+    let pixel = map_pixel(open, unit, ui);
+    if open
+        .pointer
+        .drawn
+        .as_ref()
+        .is_some_and(|drawn| drawn.points.len() > 1)
+    {
+        ui.weak("The line or polygon that is measured goes along.");
+    }
     let start = proposed(open, Some("map.pdf"));
     let browse = [("Browse…", Dialog::new_file("Export map", "map.pdf"))];
     let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
@@ -368,8 +392,43 @@ fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     if let Some(path) = path
         && (button.clicked() || entered)
     {
-        commands.push(Command::Map(MapCommand::Save(path.into())));
+        let to = path.into();
+        commands.push(Command::Map(MapCommand::Save { to, pixel }));
     }
+}
+
+/// The side of a pixel of the map's ground, world units, typed in `unit`; `None` as on the screen.
+fn map_pixel(open: &OpenFlight, unit: LengthUnit, ui: &mut egui::Ui) -> Option<f64> {
+    let plan = &open.map.made.as_ref()?.plan;
+    let (one, symbol) = match plan.unit_known {
+        true => (unit.in_units_of(plan.unit), unit.symbol()),
+        false => (1.0, plan.unit_of_lengths()),
+    };
+    let id = ui.scope_id().with("map pixel");
+    let mut pixel: Option<f64> = ui.data(|data| data.get_temp(id)).flatten();
+    let mut typed = pixel.unwrap_or(plan.raster.pixel) / one;
+    let before = typed;
+    ui.horizontal(|ui| {
+        ui.label("Pixel size");
+        let field = egui::DragValue::new(&mut typed)
+            .speed(before * 0.01)
+            .range(1e-6..=1e6)
+            .max_decimals(6)
+            .suffix(format!(" {symbol}"));
+        let field = ui.add(field);
+        field.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Pixel size of the map")
+        });
+        field.on_hover_text("The side of a pixel of the ground");
+        if typed != before {
+            pixel = Some(typed * one);
+        }
+        let [low, high] = plan.extent;
+        let size = (high - low) / pixel.unwrap_or(plan.raster.pixel);
+        ui.weak(format!("{:.0} x {:.0} pixels", size.x, size.y));
+    });
+    ui.data_mut(|data| data.insert_temp(id, pixel));
+    pixel
 }
 
 fn keys(ui: &mut egui::Ui) {
@@ -382,9 +441,16 @@ fn keys(ui: &mut egui::Ui) {
 }
 
 fn list_of_keys(ui: &mut egui::Ui) {
+    // Long words go on below, where the window is narrow.
+    let column = (ui.available_width() / 2.0 - 12.0).max(60.0);
+    let said = |text: String, ui: &mut egui::Ui| {
+        ui.add(egui::Label::new(text).wrap());
+    };
     egui::Grid::new("keys")
         .striped(true)
         .num_columns(2)
+        .min_col_width(column)
+        .max_col_width(column)
         .show(ui, |ui| {
             for (what, how) in [
                 ("Turn the view", "drag with the left button"),
@@ -396,14 +462,14 @@ fn list_of_keys(ui: &mut egui::Ui) {
                 ("Turn around a place", "double click on it"),
                 ("Select a photo", "click its camera or its footprint"),
             ] {
-                ui.label(what);
-                ui.label(how);
+                said(what.to_owned(), ui);
+                said(how.to_owned(), ui);
                 ui.end_row();
             }
             for action in actions::all() {
                 if let Some(keys) = action.keys_in_words(ui.ctx()) {
-                    ui.label(action.label.trim_end_matches('…'));
-                    ui.label(keys);
+                    said(action.label.trim_end_matches('…').to_owned(), ui);
+                    said(keys, ui);
                     ui.end_row();
                 }
             }
@@ -421,4 +487,14 @@ fn about(ui: &mut egui::Ui) {
     ui.label("After Bamford, Esmaeili & Schoellig (2017), Point-Cloud-Based Aerial Fragmentation Analysis for Application in the Minerals Industry.");
     ui.add_space(6.0);
     ui.weak("MIT OR Apache-2.0");
+}
+
+/// What a screen reader says of a text field, and what the mouse finds out.
+fn named_field(field: egui::Response, label: &str, hover: &str, text: &str) {
+    field.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::TextInput, true, label);
+        info.current_text_value = Some(text.to_owned());
+        info
+    });
+    field.on_hover_text(hover);
 }

@@ -12,7 +12,7 @@ use glam::DVec2;
 use super::tool_bar::action_button;
 use crate::actions;
 use crate::command::Command;
-use crate::exports::MapFrame;
+use crate::exports::{MapFrame, PlanGround};
 use crate::map::{MadePlan, MapCommand, PartInSight};
 use crate::open_flight::OpenFlight;
 use crate::render::SELECTED;
@@ -21,6 +21,8 @@ use crate::tasks::Task;
 
 /// The ground of a dark window, so that light lines stand out from it.
 const DARKENED: u8 = 118;
+/// The same of photos, which are darker than a hillshade.
+const PICTURE_DARKENED: u8 = 190;
 
 /// Draws the page.
 pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -46,6 +48,39 @@ pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             ui,
             commands,
         );
+        ui.label("Ground");
+        let has_colours = !open.flight().parts().surface.colors().is_empty();
+        let has_files = open.files.photo_files.iter().any(|file| file.path.is_some());
+        for (kind, label, hover, may) in [
+            (PlanGround::Relief, "Relief", "The surface's hillshade", true),
+            (
+                PlanGround::Photos,
+                "Photos",
+                "Each place in the colour of the photo that shows it most squarely and from nearest",
+                has_files,
+            ),
+            (
+                PlanGround::Colours,
+                "Colours",
+                "The colours of the cloud's own points",
+                has_colours,
+            ),
+            (PlanGround::Plain, "Plain", "Nothing under the footprints", true),
+        ] {
+            let chosen = open.map.ground == kind;
+            let button = ui.add_enabled(may, egui::Button::selectable(chosen, label));
+            let name = format!("Ground: {}", label.to_lowercase());
+            button.widget_info(|| {
+                egui::WidgetInfo::selected(egui::Role::Button, may, chosen, &name)
+            });
+            let button = button.on_hover_text(hover).on_disabled_hover_text(match kind {
+                PlanGround::Photos => "No photo's file is there: add the folder of the photos",
+                _ => "The cloud has no colours",
+            });
+            if button.clicked() && !chosen {
+                commands.push(Command::Map(MapCommand::Ground(kind)));
+            }
+        }
         if let Some(made) = &open.map.made {
             let words = egui::RichText::new(made.plan.crs_in_words()).weak();
             let words = ui.add(egui::Label::new(words).truncate());
@@ -53,24 +88,36 @@ pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         }
     });
     // However wide the row above would be.
-    let frame = Rect::from_min_max(pos2(place.left(), ui.cursor().top()), place.max);
-    let response = ui.allocate_rect(frame, Sense::click_and_drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Map"));
-    let painter = ui.painter().with_clip_rect(frame);
-    painter.rect_filled(frame, 0.0, ui.visuals().extreme_bg_color);
+    let whole = Rect::from_min_max(pos2(place.left(), ui.cursor().top()), place.max);
+    ui.painter()
+        .rect_filled(whole, 0.0, ui.visuals().extreme_bg_color);
     let Some(made) = &open.map.made else {
-        let text = match &open.map.refused {
-            Some((_, reason)) => reason.as_str(),
-            None => "The map is being made: footprints come first.",
-        };
-        super::inspector::message(&painter, frame, text, ui);
+        match &open.map.refused {
+            Some((_, reason)) => super::inspector::message(ui.painter(), whole, reason, ui),
+            None => {
+                let text = "The map is being made: footprints come first.";
+                let font = egui::TextStyle::Body.resolve(ui.style());
+                let color = ui.visuals().text_color();
+                let galley =
+                    ui.painter()
+                        .layout(text.to_owned(), font, color, whole.width() - 20.0);
+                let at = whole.center() - galley.size() / 2.0;
+                ui.painter().galley(at, galley, color);
+            }
+        }
         return;
     };
+    // Coordinates stand beside the map: over it they would hide footprints.
+    let frame = over::without_labels(&Screen::new(open, made, whole).map, whole, ui);
+    let response = ui.allocate_rect(frame, Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Map"));
+    let margins = ui.painter().with_clip_rect(whole);
+    let painter = ui.painter().with_clip_rect(frame);
     let screen = Screen::new(open, made, frame);
     screen.mouse(ui, &response, commands);
     screen.want_part(state, open, made, ui, commands);
     screen.draw(open, made, &painter, ui);
-    over::grid(&screen.map, &painter, frame, ui);
+    over::grid(&screen.map, &painter, &margins, frame, ui);
     screen.outline(open, made, open.table.hovered, &painter, 1.5);
     screen.outline(open, made, open.selected, &painter, 3.0);
     screen.survey(open, &painter);
@@ -100,10 +147,7 @@ pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 /// Asks for a plan where there is none of the review as it is now.
 fn want_plan(state: &State, open: &OpenFlight, commands: &mut Vec<Command>) {
     let map = &open.map;
-    let is_made = map
-        .made
-        .as_ref()
-        .is_some_and(|made| made.revision == map.revision);
+    let is_made = map.of_now().is_some();
     let is_refused = map
         .refused
         .as_ref()
@@ -205,9 +249,14 @@ impl Screen {
     /// The ground, the finer one over it, and the photos.
     fn draw(&self, open: &OpenFlight, made: &MadePlan, painter: &egui::Painter, ui: &egui::Ui) {
         let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-        let tint = match ui.visuals().dark_mode {
-            true => Color32::from_gray(DARKENED),
-            false => Color32::WHITE,
+        let is_picture = matches!(
+            made.plan.ground_kind,
+            PlanGround::Photos | PlanGround::Colours
+        );
+        let tint = match (ui.visuals().dark_mode, is_picture) {
+            (true, false) => Color32::from_gray(DARKENED),
+            (true, true) => Color32::from_gray(PICTURE_DARKENED),
+            (false, _) => Color32::WHITE,
         };
         let over = |[min, max]: [DVec2; 2]| Rect::from_two_pos(self.place(min), self.place(max));
         let coarse = over(made.plan.raster.bounds());

@@ -12,31 +12,53 @@ const LABEL: f32 = 11.0;
 /// The longest bar, points.
 const BAR: f64 = 160.0;
 
-/// Lines at round coordinates, which are written at the left and the lower edge.
-pub(super) fn grid(map: &MapFrame, painter: &egui::Painter, frame: Rect, ui: &egui::Ui) {
+/// Between a label and the map.
+const GAP: f32 = 4.0;
+
+/// The frame of the map that leaves room for its coordinates at the left and below it.
+pub(super) fn without_labels(map: &MapFrame, whole: Rect, ui: &egui::Ui) -> Rect {
+    let width = |text: &str| {
+        let font = FontId::proportional(LABEL);
+        let galley = ui
+            .painter()
+            .layout_no_wrap(text.to_owned(), font, Color32::WHITE);
+        galley.size().x
+    };
+    let widths = Grid::of(map)
+        .up
+        .iter()
+        .map(|line| width(&line.label))
+        .fold(0.0, f32::max);
+    let left = (widths + 2.0 * GAP).min(whole.width() / 4.0);
+    let below = (LABEL + 2.0 * GAP).min(whole.height() / 4.0);
+    Rect::from_min_max(whole.min + vec2(left, 0.0), whole.max - vec2(0.0, below))
+}
+
+/// Lines at round coordinates, which are written at the left of the map and below it.
+pub(super) fn grid(
+    map: &MapFrame,
+    painter: &egui::Painter,
+    margins: &egui::Painter,
+    frame: Rect,
+    ui: &egui::Ui,
+) {
     let grid = Grid::of(map);
     let line = Stroke::new(1.0, ui.visuals().text_color().gamma_multiply(0.22));
     for across in &grid.across {
         let x = map.place(DVec2::new(across.at, 0.0))[0] as f32;
         painter.vline(x, frame.y_range(), line);
-        let at = pos2(x, frame.bottom() - 3.0);
-        text(painter, at, Align2::CENTER_BOTTOM, LABEL, &across.label, ui);
+        let at = pos2(x, frame.bottom() + GAP);
+        text(margins, at, Align2::CENTER_TOP, LABEL, &across.label, ui);
     }
     for up in &grid.up {
         let y = map.place(DVec2::new(0.0, up.at))[1] as f32;
         painter.hline(frame.x_range(), y, line);
-        // The corner belongs to the other edge's labels.
-        if y < frame.bottom() - 24.0 {
-            text(
-                painter,
-                pos2(frame.left() + 3.0, y),
-                Align2::LEFT_CENTER,
-                LABEL,
-                &up.label,
-                ui,
-            );
-        }
+        let at = pos2(frame.left() - GAP, y);
+        text(margins, at, Align2::RIGHT_CENTER, LABEL, &up.label, ui);
     }
+    let edge = Stroke::new(1.0, ui.visuals().text_color().gamma_multiply(0.5));
+    margins.vline(frame.left(), frame.y_range(), edge);
+    margins.hline(frame.x_range(), frame.bottom(), edge);
 }
 
 /// Words that are read on any ground.

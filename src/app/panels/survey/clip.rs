@@ -19,16 +19,21 @@ pub(super) fn clip_panel(
     if !open.clip.is_open {
         return;
     }
+    let held = context.input(|input| input.pointer.any_down());
+    if !held && open.clip.level != *open.clip_history.now() {
+        commands.push(Command::Clip(ClipStep::Settle));
+    }
     let mut stays = true;
     egui::Window::new("Clipping box")
         .open(&mut stays)
         .constrain_to(place)
-        .default_pos(place.right_bottom() + egui::vec2(-8.0, -40.0))
-        .pivot(egui::Align2::RIGHT_BOTTOM)
+        // Above the other tools' windows, which begin at the foot.
+        .default_pos(place.right_top() + egui::vec2(-8.0, 48.0))
+        .pivot(egui::Align2::RIGHT_TOP)
         .resizable(false)
         .show(context, |ui| controls(open, ui, commands));
     if !stays {
-        commands.push(Command::Clip(ClipStep::Window));
+        commands.push(Command::Clip(ClipStep::Close));
     }
 }
 

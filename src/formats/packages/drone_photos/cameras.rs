@@ -8,12 +8,12 @@ use crate::photos::photo_metadata::{FocalCandidate, FocalSource, PhotoMetadata};
 const SAME_FOCAL_LENGTH: f64 = 1e-3;
 
 /// The cameras found so far.
-#[derive(Default)]
-pub(super) struct Cameras {
+#[derive(Debug, Default)]
+pub struct Cameras {
     cameras: Vec<(Key, Camera, FocalCandidate)>,
 }
 
-#[derive(PartialEq, Eq)]
+#[derive(Debug, PartialEq, Eq)]
 struct Key {
     device: [Option<String>; 4],
     size: (u32, u32),
@@ -22,7 +22,7 @@ struct Key {
 
 impl Cameras {
     /// The number of the photo's camera; `None` where its metadata hold no focal length.
-    pub(super) fn of(&mut self, photo: &PhotoMetadata) -> Option<usize> {
+    pub fn of(&mut self, photo: &PhotoMetadata) -> Option<usize> {
         let focal = *photo.focal.first()?;
         let key = Key {
             device: [&photo.make, &photo.model, &photo.serial, &photo.lens].map(Clone::clone),
@@ -51,6 +51,12 @@ impl Cameras {
         camera.validate().ok()?;
         self.cameras.push((key, camera, focal));
         Some(index)
+    }
+
+    /// The camera of a number that [`Self::of`] gave, and what states it.
+    pub fn at(&self, number: usize) -> Option<(&Camera, &FocalCandidate)> {
+        let (_, camera, focal) = self.cameras.get(number)?;
+        Some((camera, focal))
     }
 
     /// "DJI FC6310R", and a number where that name is taken.

@@ -39,7 +39,7 @@ use crate::packages::reconstruction::{
 };
 use crate::photos::image_names::{Ending, is_ending};
 use crate::photos::photo_metadata::{self, Fix, HeightReference, MeasuredPlace, PhotoMetadata};
-use cameras::Cameras;
+pub use cameras::Cameras;
 
 /// Whether a file is named like a photo.
 pub(crate) fn is_photo(path: &Path) -> bool {
@@ -59,7 +59,7 @@ pub(crate) fn has_photos(folder: &Path) -> bool {
 ///
 /// # Errors
 /// Where it cannot be read.
-pub(crate) fn photos_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
+pub fn photos_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
     let failed = |e: std::io::Error| {
         let what = format!("a folder that cannot be read ({e})");
         FileError::new(folder, Fault::new(what, "check its permissions"))
@@ -177,7 +177,7 @@ fn usual(fix: Option<Fix>) -> (&'static str, Option<DVec3>) {
 
 /// Standard deviations of a place towards east, north and up in metres: as the receiver states them, else
 /// the usual ones. `None` without either.
-fn expected_deviation(place: MeasuredPlace) -> Option<DVec3> {
+pub fn expected_deviation(place: MeasuredPlace) -> Option<DVec3> {
     let Some(usual) = usual(place.fix).1 else {
         return place.deviation;
     };
@@ -225,7 +225,7 @@ impl LeftOut {
                 "photos that do not say enough to place them: {}",
                 reasons.join(", ")
             ),
-            "give the reconstruction that was made from them, or a poses.csv",
+            "give the reconstruction that was made from them, or a poses.csv, or reconstruct them",
         )
     }
 }

@@ -23,12 +23,13 @@ use crate::surface::Cloud;
 const SCALE: f64 = 0.001;
 
 /// The points and colours of a cloud in metres as a LAZ file in WGS 84 / UTM, `epsg` 32601 to 32660
-/// (north) or 32701 to 32760 (south). Coordinates are rounded to a millimetre.
+/// (north) or 32701 to 32760 (south). Coordinates are rounded to a millimetre. `source` is where points come
+/// from ("simulated"), at most 32 letters of ASCII.
 ///
 /// # Errors
 /// Where the EPSG code is another one, there is no point, a coordinate is not finite, the cloud is
 /// wider than the 2147 km that fit 32 bits, or there is not one colour a point (or none at all).
-pub fn laz(cloud: &Cloud, epsg: u16) -> Result<Vec<u8>, String> {
+pub fn laz(cloud: &Cloud, epsg: u16, source: &str) -> Result<Vec<u8>, String> {
     let wkt = utm_wkt(epsg)?;
     let (points, colors) = (&cloud.points, &cloud.colors);
     let colored = !colors.is_empty();
@@ -56,7 +57,7 @@ pub fn laz(cloud: &Cloud, epsg: u16) -> Result<Vec<u8>, String> {
     let mut builder = Builder::from((1, 4));
     builder.date = None;
     builder.generating_software = "fragscale".to_owned();
-    builder.system_identifier = "simulated".to_owned();
+    builder.system_identifier = source.to_owned();
     builder.point_format = Format::new(if colored { 7 } else { 6 }).map_err(failed)?;
     builder.point_format.is_compressed = true;
     let DVec3 { x, y, z } = offset;
@@ -118,9 +119,9 @@ fn utm_wkt(epsg: u16) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::read_back::written;
-    use crate::formats::read_cloud;
+    use crate::flight_files::read_back::written;
     use crate::jobs::Progress;
+    use fragscale_formats::read_cloud;
 
     fn cloud() -> Cloud {
         let points = (0..70_000).map(|i| {
@@ -144,8 +145,8 @@ mod tests {
     #[test]
     fn reads_back_to_half_a_millimetre() {
         let cloud = cloud();
-        let bytes = laz(&cloud, 32_612).unwrap();
-        assert_eq!(laz(&cloud, 32_612).unwrap(), bytes);
+        let bytes = laz(&cloud, 32_612, "test").unwrap();
+        assert_eq!(laz(&cloud, 32_612, "test").unwrap(), bytes);
         // Version 1.4, format 7 compressed (bit 7), no date: LAS 1.4 R15, table 3.
         assert_eq!(bytes[24..26], [1, 4]);
         assert_eq!(bytes[90..94], [0; 4]);
@@ -169,7 +170,7 @@ mod tests {
     fn without_colours() {
         let mut cloud = cloud();
         cloud.colors.clear();
-        let (_folder, path) = written("a.laz", laz(&cloud, 32_733).unwrap());
+        let (_folder, path) = written("a.laz", laz(&cloud, 32_733, "test").unwrap());
         let file = read_cloud(&path, &Progress::default()).unwrap();
         assert!(file.cloud.colors.is_empty());
     }
@@ -192,7 +193,7 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_refused() {
-        let refuse = |cloud: &Cloud| laz(cloud, 32_612).unwrap_err();
+        let refuse = |cloud: &Cloud| laz(cloud, 32_612, "test").unwrap_err();
         assert!(refuse(&Cloud::default()).contains("no points"));
         let mut short = cloud();
         short.colors.pop();

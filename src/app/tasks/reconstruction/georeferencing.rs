@@ -3,13 +3,13 @@
 
 use std::path::Path;
 
-use super::work::Task;
 use crate::command::{Command, Destination};
 use crate::files::{self, FileError, Kind};
 use crate::jobs::Progress;
 use crate::open_flight::georeferencing::GeoreferenceForm;
 use crate::opening::{self, GeoreferenceRequest};
 use crate::state::{Severity, State};
+use crate::tasks::work::Task;
 
 impl Task {
     /// Fitting a reconstruction to the world.

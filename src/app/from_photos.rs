@@ -1,0 +1,81 @@
+//! A new flight from photos: what its small window holds.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
+
+use crate::reconstruct::{PhotoSet, Reconstructed};
+
+/// A step of making a flight from photos.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum FromPhotosStep {
+    /// Opens its small window, with this folder of photos.
+    Ask(Option<PathBuf>),
+    /// Types into it.
+    Fill(FromPhotosForm),
+    /// Reconstructs.
+    Start,
+    /// Opens the flight that came out while another one was looked at.
+    Open,
+}
+
+/// A field of the small window that names a folder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FolderField {
+    /// The folder of the photos.
+    Photos,
+    /// The folder to make.
+    To,
+}
+
+/// What is typed in the small window.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct FromPhotosForm {
+    /// The folder of the photos.
+    pub photos: String,
+    /// The folder to make; empty for the one that is proposed.
+    pub to: String,
+    /// The coordinate system of the world, if it is not the zone of UTM.
+    pub crs: String,
+}
+
+/// What was found in the folder of the photos.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoundPhotos {
+    /// The photos; an error is one line.
+    pub photos: Result<PhotoSet, String>,
+    /// The folder that is proposed for their flight.
+    pub proposed: PathBuf,
+}
+
+/// What the last run came to.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ended {
+    /// She cancelled it.
+    Cancelled,
+    /// It failed: one line.
+    Failed(String),
+    /// A flight came out.
+    Made(Box<Reconstructed>),
+}
+
+/// What the small window holds.
+#[derive(Debug, Default)]
+pub struct FromPhotos {
+    /// What is typed.
+    pub form: FromPhotosForm,
+    /// What lies in the folder that is typed; `None` until it has been looked at.
+    pub found: Option<FoundPhotos>,
+    /// What the last run came to, until another folder is named.
+    pub ended: Option<Ended>,
+    /// Photos that could not be opened as a flight: they can be reconstructed.
+    pub offered: Option<PathBuf>,
+    /// Held by the run that writes: a cancelled one stops at its next look, and the next one waits for that.
+    pub(crate) writing: Arc<Mutex<()>>,
+}
+
+impl FromPhotos {
+    /// The photos that were found.
+    pub fn photos(&self) -> Option<&PhotoSet> {
+        self.found.as_ref()?.photos.as_ref().ok()
+    }
+}

@@ -1,0 +1,207 @@
+//! The small window that makes a new flight from photos: what was found in their folder, where the flight
+//! goes, how far it is.
+
+use super::named_field;
+use crate::command::{Answers, Command, Dialog};
+use crate::from_photos::{Ended, FolderField, FromPhotos, FromPhotosForm, FromPhotosStep};
+use crate::names;
+use crate::panels::field::hinted_field;
+use crate::reconstruct::{PhotoSet, found, left_out, summary};
+use crate::state::State;
+use crate::tasks::Task;
+use crate::typed::typed;
+
+/// Draws the window's contents.
+pub(super) fn from_photos(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let most = (ui.ctx().content_rect().height() - 90.0).max(150.0);
+    egui::ScrollArea::vertical()
+        .max_height(most)
+        .show(ui, |ui| contents(state, ui, commands));
+}
+
+fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let held = &state.from_photos;
+    let mut running = state.work.running();
+    let run = running.find(|(task, _)| *task == Task::RECONSTRUCT);
+    ui.label(
+        "Photos that overlap become a flight: a cloud of the rock, where each photo was taken, and the lens. \
+         A drone's survey with 70 % overlap and more is right.",
+    );
+    ui.add_space(4.0);
+    let mut form = held.form.clone();
+    ui.add_enabled_ui(run.is_none(), |ui| {
+        folder_row(FolderField::Photos, &mut form, "", ui, commands);
+        what_was_found(state, ui);
+        ui.add_space(4.0);
+        let proposed = held.found.as_ref();
+        let proposed = proposed.map(|found| found.proposed.display().to_string());
+        let hint = proposed.unwrap_or_default();
+        folder_row(FolderField::To, &mut form, &hint, ui, commands);
+        ui.horizontal(|ui| {
+            ui.label("Coordinate system");
+            let hint = "EPSG:n; if empty the zone of UTM";
+            let hover = "Of the world: EPSG:n, WKT or a PROJ text; a projected one";
+            let label = "Coordinate system";
+            let width = ui.available_width();
+            if let Some(typed) = hinted_field(ui, label, hover, &form.crs, hint, width) {
+                form.crs = typed;
+            }
+        });
+    });
+    if form != held.form {
+        commands.push(Command::FromPhotos(FromPhotosStep::Fill(form.clone())));
+    }
+    ui.separator();
+    match run {
+        Some((_, (sentence, fraction))) => progress(&sentence, fraction, ui, commands),
+        None => start(held, &form, ui, commands),
+    }
+}
+
+/// A field for a folder, with the desktop's dialog. `hint` is what counts while it is empty.
+fn folder_row(
+    field: FolderField,
+    form: &mut FromPhotosForm,
+    hint: &str,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let (label, hover, text) = match field {
+        FolderField::Photos => (
+            "Folder of the photos",
+            "A path, typed or pasted",
+            &mut form.photos,
+        ),
+        FolderField::To => (
+            "Folder to make",
+            "Where the flight goes: a new folder, or one of a run that did not end",
+            &mut form.to,
+        ),
+    };
+    ui.label(label);
+    ui.horizontal(|ui| {
+        let width = ui.available_width() - 80.0;
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let hint = names::fitted(ui, hint, &font, width - 10.0).into_owned();
+        let edit = egui::TextEdit::singleline(text)
+            .hint_text(hint)
+            .desired_width(width);
+        let edit = ui.add(edit);
+        if field == FolderField::Photos {
+            crate::panels::path_field::takes_the_keys_at_first(ui, &edit);
+        }
+        named_field(edit, label, hover, text);
+        let browse = ui.button("Browse…");
+        browse.widget_info(|| {
+            let name = format!("Browse for the {}", label.to_lowercase());
+            egui::WidgetInfo::labeled(egui::Role::Button, true, name)
+        });
+        let hover = "Choose in the desktop's own dialog";
+        if browse.on_hover_text(hover).clicked() {
+            let dialog = Dialog::folder(label).answering(Answers::FromPhotos(field));
+            commands.push(Command::Browse(dialog));
+        }
+    });
+}
+
+fn what_was_found(state: &State, ui: &mut egui::Ui) {
+    let held = &state.from_photos;
+    let Some(photos) = &held.found else {
+        if state.work.is_running(Task::LOOK_AT_PHOTOS) {
+            ui.weak("Reading the headers of the photos…");
+        } else if typed(&held.form.photos).is_some() {
+            ui.weak("There is no such folder.");
+        }
+        return;
+    };
+    match &photos.photos {
+        Err(error) => {
+            ui.colored_label(ui.visuals().error_fg_color, error);
+        }
+        Ok(set) => photo_set(set, ui),
+    }
+}
+
+/// Most cameras and reasons that are listed; a folder of all sorts of pictures has dozens.
+const MOST_LINES: usize = 8;
+
+fn photo_set(set: &PhotoSet, ui: &mut egui::Ui) {
+    let lines = found(set);
+    let more = lines.len().saturating_sub(MOST_LINES);
+    for (number, line) in lines.iter().enumerate() {
+        // The last one says where they were taken.
+        if (MOST_LINES - 1..lines.len() - 1).contains(&number) && more > 0 {
+            if number == MOST_LINES - 1 {
+                ui.label(format!("and {more} cameras more"));
+            }
+            continue;
+        }
+        match number {
+            0 => ui.strong(line),
+            _ => ui.label(line),
+        };
+    }
+    let reasons = left_out(&set.left_out, set.count);
+    let more = reasons.len().saturating_sub(MOST_LINES);
+    let color = ui.visuals().warn_fg_color;
+    for reason in reasons.iter().take(MOST_LINES) {
+        ui.colored_label(color, format!("⚠ {reason}"));
+    }
+    if more > 0 {
+        ui.colored_label(color, format!("⚠ and {more} reasons more"));
+    }
+}
+
+fn progress(sentence: &str, fraction: f64, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.label(sentence);
+    let bar = egui::ProgressBar::new(fraction as f32).show_percentage();
+    ui.add(bar);
+    ui.horizontal(|ui| {
+        let cancel = ui.button("Cancel");
+        cancel.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, true, "Cancel reconstruction")
+        });
+        let hover = "What is done by then is kept: Start goes on with it";
+        if cancel.on_hover_text(hover).clicked() {
+            commands.push(Command::Cancel(Task::RECONSTRUCT));
+        }
+        ui.weak("It goes on when this window is closed.");
+    });
+}
+
+fn start(held: &FromPhotos, form: &FromPhotosForm, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let kept = "What was done is kept in that folder: Start goes on with it.";
+    match &held.ended {
+        None => {}
+        Some(Ended::Cancelled) => {
+            ui.label(format!("Cancelled. {kept}"));
+        }
+        Some(Ended::Failed(why)) => {
+            ui.colored_label(ui.visuals().error_fg_color, why);
+            ui.weak(kept);
+        }
+        Some(Ended::Made(made)) => {
+            for line in summary(made) {
+                ui.label(line);
+            }
+            let open = ui.button("Open the flight");
+            if open.on_hover_text("Look at what came out").clicked() {
+                commands.push(Command::FromPhotos(FromPhotosStep::Open));
+            }
+            ui.separator();
+        }
+    }
+    let ready = held.photos().is_some() && *form == held.form;
+    let button = ui.add_enabled(ready, egui::Button::new("Start"));
+    button.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::Button, ready, "Start reconstruction")
+    });
+    let button = button.on_hover_text(
+        "Finds what the photos have in common, where they were taken, and opens the flight. It can be \
+         cancelled, and goes on later",
+    );
+    let button = button.on_disabled_hover_text("First name a folder with three photos or more");
+    if button.clicked() {
+        commands.push(Command::FromPhotos(FromPhotosStep::Start));
+    }
+}

@@ -1,0 +1,195 @@
+//! A new flight from photos: looking what a folder holds, and reconstructing it.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::time::Duration;
+
+use crate::command::{Asking, Command};
+use crate::files::FileError;
+use crate::from_photos::{Ended, FolderField, FoundPhotos, FromPhotosForm, FromPhotosStep};
+use crate::jobs::Progress;
+use crate::reconstruct::{
+    Embedded, PhotoSet, Reconstructed, Request, left_out, may_be_made, proposed_folder,
+    reconstruct, summary,
+};
+use crate::state::{Severity, State};
+use crate::tasks::work::Task;
+use crate::typed::typed;
+
+impl Task {
+    /// Reading the headers of a folder of photos.
+    pub const LOOK_AT_PHOTOS: Self = Self::new("Looking at the photos");
+    /// Making a flight from photos.
+    pub const RECONSTRUCT: Self = Self::new("Reconstructing").writing();
+}
+
+impl State {
+    /// Does a step of making a flight from photos.
+    pub(crate) fn step_from_photos(&mut self, step: FromPhotosStep) {
+        match step {
+            FromPhotosStep::Ask(photos) => {
+                self.ask(Some(Asking::FromPhotos));
+                if self.work.is_running(Task::RECONSTRUCT) {
+                    return;
+                }
+                if let Some(photos) = photos {
+                    self.notice = None;
+                    self.from_photos.ended = None;
+                    self.from_photos.form.photos = photos.display().to_string();
+                }
+                // Files may have come, and a flight may be there that was proposed before.
+                self.look_at_photos();
+            }
+            FromPhotosStep::Fill(form) => self.fill_from_photos(form),
+            FromPhotosStep::Start => self.start_reconstructing(),
+            FromPhotosStep::Open => {
+                if let Some(Ended::Made(made)) = &self.from_photos.ended {
+                    let flight = made.flight.clone();
+                    self.apply(Command::Open(flight));
+                }
+            }
+        }
+    }
+
+    fn fill_from_photos(&mut self, form: FromPhotosForm) {
+        let before = std::mem::replace(&mut self.from_photos.form, form);
+        let now = &self.from_photos.form;
+        let are_same = (&before.photos, &before.crs) == (&now.photos, &now.crs);
+        if before != *now {
+            self.from_photos.ended = None;
+        }
+        if !are_same {
+            self.look_at_photos();
+        }
+    }
+
+    /// Takes a folder that was chosen in the desktop's dialog. A flight goes into a folder of its own inside
+    /// one that holds other things.
+    pub(crate) fn take_folder_of_photos(&mut self, field: FolderField, folder: PathBuf) {
+        let mut form = self.from_photos.form.clone();
+        match field {
+            FolderField::Photos => form.photos = folder.display().to_string(),
+            FolderField::To if may_be_made(&folder) => form.to = folder.display().to_string(),
+            FolderField::To => {
+                let proposed = self.from_photos.found.as_ref().map(|found| &found.proposed);
+                let name = proposed.and_then(|proposed| proposed.file_name());
+                let inside = folder.join(name.unwrap_or("flight".as_ref()));
+                form.to = inside.display().to_string();
+            }
+        }
+        self.fill_from_photos(form);
+    }
+
+    fn look_at_photos(&mut self) {
+        self.work.cancel(Task::LOOK_AT_PHOTOS);
+        self.from_photos.found = None;
+        let form = &self.from_photos.form;
+        // Half of a path that is being typed is no folder.
+        let Some(folder) = typed(&form.photos).filter(|folder| folder.is_dir()) else {
+            return;
+        };
+        let crs = typed_text(&form.crs);
+        let work = move |progress: &Progress| {
+            let folder = std::path::absolute(&folder).unwrap_or(folder);
+            let photos = PhotoSet::read(&folder, crs.as_deref(), progress);
+            FoundPhotos {
+                photos: photos.map_err(|error| error.to_string()),
+                proposed: proposed_folder(&folder),
+            }
+        };
+        self.start(Task::LOOK_AT_PHOTOS, work, |state, found| {
+            state.from_photos.found = Some(found);
+        });
+    }
+
+    fn start_reconstructing(&mut self) {
+        if self.is_busy(Task::RECONSTRUCT) {
+            return;
+        }
+        let form = &self.from_photos.form;
+        let proposed = self.from_photos.found.as_ref().map(|found| &found.proposed);
+        let to = typed(&form.to).or_else(|| proposed.cloned());
+        let (Some(photos), Some(to)) = (typed(&form.photos), to) else {
+            return;
+        };
+        // The flight names the photos from where it lies, wherever the program was started.
+        let absolute = |path: PathBuf| std::path::absolute(&path).unwrap_or(path);
+        let request = Request {
+            photos: absolute(photos),
+            to: absolute(to),
+            crs: typed_text(&form.crs),
+        };
+        self.from_photos.ended = None;
+        let (writing, opened) = (self.from_photos.writing.clone(), self.opened);
+        let work = move |progress: &Progress| {
+            let _writes = alone(&writing, &request.to, progress)?;
+            reconstruct(&request, &Embedded, progress)
+        };
+        self.start(
+            Task::RECONSTRUCT,
+            work,
+            move |state, made: Result<Reconstructed, FileError>| match made {
+                Ok(made) => state.take_reconstructed(made, opened),
+                Err(error) => state.take_failed(error.to_string()),
+            },
+        );
+    }
+
+    /// Says what came out and opens it, unless she has opened another flight since.
+    fn take_reconstructed(&mut self, made: Reconstructed, opened: u64) {
+        for warning in left_out(&made.left_out, made.photos) {
+            self.say(Severity::Warning, &warning);
+        }
+        for warning in &made.warnings {
+            self.say(Severity::Warning, warning);
+        }
+        for line in summary(&made) {
+            self.say(Severity::Note, &line);
+        }
+        let flight = made.flight.clone();
+        self.from_photos.ended = Some(Ended::Made(Box::new(made)));
+        if self.opened == opened && !self.is_opening() {
+            self.apply(Command::Open(flight));
+        }
+    }
+
+    fn take_failed(&mut self, why: String) {
+        let is_seen = self.asking == Some(Asking::FromPhotos);
+        let before = self.notice.take();
+        self.say(Severity::Error, &why);
+        if is_seen {
+            // The small window says it.
+            self.notice = before;
+        }
+        self.from_photos.ended = Some(Ended::Failed(why));
+    }
+}
+
+/// The text of a field, where there is one.
+fn typed_text(text: &str) -> Option<String> {
+    let text = text.trim();
+    (!text.is_empty()).then(|| text.to_owned())
+}
+
+/// Waits until no other run writes.
+///
+/// # Errors
+/// Where this one was cancelled, too.
+fn alone<'a>(
+    writing: &'a Mutex<()>,
+    to: &Path,
+    progress: &Progress,
+) -> Result<MutexGuard<'a, ()>, FileError> {
+    progress.stage("waiting for the run before to stop");
+    loop {
+        match writing.try_lock() {
+            Ok(guard) => return Ok(guard),
+            // One that panicked holds nothing any more.
+            Err(TryLockError::Poisoned(poisoned)) => return Ok(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) => {}
+        }
+        let waits = progress.advance(0, 1);
+        waits.map_err(|fault| FileError::new(to, fault))?;
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}

@@ -1,0 +1,87 @@
+//! Bundle adjustment: poses, points and lenses so that points lie where photos see them, and, where
+//! the photos know, cameras where they were.
+
+use std::collections::{HashMap, HashSet};
+
+use cumulus3d_ba::{BaConfig, Loss, bundle_adjust};
+use cumulus3d_core::{Reconstruction, Vec3};
+
+use super::{camera_id, failed};
+use crate::fault::Fault;
+use crate::photo_set::PhotoSet;
+
+/// Photos of a camera from which on its lens is adjusted: before, poses take up what is the lens's.
+const PHOTOS_OF_A_LENS: usize = 4;
+
+/// Pixels that a point may lie from where a photo sees it.
+const FARTHEST_PX: f64 = 4.0;
+/// Degrees between two rays at least: below, the depth is noise.
+const LEAST_ANGLE: f64 = 1.5;
+
+/// What is adjusted.
+pub(super) struct Adjustment<'a> {
+    /// Of these photos alone; of all where it is empty.
+    pub(super) images: HashSet<u32>,
+    /// Where cameras were, each with the standard deviation of a coordinate.
+    pub(super) places: HashMap<u32, (Vec3, f64)>,
+    /// How the lenses are stated.
+    pub(super) photos: &'a PhotoSet,
+    /// At most.
+    pub(super) iterations: usize,
+}
+
+/// Adjusts, then takes away what does not fit.
+///
+/// # Errors
+/// Where there is no solution.
+pub(super) fn adjust(model: &mut Reconstruction, what: Adjustment<'_>) -> Result<(), Fault> {
+    let is_local = !what.images.is_empty();
+    let mut of_camera: HashMap<u32, usize> = HashMap::new();
+    for image in model.registered_images() {
+        if let Some(image) = model.image(image) {
+            *of_camera.entry(image.camera_id).or_default() += 1;
+        }
+    }
+    let few = of_camera
+        .into_iter()
+        .filter(|&(_, photos)| photos < PHOTOS_OF_A_LENS);
+    let config = BaConfig {
+        refine_focal_length: !is_local,
+        refine_principal_point: !is_local,
+        refine_extra_params: !is_local,
+        constant_cameras: few.map(|(camera, _)| camera).collect(),
+        intrinsics_priors: lenses(what.photos),
+        position_priors: what.places,
+        images: what.images,
+        loss: Loss::Huber(1.0),
+        max_num_iterations: what.iterations,
+        function_tolerance: 1e-6,
+        ..BaConfig::default()
+    };
+    let summary = bundle_adjust(model, &config).map_err(|_| failed("the bundle adjustment"))?;
+    if !summary.is_usable() {
+        return Err(failed("the bundle adjustment"));
+    }
+    model.filter_observations_with_large_reprojection_error(FARTHEST_PX, None);
+    model.filter_points3d_with_small_triangulation_angle(LEAST_ANGLE, None);
+    Ok(())
+}
+
+/// Lenses as they are stated, with standard deviations: fx fy cx cy k1 k2 p1 p2.
+///
+/// Flat ground seen straight down says little of a focal length and less of the principal point. Where
+/// nobody states one, the focal length is free; the principal point is within 1 % of the middle, as those of
+/// drones are.
+fn lenses(photos: &PhotoSet) -> HashMap<u32, (Vec<f64>, Vec<f64>)> {
+    let cameras = photos.cameras.iter().enumerate();
+    cameras
+        .map(|(number, known)| {
+            let camera = &known.camera;
+            let focal = known.focal_error.unwrap_or(1.0);
+            let middle = 0.005 * f64::from(camera.width.max(camera.height));
+            let values = vec![camera.fx, camera.fy, camera.cx, camera.cy];
+            let deviations = vec![focal * camera.fx, focal * camera.fy, middle, middle];
+            (camera_id(number), (values, deviations))
+        })
+        .collect()
+}

@@ -1,0 +1,199 @@
+//! A model grows from a pair: the photo that sees most of it joins, what it sees with others becomes points,
+//! and all is adjusted.
+
+use std::collections::{HashMap, HashSet};
+
+use cumulus3d_core::{FeatureStore, MatchGraph, Reconstruction, Rigid3};
+use cumulus3d_sfm::registration::{
+    RegistrationOptions, add_missing_images, register_image, visibility_score,
+};
+use cumulus3d_sfm::triangulator::{TrackTriangulator, TrackTriangulatorOptions};
+
+use super::bundle::{Adjustment, adjust};
+use super::failed;
+use super::seed::{Seed, seeds};
+use crate::fault::Fault;
+use crate::jobs::Progress;
+use crate::photo_set::PhotoSet;
+
+/// Pairs that are tried to begin with.
+const SEEDS: usize = 5;
+/// A photo that does not fit may fit later, when the model has grown.
+const TRIES: usize = 3;
+/// All is adjusted when the model has grown by this part; else what is around the new photo.
+const GROWN: f64 = 0.2;
+/// Photos around a new one that are adjusted with it.
+const AROUND: usize = 6;
+/// Photos at least that a model is worth having of.
+const FEWEST_PHOTOS: usize = 3;
+
+/// The model.
+///
+/// # Errors
+/// Where no pair grows to three photos, or the work was cancelled.
+pub(super) fn grow(
+    store: &FeatureStore,
+    graph: &MatchGraph,
+    photos: &PhotoSet,
+    progress: &Progress,
+) -> Result<Reconstruction, Fault> {
+    progress.stage("looking for a pair to begin with");
+    let mut best: Option<Reconstruction> = None;
+    for seed in seeds(store, graph).into_iter().take(SEEDS) {
+        let model = Growing {
+            store,
+            graph,
+            photos,
+            progress,
+        }
+        .from(&seed)?;
+        let count = model.registered_image_count();
+        let most = best
+            .as_ref()
+            .map_or(0, Reconstruction::registered_image_count);
+        if count > most {
+            best = Some(model);
+        }
+        // Most of them: another pair would hardly reach more.
+        if count * 4 > graph.num_images() * 3 {
+            break;
+        }
+    }
+    best.filter(|model| model.registered_image_count() >= FEWEST_PHOTOS)
+        .ok_or_else(|| {
+            let what = "no three photos show the same from different places";
+            Fault::new(
+                what,
+                "take photos that overlap by two thirds, from places apart",
+            )
+        })
+}
+
+struct Growing<'a> {
+    store: &'a FeatureStore,
+    graph: &'a MatchGraph,
+    photos: &'a PhotoSet,
+    progress: &'a Progress,
+}
+
+impl Growing<'_> {
+    fn from(&self, seed: &Seed) -> Result<Reconstruction, Fault> {
+        let error = || failed("growing the model");
+        let mut model = Reconstruction::new();
+        add_missing_images(&mut model, self.store, self.graph).map_err(|_| error())?;
+        for (image, pose) in seed.images.into_iter().zip([Rigid3::identity(), seed.pose]) {
+            model.set_world_to_cam(image, pose).map_err(|_| error())?;
+            model.register_image(image).map_err(|_| error())?;
+        }
+        self.triangulate(&mut model, seed.images[0])?;
+        self.adjust(&mut model, HashSet::new(), 50)?;
+        let mut tries: HashMap<u32, usize> = HashMap::new();
+        let mut adjusted = 2.0;
+        self.progress
+            .stage(format!("placing {} photos", self.photos.photos.len()));
+        while let Some(image) = self.next(&model, &tries) {
+            let count = model.registered_image_count();
+            self.progress
+                .advance(count as u64, self.photos.photos.len() as u64)?;
+            let options = RegistrationOptions {
+                remove_unregistered: false,
+                ..RegistrationOptions::default()
+            };
+            let joined = register_image(&mut model, self.graph, image, &options);
+            if !joined.map_err(|_| error())?.is_registered() {
+                *tries.entry(image).or_default() += 1;
+                continue;
+            }
+            self.triangulate(&mut model, image)?;
+            let count = model.registered_image_count() as f64;
+            if count >= adjusted * (1.0 + GROWN) || count < 10.0 {
+                self.adjust(&mut model, HashSet::new(), 30)?;
+                adjusted = count;
+            } else {
+                let around = self.around(&model, image);
+                self.adjust(&mut model, around, 15)?;
+            }
+        }
+        self.progress.stage("adjusting all");
+        for round in 0..3 {
+            self.progress.advance(round, 4)?;
+            let mut triangulator = TrackTriangulator::new(&model, self.graph, tracks());
+            let again = triangulator.retriangulate(&mut model, None);
+            again.map_err(|_| error())?;
+            triangulator
+                .complete_tracks(&mut model, None)
+                .map_err(|_| error())?;
+            triangulator
+                .merge_tracks(&mut model, None)
+                .map_err(|_| error())?;
+            self.adjust(&mut model, HashSet::new(), 50)?;
+        }
+        model.remove_unregistered();
+        Ok(model)
+    }
+
+    /// The photo outside of the model that sees most of it; those that failed come last.
+    fn next(&self, model: &Reconstruction, tries: &HashMap<u32, usize>) -> Option<u32> {
+        let tried = |image: &u32| tries.get(image).copied().unwrap_or(0);
+        let outside = model
+            .image_ids()
+            .filter(|image| !model.is_image_registered(*image) && tried(image) < TRIES);
+        let scored = outside.map(|image| {
+            let score = visibility_score(model, self.graph, image);
+            (
+                std::cmp::Reverse(tried(&image)),
+                score,
+                std::cmp::Reverse(image),
+            )
+        });
+        scored.max().map(|(.., image)| image.0)
+    }
+
+    /// Points of what a photo sees with others.
+    fn triangulate(&self, model: &mut Reconstruction, image: u32) -> Result<(), Fault> {
+        let error = |_| failed("triangulating points");
+        let mut triangulator = TrackTriangulator::new(model, self.graph, tracks());
+        triangulator
+            .triangulate_image(model, image)
+            .map_err(error)?;
+        triangulator.complete_tracks(model, None).map_err(error)?;
+        triangulator.merge_tracks(model, None).map_err(error)?;
+        Ok(())
+    }
+
+    fn adjust(
+        &self,
+        model: &mut Reconstruction,
+        images: HashSet<u32>,
+        iterations: usize,
+    ) -> Result<(), Fault> {
+        let adjustment = Adjustment {
+            images,
+            places: HashMap::new(),
+            photos: self.photos,
+            iterations,
+        };
+        adjust(model, adjustment)
+    }
+
+    /// A photo with those that share most points with it.
+    fn around(&self, model: &Reconstruction, image: u32) -> HashSet<u32> {
+        let mut shared: Vec<(usize, u32)> = model
+            .registered_images()
+            .into_iter()
+            .filter(|&other| other != image)
+            .map(|other| (self.graph.match_count_between(image, other), other))
+            .collect();
+        shared.sort_by(|a, b| b.cmp(a));
+        let nearest = shared.into_iter().take(AROUND).map(|(_, other)| other);
+        nearest.chain([image]).collect()
+    }
+}
+
+fn tracks() -> TrackTriangulatorOptions {
+    TrackTriangulatorOptions {
+        // Points of two photos are most of a sparse survey's.
+        skip_two_view_tracks: false,
+        ..TrackTriangulatorOptions::default()
+    }
+}

@@ -1,0 +1,88 @@
+//! The model brought to where the photos were taken, and adjusted once more with those places: so that it
+//! neither bends nor loses its focal length over flat ground.
+
+use std::collections::{HashMap, HashSet};
+
+use cumulus3d_core::geometry::{Mat3, Quat, Sim3};
+use cumulus3d_core::{Reconstruction, Vec3};
+use glam::{DMat3, DVec3};
+
+use super::bundle::{Adjustment, adjust};
+use super::photo_of;
+use crate::fault::Fault;
+use crate::georeference::{Pair, fit};
+use crate::jobs::Progress;
+use crate::photo_set::PhotoSet;
+
+/// Standard deviation that a place has whose receiver states none, metres.
+const USUAL: f64 = 5.0;
+
+/// Brings the model to the photos' places; without three of them it stays where it is.
+///
+/// # Errors
+/// Where the adjustment has no solution, or the work was cancelled.
+pub(super) fn place(
+    model: &mut Reconstruction,
+    photos: &PhotoSet,
+    progress: &Progress,
+) -> Result<(), Fault> {
+    progress.stage("placing the model in the world");
+    progress.advance(0, 1)?;
+    let mut images = Vec::new();
+    let mut pairs = Vec::new();
+    for image in model.registered_images() {
+        let Some(place) = photos.photos[photo_of(image)].place else {
+            continue;
+        };
+        let Some(center) = model.projection_center(image) else {
+            continue;
+        };
+        // One number for all directions is what the adjustment takes.
+        let deviation = place
+            .deviation
+            .map_or(USUAL, |d| (d.length_squared() / 3.0).sqrt());
+        images.push(image);
+        pairs.push(Pair {
+            source: DVec3::new(center.x, center.y, center.z),
+            target: place.center,
+            accuracy: Some(deviation),
+        });
+    }
+    // On a line, too few, or contradicting each other: georeferencing says so of the result.
+    let Ok(fitted) = fit(&pairs) else {
+        return Ok(());
+    };
+    let similarity = &fitted.similarity;
+    model.transform(&Sim3::new(
+        similarity.scale,
+        Quat::from_rotation_matrix(&matrix(&similarity.rotation)),
+        vector(similarity.translation),
+    ));
+    let used = images.iter().zip(&pairs).zip(&fitted.used);
+    let places: HashMap<u32, (Vec3, f64)> = used
+        .filter(|(_, used)| **used)
+        .map(|((&image, pair), _)| {
+            let deviation = pair.accuracy.unwrap_or(USUAL);
+            (image, (vector(pair.target), deviation))
+        })
+        .collect();
+    for _ in 0..2 {
+        progress.advance(0, 1)?;
+        let adjustment = Adjustment {
+            images: HashSet::new(),
+            places: places.clone(),
+            photos,
+            iterations: 100,
+        };
+        adjust(model, adjustment)?;
+    }
+    Ok(())
+}
+
+fn vector(v: DVec3) -> Vec3 {
+    Vec3::new(v.x, v.y, v.z)
+}
+
+fn matrix(m: &DMat3) -> Mat3 {
+    Mat3::from_column_slice(&m.to_cols_array())
+}

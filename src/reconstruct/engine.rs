@@ -1,0 +1,36 @@
+//! What turns photos into poses and points.
+
+use std::path::Path;
+
+use crate::fault::Fault;
+use crate::jobs::Progress;
+use crate::photo_set::{LeftOut, PhotoSet};
+
+/// Structure from motion by some program or library.
+pub trait Engine {
+    /// Its name and version, for reports.
+    fn name(&self) -> String;
+
+    /// Finds poses of photos and points of what they show, in a frame of its own or, where the photos have
+    /// places, in theirs. `pairs` are the places in `photos` of photos that may show the same. `work` is a
+    /// folder for what it keeps: a second run goes on from there.
+    ///
+    /// # Errors
+    /// Where no two photos show the same, or the work was cancelled.
+    fn reconstruct(
+        &self,
+        photos: &PhotoSet,
+        pairs: &[[usize; 2]],
+        work: &Path,
+        progress: &Progress,
+    ) -> Result<Sparse, Fault>;
+}
+
+/// What an engine found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sparse {
+    /// COLMAP's cameras.txt, images.txt and points3D.txt.
+    pub files: [(&'static str, Vec<u8>); 3],
+    /// Photos that are not in it.
+    pub left_out: Vec<LeftOut>,
+}

@@ -1,0 +1,128 @@
+//! What an engineer opens, and other programs read: `poses.csv` with standard deviations, `pile.laz` in the
+//! world's coordinate system (`pile.ply` where LAS has no name for it), and the `flight.toml` of both.
+
+use crate::camera::{Brown, Camera, Distortion};
+use crate::covariance::{Deviations, Known, deviations};
+use crate::exports::{PoseRow, StatedDeviations, laz, ply, poses_csv};
+use crate::fault::Fault;
+use crate::flight::{FlightFile, FlightSettings, PosesFlight};
+use crate::formats::Reconstruction;
+use crate::opening::Georeferenced;
+use crate::photo_set::PhotoSet;
+use crate::surface::Cloud;
+
+/// The files, by name, `flight.toml` the last.
+pub(crate) struct FlightFiles {
+    pub(crate) files: Vec<(&'static str, Vec<u8>)>,
+    /// What is to be said, one sentence each.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// Of a model in its own frame and its way to the world. `folder` is the photos', from flight.toml.
+///
+/// # Errors
+/// Where a number is not finite.
+pub(crate) fn flight_files(
+    name: &str,
+    folder: &str,
+    mut model: Reconstruction,
+    placed: &Georeferenced,
+    photos: &PhotoSet,
+) -> Result<FlightFiles, Fault> {
+    let report = |error: String| Fault::new(error, "report this");
+    model.transform(&placed.similarity);
+    let known = Known {
+        centers: (model.photos.iter())
+            .map(|photo| photos.named(&photo.name)?.place?.deviation)
+            .collect(),
+        focal: (0..model.cameras.len())
+            .map(|camera| {
+                let taken = model.photos.iter().find(|photo| photo.camera == camera)?;
+                let photo = photos.named(&taken.name)?;
+                photos.cameras[photo.camera].focal_error
+            })
+            .collect(),
+    };
+    let sure = deviations(&model, &known);
+    let mut warnings = Vec::new();
+    if sure.is_none() {
+        warnings.push(
+            "it is not known how sure the poses are: too few photos say where they were taken and how well"
+                .to_owned(),
+        );
+    }
+    let rows: Vec<PoseRow> = (model.photos.iter().enumerate())
+        .map(|(number, photo)| PoseRow {
+            camera: (model.cameras.len() > 1).then(|| model.cameras[photo.camera].name.clone()),
+            stated: sure.as_ref().map(|sure| stated(sure, number)),
+            ..PoseRow::of_pose(&photo.name, &photo.pose)
+        })
+        .collect();
+    let poses = poses_csv(&rows).map_err(report)?;
+    let (surface, cloud) = surface(&model.cloud, placed).map_err(report)?;
+    let cameras: Vec<Camera> = model.cameras.iter().map(plain).collect();
+    let flight = PosesFlight {
+        name,
+        poses: "poses.csv",
+        cameras: &cameras,
+        folder: Some(folder),
+        surface,
+        crs: placed.crs.as_deref(),
+    };
+    let mut settings = FlightSettings {
+        unit: placed.unit,
+        unit_known: true,
+        ..FlightSettings::default()
+    };
+    settings.errors.world_scale = placed.scale_error.map(percent);
+    settings.errors.focal = sure.map(|sure| percent(sure.focal.into_iter().fold(0.0, f64::max)));
+    let text = FlightFile::for_poses(&flight, &settings).to_toml()?;
+    Ok(FlightFiles {
+        files: vec![
+            (surface, cloud),
+            ("poses.csv", poses.into_bytes()),
+            ("flight.toml", text.into_bytes()),
+        ],
+        warnings,
+    })
+}
+
+/// Of a photo; rotations about the three axes go by their root mean square.
+fn stated(sure: &Deviations, photo: usize) -> StatedDeviations {
+    let (position, turn) = sure.poses[photo];
+    StatedDeviations {
+        position,
+        angle: (turn.length_squared() / 3.0).sqrt().to_degrees(),
+    }
+}
+
+fn percent(part: f64) -> f64 {
+    let percent = 100.0 * part;
+    format!("{percent:.3e}").parse().unwrap_or(percent)
+}
+
+/// A camera as flight.toml has it: OpenCV's model, whose unused coefficients COLMAP's readers may leave out.
+fn plain(camera: &Camera) -> Camera {
+    let distortion = match &camera.distortion {
+        Distortion::Brown(brown) if brown.coefficients() == [0.0; 8] => Distortion::None,
+        Distortion::Brown(brown) => Distortion::Brown(Brown::new(brown.coefficients())),
+        other => other.clone(),
+    };
+    Camera {
+        distortion,
+        ..camera.clone()
+    }
+}
+
+fn surface(cloud: &Cloud, placed: &Georeferenced) -> Result<(&'static str, Vec<u8>), String> {
+    let epsg = placed
+        .crs
+        .as_deref()
+        .and_then(|crs| crs.strip_prefix("EPSG:"));
+    let epsg = epsg.and_then(|code| code.parse().ok());
+    let source = "fragscale reconstruct";
+    match epsg.map(|epsg| laz(cloud, epsg, source)) {
+        Some(Ok(bytes)) => Ok(("pile.laz", bytes)),
+        _ => Ok(("pile.ply", ply(cloud, source)?)),
+    }
+}

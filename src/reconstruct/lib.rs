@@ -1,0 +1,110 @@
+//! Photos become a flight: the paper's first link ("VisualSFM: SIFT, matching, bundle adjustment"), inside
+//! the program.
+//!
+//! ```text
+//! photo_set   which files of a folder are photos for it, whose camera, where from
+//! pairs       which photos are compared: neighbours, not all with all
+//! engine      what an engine has to do
+//! embedded    the engine that is always there: cumulus3d's parts, in pure Rust
+//! covariance  how sure poses and lenses are
+//! in_world    the photos' own positions as a place in the world
+//! flight_files  poses.csv, pile.laz and flight.toml of a model in the world
+//! written     the folder that comes out
+//! proposed    where that folder goes, if nobody says otherwise
+//! said        what is said of the photos, and of what came out
+//! ```
+//!
+//! An engine leaves COLMAP's text files, which `formats` reads as it reads COLMAP's own: so that an
+//! engine is tested, replaced and looked at by other programs.
+//!
+//! This room stands on floor 5, above `opening`, whose georeferencing brings the model to the world.
+//!
+//! Pixels of photos are counted as everywhere here: (0, 0) is the outer corner of the first. cumulus3d
+//! and COLMAP's files count likewise.
+
+mod covariance;
+mod embedded;
+mod engine;
+mod flight_files;
+mod in_world;
+mod pairs;
+mod photo_set;
+mod proposed;
+mod said;
+mod written;
+
+use fragscale_core::{
+    camera, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, surface,
+};
+use fragscale_exports as exports;
+use fragscale_formats as formats;
+use fragscale_opening as opening;
+
+use std::path::PathBuf;
+
+pub use self::embedded::Embedded;
+pub use self::engine::{Engine, Sparse};
+pub use self::photo_set::{LeftOut, PhotoSet, SurveyPhoto};
+pub use self::proposed::{may_be_made, proposed_folder};
+pub use self::said::{found, left_out, summary};
+
+use self::files::FileError;
+use self::jobs::Progress;
+use self::opening::Georeferenced;
+
+/// What is to be reconstructed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Request {
+    /// The folder of the photos.
+    pub photos: PathBuf,
+    /// The folder that comes out: new, empty, or one of a run that did not end.
+    pub to: PathBuf,
+    /// The coordinate system of the world; without it the zone of UTM that the photos lie in.
+    pub crs: Option<String>,
+}
+
+/// What came out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reconstructed {
+    /// The flight.toml.
+    pub flight: PathBuf,
+    /// How many photos the model holds.
+    pub registered: usize,
+    /// Of so many photos of the folder.
+    pub photos: usize,
+    /// Photos that it does not hold.
+    pub left_out: Vec<LeftOut>,
+    /// How many points it has.
+    pub points: usize,
+    /// How far points lie from where photos see them, pixels (median).
+    pub reprojection_px: Option<f64>,
+    /// Its way to the world; `None` where the photos do not say where they were taken.
+    pub world: Option<Georeferenced>,
+    /// What is to be said of it, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Reconstructs.
+///
+/// # Errors
+/// With the file or folder that is to blame: no photos, photos that do not overlap, a folder that holds
+/// other things; or the work was cancelled. What was done by then lies in the folder, and the same request
+/// goes on with it.
+pub fn reconstruct(
+    request: &Request,
+    engine: &dyn Engine,
+    progress: &Progress,
+) -> Result<Reconstructed, FileError> {
+    let folder = written::folder(&request.to)?;
+    let photos = PhotoSet::read(&request.photos, request.crs.as_deref(), progress)?;
+    folder.go_on_with(&photos, engine)?;
+    let pairs = pairs::pairs(&photos);
+    let at = |fault| FileError::new(&request.photos, fault);
+    let sparse = engine
+        .reconstruct(&photos, &pairs, &folder.work, progress)
+        .map_err(at)?;
+    written::write(request, &folder, photos, sparse, progress)
+}
+
+#[cfg(test)]
+mod tests;

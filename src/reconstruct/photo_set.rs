@@ -1,0 +1,210 @@
+//! The photos of a folder that go into a reconstruction: whose camera took them, from where.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+
+use crate::camera::Camera;
+use crate::fault::Fault;
+use crate::files::FileError;
+use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
+use crate::formats::{PhotoCameras, expected_deviation, photos_in};
+use crate::in_world::World;
+use crate::jobs::Progress;
+
+/// A photo to be reconstructed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurveyPhoto {
+    /// The file's name.
+    pub name: String,
+    /// The file.
+    pub path: PathBuf,
+    /// The place of its camera in [`PhotoSet::cameras`].
+    pub camera: usize,
+    /// Where it was taken.
+    pub place: Option<Place>,
+    /// Which way its camera looked, a unit vector in the world, where it says so.
+    pub looks: Option<DVec3>,
+}
+
+/// Where a photo was taken, by its own receiver.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// From [`PhotoSet::origin`], in the unit of the world.
+    pub center: DVec3,
+    /// Standard deviations towards east, north and up, metres, where they can be known.
+    pub deviation: Option<DVec3>,
+}
+
+/// A camera as the photos state it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurveyCamera {
+    /// Its intrinsics; a guess where `focal_error` is `None`.
+    pub camera: Camera,
+    /// How far its focal length is expected to be off, a part of it.
+    pub focal_error: Option<f64>,
+}
+
+/// A photo that is left out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LeftOut {
+    /// The file's name.
+    pub photo: String,
+    /// Why, as a clause: "it cannot be read (...)".
+    pub why: String,
+}
+
+/// The photos of a folder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PhotoSet {
+    /// In the order of their names.
+    pub photos: Vec<SurveyPhoto>,
+    /// Their cameras.
+    pub cameras: Vec<SurveyCamera>,
+    /// Files that are none.
+    pub left_out: Vec<LeftOut>,
+    /// From where places count, in the world.
+    pub origin: DVec3,
+    /// How many photos the folder has.
+    pub count: usize,
+}
+
+/// The focal length that is tried where nothing is known of it, in parts of the longer side: between that
+/// of a drone's wide lens (0.7) and that of a camera's normal one (1.4).
+const GUESSED_FOCAL: f64 = 1.0;
+
+impl PhotoSet {
+    /// The photo of that name.
+    pub fn named(&self, name: &str) -> Option<&SurveyPhoto> {
+        // Sorted as paths are: not quite as names.
+        self.photos.iter().find(|photo| photo.name == name)
+    }
+
+    /// The photos that lie in a folder. `crs` is the world's, else the zone of UTM of the first place.
+    ///
+    /// # Errors
+    /// Where the folder cannot be read or has fewer than three photos, or the coordinate system is none.
+    pub fn read(folder: &Path, crs: Option<&str>, progress: &Progress) -> Result<Self, FileError> {
+        let at = |fault| FileError::new(folder, fault);
+        let files = photos_in(folder)?;
+        progress.stage(format!("reading the headers of {} photos", files.len()));
+        let mut left_out = Vec::new();
+        let mut read = Vec::new();
+        for (done, path) in files.iter().enumerate() {
+            progress
+                .advance(done as u64, files.len() as u64)
+                .map_err(at)?;
+            let name = path.file_name().unwrap_or_default();
+            let name = name.to_string_lossy().into_owned();
+            match photo_metadata::read_file(path) {
+                Ok(metadata) => read.push((name, path, metadata)),
+                Err(error) => left_out.push(LeftOut {
+                    photo: name,
+                    why: format!("it cannot be read ({})", error.fault.what),
+                }),
+            }
+        }
+        if read.len() < 3 {
+            let what = format!(
+                "{} of its {} photos can be read; a reconstruction needs three at least",
+                read.len(),
+                files.len()
+            );
+            let remedy = "name the folder in which the photos lie";
+            return Err(at(Fault::new(what, remedy)));
+        }
+        let world = World::of(crs, read.iter().map(|(.., metadata)| metadata)).map_err(at)?;
+        let mut cameras = Cameras::default();
+        let photos: Vec<SurveyPhoto> = read
+            .into_iter()
+            .map(|(name, path, metadata)| {
+                let world = world.as_ref();
+                let center = world.and_then(|world| world.place(&metadata));
+                let measured = metadata.place;
+                let looks = metadata.orientation.as_ref();
+                SurveyPhoto {
+                    name,
+                    path: path.clone(),
+                    camera: cameras.of(&metadata),
+                    place: center.map(|center| Place {
+                        center,
+                        deviation: measured.and_then(expected_deviation),
+                    }),
+                    // East and north of the Earth are near enough those of a grid.
+                    looks: looks.map(|looks| looks.pose(DVec3::ZERO).rotation.z_axis),
+                }
+            })
+            .collect();
+        Ok(Self {
+            photos,
+            cameras: cameras.all(),
+            left_out,
+            origin: world.map_or(DVec3::ZERO, |world| world.origin),
+            count: files.len(),
+        })
+    }
+}
+
+/// The cameras found so far: those of which the photos state the focal length, then the others.
+#[derive(Default)]
+struct Cameras {
+    stated: PhotoCameras,
+    all: Vec<(Key, SurveyCamera)>,
+}
+
+#[derive(PartialEq)]
+enum Key {
+    Stated(usize),
+    Unknown([Option<String>; 4], (u32, u32)),
+}
+
+impl Cameras {
+    fn of(&mut self, photo: &PhotoMetadata) -> usize {
+        let key = match self.stated.of(photo) {
+            Some(place) => Key::Stated(place),
+            None => {
+                let device = [&photo.make, &photo.model, &photo.serial, &photo.lens];
+                Key::Unknown(device.map(Clone::clone), photo.size)
+            }
+        };
+        if let Some(place) = self.all.iter().position(|(known, _)| *known == key) {
+            return place;
+        }
+        let stated = match key {
+            Key::Stated(place) => self.stated.at(place),
+            Key::Unknown(..) => None,
+        };
+        let camera = match stated {
+            Some((camera, focal)) => SurveyCamera {
+                camera: camera.clone(),
+                focal_error: Some(focal.relative_error),
+            },
+            None => guessed(photo),
+        };
+        self.all.push((key, camera));
+        self.all.len() - 1
+    }
+
+    fn all(self) -> Vec<SurveyCamera> {
+        self.all.into_iter().map(|(_, camera)| camera).collect()
+    }
+}
+
+fn guessed(photo: &PhotoMetadata) -> SurveyCamera {
+    let (width, height) = photo.size;
+    let focal = GUESSED_FOCAL * f64::from(width.max(height));
+    SurveyCamera {
+        camera: Camera {
+            name: photo.model.clone().unwrap_or_else(|| "camera".to_owned()),
+            width,
+            height,
+            fx: focal,
+            fy: focal,
+            cx: f64::from(width) / 2.0,
+            cy: f64::from(height) / 2.0,
+            skew: 0.0,
+            distortion: crate::camera::Distortion::None,
+        },
+        focal_error: None,
+    }
+}

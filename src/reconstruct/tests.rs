@@ -1,0 +1,272 @@
+//! From rendered photos of a known surface to the flight, and from folders in which something is wrong.
+
+use std::fs;
+use std::path::Path;
+use std::sync::OnceLock;
+
+use fragscale_core::split_mix::SplitMix;
+use fragscale_sample::files::photo::jpeg;
+use fragscale_sample::files::photo_metadata::{DjiGimbal, GpsPosition, PhotoMetadata};
+use glam::{DVec2, DVec3};
+use image::{Rgb, RgbImage};
+use rayon::prelude::*;
+
+use super::*;
+use crate::camera::{Brown, Camera, Distortion, Pose};
+use crate::formats::read_cloud;
+use crate::geodesy::Crs;
+use crate::opening::{OpenOptions, open_flight};
+
+const ORIGIN: DVec3 = DVec3::new(452_300.0, 5_411_900.0, 300.0);
+
+fn camera() -> Camera {
+    let lens = Brown::new([-0.05, 0.02, 3e-4, -2e-4, 0.0, 0.0, 0.0, 0.0]);
+    Camera {
+        name: "c".to_owned(),
+        width: 640,
+        height: 480,
+        fx: 600.0,
+        fy: 600.0,
+        cx: 321.0,
+        cy: 239.0,
+        skew: 0.0,
+        distortion: Distortion::Brown(lens),
+    }
+}
+
+/// Nine photos from about 30 m, 3 by 3, that overlap by three quarters.
+fn poses() -> Vec<Pose> {
+    let mut random = SplitMix(11);
+    let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+    (0..9)
+        .map(|number| {
+            let (column, row) = (f64::from(number % 3) - 1.0, f64::from(number / 3) - 1.0);
+            let center = DVec3::new(
+                column * 8.0 + uniform(),
+                row * 6.0 + uniform(),
+                30.0 + 4.0 * uniform(),
+            );
+            // The outer ones look at the middle a little.
+            Pose::from_tilt_pan(center, [80.0 + 8.0 * uniform(), 360.0 * uniform()])
+        })
+        .collect()
+}
+
+/// The rock, metres.
+fn height(at: DVec2) -> f64 {
+    1.2 * (0.35 * at.x).sin() * (0.3 * at.y).cos() + 0.4 * (0.9 * at.x + 0.7 * at.y + 0.5).sin()
+}
+
+/// Where a ray meets it.
+fn met(center: DVec3, direction: DVec3) -> DVec3 {
+    let mut t = -center.z / direction.z;
+    for _ in 0..12 {
+        let at = center + direction * t;
+        t += (at.z - height(at.truncate())) / -direction.z;
+    }
+    center + direction * t
+}
+
+/// Gray between 0 and 1: noise of three widths.
+fn texture(at: DVec2, seed: u64) -> f64 {
+    let noise = |width: f64, seed: u64| {
+        let (cell, part) = ((at / width).floor(), (at / width).fract_gl());
+        let value = |x: f64, y: f64| {
+            let place =
+                ((cell.x + x) as i64 as u64) << 32 ^ ((cell.y + y) as i64 as u64 & 0xffff_ffff);
+            let mut random = SplitMix(place.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ seed);
+            (random.next() >> 40) as f64 / (1_u64 << 24) as f64
+        };
+        let s = part * part * (3.0 - 2.0 * part);
+        let low = value(0.0, 0.0) * (1.0 - s.x) + value(1.0, 0.0) * s.x;
+        let high = value(0.0, 1.0) * (1.0 - s.x) + value(1.0, 1.0) * s.x;
+        low * (1.0 - s.y) + high * s.y
+    };
+    0.4 * noise(0.2, seed) + 0.35 * noise(0.55, seed + 1) + 0.25 * noise(1.7, seed + 2)
+}
+
+fn photo(pose: &Pose, seed: u64) -> RgbImage {
+    let camera = camera();
+    let rows: Vec<Vec<u8>> = (0..camera.height)
+        .into_par_iter()
+        .map(|row| {
+            (0..camera.width)
+                .flat_map(|column| {
+                    let pixel = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
+                    let direction = pose.rotation * camera.direction_as_shot(pixel).unwrap();
+                    let at = met(pose.center, direction).truncate();
+                    let gray = (30.0 + 200.0 * texture(at, seed)) as u8;
+                    [gray, gray / 2 + 40, gray / 2]
+                })
+                .collect()
+        })
+        .collect();
+    RgbImage::from_raw(camera.width, camera.height, rows.concat()).unwrap()
+}
+
+fn metadata(pose: Option<&Pose>) -> PhotoMetadata {
+    let crs = Crs::understand("EPSG:32632").unwrap();
+    let gps = pose.map(|pose| crs.to_geographic(ORIGIN + pose.center).unwrap());
+    PhotoMetadata {
+        make: Some("fragscale".to_owned()),
+        model: Some("test".to_owned()),
+        // 35 mm film: 600 px of a diagonal of 800 px, 1.3 % off.
+        focal_length_35mm: Some(32),
+        gps: gps.map(|place| GpsPosition {
+            latitude: place.latitude,
+            longitude: place.longitude,
+            altitude: place.height,
+        }),
+        rtk: pose.map(|_| [0.01, 0.01, 0.02]),
+        dji: pose.map(|_| DjiGimbal {
+            roll: 0.0,
+            yaw: 0.0,
+            pitch: -80.0,
+            relative_altitude: 30.0,
+        }),
+        ..PhotoMetadata::default()
+    }
+}
+
+fn write(folder: &Path, name: &str, image: &RgbImage, pose: Option<&Pose>) {
+    let bytes = jpeg(image, 92, &metadata(pose)).unwrap();
+    fs::write(folder.join(name), bytes).unwrap();
+}
+
+/// Photos `IMG_1.jpg` to `IMG_9.jpg` and three that are none: a blank one, an empty file, and one of
+/// another place.
+fn photos() -> &'static Path {
+    static PHOTOS: OnceLock<tempfile::TempDir> = OnceLock::new();
+    let folder = PHOTOS.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        for (number, pose) in (1..).zip(&poses()) {
+            let name = format!("IMG_{number}.jpg");
+            write(folder.path(), &name, &photo(pose, 1), Some(pose));
+        }
+        let pose = &poses()[4];
+        let blank = RgbImage::from_pixel(640, 480, Rgb([120, 120, 120]));
+        write(folder.path(), "blank.jpg", &blank, Some(pose));
+        write(folder.path(), "other.jpg", &photo(pose, 99), Some(pose));
+        fs::write(folder.path().join("empty.jpg"), []).unwrap();
+        folder
+    });
+    folder.path()
+}
+
+fn request(photos: &Path, to: &Path) -> Request {
+    Request {
+        photos: photos.to_owned(),
+        to: to.to_owned(),
+        crs: None,
+    }
+}
+
+/// Poses, lens, points, standard errors and coordinate system are those that the photos were rendered with; what
+/// is none is left out with its reason. Interrupted between two stages and started again, the same comes out.
+#[test]
+fn rendered_photos_become_their_flight() {
+    let folder = tempfile::tempdir().unwrap();
+    let to = folder.path().join("flight");
+    let progress = Progress::default();
+    let made = reconstruct(&request(photos(), &to), &Embedded, &progress).unwrap();
+    assert_eq!((made.registered, made.photos), (9, 12));
+    let why = |name: &str| {
+        let left = made.left_out.iter().find(|left| left.photo == name);
+        left.map(|left| left.why.clone()).unwrap_or_default()
+    };
+    assert!(why("blank.jpg").contains("blurred"), "{:?}", made.left_out);
+    assert!(
+        why("other.jpg").contains("too little"),
+        "{:?}",
+        made.left_out
+    );
+    assert!(
+        why("empty.jpg").contains("cannot be read"),
+        "{:?}",
+        made.left_out
+    );
+    assert!(made.reprojection_px.unwrap() < 0.5);
+
+    let opened = open_flight(&made.flight, &OpenOptions::default(), &progress).unwrap();
+    let parts = opened.flight.parts();
+    assert_eq!(opened.crs.as_deref(), Some("EPSG:32632"));
+    assert_eq!(parts.photos.len(), 9);
+    let ground_pixel = 30.0 / 600.0;
+    let mut squares = 0.0;
+    for (photo, pose) in parts.photos.iter().zip(poses()) {
+        let off = photo.pose.center - ORIGIN - pose.center;
+        squares += off.length_squared() / 9.0;
+        let turn = photo.pose.rotation.transpose() * pose.rotation;
+        let angle = ((turn.x_axis.x + turn.y_axis.y + turn.z_axis.z - 1.0) / 2.0).clamp(-1.0, 1.0);
+        assert!(angle.acos().to_degrees() < 0.1, "{}: {angle}", photo.name);
+        let stated = opened.flight.errors(photo).pose;
+        assert!(
+            stated.position.is_some() && stated.angle.is_some(),
+            "{}",
+            photo.name
+        );
+    }
+    assert!(squares.sqrt() < 0.3 * ground_pixel, "{squares}");
+    let focal = parts.cameras[0].fx;
+    assert!((focal / 600.0 - 1.0).abs() < 2e-3, "{focal}");
+    let cloud = read_cloud(&to.join("pile.laz"), &progress).unwrap().cloud;
+    let mut off: Vec<f64> = (cloud.points.iter())
+        .map(|point| *point - ORIGIN)
+        .map(|point| (point.z - height(point.truncate())).abs())
+        .collect();
+    assert!(off.len() > 2000, "{}", off.len());
+    let median = geometry::median(&mut off).unwrap();
+    assert!(median < ground_pixel, "{median}");
+
+    // The same again, cut off when the features are found.
+    let again = folder.path().join("again");
+    let stopped = Progress::default();
+    let watched = stopped.clone();
+    let watcher = std::thread::spawn(move || {
+        while !watched.snapshot().0.starts_with("comparing") {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        watched.cancel();
+    });
+    let cut = reconstruct(&request(photos(), &again), &Embedded, &stopped).unwrap_err();
+    watcher.join().unwrap();
+    assert_eq!(cut.fault.what, "cancelled");
+    assert!(again.join("unfinished/features.bin").exists());
+    let second = reconstruct(&request(photos(), &again), &Embedded, &progress).unwrap();
+    assert!(!again.join("unfinished").exists());
+    assert_eq!(
+        (second.registered, second.points),
+        (made.registered, made.points)
+    );
+    for name in ["poses.csv", "pile.laz"] {
+        let read = |folder: &Path| fs::read(folder.join(name)).unwrap();
+        assert!(read(&again) == read(&to), "{name}");
+    }
+}
+
+/// One line, and nothing left where nothing was.
+#[test]
+fn folders_without_photos_that_overlap_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let photos = folder.path().join("photos");
+    let to = folder.path().join("flight");
+    fs::create_dir(&photos).unwrap();
+    let refused = |what: &str| {
+        let error = reconstruct(&request(&photos, &to), &Embedded, &Progress::default());
+        let error = error.unwrap_err().to_string();
+        assert!(error.contains(what), "{error}");
+        assert!(!error.contains('\n'));
+    };
+    refused("a reconstruction needs three at least");
+    for (number, pose) in (1..4).zip(&poses()) {
+        let name = format!("IMG_{number}.jpg");
+        // Each of another place.
+        write(&photos, &name, &photo(pose, 1000 * number), Some(pose));
+    }
+    refused("show the same");
+    fs::write(to.join("mine.txt"), "mine").unwrap();
+    let _ = fs::remove_dir_all(to.join("unfinished"));
+    refused("the folder is not empty");
+    fs::write(to.join("flight.toml"), "").unwrap();
+    refused("there is a flight in it already");
+}

@@ -1,0 +1,164 @@
+//! The folder that comes out: `flight.toml` and what it names, and `reconstruction/` with COLMAP's text files. While the work
+//! goes on it has `unfinished/`, which a second run goes on with.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::engine::{Engine, Sparse};
+use crate::fault::Fault;
+use crate::files::{self, FileError};
+use crate::flight_files::flight_files;
+use crate::formats::read_project;
+use crate::jobs::Progress;
+use crate::opening::{GeoreferenceRequest, flight_text_of, georeference, path_from};
+use crate::photo_set::PhotoSet;
+use crate::{Reconstructed, Request};
+
+const FLIGHT: &str = "flight.toml";
+const MODEL: &str = "reconstruction";
+const UNFINISHED: &str = "unfinished";
+/// What the unfinished work is of: a line a photo.
+const OF: &str = "photos.txt";
+
+/// The folder that comes out.
+pub(crate) struct Folder {
+    path: PathBuf,
+    /// For what an engine keeps.
+    pub(crate) work: PathBuf,
+}
+
+/// The folder: one to be made, an empty one, or that of a run that did not end.
+///
+/// # Errors
+/// Where it holds other things.
+pub(crate) fn folder(to: &Path) -> Result<Folder, FileError> {
+    let at = |fault| FileError::new(to, fault);
+    let work = to.join(UNFINISHED);
+    if to.join(FLIGHT).exists() {
+        let fault = Fault::new("there is a flight in it already", "name a new folder");
+        return Err(at(fault));
+    }
+    let is_empty = match fs::read_dir(to) {
+        Ok(mut entries) => entries.next().is_none(),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => true,
+        Err(error) => return Err(at(cannot("read", &error))),
+    };
+    if !is_empty && !work.join(OF).exists() {
+        let fault = Fault::new("the folder is not empty", "name a new folder");
+        return Err(at(fault));
+    }
+    Ok(Folder {
+        path: to.to_owned(),
+        work,
+    })
+}
+
+impl Folder {
+    /// Makes the folder; throws unfinished work away that is of other photos, or of another engine's.
+    ///
+    /// # Errors
+    /// Where the folder cannot be written.
+    pub(crate) fn go_on_with(
+        &self,
+        photos: &PhotoSet,
+        engine: &dyn Engine,
+    ) -> Result<(), FileError> {
+        let mut text = format!("{}\n", engine.name());
+        for photo in &photos.photos {
+            let size = fs::metadata(&photo.path).map_or(0, |file| file.len());
+            text += &format!("{} {size} {}\n", photo.camera, photo.name);
+        }
+        let of = self.work.join(OF);
+        let written = |error: io::Error| FileError::new(&of, cannot("be written", &error));
+        if fs::read_to_string(&of).is_ok_and(|before| before == text) {
+            return Ok(());
+        }
+        if self.work.exists() {
+            fs::remove_dir_all(&self.work).map_err(written)?;
+        }
+        fs::create_dir_all(&self.work).map_err(written)?;
+        fs::write(&of, text).map_err(written)
+    }
+}
+
+fn cannot(what: &str, error: &io::Error) -> Fault {
+    let what = format!("the folder cannot {what} ({error})");
+    Fault::new(what, "choose a folder that may be written to")
+}
+
+/// Writes what was found, brings it to the world, and takes the unfinished work away.
+///
+/// # Errors
+/// Where the folder cannot be written.
+pub(crate) fn write(
+    request: &Request,
+    folder: &Folder,
+    photos: PhotoSet,
+    sparse: Sparse,
+    progress: &Progress,
+) -> Result<Reconstructed, FileError> {
+    let model = folder.path.join(MODEL);
+    let flight = folder.path.join(FLIGHT);
+    let at = |error: &io::Error| FileError::new(&folder.path, cannot("be written", error));
+    fs::create_dir_all(&model).map_err(|error| at(&error))?;
+    for (name, bytes) in &sparse.files {
+        files::write_whole(&model.join(name), bytes).map_err(|error| at(&error))?;
+    }
+    let placed = georeference(
+        &model,
+        &GeoreferenceRequest {
+            photos: Some(request.photos.clone()),
+            crs: request.crs.clone(),
+            ..GeoreferenceRequest::default()
+        },
+        progress,
+    );
+    let mut warnings = Vec::new();
+    let read = read_project(&model, progress)?.reconstruction;
+    let (registered, points) = (read.photos.len(), read.cloud.points.len());
+    let reprojection_px = read.median_reprojection_px();
+    let name = request.photos.canonicalize().unwrap_or_default();
+    let name = name.file_name().unwrap_or_default().to_string_lossy();
+    let placed = match placed {
+        Ok(placed) => {
+            progress.stage("finding how sure the poses are");
+            warnings.extend(placed.warnings.iter().cloned());
+            let here = fs::canonicalize(&folder.path).map_err(|error| at(&error))?;
+            let to_photos = path_from(&here, &request.photos);
+            let made = to_photos
+                .and_then(|to_photos| flight_files(&name, &to_photos, read, &placed, &photos))
+                .map_err(|fault| FileError::new(&folder.path, fault))?;
+            warnings.extend(made.warnings);
+            // flight.toml is the last: with it the folder is a flight.
+            for (name, bytes) in &made.files {
+                files::write_whole(&folder.path.join(name), bytes).map_err(|error| at(&error))?;
+            }
+            Some(placed)
+        }
+        Err(error) => {
+            warnings.push(format!(
+                "the model has no unit and no place in the world: {}",
+                error.fault
+            ));
+            let photos = Some(request.photos.as_path());
+            let text = flight_text_of(None, Some(&name), &flight, &model, photos, None)?;
+            files::write_whole(&flight, text.as_bytes()).map_err(|error| at(&error))?;
+            None
+        }
+    };
+    let mut left_out = photos.left_out;
+    left_out.extend(sparse.left_out);
+    // The flight is whole: what is left over harms nobody.
+    let _ = fs::remove_dir_all(&folder.work);
+    Ok(Reconstructed {
+        flight,
+        registered,
+        photos: photos.count,
+        left_out,
+        points,
+        reprojection_px,
+        world: placed,
+        warnings,
+    })
+}
