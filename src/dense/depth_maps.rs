@@ -64,8 +64,8 @@ pub fn depth_maps(
             .iter()
             .map(|planes| planes.as_ref().map(inverse_depths))
             .collect();
-        for which in 0..views.len() {
-            if let Some(planes) = &mut found[which] {
+        for (which, planes) in found.iter_mut().enumerate() {
+            if let Some(planes) = planes {
                 let mut problem = problem(views, &images, which, own(which), 0);
                 for (source, other) in problem.sources.iter_mut().zip(own(which)) {
                     source.inverse_depths = depths[*other].clone();

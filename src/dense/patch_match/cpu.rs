@@ -1,5 +1,11 @@
 //! The sweeps on the processor, rows of one colour side by side on all cores.
 
+#![expect(
+    clippy::needless_range_loop,
+    clippy::cast_possible_wrap,
+    reason = "iterators' closures are not inlined into code for another kind of processor; sides of images are small"
+)]
+
 use rayon::prelude::*;
 
 use super::pair::project;

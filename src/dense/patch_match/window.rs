@@ -2,6 +2,8 @@
 //! weighted by likeness to the window's centre and nearness to it (bilaterally), so that a window at an
 //! edge speaks for the centre's side.
 
+#![expect(clippy::cast_possible_wrap, reason = "sides of images are small")]
+
 use super::pair::project;
 use super::{NOISE, OFFSETS, SAMPLES, SIGMA_GREY, SIGMA_PIXELS, UNSEEN};
 use crate::luma::Luma;
