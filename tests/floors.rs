@@ -42,13 +42,14 @@ const FLOORS: [(&str, i32); 16] = [
 
 /// The other members and what they may be built on. Cargo holds that nobody uses what is not in its
 /// list; this table, that the lists do not grow unseen.
-const MEMBERS: [(&str, &[&str]); 9] = [
+const MEMBERS: [(&str, &[&str]); 10] = [
     ("core", &[]),
     ("fragmentation", &["core"]),
     ("formats", &["core", "fragmentation"]),
     ("opening", &["core", "formats", "fragmentation"]),
     ("exports", &["core", "fragmentation"]),
     ("render", &["core"]),
+    ("dense", &["core", "render"]),
     ("sample", &["core", "exports", "fragmentation", "formats"]),
     ("reconstruct", &["core", "exports", "formats", "opening"]),
     (
