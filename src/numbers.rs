@@ -78,6 +78,12 @@ fn with_decimals(number: f64, decimals: i32) -> String {
     format!("{rounded:.*}", usize::try_from(decimals).unwrap_or(0))
 }
 
+/// A relative standard error in percent, with the four digits that such a number can have.
+pub fn stated_percent(relative: f64) -> f64 {
+    let percent = 100.0 * relative;
+    format!("{percent:.3e}").parse().unwrap_or(percent)
+}
+
 /// The largest of 1, 2 and 5 times a power of ten that is no larger than `most`, without the noise of
 /// the power; `None` where there is none.
 pub fn round_down(most: f64) -> Option<f64> {

@@ -412,6 +412,12 @@ mod tests {
         let free = rows - photos * 6 - points * 3;
         let expected = (0.64 * model.observations.len() as f64 / free as f64).sqrt();
         assert!((found.pixel - expected).abs() < 1e-9, "{}", found.pixel);
+        let lens = photos * 6;
+        let both = covariance[(lens, lens)]
+            + covariance[(lens + 1, lens + 1)]
+            + 2.0 * covariance[(lens, lens + 1)];
+        let expected = both.sqrt() / 2001.0;
+        assert!((found.focal[0] / expected - 1.0).abs() < 1e-4, "{expected}");
         assert!(found.focal[0] < 0.03);
     }
 

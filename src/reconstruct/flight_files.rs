@@ -6,6 +6,7 @@ use crate::exports::{PoseRow, StatedDeviations, laz, ply, poses_csv};
 use crate::fault::Fault;
 use crate::flight::{FlightFile, FlightSettings, PosesFlight};
 use crate::formats::Reconstruction;
+use crate::numbers::stated_percent;
 use crate::opening::Georeferenced;
 use crate::photo_set::PhotoSet;
 use crate::surface::Cloud;
@@ -72,8 +73,9 @@ pub(crate) fn flight_files(
         unit_known: true,
         ..FlightSettings::default()
     };
-    settings.errors.world_scale = placed.scale_error.map(percent);
-    settings.errors.focal = sure.map(|sure| percent(sure.focal.into_iter().fold(0.0, f64::max)));
+    settings.errors.world_scale = placed.scale_error.map(stated_percent);
+    settings.errors.focal =
+        sure.map(|sure| stated_percent(sure.focal.into_iter().fold(0.0, f64::max)));
     let text = FlightFile::for_poses(&flight, &settings).to_toml()?;
     Ok(FlightFiles {
         files: vec![
@@ -92,11 +94,6 @@ fn stated(sure: &Deviations, photo: usize) -> StatedDeviations {
         position,
         angle: (turn.length_squared() / 3.0).sqrt().to_degrees(),
     }
-}
-
-fn percent(part: f64) -> f64 {
-    let percent = 100.0 * part;
-    format!("{percent:.3e}").parse().unwrap_or(percent)
 }
 
 fn surface(cloud: &Cloud, placed: &Georeferenced) -> Result<(&'static str, Vec<u8>), String> {

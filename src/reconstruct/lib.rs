@@ -33,7 +33,9 @@ mod proposed;
 mod said;
 mod written;
 
-use fragscale_core::{camera, fault, files, flight, geodesy, georeference, jobs, numbers, surface};
+use fragscale_core::{
+    camera, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, surface,
+};
 use fragscale_exports as exports;
 use fragscale_formats as formats;
 use fragscale_opening as opening;

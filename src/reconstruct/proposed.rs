@@ -1,8 +1,8 @@
 //! Where a flight goes that is made of photos, if nobody says otherwise.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
+
+use crate::written;
 
 /// Beside the folder of the photos: "NAME flight", or with a number where another flight is there. A folder
 /// that a run left unfinished is proposed again, for the next one goes on in it.
@@ -18,18 +18,13 @@ pub fn proposed_folder(photos: &Path) -> PathBuf {
 
 /// Whether a flight of photos may be made here: a folder that is new, empty, or of a run that did not end.
 pub fn may_be_made(folder: &Path) -> bool {
-    match fs::read_dir(folder) {
-        Ok(mut entries) => {
-            let is_unfinished =
-                folder.join("unfinished").is_dir() && !folder.join("flight.toml").exists();
-            entries.next().is_none() || is_unfinished
-        }
-        Err(error) => error.kind() == io::ErrorKind::NotFound,
-    }
+    written::may_be_made(folder).is_ok()
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use crate::jobs::Progress;
     use crate::{Embedded, Request, reconstruct};

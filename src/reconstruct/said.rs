@@ -3,6 +3,7 @@
 
 use crate::Reconstructed;
 use crate::fault::first_names;
+use crate::geometry::median;
 use crate::photo_set::{LeftOut, PhotoSet, SurveyCamera};
 
 /// What came out, a line each: how much of the photos is in it, where it lies.
@@ -89,9 +90,9 @@ fn places_in_words(set: &PhotoSet) -> String {
     let mut text = format!("{} of {all} say where they were taken", places.len());
     // Half of the photos are as good or better.
     let known: Vec<_> = places.iter().filter_map(|place| place.deviation).collect();
-    let level = median(known.iter().map(|of| of.x.max(of.y)));
-    let up = median(known.iter().map(|of| of.z));
-    match (level, up) {
+    let mut level: Vec<f64> = known.iter().map(|of| of.x.max(of.y)).collect();
+    let mut up: Vec<f64> = known.iter().map(|of| of.z).collect();
+    match (median(&mut level), median(&mut up)) {
         (Some(level), Some(up)) => {
             let (level, up) = (rounded(level), rounded(up));
             text += &format!(", to {level} m level and {up} m up (standard deviations)");
@@ -102,12 +103,6 @@ fn places_in_words(set: &PhotoSet) -> String {
         _ => text += ", but not how well",
     }
     text
-}
-
-fn median(numbers: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut sorted: Vec<f64> = numbers.collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len().saturating_sub(1) / 2).copied()
 }
 
 /// Two digits that count, without zeros at the end.

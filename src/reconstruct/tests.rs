@@ -46,7 +46,6 @@ fn poses() -> Vec<Pose> {
                 row * 6.0 + uniform(),
                 30.0 + 4.0 * uniform(),
             );
-            // The outer ones look at the middle a little.
             Pose::from_tilt_pan(center, [80.0 + 8.0 * uniform(), 360.0 * uniform()])
         })
         .collect()
@@ -215,7 +214,7 @@ fn rendered_photos_become_their_flight() {
         .map(|point| (point.z - height(point.truncate())).abs())
         .collect();
     assert!(off.len() > 2000, "{}", off.len());
-    let median = fragscale_core::geometry::median(&mut off).unwrap();
+    let median = geometry::median(&mut off).unwrap();
     assert!(median < ground_pixel, "{median}");
 
     // The same again, cut off when the features are found.

@@ -1,5 +1,5 @@
-//! The folder that comes out: `flight.toml` and what it names, and `reconstruction/` with COLMAP's text files. While the work
-//! goes on it has `unfinished/`, which a second run goes on with.
+//! The folder that comes out: `flight.toml` and what it names, and `reconstruction/` with COLMAP's text
+//! files. While the work goes on it has `unfinished/`, which a second run goes on with.
 
 use std::fs;
 use std::io;
@@ -11,7 +11,7 @@ use crate::files::{self, FileError, Inputs, Kind};
 use crate::flight_files::flight_files;
 use crate::formats::read_project;
 use crate::jobs::Progress;
-use crate::opening::{GeoreferenceRequest, flight_text_of, georeference, path_from};
+use crate::opening::{GeoreferenceRequest, flight_text_of, georeference_model, path_from};
 use crate::photo_set::PhotoSet;
 use crate::{Reconstructed, Request};
 
@@ -30,32 +30,39 @@ pub(crate) struct Folder {
     read: Inputs,
 }
 
-/// The folder: one to be made, an empty one, or that of a run that did not end.
+/// Whether a flight may be made in a folder: one to be made, an empty one, or that of a run that did not end.
 ///
 /// # Errors
 /// Where it holds other things.
-pub(crate) fn folder(to: &Path, photos: &Path) -> Result<Folder, FileError> {
-    let at = |fault| FileError::new(to, fault);
-    let work = to.join(UNFINISHED);
+pub(crate) fn may_be_made(to: &Path) -> Result<(), Fault> {
+    let remedy = "name a new folder";
     if to.join(FLIGHT).exists() {
-        let fault = Fault::new("there is a flight in it already", "name a new folder");
-        return Err(at(fault));
+        return Err(Fault::new("there is a flight in it already", remedy));
     }
     let is_empty = match fs::read_dir(to) {
         Ok(mut entries) => entries.next().is_none(),
         Err(error) if error.kind() == io::ErrorKind::NotFound => true,
-        Err(error) => return Err(at(cannot("read", &error))),
+        Err(error) => return Err(cannot("be read", &error)),
     };
-    if !is_empty && !work.join(OF).exists() {
-        let fault = Fault::new("the folder is not empty", "name a new folder");
-        return Err(at(fault));
+    match is_empty || to.join(UNFINISHED).join(OF).exists() {
+        true => Ok(()),
+        false => Err(Fault::new("the folder is not empty", remedy)),
     }
+}
+
+/// The folder, where a flight may be made in it.
+///
+/// # Errors
+/// Where it may not, or lies among the photos.
+pub(crate) fn folder(to: &Path, photos: &Path) -> Result<Folder, FileError> {
+    let at = |fault| FileError::new(to, fault);
+    may_be_made(to).map_err(at)?;
     let read = Inputs::of([photos]);
     // Said before the work, not after it.
     files::may_write(&to.join(FLIGHT), Kind::Flight, &read, false).map_err(at)?;
     Ok(Folder {
         path: to.to_owned(),
-        work,
+        work: to.join(UNFINISHED),
         read,
     })
 }
@@ -84,12 +91,12 @@ impl Folder {
             fs::remove_dir_all(&self.work).map_err(written)?;
         }
         fs::create_dir_all(&self.work).map_err(written)?;
-        self.write(&of, text.as_bytes(), Kind::Result)
+        self.write(&of, text.as_bytes())
     }
 
     /// Writes a file of the folder, which nobody else's files lie in.
-    fn write(&self, path: &Path, bytes: &[u8], kind: Kind) -> Result<(), FileError> {
-        let written = files::write(path, bytes, kind, &self.read, true);
+    fn write(&self, path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+        let written = files::write(path, bytes, Kind::Result, &self.read, true);
         written.map_err(|fault| FileError::new(path, fault))
     }
 }
@@ -115,19 +122,17 @@ pub(crate) fn write(
     let at = |error: &io::Error| FileError::new(&folder.path, cannot("be written", error));
     fs::create_dir_all(&model).map_err(|error| at(&error))?;
     for (name, bytes) in &sparse.files {
-        folder.write(&model.join(name), bytes, Kind::Result)?;
+        folder.write(&model.join(name), bytes)?;
     }
-    let placed = georeference(
-        &model,
-        &GeoreferenceRequest {
-            photos: Some(request.photos.clone()),
-            crs: request.crs.clone(),
-            ..GeoreferenceRequest::default()
-        },
-        progress,
-    );
-    let mut warnings = Vec::new();
     let read = read_project(&model, progress)?.reconstruction;
+    progress.stage("fitting");
+    let known = GeoreferenceRequest {
+        photos: Some(request.photos.clone()),
+        crs: request.crs.clone(),
+        ..GeoreferenceRequest::default()
+    };
+    let placed = georeference_model(&model, &read, &known);
+    let mut warnings = Vec::new();
     let (registered, points) = (read.photos.len(), read.cloud.points.len());
     let reprojection_px = read.median_reprojection_px();
     let name = request.photos.canonicalize().unwrap_or_default();
@@ -144,7 +149,7 @@ pub(crate) fn write(
             warnings.extend(made.warnings);
             // flight.toml is the last: with it the folder is a flight.
             for (name, bytes) in &made.files {
-                folder.write(&folder.path.join(name), bytes, Kind::Result)?;
+                folder.write(&folder.path.join(name), bytes)?;
             }
             Some(placed)
         }
@@ -155,7 +160,7 @@ pub(crate) fn write(
             ));
             let photos = Some(request.photos.as_path());
             let text = flight_text_of(None, Some(&name), &flight, &model, photos, None)?;
-            folder.write(&flight, text.as_bytes(), Kind::Flight)?;
+            folder.write(&flight, text.as_bytes())?;
             None
         }
     };

@@ -14,6 +14,18 @@ pub fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
+/// A file of that name in a folder that goes when the first of the two is dropped.
+///
+/// # Panics
+/// Where it cannot be written.
+#[expect(clippy::unwrap_used, reason = "in a test a panic is the report")]
+pub fn written(name: &str, bytes: impl AsRef<[u8]>) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    (folder, path)
+}
+
 /// A file or folder below `../shared/data` (or `FRAGSCALE_TEST_DATA`), or `None` where it is not
 /// there: the project's tests must pass without.
 ///

@@ -119,9 +119,9 @@ fn utm_wkt(epsg: u16) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::flight_files::read_back::written;
     use crate::jobs::Progress;
     use fragscale_formats::read_cloud;
+    use fragscale_test_data::written;
 
     fn cloud() -> Cloud {
         let points = (0..70_000).map(|i| {

@@ -8,17 +8,3 @@ mod poses_csv;
 pub use self::laz::laz;
 pub use self::ply::ply;
 pub use self::poses_csv::{Orientation, PoseRow, StatedDeviations, poses_csv};
-
-/// Reading back what was written, for the tests of the writers.
-#[cfg(test)]
-mod read_back {
-    use std::path::PathBuf;
-
-    /// A file of that name in a folder that goes when the first of the two is dropped.
-    pub(super) fn written(name: &str, bytes: impl AsRef<[u8]>) -> (tempfile::TempDir, PathBuf) {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(name);
-        std::fs::write(&path, bytes).unwrap();
-        (folder, path)
-    }
-}

@@ -65,9 +65,9 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::flight_files::read_back::written;
     use crate::jobs::Progress;
     use fragscale_formats::{CloudFile, read_cloud};
+    use fragscale_test_data::written;
 
     fn cloud(colors: bool, faces: bool) -> Cloud {
         Cloud {

@@ -144,11 +144,11 @@ mod tests {
     use glam::DMat3;
 
     use super::*;
-    use crate::flight_files::read_back::written;
     use crate::jobs::Progress;
     use crate::scale::PoseErrors;
     use fragscale_formats::read_poses;
     use fragscale_opening::{OpenOptions, open_flight};
+    use fragscale_test_data::written;
 
     /// The poses that the program itself reads from a poses.csv.
     fn read(text: &str) -> Vec<(String, Pose)> {

@@ -7,6 +7,7 @@ use super::Georeferenced;
 use crate::fault::Fault;
 use crate::flight::{FlightFile, FlightSettings, ReconstructionFlight};
 use crate::formats::FileError;
+use crate::numbers::stated_percent;
 use crate::origin::{folder_of, path_from, real};
 use crate::scale::StatedErrors;
 
@@ -74,7 +75,7 @@ pub fn flight_text_of(
         crs: placed.and_then(|placed| placed.crs.as_deref()),
     };
     let errors = StatedErrors {
-        world_scale: placed.and_then(|placed| placed.scale_error.map(percent)),
+        world_scale: placed.and_then(|placed| placed.scale_error.map(stated_percent)),
         ..StatedErrors::default()
     };
     let usual = FlightSettings::default();
@@ -88,10 +89,4 @@ pub fn flight_text_of(
     FlightFile::for_reconstruction(&flight, &settings)
         .to_toml()
         .map_err(at)
-}
-
-/// A relative standard error in percent, with the four digits that such a number can have.
-fn percent(relative: f64) -> f64 {
-    let percent = 100.0 * relative;
-    format!("{percent:.3e}").parse().unwrap_or(percent)
 }

@@ -192,18 +192,19 @@ pub fn georeference(
         )));
     }
     progress.stage("fitting");
-    let from_photos =
-        request.photos.is_some() && project.reconstruction.measured_positions.is_empty();
-    georeferenced(path, &project.reconstruction, from_photos, &request)
+    georeference_model(path, &project.reconstruction, &request)
 }
 
-/// The same of a reconstruction that was read from `path`.
-fn georeferenced(
+/// The same of a reconstruction in a frame of its own that was read from `path`.
+///
+/// # Errors
+/// Likewise.
+pub fn georeference_model(
     path: &Path,
     reconstruction: &Reconstruction,
-    from_photos: bool,
     request: &GeoreferenceRequest,
 ) -> Result<Georeferenced, FileError> {
+    let from_photos = request.photos.is_some() && reconstruction.measured_positions.is_empty();
     let mut warnings = reconstruction.warnings.clone();
     let points = match &request.control_points {
         Some(list) => Some(read_control_points(list)?),

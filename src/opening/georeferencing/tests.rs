@@ -71,7 +71,7 @@ fn reconstruction() -> Reconstruction {
 }
 
 fn run(request: &GeoreferenceRequest) -> Result<Georeferenced, FileError> {
-    georeferenced(Path::new("model"), &reconstruction(), false, request)
+    georeference_model(Path::new("model"), &reconstruction(), request)
 }
 
 /// A file that is gone with the folder.
@@ -141,7 +141,7 @@ fn receivers_in_degrees() {
             });
     }
     let request = GeoreferenceRequest::default();
-    let found = georeferenced(Path::new("model"), &reconstruction, false, &request).unwrap();
+    let found = georeference_model(Path::new("model"), &reconstruction, &request).unwrap();
     assert_is_truth(&found.similarity, 1e-7);
     assert_eq!(found.crs.as_deref(), Some("EPSG:32632"));
     let out: Vec<&str> = found
@@ -166,7 +166,7 @@ fn receivers_in_degrees() {
         crs: Some("EPSG:32631".to_owned()),
         ..request
     };
-    let other = georeferenced(Path::new("model"), &reconstruction, false, &elsewhere).unwrap();
+    let other = georeference_model(Path::new("model"), &reconstruction, &elsewhere).unwrap();
     assert_eq!(other.crs.as_deref(), Some("EPSG:32631"));
     let origin = utm.to_geographic(truth().apply(DVec3::ZERO)).unwrap();
     let there = Crs::understand("EPSG:32631")
@@ -282,7 +282,7 @@ fn a_distance_and_level() {
         level: true,
         ..GeoreferenceRequest::default()
     };
-    let found = georeferenced(Path::new("model"), &reconstruction, false, &request).unwrap();
+    let found = georeference_model(Path::new("model"), &reconstruction, &request).unwrap();
     // By hand: (2 * 15 + 4 * 30.3) / (4 + 16).
     assert!((found.similarity.scale - 7.56).abs() < 1e-12);
     assert!(found.scale_error.unwrap() > 0.0);
@@ -490,7 +490,7 @@ fn brighton_by_four_receivers() {
         photos: Some(folder.join("images")),
         ..GeoreferenceRequest::default()
     };
-    let found = georeferenced(&folder, &own, true, &request).unwrap();
+    let found = georeference_model(&folder, &own, &request).unwrap();
     assert_eq!(found.crs.as_deref(), Some("EPSG:32615"));
     assert_eq!((found.used(), found.positions.len()), (4, 4));
     let scale = found.similarity.scale * 0.02;
@@ -539,7 +539,7 @@ fn brighton_by_its_shots() {
         positions: Some(list.path()),
         ..GeoreferenceRequest::default()
     };
-    let found = georeferenced(&folder, &own, false, &request).unwrap();
+    let found = georeference_model(&folder, &own, &request).unwrap();
     assert_eq!(found.crs.as_deref(), Some("EPSG:32615"));
     assert_eq!(found.used(), stated.photos.len());
     // OpenDroneMap's projection squeezes the plane by 0.9996 and leaves heights: centimetres here.

@@ -72,8 +72,8 @@ pub fn ost_yaml(camera: &Camera) -> Result<String, String> {
 mod tests {
     use super::*;
     use crate::camera::{Brown, Fisheye, VisualSfm};
-    use crate::files::read_back::written;
     use crate::formats::read_camera;
+    use fragscale_test_data::written;
 
     fn camera(distortion: Distortion) -> Camera {
         Camera {

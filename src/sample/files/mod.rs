@@ -10,17 +10,3 @@ pub mod photo;
 pub mod photo_metadata;
 pub mod reference;
 mod xmp;
-
-/// Reading back what was written, for the tests of the writers.
-#[cfg(test)]
-mod read_back {
-    use std::path::PathBuf;
-
-    /// A file of that name in a folder that goes when the first of the two is dropped.
-    pub(super) fn written(name: &str, bytes: impl AsRef<[u8]>) -> (tempfile::TempDir, PathBuf) {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(name);
-        std::fs::write(&path, bytes).unwrap();
-        (folder, path)
-    }
-}

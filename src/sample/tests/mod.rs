@@ -2,6 +2,7 @@
 
 mod drawn_errors;
 mod fitted;
+mod survey;
 
 use serde_json::Value;
 

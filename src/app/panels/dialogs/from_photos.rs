@@ -1,7 +1,7 @@
 //! The small window that makes a new flight from photos: what was found in their folder, where the flight
 //! goes, how far it is.
 
-use super::named_field;
+use super::{browse, named_field};
 use crate::command::{Answers, Command, Dialog};
 use crate::from_photos::{Ended, FolderField, FromPhotos, FromPhotosForm, FromPhotosStep};
 use crate::names;
@@ -91,13 +91,7 @@ fn folder_row(
             crate::panels::path_field::takes_the_keys_at_first(ui, &edit);
         }
         named_field(edit, label, hover, text);
-        let browse = ui.button("Browse…");
-        browse.widget_info(|| {
-            let name = format!("Browse for the {}", label.to_lowercase());
-            egui::WidgetInfo::labeled(egui::Role::Button, true, name)
-        });
-        let hover = "Choose in the desktop's own dialog";
-        if browse.on_hover_text(hover).clicked() {
+        if browse(ui, label) {
             let dialog = Dialog::folder(label).answering(Answers::FromPhotos(field));
             commands.push(Command::Browse(dialog));
         }

@@ -1,8 +1,8 @@
 //! The small window that brings a reconstruction to the world: what is known of its place, how well
 //! that fits, and where the flight that is made of it goes.
 
-use super::named_field;
 use super::residuals::residuals;
+use super::{browse, named_field};
 use crate::command::{Answers, Asking, Command, Dialog};
 use crate::numbers::significant_digits;
 use crate::open_flight::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
@@ -145,13 +145,7 @@ fn path_row(
         let width = ui.available_width() - 80.0;
         let edit = ui.add(egui::TextEdit::singleline(text).desired_width(width));
         named_field(edit, label, "A path, typed or pasted", text);
-        let browse = ui.button("Browse…");
-        browse.widget_info(|| {
-            let name = format!("Browse for the {}", label.to_lowercase());
-            egui::WidgetInfo::labeled(egui::Role::Button, true, name)
-        });
-        let hover = "Choose in the desktop's own dialog";
-        if browse.on_hover_text(hover).clicked() {
+        if browse(ui, label) {
             let dialog = match field {
                 PathField::Photos => Dialog::folder("Folder of the flight's photos"),
                 PathField::Positions | PathField::ControlPoints => {

@@ -498,3 +498,14 @@ fn named_field(field: egui::Response, label: &str, hover: &str, text: &str) {
     });
     field.on_hover_text(hover);
 }
+
+/// The button beside a field that names a file or folder: whether the desktop's own dialog is asked for.
+fn browse(ui: &mut egui::Ui, label: &str) -> bool {
+    let browse = ui.button("Browse…");
+    browse.widget_info(|| {
+        let name = format!("Browse for the {}", label.to_lowercase());
+        egui::WidgetInfo::labeled(egui::Role::Button, true, name)
+    });
+    let hover = "Choose in the desktop's own dialog";
+    browse.on_hover_text(hover).clicked()
+}
