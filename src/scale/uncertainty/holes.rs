@@ -9,10 +9,6 @@
 //! were off by 0.95 to 1.0 of what is stated where a side was missing, by up to 1.4 with a corner missing
 //! and by 1.8 where only one end was seen, which a line follows: there the interval is too narrow. With
 //! waves of one length, a quarter, it was 0.8 (too wide) for a side. Nothing is tuned to mend that.
-//!
-//! A cloud has no points where fewer than three photos look, and its triangulation bridges that. Where flat
-//! views look over large blocks (the preset bench) bridges are what lines are most wrong by, and still not
-//! all of it: README has the coverage.
 
 use super::draws::Draws;
 use crate::scale::FittedScale;
@@ -30,23 +26,12 @@ const SHIFTS: usize = 8;
 /// From where the shifts follow.
 const SEED: u64 = 7;
 
-/// A triangle of a cloud bridges a hole where its longest edge is so many times that of most triangles
-/// of the photo.
-const BRIDGE: f64 = 3.0;
-
 /// The standard deviations that the holes of a field leave in the top and the bottom of its line, shares
-/// of them; 0 where it has none. Of a cloud (`bridges`) holes are also where long triangles bridge what
-/// no photo saw: the line rests on them, so how far it would be without them is added.
-pub(super) fn of_holes(field: &ScaleField, fitted: &FittedScale, bridges: bool) -> [f64; 2] {
-    let bridge = match bridges {
-        true => bridge_length(field),
-        false => f64::INFINITY,
-    };
-    let is_bridge = |column, row| field.longest_edge_at(column, row) > Some(bridge);
+/// of them; 0 where it has none.
+pub(super) fn of_holes(field: &ScaleField, fitted: &FittedScale) -> [f64; 2] {
     let FieldGrid { columns, rows } = field.grid;
     let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
     let off = places.map(|(column, row)| match field.scale_at(column, row) {
-        Some(_) if is_bridge(column, row) => Place::Hole,
         Some(scale) => {
             let down = (f64::from(row) + 0.5) / f64::from(rows);
             Place::Off(scale - (fitted.top + (fitted.bottom - fitted.top) * down))
@@ -58,43 +43,8 @@ pub(super) fn of_holes(field: &ScaleField, fitted: &FittedScale, bridges: bool) 
         },
     });
     let off: Vec<Place> = off.collect();
-    let (columns, rows) = (columns as usize, rows as usize);
-    let without = without_holes(&off, columns, rows);
-    let spread = spread(&off, columns, rows);
-    let rms = fitted.rms_percent / 100.0;
-    let share = |end: usize, scale: f64| {
-        let share = spread[end].hypot(without[end]) / scale.abs();
-        // Where nothing but bridges is seen, all is as unsure as the photo is rough.
-        if share.is_finite() { share } else { rms }
-    };
-    [share(0, fitted.top), share(1, fitted.bottom)]
-}
-
-/// From which length on an edge bridges a hole.
-fn bridge_length(field: &ScaleField) -> f64 {
-    let FieldGrid { columns, rows } = field.grid;
-    let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
-    let edges = places.filter_map(|(column, row)| field.longest_edge_at(column, row));
-    let mut edges: Vec<f64> = edges.collect();
-    let middle = edges.len() / 2;
-    if edges.is_empty() {
-        return f64::INFINITY;
-    }
-    BRIDGE * *edges.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
-/// How far the line of what is seen is from the one that all are off; nothing where there are no holes.
-fn without_holes(off: &[Place], columns: usize, rows: usize) -> [f64; 2] {
-    if !off.contains(&Place::Hole) {
-        return [0.0; 2];
-    }
-    let mut seen = Line::default();
-    for (place, off) in off.iter().enumerate() {
-        if let Place::Off(off) = off {
-            seen.add(((place / columns) as f64 + 0.5) / rows as f64, *off);
-        }
-    }
-    seen.ends()
+    let [top, bottom] = spread(&off, columns as usize, rows as usize);
+    [top / fitted.top.abs(), bottom / fitted.bottom.abs()]
 }
 
 /// What is known of a place of the grid.
@@ -108,7 +58,7 @@ enum Place {
 
 /// Least squares of lines t·(1 - v) + b·v.
 #[derive(Debug, Clone, Copy, Default)]
-struct Line {
+pub(super) struct Line {
     tt: f64,
     tb: f64,
     bb: f64,
@@ -117,7 +67,7 @@ struct Line {
 }
 
 impl Line {
-    fn add(&mut self, down: f64, off: f64) {
+    pub(super) fn add(&mut self, down: f64, off: f64) {
         let up = 1.0 - down;
         self.tt += up * up;
         self.tb += up * down;
@@ -127,7 +77,7 @@ impl Line {
     }
 
     /// Its ends; not finite where fewer than two rows have points.
-    fn ends(self) -> [f64; 2] {
+    pub(super) fn ends(self) -> [f64; 2] {
         let determinant = self.tt * self.bb - self.tb * self.tb;
         [
             (self.t * self.bb - self.b * self.tb) / determinant,

@@ -7,9 +7,10 @@
 
 use glam::DVec3;
 
+use super::bridges::{Bridged, of_bridges};
 use super::draws::normal_interval;
 use super::holes::of_holes;
-use super::surface_error::{DepthError, UNSEEN_BIAS, UNSEEN_SPREAD, root_mean_square};
+use super::surface_error::{DepthError, LINE_BIAS, LINE_SPREAD, root_mean_square};
 use super::{Interval, UncertainPhoto};
 use crate::camera::Camera;
 use crate::scale::field::ScaleField;
@@ -58,7 +59,11 @@ impl LineErrors {
         let rotation = field.pose().rotation;
         let roughness = root_mean_square(depths);
         let counted = depths.len() as f64;
-        let holes = of_holes(field, fitted, is_cloud);
+        let holes = of_holes(field, fitted);
+        let bridged = match is_cloud {
+            true => of_bridges(field, fitted),
+            false => Bridged::default(),
+        };
         let end = |index: usize, scale: f64| {
             let by_plane = ends[index];
             let share = 1.0 / plane.dot(by_plane);
@@ -83,11 +88,11 @@ impl LineErrors {
             let surface = roughness.map(|roughness| {
                 // The end of a line through independent values has four times the variance of their mean.
                 let seen = 2.0 * roughness / counted.sqrt();
-                let unseen = UNSEEN_SPREAD * roughness;
+                let unseen = LINE_SPREAD * roughness;
                 // Each point has its stated error, and the line is the mean of many.
                 let depth = 1.0 / plane.z.abs().max(f64::MIN_POSITIVE);
                 let stated = 2.0 * errors.surface.unwrap_or(0.0) / depth / counted.sqrt();
-                let parts = [seen, unseen, stated, holes[index]];
+                let parts = [seen, unseen, stated, holes[index], bridged.spread];
                 parts.iter().map(|part| part * part).sum::<f64>().sqrt()
             });
             LineEnd {
@@ -98,7 +103,8 @@ impl LineErrors {
                     surface,
                     errors.world_scale.map(|percent| percent / 100.0),
                 ],
-                too_large: roughness.map_or(0.0, |roughness| UNSEEN_BIAS * roughness),
+                too_large: bridged.too_large[index]
+                    + roughness.map_or(0.0, |roughness| LINE_BIAS * roughness),
             }
         };
         Self {

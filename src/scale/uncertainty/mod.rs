@@ -4,9 +4,11 @@
 //! Four corners hang on four places of a rough surface, so their rays are cast again under drawn errors
 //! (`corners`); thousands of pixels behind the best line see the pile as a whole, of which derivatives
 //! tell all (`line`); where the surface ends inside the photo, what is not seen of it is drawn from what
-//! is (`holes`); one pixel hangs on one place as well (`pixels`). What the surface adds comes from the cloud itself (`surface_error`). Draws follow from
+//! is (`holes`), and where triangles bridge what no photo saw, it is deeper (`bridges`); one pixel hangs on
+//! one place as well (`pixels`). What the surface adds comes from the cloud itself (`surface_error`). Draws follow from
 //! one seed: the same on every run.
 
+mod bridges;
 mod corners;
 mod draws;
 mod holes;

@@ -5,8 +5,9 @@
 //! lies between fragments where fewer than three photos look has no points, so the surface runs above it
 //! and scales are too large. Of simulated piles, whose true surface is known, that is a nearly constant
 //! share of the roughness, whatever the place, the number of points (15 000 to 240 000) and their noise:
-//! [`UNSEEN_BIAS`] and [`UNSEEN_SPREAD`] are measured by `benches/coverage.rs`, on other piles than those
-//! that the coverage is stated for.
+//! [`UNSEEN_BIAS`] at corners; of lines, which see much, [`LINE_BIAS`] and [`LINE_SPREAD`] beside what
+//! bridges do (`bridges`). They are measured by `benches/coverage.rs`, on other piles than those that the
+//! coverage is stated for.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -18,8 +19,11 @@ use crate::surface::{Patch, Surface};
 /// points: the gaps between fragments that no point lies in.
 pub(super) const UNSEEN_BIAS: f64 = 0.06;
 
+/// The same in the line through all of a photo, bridges not counted.
+pub(super) const LINE_BIAS: f64 = 0.03;
+
 /// How much that differs between photos at the ends of their lines, over the same (standard deviation).
-pub(super) const UNSEEN_SPREAD: f64 = 0.085;
+pub(super) const LINE_SPREAD: f64 = 0.07;
 
 /// With fewer points nothing is known of a photo's surface.
 pub(super) const LEAST_POINTS: usize = 30;
