@@ -12,6 +12,9 @@ const LABEL: f32 = 11.0;
 /// The longest bar, points.
 const BAR: f64 = 160.0;
 
+/// What is left of a narrow map beside its coordinates, points.
+const LEAST: f32 = 40.0;
+
 /// Between a label and the map.
 const GAP: f32 = 4.0;
 
@@ -29,12 +32,14 @@ pub(super) fn without_labels(map: &MapFrame, whole: Rect, ui: &egui::Ui) -> Rect
         .iter()
         .map(|line| width(&line.label))
         .fold(0.0, f32::max);
-    let left = (widths + 2.0 * GAP).min(whole.width() / 4.0);
+    // A coordinate that is cut at its begin is another one.
+    let left = (widths + 2.0 * GAP).min((whole.width() - LEAST).max(0.0));
     let below = (LABEL + 2.0 * GAP).min(whole.height() / 4.0);
     Rect::from_min_max(whole.min + vec2(left, 0.0), whole.max - vec2(0.0, below))
 }
 
-/// Lines at round coordinates, which are written at the left of the map and below it.
+/// Lines at round coordinates, which are written at the left of the map and below it where there is room for
+/// the whole of them.
 pub(super) fn grid(
     map: &MapFrame,
     painter: &egui::Painter,
@@ -44,17 +49,28 @@ pub(super) fn grid(
 ) {
     let grid = Grid::of(map);
     let line = Stroke::new(1.0, ui.visuals().text_color().gamma_multiply(0.22));
+    let mut taken: Option<Rect> = None;
+    let mut label = |at, anchor: Align2, words: &str| {
+        let font = FontId::proportional(LABEL);
+        let galley = margins.layout_no_wrap(words.to_owned(), font, Color32::WHITE);
+        let place = anchor.anchor_size(at, galley.size());
+        let is_free = taken.is_none_or(|before| !before.expand(GAP).intersects(place));
+        if is_free && margins.clip_rect().contains_rect(place) {
+            text(margins, at, anchor, LABEL, words, ui);
+            taken = Some(place);
+        }
+    };
     for across in &grid.across {
         let x = map.place(DVec2::new(across.at, 0.0))[0] as f32;
         painter.vline(x, frame.y_range(), line);
         let at = pos2(x, frame.bottom() + GAP);
-        text(margins, at, Align2::CENTER_TOP, LABEL, &across.label, ui);
+        label(at, Align2::CENTER_TOP, &across.label);
     }
     for up in &grid.up {
         let y = map.place(DVec2::new(0.0, up.at))[1] as f32;
         painter.hline(frame.x_range(), y, line);
         let at = pos2(frame.left() - GAP, y);
-        text(margins, at, Align2::RIGHT_CENTER, LABEL, &up.label, ui);
+        label(at, Align2::RIGHT_CENTER, &up.label);
     }
     let edge = Stroke::new(1.0, ui.visuals().text_color().gamma_multiply(0.5));
     margins.vline(frame.left(), frame.y_range(), edge);
