@@ -296,11 +296,23 @@ impl Inspector {
     }
 }
 
+/// Says in the middle of a frame why nothing else is there.
 pub(super) fn message(painter: &egui::Painter, frame: Rect, text: &str, ui: &egui::Ui) {
-    let color = ui.visuals().error_fg_color;
+    in_the_middle(painter, frame, text, ui.visuals().error_fg_color, ui);
+}
+
+/// Says in the middle of a frame what is waited for.
+pub(super) fn waiting(painter: &egui::Painter, frame: Rect, text: &str, ui: &egui::Ui) {
+    in_the_middle(painter, frame, text, ui.visuals().text_color(), ui);
+}
+
+fn in_the_middle(painter: &egui::Painter, frame: Rect, text: &str, color: Color32, ui: &egui::Ui) {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let galley = painter.layout(text.to_owned(), font, color, frame.width() - 20.0);
-    painter.galley(frame.center() - galley.size() / 2.0, galley, color);
+    let place = Rect::from_center_size(frame.center(), galley.size());
+    let behind = ui.visuals().panel_fill.gamma_multiply(0.85);
+    painter.rect_filled(place.expand(6.0), 3.0, behind);
+    painter.galley(place.min, galley, color);
 }
 
 /// A bar with its scale, which stays inside the frame: in rows where that is narrow, because with its first

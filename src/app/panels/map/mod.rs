@@ -98,13 +98,7 @@ pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             Some(reason) => super::inspector::message(ui.painter(), whole, reason, ui),
             None => {
                 let text = "The map is being made: footprints come first.";
-                let font = egui::TextStyle::Body.resolve(ui.style());
-                let color = ui.visuals().text_color();
-                let galley =
-                    ui.painter()
-                        .layout(text.to_owned(), font, color, whole.width() - 20.0);
-                let at = whole.center() - galley.size() / 2.0;
-                ui.painter().galley(at, galley, color);
+                super::inspector::waiting(ui.painter(), whole, text, ui);
             }
         }
         return;

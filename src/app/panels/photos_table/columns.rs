@@ -7,7 +7,7 @@ use crate::exports::{ColumnKind, PHOTO_COLUMNS, PhotoColumn};
 /// The width of the check box that chooses a photo.
 pub(super) const CHECK: f32 = 24.0;
 
-/// The least that a name has, so that numbers that matter first are in sight.
+/// The least that names have, so that numbers that matter first are in sight; short names are whole.
 const LEAST_NAME: f32 = 60.0;
 
 /// A name narrower than this has no thumbnail beside it.
@@ -17,7 +17,7 @@ pub(super) const WITH_THUMBNAIL: f32 = 128.0;
 pub(super) struct Columns {
     /// What matters first comes first.
     pub(super) all: Vec<&'static PhotoColumn>,
-    /// Of each, the widest text that a row in sight had, as far as it is a number.
+    /// Of each, the widest name or number that a row in sight had.
     seen: Vec<f32>,
     id: egui::Id,
 }
@@ -38,11 +38,15 @@ impl Columns {
     pub(super) fn widths(&self, room: f32, gap: f32) -> Vec<f32> {
         let wanted = self.all.iter().zip(self.seen.iter());
         let mut widths: Vec<f32> = wanted
-            .map(|(column, seen)| column.width.map_or(*seen, |usual| usual.max(*seen)))
+            .map(|(column, seen)| match (column.kind, column.width) {
+                (ColumnKind::Name, Some(usual)) => usual,
+                (_, usual) => usual.unwrap_or_default().max(*seen),
+            })
             .collect();
         let Some(name) = self.name() else {
             return widths;
         };
+        let least_name = self.seen[name].clamp(LEAST_NAME, widths[name].max(LEAST_NAME));
         let others = |(place, width): (usize, &f32)| (place != name).then_some(width + gap);
         let all: f32 = widths.iter().enumerate().filter_map(others).sum();
         let room = room - CHECK - gap;
@@ -52,7 +56,7 @@ impl Columns {
             // As many as are wholly in sight beside a name; the name fills the place up to the next one.
             let (mut left, usual) = (room, widths[name]);
             for (place, column) in self.all.iter().enumerate() {
-                let least = if column.is_behind { usual } else { LEAST_NAME };
+                let least = if column.is_behind { usual } else { least_name };
                 let width = widths[place] + gap;
                 if place == name {
                     continue;
@@ -74,21 +78,31 @@ impl Columns {
         self.all.iter().position(is_name)
     }
 
-    /// Notes what a row in sight has in a column: a wider number makes it wider in the next frame.
+    /// Notes what a row in sight has in a column: a wider name or number makes it wider in the next frame.
     pub(super) fn note(&mut self, place: usize, text: &str, ui: &egui::Ui) {
         if let Some(seen) = self.seen.get_mut(place) {
             *seen = seen.max(text_width(ui, text).ceil());
         }
     }
 
-    /// Keeps what was noted in this frame, which had columns of these widths.
-    pub(super) fn keep(self, widths: &[f32], ui: &egui::Ui) {
-        let mut both = self.seen.iter().zip(widths);
-        if both.any(|(seen, width)| seen > width) {
+    /// Keeps what was noted in this frame, which had columns of these widths and began with `before` known.
+    pub(super) fn keep(self, widths: &[f32], before: &[f32], ui: &egui::Ui) {
+        let is_name = |place: usize| Some(place) == self.name();
+        let mut all = self.seen.iter().zip(widths).zip(before).enumerate();
+        let is_wider = all.any(|(place, ((seen, width), before))| match is_name(place) {
+            true => seen > before,
+            false => seen > width,
+        });
+        if is_wider {
             // Nobody sees the frame in which it was too narrow: an idle window draws no second one.
             ui.ctx()
-                .request_discard("a number is wider than its column");
+                .request_discard("a name or number is wider than its column");
         }
         ui.data_mut(|data| data.insert_temp(self.id, self.seen));
+    }
+
+    /// What was known of names and numbers in sight when this frame began.
+    pub(super) fn seen(&self) -> Vec<f32> {
+        self.seen.clone()
     }
 }

@@ -55,6 +55,7 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
 fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let mut columns = Columns::of((open.number, state.preferences.unit().symbol()), ui);
     let widths = columns.widths(ui.available_width(), ui.spacing().item_spacing.x);
+    let seen = columns.seen();
     let selected_row = open
         .selected
         .and_then(|photo| open.table.shown.iter().position(|&shown| shown == photo));
@@ -123,7 +124,9 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
                         match column.kind {
                             ColumnKind::Verdict => verdict(line.photo, ui),
                             ColumnKind::Name | ColumnKind::Text => {
-                                names::name(ui, &column.short_value(&line));
+                                let text = column.short_value(&line);
+                                columns.note(place, &text, ui);
+                                names::name(ui, &text);
                             }
                             kind => {
                                 let text = column.short_value(&line);
@@ -155,7 +158,7 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
                 }
             });
         });
-    columns.keep(&widths, ui);
+    columns.keep(&widths, &seen, ui);
     ui.data_mut(|data| data.insert_temp(id, selected_row));
     if hovered != open.table.hovered {
         commands.push(Command::HoverPhoto(hovered));
