@@ -139,11 +139,16 @@ fn is_number_alone(text: &str) -> bool {
 
 /// The numbers for which only dots stand.
 fn hidden_numbers(desk: &Desk, what: &str) -> Vec<String> {
+    let mut written = desk.written();
+    written.retain(|written| written.text == "…");
+    if written.is_empty() {
+        return Vec::new();
+    }
     let called = desk.texts();
     let mut found = Vec::new();
-    for written in desk.written() {
+    for written in written {
         let dots = written.place.intersect(written.seen_in);
-        if written.text != "…" || !dots.is_positive() {
+        if !dots.is_positive() {
             continue;
         }
         let at = dots.center();
@@ -244,8 +249,8 @@ fn no_number_is_cut_whatever_the_names_and_widths() {
                 desk.click(Role::Tab, tab);
                 let viewport = desk.viewport();
                 let what = format!("round {round}.{step}, {size:?}, {tab}, viewport {viewport}");
-                // Down to the end of the page.
-                for _ in 0..4 {
+                // Down to the end of the longest page.
+                for _ in 0..if tab == "Photo" { 3 } else { 1 } {
                     found.extend(cut_numbers(&desk, &what));
                     found.extend(hidden_numbers(&desk, &what));
                     let on_page = pos2(viewport.right() + 100.0, viewport.bottom() - 20.0);
@@ -254,13 +259,15 @@ fn no_number_is_cut_whatever_the_names_and_widths() {
                 desk.harness.hover_at(viewport.center());
             }
         }
-        // Coordinates beside the map.
-        desk.press(Modifiers::COMMAND, Key::Num3);
-        let map = desk.node(Role::Image, "Map").rect();
-        let what = format!("round {round}, {size:?}, map {map}");
-        found.extend(cut_numbers(&desk, &what));
-        found.extend(hidden_numbers(&desk, &what));
-        desk.press(Modifiers::COMMAND, Key::Num1);
+        // Coordinates beside the map, which takes long to make.
+        if round % 4 == 0 {
+            desk.press(Modifiers::COMMAND, Key::Num3);
+            let map = desk.node(Role::Image, "Map").rect();
+            let what = format!("round {round}, {size:?}, map {map}");
+            found.extend(cut_numbers(&desk, &what));
+            found.extend(hidden_numbers(&desk, &what));
+            desk.press(Modifiers::COMMAND, Key::Num1);
+        }
         for key in [Key::O, Key::E, Key::P, Key::L] {
             desk.press(Modifiers::COMMAND, key);
             found.extend(cut_numbers(
@@ -357,12 +364,11 @@ fn every_number_of_the_list_can_be_scrolled_to() {
         assert!(wanted.len() > 5, "{wanted:?}");
         let mut read = BTreeSet::new();
         for step in 0..40 {
-            let cut = cut_numbers(&desk, &format!("{width}"));
-            let hidden = hidden_numbers(&desk, &format!("{width}"));
-            assert!(
-                cut.is_empty() && (step > 0 || hidden.is_empty()),
-                "{cut:?} {hidden:?}"
-            );
+            if step == 0 {
+                let mut cut = cut_numbers(&desk, "at rest");
+                cut.extend(hidden_numbers(&desk, "at rest"));
+                assert!(cut.is_empty(), "{width}: {cut:?}");
+            }
             for written in desk.written() {
                 if written.seen_in.expand(1.0).contains_rect(written.place) {
                     read.insert(written.text);
