@@ -1,8 +1,8 @@
 //! How wide the table's columns are: numbers as wide as they are, names as wide as there is room, and at rest
 //! no column is half in sight.
 
-use super::super::rows::text_width;
 use crate::exports::{ColumnKind, PHOTO_COLUMNS, PhotoColumn};
+use crate::panels::rows::text_width;
 
 /// The width of the check box that chooses a photo.
 pub(super) const CHECK: f32 = 24.0;
