@@ -12,6 +12,9 @@ const LABEL: f32 = 11.0;
 /// The longest bar, points.
 const BAR: f64 = 160.0;
 
+/// Between the bar and the sides of the frame, at least, points.
+const BESIDE_BAR: f64 = 22.0;
+
 /// What is left of a narrow map beside its coordinates, points.
 const LEAST: f32 = 40.0;
 
@@ -138,7 +141,8 @@ pub(super) fn bar(
     frame: Rect,
     ui: &egui::Ui,
 ) {
-    let Some(bar) = plan.bar(map.scale, BAR, unit) else {
+    let longest = BAR.min(f64::from(frame.width()) - 2.0 * BESIDE_BAR);
+    let Some(bar) = plan.bar(map.scale, longest, unit) else {
         return;
     };
     let color = ui.visuals().strong_text_color();
@@ -152,9 +156,11 @@ pub(super) fn bar(
     for tip in [start, end] {
         painter.line_segment([tip - vec2(0.0, 4.0), tip + vec2(0.0, 4.0)], stroke);
     }
-    let middle = start + vec2(long / 2.0, -4.0);
-    let font = FontId::proportional(12.0);
-    painter.text(middle, Align2::CENTER_BOTTOM, bar.words(), font, color);
+    let galley = painter.layout_no_wrap(bar.words(), FontId::proportional(12.0), color);
+    // Over the middle; of a short bar within the frame.
+    let most = frame.right() - 4.0 - galley.size().x;
+    let left = (start.x + (long - galley.size().x) / 2.0).min(most);
+    painter.galley(pos2(left, start.y - 4.0 - galley.size().y), galley, color);
 }
 
 /// Coordinates and photo under the mouse, in the upper left.
