@@ -214,26 +214,22 @@ impl eframe::App for App {
         if state.page == Page::SizeDistributions {
             panels::size_distributions(state, ui, out);
         } else if state.open.is_some() {
-            // However narrow the window is, a part of it is left for the viewport.
+            // However narrow the window is, a part of it is left for the viewport: a third of it at first.
             let width = ui.available_width();
             if state.preferences.left_open {
                 egui::Panel::left("photos")
                     .resizable(true)
-                    .default_size(500.0)
+                    .default_size((width * 0.36).clamp(180.0, 500.0))
                     .min_size(180.0)
                     .max_size((width * 0.4).max(180.0))
-                    .show(ui, |ui| {
-                        egui::ScrollArea::horizontal()
-                            .auto_shrink(false)
-                            .show(ui, |ui| panels::photos_table(state, ui, out));
-                    });
+                    .show(ui, |ui| panels::photos_table(state, ui, out));
             }
             if state.preferences.right_open {
                 self.inspector.crops = self.viewport.crops(state, ui);
                 let inspector = &mut self.inspector;
                 egui::Panel::right("inspector")
                     .resizable(true)
-                    .default_size(330.0)
+                    .default_size((width * 0.32).clamp(220.0, 330.0))
                     .min_size(220.0)
                     .max_size((width * 0.4).max(220.0))
                     .show(ui, |ui| panels::right_panel(state, inspector, ui, out));

@@ -20,10 +20,10 @@ pub struct PhotoColumn {
     pub hover: &'static str,
     /// What its values are.
     pub kind: ColumnKind,
-    /// Its width in the window's table and the least that it may be made, points; `None` where it is
-    /// not shown there.
-    pub width: Option<[f32; 2]>,
-    /// Whether it comes behind the verdict there, where a narrow window cuts it off.
+    /// Its width in the window's table, points; more where its numbers or the panel are wider. `None` where
+    /// it is not shown there.
+    pub width: Option<f32>,
+    /// Whether it comes behind the verdict there, where in a narrow window one has to scroll to it.
     pub is_behind: bool,
     /// Its heading in the table for people, where it is one of its columns.
     pub table: Option<&'static str>,
@@ -113,7 +113,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 30] = [
         name: "Photo",
         hover: "Name of the photo's file",
         kind: Name,
-        width: Some([128.0, 60.0]),
+        width: Some(128.0),
         table: Some("photo"),
         csv: Some("photo"),
         value: |line| ColumnValue::Text(line.photo.name().into()),
@@ -149,7 +149,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 30] = [
         name: "Top",
         hover: "Scale at the top edge, from its two corners",
         kind: Scale,
-        width: Some([46.0, 30.0]),
+        width: Some(46.0),
         is_behind: true,
         table: Some("top"),
         csv: Some("top"),
@@ -160,7 +160,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 30] = [
         name: "Bottom",
         hover: "Scale at the bottom edge, from its two corners",
         kind: Scale,
-        width: Some([46.0, 30.0]),
+        width: Some(46.0),
         is_behind: true,
         table: Some("bottom"),
         csv: Some("bottom"),
@@ -205,7 +205,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 30] = [
         name: "Fitted top",
         hover: "Scale at the top edge, of the best line through the scale of all pixels",
         kind: Scale,
-        width: Some([46.0, 30.0]),
+        width: Some(46.0),
         table: Some("fitted top"),
         csv: Some("fitted_top"),
         value: |line| Number(line.fitted().map(|fitted| fitted.top)),
@@ -215,7 +215,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 30] = [
         name: "Fitted bottom",
         hover: "Scale at the bottom edge, of the best line through the scale of all pixels",
         kind: Scale,
-        width: Some([46.0, 30.0]),
+        width: Some(46.0),
         table: Some("fitted bottom"),
         csv: Some("fitted_bottom"),
         value: |line| Number(line.fitted().map(|fitted| fitted.bottom)),
@@ -225,7 +225,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 30] = [
         name: "Off line %",
         hover: "How far the scale of all pixels is from the best line, root mean square",
         kind: Percent,
-        width: Some([46.0, 30.0]),
+        width: Some(46.0),
         table: Some("off line"),
         csv: Some("off_line_rms_percent"),
         value: |line| Number(line.fitted().map(|fitted| fitted.rms_percent)),
@@ -315,7 +315,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 30] = [
         name: "On",
         hover: "How many of the four corners are on the surface",
         kind: OfFour,
-        width: Some([28.0, 20.0]),
+        width: Some(28.0),
         is_behind: true,
         table: Some("corners"),
         csv: Some("corners_on_surface"),
@@ -326,7 +326,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 30] = [
         name: "Height",
         hover: "Height of the camera above the surface below it, in the world's unit",
         kind: Length,
-        width: Some([54.0, 30.0]),
+        width: Some(54.0),
         is_behind: true,
         value: |line| Number(line.photo.view.and_then(|view| view.height)),
         ..COLUMN
@@ -335,7 +335,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 30] = [
         name: "Tilt °",
         hover: "Of the optical axis below the horizon; 90 looks straight down",
         kind: Angle,
-        width: Some([40.0, 30.0]),
+        width: Some(40.0),
         is_behind: true,
         value: |line| Number(line.photo.view.map(|view| view.tilt)),
         ..COLUMN
@@ -344,7 +344,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 30] = [
         name: "Verdict",
         hover: "Whether to trust the scale",
         kind: ColumnKind::Verdict,
-        width: Some([84.0, 30.0]),
+        width: Some(84.0),
         table: Some("verdict"),
         csv: Some("verdict"),
         value: |line| ColumnValue::Verdict(line.photo.verdict, line.photo.settled().is_some()),

@@ -150,3 +150,41 @@ fn an_unknown_unit_is_said() {
     let text = fs::read_to_string(&svg).expect("an SVG");
     assert!(text.contains("units of the file") && !text.contains("on A4"));
 }
+
+/// What `profile` writes is a line of the map, at its places; a polygon is typed. What lies elsewhere or is
+/// none is refused.
+#[test]
+fn what_was_measured_is_on_the_map() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let flight = sample().to_string_lossy().into_owned();
+    let (profile, svg, plain) = (at("profile.csv"), at("map.svg"), at("plain.svg"));
+    let ends = ["--from", "-1,-0.5", "--to", "1,0.5"];
+    stdout_of(
+        &[
+            &["profile", &flight, "--format", "csv", "-o", &profile],
+            &ends[..],
+        ]
+        .concat(),
+    );
+    let map = ["map", &flight, "--ground", "plain", "-o"];
+    stdout_of(&[&map[..], &[&plain]].concat());
+    let square = "-0.5,-0.25;0.5,-0.25;0.5,0.25";
+    let measured = ["--line", &profile, "--polygon", square];
+    stdout_of(&[&map[..], &[&svg], &measured].concat());
+    let text = |path: &str| fs::read_to_string(path).expect("an SVG");
+    let (with, without) = (text(&svg), text(&plain));
+    for words in ["measured line", "measured polygon"] {
+        assert!(with.contains(words) && !without.contains(words), "{words}");
+    }
+    for (option, places, said) in [
+        ("--line", "500000,5000000;500001,5000001", "beside the map"),
+        ("--line", "1,1;1,1", "no length"),
+        ("--line", "1,1;wall", "'wall' is no place"),
+        ("--polygon", "0,0;1,0", "at least three"),
+    ] {
+        let error = error_of(&["map", &flight, "-o", &at("none.svg"), option, places]);
+        assert!(error.contains(said), "{error}");
+        assert!(!folder.path().join("none.svg").exists());
+    }
+}

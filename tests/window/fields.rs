@@ -92,7 +92,7 @@ fn the_inspector_shows_the_best_line_of_the_command() {
         assert_begins_with(&after(&desk, "Left to right "), of("left_right_percent"));
         // The corners' pair stands beside it.
         let corner = right_of(&desk, "Four corners:");
-        let corner = corner.strip_prefix("top ").expect("the top");
+        let corner = corner.strip_prefix("top\u{a0}").expect("the top");
         assert_begins_with(corner, photo["scale"]["top"].as_f64().expect("a number"));
     }
 }

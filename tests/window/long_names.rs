@@ -1,11 +1,15 @@
 //! Names of up to 300 letters in several scripts, in panels of any width: no number is covered or cut,
 //! no panel stays wider for the next flight.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
 use egui::accesskit::Role;
-use egui::{Key, Modifiers, Rect, pos2};
+use egui::{
+    Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, Pos2, Rect, TouchPhase, Vec2, pos2,
+    vec2,
+};
 use egui_kittest::Harness;
 use fragscale::app::App;
 use fragscale::app::Command;
@@ -44,7 +48,19 @@ fn name(dice: &mut Dice, most: usize) -> String {
     name.trim().replace(' ', "_") + "x"
 }
 
-/// The windrow with other names of flight and photos.
+/// Where the windrow is moved to: coordinates of a map are long.
+const ON_MAP: [f64; 3] = [585_000.0, 5_612_000.0, 160.0];
+
+/// A line of three coordinates and what is behind them, moved to the map.
+fn moved(line: &str, between: char) -> String {
+    let mut cells: Vec<String> = line.split(between).map(str::to_owned).collect();
+    for (cell, by) in cells.iter_mut().zip(ON_MAP) {
+        *cell = (cell.parse::<f64>().expect("a number") + by).to_string();
+    }
+    cells.join(&between.to_string())
+}
+
+/// The windrow on a map, with other names of flight and photos.
 fn named(dice: &mut Dice, most: usize) -> TempDir {
     let folder = copy("tests/windrow");
     let toml = folder.path().join("flight.toml");
@@ -53,22 +69,29 @@ fn named(dice: &mut Dice, most: usize) -> TempDir {
     let text = text.replacen("name = \"Windrow\"", &format!("name = \"{title}\""), 1);
     assert!(text.contains(&title));
     fs::write(&toml, text).expect("written");
+    let pile = folder.path().join("pile.ply");
+    let text = fs::read_to_string(&pile).expect("the pile");
+    let (head, points) = text.split_once("end_header\n").expect("a head");
+    let points: Vec<String> = points.lines().map(|line| moved(line, ' ')).collect();
+    fs::write(&pile, format!("{head}end_header\n{}\n", points.join("\n"))).expect("written");
     let poses = folder.path().join("poses.csv");
     let text = fs::read_to_string(&poses).expect("the poses");
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
     let mut named = lines.next().expect("a head").to_owned() + "\n";
     for (number, line) in lines.enumerate() {
         let (_, rest) = line.split_once(',').expect("a row");
+        let rest = moved(rest, ',');
         named += &format!("{}_{number}.jpg,{rest}\n", name(dice, most));
     }
     fs::write(&poses, named).expect("written");
     folder
 }
 
-fn desk(path: &Path, size: [f32; 2]) -> Desk {
+fn desk(path: &Path, size: [f32; 2], pixels_per_point: f32) -> Desk {
     let path = path.to_owned();
     let harness = Harness::builder()
         .with_size(size)
+        .with_pixels_per_point(pixels_per_point)
         .with_max_steps(30)
         // Letters that no font on the machine has are boxes.
         .allow_missing_glyphs()
@@ -104,6 +127,39 @@ fn drag_edges(desk: &mut Desk, left: f32, right: f32) {
     }
 }
 
+/// Whether a text is a number with its unit, and not a name that has digits.
+fn is_number_alone(text: &str) -> bool {
+    let first = text
+        .trim_start_matches(['±', ' '])
+        .split_whitespace()
+        .next();
+    let first = first.map(|first| first.trim_end_matches(['%', '°']));
+    first.is_some_and(|first| first.parse::<f64>().is_ok())
+}
+
+/// The numbers for which only dots stand.
+fn hidden_numbers(desk: &Desk, what: &str) -> Vec<String> {
+    let mut written = desk.written();
+    written.retain(|written| written.text == "…");
+    if written.is_empty() {
+        return Vec::new();
+    }
+    let called = desk.texts();
+    let mut found = Vec::new();
+    for written in written {
+        let dots = written.place.intersect(written.seen_in);
+        if !dots.is_positive() {
+            continue;
+        }
+        let at = dots.center();
+        let mut here = called.iter().filter(|(_, place)| place.contains(at));
+        if let Some((number, _)) = here.find(|(text, _)| is_number_alone(text)) {
+            found.push(format!("{what}: dots stand for '{number}' at {dots}"));
+        }
+    }
+    found
+}
+
 /// The numbers that are seen but not whole, or that lie under the viewport.
 fn cut_numbers(desk: &Desk, what: &str) -> Vec<String> {
     let viewport = desk.shows(Role::Image, "Viewport").then(|| desk.viewport());
@@ -131,6 +187,19 @@ fn cut_numbers(desk: &Desk, what: &str) -> Vec<String> {
         }
     }
     found
+}
+
+/// Turns the wheel at a place.
+fn wheel(desk: &mut Desk, at: Pos2, delta: Vec2) {
+    desk.harness.hover_at(at);
+    desk.harness.event(Event::MouseWheel {
+        unit: MouseWheelUnit::Point,
+        delta,
+        phase: TouchPhase::Move,
+        source: MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    desk.harness.run_ok();
 }
 
 /// A bar on the selected photo, which has numbers of its own.
@@ -165,7 +234,7 @@ fn no_number_is_cut_whatever_the_names_and_widths() {
             dice.between(640.0, 1500.0) as f32,
             dice.between(480.0, 900.0) as f32,
         ];
-        let mut desk = desk(folder.path(), size);
+        let mut desk = desk(folder.path(), size, [1.0, 2.0, 1.25][round % 3]);
         for step in 0..4 {
             let (left, right) = (dice.between(200.0, 700.0), dice.between(200.0, 600.0));
             drag_edges(&mut desk, left as f32, right as f32);
@@ -176,12 +245,28 @@ fn no_number_is_cut_whatever_the_names_and_widths() {
             }
             desk.settle();
             widths.push(desk.viewport().x_range());
-            for tab in ["Photo", "Flight", "Limits"] {
+            for tab in ["Photo", "Flight", "Limits", "Review"] {
                 desk.click(Role::Tab, tab);
                 let viewport = desk.viewport();
                 let what = format!("round {round}.{step}, {size:?}, {tab}, viewport {viewport}");
-                found.extend(cut_numbers(&desk, &what));
+                // Down to the end of the longest page.
+                for _ in 0..if tab == "Photo" { 3 } else { 1 } {
+                    found.extend(cut_numbers(&desk, &what));
+                    found.extend(hidden_numbers(&desk, &what));
+                    let on_page = pos2(viewport.right() + 100.0, viewport.bottom() - 20.0);
+                    wheel(&mut desk, on_page, vec2(0.0, -400.0));
+                }
+                desk.harness.hover_at(viewport.center());
             }
+        }
+        // Coordinates beside the map, which takes long to make.
+        if round % 4 == 0 {
+            desk.press(Modifiers::COMMAND, Key::Num3);
+            let map = desk.node(Role::Image, "Map").rect();
+            let what = format!("round {round}, {size:?}, map {map}");
+            found.extend(cut_numbers(&desk, &what));
+            found.extend(hidden_numbers(&desk, &what));
+            desk.press(Modifiers::COMMAND, Key::Num1);
         }
         for key in [Key::O, Key::E, Key::P, Key::L] {
             desk.press(Modifiers::COMMAND, key);
@@ -205,8 +290,8 @@ fn panels_are_as_wide_for_the_next_flight() {
     let folder = named(&mut dice, 300);
     let plain = copy("tests/windrow");
     for size in [[1024.0, 700.0], [1500.0, 950.0]] {
-        let fresh = desk(plain.path(), size).viewport();
-        let mut desk = desk(folder.path(), size);
+        let fresh = desk(plain.path(), size, 1.0).viewport();
+        let mut desk = desk(folder.path(), size, 1.0);
         assert_eq!(desk.viewport(), fresh, "with long names");
         for tab in ["Flight", "Limits", "Photo"] {
             desk.click(Role::Tab, tab);
@@ -224,7 +309,7 @@ fn panels_are_as_wide_for_the_next_flight() {
 fn names_are_cut_in_the_middle_and_whole_in_the_hover_text() {
     let mut dice = Dice::new(3);
     let folder = named(&mut dice, 300);
-    let mut desk = desk(folder.path(), [1280.0, 720.0]);
+    let mut desk = desk(folder.path(), [1280.0, 720.0], 1.0);
     let photo = (0..9).find(|&photo| desk.open().name(photo).chars().count() > 200);
     let photo = photo.expect("a long name");
     desk.harness.state_mut().apply(Command::Select(Some(photo)));
@@ -257,6 +342,44 @@ fn names_are_cut_in_the_middle_and_whole_in_the_hover_text() {
         desk.written().iter().any(|w| w.text == name),
         "the whole name in the hover text"
     );
+}
+
+/// In a list of photos of any width: at rest no column is half in sight, and every number of a row is read
+/// whole by scrolling, under a bar that says so.
+#[test]
+fn every_number_of_the_list_can_be_scrolled_to() {
+    let mut dice = Dice::new(31);
+    for (width, pixels_per_point) in [(200.0, 1.0), (300.0, 2.0), (360.0, 2.0), (700.0, 1.0)] {
+        let folder = named(&mut dice, 40);
+        let mut desk = desk(folder.path(), [1500.0, 600.0], pixels_per_point);
+        drag_edges(&mut desk, width, 330.0);
+        desk.settle();
+        let panel = desk.viewport().left();
+        assert!((panel - width).abs() < 12.0 || width > 600.0, "{panel}");
+        let (_, row) = desk.rows().remove(0);
+        let wanted: BTreeSet<String> = row
+            .into_iter()
+            .filter(|text| is_number_alone(text))
+            .collect();
+        assert!(wanted.len() > 5, "{wanted:?}");
+        let mut read = BTreeSet::new();
+        for step in 0..40 {
+            if step == 0 {
+                let mut cut = cut_numbers(&desk, "at rest");
+                cut.extend(hidden_numbers(&desk, "at rest"));
+                assert!(cut.is_empty(), "{width}: {cut:?}");
+            }
+            for written in desk.written() {
+                if written.seen_in.expand(1.0).contains_rect(written.place) {
+                    read.insert(written.text);
+                }
+            }
+            let on_list = pos2(60.0, desk.viewport().center().y);
+            wheel(&mut desk, on_list, vec2(-20.0, 0.0));
+        }
+        let missing: Vec<&String> = wanted.difference(&read).collect();
+        assert!(missing.is_empty(), "{width}: {missing:?}");
+    }
 }
 
 /// The page of size distributions, with methods and files of long names.

@@ -2,9 +2,10 @@
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, Pos2, Rect, Theme, vec2};
-use fragscale::app::Command;
+use egui_kittest::Harness;
 use fragscale::app::map::MapCommand;
 use fragscale::app::size_distributions::Page;
+use fragscale::app::{App, Command};
 use fragscale::exports::PlanGround;
 use glam::DVec2;
 
@@ -300,4 +301,33 @@ fn it_is_drawn_light_and_dark() {
             "{on_lines}"
         );
     }
+}
+
+/// A window that is larger than the textures of its graphics device (2048 pixels a side, where nobody says
+/// more) has a map all the same, somewhat coarser; nothing is tried again and again.
+#[test]
+fn a_map_that_is_larger_than_a_texture_is_drawn() {
+    let path = flight("assets/sample");
+    let harness = Harness::builder()
+        .with_size([1900.0, 1000.0])
+        .with_pixels_per_point(2.0)
+        .with_max_steps(30)
+        .build_eframe(|context| App::new(context, vec![path]));
+    let mut desk = Desk { harness };
+    desk.settle();
+    desk.press(Modifiers::NONE, Key::F2);
+    desk.press(Modifiers::NONE, Key::F3);
+    desk.press(Modifiers::COMMAND, Key::Num3);
+    let drawn = desk.open().map.drawn.as_ref().expect("a part");
+    let size = place(&desk).size();
+    assert!(f64::from(size.x) * 2.0 > 2048.0, "{size:?}");
+    // It covers what is in sight, and some more.
+    assert!(drawn.frame.size[0] >= f64::from(size.x));
+    let [width, height] = drawn.photos.size();
+    assert!(width <= 2048 && height <= 2048, "{width} {height}");
+    let log = &desk.harness.state().state().log;
+    assert!(
+        log.iter().all(|line| !line.text.contains("defect")),
+        "{log:?}"
+    );
 }

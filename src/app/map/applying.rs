@@ -2,6 +2,7 @@
 
 use super::{MapCommand, MapLooking};
 use crate::state::State;
+use crate::tasks::Task;
 
 impl State {
     pub(crate) fn apply_to_map(&mut self, command: MapCommand) {
@@ -11,7 +12,7 @@ impl State {
             MapCommand::Ground(ground) => {
                 if let Some(open) = &mut self.open {
                     open.map.ground = ground;
-                    open.map.refused = None;
+                    self.work.try_again(Task::MAP);
                 }
             }
             MapCommand::Save { to, pixel } => self.save_map(to, pixel),

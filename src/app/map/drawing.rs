@@ -1,10 +1,10 @@
 //! The part of the plan that is in sight, as a picture: a thread draws it, so that no frame waits for many
 //! photos.
 
-use super::part::{DrawnPart, LONGEST, PartInSight};
+use super::part::{DrawnPart, PartInSight};
 use crate::exports::{GroundOf, PlanGround, PlanInks, ground};
 use crate::jobs::Progress;
-use crate::state::{Severity, State};
+use crate::state::State;
 use crate::surface::MapRaster;
 use crate::tasks::Task;
 
@@ -29,9 +29,10 @@ impl State {
             return;
         };
         let context = self.context.clone();
+        let most = context.input(|input| input.max_texture_side) as f64;
         let work = move |progress: &Progress| {
             progress.stage("drawing the map");
-            let frame = part.frame();
+            let (frame, pixels) = (part.frame(), part.pixels_of_picture(most));
             let inks = match part.dark {
                 true => PlanInks::DARK,
                 false => PlanInks::PAPER,
@@ -42,18 +43,18 @@ impl State {
                 let pixels = egui::ColorImage::from_rgba_unmultiplied(size, picture.as_raw());
                 context.load_texture(name, pixels, options)
             };
-            let picture = plan.photos_picture(&frame, &inks, part.pixels);
+            let picture = plan.photos_picture(&frame, &inks, pixels);
             let photos = texture("photos of the map", &picture);
             // A pixel of the screen, world units.
-            let pixel = 1.0 / (part.scale * part.pixels);
+            let pixel = 1.0 / (part.scale * pixels);
             // Photos are not read anew at every step of the wheel.
             let is_relief = plan.ground_kind == PlanGround::Relief;
             let ground = if is_relief && plan.raster.pixel > COARSE * pixel {
                 let ([min, max], whole) = (frame.bounds(), plan.raster.bounds());
                 let seen = [min.max(whole[0]), max.min(whole[1])];
                 let raster = seen[0].cmplt(seen[1]).all().then(|| {
-                    let most = (LONGEST * LONGEST) as u64;
-                    MapRaster::over(seen, pixel, most)
+                    let most = most * most;
+                    MapRaster::over(seen, pixel, most as u64)
                 });
                 match raster.transpose()? {
                     Some(raster) => {
@@ -78,18 +79,9 @@ impl State {
                 ground,
             })
         };
-        type Drawn = Result<DrawnPart, crate::fault::Fault>;
-        self.start(Task::MAP_PART, work, move |state, drawn: Drawn| {
-            match (drawn, &mut state.open) {
-                (Ok(drawn), Some(open)) => open.map.drawn = Some(drawn),
-                (Ok(_), None) => {}
-                (Err(fault), open) => {
-                    // Not tried again before something moves.
-                    if let Some(open) = open {
-                        open.map.not_drawn = Some(part);
-                    }
-                    state.say(Severity::Error, &fault.to_string());
-                }
+        self.start_wished(Task::MAP_PART, part, work, |state, drawn| {
+            if let Some(open) = &mut state.open {
+                open.map.drawn = Some(drawn);
             }
         });
     }

@@ -43,7 +43,8 @@ impl State {
         let Some(open) = &mut self.open else {
             return;
         };
-        let (revision, kind) = (open.map.revision, open.map.ground);
+        let wish = open.map.wish();
+        let (revision, kind) = wish;
         let before = open.map.made.as_ref().map(|made| {
             let surface = &open.review.flight().parts().surface;
             let same = Arc::ptr_eq(&made.surface, surface) && made.plan.ground_kind == kind;
@@ -78,23 +79,14 @@ impl State {
                 ground,
             })
         };
-        self.start(Task::MAP, work, |state, made: Result<MadePlan, Fault>| {
-            match (made, &mut state.open) {
-                (Ok(made), Some(open)) => {
-                    let warnings = made.plan.warnings.clone();
-                    open.map.made = Some(made);
-                    for warning in &warnings {
-                        state.say(Severity::Warning, warning);
-                    }
-                }
-                (Ok(_), None) => {}
-                (Err(fault), open) => {
-                    // Not tried again before something changes.
-                    if let Some(open) = open {
-                        open.map.refused = Some((open.map.revision, fault.to_string()));
-                    }
-                    state.say(Severity::Error, &fault.to_string());
-                }
+        self.start_wished(Task::MAP, wish, work, |state, made: MadePlan| {
+            let Some(open) = &mut state.open else {
+                return;
+            };
+            let warnings = made.plan.warnings.clone();
+            open.map.made = Some(made);
+            for warning in &warnings {
+                state.say(Severity::Warning, warning);
             }
         });
     }

@@ -44,10 +44,6 @@ pub struct FlightMap {
     pub looking: MapLooking,
     /// What of it was drawn last.
     pub drawn: Option<DrawnPart>,
-    /// Of which number no plan can be made, and why.
-    pub refused: Option<(u64, String)>,
-    /// Which part could not be drawn.
-    pub not_drawn: Option<PartInSight>,
 }
 
 /// A plan with what the window needs of it.
@@ -65,6 +61,13 @@ pub struct MadePlan {
 }
 
 impl FlightMap {
+    /// What is wished for of [`Task::MAP`]: a plan of the review, with the ground, of now.
+    ///
+    /// [`Task::MAP`]: crate::tasks::Task::MAP
+    pub fn wish(&self) -> (u64, PlanGround) {
+        (self.revision, self.ground)
+    }
+
     /// The plan, if it is of the review and with the ground of now.
     pub fn of_now(&self) -> Option<&MadePlan> {
         let made = self.made.as_ref()?;

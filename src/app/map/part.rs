@@ -7,8 +7,8 @@ use crate::exports::MapFrame;
 /// How much farther than the frame is drawn, in its size: a map that is moved shows what lies there at once.
 const BEYOND: f64 = 0.15;
 
-/// The longest side of a picture, pixels: every graphics card has textures of this size.
-pub(super) const LONGEST: f64 = 8192.0;
+/// The longest side of a picture, pixels: more is not drawn in time.
+const LONGEST: f64 = 8192.0;
 
 /// What is to be drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,8 +43,19 @@ pub struct DrawnPart {
 impl PartInSight {
     /// What is drawn for it.
     pub(super) fn frame(&self) -> MapFrame {
-        let most = LONGEST / self.pixels;
-        let size = (self.size * (1.0 + 2.0 * BEYOND)).min(DVec2::splat(most));
+        let size = self.drawn_size();
         MapFrame::around(self.middle, [0.0, 0.0], size.to_array(), self.scale)
+    }
+
+    /// Pixels of its picture to a point of the screen: fewer than the screen has where the textures of the
+    /// graphics device are not longer than `most` pixels.
+    pub(super) fn pixels_of_picture(&self, most: f64) -> f64 {
+        // Rounded up to a whole pixel.
+        let most = (most.min(LONGEST) - 1.0).max(1.0);
+        self.pixels.min(most / self.drawn_size().max_element())
+    }
+
+    fn drawn_size(&self) -> DVec2 {
+        self.size * (1.0 + 2.0 * BEYOND)
     }
 }

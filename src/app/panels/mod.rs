@@ -17,6 +17,7 @@ mod path_field;
 mod photo_view;
 mod photos_table;
 mod review;
+mod rows;
 mod size_distributions;
 mod start_page;
 mod status_bar;

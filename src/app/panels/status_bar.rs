@@ -6,25 +6,18 @@ use crate::names;
 use crate::open_flight::Measure;
 use crate::state::{Severity, State};
 
+/// How long the bar of a job is, points.
+const BAR: f32 = 90.0;
+
+/// What a job has beside its words and its bar: gaps, the button that cancels it, a line.
+const BESIDE_BAR: f32 = 60.0;
+
+/// What is left for the log's button, and for the count of jobs that have no room.
+const LOG: f32 = 150.0;
+
 /// Draws the status bar.
 pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        for (task, (sentence, fraction)) in state.work.running() {
-            let bar = egui::ProgressBar::new(fraction as f32)
-                .desired_width(90.0)
-                .desired_height(14.0);
-            ui.label(task.in_words);
-            ui.add(bar).on_hover_text(sentence);
-            if task.can_be_cancelled {
-                let cancel = ui.small_button("✖");
-                let label = format!("Cancel {}", task.in_words.to_lowercase());
-                cancel.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
-                if cancel.on_hover_text(&label).clicked() {
-                    commands.push(Command::Cancel(task));
-                }
-            }
-            ui.separator();
-        }
         if let Some(open) = &state.open {
             let unit = open.flight().parts().unit_of_lengths();
             if let Some(point) = open.pointer.hover {
@@ -67,6 +60,7 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
                 }
             }
         }
+        jobs(state, ui, commands);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let warnings = state
                 .log
@@ -91,4 +85,34 @@ pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
             }
         });
     });
+}
+
+/// The jobs under way, each with how far it is; those that have no room are counted.
+fn jobs(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let running: Vec<_> = state.work.running().collect();
+    for (place, (task, (sentence, fraction))) in running.iter().enumerate() {
+        let wide = super::rows::text_width(ui, task.in_words) + BAR + BESIDE_BAR;
+        let room = ui.available_width() - LOG;
+        if wide > room {
+            let left = &running[place..];
+            let words: Vec<&str> = left.iter().map(|(task, _)| task.in_words).collect();
+            let count = format!("+{}", left.len());
+            ui.add(egui::Label::new(count).extend())
+                .on_hover_text(format!("Also under way: {}", words.join(", ")));
+            return;
+        }
+        ui.label(task.in_words);
+        let bar = egui::ProgressBar::new(*fraction as f32);
+        ui.add(bar.desired_width(BAR).desired_height(14.0))
+            .on_hover_text(sentence);
+        if task.can_be_cancelled {
+            let cancel = ui.small_button("✖");
+            let label = format!("Cancel {}", task.in_words.to_lowercase());
+            cancel.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
+            if cancel.on_hover_text(&label).clicked() {
+                commands.push(Command::Cancel(*task));
+            }
+        }
+        ui.separator();
+    }
 }

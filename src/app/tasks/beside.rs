@@ -31,24 +31,26 @@ impl State {
         let (Some(open), Some(gpu)) = (&self.open, self.gpu.clone()) else {
             return;
         };
-        let is_as_wanted = |uploaded: Option<Option<[u8; 3]>>, wanted| uploaded == Some(wanted);
         let next = open.beside.iter().find(|beside| {
             let uploaded = beside.uploaded.as_ref().map(|(color, _)| *color);
-            beside.is_shown && !is_as_wanted(uploaded, beside.color)
+            let wish = (beside.number, beside.color);
+            let is_wanted = beside.is_shown && uploaded != Some(beside.color);
+            is_wanted && self.work.may_start(Task::UPLOAD_BESIDE, &wish)
         });
-        let Some(next) = next.filter(|_| !self.work.is_running(Task::UPLOAD_BESIDE)) else {
+        let Some(next) = next else {
             return;
         };
-        let (number, color, frame) = (next.number, next.color, open.extent.frame);
+        let wish = (next.number, next.color);
+        let ((number, color), frame) = (wish, open.extent.frame);
         let surface = next.surface.clone();
         let work = move |progress: &Progress| {
             progress.stage("uploading the cloud");
             let vertices = surface.vertices();
             let one = color.map(|color| vec![color; vertices.len()]);
             let colors = one.as_deref().unwrap_or(surface.colors());
-            BesideCloud::new(&gpu, &frame, vertices, colors)
+            Ok(BesideCloud::new(&gpu, &frame, vertices, colors))
         };
-        self.start(Task::UPLOAD_BESIDE, work, move |state, cloud| {
+        self.start_wished(Task::UPLOAD_BESIDE, wish, work, move |state, cloud| {
             let open = state.open.as_mut();
             let beside = open.and_then(|open| {
                 let mut all = open.beside.iter_mut();

@@ -18,6 +18,9 @@ pub mod work;
 
 pub use work::{Task, Work};
 
+use std::any::Any;
+
+use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::state::{Severity, State};
 
@@ -30,6 +33,20 @@ impl State {
         ending: impl FnOnce(&mut Self, T) + Send + 'static,
     ) {
         if let Err(fault) = self.work.start(task, work, ending) {
+            self.say(Severity::Error, &fault.to_string());
+        }
+    }
+
+    /// Starts what a frame misses, where it was not refused; says why it cannot be started. See
+    /// [`Work::start_wished`].
+    pub(crate) fn start_wished<W: Any + Send + Clone + PartialEq, T: Send + 'static>(
+        &mut self,
+        task: Task,
+        wish: W,
+        work: impl FnOnce(&Progress) -> Result<T, Fault> + Send + 'static,
+        ending: impl FnOnce(&mut Self, T) + Send + 'static,
+    ) {
+        if let Err(fault) = self.work.start_wished(task, wish, work, ending) {
             self.say(Severity::Error, &fault.to_string());
         }
     }

@@ -3,7 +3,12 @@
 //! The window never waits: it asks now and then whether something is done, and runs its ending. Work
 //! whose result nobody wants any more is cancelled and ends on its own. `S` is what endings change: it
 //! lies above this file, which knows nothing of it.
+//!
+//! What a frame asks for because it is missing (a map, a cloud on the graphics card) is started as a wish:
+//! a wish that failed, or whose work panicked, is refused until something else is wished for, so that no
+//! frame tries the same again and its fault is told once.
 
+use std::any::Any;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::Duration;
 
@@ -90,9 +95,31 @@ impl<S> Steps<S> {
     }
 }
 
+/// What is wished for, to be compared with what was refused.
+type Wish = Box<dyn Any + Send>;
+
+struct Running<S: 'static> {
+    task: Task,
+    job: Job<Result<Ending<S>, Fault>>,
+    /// What a frame has asked for with it.
+    wish: Option<Wish>,
+}
+
+struct Refused {
+    task: Task,
+    wish: Wish,
+    why: String,
+}
+
+/// How many failed wishes of a task are remembered: more clouds than anybody looks at, and not every place
+/// that a map was dragged to.
+const REFUSED: usize = 16;
+
 /// The jobs under way.
 pub struct Work<S: 'static> {
-    running: Vec<(Task, Job<Ending<S>>)>,
+    running: Vec<Running<S>>,
+    /// The wishes that failed, oldest first; of each task so many at most.
+    refused: Vec<Refused>,
     context: egui::Context,
     steps: Receiver<Ending<S>>,
     send_step: SyncSender<Ending<S>>,
@@ -105,6 +132,7 @@ impl<S: 'static> Work<S> {
         let (send_step, steps) = sync_channel(16);
         Self {
             running: Vec::new(),
+            refused: Vec::new(),
             context,
             steps,
             send_step,
@@ -125,16 +153,100 @@ impl<S: 'static> Work<S> {
     where
         T: Send + 'static,
     {
+        let work = move |progress: &Progress| Ok(work(progress));
+        self.run(task, None, work, ending)
+    }
+
+    /// Starts what a frame asks for because it is not there: not while a job of the kind runs, and not where
+    /// the same was refused. `ending` is handed what `work` has made; a fault is told by
+    /// [`Work::finished`], and refuses the wish.
+    ///
+    /// # Errors
+    /// Where the system has no thread left: said once as well.
+    pub fn start_wished<W, T>(
+        &mut self,
+        task: Task,
+        wish: W,
+        work: impl FnOnce(&Progress) -> Result<T, Fault> + Send + 'static,
+        ending: impl FnOnce(&mut S, T) + Send + 'static,
+    ) -> Result<(), Fault>
+    where
+        W: Any + Send + Clone + PartialEq,
+        T: Send + 'static,
+    {
+        if !self.may_start(task, &wish) {
+            return Ok(());
+        }
+        let started = self.run(task, Some(Box::new(wish.clone())), work, ending);
+        match started {
+            Ok(()) => Ok(()),
+            Err(fault) => match self.refuse(task, Box::new(wish), &fault) {
+                true => Err(fault),
+                false => Ok(()),
+            },
+        }
+    }
+
+    fn run<T>(
+        &mut self,
+        task: Task,
+        wish: Option<Wish>,
+        work: impl FnOnce(&Progress) -> Result<T, Fault> + Send + 'static,
+        ending: impl FnOnce(&mut S, T) + Send + 'static,
+    ) -> Result<(), Fault>
+    where
+        T: Send + 'static,
+    {
         self.cancel(task);
         let context = self.context.clone();
         let job = Job::start(task.in_words, move |progress| {
-            let result = work(progress);
-            context.request_repaint();
+            // Also where the work panics.
+            let _wake = Wake(context);
+            let result = work(progress)?;
             let ending: Ending<S> = Box::new(move |state| ending(state, result));
-            ending
+            Ok(ending)
         })?;
-        self.running.push((task, job));
+        self.running.push(Running { task, job, wish });
         Ok(())
+    }
+
+    /// Whether a frame that misses this may ask for it now: no job of the kind runs, and the same was not
+    /// refused.
+    pub fn may_start<W: Any + PartialEq>(&self, task: Task, wish: &W) -> bool {
+        !self.is_running(task) && self.refused(task, wish).is_none()
+    }
+
+    /// Why this was refused, if it was.
+    pub fn refused<W: Any + PartialEq>(&self, task: Task, wish: &W) -> Option<&str> {
+        let mut of_task = self.refused.iter().filter(|refused| refused.task == task);
+        let refused = of_task.find(|refused| refused.wish.downcast_ref() == Some(wish))?;
+        Some(&refused.why)
+    }
+
+    /// Lets everything of a task be tried again: somebody has asked for it.
+    pub fn try_again(&mut self, task: Task) {
+        self.refused.retain(|refused| refused.task != task);
+    }
+
+    /// Notes that a wish cannot be fulfilled; whether that is news: while one drags, each frame wishes for
+    /// something else that fails alike.
+    fn refuse(&mut self, task: Task, wish: Wish, fault: &Fault) -> bool {
+        let why = fault.to_string();
+        let of_task = |refused: &Refused| refused.task == task;
+        let last = self.refused.iter().rfind(|refused| of_task(refused));
+        let is_news = last.is_none_or(|last| last.why != why);
+        self.refused.push(Refused { task, wish, why });
+        if self
+            .refused
+            .iter()
+            .filter(|refused| of_task(refused))
+            .count()
+            > REFUSED
+            && let Some(oldest) = self.refused.iter().position(of_task)
+        {
+            self.refused.remove(oldest);
+        }
+        is_news
     }
 
     /// Where a job sends what it has to show before its end.
@@ -155,18 +267,20 @@ impl<S: 'static> Work<S> {
     /// Cancels what belongs to the flight on the screen; what is written goes on.
     pub fn cancel_for_flight(&mut self) {
         self.cancel_where(|task| task.is_of_flight);
+        self.refused.retain(|refused| !refused.task.is_of_flight);
     }
 
     /// Cancels everything.
     pub fn cancel_all(&mut self) {
         self.cancel_where(|_| true);
+        self.refused.clear();
     }
 
     fn cancel_where(&mut self, unwanted: impl Fn(Task) -> bool) {
-        self.running.retain(|(task, job)| {
-            let unwanted = unwanted(*task);
+        self.running.retain(|running| {
+            let unwanted = unwanted(running.task);
             if unwanted {
-                job.progress().cancel();
+                running.job.progress().cancel();
             }
             !unwanted
         });
@@ -174,19 +288,19 @@ impl<S: 'static> Work<S> {
 
     /// Whether a file is being written.
     pub fn is_writing(&self) -> bool {
-        self.running.iter().any(|(task, _)| task.writes)
+        self.running.iter().any(|running| running.task.writes)
     }
 
     /// What runs, with its sentence and its fraction from 0 to 1.
     pub fn running(&self) -> impl Iterator<Item = (Task, (String, f64))> {
         self.running
             .iter()
-            .map(|(task, job)| (*task, job.progress().snapshot()))
+            .map(|running| (running.task, running.job.progress().snapshot()))
     }
 
     /// Whether this task runs.
     pub fn is_running(&self, task: Task) -> bool {
-        self.running.iter().any(|(running, _)| *running == task)
+        self.running.iter().any(|running| running.task == task)
     }
 
     /// Whether nothing runs.
@@ -195,18 +309,39 @@ impl<S: 'static> Work<S> {
     }
 
     /// The ending of the first that is done: one at a time, because it may cancel others that are done
-    /// as well. A job that panicked is a fault of ours, told like any other.
+    /// as well. A job that panicked is a fault of ours, told like any other; of wishes that fail alike one
+    /// after the other only the first is told.
     pub fn finished(&mut self) -> Option<Result<Ending<S>, Fault>> {
-        let place = self.running.iter().position(|(_, job)| job.is_finished())?;
-        let (_, job) = self.running.remove(place);
-        Some(job.finish())
+        loop {
+            let is_done = |running: &Running<S>| running.job.is_finished();
+            let place = self.running.iter().position(is_done)?;
+            let Running { task, job, wish } = self.running.remove(place);
+            match (job.finish().and_then(|done| done), wish) {
+                (Ok(ending), _) => return Some(Ok(ending)),
+                (Err(fault), None) => return Some(Err(fault)),
+                (Err(fault), Some(wish)) => {
+                    if self.refuse(task, wish, &fault) {
+                        return Some(Err(fault));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Wakes the window when it is dropped.
+struct Wake(egui::Context);
+
+impl Drop for Wake {
+    fn drop(&mut self) {
+        self.0.request_repaint();
     }
 }
 
 impl<S: 'static> Drop for Work<S> {
     fn drop(&mut self) {
-        for (_, job) in &self.running {
-            job.progress().cancel();
+        for running in &self.running {
+            running.job.progress().cancel();
         }
     }
 }
@@ -214,6 +349,8 @@ impl<S: 'static> Drop for Work<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicU32, Ordering};
 
     const COUNT: Task = Task::new("Counting");
 
@@ -278,5 +415,55 @@ mod tests {
             }
         }
         assert!(state.iter().copied().eq(0..40));
+    }
+    /// A frame asks for what is missing, over and over; the work panics, or fails. It is told once, and tried
+    /// again when something else is asked for.
+    #[test]
+    fn a_wish_that_failed_is_not_tried_again() {
+        let (mut work, mut state) = (Work::new(egui::Context::default()), Vec::new());
+        let tries = Arc::new(AtomicU32::new(0));
+        let mut said = Vec::new();
+        let mut frames = |wish: f64, work: &mut Work<Vec<u32>>, state: &mut Vec<u32>| {
+            for _ in 0..20 {
+                let tries = tries.clone();
+                let job = move |_: &Progress| {
+                    tries.fetch_add(1, Ordering::Relaxed);
+                    match wish {
+                        1.0 | 2.0 => panic!("no ground"),
+                        3.0 => Err(Fault::new("no room", "make some")),
+                        _ => Ok(4),
+                    }
+                };
+                if state.is_empty() {
+                    work.start_wished(COUNT, wish, job, |state: &mut Vec<u32>, n| state.push(n))
+                        .unwrap();
+                }
+                while !work.is_idle() {
+                    match work.finished() {
+                        Some(Ok(ending)) => ending(state),
+                        Some(Err(fault)) => said.push(fault.to_string()),
+                        None => std::thread::yield_now(),
+                    }
+                }
+            }
+            (tries.load(Ordering::Relaxed), said.len())
+        };
+        assert_eq!(frames(1.0, &mut work, &mut state), (1, 1));
+        assert!(work.refused(COUNT, &1.0).unwrap().contains("no ground"));
+        assert_eq!(work.refused(COUNT, &2.0), None);
+        // The same again of another wish: tried, and not said once more.
+        assert_eq!(frames(2.0, &mut work, &mut state), (2, 1));
+        assert_eq!(frames(3.0, &mut work, &mut state), (3, 2));
+        assert_eq!(frames(4.0, &mut work, &mut state), (4, 2));
+        assert_eq!(state, [4]);
+        state.clear();
+        assert_eq!(frames(1.0, &mut work, &mut state), (4, 2));
+        work.try_again(COUNT);
+        assert_eq!(frames(1.0, &mut work, &mut state), (5, 3));
+        // Another flight begins anew.
+        work.cancel_for_flight();
+        assert!(!work.may_start(COUNT, &1.0));
+        work.cancel_all();
+        assert!(work.may_start(COUNT, &1.0));
     }
 }

@@ -3,18 +3,21 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use glam::DVec2;
 
 use super::length::Length;
 use crate::cli::flight_arguments::FlightArguments;
+use crate::cli::on_surface::places::places;
 use crate::cli::outputs::{Force, Outputs};
 use crate::cli::{Answer, OutputUnit};
-use crate::exports::{Plan, PlanFormat, PlanGround, PlanRequest, taken_in_words};
+use crate::exports::{MeasuredOutline, Plan, PlanFormat, PlanGround, PlanRequest, taken_in_words};
 use crate::fault::Fault;
 use crate::files::Kind;
 use crate::flight::{Limits, Review};
 use crate::formats::FileError;
 use crate::formats::photos::photo_metadata;
 use crate::jobs::Progress;
+use crate::survey::{Polygon, SurveyError};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct MapArguments {
@@ -35,6 +38,13 @@ pub(in crate::cli) struct MapArguments {
     /// points, or nothing.
     #[arg(long, value_enum, default_value = "relief")]
     ground: GroundName,
+    /// A line that was measured, drawn on it: its places in the world, or a file with one a line, as 'profile'
+    /// takes and writes them. Can be given several times.
+    #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
+    line: Vec<String>,
+    /// The same of a polygon, as 'volume' takes them.
+    #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
+    polygon: Vec<String>,
     #[command(flatten)]
     force: Force,
 }
@@ -63,6 +73,7 @@ pub(in crate::cli) fn map(arguments: &MapArguments, progress: &Progress) -> Resu
     let output = &arguments.output;
     let at_output = |fault| FileError::new(output, fault).to_string();
     let format = PlanFormat::of(output).map_err(at_output)?;
+    let (measured, mended) = measured(arguments)?;
     let outputs = Outputs::new(arguments.force, arguments.flight.files());
     let mut outputs = outputs.and(output, Kind::Result)?;
     let opened = arguments.flight.open(progress)?;
@@ -99,14 +110,74 @@ pub(in crate::cli) fn map(arguments: &MapArguments, progress: &Progress) -> Resu
         let pixels = opened.photo_files.get(photo)?.pixels()?;
         Some(pixels.map_err(|error| error.fault))
     };
-    let plan = Plan::new(&review, request, &pixels, progress).map_err(in_flight)?;
+    let mut plan = Plan::new(&review, request, &pixels, progress).map_err(in_flight)?;
+    for outline in &measured {
+        on_map(outline, &plan)?;
+    }
+    plan.measured = measured;
     progress.stage("drawing the map");
     let bytes = format
         .bytes(&plan, arguments.unit.into())
         .map_err(at_output)?;
     outputs.write(output, &bytes, Kind::Result)?;
     let text = format!("{}: {}\n", output.display(), format.words(&plan));
-    let mut warnings = opened.all_warnings();
+    let mut warnings = mended;
+    warnings.extend(opened.all_warnings());
     warnings.extend(plan.warnings);
     Ok(Answer::new(text, warnings))
+}
+
+/// The lines and polygons that are asked for, with what was mended of their files.
+fn measured(arguments: &MapArguments) -> Result<(Vec<MeasuredOutline>, Vec<String>), String> {
+    let (mut outlines, mut warnings) = (Vec::new(), Vec::new());
+    for (all, is_polygon) in [(&arguments.line, false), (&arguments.polygon, true)] {
+        for text in all {
+            let (points, mended) = places(text)?;
+            let outline = MeasuredOutline { points, is_polygon };
+            check(&outline).map_err(|error| format!("{}: {error}", option(&outline)))?;
+            outlines.push(outline);
+            warnings.extend(mended);
+        }
+    }
+    Ok((outlines, warnings))
+}
+
+/// What could not be measured is not drawn as measured either.
+fn check(outline: &MeasuredOutline) -> Result<(), SurveyError> {
+    let places = &outline.points;
+    if outline.is_polygon {
+        return Polygon::new(places).map(|_| ());
+    }
+    match places.iter().any(|place| *place != places[0]) {
+        true => Ok(()),
+        false => Err(SurveyError::NoLength),
+    }
+}
+
+/// A line in other coordinates than the flight's would be on no page, and nobody would know.
+fn on_map(outline: &MeasuredOutline, plan: &Plan) -> Result<(), String> {
+    let low = outline.points.iter().copied().reduce(DVec2::min);
+    let high = outline.points.iter().copied().reduce(DVec2::max);
+    let [west_south, east_north] = plan.extent;
+    let meets =
+        |(low, high): (DVec2, DVec2)| low.cmple(east_north).all() && high.cmpge(west_south).all();
+    match low.zip(high).is_some_and(meets) {
+        true => Ok(()),
+        false => Err(format!(
+            "{}: it lies beside the map, which goes from x {:.1}, y {:.1} to x {:.1}, y {:.1}; give places in \
+             the flight's coordinates",
+            option(outline),
+            west_south.x,
+            west_south.y,
+            east_north.x,
+            east_north.y
+        )),
+    }
+}
+
+fn option(outline: &MeasuredOutline) -> &'static str {
+    match outline.is_polygon {
+        true => "--polygon",
+        false => "--line",
+    }
 }

@@ -7,7 +7,7 @@ use glam::DVec2;
 use crate::formats::{read_places, typed_places};
 
 /// `x,y;x,y;…`, or a file with a place a line. With what was mended of the file.
-pub(super) fn places(text: &str) -> Result<(Vec<DVec2>, Vec<String>), String> {
+pub(in crate::cli) fn places(text: &str) -> Result<(Vec<DVec2>, Vec<String>), String> {
     match typed_places(text) {
         Ok(places) => Ok((places, Vec::new())),
         Err(fault) => {

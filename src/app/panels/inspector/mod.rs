@@ -2,6 +2,7 @@
 //! reason to doubt them.
 
 mod decision;
+mod points;
 mod reason_picture;
 mod reasons;
 mod remedy;
@@ -14,7 +15,6 @@ use egui::{Color32, Pos2, Rect, Sense, Stroke, Vec2, pos2, vec2};
 use glam::DVec2;
 
 use crate::command::Command;
-use crate::flight::PhotoReview;
 use crate::linked::PointFrom;
 use crate::names;
 use crate::open_flight::OpenFlight;
@@ -22,7 +22,7 @@ use crate::panels::corner_loupe::{self, Crops};
 use crate::panels::linked;
 use crate::panels::verdict::{verdict_color, verdict_sign};
 use crate::picture::{BarEdge, ScaleBar, scale_bars};
-use crate::scale::{CornerOutcome, ImageKind, PhotoScale, ViewFacts};
+use crate::scale::{CornerOutcome, ImageKind};
 use crate::state::State;
 use decision::decision;
 use reasons::reasons;
@@ -106,17 +106,12 @@ impl Inspector {
             let texture = self.texture.as_ref().map(egui::TextureHandle::id);
             corner_loupe::corner_loupe(state, open, reviewed, texture, self.crops, ui, commands);
             scale_objects(state, open, photo, ui, commands);
-            // What does not wrap is scrolled: wider than the panel, it would push everything aside.
-            egui::ScrollArea::horizontal()
-                .id_salt("points")
-                .show(ui, |ui| {
-                    if let Some(scale) = reviewed.scale() {
-                        corners(reviewed, scale, ui, commands);
-                    }
-                    if let Some(view) = reviewed.view {
-                        facts(reviewed, view, ui);
-                    }
-                });
+            if let Some(scale) = reviewed.scale() {
+                points::corners(reviewed, scale, ui, commands);
+            }
+            if let Some(view) = reviewed.view {
+                points::facts(reviewed, view, ui);
+            }
         });
     }
 
@@ -301,11 +296,23 @@ impl Inspector {
     }
 }
 
+/// Says in the middle of a frame why nothing else is there.
 pub(super) fn message(painter: &egui::Painter, frame: Rect, text: &str, ui: &egui::Ui) {
-    let color = ui.visuals().error_fg_color;
+    in_the_middle(painter, frame, text, ui.visuals().error_fg_color, ui);
+}
+
+/// Says in the middle of a frame what is waited for.
+pub(super) fn waiting(painter: &egui::Painter, frame: Rect, text: &str, ui: &egui::Ui) {
+    in_the_middle(painter, frame, text, ui.visuals().text_color(), ui);
+}
+
+fn in_the_middle(painter: &egui::Painter, frame: Rect, text: &str, color: Color32, ui: &egui::Ui) {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let galley = painter.layout(text.to_owned(), font, color, frame.width() - 20.0);
-    painter.galley(frame.center() - galley.size() / 2.0, galley, color);
+    let place = Rect::from_center_size(frame.center(), galley.size());
+    let behind = ui.visuals().panel_fill.gamma_multiply(0.85);
+    painter.rect_filled(place.expand(6.0), 3.0, behind);
+    painter.galley(place.min, galley, color);
 }
 
 /// A bar with its scale, which stays inside the frame: in rows where that is narrow, because with its first
@@ -370,93 +377,4 @@ pub(super) fn draw_corner(painter: &egui::Painter, at: Pos2, outcome: &CornerOut
             }
         }
     }
-}
-
-fn corners(
-    photo: PhotoReview<'_>,
-    scale: &PhotoScale,
-    ui: &mut egui::Ui,
-    commands: &mut Vec<Command>,
-) {
-    let unit = photo.unit;
-    ui.separator();
-    ui.strong(format!("Corner points, {unit}"));
-    egui::Grid::new("corners")
-        .striped(true)
-        .num_columns(5)
-        .show(ui, |ui| {
-            for heading in ["Corner", "x", "y", "z", "on"] {
-                ui.weak(heading);
-            }
-            ui.end_row();
-            for corner in &scale.corners {
-                let name = corner.name.as_str().replace('_', " ");
-                // No tooltip: it would lie over the next row.
-                let link = ui.link(&name);
-                link.widget_info(|| {
-                    let label = format!("Go to the corner {name}");
-                    egui::WidgetInfo::labeled(egui::Role::Link, true, label)
-                });
-                if link.clicked() {
-                    commands.push(Command::GoToCorner(corner.name));
-                }
-                match corner.point() {
-                    Some(point) => {
-                        for value in point.to_array() {
-                            names::whole_number(ui, format!("{value:.3}"), true);
-                        }
-                    }
-                    None => {
-                        for _ in 0..3 {
-                            ui.label("–");
-                        }
-                    }
-                }
-                let on = match corner.outcome {
-                    CornerOutcome::OnSurface { .. } => "surface",
-                    CornerOutcome::OnGround { .. } => "ground",
-                    CornerOutcome::Nowhere => "nothing",
-                    CornerOutcome::NoRay(_) => "no ray",
-                };
-                ui.label(on);
-                ui.end_row();
-            }
-        });
-}
-
-fn facts(photo: PhotoReview<'_>, view: &ViewFacts, ui: &mut egui::Ui) {
-    let unit = photo.unit;
-    ui.separator();
-    egui::Grid::new("facts").num_columns(2).show(ui, |ui| {
-        let below = if view.height_is_above_ground {
-            "Height above ground"
-        } else {
-            "Height above surface"
-        };
-        for (name, value) in [
-            (
-                below,
-                view.height.map(|height| format!("{height:.3} {unit}")),
-            ),
-            ("Tilt below horizon", Some(format!("{:.2}°", view.tilt))),
-            (
-                "Flattest corner ray",
-                view.flattest_corner.map(|angle| format!("{angle:.1}°")),
-            ),
-            (
-                "Off the corners' plane (rms)",
-                view.plane_distance
-                    .map(|distance| format!("{distance:.3} {unit}")),
-            ),
-            (
-                "Mean edge of the footprint",
-                view.footprint_size.map(|size| format!("{size:.3} {unit}")),
-            ),
-        ] {
-            ui.weak(name);
-            let value = value.unwrap_or_else(|| "–".to_owned());
-            names::whole_number(ui, value, true);
-            ui.end_row();
-        }
-    });
 }

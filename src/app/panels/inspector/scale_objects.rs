@@ -3,11 +3,11 @@
 use crate::actions;
 use crate::command::Command;
 use crate::flight::{ComparedObject, ScaleObject, Verdict};
-use crate::names;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::tracing::{Trace, Tracing};
 use crate::panels::field::{number_field, text_field};
+use crate::panels::rows::Rows;
 use crate::panels::verdict::{or_dash, verdict_color};
 use crate::scale::{ScaleObjectKind, Traced};
 use crate::state::State;
@@ -248,72 +248,87 @@ fn numbers(
         }
     });
     let place = compared.place;
-    let row = |ui: &mut egui::Ui, name: &str, hover: &str, value: String, off: String| {
-        ui.weak(name).on_hover_text(hover);
-        names::whole_number(ui, value, true);
-        names::whole_number(ui, off, true);
-        ui.end_row();
-    };
-    // Scrolled: wider than the panel, it would make that wider.
-    let scroll = egui::ScrollArea::horizontal().id_salt(title);
-    let grid = egui::Grid::new(title).num_columns(3);
-    scroll.show(ui, |ui| grid.show(ui, |ui| {
-        let sign = "In percent: how much larger the object's scale is. Where it is larger, fragments \
-                    come out smaller with it.";
-        let found = |scale: Option<f64>| or_dash(scale.map(|scale| scale * factor), 5);
-        let off = |share: Option<f64>| share.map(percent).unwrap_or_default();
-        let edges = off(compared.beyond_edges());
-        let hover = format!(
-            "What Split-Desktop takes at its height in the photo: linear from the top to the bottom \
-             scale. {sign}"
-        );
-        row(ui, "Point cloud, on its row", &hover, found(place.between_edges), edges);
-        let around = off(compared.beyond_surroundings());
-        let hover = format!(
-            "Of the surface on a ring around it, half as large again: the median. {sign}"
-        );
-        row(
-            ui,
+    let sign = "In percent: how much larger the object's scale is. Where it is larger, fragments come \
+                out smaller with it.";
+    let found = |scale: Option<f64>| or_dash(scale.map(|scale| scale * factor), 5);
+    let off = |share: Option<f64>| share.map(percent).unwrap_or_default();
+    let mut rows = vec![
+        (
+            "Point cloud, on its row",
+            format!(
+                "What Split-Desktop takes at its height in the photo: linear from the top to the \
+                 bottom scale. {sign}"
+            ),
+            [found(place.between_edges), off(compared.beyond_edges())],
+        ),
+        (
             "Point cloud, around it",
-            &hover,
-            found(place.around),
-            around,
-        );
-        let under = off(compared.beyond_surface());
-        let hover = format!(
-            "Of the surface under its middle. Where the cloud shows the object itself, that is its \
-             near side. {sign}"
-        );
-        row(ui, "Point cloud, under it", &hover, found(place.on_surface), under);
-        match &compared.traced {
-            Ok(Traced::Sphere(sphere)) => {
-                let hover = "Standard error of the scale, from the scatter of the points";
-                let text = match error {
-                    Some(error) => format!("± {:.2} %", error * 100.0),
-                    None => "mark more than three points".to_owned(),
-                };
-                row(ui, "Standard error", hover, text, String::new());
-                let hover = "Of the points from the outline that is drawn, root mean square";
-                let text = format!("{:.2} px", sphere.rms);
-                row(ui, "Off the outline", hover, text, String::new());
-                let hover = "Of its centre from the camera's, along the view";
-                let text = format!("{} {world}", significant_digits(sphere.center.z, 5));
-                row(ui, "Depth", hover, text, String::new());
+            format!("Of the surface on a ring around it, half as large again: the median. {sign}"),
+            [found(place.around), off(compared.beyond_surroundings())],
+        ),
+        (
+            "Point cloud, under it",
+            format!(
+                "Of the surface under its middle. Where the cloud shows the object itself, that is \
+                 its near side. {sign}"
+            ),
+            [found(place.on_surface), off(compared.beyond_surface())],
+        ),
+    ];
+    match &compared.traced {
+        Ok(Traced::Sphere(sphere)) => {
+            let standard_error = match error {
+                Some(error) => format!("± {:.2} %", error * 100.0),
+                None => "mark more than three points".to_owned(),
+            };
+            let depth = format!("{} {world}", significant_digits(sphere.center.z, 5));
+            for (name, hover, text) in [
+                (
+                    "Standard error",
+                    "Standard error of the scale, from the scatter of the points",
+                    standard_error,
+                ),
+                (
+                    "Off the outline",
+                    "Of the points from the outline that is drawn, root mean square",
+                    format!("{:.2} px", sphere.rms),
+                ),
+                (
+                    "Depth",
+                    "Of its centre from the camera's, along the view",
+                    depth,
+                ),
+            ] {
+                rows.push((name, hover.to_owned(), [text, String::new()]));
             }
-            Ok(Traced::Bar(_)) => {
-                let length = place.length_on_surface;
-                let text = length.map(|length| {
-                    format!("{} {world}", significant_digits(length, 5))
-                });
-                let hover = "Between the places where the rays of its ends meet the surface. In \
-                             percent: how much longer that is than the bar.";
-                let off = off(compared.beyond_length());
-                let text = text.unwrap_or_else(|| "–".to_owned());
-                row(ui, "Length on the point cloud", hover, text, off);
-            }
-            Err(_) => {}
         }
-    }));
+        Ok(Traced::Bar(_)) => {
+            let length = place.length_on_surface;
+            let text = length.map(|length| format!("{} {world}", significant_digits(length, 5)));
+            let hover = "Between the places where the rays of its ends meet the surface. In percent: \
+                         how much longer that is than the bar.";
+            let texts = [
+                text.unwrap_or_else(|| "–".to_owned()),
+                off(compared.beyond_length()),
+            ];
+            rows.push(("Length on the point cloud", hover.to_owned(), texts));
+        }
+        Err(_) => {}
+    }
+    let texts = rows.iter().map(|(name, _, [value, off])| {
+        let texts = [*name, value, off].map(str::to_owned);
+        // In a narrow panel nothing takes no place.
+        texts.into_iter().filter(|text| !text.is_empty()).collect()
+    });
+    let shown = Rows {
+        id: title,
+        heads: None,
+        rows: texts.collect(),
+    };
+    shown.show(ui, |ui, place, name| {
+        let hover = rows.get(place).map_or("", |(_, hover, _)| hover);
+        ui.weak(name).on_hover_text(hover);
+    });
     for doubt in doubts(&compared.traced) {
         ui.colored_label(doubtful(ui), format!("• {doubt}"));
     }

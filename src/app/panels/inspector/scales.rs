@@ -98,12 +98,12 @@ pub(super) fn scales(
             ("Right", sure(edges.right, |u| u.right)),
         ];
         for (name, side) in sides {
-            ui.label(format!("{name} {}", side.text()))
+            ui.label(format!("{name}\u{a0}{}", side.text()))
                 .on_hover_text("Scale at this side, from its two corners");
         }
         if let (Some(top), Some(bottom)) = (edges.top, edges.bottom) {
             ui.label(format!(
-                "Top/bottom {}",
+                "Top/bottom\u{a0}{}",
                 significant_digits(top / bottom, 4)
             ))
             .on_hover_text("How many times the corners' top scale is their bottom scale");
@@ -182,7 +182,7 @@ fn beside(pair: &Pair, ui: &mut egui::Ui) {
         }
         for (name, end) in ["top", "bottom"].into_iter().zip(pair.ends) {
             let percent = end.percent().map_or_else(String::new, |p| format!(", {p}"));
-            ui.label(format!("{name} {}{percent}", end.text()))
+            ui.label(format!("{name}\u{a0}{}{percent}", end.text()))
                 .on_hover_text(pair.hover);
         }
     });
@@ -221,13 +221,21 @@ fn of_the_line(fitted: FittedScale, ui: &mut egui::Ui) {
     });
 }
 
+/// A standard error; one that rounds to nothing is not nothing.
+fn percent(error: f64) -> String {
+    match error < 0.005 {
+        true => "under 0.01 %".to_owned(),
+        false => format!("{error:.2} %"),
+    }
+}
+
 /// What has a part in the intervals, and what was not counted because nobody states it.
 fn sources(uncertainty: &Uncertainty, pair: ScalePair) -> String {
     let parts = ErrorSource::ALL
         .into_iter()
         .zip(uncertainty.parts_percent(pair));
     let counted: Vec<String> = parts
-        .filter_map(|(source, part)| Some(format!("{} {:.2} %", source.as_str(), part?)))
+        .filter_map(|(source, part)| Some(format!("{} {}", source.as_str(), percent(part?))))
         .collect();
     let not_counted: Vec<&str> = uncertainty
         .not_counted(pair)

@@ -14,6 +14,7 @@ use crate::actions;
 use crate::command::Command;
 use crate::exports::{MapFrame, PlanGround};
 use crate::map::{MadePlan, MapCommand, PartInSight};
+use crate::names;
 use crate::open_flight::OpenFlight;
 use crate::render::SELECTED;
 use crate::state::State;
@@ -34,7 +35,7 @@ pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.painter().rect_filled(place, 0.0, fill);
     super::notice(state, ui, commands);
     want_plan(state, open, commands);
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.add_space(6.0);
         let fit = ui.button("Fit");
         fit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Fit map"));
@@ -82,8 +83,9 @@ pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             }
         }
         if let Some(made) = &open.map.made {
-            let words = egui::RichText::new(made.plan.crs_in_words()).weak();
-            let words = ui.add(egui::Label::new(words).truncate());
+            let words = names::styled(ui, &made.plan.crs_in_words(), egui::TextStyle::Body, |text| {
+                text.weak()
+            });
             words.on_hover_text("The coordinate system of the map");
         }
     });
@@ -92,17 +94,11 @@ pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.painter()
         .rect_filled(whole, 0.0, ui.visuals().extreme_bg_color);
     let Some(made) = &open.map.made else {
-        match &open.map.refused {
-            Some((_, reason)) => super::inspector::message(ui.painter(), whole, reason, ui),
+        match state.work.refused(Task::MAP, &open.map.wish()) {
+            Some(reason) => super::inspector::message(ui.painter(), whole, reason, ui),
             None => {
                 let text = "The map is being made: footprints come first.";
-                let font = egui::TextStyle::Body.resolve(ui.style());
-                let color = ui.visuals().text_color();
-                let galley =
-                    ui.painter()
-                        .layout(text.to_owned(), font, color, whole.width() - 20.0);
-                let at = whole.center() - galley.size() / 2.0;
-                ui.painter().galley(at, galley, color);
+                super::inspector::waiting(ui.painter(), whole, text, ui);
             }
         }
         return;
@@ -147,13 +143,8 @@ pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 /// Asks for a plan where there is none of the review as it is now.
 fn want_plan(state: &State, open: &OpenFlight, commands: &mut Vec<Command>) {
     let map = &open.map;
-    let is_made = map.of_now().is_some();
-    let is_refused = map
-        .refused
-        .as_ref()
-        .is_some_and(|(revision, _)| *revision == map.revision);
     let is_known = open.review.views().is_some() && open.is_computed();
-    if is_known && !is_made && !is_refused && !state.work.is_running(Task::MAP) {
+    if is_known && map.of_now().is_none() && state.work.may_start(Task::MAP, &map.wish()) {
         commands.push(Command::Map(MapCommand::Make));
     }
 }
@@ -240,8 +231,7 @@ impl Screen {
             .drawn
             .as_ref()
             .is_some_and(|drawn| drawn.part == part);
-        let is_refused = open.map.not_drawn == Some(part);
-        if !is_drawn && !is_refused && !state.work.is_running(Task::MAP_PART) {
+        if !is_drawn && state.work.may_start(Task::MAP_PART, &part) {
             commands.push(Command::Map(MapCommand::Draw(part)));
         }
     }

@@ -12,6 +12,12 @@ const LABEL: f32 = 11.0;
 /// The longest bar, points.
 const BAR: f64 = 160.0;
 
+/// Between the bar and the sides of the frame, at least, points.
+const BESIDE_BAR: f64 = 22.0;
+
+/// What is left of a narrow map beside its coordinates, points.
+const LEAST: f32 = 40.0;
+
 /// Between a label and the map.
 const GAP: f32 = 4.0;
 
@@ -29,12 +35,14 @@ pub(super) fn without_labels(map: &MapFrame, whole: Rect, ui: &egui::Ui) -> Rect
         .iter()
         .map(|line| width(&line.label))
         .fold(0.0, f32::max);
-    let left = (widths + 2.0 * GAP).min(whole.width() / 4.0);
+    // A coordinate that is cut at its begin is another one.
+    let left = (widths + 2.0 * GAP).min((whole.width() - LEAST).max(0.0));
     let below = (LABEL + 2.0 * GAP).min(whole.height() / 4.0);
     Rect::from_min_max(whole.min + vec2(left, 0.0), whole.max - vec2(0.0, below))
 }
 
-/// Lines at round coordinates, which are written at the left of the map and below it.
+/// Lines at round coordinates, which are written at the left of the map and below it where there is room for
+/// the whole of them.
 pub(super) fn grid(
     map: &MapFrame,
     painter: &egui::Painter,
@@ -44,17 +52,28 @@ pub(super) fn grid(
 ) {
     let grid = Grid::of(map);
     let line = Stroke::new(1.0, ui.visuals().text_color().gamma_multiply(0.22));
+    let mut taken: Option<Rect> = None;
+    let mut label = |at, anchor: Align2, words: &str| {
+        let font = FontId::proportional(LABEL);
+        let galley = margins.layout_no_wrap(words.to_owned(), font, Color32::WHITE);
+        let place = anchor.anchor_size(at, galley.size());
+        let is_free = taken.is_none_or(|before| !before.expand(GAP).intersects(place));
+        if is_free && margins.clip_rect().contains_rect(place) {
+            text(margins, at, anchor, LABEL, words, ui);
+            taken = Some(place);
+        }
+    };
     for across in &grid.across {
         let x = map.place(DVec2::new(across.at, 0.0))[0] as f32;
         painter.vline(x, frame.y_range(), line);
         let at = pos2(x, frame.bottom() + GAP);
-        text(margins, at, Align2::CENTER_TOP, LABEL, &across.label, ui);
+        label(at, Align2::CENTER_TOP, &across.label);
     }
     for up in &grid.up {
         let y = map.place(DVec2::new(0.0, up.at))[1] as f32;
         painter.hline(frame.x_range(), y, line);
         let at = pos2(frame.left() - GAP, y);
-        text(margins, at, Align2::RIGHT_CENTER, LABEL, &up.label, ui);
+        label(at, Align2::RIGHT_CENTER, &up.label);
     }
     let edge = Stroke::new(1.0, ui.visuals().text_color().gamma_multiply(0.5));
     margins.vline(frame.left(), frame.y_range(), edge);
@@ -122,7 +141,8 @@ pub(super) fn bar(
     frame: Rect,
     ui: &egui::Ui,
 ) {
-    let Some(bar) = plan.bar(map.scale, BAR, unit) else {
+    let longest = BAR.min(f64::from(frame.width()) - 2.0 * BESIDE_BAR);
+    let Some(bar) = plan.bar(map.scale, longest, unit) else {
         return;
     };
     let color = ui.visuals().strong_text_color();
@@ -136,9 +156,11 @@ pub(super) fn bar(
     for tip in [start, end] {
         painter.line_segment([tip - vec2(0.0, 4.0), tip + vec2(0.0, 4.0)], stroke);
     }
-    let middle = start + vec2(long / 2.0, -4.0);
-    let font = FontId::proportional(12.0);
-    painter.text(middle, Align2::CENTER_BOTTOM, bar.words(), font, color);
+    let galley = painter.layout_no_wrap(bar.words(), FontId::proportional(12.0), color);
+    // Over the middle; of a short bar within the frame.
+    let most = frame.right() - 4.0 - galley.size().x;
+    let left = (start.x + (long - galley.size().x) / 2.0).min(most);
+    painter.galley(pos2(left, start.y - 4.0 - galley.size().y), galley, color);
 }
 
 /// Coordinates and photo under the mouse, in the upper left.

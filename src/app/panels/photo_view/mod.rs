@@ -9,7 +9,7 @@ use glam::DVec2;
 use super::corner_loupe;
 use super::inspector::tint::{self, Tint};
 use super::inspector::traced_photo::{self, Dragged, PhotoPlace};
-use super::inspector::{draw_bar, draw_corner, message};
+use super::inspector::{draw_bar, draw_corner, message, waiting};
 use super::linked;
 use crate::command::Command;
 use crate::flight::PhotoReview;
@@ -19,6 +19,7 @@ use crate::photo_view::PhotoCommand;
 use crate::photo_view::tiles::MOST_TILES;
 use crate::picture::{PhotoPyramid, TileKey};
 use crate::state::State;
+use crate::tasks::Task;
 
 /// What the panel keeps: what it has made of the tint, and a point that the mouse moves.
 #[derive(Default)]
@@ -45,7 +46,7 @@ impl PhotoPanel {
             response
                 .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Photo view"));
             let text = "Select a photo in the table or in the viewport.";
-            message(&painter, frame, text, ui);
+            waiting(&painter, frame, text, ui);
             return;
         };
         response.widget_info(|| {
@@ -73,6 +74,9 @@ impl PhotoPanel {
                 if let Some(Some(texture)) = open.pictures.thumbnails.get(photo) {
                     let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
                     painter.image(texture.id(), place.rect, whole, Color32::from_gray(140));
+                }
+                if state.work.is_running(Task::FULL_PHOTO) {
+                    waiting(&painter, frame, "Reading the photo at full resolution…", ui);
                 }
             }
         }

@@ -31,7 +31,10 @@ pub(super) fn profile(
         .data_aspect(1.0)
         .allow_scroll(false)
         .custom_x_axes(vec![
-            AxisHints::new_x().label(format!("Along the line [{unit}]")),
+            // Closer than usual: with equal scales on both axes a narrow plot has no other distances.
+            AxisHints::new_x()
+                .label(format!("Along the line [{unit}]"))
+                .label_spacing(30.0..=50.0),
         ])
         .custom_y_axes(vec![AxisHints::new_y().label(format!("Height [{unit}]"))])
         .show(ui, |plot| {

@@ -1,4 +1,10 @@
 //! The photos with their scales: one row each, only the rows in sight are drawn.
+//!
+//! ```text
+//! columns   how wide each column is
+//! ```
+
+mod columns;
 
 use egui_extras::{Column as Width, TableBuilder};
 
@@ -7,12 +13,13 @@ use super::field::combo_box;
 use super::review::row_menu;
 use super::verdict::{verdict_color, verdict_sign};
 use crate::command::Command;
-use crate::exports::{ColumnKind, PHOTO_COLUMNS, PhotoColumn, PhotoLine};
+use crate::exports::{ColumnKind, PhotoLine};
 use crate::flight::{PhotoReview, Verdict};
 use crate::names;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::table::SortBy;
 use crate::state::State;
+use columns::{CHECK, Columns, WITH_THUMBNAIL};
 
 /// The height of the headings, which two lines fit into.
 const HEADER: f32 = 36.0;
@@ -30,12 +37,25 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         return;
     }
     filter(open, ui, commands);
-    let mut columns: Vec<(&'static PhotoColumn, [f32; 2])> = PHOTO_COLUMNS
-        .iter()
-        .filter_map(|column| Some((column, column.width?)))
-        .collect();
-    // What matters first, in a narrow window alone.
-    columns.sort_by_key(|(column, _)| column.is_behind);
+    // A bar that is always there says that there are more columns; a shadow would lie on the last number.
+    let scroll = ui.spacing().scroll;
+    ui.spacing_mut().scroll = egui::style::ScrollStyle::thin();
+    ui.spacing_mut().scroll.fade.strength = 0.0;
+    egui::ScrollArea::horizontal()
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            ui.spacing_mut().scroll = scroll;
+            table(state, open, ui, commands);
+        });
+    if open.table.shown.is_empty() {
+        ui.weak("No photo passes the filter.");
+    }
+}
+
+fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let mut columns = Columns::of((open.number, state.preferences.unit().symbol()), ui);
+    let widths = columns.widths(ui.available_width(), ui.spacing().item_spacing.x);
+    let seen = columns.seen();
     let selected_row = open
         .selected
         .and_then(|photo| open.table.shown.iter().position(|&shown| shown == photo));
@@ -46,14 +66,9 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         .striped(true)
         .sense(egui::Sense::click())
         .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
-        .column(Width::exact(24.0));
-    for (place, (_, [width, least])) in columns.iter().enumerate() {
-        // The last one takes what is left.
-        let column = match place + 1 == columns.len() {
-            true => Width::remainder(),
-            false => Width::initial(*width).resizable(true),
-        };
-        table = table.column(column.at_least(*least).clip(true));
+        .column(Width::exact(CHECK));
+    for width in &widths {
+        table = table.column(Width::exact(*width).clip(true));
     }
     // The selected row comes into sight when the selection moves, not while she scrolls.
     if before != Some(selected_row)
@@ -68,7 +83,7 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
                 let hover = "Goes along into the export";
                 sort_button(open, SortBy::Export, "⬇", hover, ui, commands);
             });
-            for (column, _) in &columns {
+            for column in &columns.all {
                 let by = SortBy::Column(column);
                 header.col(|ui| {
                     sort_button(open, by, column.name, column.hover, ui, commands);
@@ -101,23 +116,26 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
                         commands.push(Command::Choose(photo, chosen));
                     }
                 });
-                for (column, _) in &columns {
+                for (place, column) in columns.all.clone().into_iter().enumerate() {
                     row.col(|ui| {
-                        if column.kind == ColumnKind::Name {
+                        if column.kind == ColumnKind::Name && widths[place] >= WITH_THUMBNAIL {
                             thumbnail(open, photo, ui);
                         }
                         match column.kind {
                             ColumnKind::Verdict => verdict(line.photo, ui),
                             ColumnKind::Name | ColumnKind::Text => {
-                                names::name(ui, &column.short_value(&line));
+                                let text = column.short_value(&line);
+                                columns.note(place, &text, ui);
+                                names::name(ui, &text);
                             }
-                            ColumnKind::Scale => {
-                                // All digits are under the mouse.
-                                names::whole_number(ui, column.short_value(&line), false)
-                                    .on_hover_text(column.table_value(&line));
-                            }
-                            _ => {
-                                names::whole_number(ui, column.short_value(&line), false);
+                            kind => {
+                                let text = column.short_value(&line);
+                                columns.note(place, &text, ui);
+                                let number = names::whole_number(ui, text, false);
+                                if kind == ColumnKind::Scale {
+                                    // All digits are under the mouse.
+                                    number.on_hover_text(column.table_value(&line));
+                                }
                             }
                         }
                     });
@@ -140,12 +158,10 @@ pub fn photos_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
                 }
             });
         });
+    columns.keep(&widths, &seen, ui);
     ui.data_mut(|data| data.insert_temp(id, selected_row));
     if hovered != open.table.hovered {
         commands.push(Command::HoverPhoto(hovered));
-    }
-    if open.table.shown.is_empty() {
-        ui.weak("No photo passes the filter.");
     }
 }
 
