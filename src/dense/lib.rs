@@ -41,7 +41,7 @@ mod shelf;
 mod tests;
 mod view;
 
-use fragscale_core::{camera, fault, jobs};
+use fragscale_core::{camera, fault, files, jobs};
 
 pub use depth_map::DepthMap;
 pub use depth_maps::depth_maps;

@@ -3,11 +3,11 @@
 
 use std::collections::HashMap;
 use std::fs;
-use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::fault::Fault;
+use crate::files::{self, Inputs, Kind};
 
 /// A place for bytes by name.
 pub trait Shelf: Sync {
@@ -64,14 +64,9 @@ impl Shelf for InFolder {
     }
 
     fn put(&self, name: &str, bytes: Vec<u8>) -> Result<(), Fault> {
-        let path = self.0.join(name);
-        let part = self.0.join(format!("{name}.part"));
-        let cannot = |error: io::Error| {
-            let what = format!("{} cannot be written ({error})", path.display());
-            Fault::new(what, "make room on the disk")
-        };
-        fs::write(&part, bytes).map_err(cannot)?;
-        fs::rename(&part, &path).map_err(cannot)
+        // The folder is the shelf's own: nothing that was read lies in it.
+        let own = Inputs::of([] as [&Path; 0]);
+        files::write(&self.0.join(name), &bytes, Kind::Result, &own, true)
     }
 
     fn discard(&self, name: &str) {
