@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::fault::Fault;
@@ -65,8 +65,13 @@ impl Shelf for InFolder {
 
     fn put(&self, name: &str, bytes: Vec<u8>) -> Result<(), Fault> {
         // The folder is the shelf's own: nothing that was read lies in it.
-        let own = Inputs::of([] as [&Path; 0]);
-        files::write(&self.0.join(name), &bytes, Kind::Result, &own, true)
+        files::write(
+            &self.0.join(name),
+            &bytes,
+            Kind::Result,
+            &Inputs::default(),
+            true,
+        )
     }
 
     fn discard(&self, name: &str) {
