@@ -451,7 +451,7 @@ fn cancelled_at_once_and_gone_on() {
                 assert!(shelf.get(&name) == whole.get(&name), "{which}");
                 assert!(shelf.get(&format!("first-{which}")).is_none());
                 let graded = maps.graded(which).unwrap().unwrap();
-                assert!(graded.supports.iter().any(|supports| *supports == 3));
+                assert!(graded.supports.contains(&3));
             }
         } else {
             assert_eq!(maps.err().unwrap().what, "cancelled");
