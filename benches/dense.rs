@@ -27,7 +27,8 @@ use fragscale_core::camera::{Camera, Distortion, Pose};
 use fragscale_core::fault::Fault;
 use fragscale_core::jobs::Progress;
 use fragscale_dense::{
-    Backend, Cpu, DenseOptions, DepthMap, Photos, Quality, View, choose_neighbours, depth_maps,
+    Backend, Cpu, DenseOptions, DepthMap, InMemory, Photos, Quality, View, choose_neighbours,
+    depth_maps, fuse,
 };
 use glam::DVec3;
 use image::RgbImage;
@@ -157,24 +158,43 @@ fn main() {
     println!("{:?} {:?} {:?}", views[0].depths, &neighbours[..2], options);
     let run = |backend: &dyn Backend| {
         let begin = (Instant::now(), cpu_seconds());
+        let (progress, shelf) = (Progress::default(), InMemory::default());
         let maps = depth_maps(
             &views,
             &photos,
             &neighbours,
             &options,
             backend,
-            &Progress::default(),
+            &shelf,
+            &progress,
         );
-        let maps: Vec<DepthMap> = maps.expect("depths").into_iter().flatten().collect();
-        let megapixels: f64 = maps.iter().map(|map| map.depths.len() as f64 / 1e6).sum();
+        let maps = maps.expect("depths");
+        let took = (begin.0.elapsed().as_secs_f64(), cpu_seconds() - begin.1);
+        let graded: Vec<DepthMap> = (0..maps.len())
+            .filter_map(|which| maps.graded(which).expect("a map"))
+            .collect();
+        let megapixels: f64 = graded.iter().map(|map| map.depths.len() as f64 / 1e6).sum();
         println!(
             "{}: {:.2} s a megapixel and view, {:.2} seconds of cores",
             backend.name(),
-            begin.0.elapsed().as_secs_f64() / megapixels,
-            (cpu_seconds() - begin.1) / megapixels
+            took.0 / megapixels,
+            took.1 / megapixels
         );
-        report(&names, &maps, &truths);
-        maps
+        report(&names, &graded, &truths);
+        if has("--fuse") {
+            let begin = Instant::now();
+            let fused = fuse(&maps, &photos, &progress).expect("points");
+            let mut errors = fused.standard_errors.clone();
+            errors.sort_by(f32::total_cmp);
+            println!(
+                "fused: {} points in {:.1} s, matching noise {:.3} px, median standard error {:.4}",
+                fused.points.len(),
+                begin.elapsed().as_secs_f64(),
+                fused.noise_pixels,
+                errors.get(errors.len() / 2).copied().unwrap_or(f32::NAN)
+            );
+        }
+        graded
     };
     let on_cpu = (!has("--no-cpu")).then(|| run(&Cpu));
     #[cfg(feature = "gpu")]
@@ -185,11 +205,7 @@ fn main() {
         }
         return;
     }
-    if let Some(maps) = on_cpu
-        && has("--fuse")
-    {
-        fused(&views, maps, &photos);
-    }
+    drop(on_cpu);
 }
 
 fn report(names: &[&str], maps: &[DepthMap], truths: &[Vec<f32>]) {
@@ -252,21 +268,6 @@ fn compare(a: &[DepthMap], b: &[DepthMap]) {
         share(1e-5),
         share(1e-3),
         share(1e-2)
-    );
-}
-
-fn fused(views: &[View], maps: Vec<DepthMap>, photos: &Files) {
-    let maps: Vec<_> = maps.into_iter().map(Some).collect();
-    let begin = Instant::now();
-    let fused = fragscale_dense::fuse(views, &maps, photos, &Progress::default()).expect("points");
-    let mut errors = fused.standard_errors.clone();
-    errors.sort_by(f32::total_cmp);
-    println!(
-        "fused: {} points in {:.1} s, matching noise {:.3} px, median standard error {:.4}",
-        fused.points.len(),
-        begin.elapsed().as_secs_f64(),
-        fused.noise_pixels,
-        errors[errors.len() / 2]
     );
 }
 

@@ -53,6 +53,7 @@ const SIGMA_PIXELS = 5.0;
 const NOISE = 4.0;
 const BEST = 2u;
 const GATE = 0.05;
+const FAR_DEARER = 0.2;
 const UNSEEN = 2.0;
 const FARTHEST = 3.0;
 const STEEPEST = 4.0;
@@ -237,7 +238,8 @@ fn cost_of(pixel: vec2<f32>, plane: vec4<f32>, bound: f32) -> f32 {
     var first = HUGE;
     var second = HUGE;
     for (var looked = 0u; looked < settings.sources; looked++) {
-        if looked == wanted && first > bound + GATE {
+        let gate = select(GATE, FAR_DEARER, looked < wanted);
+        if looked > 0u && looked <= wanted && first > bound + gate {
             break;
         }
         let cost = cost_in(order[looked], pixel, plane);

@@ -9,8 +9,8 @@
 //! # The house
 //!
 //! A workspace whose members lie inside `src/`, so that a changed reader or panel compiles alone: the
-//! core, `fragmentation/`, `formats/`, `opening/`, `exports/`, `render/`, `reconstruct/`, `sample/`, `app/`, and here
-//! `cli/`. This crate re-exports all of them. The compiler holds who may use whom
+//! core, `fragmentation/`, `formats/`, `opening/`, `exports/`, `render/`, `dense/`, `reconstruct/`, `sample/`, `app/`,
+//! and here `cli/`. This crate re-exports all of them. The compiler holds who may use whom
 //! between members, `tests/floors.rs` the floors within the core, that no circle of imports is longer
 //! than two files, and that no folder has more than 15 files lying flat.
 //!
@@ -20,8 +20,8 @@
 //! F5  opening/                   files -> a flight in one world; what is looked up of its photos
 //!     render/                    wgpu: scene -> picture; knows no egui, reads no file
 //!     reconstruct/               photos alone -> a flight: engines behind a trait
+//!     dense/                     photos with known poses -> depth maps -> a cloud with standard errors
 //!     sample/                    the paper's lab, simulated
-//!     reconstruct/               photos -> poses, lenses, a cloud: engines behind a trait
 //! F4  formats/                   bytes -> types: clouds cameras packages poses photos tables text
 //!     exports/                   what goes out: table, CSV, JSON, sheet, Split-Desktop, figures, maps
 //!     --- the core (core.rs) and fragmentation/ ---

@@ -80,8 +80,12 @@ fn with_decimals(number: f64, decimals: i32) -> String {
 
 /// A relative standard error in percent, with the four digits that such a number can have.
 pub fn stated_percent(relative: f64) -> f64 {
-    let percent = 100.0 * relative;
-    format!("{percent:.3e}").parse().unwrap_or(percent)
+    four_digits(100.0 * relative)
+}
+
+/// A number rounded to four digits: more is no standard error known.
+pub fn four_digits(number: f64) -> f64 {
+    format!("{number:.3e}").parse().unwrap_or(number)
 }
 
 /// The largest of 1, 2 and 5 times a power of ten that is no larger than `most`, without the noise of

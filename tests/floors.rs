@@ -51,7 +51,10 @@ const MEMBERS: [(&str, &[&str]); 10] = [
     ("render", &["core"]),
     ("dense", &["core", "render"]),
     ("sample", &["core", "exports", "fragmentation", "formats"]),
-    ("reconstruct", &["core", "exports", "formats", "opening"]),
+    (
+        "reconstruct",
+        &["core", "dense", "exports", "formats", "opening"],
+    ),
     (
         "app",
         &[

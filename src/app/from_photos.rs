@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
-use crate::reconstruct::{PhotoSet, Reconstructed};
+use crate::reconstruct::{PhotoSet, Quality, Reconstructed};
 
 /// A step of making a flight from photos.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub enum FolderField {
     To,
 }
 
-/// What is typed in the small window.
+/// What is typed and chosen in the small window.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct FromPhotosForm {
     /// The folder of the photos.
@@ -36,6 +36,8 @@ pub struct FromPhotosForm {
     pub to: String,
     /// The coordinate system of the world, if it is not the zone of UTM.
     pub crs: String,
+    /// How much time the cloud may take.
+    pub quality: Quality,
 }
 
 /// What was found in the folder of the photos.

@@ -1,5 +1,7 @@
 //! Whether another photo's depth map has the same surface at a pixel.
 
+use std::sync::Arc;
+
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::depth_map::DepthMap;
@@ -14,7 +16,7 @@ const LEAST_COSINE: f64 = 0.5;
 /// From one map into another.
 pub(crate) struct Agreement<'a> {
     pub(crate) other: usize,
-    theirs: &'a DepthMap,
+    theirs: Arc<DepthMap>,
     view: &'a View,
     a: DMat3,
     b: DVec3,
@@ -61,29 +63,28 @@ pub(crate) fn center(map: &DepthMap, at: usize) -> DVec2 {
 }
 
 impl<'a> Agreement<'a> {
+    /// From the map of `view` into the other map, of view number `other`.
     pub(crate) fn of(
-        views: &'a [View],
-        maps: &'a [Option<DepthMap>],
-        which: usize,
-        other: usize,
-    ) -> Option<Self> {
-        let own = maps.get(which)?.as_ref()?;
-        let theirs = maps.get(other)?.as_ref()?;
-        let (from, to) = (&views[which].pose, &views[other].pose);
+        own: &DepthMap,
+        view: &View,
+        theirs: Arc<DepthMap>,
+        (other, their_view): (usize, &'a View),
+    ) -> Self {
+        let (from, to) = (&view.pose, &their_view.pose);
         let (a, b) = exact((&own.camera, from), (&theirs.camera, to));
-        Some(Self {
+        Self {
             other,
             theirs,
-            view: &views[other],
+            view: their_view,
             a,
             b,
             turn: from.rotation.transpose() * to.rotation,
-        })
+        }
     }
 
     /// Of their map.
     pub(crate) fn per_pixel(&self) -> f64 {
-        per_pixel(self.theirs)
+        per_pixel(&self.theirs)
     }
 
     /// What the other map has where it sees our pixel; `None` outside it.
@@ -101,7 +102,7 @@ impl<'a> Agreement<'a> {
         let column = (pixel.x as usize).min(width - 1);
         let row = (pixel.y as usize).min(height - 1);
         let found = row * width + column;
-        let from_center = pixel - center(self.theirs, found);
+        let from_center = pixel - center(&self.theirs, found);
         let [x, y] = self.theirs.slopes[found].map(f64::from);
         let theirs =
             f64::from(self.theirs.depths[found]).recip() + x * from_center.x + y * from_center.y;
@@ -109,8 +110,8 @@ impl<'a> Agreement<'a> {
         if theirs.is_nan() || theirs <= 0.0 {
             return None;
         }
-        let far = MOST_PIXELS * per_pixel(self.theirs).max(per_pixel(own) / m.z);
-        let leaning = normal(own, at).dot(self.turn * normal(self.theirs, found));
+        let far = MOST_PIXELS * per_pixel(&self.theirs).max(per_pixel(own) / m.z);
+        let leaning = normal(own, at).dot(self.turn * normal(&self.theirs, found));
         let direction = self.theirs.camera.direction_undistorted(pixel);
         Some(Seen {
             at: found,

@@ -4,10 +4,11 @@
 //! # Floors
 //!
 //! ```text
-//! D3  fusion.rs      depth maps -> points
-//! D2  depth_maps.rs  the schedule: coarse to fine, photos alone first, then with the other photos' depths
+//! D4  fusion.rs      depth maps -> points
+//! D3  depth_maps.rs  the schedule: coarse to fine, photos alone first, then with the other photos' depths
+//! D2  found_maps.rs  the maps that were found, read from the shelf
 //! D1  patch_match/   the search for a plane at every pixel; `cpu` and `gpu/` are its two back ends
-//! D0  view.rs  neighbours.rs  options.rs  luma.rs  depth_map.rs  agreement.rs
+//! D0  view.rs  neighbours.rs  options.rs  luma.rs  depth_map.rs  agreement.rs  shelf.rs
 //! ```
 //!
 //! # Frames and numbers
@@ -29,19 +30,22 @@
 mod agreement;
 mod depth_map;
 mod depth_maps;
+mod found_maps;
 mod fusion;
 mod luma;
 mod neighbours;
 mod options;
 mod patch_match;
+mod shelf;
 #[cfg(test)]
 mod tests;
 mod view;
 
-use fragscale_core::{camera, fault, jobs};
+use fragscale_core::{camera, fault, files, jobs};
 
 pub use depth_map::DepthMap;
 pub use depth_maps::depth_maps;
+pub use found_maps::DepthMaps;
 pub use fusion::{Fused, fuse};
 pub use neighbours::choose_neighbours;
 pub use options::{DenseOptions, Quality};
@@ -49,4 +53,5 @@ pub use patch_match::Backend;
 pub use patch_match::cpu::Cpu;
 #[cfg(feature = "gpu")]
 pub use patch_match::gpu::Gpu;
+pub use shelf::{InFolder, InMemory, Shelf};
 pub use view::{Photos, View};

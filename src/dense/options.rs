@@ -3,8 +3,6 @@
 /// How much time the depth maps may take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Quality {
-    /// Half the photos' size, without the pass over the other photos' depths.
-    Fast,
     /// Photos of at most 3 megapixels.
     Normal,
     /// The photos' full size.
@@ -12,7 +10,7 @@ pub enum Quality {
 }
 
 /// The settings of the search.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DenseOptions {
     /// How many other photos each photo is compared with, at most 8.
     pub neighbours: usize,
@@ -35,11 +33,6 @@ impl DenseOptions {
             geometric_sweeps: 2,
         };
         match quality {
-            Quality::Fast => Self {
-                most_pixels: 1_000_000,
-                geometric_sweeps: 1,
-                ..normal
-            },
             Quality::Normal => normal,
             Quality::Best => Self {
                 most_pixels: u64::MAX,

@@ -1,12 +1,15 @@
 //! What an engineer opens, and other programs read: `poses.csv` with standard deviations, `pile.laz` in the
 //! world's coordinate system (`pile.ply` where LAS has no name for it), and the `flight.toml` of both.
 
+use std::borrow::Cow;
+
 use crate::covariance::{Deviations, Known, deviations};
+use crate::dense_cloud::DenseCloud;
 use crate::exports::{PoseRow, StatedDeviations, laz, ply, poses_csv};
 use crate::fault::Fault;
 use crate::flight::{FlightFile, FlightSettings, PosesFlight};
 use crate::formats::Reconstruction;
-use crate::numbers::stated_percent;
+use crate::numbers::{four_digits, stated_percent};
 use crate::opening::Georeferenced;
 use crate::photo_set::PhotoSet;
 use crate::surface::Cloud;
@@ -18,17 +21,34 @@ pub(crate) struct FlightFiles {
     pub(crate) warnings: Vec<String>,
 }
 
-/// Of a model in its own frame and its way to the world. `folder` is the photos', from flight.toml.
+/// What clouds say that they come from.
+pub(crate) const SOURCE: &str = "fragscale reconstruct";
+
+/// What a flight is of.
+pub(crate) struct FlightOf<'a> {
+    pub(crate) name: &'a str,
+    /// The photos', from flight.toml.
+    pub(crate) folder: &'a str,
+    /// The model's way to the world.
+    pub(crate) placed: &'a Georeferenced,
+    pub(crate) photos: &'a PhotoSet,
+}
+
+/// Of a model in its own frame, and its dense cloud if there is one.
 ///
 /// # Errors
 /// Where a number is not finite.
 pub(crate) fn flight_files(
-    name: &str,
-    folder: &str,
+    of: &FlightOf<'_>,
     mut model: Reconstruction,
-    placed: &Georeferenced,
-    photos: &PhotoSet,
+    dense: Option<DenseCloud>,
 ) -> Result<FlightFiles, Fault> {
+    let FlightOf {
+        name,
+        folder,
+        placed,
+        photos,
+    } = *of;
     let report = |error: String| Fault::new(error, "report this");
     model.transform(&placed.similarity);
     let known = Known {
@@ -59,7 +79,21 @@ pub(crate) fn flight_files(
         })
         .collect();
     let poses = poses_csv(&rows).map_err(report)?;
-    let (surface, cloud) = surface(&model.cloud, placed).map_err(report)?;
+    let mut of_surface = None;
+    let cloud = match dense {
+        None => Cow::Borrowed(&model.cloud),
+        Some(DenseCloud {
+            mut cloud,
+            deviation,
+        }) => {
+            for point in &mut cloud.points {
+                *point = placed.similarity.apply(*point);
+            }
+            of_surface = Some(deviation * placed.similarity.scale);
+            Cow::Owned(cloud)
+        }
+    };
+    let (surface, cloud) = surface(&cloud, placed).map_err(report)?;
     let flight = PosesFlight {
         name,
         poses: "poses.csv",
@@ -76,6 +110,7 @@ pub(crate) fn flight_files(
     settings.errors.world_scale = placed.scale_error.map(stated_percent);
     settings.errors.focal =
         sure.map(|sure| stated_percent(sure.focal.into_iter().fold(0.0, f64::max)));
+    settings.errors.surface = of_surface.map(four_digits);
     let text = FlightFile::for_poses(&flight, &settings).to_toml()?;
     Ok(FlightFiles {
         files: vec![
@@ -102,9 +137,8 @@ fn surface(cloud: &Cloud, placed: &Georeferenced) -> Result<(&'static str, Vec<u
         .as_deref()
         .and_then(|crs| crs.strip_prefix("EPSG:"));
     let epsg = epsg.and_then(|code| code.parse().ok());
-    let source = "fragscale reconstruct";
-    match epsg.map(|epsg| laz(cloud, epsg, source)) {
+    match epsg.map(|epsg| laz(cloud, epsg, SOURCE)) {
         Some(Ok(bytes)) => Ok(("pile.laz", bytes)),
-        _ => Ok(("pile.ply", ply(cloud, source)?)),
+        _ => Ok(("pile.ply", ply(cloud, SOURCE)?)),
     }
 }

@@ -6,6 +6,9 @@
 //! pairs       which photos are compared: neighbours, not all with all
 //! engine      what an engine has to do
 //! embedded    the engine that is always there: cumulus3d's parts, in pure Rust
+//! kept_model  what an engine found, for a run that goes on
+//! quality     how much time the cloud may take
+//! dense_cloud  the dense cloud of a model
 //! covariance  how sure poses and lenses are
 //! in_world    the photos' own positions as a place in the world
 //! flight_files  poses.csv, pile.laz and flight.toml of a model in the world
@@ -23,29 +26,35 @@
 //! and COLMAP's files count likewise.
 
 mod covariance;
+mod dense_cloud;
 mod embedded;
 mod engine;
 mod flight_files;
 mod in_world;
+mod kept_model;
 mod pairs;
 mod photo_set;
 mod proposed;
+mod quality;
 mod said;
 mod written;
 
 use fragscale_core::{
-    camera, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, surface,
+    camera, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, picture, surface,
 };
+use fragscale_dense as dense;
 use fragscale_exports as exports;
 use fragscale_formats as formats;
 use fragscale_opening as opening;
 
 use std::path::PathBuf;
 
+pub use self::dense::DenseOptions;
 pub use self::embedded::Embedded;
 pub use self::engine::{Engine, Sparse};
 pub use self::photo_set::{LeftOut, PhotoSet, SurveyPhoto};
 pub use self::proposed::{may_be_made, proposed_folder};
+pub use self::quality::Quality;
 pub use self::said::{found, left_out, summary};
 
 use self::files::FileError;
@@ -61,6 +70,8 @@ pub struct Request {
     pub to: PathBuf,
     /// The coordinate system of the world; without it the zone of UTM that the photos lie in.
     pub crs: Option<String>,
+    /// How its dense cloud is found, see [`Quality`]; `None` keeps the sparse one.
+    pub dense: Option<DenseOptions>,
 }
 
 /// What came out.
@@ -74,14 +85,26 @@ pub struct Reconstructed {
     pub photos: usize,
     /// Photos that it does not hold.
     pub left_out: Vec<LeftOut>,
-    /// How many points it has.
+    /// How many points it has, each seen by two photos at least.
     pub points: usize,
+    /// Its dense cloud; `None` where the sparse one is the flight's.
+    pub dense: Option<DensePoints>,
     /// How far points lie from where photos see them, pixels (median).
     pub reprojection_px: Option<f64>,
     /// Its way to the world; `None` where the photos do not say where they were taken.
     pub world: Option<Georeferenced>,
     /// What is to be said of it, one sentence each.
     pub warnings: Vec<String>,
+}
+
+/// Of a dense cloud.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DensePoints {
+    /// How many points it has.
+    pub count: usize,
+    /// Standard deviation of its points along the rays that see them, in the unit of the world; in that of the
+    /// model, which nobody knows, where it has no world.
+    pub deviation: f64,
 }
 
 /// Reconstructs.
@@ -100,10 +123,9 @@ pub fn reconstruct(
     folder.go_on_with(&photos, engine)?;
     let pairs = pairs::pairs(&photos);
     let at = |fault| FileError::new(&request.photos, fault);
-    let sparse = engine
-        .reconstruct(&photos, &pairs, &folder.work, progress)
-        .map_err(at)?;
-    written::write(request, &folder, photos, sparse, progress)
+    let find = || engine.reconstruct(&photos, &pairs, &folder.work, progress);
+    let (sparse, goes_on) = kept_model::kept_or_found(&folder.work, find).map_err(at)?;
+    written::write(request, &folder, photos, sparse, goes_on, progress)
 }
 
 #[cfg(test)]

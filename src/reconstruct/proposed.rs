@@ -60,6 +60,7 @@ mod tests {
             photos: photos.clone(),
             to: to.clone(),
             crs: None,
+            dense: None,
         };
         // Nothing overlaps: it ends with a fault.
         reconstruct(&request, &Embedded, &Progress::default()).unwrap_err();

@@ -19,6 +19,17 @@ pub fn summary(made: &Reconstructed) -> Vec<String> {
         text += &format!(", median reprojection error {px:.2} px");
     }
     let mut lines = vec![text];
+    if let Some(dense) = &made.dense {
+        let mut text = format!("dense cloud: {} points", dense.count);
+        if let Some(world) = &made.world {
+            let deviation = rounded(dense.deviation);
+            text += &format!(
+                ", each to {deviation} {} along the view (standard deviation)",
+                world.unit
+            );
+        }
+        lines.push(text);
+    }
     if let Some(world) = &made.world {
         let crs = world.crs.as_deref().unwrap_or("local");
         let mut text = format!("world: {crs}, in {}", world.unit);

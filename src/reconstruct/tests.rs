@@ -157,6 +157,7 @@ fn request(photos: &Path, to: &Path) -> Request {
         photos: photos.to_owned(),
         to: to.to_owned(),
         crs: None,
+        dense: None,
     }
 }
 
@@ -217,30 +218,124 @@ fn rendered_photos_become_their_flight() {
     let median = geometry::median(&mut off).unwrap();
     assert!(median < ground_pixel, "{median}");
 
-    // The same again, cut off when the features are found.
+    assert_eq!((off.len(), made.dense), (made.points, None));
+
+    // The same again with a dense cloud, cut off when the features are found, and among the depths.
     let again = folder.path().join("again");
-    let stopped = Progress::default();
-    let watched = stopped.clone();
-    let watcher = std::thread::spawn(move || {
-        while !watched.snapshot().0.starts_with("comparing") {
-            std::thread::sleep(std::time::Duration::from_millis(1));
-        }
-        watched.cancel();
-    });
-    let cut = reconstruct(&request(photos(), &again), &Embedded, &stopped).unwrap_err();
-    watcher.join().unwrap();
-    assert_eq!(cut.fault.what, "cancelled");
+    let dense = Request {
+        dense: Some(small()),
+        ..request(photos(), &again)
+    };
+    cut_off(&dense, "comparing", 0.0);
     assert!(again.join("unfinished/features.bin").exists());
-    let second = reconstruct(&request(photos(), &again), &Embedded, &progress).unwrap();
+    assert!(cut_off(&dense, "refining depths", 0.3) < 1.0);
+    assert!(again.join("unfinished/depths/first-8").exists());
+    // Its twin keeps the model and finds all depths once more.
+    let twin = folder.path().join("twin");
+    copy(&again.join("unfinished"), &twin.join("unfinished"));
+    fs::remove_dir_all(twin.join("unfinished/depths")).unwrap();
+    let second = reconstruct(&dense, &Embedded, &progress).unwrap();
     assert!(!again.join("unfinished").exists());
     assert_eq!(
         (second.registered, second.points),
         (made.registered, made.points)
     );
-    for name in ["poses.csv", "pile.laz"] {
-        let read = |folder: &Path| fs::read(folder.join(name)).unwrap();
-        assert!(read(&again) == read(&to), "{name}");
+    let dense = Request {
+        to: twin.clone(),
+        ..dense
+    };
+    assert_eq!(
+        reconstruct(&dense, &Embedded, &progress).unwrap().dense,
+        second.dense
+    );
+    let read = |folder: &Path, name: &str| fs::read(folder.join(name)).unwrap();
+    assert!(read(&again, "poses.csv") == read(&to, "poses.csv"));
+    for name in [
+        "poses.csv",
+        "pile.laz",
+        "flight.toml",
+        "reconstruction/points3D.txt",
+    ] {
+        assert!(read(&again, name) == read(&twin, name), "{name}");
     }
+    is_dense(&again, second.dense.unwrap());
+}
+
+/// Depth maps of a quarter of the photos' pixels, for the sake of time.
+fn small() -> DenseOptions {
+    DenseOptions {
+        most_pixels: 80_000,
+        ..Quality::Normal.dense().unwrap()
+    }
+}
+
+/// Runs until a stage of which the sentence begins so, and cancels it when so much of it is done; seconds that it
+/// took to stop.
+fn cut_off(request: &Request, stage: &'static str, from: f64) -> f64 {
+    let stopped = Progress::default();
+    let watched = stopped.clone();
+    let watcher = std::thread::spawn(move || {
+        let (mut sentence, mut fraction) = watched.snapshot();
+        while !(sentence.starts_with(stage) && fraction >= from) {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+            (sentence, fraction) = watched.snapshot();
+        }
+        watched.cancel();
+        std::time::Instant::now()
+    });
+    let cut = reconstruct(request, &Embedded, &stopped).unwrap_err();
+    let took = watcher.join().unwrap().elapsed();
+    assert_eq!(cut.fault.what, "cancelled");
+    took.as_secs_f64()
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let to = to.join(path.file_name().unwrap());
+        match path.is_dir() {
+            true => copy(&path, &to),
+            false => fs::copy(&path, &to).map(|_| ()).unwrap(),
+        }
+    }
+}
+
+/// The cloud lies on the rock as closely as the flight states, all over what three photos show.
+fn is_dense(flight: &Path, dense: DensePoints) {
+    let progress = Progress::default();
+    let cloud = read_cloud(&flight.join("pile.laz"), &progress)
+        .unwrap()
+        .cloud;
+    assert_eq!(
+        (cloud.points.len(), cloud.colors.len()),
+        (dense.count, dense.count)
+    );
+    // Nine photos of 76 800 pixels; what four show is one point.
+    assert!(dense.count > 70_000, "{}", dense.count);
+    let above = cloud.points.iter().map(|point| *point - ORIGIN);
+    let mut above: Vec<f64> = above
+        .map(|point| point.z - height(point.truncate()))
+        .collect();
+    // How well the world's heights are known is stated apart: by the receivers.
+    let all = geometry::median(&mut above).unwrap();
+    assert!(all.abs() < 0.02, "{all}");
+    let mut off: Vec<f64> = above.iter().map(|above| (above - all).abs()).collect();
+    off.sort_by(f64::total_cmp);
+    let share = |most: f64| off.partition_point(|off| *off <= most) as f64 / off.len() as f64;
+    let deviation = dense.deviation;
+    // A pixel of the depth maps is 0.1 m wide: less than half of it along the view.
+    assert!((0.005..0.04).contains(&deviation), "{deviation}");
+    // A standard deviation holds two thirds, three of them nearly all; a little less, for poses and lens err, too.
+    assert!(share(deviation) > 0.55, "{}", share(deviation));
+    assert!(share(3.0 * deviation) > 0.95, "{}", share(3.0 * deviation));
+    let opened = open_flight(
+        &flight.join("flight.toml"),
+        &OpenOptions::default(),
+        &progress,
+    );
+    let stated = opened.unwrap().flight.parts().errors.surface.unwrap();
+    assert!((stated / deviation - 1.0).abs() < 1e-3, "{stated}");
 }
 
 /// One line, and nothing left where nothing was.

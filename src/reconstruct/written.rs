@@ -5,15 +5,17 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::dense_cloud::{DenseCloud, dense_cloud};
 use crate::engine::{Engine, Sparse};
+use crate::exports::ply;
 use crate::fault::Fault;
 use crate::files::{self, FileError, Inputs, Kind};
-use crate::flight_files::flight_files;
+use crate::flight_files::{FlightOf, SOURCE, flight_files};
 use crate::formats::read_project;
 use crate::jobs::Progress;
 use crate::opening::{GeoreferenceRequest, flight_text_of, georeference_model, path_from};
 use crate::photo_set::PhotoSet;
-use crate::{Reconstructed, Request};
+use crate::{DensePoints, Reconstructed, Request};
 
 const FLIGHT: &str = "flight.toml";
 const MODEL: &str = "reconstruction";
@@ -106,15 +108,17 @@ fn cannot(what: &str, error: &io::Error) -> Fault {
     Fault::new(what, "choose a folder that may be written to")
 }
 
-/// Writes what was found, brings it to the world, and takes the unfinished work away.
+/// Writes what was found, makes its cloud dense where that is asked, brings it to the world, and takes the
+/// unfinished work away. `goes_on` is whether `sparse` is what a run before found.
 ///
 /// # Errors
-/// Where the folder cannot be written.
+/// Where the folder cannot be written or a photo not be read, or the work was cancelled.
 pub(crate) fn write(
     request: &Request,
     folder: &Folder,
     photos: PhotoSet,
     sparse: Sparse,
+    goes_on: bool,
     progress: &Progress,
 ) -> Result<Reconstructed, FileError> {
     let model = folder.path.join(MODEL);
@@ -125,6 +129,16 @@ pub(crate) fn write(
         folder.write(&model.join(name), bytes)?;
     }
     let read = read_project(&model, progress)?.reconstruction;
+    let mut warnings = Vec::new();
+    let dense = match &request.dense {
+        None => None,
+        Some(options) => {
+            let found = dense_cloud(&read, &photos, options, &folder.work, goes_on, progress);
+            let (dense, said) = found.map_err(|fault| FileError::new(&request.photos, fault))?;
+            warnings.extend(said);
+            dense
+        }
+    };
     progress.stage("fitting");
     let known = GeoreferenceRequest {
         photos: Some(request.photos.clone()),
@@ -132,7 +146,10 @@ pub(crate) fn write(
         ..GeoreferenceRequest::default()
     };
     let placed = georeference_model(&model, &read, &known);
-    let mut warnings = Vec::new();
+    let mut dense_points = dense.as_ref().map(|dense| DensePoints {
+        count: dense.cloud.points.len(),
+        deviation: dense.deviation,
+    });
     let (registered, points) = (read.photos.len(), read.cloud.points.len());
     let reprojection_px = read.median_reprojection_px();
     let name = request.photos.canonicalize().unwrap_or_default();
@@ -140,11 +157,23 @@ pub(crate) fn write(
     let placed = match placed {
         Ok(placed) => {
             progress.stage("finding how sure the poses are");
+            if let Some(dense) = &mut dense_points {
+                dense.deviation *= placed.similarity.scale;
+            }
             warnings.extend(placed.warnings.iter().cloned());
             let here = fs::canonicalize(&folder.path).map_err(|error| at(&error))?;
             let to_photos = path_from(&here, &request.photos);
+            let of = |to_photos: String| {
+                let of = FlightOf {
+                    name: &name,
+                    folder: &to_photos,
+                    placed: &placed,
+                    photos: &photos,
+                };
+                flight_files(&of, read, dense)
+            };
             let made = to_photos
-                .and_then(|to_photos| flight_files(&name, &to_photos, read, &placed, &photos))
+                .and_then(of)
                 .map_err(|fault| FileError::new(&folder.path, fault))?;
             warnings.extend(made.warnings);
             // flight.toml is the last: with it the folder is a flight.
@@ -159,7 +188,11 @@ pub(crate) fn write(
                 error.fault
             ));
             let photos = Some(request.photos.as_path());
-            let text = flight_text_of(None, Some(&name), &flight, &model, photos, None)?;
+            let surface = dense
+                .map(|dense| write_in_its_frame(folder, &dense))
+                .transpose()?;
+            let surface = surface.as_deref();
+            let text = flight_text_of(None, Some(&name), &flight, &model, photos, surface)?;
             folder.write(&flight, text.as_bytes())?;
             None
         }
@@ -174,8 +207,20 @@ pub(crate) fn write(
         photos: photos.count,
         left_out,
         points,
+        dense: dense_points,
         reprojection_px,
         world: placed,
         warnings,
     })
+}
+
+/// Writes the dense cloud of a model that has no place in the world, in the model's frame.
+fn write_in_its_frame(folder: &Folder, dense: &DenseCloud) -> Result<PathBuf, FileError> {
+    let path = folder.path.join("pile.ply");
+    let bytes = ply(&dense.cloud, SOURCE).map_err(|error| {
+        let fault = Fault::new(error, "report this");
+        FileError::new(&path, fault)
+    })?;
+    folder.write(&path, &bytes)?;
+    Ok(path)
 }

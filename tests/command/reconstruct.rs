@@ -3,7 +3,7 @@
 
 use std::fs;
 
-use crate::common::error_of;
+use crate::common::{error_of, fragscale, stdout_of};
 
 /// The bundled photos do not overlap, as the paper's: that is said, not a model made of nothing.
 #[test]
@@ -31,4 +31,20 @@ fn folders_that_are_none_are_refused() {
     let photos = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/sample/photos");
     let error = error_of(&["reconstruct", photos, "--to", &path("empty")]);
     assert!(error.contains("the folder is not empty"), "{error}");
+}
+
+/// How much work the cloud is; what each word costs stands in the help.
+#[test]
+fn qualities_are_words() {
+    let photos = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/sample/photos");
+    let output = fragscale(&["reconstruct", photos, "--to", "x", "--quality", "good"]);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        error.contains("[possible values: fast, normal, best]"),
+        "{error}"
+    );
+    let help = stdout_of(&["reconstruct", "--help"]);
+    for words in ["[default: normal]", "- fast:", "sparse cloud", "megapixels"] {
+        assert!(help.contains(words), "{words}: {help}");
+    }
 }

@@ -9,6 +9,7 @@ use egui::{Key, Modifiers, Theme};
 use fragscale::app::command::Asking;
 use fragscale::app::from_photos::Ended;
 use fragscale::app::tasks::work::Task;
+use fragscale::reconstruct::Quality;
 use glam::DVec3;
 use tempfile::TempDir;
 
@@ -34,6 +35,10 @@ fn desk(photos: &Path) -> Desk {
 
 fn asking(desk: &Desk) -> Option<Asking> {
     desk.harness.state().state().asking
+}
+
+fn quality(desk: &Desk) -> Quality {
+    desk.harness.state().state().from_photos.form.quality
 }
 
 fn ended(desk: &Desk) -> Option<&Ended> {
@@ -116,6 +121,11 @@ fn a_flight_comes_out() {
     let mut desk = desk(&photos);
     assert!(desk.says("6 photos"));
     assert!(desk.says("6 of 6 say where they were taken, to 0.015 m level and 0.025 m up"));
+    assert_eq!(quality(&desk), Quality::Normal);
+    desk.click(Role::RadioButton, "Quality: Best");
+    assert_eq!(quality(&desk), Quality::Best);
+    // The dense cloud of so few and small photos takes seconds all the same.
+    desk.click(Role::RadioButton, "Quality: Fast");
 
     start(&mut desk);
     let begun = Instant::now();

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::builder::PossibleValue;
+use clap::{Args, ValueEnum};
 
 use crate::cli::Answer;
 use crate::jobs::Progress;
-use crate::reconstruct::{Embedded, Request, left_out, reconstruct, summary};
+use crate::reconstruct::{Embedded, Quality, Request, left_out, reconstruct, summary};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ReconstructArguments {
@@ -20,6 +21,28 @@ pub(in crate::cli) struct ReconstructArguments {
     /// the photos lie in.
     #[arg(long, value_name = "CRS", allow_hyphen_values = true)]
     crs: Option<String>,
+    /// How much time the cloud may take.
+    #[arg(long, value_enum, default_value_t)]
+    quality: CloudQuality,
+}
+
+/// A quality as a word of the command line.
+#[derive(Debug, Clone, Copy, Default)]
+struct CloudQuality(Quality);
+
+impl ValueEnum for CloudQuality {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [CloudQuality; 3] = [
+            CloudQuality(Quality::Fast),
+            CloudQuality(Quality::Normal),
+            CloudQuality(Quality::Best),
+        ];
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.0.as_str()).help(self.0.explained()))
+    }
 }
 
 pub(in crate::cli) fn run(
@@ -30,6 +53,7 @@ pub(in crate::cli) fn run(
         photos: arguments.photos.clone(),
         to: arguments.to.clone(),
         crs: arguments.crs.clone(),
+        dense: arguments.quality.0.dense(),
     };
     let made = reconstruct(&request, &Embedded, progress).map_err(|error| error.to_string())?;
     let mut warnings = left_out(&made.left_out, made.photos);

@@ -13,7 +13,8 @@ use super::plane::{Plane, Planes};
 use super::random::Random;
 use super::window::{Fours, Weights, Window};
 use super::{
-    BEST, Backend, FARTHEST, GATE, MOST_SOURCES, Problem, REACH, SAME, Source, Sweep, UNSEEN,
+    BEST, Backend, FAR_DEARER, FARTHEST, GATE, MOST_SOURCES, Problem, REACH, SAME, Source, Sweep,
+    UNSEEN,
 };
 use crate::fault::Fault;
 use crate::jobs::Progress;
@@ -291,7 +292,8 @@ impl Half<'_> {
         // The cheapest, in order.
         let mut cheapest = [f32::MAX; BEST];
         for looked in 0..count {
-            if looked == wanted && cheapest[0] > bound + GATE {
+            let gate = if looked < wanted { FAR_DEARER } else { GATE };
+            if looked > 0 && looked <= wanted && cheapest[0] > bound + gate {
                 break;
             }
             let mut cost = self.cost_in(order[looked], window, place, plane);

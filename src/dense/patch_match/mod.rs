@@ -75,6 +75,8 @@ pub(crate) const NOISE: f32 = 4.0;
 pub(crate) const BEST: usize = 2;
 /// A plane that is dearer by more in the two best views of the plane so far is not looked at in the others.
 pub(crate) const GATE: f32 = 0.05;
+/// A plane that is dearer by more in the best view of the plane so far is not looked at in any other.
+pub(crate) const FAR_DEARER: f32 = 0.2;
 /// The cost of a view that does not see the point.
 pub(crate) const UNSEEN: f32 = 2.0;
 /// The reprojection error beyond which it costs no more, pixels.

@@ -63,6 +63,12 @@ impl Plane {
     }
 }
 
+/// What begins the bytes of planes; another format has another.
+const MARK: [u8; 8] = *b"planes 1";
+/// Bytes before the planes, and of each.
+const HEADER: usize = 16;
+const EACH: usize = 16;
+
 /// A plane for every pixel of an image.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Planes {
@@ -107,5 +113,74 @@ impl Planes {
             height,
             planes,
         }
+    }
+
+    /// The mark, width and height (u32), then inverse depth, slopes to the right and downwards and cost of each
+    /// plane (f32), row by row; all of them with the lowest byte first.
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+        let side = |pixels: usize| u32::try_from(pixels).unwrap_or(u32::MAX).to_le_bytes();
+        let mut bytes = Vec::with_capacity(HEADER + EACH * self.planes.len());
+        bytes.extend(MARK);
+        bytes.extend(side(self.width));
+        bytes.extend(side(self.height));
+        for plane in &self.planes {
+            let [right, down] = plane.slope;
+            for number in [plane.inverse_depth, right, down, plane.cost] {
+                bytes.extend(number.to_le_bytes());
+            }
+        }
+        bytes
+    }
+
+    /// Of an image of this size; `None` where the bytes are of another one or not whole.
+    pub(crate) fn from_bytes(bytes: &[u8], width: usize, height: usize) -> Option<Self> {
+        let (header, planes) = bytes.split_at_checked(HEADER)?;
+        let side = |at: usize| {
+            let side: [u8; 4] = header.get(at..at + 4)?.try_into().ok()?;
+            usize::try_from(u32::from_le_bytes(side)).ok()
+        };
+        let is_right = header.starts_with(&MARK)
+            && (side(8)?, side(12)?) == (width, height)
+            && planes.len() == EACH * width * height;
+        let plane = |bytes: &[u8]| {
+            let number =
+                |i: usize| f32::from_le_bytes([0, 1, 2, 3].map(|byte| bytes[4 * i + byte]));
+            Plane {
+                inverse_depth: number(0),
+                slope: [number(1), number(2)],
+                cost: number(3),
+            }
+        };
+        is_right.then(|| Self {
+            width,
+            height,
+            planes: planes.chunks_exact(EACH).map(plane).collect(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_there_and_back() {
+        let plane = |number: u8| Plane {
+            inverse_depth: f32::from(number) / 3.0,
+            slope: [1e-7, -2e-5],
+            cost: 0.25,
+        };
+        let planes = Planes {
+            width: 3,
+            height: 2,
+            planes: (0..6).map(plane).collect(),
+        };
+        let bytes = planes.to_bytes();
+        assert_eq!(Planes::from_bytes(&bytes, 3, 2), Some(planes));
+        // Of another size, cut off, something else.
+        assert_eq!(Planes::from_bytes(&bytes, 2, 3), None);
+        assert_eq!(Planes::from_bytes(&bytes[..bytes.len() - 1], 3, 2), None);
+        assert_eq!(Planes::from_bytes(&bytes[1..], 3, 2), None);
+        assert_eq!(Planes::from_bytes(b"planes", 3, 2), None);
     }
 }

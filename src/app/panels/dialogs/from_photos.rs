@@ -6,7 +6,7 @@ use crate::command::{Answers, Command, Dialog};
 use crate::from_photos::{Ended, FolderField, FromPhotos, FromPhotosForm, FromPhotosStep};
 use crate::names;
 use crate::panels::field::hinted_field;
-use crate::reconstruct::{PhotoSet, found, left_out, summary};
+use crate::reconstruct::{PhotoSet, Quality, found, left_out, summary};
 use crate::state::State;
 use crate::tasks::Task;
 use crate::typed::typed;
@@ -47,6 +47,7 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
                 form.crs = typed;
             }
         });
+        quality_row(&mut form, ui);
     });
     if form != held.form {
         commands.push(Command::FromPhotos(FromPhotosStep::Fill(form.clone())));
@@ -56,6 +57,27 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         Some((_, (sentence, fraction))) => progress(&sentence, fraction, ui, commands),
         None => start(held, &form, ui, commands),
     }
+}
+
+/// How much time the cloud may take; what that costs stands under the mouse.
+fn quality_row(form: &mut FromPhotosForm, ui: &mut egui::Ui) {
+    ui.horizontal(|ui| {
+        ui.label("Quality");
+        for quality in Quality::ALL {
+            let text = match quality {
+                Quality::Fast => "Fast",
+                Quality::Normal => "Normal",
+                Quality::Best => "Best",
+            };
+            let radio = ui.radio_value(&mut form.quality, quality, text);
+            let is_chosen = form.quality == quality;
+            radio.widget_info(|| {
+                let name = format!("Quality: {text}");
+                egui::WidgetInfo::selected(egui::Role::RadioButton, true, is_chosen, name)
+            });
+            radio.on_hover_text(quality.explained());
+        }
+    });
 }
 
 /// A field for a folder, with the desktop's dialog. `hint` is what counts while it is empty.

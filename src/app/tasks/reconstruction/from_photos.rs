@@ -118,6 +118,7 @@ impl State {
             photos: absolute(photos),
             to: absolute(to),
             crs: typed_text(&form.crs),
+            dense: form.quality.dense(),
         };
         self.from_photos.ended = None;
         let (writing, opened) = (self.from_photos.writing.clone(), self.opened);
