@@ -9,6 +9,7 @@
 //! kept_model  what an engine found, for a run that goes on
 //! quality     how much time the cloud may take
 //! dense_cloud  the dense cloud of a model
+//! colmap      COLMAP, where it is installed
 //! covariance  how sure poses and lenses are
 //! in_world    the photos' own positions as a place in the world
 //! flight_files  poses.csv, pile.laz and flight.toml of a model in the world
@@ -25,6 +26,7 @@
 //! Pixels of photos are counted as everywhere here: (0, 0) is the outer corner of the first. cumulus3d
 //! and COLMAP's files count likewise.
 
+mod colmap;
 mod covariance;
 mod dense_cloud;
 mod embedded;
@@ -49,6 +51,7 @@ use fragscale_opening as opening;
 
 use std::path::PathBuf;
 
+pub use self::colmap::Colmap;
 pub use self::dense::DenseOptions;
 pub use self::embedded::Embedded;
 pub use self::engine::{Engine, Sparse};

@@ -7,7 +7,9 @@ use clap::{Args, ValueEnum};
 
 use crate::cli::Answer;
 use crate::jobs::Progress;
-use crate::reconstruct::{Embedded, Quality, Request, left_out, reconstruct, summary};
+use crate::reconstruct::{
+    Colmap, Embedded, Engine, Quality, Request, left_out, reconstruct, summary,
+};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ReconstructArguments {
@@ -21,6 +23,9 @@ pub(in crate::cli) struct ReconstructArguments {
     /// the photos lie in.
     #[arg(long, value_name = "CRS", allow_hyphen_values = true)]
     crs: Option<String>,
+    /// What finds the poses.
+    #[arg(long, value_enum, default_value = "embedded")]
+    engine: EngineName,
     /// How much time the cloud may take.
     #[arg(long, value_enum, default_value_t)]
     quality: CloudQuality,
@@ -45,6 +50,23 @@ impl ValueEnum for CloudQuality {
     }
 }
 
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum EngineName {
+    /// The program's own: nothing to install.
+    Embedded,
+    /// COLMAP, where `colmap` is on the path.
+    Colmap,
+}
+
+impl EngineName {
+    fn engine(self) -> Result<Box<dyn Engine>, String> {
+        Ok(match self {
+            Self::Embedded => Box::new(Embedded),
+            Self::Colmap => Box::new(Colmap::on_path().map_err(|fault| fault.to_string())?),
+        })
+    }
+}
+
 pub(in crate::cli) fn run(
     arguments: &ReconstructArguments,
     progress: &Progress,
@@ -55,7 +77,8 @@ pub(in crate::cli) fn run(
         crs: arguments.crs.clone(),
         dense: arguments.quality.0.dense(),
     };
-    let made = reconstruct(&request, &Embedded, progress).map_err(|error| error.to_string())?;
+    let engine = arguments.engine.engine()?;
+    let made = reconstruct(&request, &*engine, progress).map_err(|error| error.to_string())?;
     let mut warnings = left_out(&made.left_out, made.photos);
     warnings.extend(made.warnings.iter().cloned());
     let lines = summary(&made).into_iter().map(|line| line + "\n");
