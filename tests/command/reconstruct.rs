@@ -44,7 +44,7 @@ fn qualities_are_words() {
         "{error}"
     );
     let help = stdout_of(&["reconstruct", "--help"]);
-    for words in ["[default: normal]", "- fast:", "sparse cloud", "megapixels"] {
+    for words in ["[default: fast]", "- fast:", "sparse cloud", "megapixels"] {
         assert!(help.contains(words), "{words}: {help}");
     }
 }

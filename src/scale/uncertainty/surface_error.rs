@@ -6,8 +6,8 @@
 //! and scales are too large. Of simulated piles, whose true surface is known, that is a nearly constant
 //! share of the roughness, whatever the place, the number of points (15 000 to 240 000) and their noise:
 //! [`UNSEEN_BIAS`] at corners; of lines, which see much, [`LINE_BIAS`] and [`LINE_SPREAD`] beside what
-//! bridges do (`bridges`). They are measured by `benches/coverage.rs`, on other piles than those that the
-//! coverage is stated for.
+//! bridges do (`bridges`, with which they were fitted). That of corners is measured by `benches/coverage.rs` on
+//! other piles than those that the coverage is stated for.
 
 use glam::{DMat3, DVec2, DVec3};
 
