@@ -15,7 +15,8 @@
 mod log;
 mod options;
 mod program;
-#[cfg(all(test, unix))]
+#[cfg(test)]
+#[cfg(unix)]
 mod tests;
 
 use std::fs;
