@@ -8,11 +8,13 @@
 //! over large blocks have most of it: 1.2 % in the mean of a photo's line and 3 % at its near edge). How far
 //! lines are off around that was about as much again at both ends as at either: [`SPREAD`].
 //!
-//! Nothing is deeper than [`MOST`] times the roughness of what is seen: a level floor with few points has long
-//! triangles, too, and hides nothing.
+//! Nothing is deeper than [`MOST`] times what is seen goes up and down (off the photo's plane): a level floor
+//! with few points has long triangles, too, and hides nothing.
 //!
 //! The constants are fitted to 180 photos of five flights of each place (`benches/coverage.rs`, seeds 1000 to
 //! 1004): README's coverage of fitted scales is, for them, not of other piles.
+
+use glam::DVec3;
 
 use super::holes::Line;
 use crate::scale::FittedScale;
@@ -27,8 +29,9 @@ const HIDDEN: f64 = 0.43;
 /// The standard deviation of the line's ends around that, over its root mean square at both ends.
 const SPREAD: f64 = 0.5;
 
-/// The most that is hidden, over the root mean square of what the points are off their neighbours.
-const MOST: f64 = 5.0;
+/// The most that is hidden, over the root mean square of what the field's depths are off the photo's plane: from
+/// the crests of a wave to its troughs it is 2.8 times that.
+const MOST: f64 = 2.8;
 
 /// What bridges do to the ends of a line, shares of its scales there.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -39,8 +42,8 @@ pub(super) struct Bridged {
     pub(super) spread: f64,
 }
 
-/// Of the line through a field over a cloud of this roughness (`surface_error`).
-pub(super) fn of_bridges(field: &ScaleField, fitted: &FittedScale, roughness: f64) -> Bridged {
+/// Of the line through a field over a cloud, with the photo's plane (`surface_error::plane_of`).
+pub(super) fn of_bridges(field: &ScaleField, fitted: &FittedScale, plane: DVec3) -> Bridged {
     let FieldGrid { columns, rows } = field.grid;
     let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
     let pixels = places.filter_map(|(column, row)| {
@@ -49,10 +52,12 @@ pub(super) fn of_bridges(field: &ScaleField, fitted: &FittedScale, roughness: f6
             scale: field.scale_at(column, row)?,
             depth: field.depth_at(column, row)?,
             edge: field.longest_edge_at(column, row)?,
+            off_plane: field.depth_at(column, row)? * plane.dot(field.direction_at(column, row)?)
+                - 1.0,
         })
     });
     let pixels: Vec<Pixel> = pixels.collect();
-    of_pixels(&pixels, [fitted.top, fitted.bottom], MOST * roughness)
+    of_pixels(&pixels, [fitted.top, fitted.bottom])
 }
 
 /// A pixel with a scale.
@@ -66,16 +71,19 @@ struct Pixel {
     depth: f64,
     /// The longest one of the triangle that it shows, world units.
     edge: f64,
+    /// Its depth over the plane's, less 1.
+    off_plane: f64,
 }
 
-/// No share of a depth beyond `most` is hidden.
-fn of_pixels(pixels: &[Pixel], line: [f64; 2], most: f64) -> Bridged {
+fn of_pixels(pixels: &[Pixel], line: [f64; 2]) -> Bridged {
     let mut edges: Vec<f64> = pixels.iter().map(|pixel| pixel.edge).collect();
     if edges.is_empty() {
         return Bridged::default();
     }
     let middle = edges.len() / 2;
     let median = *edges.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let squares: f64 = pixels.iter().map(|pixel| pixel.off_plane.powi(2)).sum();
+    let most = MOST * (squares / pixels.len() as f64).sqrt();
     let mut hidden = Line::default();
     for pixel in pixels {
         let over = (pixel.edge - USUAL * median).max(0.0);
@@ -110,16 +118,23 @@ mod tests {
                 scale: 50.0,
                 depth: 20.0,
                 edge: if row < 240 { 1.0 } else { 4.0 },
+                off_plane: 1.0,
             })
             .collect();
-        let bridged = of_pixels(&pixels, [50.0, 50.0], 1.0);
+        let bridged = of_pixels(&pixels, [50.0, 50.0]);
         let height = HIDDEN * (4.0 - USUAL) / 20.0;
         let [top, bottom] = bridged.too_large;
         assert!((top / height + 0.32).abs() < 1e-4, "{top}");
         assert!((bottom / height - 1.12).abs() < 1e-4, "{bottom}");
         let both = ((0.32_f64.powi(2) + 1.12_f64.powi(2)) / 2.0).sqrt();
-        // Of a smooth surface nothing is hidden.
-        let smooth = of_pixels(&pixels, [50.0, 50.0], 0.0);
+        // Of a plane nothing is hidden.
+        let level: Vec<Pixel> = (pixels.iter())
+            .map(|pixel| Pixel {
+                off_plane: 0.0,
+                ..*pixel
+            })
+            .collect();
+        let smooth = of_pixels(&level, [50.0, 50.0]);
         assert_eq!((smooth.too_large, smooth.spread), ([0.0; 2], 0.0));
         let spread = bridged.spread / (SPREAD * (4.0 - USUAL) / 20.0);
         assert!((spread - both).abs() < 1e-4, "{spread}");
@@ -132,8 +147,9 @@ mod tests {
             scale: 50.0,
             depth: 20.0,
             edge: 1.0 + down,
+            off_plane: 1.0,
         });
-        assert_eq!(of_pixels(&pixels, [50.0, 50.0], 1.0).too_large, [0.0; 2]);
-        assert_eq!(of_pixels(&[], [50.0, 50.0], 1.0), Bridged::default());
+        assert_eq!(of_pixels(&pixels, [50.0, 50.0]).too_large, [0.0; 2]);
+        assert_eq!(of_pixels(&[], [50.0, 50.0]), Bridged::default());
     }
 }

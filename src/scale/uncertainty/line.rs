@@ -61,7 +61,7 @@ impl LineErrors {
         let counted = depths.len() as f64;
         let holes = of_holes(field, fitted);
         let bridged = match is_cloud {
-            true => of_bridges(field, fitted, roughness.unwrap_or(0.0)),
+            true => of_bridges(field, fitted, plane),
             false => Bridged::default(),
         };
         let end = |index: usize, scale: f64| {
