@@ -3,11 +3,13 @@
 
 mod drawing;
 mod flight_files;
+mod html_page;
 mod markup;
 mod measured;
 mod photo_columns;
 mod photo_file_names;
 mod plan;
+mod reconstruction_report;
 mod rectified;
 mod report_object;
 mod scale_map;
@@ -35,6 +37,9 @@ pub use photo_file_names::photo_file_stems;
 pub use plan::{
     Grid, GridLine, GroundOf, MOST_MAP_PIXELS, MapFrame, MeasuredOutline, PhotoPixels, Plan,
     PlanBar, PlanFormat, PlanGround, PlanInks, PlanPhoto, PlanRequest, ground, taken_in_words,
+};
+pub use reconstruction_report::{
+    OffReceiver, ReconstructionReport, SeenPoint, SolvedCamera, SolvedPhoto, reconstruction_report,
 };
 pub use rectified::{RectifiedFormat, RectifiedPhoto};
 pub use report_object::{PointCloudScale, ReportObject};

@@ -19,6 +19,10 @@ pub(crate) struct FlightFiles {
     pub(crate) files: Vec<(&'static str, Vec<u8>)>,
     /// What is to be said, one sentence each.
     pub(crate) warnings: Vec<String>,
+    /// The model in the world.
+    pub(crate) model: Reconstruction,
+    /// How sure its poses and lenses are.
+    pub(crate) sure: Option<Deviations>,
 }
 
 /// What clouds say that they come from.
@@ -108,8 +112,8 @@ pub(crate) fn flight_files(
         ..FlightSettings::default()
     };
     settings.errors.world_scale = placed.scale_error.map(stated_percent);
-    settings.errors.focal =
-        sure.map(|sure| stated_percent(sure.focal.into_iter().fold(0.0, f64::max)));
+    let focal = |sure: &Deviations| stated_percent(sure.focal.iter().copied().fold(0.0, f64::max));
+    settings.errors.focal = sure.as_ref().map(focal);
     settings.errors.surface = of_surface.map(four_digits);
     let text = FlightFile::for_poses(&flight, &settings).to_toml()?;
     Ok(FlightFiles {
@@ -119,11 +123,13 @@ pub(crate) fn flight_files(
             ("flight.toml", text.into_bytes()),
         ],
         warnings,
+        model,
+        sure,
     })
 }
 
 /// Of a photo; rotations about the three axes go by their root mean square.
-fn stated(sure: &Deviations, photo: usize) -> StatedDeviations {
+pub(crate) fn stated(sure: &Deviations, photo: usize) -> StatedDeviations {
     let (position, turn) = sure.poses[photo];
     StatedDeviations {
         position,

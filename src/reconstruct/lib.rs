@@ -13,6 +13,7 @@
 //! covariance  how sure poses and lenses are
 //! in_world    the photos' own positions as a place in the world
 //! flight_files  poses.csv, pile.laz and flight.toml of a model in the world
+//! report      report.html: what was found, to judge it by
 //! written     the folder that comes out
 //! proposed    where that folder goes, if nobody says otherwise
 //! said        what is said of the photos, and of what came out
@@ -38,6 +39,7 @@ mod pairs;
 mod photo_set;
 mod proposed;
 mod quality;
+mod report;
 mod said;
 mod written;
 
@@ -128,7 +130,8 @@ pub fn reconstruct(
     let at = |fault| FileError::new(&request.photos, fault);
     let find = || engine.reconstruct(&photos, &pairs, &folder.work, progress);
     let (sparse, goes_on) = kept_model::kept_or_found(&folder.work, find).map_err(at)?;
-    written::write(request, &folder, photos, sparse, goes_on, progress)
+    let found = (engine.name(), sparse, goes_on);
+    written::write(request, &folder, &photos, found, progress)
 }
 
 #[cfg(test)]

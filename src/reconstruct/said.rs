@@ -6,14 +6,20 @@ use crate::fault::first_names;
 use crate::geometry::median;
 use crate::photo_set::{LeftOut, PhotoSet, SurveyCamera};
 
-/// What came out, a line each: how much of the photos is in it, where it lies.
+/// What came out, a line each: where it lies, how much of the photos is in it, which world.
 pub fn summary(made: &Reconstructed) -> Vec<String> {
+    let mut lines = facts(made);
+    if let Some(first) = lines.first_mut() {
+        *first = format!("{}: {first}", made.flight.display());
+    }
+    lines
+}
+
+/// The same without the flight's name, for what lies beside it.
+pub(crate) fn facts(made: &Reconstructed) -> Vec<String> {
     let mut text = format!(
-        "{}: {} of {} photos, {} points",
-        made.flight.display(),
-        made.registered,
-        made.photos,
-        made.points
+        "{} of {} photos, {} points",
+        made.registered, made.photos, made.points
     );
     if let Some(px) = made.reprojection_px {
         text += &format!(", median reprojection error {px:.2} px");

@@ -219,6 +219,19 @@ fn rendered_photos_become_their_flight() {
     assert!(median < ground_pixel, "{median}");
 
     assert_eq!((off.len(), made.dense), (made.points, None));
+    // COLMAP's list of images: a line of the pose, a line of X, Y and the point's number, -1 for none.
+    let images = fs::read_to_string(to.join("reconstruction/images.txt")).unwrap();
+    let report = fs::read_to_string(to.join("report.html")).unwrap();
+    let lines: Vec<&str> = images.lines().filter(|l| !l.starts_with('#')).collect();
+    for two in lines.chunks_exact(2) {
+        let name = two[0].split(' ').next_back().unwrap();
+        let numbers: Vec<&str> = two[1].split_whitespace().skip(2).step_by(3).collect();
+        let shown = numbers.iter().filter(|number| **number != "-1").count();
+        assert!(report.contains(&format!("<td>{name}</td><td>{shown}</td>")));
+    }
+    assert_eq!(lines.len(), 18);
+    assert!(report.contains("<td>other.jpg</td><td>it shows too little"));
+    assert!(report.contains("off the 9 positions that were used"));
 
     // The same again with a dense cloud, cut off when the features are found, and among the depths.
     let again = folder.path().join("again");

@@ -1,5 +1,5 @@
-//! The folder that comes out: `flight.toml` and what it names, and `reconstruction/` with COLMAP's text
-//! files. While the work goes on it has `unfinished/`, which a second run goes on with.
+//! The folder that comes out: `flight.toml` and what it names, `report.html`, and `reconstruction/` with COLMAP's
+//! text files. While the work goes on it has `unfinished/`, which a second run goes on with.
 
 use std::fs;
 use std::io;
@@ -15,10 +15,12 @@ use crate::formats::read_project;
 use crate::jobs::Progress;
 use crate::opening::{GeoreferenceRequest, flight_text_of, georeference_model, path_from};
 use crate::photo_set::PhotoSet;
+use crate::report::{ReportOf, report};
 use crate::{DensePoints, Reconstructed, Request};
 
 const FLIGHT: &str = "flight.toml";
 const MODEL: &str = "reconstruction";
+const REPORT: &str = "report.html";
 const UNFINISHED: &str = "unfinished";
 /// What the unfinished work is of: a line a photo.
 const OF: &str = "photos.txt";
@@ -109,16 +111,15 @@ fn cannot(what: &str, error: &io::Error) -> Fault {
 }
 
 /// Writes what was found, makes its cloud dense where that is asked, brings it to the world, and takes the
-/// unfinished work away. `goes_on` is whether `sparse` is what a run before found.
+/// unfinished work away. `sparse` is what an engine of that name found, `goes_on` whether in a run before.
 ///
 /// # Errors
 /// Where the folder cannot be written or a photo not be read, or the work was cancelled.
 pub(crate) fn write(
     request: &Request,
     folder: &Folder,
-    photos: PhotoSet,
-    sparse: Sparse,
-    goes_on: bool,
+    photos: &PhotoSet,
+    (engine, sparse, goes_on): (String, Sparse, bool),
     progress: &Progress,
 ) -> Result<Reconstructed, FileError> {
     let model = folder.path.join(MODEL);
@@ -133,7 +134,7 @@ pub(crate) fn write(
     let dense = match &request.dense {
         None => None,
         Some(options) => {
-            let found = dense_cloud(&read, &photos, options, &folder.work, goes_on, progress);
+            let found = dense_cloud(&read, photos, options, &folder.work, goes_on, progress);
             let (dense, said) = found.map_err(|fault| FileError::new(&request.photos, fault))?;
             warnings.extend(said);
             dense
@@ -150,11 +151,10 @@ pub(crate) fn write(
         count: dense.cloud.points.len(),
         deviation: dense.deviation,
     });
-    let (registered, points) = (read.photos.len(), read.cloud.points.len());
-    let reprojection_px = read.median_reprojection_px();
     let name = request.photos.canonicalize().unwrap_or_default();
     let name = name.file_name().unwrap_or_default().to_string_lossy();
-    let placed = match placed {
+    // flight.toml is the last: with it the folder is a flight.
+    let (placed, model, sure, files) = match placed {
         Ok(placed) => {
             progress.stage("finding how sure the poses are");
             if let Some(dense) = &mut dense_points {
@@ -168,7 +168,7 @@ pub(crate) fn write(
                     name: &name,
                     folder: &to_photos,
                     placed: &placed,
-                    photos: &photos,
+                    photos,
                 };
                 flight_files(&of, read, dense)
             };
@@ -176,11 +176,7 @@ pub(crate) fn write(
                 .and_then(of)
                 .map_err(|fault| FileError::new(&folder.path, fault))?;
             warnings.extend(made.warnings);
-            // flight.toml is the last: with it the folder is a flight.
-            for (name, bytes) in &made.files {
-                folder.write(&folder.path.join(name), bytes)?;
-            }
-            Some(placed)
+            (Some(placed), made.model, made.sure, made.files)
         }
         Err(error) => {
             warnings.push(format!(
@@ -193,25 +189,37 @@ pub(crate) fn write(
                 .transpose()?;
             let surface = surface.as_deref();
             let text = flight_text_of(None, Some(&name), &flight, &model, photos, surface)?;
-            folder.write(&flight, text.as_bytes())?;
-            None
+            (None, read, None, vec![(FLIGHT, text.into_bytes())])
         }
     };
-    let mut left_out = photos.left_out;
+    let mut left_out = photos.left_out.clone();
     left_out.extend(sparse.left_out);
-    // The flight is whole: what is left over harms nobody.
-    let _ = fs::remove_dir_all(&folder.work);
-    Ok(Reconstructed {
+    let made = Reconstructed {
         flight,
-        registered,
+        registered: model.photos.len(),
         photos: photos.count,
         left_out,
-        points,
+        points: model.cloud.points.len(),
         dense: dense_points,
-        reprojection_px,
+        reprojection_px: model.median_reprojection_px(),
         world: placed,
         warnings,
-    })
+    };
+    let report = report(&ReportOf {
+        name: &name,
+        engine: &engine,
+        made: &made,
+        model: &model,
+        photos,
+        sure: sure.as_ref(),
+    });
+    folder.write(&folder.path.join(REPORT), report.as_bytes())?;
+    for (name, bytes) in &files {
+        folder.write(&folder.path.join(name), bytes)?;
+    }
+    // The flight is whole: what is left over harms nobody.
+    let _ = fs::remove_dir_all(&folder.work);
+    Ok(made)
 }
 
 /// Writes the dense cloud of a model that has no place in the world, in the model's frame.

@@ -255,11 +255,16 @@ impl Reconstruction {
         {
             return None;
         }
-        let errors = self.observations.iter().filter_map(|o| self.error_px(o));
+        let errors = self
+            .observations
+            .iter()
+            .filter_map(|o| self.reprojection_px(o));
         median(&mut errors.collect::<Vec<f64>>())
     }
 
-    fn error_px(&self, observation: &Observation) -> Option<f64> {
+    /// How far a point projects from where a photo shows it, pixels of the photo as shot; `None` where it lies
+    /// behind the camera.
+    pub fn reprojection_px(&self, observation: &Observation) -> Option<f64> {
         let photo = self.photos.get(observation.photo as usize)?;
         let camera = self.cameras.get(photo.camera)?;
         let point = *self.cloud.points.get(observation.point as usize)?;

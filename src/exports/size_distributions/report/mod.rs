@@ -1,7 +1,7 @@
 //! The report of a comparison: one HTML file without scripts, for a screen or A4 paper.
 
+mod numbers;
 mod repeatability;
-mod table;
 #[cfg(test)]
 #[allow(
     clippy::expect_used,
@@ -10,20 +10,18 @@ mod table;
 )]
 mod tests;
 
-use table::{
-    Cell, NONE, heading, inside, measured, names, notes, number, paragraph, percent, signed, table,
-};
+use numbers::{measured, number};
 
 use super::{figure_of_comparison, figure_svg, method_name};
 use crate::fault::Fault;
-use crate::files::HTML_MARK;
 use crate::fragmentation::{
     Analysis, Comparison, Fit, MethodComparison, MethodCurve, PERCENT_ERROR, Repeatability,
     SCALE_WARNING,
 };
+use crate::html_page::{
+    self, Cell, NONE, heading, inside, names, notes, paragraph, percent, signed, table,
+};
 use crate::markup::escaped;
-
-const STYLE: &str = include_str!("report.css");
 
 /// Confidence of the bands.
 const LEVEL: f64 = 0.95;
@@ -73,26 +71,22 @@ pub fn comparison_report(report: &ComparisonReport<'_>) -> String {
     let comparison = report.comparison;
     let mut figure = figure_of_comparison(comparison);
     // The page has it as its own.
-    let title = escaped(&std::mem::take(&mut figure.title));
-    let figure = figure_svg(&figure);
-    let methods: String = comparison
-        .methods
-        .iter()
-        .map(|m| of_method(m, comparison))
-        .collect();
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
-         {HTML_MARK}<meta name=\"viewport\" content=\"width=device-width\"/>\n<title>{title}: size distributions\
-         </title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n{}<figure>\n{figure}\
-         </figure>\n{}{}{methods}{}{}{}<p class=\"small\">fragscale {}</p>\n</body>\n</html>\n",
+    let title = std::mem::take(&mut figure.title);
+    let drawing = html_page::figure(&figure_svg(&figure));
+    let methods = comparison.methods.iter();
+    let methods: String = methods.map(|m| of_method(m, comparison)).collect();
+    let body = [
         compared(report),
+        drawing,
         summary(comparison),
         fits(comparison),
+        methods,
         trials(comparison),
         repeatability::tables(&report.repeatability, comparison.unit),
         definitions(comparison),
-        env!("CARGO_PKG_VERSION"),
-    )
+    ];
+    let window = format!("{title}: size distributions");
+    html_page::page(&title, &window, &body.concat())
 }
 
 /// The reference, then the others.

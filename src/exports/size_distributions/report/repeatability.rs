@@ -1,8 +1,9 @@
 //! Whether the trials of a method agree: tables of variances, as in the paper's Tables II and III.
 
-use super::table::{Cell, NONE, heading, measured, names, notes, number, paragraph, table};
+use super::numbers::{measured, number};
 use crate::fault::Fault;
 use crate::fragmentation::{Anova, Repeatability};
+use crate::html_page::{Cell, NONE, heading, names, notes, paragraph, table};
 use crate::size_distributions::method_name;
 use crate::units::LengthUnit;
 
