@@ -3,10 +3,12 @@
 //!
 //! ```text
 //! photo_set   which files of a folder are photos for it, whose camera, where from
+//! twins       which of them are copies of others
 //! pairs       which photos are compared: neighbours, not all with all
 //! engine      what an engine has to do
 //! embedded    the engine that is always there: cumulus3d's parts, in pure Rust
 //! kept_model  what an engine found, for a run that goes on
+//! estimate    about how long it takes
 //! quality     how much time the cloud may take
 //! dense_cloud  the dense cloud of a model
 //! colmap      COLMAP, where it is installed
@@ -32,6 +34,7 @@ mod covariance;
 mod dense_cloud;
 mod embedded;
 mod engine;
+mod estimate;
 mod flight_files;
 mod in_world;
 mod kept_model;
@@ -41,6 +44,7 @@ mod proposed;
 mod quality;
 mod report;
 mod said;
+mod twins;
 mod written;
 
 use fragscale_core::{
@@ -57,6 +61,7 @@ pub use self::colmap::Colmap;
 pub use self::dense::DenseOptions;
 pub use self::embedded::Embedded;
 pub use self::engine::{Engine, Sparse};
+pub use self::estimate::{about, processor_seconds};
 pub use self::photo_set::{LeftOut, PhotoSet, SurveyPhoto};
 pub use self::proposed::{may_be_made, proposed_folder};
 pub use self::quality::Quality;

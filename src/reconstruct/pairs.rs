@@ -2,7 +2,8 @@
 //! most photos of a survey show nothing in common.
 //!
 //! A photo that says where it was taken is compared with its nearest neighbours in space and, where the
-//! camera looks aslant, with those that look at a place near its own. One that does not is compared with all.
+//! camera looks aslant, with those that look at a place near its own. One that does not may show what any other
+//! shows: an engine that has its features may choose among those pairs.
 
 use std::collections::BTreeSet;
 

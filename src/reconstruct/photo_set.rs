@@ -11,6 +11,7 @@ use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
 use crate::formats::{PhotoCameras, expected_deviation, photos_in};
 use crate::in_world::World;
 use crate::jobs::Progress;
+use crate::twins::Twins;
 
 /// A photo to be reconstructed.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,19 +91,27 @@ impl PhotoSet {
         progress.stage(format!("reading the headers of {} photos", files.len()));
         let mut left_out = Vec::new();
         let mut read = Vec::new();
+        let mut twins = Twins::default();
         for (done, path) in files.iter().enumerate() {
             progress
                 .advance(done as u64, files.len() as u64)
                 .map_err(at)?;
             let name = path.file_name().unwrap_or_default();
             let name = name.to_string_lossy().into_owned();
-            match photo_metadata::read_file(path) {
-                Ok(metadata) => read.push((name, path, metadata)),
-                Err(error) => left_out.push(LeftOut {
-                    photo: name,
-                    why: format!("it cannot be read ({})", error.fault.what),
-                }),
-            }
+            let metadata = photo_metadata::read_file(path);
+            let both = metadata.and_then(|metadata| Ok((metadata, twins.same_as(path)?)));
+            let why = match both {
+                Ok((metadata, None)) => {
+                    read.push((name, path, metadata));
+                    continue;
+                }
+                Ok((_, Some(first))) => {
+                    let first = first.file_name().unwrap_or_default().to_string_lossy();
+                    format!("it is a copy of {first}")
+                }
+                Err(error) => format!("it cannot be read ({})", error.fault.what),
+            };
+            left_out.push(LeftOut { photo: name, why });
         }
         if read.len() < 3 {
             let what = format!(

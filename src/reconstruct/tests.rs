@@ -132,8 +132,8 @@ fn write(folder: &Path, name: &str, image: &RgbImage, pose: Option<&Pose>) {
     fs::write(folder.join(name), bytes).unwrap();
 }
 
-/// Photos `IMG_1.jpg` to `IMG_9.jpg` and three that are none: a blank one, an empty file, and one of
-/// another place.
+/// Photos `IMG_1.jpg` to `IMG_9.jpg` and five that are none: a blank one, an empty file, one of another place, a
+/// copy, and one of which the second half is missing.
 fn photos() -> &'static Path {
     static PHOTOS: OnceLock<tempfile::TempDir> = OnceLock::new();
     let folder = PHOTOS.get_or_init(|| {
@@ -147,6 +147,10 @@ fn photos() -> &'static Path {
         write(folder.path(), "blank.jpg", &blank, Some(pose));
         write(folder.path(), "other.jpg", &photo(pose, 99), Some(pose));
         fs::write(folder.path().join("empty.jpg"), []).unwrap();
+        let whole = folder.path().join("IMG_5.jpg");
+        fs::copy(&whole, folder.path().join("copy of 5.jpg")).unwrap();
+        let bytes = fs::read(whole).unwrap();
+        fs::write(folder.path().join("cut.jpg"), &bytes[..bytes.len() / 2]).unwrap();
         folder
     });
     folder.path()
@@ -169,7 +173,7 @@ fn rendered_photos_become_their_flight() {
     let to = folder.path().join("flight");
     let progress = Progress::default();
     let made = reconstruct(&request(photos(), &to), &Embedded, &progress).unwrap();
-    assert_eq!((made.registered, made.photos), (9, 12));
+    assert_eq!((made.registered, made.photos), (9, 14));
     let why = |name: &str| {
         let left = made.left_out.iter().find(|left| left.photo == name);
         left.map(|left| left.why.clone()).unwrap_or_default()
@@ -182,6 +186,12 @@ fn rendered_photos_become_their_flight() {
     );
     assert!(
         why("empty.jpg").contains("cannot be read"),
+        "{:?}",
+        made.left_out
+    );
+    assert_eq!(why("copy of 5.jpg"), "it is a copy of IMG_5.jpg");
+    assert!(
+        why("cut.jpg").contains("cannot be read"),
         "{:?}",
         made.left_out
     );

@@ -7,12 +7,15 @@ use cumulus3d_core::{Camera, CameraModelKind, Descriptors, FeatureStore};
 use cumulus3d_features::{
     CpuSift, FeatureSelection, GrayImage, SiftOptions, extract::extract_for_camera,
 };
+use image::DynamicImage;
 
 use super::{camera_id, failed, image_id};
 use crate::camera::Distortion;
 use crate::fault::Fault;
+use crate::files::read_bytes;
 use crate::jobs::Progress;
 use crate::photo_set::{LeftOut, PhotoSet, SurveyCamera};
+use crate::picture;
 
 /// Longer side of what features are looked for in, pixels.
 const SIDE: usize = 3200;
@@ -133,9 +136,10 @@ fn options() -> SiftOptions {
 }
 
 fn gray(path: &Path) -> Result<GrayImage, String> {
-    let image = image::open(path)
-        .map_err(|error| error.to_string())?
-        .into_luma8();
+    let bytes = read_bytes(path).map_err(|error| error.fault.what)?;
+    // A photo that is cut off is refused: half of it would be grey, and its depths from nowhere.
+    let photo = picture::decode(&bytes).map_err(|fault| fault.what)?;
+    let image = DynamicImage::ImageRgb8(photo).into_luma8();
     let (width, height) = (image.width() as usize, image.height() as usize);
     GrayImage::new(width, height, image.into_raw()).map_err(|_| "its size".to_owned())
 }

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! features      SIFT of each photo
+//! preemptive    which of many pairs are worth comparing, where nobody knows neighbours
 //! nearest_two   the two nearest descriptors, by a product of matrices
 //! matching      pairs of photos: matches that one geometry explains
 //! seed          the pair that a model begins with
@@ -25,6 +26,7 @@ mod matching;
 mod model_files;
 mod nearest_two;
 mod placing;
+mod preemptive;
 mod seed;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -61,7 +63,8 @@ impl Engine for Embedded {
             // What was cut off while it was written is made again.
             let store = FeatureStore::load(&kept).unwrap_or_default();
             let mut left_out = features::find(&store, photos, &kept, progress)?;
-            matching::compare(&store, photos, pairs, &kept, progress)?;
+            let pairs = preemptive::worth_comparing(&store, photos, pairs, progress)?;
+            matching::compare(&store, photos, &pairs, &kept, progress)?;
             let graph = MatchGraph::from_store(&store, &MatchGraphOptions::default());
             let mut model = growing::grow(&store, &graph, photos, progress)?;
             placing::place(&mut model, photos, progress)?;

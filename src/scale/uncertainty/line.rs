@@ -1,15 +1,15 @@
 //! How sure the best line is: by derivatives.
 //!
-//! Thousands of pixels see the pile as a whole, so what a wrong pose or focal length does to the line is
-//! what it does to the plane that lies best through the field: m·X = 1 in camera axes, with the inverse of
-//! depth m·d at the ray d. Turned by a small w about its axes and moved by v (in its axes) the camera sees
-//! m + m × w + m (m·v), to the first order; `tests.rs` compares with fields that are computed again.
+//! What a wrong pose does to it follows from the field itself (`moved`). Of a wrong focal length it is what it
+//! does to the plane that lies best through the field: m·X = 1 in camera axes, with the inverse of depth m·d at
+//! the ray d. To the first order; `tests.rs` compares with fields that are computed again.
 
 use glam::DVec3;
 
 use super::bridges::{Bridged, of_bridges};
 use super::draws::normal_interval;
 use super::holes::of_holes;
+use super::moved::of_moves;
 use super::surface_error::{DepthError, LINE_BIAS, LINE_SPREAD, root_mean_square};
 use super::{Interval, UncertainPhoto};
 use crate::camera::Camera;
@@ -57,6 +57,7 @@ impl LineErrors {
         };
         let (more, less) = (with_focal(1.0 + step), with_focal(1.0 - step));
         let rotation = field.pose().rotation;
+        let moved = of_moves(field, fitted, plane);
         let roughness = root_mean_square(depths);
         let counted = depths.len() as f64;
         let holes = of_holes(field, fitted);
@@ -67,10 +68,9 @@ impl LineErrors {
         let end = |index: usize, scale: f64| {
             let by_plane = ends[index];
             let share = 1.0 / plane.dot(by_plane);
-            // d(m·T)/dw: (m × w)·T = (T × m)·w.
-            let by_angle = by_plane.cross(plane) * share;
-            // d(m·T)/dv = (m·T) m, v in camera axes; in the world's: rotated back.
-            let by_position = rotation * plane;
+            // In the world's axes, as positions are stated.
+            let by_position = rotation * moved[index].by_position;
+            let by_angle = moved[index].by_angle;
             let of_angle = errors.pose.angle.map(|angle| {
                 let angle = angle.map(f64::to_radians);
                 (by_angle * angle).length_squared()

@@ -13,6 +13,7 @@ mod corners;
 mod draws;
 mod holes;
 mod line;
+mod moved;
 mod pixels;
 mod surface_error;
 

@@ -152,6 +152,82 @@ fn over_a_level_plane_all_parts_are_known() {
     assert_near(top, 0.1 / (10.0 * ray) / 2_f64.sqrt() * 100.0, 0.12);
 }
 
+/// Over a crest and in a trough, where a plane says nothing of what falls away on both sides: the derivatives are
+/// those of fields that are computed again, in steps larger than the triangles.
+#[test]
+fn over_a_crest_derivatives_are_those_of_fields_computed_again() {
+    for bend in [-0.04, 0.03] {
+        let surface = surface(|x, y, _| bend * y * y + 0.01 * x * y + 0.1 * x);
+        let (camera, image) = (camera(Distortion::None), ImageKind::Undistorted);
+        let pose = Pose::from_tilt_pan(DVec3::new(0.5, -0.4, 12.0), [83.0, 10.0]);
+        let fit = |pose: &Pose| {
+            let errors = StatedErrors::default();
+            compute(&surface, &camera, pose, image, errors).fitted
+        };
+        let at = fit(&pose);
+        let by = |ahead: Pose, behind: Pose, step: f64| {
+            let (ahead, behind) = (fit(&ahead), fit(&behind));
+            [
+                (ahead.top - behind.top) / (2.0 * step * at.top),
+                (ahead.bottom - behind.bottom) / (2.0 * step * at.bottom),
+            ]
+        };
+        let part = |errors: PoseErrors| {
+            let errors = StatedErrors {
+                pose: errors,
+                ..StatedErrors::default()
+            };
+            let found = compute(&surface, &camera, &pose, image, errors);
+            let found = found.uncertainty.unwrap();
+            let [top, bottom] = [found.fitted_top, found.fitted_bottom].map(Option::unwrap);
+            [
+                top.standard_error / at.top,
+                bottom.standard_error / at.bottom,
+            ]
+        };
+        // What the surface has in it, which no stated error changes.
+        let surface_part = part(PoseErrors::default());
+        for axis in DVec3::AXES {
+            let step = 0.3;
+            let moved = |way: f64| Pose {
+                center: pose.center + axis * way,
+                ..pose
+            };
+            let turned = |angle: f64| Pose {
+                rotation: pose.rotation * DMat3::from_axis_angle(axis, angle),
+                ..pose
+            };
+            let cases = [
+                (
+                    by(moved(step), moved(-step), step),
+                    PoseErrors {
+                        position: Some(axis),
+                        angle: None,
+                    },
+                ),
+                (
+                    by(turned(step / 12.0), turned(-step / 12.0), step / 12.0),
+                    PoseErrors {
+                        position: None,
+                        angle: Some(axis * 1_f64.to_degrees()),
+                    },
+                ),
+            ];
+            for (expected, errors) in cases {
+                for ((found, surface), expected) in
+                    part(errors).into_iter().zip(surface_part).zip(expected)
+                {
+                    let of_pose = (found * found - surface * surface).max(0.0).sqrt();
+                    assert!(
+                        (of_pose - expected.abs()).abs() < 0.05 * expected.abs() + 0.003,
+                        "{bend} {axis} {of_pose} {expected}"
+                    );
+                }
+            }
+        }
+    }
+}
+
 /// The derivatives are those of fields that are computed again, also obliquely and through a lens.
 #[test]
 fn derivatives_are_those_of_fields_computed_again() {
