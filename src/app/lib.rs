@@ -60,6 +60,7 @@ pub use command::Command;
 pub use state::State;
 
 use command::Asking;
+use flight::Verdict;
 use frame_times::{FrameTimes, Phase};
 use panels::{Inspector, PhotoPanel};
 use photo_view::Middle;
@@ -325,9 +326,12 @@ fn overlays(state: &State, ui: &mut egui::Ui, place: egui::Rect, commands: &mut 
     });
 }
 
-/// egui's own text is grey on grey; numbers that are typed off the screen need more contrast.
+/// egui's own text is grey on grey; numbers that are typed off the screen need more contrast. Its orange is
+/// not read on a light page, nor its red on a dark one: warnings and errors have the colours of the verdicts.
 fn more_contrast(style: &mut egui::Style) {
     let visuals = &mut style.visuals;
+    visuals.warn_fg_color = panels::verdict_color(Verdict::Check, visuals);
+    visuals.error_fg_color = panels::verdict_color(Verdict::NoScale, visuals);
     let text = if visuals.dark_mode { 215 } else { 25 };
     visuals.widgets.noninteractive.fg_stroke.color = egui::Color32::from_gray(text);
     visuals.widgets.inactive.fg_stroke.color = egui::Color32::from_gray(text);

@@ -68,7 +68,8 @@ pub(crate) fn fitted<'a>(ui: &Ui, text: &'a str, font: &FontId, width: f32) -> C
 }
 
 /// The first and last letters, `keep` of them at most, with dots between them. No number is cut through:
-/// half of one would be read as another.
+/// half of one would be read as another. The number at the cut belongs to the end, which tells photos apart,
+/// where there is room for it.
 fn cut(letters: &[char], keep: usize) -> String {
     let keep = keep.min(letters.len());
     let (mut head, mut tail) = (keep / 2, keep - keep / 2);
@@ -80,6 +81,10 @@ fn cut(letters: &[char], keep: usize) -> String {
     };
     let whole = |at: usize| at == 0 || !(joins(at - 1) && joins(at));
     let begin = |tail: usize| letters.len() - tail;
+    let with_number = (tail..=keep).find(|tail| whole(begin(*tail)));
+    if let Some(longer) = with_number {
+        (head, tail) = (keep - longer, longer);
+    }
     while head > 0 && !whole(head) {
         head -= 1;
     }
@@ -89,6 +94,31 @@ fn cut(letters: &[char], keep: usize) -> String {
     let head = letters[..head].iter();
     let tail = letters[begin(tail)..].iter();
     head.chain([&DOTS]).chain(tail).collect()
+}
+
+/// The text with each number, its interval and its per cent sign on one line, wherever the text is broken:
+/// "19.9 ±" at the end of a row is no number, nor is "± 0.4" at the begin of the next.
+pub(crate) fn unbroken(text: &str) -> String {
+    let begins_with_number = |word: &str| {
+        let digits = word.trim_start_matches(['(', '-', '−', '+']);
+        digits.starts_with(|c: char| c.is_ascii_digit())
+    };
+    let words: Vec<&str> = text.split(' ').collect();
+    let mut whole = String::with_capacity(text.len() + 8);
+    for (place, word) in words.iter().enumerate() {
+        whole.push_str(word);
+        let Some(next) = words.get(place + 1) else {
+            break;
+        };
+        let opens = |word: &str| word.starts_with('(') && begins_with_number(word);
+        // "19.9 (19.2 to 20.3)": an interval whose sides are not alike.
+        let is_interval = begins_with_number(word) && opens(next)
+            || opens(word) && *next == "to"
+            || *word == "to" && place > 0 && opens(words[place - 1]);
+        let is_joined = next.starts_with(['±', '%']) || *word == "±" || is_interval;
+        whole.push(if is_joined { '\u{a0}' } else { ' ' });
+    }
+    whole
 }
 
 /// Draws a text with numbers in what is left of a cell or row, whole; where it would be cut by its column
@@ -130,16 +160,34 @@ mod tests {
     }
 
     #[test]
+    fn numbers_and_their_intervals_are_not_parted() {
+        for (text, whole) in [
+            ("top 19.9 ± 0.4, 2 %", "top 19.9~±~0.4, 2~%"),
+            ("19.9 (19.2 to 20.3) px/cm", "19.9~(19.2~to~20.3) px/cm"),
+            (
+                "from 2 to 3 photos (9 of 12)",
+                "from 2 to 3 photos (9 of 12)",
+            ),
+            ("P80 ± 2 %; less", "P80~±~2~%; less"),
+            ("", ""),
+        ] {
+            assert_eq!(unbroken(text), whole.replace('~', "\u{a0}"));
+        }
+    }
+
+    #[test]
     fn the_middle_is_cut_and_no_number_through() {
         assert_eq!(cut_to("abcdefghij", 4), "ab…ij");
         assert_eq!(cut_to("abcdefghij", 5), "ab…hij");
         assert_eq!(cut_to("abcdefghij", 0), "…");
         // A half of 2024 or of 18.268 is another number.
-        assert_eq!(
-            cut_to("flight 20240506 north", 18),
-            "flight …06 north".replace("06", "")
-        );
-        assert_eq!(cut_to("ab 18.268 px", 9), "ab … px");
+        assert_eq!(cut_to("flight 20240506 north", 18), "flig…20240506 north");
+        assert_eq!(cut_to("flight 20240506 north", 13), "flight… north");
+        assert_eq!(cut_to("ab 18.268 px", 9), "…18.268 px");
+        assert_eq!(cut_to("ab 18.268 px", 10), "a…18.268 px");
+        assert_eq!(cut_to("ab 18.268 px", 7), "ab … px");
+        // Photos of one folder.
+        assert_eq!(cut_to("images/100_7103.JPG", 12), "imag…7103.JPG");
         assert_eq!(cut_to("12345678", 4), "…");
         // Letters of any script are letters.
         assert_eq!(cut_to("矿石爆破照片", 4), "矿石…照片");

@@ -36,7 +36,8 @@ pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};
 pub use photo_file_names::photo_file_stems;
 pub use plan::{
     Grid, GridLine, GroundOf, MOST_MAP_PIXELS, MapFrame, MeasuredOutline, PhotoPixels, Plan,
-    PlanBar, PlanFormat, PlanGround, PlanInks, PlanPhoto, PlanRequest, ground, taken_in_words,
+    PlanBar, PlanFormat, PlanGround, PlanInks, PlanPhoto, PlanRequest, RoomForNames, ground,
+    taken_in_words,
 };
 pub use reconstruction_report::{
     OffReceiver, ReconstructionReport, SeenPoint, SolvedCamera, SolvedPhoto, reconstruction_report,

@@ -16,6 +16,8 @@ use tempfile::TempDir;
 /// A text as it is drawn, not as it is called.
 pub struct Written {
     pub text: String,
+    /// The text as it is broken into lines.
+    pub rows: Vec<String>,
     /// Where its letters are.
     pub place: Rect,
     /// What of the window it may be drawn in.
@@ -167,6 +169,7 @@ impl Desk {
                 }
                 egui::Shape::Text(text) => all.push(Written {
                     text: text.galley.text().to_owned(),
+                    rows: text.galley.rows.iter().map(|row| row.text()).collect(),
                     place: text.galley.mesh_bounds.translate(text.pos.to_vec2()),
                     seen_in,
                 }),

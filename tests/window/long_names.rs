@@ -189,6 +189,21 @@ fn cut_numbers(desk: &Desk, what: &str) -> Vec<String> {
     found
 }
 
+/// The intervals that a line break parts from their number, or in themselves.
+fn parted_numbers(desk: &Desk, what: &str) -> Vec<String> {
+    let parted = desk.written().into_iter().filter(|written| {
+        let digit = |c: char| c.is_ascii_digit();
+        let is_broken = |rows: &[String]| {
+            let (end, begin) = (rows[0].trim_end(), rows[1].trim_start());
+            let percent = end.ends_with(digit) && begin.starts_with('%');
+            end.ends_with('±') || begin.starts_with('±') || percent
+        };
+        written.rows.windows(2).any(is_broken)
+    });
+    let told = parted.map(|written| format!("{what}: parted: {:?}", written.rows));
+    told.collect()
+}
+
 /// Turns the wheel at a place.
 fn wheel(desk: &mut Desk, at: Pos2, delta: Vec2) {
     desk.harness.hover_at(at);
@@ -253,6 +268,7 @@ fn no_number_is_cut_whatever_the_names_and_widths() {
                 for _ in 0..if tab == "Photo" { 3 } else { 1 } {
                     found.extend(cut_numbers(&desk, &what));
                     found.extend(hidden_numbers(&desk, &what));
+                    found.extend(parted_numbers(&desk, &what));
                     let on_page = pos2(viewport.right() + 100.0, viewport.bottom() - 20.0);
                     wheel(&mut desk, on_page, vec2(0.0, -400.0));
                 }

@@ -43,7 +43,7 @@ impl State {
                 let pixels = egui::ColorImage::from_rgba_unmultiplied(size, picture.as_raw());
                 context.load_texture(name, pixels, options)
             };
-            let picture = plan.photos_picture(&frame, &inks, pixels);
+            let picture = plan.photos_picture(&frame, &part.room_for_names(), &inks, pixels);
             let photos = texture("photos of the map", &picture);
             // A pixel of the screen, world units.
             let pixel = 1.0 / (part.scale * pixels);

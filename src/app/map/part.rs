@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::exports::MapFrame;
+use crate::exports::{MapFrame, RoomForNames};
 
 /// How much farther than the frame is drawn, in its size: a map that is moved shows what lies there at once.
 const BEYOND: f64 = 0.15;
@@ -25,6 +25,8 @@ pub struct PartInSight {
     pub pixels: f64,
     /// For a dark window.
     pub dark: bool,
+    /// What lies over the map (north, scale bar), points from the frame's left upper corner: least and greatest.
+    pub covered: [[DVec2; 2]; 2],
 }
 
 /// What was drawn.
@@ -55,7 +57,46 @@ impl PartInSight {
         self.pixels.min(most / self.drawn_size().max_element())
     }
 
+    /// Where names are read whole: what is drawn beyond the frame comes into sight only by moving the map.
+    pub(super) fn room_for_names(&self) -> RoomForNames {
+        let corner = self.size * BEYOND;
+        let moved = |ends: [DVec2; 2]| ends.map(|end| (corner + end).to_array());
+        RoomForNames {
+            sight: moved([DVec2::ZERO, self.size]),
+            covered: self.covered.map(moved).to_vec(),
+        }
+    }
+
     fn drawn_size(&self) -> DVec2 {
         self.size * (1.0 + 2.0 * BEYOND)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A frame of 400 x 300 points at 10 points a metre shows 40 m x 30 m; names are drawn within just these.
+    #[test]
+    fn names_have_room_in_what_is_seen() {
+        let part = PartInSight {
+            revision: 1,
+            middle: DVec2::new(1000.0, 2000.0),
+            scale: 10.0,
+            size: DVec2::new(400.0, 300.0),
+            pixels: 2.0,
+            dark: true,
+            covered: [
+                [DVec2::new(350.0, 0.0), DVec2::new(400.0, 60.0)],
+                [DVec2::new(300.0, 250.0), DVec2::new(400.0, 300.0)],
+            ],
+        };
+        let (frame, room) = (part.frame(), part.room_for_names());
+        let [top_left, bottom_right] = room.sight.map(|place| frame.point(place));
+        assert!(top_left.distance(DVec2::new(980.0, 2015.0)) < 1e-9);
+        assert!(bottom_right.distance(DVec2::new(1020.0, 1985.0)) < 1e-9);
+        let bar = room.covered[1].map(|place| frame.point(place));
+        assert!(bar[0].distance(DVec2::new(1010.0, 1990.0)) < 1e-9);
+        assert!(bar[1].distance(DVec2::new(1020.0, 1985.0)) < 1e-9);
     }
 }

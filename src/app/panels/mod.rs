@@ -46,7 +46,25 @@ pub use verdict::{line_color, verdict_color, verdict_sign};
 pub use view_buttons::{blend_slider, view_buttons};
 
 use crate::command::{Command, Tab};
+use crate::open_flight::OpenFlight;
 use crate::state::State;
+
+/// The rows over what is in the middle of the window; none begins at the very edge.
+fn head_of_middle(ui: &mut egui::Ui, rows: impl FnOnce(&mut egui::Ui)) {
+    let margin = egui::Margin::symmetric(6, 0);
+    egui::Frame::new().inner_margin(margin).show(ui, rows);
+}
+
+/// What scales are shown in ("px/cm"), and how many times a scale in pixels per unit of the world that is. Of a
+/// model whose unit nobody states, the model's own.
+fn shown_per(state: &State, open: &OpenFlight) -> (String, f64) {
+    let parts = open.flight().parts();
+    let unit = state.preferences.unit();
+    match parts.unit_known {
+        true => (format!("px/{unit}"), unit.in_units_of(parts.unit)),
+        false => ("px per unit of the model".to_owned(), 1.0),
+    }
+}
 
 /// The right panel: its tabs and the one that is shown.
 pub fn right_panel(

@@ -87,6 +87,30 @@ mod tests {
         }
     }
 
+    /// WCAG's contrast for text, 4.5 to 1, on a page and in a field.
+    #[test]
+    fn warnings_and_errors_are_read_light_and_dark() {
+        for visuals in [egui::Visuals::light(), egui::Visuals::dark()] {
+            let mut style = egui::Style {
+                visuals,
+                ..egui::Style::default()
+            };
+            crate::more_contrast(&mut style);
+            let visuals = style.visuals;
+            let texts = [
+                visuals.warn_fg_color,
+                visuals.error_fg_color,
+                visuals.text_color(),
+            ];
+            for color in texts {
+                for behind in [visuals.panel_fill, visuals.extreme_bg_color] {
+                    let contrast = contrast(color, behind);
+                    assert!(contrast >= 4.5, "{color:?} on {behind:?}: {contrast:.2}");
+                }
+            }
+        }
+    }
+
     /// The selected photo's lines have another colour than any verdict, above all than "check".
     #[test]
     fn the_selection_is_no_verdict() {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-use super::{Grid, MapFrame, Plan, PlanGround, PlanInks, photos};
+use super::{Grid, MapFrame, Plan, PlanGround, PlanInks, RoomForNames, photos};
 use crate::drawing::{Dash, Pen, png};
 use crate::fault::Fault;
 use crate::geodesy::Crs;
@@ -74,7 +74,8 @@ pub(super) fn bytes(plan: &Plan) -> Result<Vec<u8>, Fault> {
         let ends = [min.x, max.x].map(|x| frame.place([x, line.at].into()));
         pen.line(&ends, inks.grid, 0.6, Dash::Solid);
     }
-    photos::draw(plan, &frame, inks, &mut pen);
+    let room = RoomForNames::all_of(&frame);
+    photos::draw(plan, &frame, &room, inks, &mut pen);
     let mut picture = (*plan.ground).clone();
     png::draw_all(&mut picture, &pen.shapes, pixels);
     let description = Description {

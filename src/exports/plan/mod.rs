@@ -40,6 +40,7 @@ pub use frame::MapFrame;
 pub use grid::{Grid, GridLine};
 pub use ground::{GroundOf, PhotoPixels, PlanGround, ground};
 pub use inks::PlanInks;
+pub use photos::RoomForNames;
 
 use crate::fault::Fault;
 use crate::flight::{Date, Review, Verdict};
@@ -290,14 +291,20 @@ impl Plan {
     }
 
     /// Photos, cameras and names of a part of the map as a picture without ground, with so many pixels to a
-    /// unit of the frame.
-    pub fn photos_picture(&self, frame: &MapFrame, inks: &PlanInks, pixels: f64) -> RgbaImage {
+    /// unit of the frame; names only in their room.
+    pub fn photos_picture(
+        &self,
+        frame: &MapFrame,
+        room: &RoomForNames,
+        inks: &PlanInks,
+        pixels: f64,
+    ) -> RgbaImage {
         let [width, height] = frame
             .size
             .map(|side| (side * pixels).round().max(1.0) as u32);
         let mut picture = RgbaImage::new(width, height);
         let mut pen = crate::drawing::Pen::default();
-        photos::draw(self, frame, inks, &mut pen);
+        photos::draw(self, frame, room, inks, &mut pen);
         crate::drawing::png::draw_all(&mut picture, &pen.shapes, pixels);
         picture
     }

@@ -5,7 +5,9 @@
 use glam::DVec2;
 
 use super::inks::dash;
-use super::photos::{self, camera_mark, measured_line, middle_mark, sample, shortened};
+use super::photos::{
+    self, RoomForNames, camera_mark, measured_line, middle_mark, sample, shortened,
+};
 use super::{Grid, MapFrame, MeasuredOutline, Plan, PlanGround, PlanInks};
 use crate::drawing::{Anchor, Dash, Pen, Shape};
 use crate::flight::Verdict;
@@ -94,7 +96,8 @@ impl Page {
         pen.shapes.push(ground(plan, &self.frame));
         let grid = Grid::of(&self.frame);
         self.grid_lines(&grid, inks, &mut pen);
-        photos::draw(plan, &self.frame, inks, &mut pen);
+        let room = RoomForNames::all_of(&self.frame);
+        photos::draw(plan, &self.frame, &room, inks, &mut pen);
         self.border(&grid, inks, &mut pen);
         self.head(plan, inks, &mut pen);
         self.block(plan, &grid, unit, inks, &mut pen);

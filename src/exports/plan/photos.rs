@@ -13,12 +13,75 @@ const SHADE: f64 = 0.10;
 pub(super) const CAMERA: f64 = 3.6;
 /// Half the width of the mark of a photo's middle.
 pub(super) const MIDDLE: f64 = 3.4;
+/// From a photo's middle to its name.
+const BESIDE: f64 = MIDDLE + 4.0;
+/// What is left beside a name.
+const AROUND: f64 = 2.0;
+/// Fonts of viewers are wider than ours by no more.
+const WIDER: f64 = 1.06;
 /// What is behind a name.
 const BEHIND: f64 = 0.72;
 /// Longer names are cut.
 const LONGEST: usize = 40;
 
-pub(super) fn draw(plan: &Plan, frame: &MapFrame, inks: &PlanInks, pen: &mut Pen) {
+/// Where names may stand, units of the drawing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RoomForNames {
+    /// What is seen of the drawing: least and greatest x and y.
+    pub sight: [[f64; 2]; 2],
+    /// What lies over the map there, such as a scale bar.
+    pub covered: Vec<[[f64; 2]; 2]>,
+}
+
+impl RoomForNames {
+    /// All of a frame.
+    pub(super) fn all_of(frame: &MapFrame) -> Self {
+        let ([left, top], [width, height]) = (frame.at, frame.size);
+        Self {
+            sight: [[left, top], [left + width, top + height]],
+            covered: Vec::new(),
+        }
+    }
+
+    fn has(&self, [min, max]: &clip::Box2) -> bool {
+        let [least, greatest] = self.sight;
+        let is_seen = (0..2).all(|i| min[i] >= least[i] && max[i] <= greatest[i]);
+        is_seen && !self.covered.iter().any(|box2| overlap(box2, &[*min, *max]))
+    }
+
+    /// Where the name of a photo may stand whole: right of its middle, or else left of it, and no higher or lower
+    /// than what is seen. Nowhere where the middle is not seen: a name that is cut is the name of another photo.
+    fn places(&self, [x, y]: [f64; 2], long: f64) -> [Option<Place>; 2] {
+        if !self.has(&[[x, y], [x, y]]) {
+            return [None, None];
+        }
+        let half = NAME / 2.0;
+        let ([_, top], [_, bottom]) = (self.sight[0], self.sight[1]);
+        let y = y.min(bottom - half).max(top + half);
+        [(Anchor::Left, 1.0), (Anchor::Right, -1.0)].map(|(anchor, side)| {
+            let at = x + side * BESIDE;
+            let ends = [at - side * AROUND, at + side * (long + AROUND)];
+            let [left, right] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            let place = [[left, y - half], [right, y + half]];
+            self.has(&place).then_some((anchor, [at, y], place))
+        })
+    }
+}
+
+/// Which end of a name is where, and what the name takes.
+type Place = (Anchor, [f64; 2], clip::Box2);
+
+fn around([x, y]: [f64; 2], half: f64) -> clip::Box2 {
+    [[x - half, y - half], [x + half, y + half]]
+}
+
+pub(super) fn draw(
+    plan: &Plan,
+    frame: &MapFrame,
+    room: &RoomForNames,
+    inks: &PlanInks,
+    pen: &mut Pen,
+) {
     let ([left, top], [width, height]) = (frame.at, frame.size);
     let bounds = [[left, top], [left + width, top + height]];
     let outlines: Vec<Vec<[f64; 2]>> = plan
@@ -51,29 +114,36 @@ pub(super) fn draw(plan: &Plan, frame: &MapFrame, inks: &PlanInks, pen: &mut Pen
             measured_line(&part, inks, pen);
         }
     }
-    let mut taken: Vec<clip::Box2> = Vec::new();
-    for photo in &plan.photos {
-        let colour = inks.of(photo.verdict);
+    let mut marks: Vec<(usize, clip::Box2)> = Vec::new();
+    for (index, photo) in plan.photos.iter().enumerate() {
         let camera = frame.place(photo.camera);
         if inside(camera, CAMERA) {
             camera_mark(camera, inks, pen);
+            marks.push((index, around(camera, CAMERA)));
         }
+        let middle = photo.middle.map(|middle| frame.place(middle));
+        if let Some(middle) = middle.filter(|middle| inside(*middle, MIDDLE)) {
+            middle_mark(middle, inks.of(photo.verdict), pen);
+            marks.push((index, around(middle, MIDDLE)));
+        }
+    }
+    // Names over all marks, and on none but their own photo's.
+    let mut taken: Vec<clip::Box2> = Vec::new();
+    for (index, photo) in plan.photos.iter().enumerate() {
         let Some(middle) = photo.middle.map(|middle| frame.place(middle)) else {
             continue;
         };
-        if inside(middle, MIDDLE) {
-            middle_mark(middle, colour, pen);
-        }
         let name = shortened(&photo.name);
-        let long = png::text_width(NAME, &name) * 1.06;
-        let [x, y] = [middle[0] + MIDDLE + 4.0, middle[1]];
-        let place = [[x - 2.0, y - NAME / 2.0], [x + long + 2.0, y + NAME / 2.0]];
-        let is_free = place.iter().all(|corner| inside(*corner, 0.0))
-            && !taken.iter().any(|other| overlap(other, &place));
-        if is_free {
+        let long = png::text_width(NAME, &name) * WIDER;
+        let others = marks.iter().filter(|(of, _)| *of != index);
+        let others: Vec<&clip::Box2> = others.map(|(_, mark)| mark).chain(&taken).collect();
+        let is_free = |place: &clip::Box2| !others.iter().any(|other| overlap(other, place));
+        let places = room.places(middle, long).into_iter().flatten();
+        let free = places.into_iter().find(|(.., place)| is_free(place));
+        if let Some((anchor, at, place)) = free {
             let [[a, b], [c, d]] = place;
             pen.area(&[[a, b], [c, b], [c, d], [a, d]], inks.paper, BEHIND);
-            pen.text([x, y], NAME, &name, Anchor::Left, inks.ink);
+            pen.text(at, NAME, &name, anchor, inks.ink);
             taken.push(place);
         }
     }
@@ -127,5 +197,80 @@ pub(super) fn shortened(name: &str) -> String {
     match name.chars().count() > LONGEST {
         true => name.chars().take(LONGEST - 1).chain(['…']).collect(),
         false => name.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::drawing::Shape;
+    use crate::plan::tests::{MIDDLE, plan};
+
+    /// Wherever photos lie in what is seen, their names stand whole in it and beside what covers the map, within a
+    /// line's height of their middles; a photo out of sight has none.
+    #[test]
+    fn names_are_whole_or_not_there() {
+        let mut plan = plan(0.0, None);
+        let frame = MapFrame::around(MIDDLE, [0.0, 0.0], [520.0, 390.0], 10.0);
+        let room = RoomForNames {
+            sight: [[60.0, 45.0], [460.0, 345.0]],
+            covered: vec![[[380.0, 300.0], [460.0, 345.0]]],
+        };
+        let mut photo = plan.photos[0].clone();
+        photo.outline.clear();
+        let inside = |[x, y]: [f64; 2], [min, max]: [[f64; 2]; 2]| {
+            x >= min[0] && x <= max[0] && y >= min[1] && y <= max[1]
+        };
+        let mut sides = [0, 0];
+        for step in 0..600 {
+            // All over the drawing, and beside it.
+            let [x, y] = [
+                f64::from(step % 30) * 19.0 - 10.0,
+                f64::from(step / 30) * 21.0 - 10.0,
+            ];
+            let middle = frame.point([x, y]);
+            photo.middle = Some(middle);
+            photo.camera = middle + DVec2::splat(1e6);
+            plan.photos = vec![photo.clone()];
+            let mut pen = Pen::default();
+            draw(&plan, &frame, &room, &PlanInks::PAPER, &mut pen);
+            let name = pen.shapes.iter().find_map(|shape| match shape {
+                Shape::Text {
+                    at,
+                    anchor,
+                    text,
+                    size,
+                    ..
+                } => {
+                    let long = png::text_width(*size, text);
+                    let right = *anchor == Anchor::Left;
+                    let left = if right { at[0] } else { at[0] - long };
+                    let (top, bottom) = (at[1] - size / 2.0, at[1] + size / 2.0);
+                    Some((right, [[left, top], [left + long, bottom]]))
+                }
+                _ => None,
+            });
+            let seen = inside([x, y], room.sight) && !inside([x, y], room.covered[0]);
+            let Some((right, [min, max])) = name else {
+                assert!(!seen, "the photo at {x}, {y} has no name");
+                continue;
+            };
+            assert!(seen, "{x}, {y} is not seen, its name is");
+            for corner in [min, max, [min[0], max[1]], [max[0], min[1]]] {
+                assert!(
+                    inside(corner, room.sight),
+                    "{corner:?} of the name of {x}, {y}"
+                );
+                assert!(
+                    !inside(corner, room.covered[0]),
+                    "{corner:?} of {x}, {y} is covered"
+                );
+            }
+            assert!(((min[1] + max[1]) / 2.0 - y).abs() <= 14.0 / 2.0);
+            sides[usize::from(right)] += 1;
+        }
+        assert!(sides[0] > 20 && sides[1] > 100, "{sides:?}");
     }
 }

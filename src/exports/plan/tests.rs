@@ -17,7 +17,7 @@ use crate::flight::{Flight, FlightParts, Limits, LookedUp, Photo};
 use crate::scale::{Ground, ImageKind};
 use crate::surface::{Cloud, Surface};
 
-const MIDDLE: DVec2 = DVec2::new(500_000.0, 5_000_000.0);
+pub(super) const MIDDLE: DVec2 = DVec2::new(500_000.0, 5_000_000.0);
 
 /// The surface rises to the east by one in two over a square of 40 m; a second photo looks beside it.
 fn review(slope: f64) -> Review {
@@ -72,7 +72,7 @@ fn review(slope: f64) -> Review {
     review
 }
 
-fn plan(slope: f64, crs: Option<&str>) -> Plan {
+pub(super) fn plan(slope: f64, crs: Option<&str>) -> Plan {
     let request = PlanRequest {
         pixel: Some(0.1),
         crs,

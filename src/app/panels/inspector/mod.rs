@@ -106,11 +106,12 @@ impl Inspector {
             let texture = self.texture.as_ref().map(egui::TextureHandle::id);
             corner_loupe::corner_loupe(state, open, reviewed, texture, self.crops, ui, commands);
             scale_objects(state, open, photo, ui, commands);
+            let unit = open.flight().parts().unit_of_lengths();
             if let Some(scale) = reviewed.scale() {
-                points::corners(reviewed, scale, ui, commands);
+                points::corners(unit, scale, ui, commands);
             }
             if let Some(view) = reviewed.view {
-                points::facts(reviewed, view, ui);
+                points::facts(unit, view, ui);
             }
         });
     }

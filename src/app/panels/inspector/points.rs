@@ -3,22 +3,21 @@
 use std::iter::once;
 
 use crate::command::Command;
-use crate::flight::PhotoReview;
 use crate::panels::rows::Rows;
 use crate::scale::{CornerOutcome, PhotoScale, ViewFacts};
 
 /// What stands for a number that there is not.
 const NONE: &str = "–";
 
-/// The corner points, a row each, in the world's unit; a click on a corner goes there.
+/// The corner points, a row each, in the world's `unit`, in words; a click on a corner goes there.
 pub(super) fn corners(
-    photo: PhotoReview<'_>,
+    unit: &str,
     scale: &PhotoScale,
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
 ) {
     ui.separator();
-    ui.strong(format!("Corner points, {}", photo.unit));
+    ui.strong(format!("Corner points, {unit}"));
     let rows = scale.corners.iter().map(|corner| {
         let coordinates = match corner.point() {
             Some(point) => point.to_array().map(|value| format!("{value:.3}")),
@@ -56,9 +55,8 @@ pub(super) fn corners(
     });
 }
 
-/// How high the camera is and how it looks down.
-pub(super) fn facts(photo: PhotoReview<'_>, view: &ViewFacts, ui: &mut egui::Ui) {
-    let unit = photo.unit;
+/// How high the camera is, in the world's `unit`, in words, and how it looks down.
+pub(super) fn facts(unit: &str, view: &ViewFacts, ui: &mut egui::Ui) {
     ui.separator();
     let below = match view.height_is_above_ground {
         true => "Height above ground",

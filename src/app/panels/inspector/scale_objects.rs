@@ -3,11 +3,13 @@
 use crate::actions;
 use crate::command::Command;
 use crate::flight::{ComparedObject, ScaleObject, Verdict};
+use crate::names::unbroken;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::tracing::{Trace, Tracing};
 use crate::panels::field::{number_field, text_field};
 use crate::panels::rows::Rows;
+use crate::panels::shown_per;
 use crate::panels::verdict::{or_dash, verdict_color};
 use crate::scale::{ScaleObjectKind, Traced};
 use crate::state::State;
@@ -78,7 +80,7 @@ fn begin(
         let text = size.map_or_else(String::new, |size| size.to_string());
         let hover = "As it was measured, in the unit of the flight's world";
         let typed = text_field(ui, label, hover, &text, 60.0);
-        ui.label(open.flight().parts().unit.symbol());
+        ui.label(open.flight().parts().unit_of_lengths());
         let number = typed.and_then(|typed| typed.trim().replace(',', ".").parse().ok());
         if let Some(size) = number {
             commands.push(Command::Trace(Trace::Size(kind, size)));
@@ -122,18 +124,18 @@ fn scale_so_far(state: &State, open: &OpenFlight, tracing: &Tracing) -> Option<S
     let camera = open.flight().camera(parts.photos.get(open.selected?)?);
     let size = open.trace_size(tracing.kind)?;
     let traced = Traced::new(camera, tracing.kind, size, &tracing.outline).ok()?;
-    let unit = state.preferences.unit();
-    let scale = traced.scale(camera, parts.image)? * unit.in_units_of(parts.unit);
+    let (per, factor) = shown_per(state, open);
+    let scale = traced.scale(camera, parts.image)? * factor;
     let error = match traced {
         Traced::Sphere(sphere) => sphere.relative_error,
         Traced::Bar(_) => None,
     };
     let error = error.map(|error| format!(" ± {:.1} %", error * 100.0));
-    Some(format!(
-        "{} px/{unit}{}",
+    Some(unbroken(&format!(
+        "{} {per}{}",
         significant_digits(scale, 4),
         error.unwrap_or_default()
-    ))
+    )))
 }
 
 /// What to do next.
@@ -159,7 +161,7 @@ fn card(
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
 ) {
-    let world = open.flight().parts().unit;
+    let world = open.flight().parts().unit_of_lengths();
     let title = format!("{} {number}", object.kind.as_str());
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
@@ -167,7 +169,7 @@ fn card(
             ui.label(object.kind.size_name());
             let label = format!("Size of {title}");
             let hover = "As it was measured, in the unit of the flight's world";
-            let typed = number_field(ui, &label, hover, object.size, world.symbol());
+            let typed = number_field(ui, &label, hover, object.size, world);
             if let Some(size) = typed.filter(|&size| size > 0.0) {
                 commands.extend(open.change_object(place, |object| object.size = size));
             }
@@ -224,8 +226,8 @@ fn numbers(
         ui.colored_label(doubtful(ui), "the lens does not see it");
         return;
     };
-    let (unit, world) = (state.preferences.unit(), open.flight().parts().unit);
-    let factor = unit.in_units_of(world);
+    let (per, factor) = shown_per(state, open);
+    let world = open.flight().parts().unit_of_lengths();
     let in_unit = |scale: f64| significant_digits(scale * factor, 5);
     let percent = |share: f64| format!("{:+.2} %", share * 100.0);
     let error = match &compared.traced {
@@ -234,7 +236,7 @@ fn numbers(
     };
     ui.horizontal_wrapped(|ui| {
         ui.vertical(|ui| {
-            ui.weak(format!("Uniform scale, px/{unit}"));
+            ui.weak(format!("Uniform scale, {per}"));
             ui.label(egui::RichText::new(in_unit(scale)).size(20.0).strong());
         });
         let copy = ui.button("Copy");

@@ -6,8 +6,10 @@ use egui::RichText;
 use crate::actions;
 use crate::command::Command;
 use crate::flight::PhotoReview;
+use crate::names::unbroken;
 use crate::numbers::{interval_percent, significant_digits, with_interval};
 use crate::open_flight::OpenFlight;
+use crate::panels::rows::text_width;
 use crate::panels::verdict::or_dash;
 use crate::scale::{ErrorSource, FittedScale, Interval, ScaleEstimate, ScalePair, Uncertainty};
 use crate::state::State;
@@ -27,23 +29,22 @@ struct Sure {
 impl Sure {
     /// With the digits that its interval allows; five where there is none.
     fn text(self) -> String {
-        match (self.scale, self.interval) {
+        unbroken(&match (self.scale, self.interval) {
             (Some(scale), Some(Interval { low, high, .. })) => with_interval(scale, low, high),
             (scale, _) => or_dash(scale, 5),
-        }
+        })
     }
 
     /// What the scale's error does to sizes.
     fn size_error(self) -> Option<String> {
         let (value, interval) = (self.scale?, self.interval);
         let error = ScaleEstimate { value, interval }.size_error()?;
-        Some(error.replace(' ', "\u{a0}"))
+        Some(unbroken(&error))
     }
 
     fn percent(self) -> Option<String> {
         let Interval { low, high, .. } = self.interval?;
-        // A sign alone in the next row says nothing.
-        Some(interval_percent(self.scale?, low, high)?.replace(' ', "\u{a0}"))
+        Some(unbroken(&interval_percent(self.scale?, low, high)?))
     }
 }
 
@@ -117,7 +118,7 @@ pub(super) fn scales(
             .on_hover_text("The corners' scale is off the line by more than its own interval");
     }
     if let Some(uncertainty) = &uncertainty {
-        ui.add(egui::Label::new(RichText::new(sources(uncertainty, photo.pair)).weak()).wrap())
+        ui.add(egui::Label::new(RichText::new(unbroken(&sources(uncertainty, photo.pair))).weak()).wrap())
             .on_hover_text(
                 "What each source alone would leave in the pair for Split-Desktop, one standard \
                  deviation. Intervals hold the scale 95 times of 100, as far as everything is counted: \
@@ -182,7 +183,11 @@ fn beside(pair: &Pair, ui: &mut egui::Ui) {
         }
         for (name, end) in ["top", "bottom"].into_iter().zip(pair.ends) {
             let percent = end.percent().map_or_else(String::new, |p| format!(", {p}"));
-            ui.label(format!("{name}\u{a0}{}{percent}", end.text()))
+            let text = format!("{name}\u{a0}{}{percent}", end.text());
+            // A percentage alone in the next row says nothing, where there is room for both.
+            let whole = text.replace(' ', "\u{a0}");
+            let fits = text_width(ui, &whole) <= ui.max_rect().width();
+            ui.label(if fits { whole } else { text })
                 .on_hover_text(pair.hover);
         }
     });
@@ -201,7 +206,9 @@ fn of_the_line(fitted: FittedScale, ui: &mut egui::Ui) {
         for (name, value, hover) in [
             (
                 "Off the line",
-                format!("{rms_percent:.1} % rms, {worst_percent:.1} % at worst"),
+                unbroken(&format!(
+                    "{rms_percent:.1} % rms, {worst_percent:.1} % at worst"
+                )),
                 "How far the scale of all pixels is from the best line",
             ),
             (

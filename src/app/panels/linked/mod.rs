@@ -50,16 +50,8 @@ fn seen_in(linked: &LinkedPoint) -> String {
 
 /// A local scale in the unit that scales are shown in.
 fn scale(state: &State, open: &OpenFlight, seen: Sighting) -> String {
-    let parts = open.flight().parts();
-    if !parts.unit_known {
-        return format!(
-            "{} px per unit of the model",
-            significant_digits(seen.scale, 4)
-        );
-    }
-    let unit = state.preferences.unit();
-    let scale = seen.scale * unit.in_units_of(parts.unit);
-    format!("{} px/{unit}", significant_digits(scale, 4))
+    let (per, factor) = super::shown_per(state, open);
+    format!("{} {per}", significant_digits(seen.scale * factor, 4))
 }
 
 /// What is said of the point.

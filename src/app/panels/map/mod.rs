@@ -35,8 +35,61 @@ pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.painter().rect_filled(place, 0.0, fill);
     super::notice(state, ui, commands);
     want_plan(state, open, commands);
+    super::head_of_middle(ui, |ui| choices(state, open, ui, commands));
+    // However wide the row above would be.
+    let whole = Rect::from_min_max(pos2(place.left(), ui.cursor().top()), place.max);
+    ui.painter()
+        .rect_filled(whole, 0.0, ui.visuals().extreme_bg_color);
+    let Some(made) = &open.map.made else {
+        match state.work.refused(Task::MAP, &open.map.wish()) {
+            Some(reason) => super::inspector::message(ui.painter(), whole, reason, ui),
+            None => {
+                let text = "The map is being made: footprints come first.";
+                super::inspector::waiting(ui.painter(), whole, text, ui);
+            }
+        }
+        return;
+    };
+    // Coordinates stand beside the map: over it they would hide footprints.
+    let frame = over::without_labels(&Screen::new(open, made, whole).map, whole, ui);
+    let response = ui.allocate_rect(frame, Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Map"));
+    let margins = ui.painter().with_clip_rect(whole);
+    let painter = ui.painter().with_clip_rect(frame);
+    let screen = Screen::new(open, made, frame);
+    screen.mouse(ui, &response, commands);
+    screen.want_part(state, open, made, ui, commands);
+    screen.draw(open, made, &painter, ui);
+    over::grid(&screen.map, &painter, &margins, frame, ui);
+    screen.outline(open, made, open.table.hovered, &painter, 1.5);
+    screen.outline(open, made, open.selected, &painter, 3.0);
+    screen.survey(open, &painter);
+    over::north(&made.plan, &painter, frame, ui);
+    over::bar(
+        &made.plan,
+        &screen.map,
+        state.preferences.unit(),
+        &painter,
+        frame,
+        ui,
+    );
+    let Some(at) = response.hover_pos() else {
+        return;
+    };
+    let point = screen.point(at);
+    let photo = made.photos.at(&made.plan, point);
+    if response.clicked()
+        && let Some(photo) = photo
+    {
+        commands.push(Command::Select(Some(photo)));
+    }
+    screen.outline(open, made, photo, &painter, 1.5);
+    over::words(made, point, photo, &painter, frame, ui);
+}
+
+/// What can be done with the map, what lies under it, and which coordinates it has.
+fn choices(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        ui.add_space(6.0);
         let fit = ui.button("Fit");
         fit.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Fit map"));
         if fit.on_hover_text("Show all of the map").clicked() {
@@ -89,55 +142,6 @@ pub fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             words.on_hover_text("The coordinate system of the map");
         }
     });
-    // However wide the row above would be.
-    let whole = Rect::from_min_max(pos2(place.left(), ui.cursor().top()), place.max);
-    ui.painter()
-        .rect_filled(whole, 0.0, ui.visuals().extreme_bg_color);
-    let Some(made) = &open.map.made else {
-        match state.work.refused(Task::MAP, &open.map.wish()) {
-            Some(reason) => super::inspector::message(ui.painter(), whole, reason, ui),
-            None => {
-                let text = "The map is being made: footprints come first.";
-                super::inspector::waiting(ui.painter(), whole, text, ui);
-            }
-        }
-        return;
-    };
-    // Coordinates stand beside the map: over it they would hide footprints.
-    let frame = over::without_labels(&Screen::new(open, made, whole).map, whole, ui);
-    let response = ui.allocate_rect(frame, Sense::click_and_drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Map"));
-    let margins = ui.painter().with_clip_rect(whole);
-    let painter = ui.painter().with_clip_rect(frame);
-    let screen = Screen::new(open, made, frame);
-    screen.mouse(ui, &response, commands);
-    screen.want_part(state, open, made, ui, commands);
-    screen.draw(open, made, &painter, ui);
-    over::grid(&screen.map, &painter, &margins, frame, ui);
-    screen.outline(open, made, open.table.hovered, &painter, 1.5);
-    screen.outline(open, made, open.selected, &painter, 3.0);
-    screen.survey(open, &painter);
-    over::north(&made.plan, &painter, frame, ui);
-    over::bar(
-        &made.plan,
-        &screen.map,
-        state.preferences.unit(),
-        &painter,
-        frame,
-        ui,
-    );
-    let Some(at) = response.hover_pos() else {
-        return;
-    };
-    let point = screen.point(at);
-    let photo = made.photos.at(&made.plan, point);
-    if response.clicked()
-        && let Some(photo) = photo
-    {
-        commands.push(Command::Select(Some(photo)));
-    }
-    screen.outline(open, made, photo, &painter, 1.5);
-    over::words(made, point, photo, &painter, frame, ui);
 }
 
 /// Asks for a plan where there is none of the review as it is now.
@@ -225,6 +229,8 @@ impl Screen {
             size: self.size,
             pixels: f64::from(ui.ctx().pixels_per_point()),
             dark: ui.visuals().dark_mode,
+            covered: over::covered(&made.plan, &self.map, state.preferences.unit(), self.frame)
+                .map(|place| [place.min, place.max].map(|end| wide(end - self.frame.min))),
         };
         let is_drawn = open
             .map

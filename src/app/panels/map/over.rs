@@ -1,10 +1,10 @@
 //! What lies over the map: grid with coordinates, north, scale bar, and what the mouse points at.
 
-use egui::{Align2, Color32, FontId, Rect, Stroke, pos2, vec2};
+use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, pos2, vec2};
 use glam::DVec2;
 
 use super::inside;
-use crate::exports::{Grid, MapFrame, Plan};
+use crate::exports::{Grid, MapFrame, Plan, PlanBar};
 use crate::map::MadePlan;
 use crate::units::LengthUnit;
 
@@ -81,14 +81,7 @@ pub(super) fn grid(
 }
 
 /// Words that are read on any ground.
-fn text(
-    painter: &egui::Painter,
-    at: egui::Pos2,
-    anchor: Align2,
-    size: f32,
-    words: &str,
-    ui: &egui::Ui,
-) {
+fn text(painter: &egui::Painter, at: Pos2, anchor: Align2, size: f32, words: &str, ui: &egui::Ui) {
     let color = ui.visuals().strong_text_color();
     let galley = painter.layout_no_wrap(words.to_owned(), FontId::proportional(size), color);
     let place = anchor.anchor_size(at, galley.size());
@@ -100,6 +93,20 @@ fn behind(ui: &egui::Ui) -> Color32 {
     ui.visuals().extreme_bg_color.gamma_multiply(0.75)
 }
 
+/// What lies over the map at rest: the arrow to the north and the scale bar.
+pub(super) fn covered(plan: &Plan, map: &MapFrame, unit: LengthUnit, frame: Rect) -> [Rect; 2] {
+    let (_, north) = place_of_north(frame);
+    let bar = place_of_bar(plan, map, unit, frame).map_or(Rect::NOTHING, |(_, _, back)| back);
+    [north, bar]
+}
+
+/// The tip of the arrow, and what is behind it.
+fn place_of_north(frame: Rect) -> (Pos2, Rect) {
+    let tip = inside(frame, frame.width() - 24.0, 26.0);
+    let back = Rect::from_min_max(tip + vec2(-14.0, -24.0), tip + vec2(14.0, 34.0));
+    (tip, back)
+}
+
 /// An arrow to the grid's north; in a frame of its own, along y.
 pub(super) fn north(plan: &Plan, painter: &egui::Painter, frame: Rect, ui: &egui::Ui) {
     let (letter, words) = match plan.is_on_map() {
@@ -107,8 +114,7 @@ pub(super) fn north(plan: &Plan, painter: &egui::Painter, frame: Rect, ui: &egui
         false => ("y", "y of the flight's frame"),
     };
     let color = ui.visuals().strong_text_color();
-    let tip = inside(frame, frame.width() - 24.0, 26.0);
-    let back = Rect::from_min_max(tip + vec2(-14.0, -24.0), tip + vec2(14.0, 34.0));
+    let (tip, back) = place_of_north(frame);
     painter.rect_filled(back, 3.0, behind(ui));
     let font = FontId::proportional(14.0);
     painter.text(
@@ -132,6 +138,21 @@ pub(super) fn north(plan: &Plan, painter: &egui::Painter, frame: Rect, ui: &egui
     hint.on_hover_text(words);
 }
 
+/// The bar, its right end, and what is behind it; none where no round length fits.
+fn place_of_bar(
+    plan: &Plan,
+    map: &MapFrame,
+    unit: LengthUnit,
+    frame: Rect,
+) -> Option<(PlanBar, Pos2, Rect)> {
+    let longest = BAR.min(f64::from(frame.width()) - 2.0 * BESIDE_BAR);
+    let bar = plan.bar(map.scale, longest, unit)?;
+    let end = frame.max - vec2(14.0, 30.0);
+    let start = end - vec2(bar.long as f32, 0.0);
+    let back = Rect::from_min_max(start - vec2(8.0, 20.0), end + vec2(8.0, 8.0));
+    Some((bar, end, back))
+}
+
 /// A bar of a round length.
 pub(super) fn bar(
     plan: &Plan,
@@ -141,15 +162,12 @@ pub(super) fn bar(
     frame: Rect,
     ui: &egui::Ui,
 ) {
-    let longest = BAR.min(f64::from(frame.width()) - 2.0 * BESIDE_BAR);
-    let Some(bar) = plan.bar(map.scale, longest, unit) else {
+    let Some((bar, end, back)) = place_of_bar(plan, map, unit, frame) else {
         return;
     };
     let color = ui.visuals().strong_text_color();
-    let end = frame.max - vec2(14.0, 30.0);
     let long = bar.long as f32;
     let start = end - vec2(long, 0.0);
-    let back = Rect::from_min_max(start - vec2(8.0, 20.0), end + vec2(8.0, 8.0));
     painter.rect_filled(back, 3.0, behind(ui));
     let stroke = Stroke::new(2.0, color);
     painter.line_segment([start, end], stroke);

@@ -34,7 +34,7 @@ impl PhotoPanel {
         let Some(open) = &state.open else {
             return;
         };
-        head::head(state, open, ui, commands);
+        super::head_of_middle(ui, |ui| head::head(state, open, ui, commands));
         let frame = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(frame, Sense::click_and_drag());
         let painter = ui.painter().with_clip_rect(frame);

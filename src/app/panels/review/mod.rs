@@ -9,7 +9,7 @@ pub(super) use row_menu::row_menu;
 use crate::actions::{self, Action};
 use crate::command::{Command, ReviewStep};
 use crate::flight::{DecisionKind, PhotoReview};
-use crate::names;
+use crate::names::{self, unbroken};
 use crate::open_flight::OpenFlight;
 use crate::panels::inspector::{Inspector, Offer, SIZE_ERROR, remedy_button};
 use crate::panels::verdict::{verdict_color, verdict_sign};
@@ -155,7 +155,7 @@ fn size_errors(state: &State, reviewed: PhotoReview<'_>, ui: &mut egui::Ui) {
         let error = end.size_error();
         let error = error.map_or_else(String::new, |error| format!(": P80 {error}"));
         let text = format!("{name} {} px/{unit}{error}", end.text(5));
-        ui.add(egui::Label::new(text).wrap())
+        ui.add(egui::Label::new(unbroken(&text)).wrap())
             .on_hover_text(SIZE_ERROR);
     }
 }
