@@ -4,7 +4,6 @@
 use super::residuals::residuals;
 use super::{browse, named_field};
 use crate::command::{Answers, Asking, Command, Dialog};
-use crate::names::unbroken;
 use crate::numbers::significant_digits;
 use crate::open_flight::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
 use crate::open_flight::{Measure, OpenFlight};
@@ -302,11 +301,11 @@ fn result(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mut Vec<Command>
     ui.strong(format!(
         "Scale: {scale} {unit} to one of the reconstruction's units"
     ));
-    ui.label(unbroken(&sure));
+    ui.label(sure);
     if let Some(degrees) = fitted.rotation_error_degrees {
-        ui.label(unbroken(&format!(
+        ui.label(format!(
             "Least sure rotation: ± {degrees:.3} degrees (standard error)"
-        )));
+        ));
     }
     if let Some(rms) = fitted.rms {
         let (used, all) = (fitted.used(), fitted.positions.len());
