@@ -3,6 +3,7 @@
 use super::remedy::{Offer, remedy_button};
 use crate::command::Command;
 use crate::flight::PhotoReview;
+use crate::names::unbroken;
 use crate::panels::verdict::verdict_color;
 use crate::state::State;
 
@@ -26,7 +27,9 @@ pub(super) fn reasons(
     for doubt in reviewed.doubts {
         let text = format!("• {doubt}");
         let color = verdict_color(reviewed.verdict, ui.visuals());
-        ui.add(egui::Label::new(egui::RichText::new(text).color(color)).wrap());
+        let whole = egui::RichText::new(unbroken(&text)).color(color);
+        let label = ui.add(egui::Label::new(whole).wrap());
+        label.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
         // Each once, beside the first reason that it helps against.
         let remedy = Offer::against(state, doubt);
         if let Some(remedy) = remedy.filter(|remedy| !offered.contains(&remedy.name)) {

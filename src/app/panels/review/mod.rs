@@ -126,20 +126,23 @@ fn reasons(
         let said = doubt.to_string();
         let color = verdict_color(reviewed.own_verdict, ui.visuals());
         let text = match is_shown {
-            true => RichText::new(said.as_str()).color(color).strong(),
-            false => RichText::new(said.as_str()).weak(),
+            true => RichText::new(unbroken(&said)).color(color).strong(),
+            false => RichText::new(unbroken(&said)).weak(),
         };
         let label = egui::Label::new(text).wrap().selectable(false);
         let label = ui.add(label.sense(egui::Sense::click()));
-        if !is_shown {
+        if is_shown {
+            label.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &said));
+            if let Some(remedy) = Offer::against(state, doubt) {
+                remedy_button(remedy, ui, commands);
+            }
+        } else {
             label.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Show: {said}"))
             });
             if label.on_hover_text("Show this reason").clicked() {
                 commands.push(Command::Review(ReviewStep::Reason(place)));
             }
-        } else if let Some(remedy) = Offer::against(state, doubt) {
-            remedy_button(remedy, ui, commands);
         }
     }
 }
