@@ -72,6 +72,11 @@ impl LengthUnit {
     }
 }
 
+/// What is written beside lengths of the world: their unit, or that nobody states one.
+pub fn in_words(unit: Option<LengthUnit>) -> &'static str {
+    unit.map_or("units of the file", LengthUnit::symbol)
+}
+
 /// A round length as it is written at a scale bar: 2000 cm is 20 m.
 pub fn round_length_in_words(length: f64, unit: LengthUnit) -> String {
     let metres = match unit {

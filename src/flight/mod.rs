@@ -37,7 +37,7 @@ use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
 use crate::scale::{Ground, ImageKind, PhotoScale, PoseErrors, ScalePair, StatedErrors};
 use crate::surface::{Surface, SurfaceOptions, UpAxis};
-use crate::units::LengthUnit;
+use crate::units::{LengthUnit, in_words};
 
 /// One image with its camera and pose.
 #[derive(Debug, Clone, PartialEq)]
@@ -196,10 +196,7 @@ impl Outcome {
 impl FlightParts {
     /// What is written beside lengths in the world: its unit, or that nobody states one.
     pub fn unit_of_lengths(&self) -> &'static str {
-        match self.unit_known {
-            true => self.unit.symbol(),
-            false => "units of the file",
-        }
+        in_words(self.unit_known.then_some(self.unit))
     }
 }
 

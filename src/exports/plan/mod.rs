@@ -48,16 +48,13 @@ use crate::geodesy::{Crs, CrsKind, is_stated};
 use crate::jobs::Progress;
 use crate::numbers::{round_down, round_near};
 use crate::surface::{Light, MapRaster};
-use crate::units::{LengthUnit, round_length_in_words};
+use crate::units::{LengthUnit, in_words, round_length_in_words};
 
 /// The most pixels of the ground: 160 MB of colours, and twice as much of heights.
 pub const MOST_MAP_PIXELS: u64 = 40_000_000;
 
 /// About how many pixels the longer side of the ground has if nobody says.
 const SIDE: f64 = 1300.0;
-
-/// What lengths are in where nobody knows it.
-const UNKNOWN_UNIT: &str = "units of the file";
 
 /// What is not in the review, or can be chosen.
 #[derive(Debug, Clone, Copy, Default)]
@@ -141,7 +138,7 @@ impl PlanBar {
     pub fn words(&self) -> String {
         match self.unit {
             Some(unit) => round_length_in_words(self.length, unit),
-            None => format!("{} {UNKNOWN_UNIT}", self.length),
+            None => format!("{} {}", self.length, in_words(None)),
         }
     }
 }
@@ -271,10 +268,7 @@ impl Plan {
 
     /// What lengths on it are counted in, for people.
     pub fn unit_of_lengths(&self) -> &'static str {
-        match self.unit_known {
-            true => self.unit.symbol(),
-            false => UNKNOWN_UNIT,
-        }
+        in_words(self.unit_known.then_some(self.unit))
     }
 
     /// A bar of a round length in `unit`, at most `longest` units of the drawing, where `scale` of them are a

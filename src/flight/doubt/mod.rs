@@ -8,7 +8,7 @@ use std::fmt;
 pub use sight::{InView, OnPhoto, Sight};
 
 use crate::scale::{CornerName, LEAST_COVERED};
-use crate::units::LengthUnit;
+use crate::units::{LengthUnit, in_words};
 
 /// A reason not to trust a photo's scale. Prints as a sentence without a full stop.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,8 +46,8 @@ pub enum Doubt {
         edge: f64,
         /// Its limit, world units.
         limit: f64,
-        /// Of both.
-        unit: LengthUnit,
+        /// Of both; `None` where nobody states it.
+        unit: Option<LengthUnit>,
     },
     /// The view is too flat.
     FlatView {
@@ -62,8 +62,8 @@ pub enum Doubt {
         distance: f64,
         /// Its limit, world units.
         limit: f64,
-        /// Of both.
-        unit: LengthUnit,
+        /// Of both; `None` where nobody states it.
+        unit: Option<LengthUnit>,
     },
     /// The scale of the photo's pixels is far from the best line.
     OffLine {
@@ -264,6 +264,7 @@ impl fmt::Display for Doubt {
                 unit,
             } => {
                 let (edge, limit) = apart(*edge, *limit, 3);
+                let unit = in_words(*unit);
                 write!(
                     f,
                     "over a hole in the cloud: {} (a triangle edge of {edge} {unit}, more than {limit} {unit})",
@@ -283,6 +284,7 @@ impl fmt::Display for Doubt {
                 unit,
             } => {
                 let (distance, limit) = apart(*distance, *limit, 3);
+                let unit = in_words(*unit);
                 write!(
                     f,
                     "not flat between the corners: the surface is {distance} {unit} (root mean square) off their plane, more than {limit} {unit}"

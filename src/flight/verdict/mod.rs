@@ -182,8 +182,6 @@ pub(super) fn judge(facts: &Facts<'_>, limits: &Limits) -> Judged {
         doubts.extend(doubts_of_field(field, pair, limits));
     }
     if let Some(view) = view {
-        // Where the unit is not known, no length is said in it: the shares hold all the same.
-        let unit = unit.unwrap_or(LengthUnit::Metre);
         let has_line = field.is_some_and(|field| field.fitted.is_some());
         doubts.extend(doubts_of_view(view, unit, limits, has_line));
     }
@@ -239,7 +237,7 @@ fn doubts_of_field(field: &FieldFacts, pair: ScalePair, limits: &Limits) -> Vec<
 
 fn doubts_of_view(
     view: &ViewFacts,
-    unit: LengthUnit,
+    unit: Option<LengthUnit>,
     limits: &Limits,
     has_line: bool,
 ) -> Vec<Doubt> {

@@ -149,6 +149,17 @@ fn without_a_unit_there_is_no_scale() {
     let judged = judge(&facts, &limits());
     assert_eq!(judged.verdict, Verdict::NoScale);
     assert_eq!(judged.doubts, [Doubt::UnitUnknown]);
+    // Lengths are said in nobody's unit, not in metres.
+    let rough = ViewFacts {
+        triangle_edges: [Some(7.0); 4],
+        ..view()
+    };
+    let facts = Facts {
+        view: Some(&rough),
+        ..facts
+    };
+    let said = judge(&facts, &limits()).doubts[1].to_string();
+    assert!(said.contains("7.000 units of the file"), "{said}");
 }
 
 /// At its limit a value is good, the next number beyond it is not.
@@ -160,7 +171,7 @@ fn each_limit_is_exact() {
         change(&mut view);
         judged(&good(), &view, &FOUND).1
     };
-    let unit = LengthUnit::Metre;
+    let unit = Some(LengthUnit::Metre);
     // 100 or 150 at the top, and 100 or 150 at the bottom.
     let beyond = 150_f64.next_up();
     assert_eq!(of_scale([150.0, 1.0, 100.0, 1.0]), []);
