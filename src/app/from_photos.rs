@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
-use crate::reconstruct::{PhotoSet, Quality, Reconstructed};
+use crate::reconstruct::{EngineName, PhotoSet, Quality, Reconstructed};
 
 /// A step of making a flight from photos.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum FromPhotosStep {
     /// Opens its small window, with this folder of photos.
     Ask(Option<PathBuf>),
+    /// Says which COLMAP is installed.
+    Colmap(InstalledColmap),
     /// Types into it.
     Fill(FromPhotosForm),
     /// Reconstructs.
@@ -38,7 +40,12 @@ pub struct FromPhotosForm {
     pub crs: String,
     /// How much time the cloud may take.
     pub quality: Quality,
+    /// What finds the poses.
+    pub engine: EngineName,
 }
+
+/// Its name and version ("COLMAP 3.8"), or why it cannot be taken: one line.
+pub type InstalledColmap = Result<String, String>;
 
 /// What was found in the folder of the photos.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,6 +74,8 @@ pub struct FromPhotos {
     pub form: FromPhotosForm,
     /// What lies in the folder that is typed; `None` until it has been looked at.
     pub found: Option<FoundPhotos>,
+    /// Which COLMAP is installed; `None` until it has been looked for.
+    pub colmap: Option<InstalledColmap>,
     /// What the last run came to, until another folder is named.
     pub ended: Option<Ended>,
     /// Photos that could not be opened as a flight: they can be reconstructed.

@@ -6,13 +6,14 @@ use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::photo_set::{LeftOut, PhotoSet};
 
+use cumulus3d_core::Reconstruction;
+
 /// Structure from motion by some program or library.
 pub trait Engine {
     /// Its name and version, for reports.
     fn name(&self) -> String;
 
-    /// Finds poses of photos and points of what they show, in a frame of its own or, where the photos have
-    /// places, in theirs. `pairs` are the places in `photos` of photos that may show the same. `work` is a
+    /// Finds poses of photos and points of what they show, in a frame of its own. `pairs` are the places in `photos` of photos that may show the same. `work` is a
     /// folder for what it keeps: a second run goes on from there.
     ///
     /// # Errors
@@ -23,10 +24,18 @@ pub trait Engine {
         pairs: &[[usize; 2]],
         work: &Path,
         progress: &Progress,
-    ) -> Result<Sparse, Fault>;
+    ) -> Result<Found, Fault>;
 }
 
-/// What an engine found.
+/// What an engine found, in a frame of its own.
+pub struct Found {
+    /// The photos by their names, with poses, lenses (OpenCV's model: fx, fy, cx, cy, k1, k2, p1, p2) and points.
+    pub(crate) model: Reconstruction,
+    /// Photos that are not in it, where it is known why.
+    pub(crate) left_out: Vec<LeftOut>,
+}
+
+/// The same, adjusted with the photos' places.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sparse {
     /// COLMAP's cameras.txt, images.txt and points3D.txt.

@@ -6,6 +6,8 @@
 //! twins       which of them are copies of others
 //! pairs       which photos are compared: neighbours, not all with all
 //! engine      what an engine has to do
+//! engine_name  the engines to choose between
+//! adjusted    what it found, adjusted with the photos' places
 //! embedded    the engine that is always there: cumulus3d's parts, in pure Rust
 //! kept_model  what an engine found, for a run that goes on
 //! estimate    about how long it takes
@@ -21,19 +23,21 @@
 //! said        what is said of the photos, and of what came out
 //! ```
 //!
-//! An engine leaves COLMAP's text files, which `formats` reads as it reads COLMAP's own: so that an
-//! engine is tested, replaced and looked at by other programs.
+//! What comes of it is COLMAP's text files, which `formats` reads as it reads COLMAP's own: so that an
+//! engine's work is tested, replaced and looked at by other programs.
 //!
 //! This room stands on floor 5, above `opening`, whose georeferencing brings the model to the world.
 //!
 //! Pixels of photos are counted as everywhere here: (0, 0) is the outer corner of the first. cumulus3d
 //! and COLMAP's files count likewise.
 
+mod adjusted;
 mod colmap;
 mod covariance;
 mod dense_cloud;
 mod embedded;
 mod engine;
+mod engine_name;
 mod estimate;
 mod flight_files;
 mod in_world;
@@ -60,7 +64,8 @@ use std::path::PathBuf;
 pub use self::colmap::Colmap;
 pub use self::dense::DenseOptions;
 pub use self::embedded::Embedded;
-pub use self::engine::{Engine, Sparse};
+pub use self::engine::{Engine, Found, Sparse};
+pub use self::engine_name::EngineName;
 pub use self::estimate::{about, processor_seconds};
 pub use self::photo_set::{LeftOut, PhotoSet, SurveyPhoto};
 pub use self::proposed::{may_be_made, proposed_folder};
@@ -133,7 +138,10 @@ pub fn reconstruct(
     folder.go_on_with(&photos, engine)?;
     let pairs = pairs::pairs(&photos);
     let at = |fault| FileError::new(&request.photos, fault);
-    let find = || engine.reconstruct(&photos, &pairs, &folder.work, progress);
+    let find = || {
+        let found = engine.reconstruct(&photos, &pairs, &folder.work, progress)?;
+        adjusted::adjusted(found, &photos, &folder.work, progress)
+    };
     let (sparse, goes_on) = kept_model::kept_or_found(&folder.work, find).map_err(at)?;
     let found = (engine.name(), sparse, goes_on);
     written::write(request, &folder, &photos, found, progress)

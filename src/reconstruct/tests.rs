@@ -173,28 +173,65 @@ fn rendered_photos_become_their_flight() {
     let to = folder.path().join("flight");
     let progress = Progress::default();
     let made = reconstruct(&request(photos(), &to), &Embedded, &progress).unwrap();
+    is_as_rendered(&made, "blurred");
+    assert_eq!(made.dense, None);
+
+    // The same again with a dense cloud, cut off when the features are found, and among the depths.
+    let again = folder.path().join("again");
+    let dense = Request {
+        dense: Some(small()),
+        ..request(photos(), &again)
+    };
+    cut_off(&dense, &Embedded, "comparing", 0.0);
+    assert!(again.join("unfinished/features.bin").exists());
+    assert!(cut_off(&dense, &Embedded, "refining depths", 0.3) < 1.0);
+    assert!(again.join("unfinished/depths/first-8").exists());
+    // Its twin keeps the model and finds all depths once more.
+    let twin = folder.path().join("twin");
+    copy(&again.join("unfinished"), &twin.join("unfinished"));
+    fs::remove_dir_all(twin.join("unfinished/depths")).unwrap();
+    let second = reconstruct(&dense, &Embedded, &progress).unwrap();
+    assert!(!again.join("unfinished").exists());
+    assert_eq!(
+        (second.registered, second.points),
+        (made.registered, made.points)
+    );
+    let dense = Request {
+        to: twin.clone(),
+        ..dense
+    };
+    assert_eq!(
+        reconstruct(&dense, &Embedded, &progress).unwrap().dense,
+        second.dense
+    );
+    let read = |folder: &Path, name: &str| fs::read(folder.join(name)).unwrap();
+    assert!(read(&again, "poses.csv") == read(&to, "poses.csv"));
+    for name in [
+        "poses.csv",
+        "pile.laz",
+        "flight.toml",
+        "reconstruction/points3D.txt",
+    ] {
+        assert!(read(&again, name) == read(&twin, name), "{name}");
+    }
+    is_dense(&again, second.dense.unwrap());
+}
+
+/// What all engines have to find in the photos. `of_blank` is in the reason that the blank one is left out for.
+fn is_as_rendered(made: &Reconstructed, of_blank: &str) {
+    let to = made.flight.parent().unwrap();
+    let progress = Progress::default();
     assert_eq!((made.registered, made.photos), (9, 14));
     let why = |name: &str| {
         let left = made.left_out.iter().find(|left| left.photo == name);
         left.map(|left| left.why.clone()).unwrap_or_default()
     };
-    assert!(why("blank.jpg").contains("blurred"), "{:?}", made.left_out);
-    assert!(
-        why("other.jpg").contains("too little"),
-        "{:?}",
-        made.left_out
-    );
-    assert!(
-        why("empty.jpg").contains("cannot be read"),
-        "{:?}",
-        made.left_out
-    );
+    let said = &made.left_out;
+    assert!(why("blank.jpg").contains(of_blank), "{said:?}");
+    assert!(why("other.jpg").contains("too little"), "{said:?}");
+    assert!(why("empty.jpg").contains("cannot be read"), "{said:?}");
+    assert!(why("cut.jpg").contains("cannot be read"), "{said:?}");
     assert_eq!(why("copy of 5.jpg"), "it is a copy of IMG_5.jpg");
-    assert!(
-        why("cut.jpg").contains("cannot be read"),
-        "{:?}",
-        made.left_out
-    );
     assert!(made.reprojection_px.unwrap() < 0.5);
 
     let opened = open_flight(&made.flight, &OpenOptions::default(), &progress).unwrap();
@@ -228,7 +265,7 @@ fn rendered_photos_become_their_flight() {
     let median = geometry::median(&mut off).unwrap();
     assert!(median < ground_pixel, "{median}");
 
-    assert_eq!((off.len(), made.dense), (made.points, None));
+    assert_eq!(off.len(), made.points);
     // COLMAP's list of images: a line of the pose, a line of X, Y and the point's number, -1 for none.
     let images = fs::read_to_string(to.join("reconstruction/images.txt")).unwrap();
     let report = fs::read_to_string(to.join("report.html")).unwrap();
@@ -242,46 +279,6 @@ fn rendered_photos_become_their_flight() {
     assert_eq!(lines.len(), 18);
     assert!(report.contains("<td>other.jpg</td><td>it shows too little"));
     assert!(report.contains("off the 9 positions that were used"));
-
-    // The same again with a dense cloud, cut off when the features are found, and among the depths.
-    let again = folder.path().join("again");
-    let dense = Request {
-        dense: Some(small()),
-        ..request(photos(), &again)
-    };
-    cut_off(&dense, "comparing", 0.0);
-    assert!(again.join("unfinished/features.bin").exists());
-    assert!(cut_off(&dense, "refining depths", 0.3) < 1.0);
-    assert!(again.join("unfinished/depths/first-8").exists());
-    // Its twin keeps the model and finds all depths once more.
-    let twin = folder.path().join("twin");
-    copy(&again.join("unfinished"), &twin.join("unfinished"));
-    fs::remove_dir_all(twin.join("unfinished/depths")).unwrap();
-    let second = reconstruct(&dense, &Embedded, &progress).unwrap();
-    assert!(!again.join("unfinished").exists());
-    assert_eq!(
-        (second.registered, second.points),
-        (made.registered, made.points)
-    );
-    let dense = Request {
-        to: twin.clone(),
-        ..dense
-    };
-    assert_eq!(
-        reconstruct(&dense, &Embedded, &progress).unwrap().dense,
-        second.dense
-    );
-    let read = |folder: &Path, name: &str| fs::read(folder.join(name)).unwrap();
-    assert!(read(&again, "poses.csv") == read(&to, "poses.csv"));
-    for name in [
-        "poses.csv",
-        "pile.laz",
-        "flight.toml",
-        "reconstruction/points3D.txt",
-    ] {
-        assert!(read(&again, name) == read(&twin, name), "{name}");
-    }
-    is_dense(&again, second.dense.unwrap());
 }
 
 /// Depth maps of a quarter of the photos' pixels, for the sake of time.
@@ -294,7 +291,7 @@ fn small() -> DenseOptions {
 
 /// Runs until a stage of which the sentence begins so, and cancels it when so much of it is done; seconds that it
 /// took to stop.
-fn cut_off(request: &Request, stage: &'static str, from: f64) -> f64 {
+fn cut_off(request: &Request, engine: &dyn Engine, stage: &'static str, from: f64) -> f64 {
     let stopped = Progress::default();
     let watched = stopped.clone();
     let watcher = std::thread::spawn(move || {
@@ -306,10 +303,37 @@ fn cut_off(request: &Request, stage: &'static str, from: f64) -> f64 {
         watched.cancel();
         std::time::Instant::now()
     });
-    let cut = reconstruct(request, &Embedded, &stopped).unwrap_err();
+    let cut = reconstruct(request, engine, &stopped).unwrap_err();
     let took = watcher.join().unwrap().elapsed();
     assert_eq!(cut.fault.what, "cancelled");
     took.as_secs_f64()
+}
+
+/// The real program: cut off in each of its stages it goes on, and finds what the embedded engine does.
+#[test]
+fn colmap_finds_the_same_flight() {
+    if fragscale_test_data::program("colmap").is_none() {
+        return;
+    }
+    let engine = Colmap::on_path().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let request = request(photos(), &folder.path().join("flight"));
+    for (stage, from) in [
+        ("COLMAP: features", 0.3),
+        ("COLMAP: matches", 0.4),
+        ("COLMAP: poses", 0.1),
+    ] {
+        let took = cut_off(&request, &engine, stage, from);
+        // Asked ten times a second; the rest is how busy the processor is.
+        assert!(took < 5.0, "{stage}: {took} s");
+    }
+    let made = reconstruct(&request, &engine, &Progress::default()).unwrap();
+    is_as_rendered(&made, "too little");
+    // One camera for all, though it was begun twice.
+    let cameras = request.to.join("reconstruction/cameras.txt");
+    let cameras = fs::read_to_string(cameras).unwrap();
+    let cameras = cameras.lines().filter(|line| !line.starts_with('#'));
+    assert_eq!(cameras.count(), 1);
 }
 
 fn copy(from: &Path, to: &Path) {
@@ -368,12 +392,13 @@ fn folders_without_photos_that_overlap_are_refused() {
     let photos = folder.path().join("photos");
     let to = folder.path().join("flight");
     fs::create_dir(&photos).unwrap();
-    let refused = |what: &str| {
-        let error = reconstruct(&request(&photos, &to), &Embedded, &Progress::default());
+    let refused_by = |engine: &dyn Engine, what: &str| {
+        let error = reconstruct(&request(&photos, &to), engine, &Progress::default());
         let error = error.unwrap_err().to_string();
         assert!(error.contains(what), "{error}");
         assert!(!error.contains('\n'));
     };
+    let refused = |what: &str| refused_by(&Embedded, what);
     refused("a reconstruction needs three at least");
     for (number, pose) in (1..4).zip(&poses()) {
         let name = format!("IMG_{number}.jpg");
@@ -381,6 +406,9 @@ fn folders_without_photos_that_overlap_are_refused() {
         write(&photos, &name, &photo(pose, 1000 * number), Some(pose));
     }
     refused("show the same");
+    if fragscale_test_data::program("colmap").is_some() {
+        refused_by(&Colmap::on_path().unwrap(), "show the same");
+    }
     fs::write(to.join("mine.txt"), "mine").unwrap();
     let _ = fs::remove_dir_all(to.join("unfinished"));
     refused("the folder is not empty");

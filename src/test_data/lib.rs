@@ -34,11 +34,6 @@ pub fn written(name: &str, bytes: impl AsRef<[u8]>) -> (tempfile::TempDir, PathB
 ///
 /// # Panics
 /// Where it is missing and `FRAGSCALE_REQUIRE_DATA` is 1.
-#[expect(
-    clippy::print_stdout,
-    clippy::panic,
-    reason = "a test that checks nothing must say so"
-)]
 pub fn shared_data(path: &str) -> Option<PathBuf> {
     let root = std::env::var_os("FRAGSCALE_TEST_DATA")
         .map_or_else(|| repository().join("../shared/data"), PathBuf::from);
@@ -51,10 +46,35 @@ pub fn shared_data(path: &str) -> Option<PathBuf> {
         "FRAGSCALE_REQUIRE_DATA is 1, and {} is missing",
         found.display()
     );
-    println!("left out: no shared data ({path})");
+    left_out("no shared data", path);
+    None
+}
+
+/// A program on the path, or `None` where it is not installed: the project's tests must pass without. It is
+/// left out as [`shared_data`] is, and no test requires it.
+pub fn program(name: &str) -> Option<PathBuf> {
+    let folders = std::env::var_os("PATH").unwrap_or_default();
+    let found = std::env::split_paths(&folders).find_map(|folder| {
+        let path = folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
+        path.is_file().then_some(path)
+    });
+    if found.is_none() {
+        left_out("not installed", name);
+    }
+    found
+}
+
+/// Says that the test that runs goes without `what`.
+#[expect(
+    clippy::print_stdout,
+    clippy::panic,
+    reason = "a test that checks nothing must say so"
+)]
+fn left_out(why: &str, what: &str) {
+    println!("left out: {why} ({what})");
     if let Some(list) = std::env::var_os("FRAGSCALE_LEFT_OUT") {
         let test = std::thread::current().name().unwrap_or("?").to_owned();
-        let line = format!("{test}: {path}\n");
+        let line = format!("{test}: {what}\n");
         OpenOptions::new()
             .append(true)
             .create(true)
@@ -62,5 +82,4 @@ pub fn shared_data(path: &str) -> Option<PathBuf> {
             .and_then(|mut list| list.write_all(line.as_bytes()))
             .unwrap_or_else(|e| panic!("{}: {e}", list.display()));
     }
-    None
 }

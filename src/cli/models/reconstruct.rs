@@ -7,9 +7,7 @@ use clap::{Args, ValueEnum};
 
 use crate::cli::Answer;
 use crate::jobs::Progress;
-use crate::reconstruct::{
-    Colmap, Embedded, Engine, Quality, Request, left_out, reconstruct, summary,
-};
+use crate::reconstruct::{EngineName, Quality, Request, left_out, reconstruct, summary};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ReconstructArguments {
@@ -24,8 +22,8 @@ pub(in crate::cli) struct ReconstructArguments {
     #[arg(long, value_name = "CRS", allow_hyphen_values = true)]
     crs: Option<String>,
     /// What finds the poses.
-    #[arg(long, value_enum, default_value = "embedded")]
-    engine: EngineName,
+    #[arg(long, value_enum, default_value_t)]
+    engine: PosesEngine,
     /// How much time the cloud may take.
     #[arg(long, value_enum, default_value_t)]
     quality: CloudQuality,
@@ -50,20 +48,21 @@ impl ValueEnum for CloudQuality {
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum EngineName {
-    /// The program's own: nothing to install.
-    Embedded,
-    /// COLMAP, where `colmap` is on the path.
-    Colmap,
-}
+/// An engine as a word of the command line.
+#[derive(Debug, Clone, Copy, Default)]
+struct PosesEngine(EngineName);
 
-impl EngineName {
-    fn engine(self) -> Result<Box<dyn Engine>, String> {
-        Ok(match self {
-            Self::Embedded => Box::new(Embedded),
-            Self::Colmap => Box::new(Colmap::on_path().map_err(|fault| fault.to_string())?),
-        })
+impl ValueEnum for PosesEngine {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [PosesEngine; 2] = [
+            PosesEngine(EngineName::Embedded),
+            PosesEngine(EngineName::Colmap),
+        ];
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.0.as_str()).help(self.0.explained()))
     }
 }
 
@@ -77,7 +76,8 @@ pub(in crate::cli) fn run(
         crs: arguments.crs.clone(),
         dense: arguments.quality.0.dense(),
     };
-    let engine = arguments.engine.engine()?;
+    let engine = arguments.engine.0.engine();
+    let engine = engine.map_err(|fault| fault.to_string())?;
     let made = reconstruct(&request, &*engine, progress).map_err(|error| error.to_string())?;
     let mut warnings = left_out(&made.left_out, made.photos);
     warnings.extend(made.warnings.iter().cloned());

@@ -1,6 +1,6 @@
 //! How far COLMAP is, from what it prints.
 
-/// Of "Processed file [3/26]" and "Matching block [1/2]": how many of how many.
+/// Of "Processed file [3/26]": how many of how many.
 pub(super) fn of_total(line: &str) -> Option<(u64, u64)> {
     let inside = line.rsplit_once('[')?.1.split_once(']')?.0;
     let (at, total) = inside.split_once('/')?;
@@ -14,6 +14,11 @@ pub(super) fn registered(line: &str) -> Option<u64> {
     let inside = inside.rsplit_once('(')?.1.split_once(')')?.0;
     let number = inside.rsplit('=').next()?;
     number.trim().parse().ok()
+}
+
+/// Whether the mapper says that no pair of photos is one to begin with: it ends with an error then.
+pub(super) fn finds_nothing(line: &str) -> bool {
+    line.contains("failed to create sparse model")
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@
 //! Tried with 3.8; 3.9 to 4 name some options otherwise, which `options` looks up in the command's own
 //! help. Pairs are ours (`pairs`), as its own exhaustive matching takes minutes of processor for 26 photos.
 //! Its database stays in the folder of unfinished work, so that a second run goes on where the first was cut
-//! off. Its model has a frame of its own: positions come in afterwards, by georeferencing.
+//! off. Its mapper knows no positions: they come in afterwards, as with every engine (`adjusted`).
 
 mod log;
 mod options;
@@ -23,14 +23,17 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use cumulus3d_core::Reconstruction;
+
 use self::options::{Options, Setting};
 use self::program::Program;
+use crate::adjusted::{guarded, read, too_little_in_common};
 use crate::camera::Camera;
-use crate::engine::{Engine, Sparse};
+use crate::engine::{Engine, Found};
 use crate::fault::Fault;
 use crate::files::{self, Inputs, Kind};
 use crate::jobs::Progress;
-use crate::photo_set::{LeftOut, PhotoSet, SurveyCamera};
+use crate::photo_set::{PhotoSet, SurveyCamera};
 
 /// COLMAP as an engine.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -38,7 +41,13 @@ pub struct Colmap {
     program: Program,
 }
 
-const FILES: [&str; 3] = ["cameras.txt", "images.txt", "points3D.txt"];
+/// The command that finds features.
+const EXTRACTOR: &str = "feature_extractor";
+/// Its database, in the folder of unfinished work.
+const DATABASE: &str = "database.db";
+/// Pairs that are compared between two looks how far it is: half a minute of a slow processor, and a run that is cut off loses no
+/// more. To start COLMAP and to read the features again takes a tenth of a second a photo.
+const PAIRS_AT_ONCE: usize = 24;
 
 impl Colmap {
     /// The COLMAP on the path.
@@ -62,7 +71,7 @@ impl Engine for Colmap {
         pairs: &[[usize; 2]],
         work: &Path,
         progress: &Progress,
-    ) -> Result<Sparse, Fault> {
+    ) -> Result<Found, Fault> {
         let blank = |name: &str| name.contains(char::is_whitespace);
         if let Some(photo) = photos.photos.iter().find(|photo| blank(&photo.name)) {
             let what = format!(
@@ -75,16 +84,17 @@ impl Engine for Colmap {
             program: &self.program,
             photos,
             folder: photos_folder(photos),
-            database: work.join("database.db"),
+            database: work.join(DATABASE),
             work,
             progress,
         };
         run.features()?;
         run.matches(pairs)?;
         let model = run.largest_model()?;
-        let files = run.text_of(&model)?;
-        let left_out = missing(photos, &files[1].1);
-        Ok(Sparse { files, left_out })
+        Ok(Found {
+            model: run.read(&model)?,
+            left_out: Vec::new(),
+        })
     }
 }
 
@@ -101,63 +111,104 @@ struct Run<'a> {
 impl Run<'_> {
     /// SIFT of all photos; a camera's photos share its intrinsics.
     fn features(&self) -> Result<(), Fault> {
-        let command = "feature_extractor";
-        let options = Options::of(self.program, command)?;
+        let options = Options::of(self.program, EXTRACTOR)?;
+        self.progress.stage("COLMAP: features of photos");
+        self.cameras(&options)?;
         let count = self.photos.photos.len() as u64;
         let mut done = 0;
+        for number in 0..self.photos.cameras.len() {
+            let names = self.names(number);
+            let its = Setting::text("ImageReader.existing_camera_id", (number + 1).to_string());
+            let said = |line: &str| {
+                if let Some((at, _)) = log::of_total(line) {
+                    let _ = self.progress.advance(done + at, count);
+                }
+            };
+            self.extract(&options, number, &names, [its], said)?;
+            done += names.len() as u64;
+        }
+        Ok(())
+    }
+
+    /// The database with the cameras, numbered from 1 in their order. COLMAP makes a camera with the first of its photos
+    /// that has no features yet: a run that goes on would give the rest of the photos a second one.
+    fn cameras(&self, options: &Options) -> Result<(), Fault> {
+        let whole = self.work.join("cameras-made.txt");
+        if whole.exists() {
+            return Ok(());
+        }
+        // Of a run that was cut off before: which cameras it made nobody knows.
+        for end in ["", "-wal", "-shm"] {
+            let _ = fs::remove_file(self.work.join(format!("{DATABASE}{end}")));
+        }
         for (number, camera) in self.photos.cameras.iter().enumerate() {
-            let names = self.photos.photos.iter();
-            let names = names.filter(|photo| photo.camera == number);
-            let names: Vec<&str> = names.map(|photo| photo.name.as_str()).collect();
-            let list = self.work.join(format!("camera-{number}.txt"));
-            self.write(&list, &(names.join("\n") + "\n"))?;
+            let first = self.names(number).into_iter().take(1);
+            let first: Vec<&str> = first.collect();
             let mut settings = vec![
-                Setting::path("database_path", &self.database),
-                Setting::path("image_path", &self.folder),
-                Setting::path("image_list_path", &list),
                 Setting::text("ImageReader.single_camera", "1"),
                 Setting::text("ImageReader.camera_model", "OPENCV"),
             ];
             if let Some(intrinsics) = intrinsics(camera) {
                 settings.push(Setting::text("ImageReader.camera_params", intrinsics));
             }
-            settings.extend(options.use_gpu("Extraction", self.program.has_cuda));
-            self.progress.stage("COLMAP: features of photos");
-            let said = |line: &str| {
-                if let Some((at, _)) = log::of_total(line) {
-                    let _ = self.progress.advance(done + at, count);
-                }
-            };
-            (self.program).run(command, &settings, said, self.progress)?;
-            done += names.len() as u64;
+            self.extract(options, number, &first, settings, |_| ())?;
         }
-        Ok(())
+        self.write(&whole, "")
     }
 
-    /// Matches of the pairs that may show the same.
+    /// SIFT of photos of a camera.
+    fn extract(
+        &self,
+        options: &Options,
+        camera: usize,
+        names: &[&str],
+        of_camera: impl IntoIterator<Item = Setting>,
+        said: impl FnMut(&str),
+    ) -> Result<(), Fault> {
+        let list = self.work.join(format!("camera-{camera}.txt"));
+        self.write(&list, &(names.join("\n") + "\n"))?;
+        let mut settings = vec![
+            Setting::path("database_path", &self.database),
+            Setting::path("image_path", &self.folder),
+            Setting::path("image_list_path", &list),
+        ];
+        settings.extend(of_camera);
+        settings.extend(options.use_gpu("Extraction", self.program.has_cuda));
+        (self.program).run(EXTRACTOR, &settings, said, self.progress)
+    }
+
+    /// The photos of a camera.
+    fn names(&self, camera: usize) -> Vec<&str> {
+        let its = self.photos.photos.iter();
+        let its = its.filter(|photo| photo.camera == camera);
+        its.map(|photo| photo.name.as_str()).collect()
+    }
+
+    /// Matches of the pairs that may show the same. COLMAP writes them into the database when it has all of a list, and
+    /// says nothing before: so it gets short ones.
     fn matches(&self, pairs: &[[usize; 2]]) -> Result<(), Fault> {
         let command = "matches_importer";
         let options = Options::of(self.program, command)?;
         let name = |at: usize| self.photos.photos[at].name.as_str();
-        let lines = pairs
-            .iter()
-            .map(|&[a, b]| format!("{} {}\n", name(a), name(b)));
         let list = self.work.join("pairs.txt");
-        self.write(&list, &lines.collect::<String>())?;
         let mut settings = vec![
             Setting::path("database_path", &self.database),
             Setting::path("match_list_path", &list),
             Setting::text("match_type", "pairs"),
         ];
         settings.extend(options.use_gpu("Matching", self.program.has_cuda));
-        self.progress.stage("COLMAP: matches of photos");
-        let said = |line: &str| {
-            if let Some((at, total)) = log::of_total(line) {
-                // It says when it begins a block.
-                let _ = self.progress.advance(at.saturating_sub(1), total);
-            }
-        };
-        (self.program).run(command, &settings, said, self.progress)
+        let count = pairs.len() as u64;
+        (self.progress).stage(format!("COLMAP: matches of {count} pairs of photos"));
+        let mut done = 0;
+        for some in pairs.chunks(PAIRS_AT_ONCE) {
+            self.progress.advance(done, count)?;
+            let lines = some.iter();
+            let lines = lines.map(|&[a, b]| format!("{} {}\n", name(a), name(b)));
+            self.write(&list, &lines.collect::<String>())?;
+            (self.program).run(command, &settings, |_| (), self.progress)?;
+            done += some.len() as u64;
+        }
+        Ok(())
     }
 
     /// The folder of the model that holds most photos.
@@ -170,15 +221,23 @@ impl Run<'_> {
             Setting::path("database_path", &self.database),
             Setting::path("image_path", &self.folder),
             Setting::path("output_path", &models),
+            // They are taken from the photos for every engine alike.
+            Setting::text("Mapper.extract_colors", "0"),
         ];
         self.progress.stage("COLMAP: poses and points");
         let count = self.photos.photos.len() as u64;
+        let mut finds_nothing = false;
         let said = |line: &str| {
+            finds_nothing |= log::finds_nothing(line);
             if let Some(registered) = log::registered(line) {
                 let _ = self.progress.advance(registered, count);
             }
         };
-        (self.program).run("mapper", &settings, said, self.progress)?;
+        let run = (self.program).run("mapper", &settings, said, self.progress);
+        if finds_nothing {
+            return Err(too_little_in_common());
+        }
+        run?;
         let found = fs::read_dir(&models).map_err(|error| cannot_write(&models, &error))?;
         let mut sizes: Vec<(u64, PathBuf)> = found
             .filter_map(|entry| {
@@ -190,16 +249,11 @@ impl Run<'_> {
         // Of equal ones the first; files of images are as long as they have observations.
         sizes.sort_by(|a, b| b.0.cmp(&a.0).then_with(|| a.1.cmp(&b.1)));
         let largest = sizes.into_iter().next().map(|(_, path)| path);
-        largest.ok_or_else(|| {
-            Fault::new(
-                "no two of the photos show enough of the same",
-                "take photos that overlap by two thirds at least",
-            )
-        })
+        largest.ok_or_else(too_little_in_common)
     }
 
-    /// A model as text.
-    fn text_of(&self, model: &Path) -> Result<[(&'static str, Vec<u8>); 3], Fault> {
+    /// A model by way of its text, which all versions write alike.
+    fn read(&self, model: &Path) -> Result<Reconstruction, Fault> {
         let text = self.work.join("model");
         fs::create_dir_all(&text).map_err(|error| cannot_write(&text, &error))?;
         let settings = [
@@ -208,15 +262,7 @@ impl Run<'_> {
             Setting::text("output_type", "TXT"),
         ];
         (self.program).run("model_converter", &settings, |_| (), self.progress)?;
-        let read = |name: &'static str| -> Result<_, Fault> {
-            let bytes = fs::read(text.join(name));
-            let bytes = bytes.map_err(|error| {
-                let what = format!("COLMAP wrote no {name} ({error})");
-                Fault::new(what, "report this with the version of COLMAP")
-            })?;
-            Ok((name, bytes))
-        };
-        Ok([read(FILES[0])?, read(FILES[1])?, read(FILES[2])?])
+        guarded(|| read(&text, &self.program.version))
     }
 
     fn write(&self, path: &Path, text: &str) -> Result<(), Fault> {
@@ -246,24 +292,4 @@ fn intrinsics(camera: &SurveyCamera) -> Option<String> {
     camera.focal_error?;
     let Camera { fx, fy, cx, cy, .. } = camera.camera;
     Some(format!("{fx},{fy},{cx},{cy},0,0,0,0"))
-}
-
-/// Photos that a model's images.txt does not name.
-fn missing(photos: &PhotoSet, images: &[u8]) -> Vec<LeftOut> {
-    let text = String::from_utf8_lossy(images);
-    let lines = text.lines().filter(|line| !line.starts_with('#'));
-    // A line of the pose, the name its last word, and one of observations in turn.
-    let names: Vec<&str> = lines
-        .step_by(2)
-        .filter_map(|line| line.splitn(10, ' ').nth(9))
-        .collect();
-    let is_missing = |name: &str| !names.contains(&name);
-    let photos = photos.photos.iter();
-    photos
-        .filter(|photo| is_missing(&photo.name))
-        .map(|photo| LeftOut {
-            photo: photo.name.clone(),
-            why: "it shows too little of what the others show".to_owned(),
-        })
-        .collect()
 }

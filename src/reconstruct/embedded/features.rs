@@ -9,7 +9,8 @@ use cumulus3d_features::{
 };
 use image::DynamicImage;
 
-use super::{camera_id, failed, image_id};
+use super::{camera_id, image_id};
+use crate::adjusted::failed;
 use crate::camera::Distortion;
 use crate::fault::Fault;
 use crate::files::read_bytes;

@@ -9,9 +9,8 @@ use cumulus3d_sfm::registration::{
 };
 use cumulus3d_sfm::triangulator::{TrackTriangulator, TrackTriangulatorOptions};
 
-use super::bundle::{Adjustment, adjust};
-use super::failed;
 use super::seed::{Seed, seeds};
+use crate::adjusted::{Adjustment, FEWEST_PHOTOS, Whose, adjust, failed, too_little_in_common};
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::photo_set::PhotoSet;
@@ -24,8 +23,6 @@ const TRIES: usize = 3;
 const GROWN: f64 = 0.2;
 /// Photos around a new one that are adjusted with it.
 const AROUND: usize = 6;
-/// Photos at least that a model is worth having of.
-const FEWEST_PHOTOS: usize = 3;
 
 /// The model.
 ///
@@ -60,13 +57,7 @@ pub(super) fn grow(
         }
     }
     best.filter(|model| model.registered_image_count() >= FEWEST_PHOTOS)
-        .ok_or_else(|| {
-            let what = "no three photos show the same from different places";
-            Fault::new(
-                what,
-                "take photos that overlap by two thirds, from places apart",
-            )
-        })
+        .ok_or_else(too_little_in_common)
 }
 
 struct Growing<'a> {
@@ -170,7 +161,7 @@ impl Growing<'_> {
         let adjustment = Adjustment {
             images,
             places: HashMap::new(),
-            photos: self.photos,
+            whose: &Whose::of(model, self.photos),
             iterations,
         };
         adjust(model, adjustment)

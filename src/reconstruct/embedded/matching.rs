@@ -7,8 +7,9 @@ use cumulus3d_core::FeatureStore;
 use cumulus3d_matching::{PairMatchingOptions, match_pairs};
 
 use super::features::keep;
+use super::image_id;
 use super::nearest_two::Products;
-use super::{failed, image_id};
+use crate::adjusted::failed;
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::photo_set::PhotoSet;

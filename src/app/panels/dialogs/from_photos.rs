@@ -6,7 +6,7 @@ use crate::command::{Answers, Command, Dialog};
 use crate::from_photos::{Ended, FolderField, FromPhotos, FromPhotosForm, FromPhotosStep};
 use crate::names;
 use crate::panels::field::hinted_field;
-use crate::reconstruct::{PhotoSet, Quality, found, left_out, summary};
+use crate::reconstruct::{EngineName, PhotoSet, Quality, found, left_out, summary};
 use crate::state::State;
 use crate::tasks::Task;
 use crate::typed::typed;
@@ -48,6 +48,7 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             }
         });
         quality_row(&mut form, ui);
+        engine_row(held, &mut form, ui);
     });
     if form != held.form {
         commands.push(Command::FromPhotos(FromPhotosStep::Fill(form.clone())));
@@ -76,6 +77,34 @@ fn quality_row(form: &mut FromPhotosForm, ui: &mut egui::Ui) {
                 egui::WidgetInfo::selected(egui::Role::RadioButton, true, is_chosen, name)
             });
             radio.on_hover_text(quality.explained());
+        }
+    });
+}
+
+/// What finds the poses; COLMAP by its version, grey where it is not installed.
+fn engine_row(held: &FromPhotos, form: &mut FromPhotosForm, ui: &mut egui::Ui) {
+    ui.horizontal(|ui| {
+        ui.label("Engine");
+        for engine in EngineName::ALL {
+            let (text, why_not) = match (engine, &held.colmap) {
+                (EngineName::Embedded, _) => ("Embedded", None),
+                (EngineName::Colmap, Some(Ok(version))) => (version.as_str(), None),
+                (EngineName::Colmap, Some(Err(why))) => ("COLMAP", Some(why.as_str())),
+                (EngineName::Colmap, None) => ("COLMAP", Some("Looking for it…")),
+            };
+            let radio = egui::RadioButton::new(form.engine == engine, text);
+            let radio = ui.add_enabled(why_not.is_none(), radio);
+            if radio.clicked() {
+                form.engine = engine;
+            }
+            let is_chosen = form.engine == engine;
+            radio.widget_info(|| {
+                let name = format!("Engine: {text}");
+                let role = egui::Role::RadioButton;
+                egui::WidgetInfo::selected(role, why_not.is_none(), is_chosen, name)
+            });
+            let radio = radio.on_hover_text(engine.explained());
+            radio.on_disabled_hover_text(why_not.unwrap_or_default());
         }
     });
 }

@@ -9,7 +9,7 @@ use crate::files::FileError;
 use crate::from_photos::{Ended, FolderField, FoundPhotos, FromPhotosForm, FromPhotosStep};
 use crate::jobs::Progress;
 use crate::reconstruct::{
-    Embedded, PhotoSet, Reconstructed, Request, left_out, may_be_made, proposed_folder,
+    EngineName, PhotoSet, Reconstructed, Request, left_out, may_be_made, proposed_folder,
     reconstruct, summary,
 };
 use crate::state::{Severity, State};
@@ -19,6 +19,8 @@ use crate::typed::typed;
 impl Task {
     /// Reading the headers of a folder of photos.
     pub const LOOK_AT_PHOTOS: Self = Self::new("Looking at the photos");
+    /// Asking COLMAP for its version.
+    pub const LOOK_FOR_COLMAP: Self = Self::new("Looking for COLMAP");
     /// Making a flight from photos.
     pub const RECONSTRUCT: Self = Self::new("Reconstructing").writing();
 }
@@ -39,7 +41,10 @@ impl State {
                 }
                 // Files may have come, and a flight may be there that was proposed before.
                 self.look_at_photos();
+                // It may have been installed since.
+                self.look_for_colmap();
             }
+            FromPhotosStep::Colmap(installed) => self.from_photos.colmap = Some(installed),
             FromPhotosStep::Fill(form) => self.fill_from_photos(form),
             FromPhotosStep::Start => self.start_reconstructing(),
             FromPhotosStep::Open => {
@@ -102,6 +107,20 @@ impl State {
         });
     }
 
+    fn look_for_colmap(&mut self) {
+        if self.is_busy(Task::LOOK_FOR_COLMAP) {
+            return;
+        }
+        let work = |_: &Progress| {
+            let engine = EngineName::Colmap.engine();
+            let engine = engine.map_err(|fault| fault.to_string())?;
+            Ok(engine.name())
+        };
+        self.start(Task::LOOK_FOR_COLMAP, work, |state, installed| {
+            state.from_photos.colmap = Some(installed);
+        });
+    }
+
     fn start_reconstructing(&mut self) {
         if self.is_busy(Task::RECONSTRUCT) {
             return;
@@ -120,11 +139,14 @@ impl State {
             crs: typed_text(&form.crs),
             dense: form.quality.dense(),
         };
+        let engine = form.engine;
         self.from_photos.ended = None;
         let (writing, opened) = (self.from_photos.writing.clone(), self.opened);
         let work = move |progress: &Progress| {
             let _writes = alone(&writing, &request.to, progress)?;
-            reconstruct(&request, &Embedded, progress)
+            let engine = engine.engine();
+            let engine = engine.map_err(|fault| FileError::new(&request.photos, fault))?;
+            reconstruct(&request, &*engine, progress)
         };
         self.start(
             Task::RECONSTRUCT,

@@ -4,13 +4,12 @@ use std::fs;
 use std::path::Path;
 
 use cumulus3d_core::Reconstruction;
-use cumulus3d_core::interop::{ImageOrder, write_model_text};
+use cumulus3d_core::interop::{ImageOrder, read_model_text, write_model_text};
 use cumulus3d_core::reconstruction::{Image, bilinear_rgb};
 
-use super::{failed, photo_of};
+use super::{Whose, failed};
 use crate::fault::Fault;
 use crate::jobs::Progress;
-use crate::photo_set::PhotoSet;
 
 /// Colours points.
 ///
@@ -18,7 +17,7 @@ use crate::photo_set::PhotoSet;
 /// Where the work was cancelled.
 pub(super) fn colour(
     model: &mut Reconstruction,
-    photos: &PhotoSet,
+    whose: &Whose<'_>,
     progress: &Progress,
 ) -> Result<(), Fault> {
     let count = model.registered_image_count() as u64;
@@ -28,7 +27,7 @@ pub(super) fn colour(
         if progress.advance(done, count).is_err() {
             return None;
         }
-        let path = &photos.photos.get(photo_of(image.image_id))?.path;
+        let path = &whose.photo(image.image_id)?.path;
         let pixels = image::open(path).ok()?.into_rgb8();
         let (width, height) = (pixels.width() as usize, pixels.height() as usize);
         Some(move |x: f64, y: f64| bilinear_rgb(pixels.as_raw(), width, height, x, y))
@@ -57,4 +56,15 @@ pub(super) fn files(
         ("images.txt", read("images.txt")?),
         ("points3D.txt", read("points3D.txt")?),
     ])
+}
+
+/// A model that a program left as text files in a folder.
+///
+/// # Errors
+/// Where a file is not there or is no such file.
+pub(crate) fn read(folder: &Path, program: &str) -> Result<Reconstruction, Fault> {
+    read_model_text(folder).map_err(|_| {
+        let what = format!("the model that {program} wrote cannot be read");
+        Fault::new(what, "report this with the program's version")
+    })
 }

@@ -7,12 +7,11 @@ use cumulus3d_core::geometry::{Mat3, Quat, Sim3};
 use cumulus3d_core::{Reconstruction, Vec3};
 use glam::{DMat3, DVec3};
 
+use super::Whose;
 use super::bundle::{Adjustment, adjust};
-use super::photo_of;
 use crate::fault::Fault;
 use crate::georeference::{Pair, fit};
 use crate::jobs::Progress;
-use crate::photo_set::PhotoSet;
 
 /// Standard deviation that a place has whose receiver states none, metres.
 const USUAL: f64 = 5.0;
@@ -23,7 +22,7 @@ const USUAL: f64 = 5.0;
 /// Where the adjustment has no solution, or the work was cancelled.
 pub(super) fn place(
     model: &mut Reconstruction,
-    photos: &PhotoSet,
+    whose: &Whose<'_>,
     progress: &Progress,
 ) -> Result<(), Fault> {
     progress.stage("placing the model in the world");
@@ -31,7 +30,7 @@ pub(super) fn place(
     let mut images = Vec::new();
     let mut pairs = Vec::new();
     for image in model.registered_images() {
-        let Some(place) = photos.photos[photo_of(image)].place else {
+        let Some(place) = whose.photo(image).and_then(|photo| photo.place) else {
             continue;
         };
         let Some(center) = model.projection_center(image) else {
@@ -71,7 +70,7 @@ pub(super) fn place(
         let adjustment = Adjustment {
             images: HashSet::new(),
             places: places.clone(),
-            photos,
+            whose,
             iterations: 100,
         };
         adjust(model, adjustment)?;

@@ -6,9 +6,8 @@ use std::collections::{HashMap, HashSet};
 use cumulus3d_ba::{BaConfig, Loss, bundle_adjust};
 use cumulus3d_core::{Reconstruction, Vec3};
 
-use super::{camera_id, failed};
+use super::{Whose, failed};
 use crate::fault::Fault;
-use crate::photo_set::PhotoSet;
 
 /// Photos of a camera from which on its lens is adjusted: before, poses take up what is the lens's.
 const PHOTOS_OF_A_LENS: usize = 4;
@@ -19,22 +18,22 @@ const FARTHEST_PX: f64 = 4.0;
 const LEAST_ANGLE: f64 = 1.5;
 
 /// What is adjusted.
-pub(super) struct Adjustment<'a> {
+pub(crate) struct Adjustment<'a> {
     /// Of these photos alone; of all where it is empty.
-    pub(super) images: HashSet<u32>,
+    pub(crate) images: HashSet<u32>,
     /// Where cameras were, each with the standard deviation of a coordinate.
-    pub(super) places: HashMap<u32, (Vec3, f64)>,
+    pub(crate) places: HashMap<u32, (Vec3, f64)>,
     /// How the lenses are stated.
-    pub(super) photos: &'a PhotoSet,
+    pub(crate) whose: &'a Whose<'a>,
     /// At most.
-    pub(super) iterations: usize,
+    pub(crate) iterations: usize,
 }
 
 /// Adjusts, then takes away what does not fit.
 ///
 /// # Errors
 /// Where there is no solution.
-pub(super) fn adjust(model: &mut Reconstruction, what: Adjustment<'_>) -> Result<(), Fault> {
+pub(crate) fn adjust(model: &mut Reconstruction, what: Adjustment<'_>) -> Result<(), Fault> {
     let is_local = !what.images.is_empty();
     let mut of_camera: HashMap<u32, usize> = HashMap::new();
     for image in model.registered_images() {
@@ -50,7 +49,7 @@ pub(super) fn adjust(model: &mut Reconstruction, what: Adjustment<'_>) -> Result
         refine_principal_point: !is_local,
         refine_extra_params: !is_local,
         constant_cameras: few.map(|(camera, _)| camera).collect(),
-        intrinsics_priors: lenses(what.photos),
+        intrinsics_priors: lenses(what.whose),
         position_priors: what.places,
         images: what.images,
         loss: Loss::Huber(1.0),
@@ -72,16 +71,16 @@ pub(super) fn adjust(model: &mut Reconstruction, what: Adjustment<'_>) -> Result
 /// Flat ground seen straight down says little of a focal length and less of the principal point. Where
 /// nobody states one, the focal length is free; the principal point is within 1 % of the middle, as those of
 /// drones are.
-fn lenses(photos: &PhotoSet) -> HashMap<u32, (Vec<f64>, Vec<f64>)> {
-    let cameras = photos.cameras.iter().enumerate();
+fn lenses(whose: &Whose<'_>) -> HashMap<u32, (Vec<f64>, Vec<f64>)> {
+    let cameras = whose.cameras();
     cameras
-        .map(|(number, known)| {
+        .map(|(id, known)| {
             let camera = &known.camera;
             let focal = known.focal_error.unwrap_or(1.0);
             let middle = 0.005 * f64::from(camera.width.max(camera.height));
             let values = vec![camera.fx, camera.fy, camera.cx, camera.cy];
             let deviations = vec![focal * camera.fx, focal * camera.fy, middle, middle];
-            (camera_id(number), (values, deviations))
+            (id, (values, deviations))
         })
         .collect()
 }

@@ -1,0 +1,74 @@
+//! What an engine found, brought to where the photos were taken and adjusted with those places: one policy
+//! for all engines, so that their poses, lenses and standard errors are of the same kind.
+//!
+//! ```text
+//! whose         which photos and cameras of the folder those of a model are
+//! bundle        poses, points and lenses adjusted together
+//! placing       the model brought to the photos' places, and adjusted with them
+//! model_files   what comes out
+//! guarded       what cumulus3d does when something goes wrong
+//! ```
+
+mod bundle;
+mod guarded;
+mod model_files;
+mod placing;
+mod whose;
+
+use std::path::Path;
+
+pub(crate) use self::bundle::{Adjustment, adjust};
+pub(crate) use self::guarded::{failed, guarded};
+pub(crate) use self::model_files::read;
+pub(crate) use self::whose::Whose;
+
+use crate::engine::{Found, Sparse};
+use crate::fault::Fault;
+use crate::jobs::Progress;
+use crate::photo_set::{LeftOut, PhotoSet};
+
+/// Photos at least that a model is worth having of.
+pub(crate) const FEWEST_PHOTOS: usize = 3;
+
+/// What to say where no model has so many.
+pub(crate) fn too_little_in_common() -> Fault {
+    Fault::new(
+        "no three photos show the same from different places",
+        "take photos that overlap by two thirds, from places apart",
+    )
+}
+
+/// The model that goes into the flight. `work` is the folder of unfinished work.
+///
+/// # Errors
+/// Where it holds too few photos, the adjustment has no solution, the model cannot be written, or the work
+/// was cancelled.
+pub(crate) fn adjusted(
+    found: Found,
+    photos: &PhotoSet,
+    work: &Path,
+    progress: &Progress,
+) -> Result<Sparse, Fault> {
+    guarded(|| {
+        let Found {
+            mut model,
+            mut left_out,
+        } = found;
+        if model.registered_image_count() < FEWEST_PHOTOS {
+            return Err(too_little_in_common());
+        }
+        let whose = Whose::of(&model, photos);
+        placing::place(&mut model, &whose, progress)?;
+        progress.stage("colouring points");
+        model_files::colour(&mut model, &whose, progress)?;
+        let missing = whose.missing(&model, &left_out).into_iter();
+        left_out.extend(missing.map(|photo| LeftOut {
+            photo: photo.name.clone(),
+            why: "it shows too little of what the others show".to_owned(),
+        }));
+        Ok(Sparse {
+            files: model_files::files(&model, work)?,
+            left_out,
+        })
+    })
+}
