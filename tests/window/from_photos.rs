@@ -6,10 +6,11 @@ use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Theme};
-use fragscale::app::command::Asking;
-use fragscale::app::from_photos::Ended;
+use egui_kittest::kittest::NodeT;
+use fragscale::app::command::{Asking, Command};
+use fragscale::app::from_photos::{Ended, FromPhotosStep};
 use fragscale::app::tasks::work::Task;
-use fragscale::reconstruct::Quality;
+use fragscale::reconstruct::{EngineName, Quality};
 use glam::DVec3;
 use tempfile::TempDir;
 
@@ -39,6 +40,18 @@ fn asking(desk: &Desk) -> Option<Asking> {
 
 fn quality(desk: &Desk) -> Quality {
     desk.harness.state().state().from_photos.form.quality
+}
+
+fn engine(desk: &Desk) -> EngineName {
+    desk.harness.state().state().from_photos.form.engine
+}
+
+/// As if this COLMAP were installed, or none for that reason, whatever this machine has.
+fn with_colmap(desk: &mut Desk, installed: Result<&str, &str>) {
+    let installed = installed.map(str::to_owned).map_err(str::to_owned);
+    let step = FromPhotosStep::Colmap(installed);
+    desk.harness.state_mut().apply(Command::FromPhotos(step));
+    desk.settle();
 }
 
 fn ended(desk: &Desk) -> Option<&Ended> {
@@ -110,6 +123,34 @@ fn a_folder_that_is_none_is_said() {
     desk.fill("Folder to make", "");
     desk.fill("Coordinate system", "EPSG:4326");
     assert!(desk.says("is no projected coordinate system"));
+}
+
+/// The embedded engine is always there; COLMAP where it is installed, else it says why not.
+#[test]
+fn an_engine_is_chosen() {
+    let (_folder, photos) = nine_photos();
+    let mut desk = desk(&photos);
+    assert_eq!(engine(&desk), EngineName::Embedded);
+    // What the machine has was looked for by itself.
+    let found = &desk.harness.state().state().from_photos.colmap;
+    let is_found = found.as_ref().expect("looked for").is_ok();
+    assert_eq!(is_found, fragscale_test_data::program("colmap").is_some());
+
+    with_colmap(&mut desk, Ok("COLMAP 3.8"));
+    desk.click(Role::RadioButton, "Engine: COLMAP 3.8");
+    assert_eq!(engine(&desk), EngineName::Colmap);
+    desk.click(Role::RadioButton, "Engine: Embedded");
+    assert_eq!(engine(&desk), EngineName::Embedded);
+
+    with_colmap(&mut desk, Err("COLMAP is not installed"));
+    let grey = desk.node(Role::RadioButton, "Engine: COLMAP");
+    assert!(grey.accesskit_node().is_disabled());
+    let place = grey.rect().center();
+    desk.harness.hover_at(place);
+    for _ in 0..60 {
+        desk.harness.step();
+    }
+    assert!(desk.says("COLMAP is not installed"));
 }
 
 /// Six photos with RTK: cancelled at once, started again, and the flight is open, in metres.
@@ -214,6 +255,7 @@ fn looks(screen: &Screen, name: &str) {
     desk.click(Role::Button, "New flight from photos");
     desk.fill("Folder of the photos", "assets/sample/photos");
     desk.fill("Folder to make", "flights/face 3");
+    with_colmap(&mut desk, Ok("COLMAP 3.8"));
     desk.harness.remove_cursor();
     desk.settle();
     desk.harness.snapshot(name);

@@ -6,11 +6,13 @@
 //! bundle        poses, points and lenses adjusted together
 //! placing       the model brought to the photos' places, and adjusted with them
 //! model_files   what comes out
+//! in_order      photos numbered as in the folder
 //! guarded       what cumulus3d does when something goes wrong
 //! ```
 
 mod bundle;
 mod guarded;
+mod in_order;
 mod model_files;
 mod placing;
 mod whose;
@@ -19,6 +21,7 @@ use std::path::Path;
 
 pub(crate) use self::bundle::{Adjustment, adjust};
 pub(crate) use self::guarded::{failed, guarded};
+pub(crate) use self::in_order::in_order;
 pub(crate) use self::model_files::read;
 pub(crate) use self::whose::Whose;
 

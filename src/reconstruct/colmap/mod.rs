@@ -27,7 +27,7 @@ use cumulus3d_core::Reconstruction;
 
 use self::options::{Options, Setting};
 use self::program::Program;
-use crate::adjusted::{guarded, read, too_little_in_common};
+use crate::adjusted::{guarded, in_order, read, too_little_in_common};
 use crate::camera::Camera;
 use crate::engine::{Engine, Found};
 use crate::fault::Fault;
@@ -45,9 +45,9 @@ pub struct Colmap {
 const EXTRACTOR: &str = "feature_extractor";
 /// Its database, in the folder of unfinished work.
 const DATABASE: &str = "database.db";
-/// Pairs that are compared between two looks how far it is: half a minute of a slow processor, and a run that is cut off loses no
-/// more. To start COLMAP and to read the features again takes a tenth of a second a photo.
-const PAIRS_AT_ONCE: usize = 24;
+/// Pairs that are compared between two looks how far it is: half a minute of processor with 12 000 features a photo, and a run
+/// that is cut off loses no more. To start COLMAP and to read their features anew takes a second.
+const PAIRS_AT_ONCE: usize = 16;
 
 impl Colmap {
     /// The COLMAP on the path.
@@ -254,7 +254,8 @@ impl Run<'_> {
 
     /// A model by way of its text, which all versions write alike.
     fn read(&self, model: &Path) -> Result<Reconstruction, Fault> {
-        let text = self.work.join("model");
+        // A folder of its own: files of rigs beside it, of another writer, would be read with it.
+        let text = self.work.join("colmap-text");
         fs::create_dir_all(&text).map_err(|error| cannot_write(&text, &error))?;
         let settings = [
             Setting::path("input_path", model),
@@ -262,7 +263,10 @@ impl Run<'_> {
             Setting::text("output_type", "TXT"),
         ];
         (self.program).run("model_converter", &settings, |_| (), self.progress)?;
-        guarded(|| read(&text, &self.program.version))
+        guarded(|| {
+            let model = read(&text, &self.program.version)?;
+            in_order(&model, self.photos)
+        })
     }
 
     fn write(&self, path: &Path, text: &str) -> Result<(), Fault> {

@@ -43,8 +43,8 @@ mapper)
 model_converter)
     to=$(after --output_path "$@")
     echo '1 OPENCV 4000 3000 3001 3001 2000 1500 0 0 0 0' > "$to/cameras.txt"
-    printf '# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n# POINTS2D\n1 1 0 0 0 0 0 0 1 a.jpg\n0 0 -1\n2 1 0 0 0 1 0 0 1 c.jpg\n\n' > "$to/images.txt"
-    : > "$to/points3D.txt";;
+    printf '# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n# POINTS2D\n7 1 0 0 0 1 0 0 1 c.jpg\n8 9 5\n8 1 0 0 0 0 0 0 1 a.jpg\n0 0 -1 3 4 5\n' > "$to/images.txt"
+    echo "5 0 0 9 1 2 3 0.1 7 0 8 1" > "$to/points3D.txt";;
 esac
 "##;
 
@@ -102,7 +102,18 @@ fn the_largest_model_is_what_comes_out() {
     let names: Vec<&str> = (found.model.images())
         .map(|image| image.name.as_str())
         .collect();
+    // As in the folder, though COLMAP numbered them otherwise; points are seen by the same.
     assert_eq!(names, ["a.jpg", "c.jpg"]);
+    let track = &found.model.point3d(5).unwrap().track;
+    let seen = |at: usize| {
+        let image = found.model.image(track[at].image_id).unwrap();
+        let pixel = image.point2d(track[at].point2d_idx).xy;
+        (image.name.as_str(), pixel.x, pixel.y)
+    };
+    assert_eq!(
+        (seen(0), seen(1)),
+        (("c.jpg", 8.0, 9.0), ("a.jpg", 3.0, 4.0))
+    );
     assert_eq!(found.model.camera(1).unwrap().params[0], 3001.0);
     let read = |name: &str| fs::read_to_string(work.join(name)).unwrap();
     assert_eq!(read("pairs.txt"), "a.jpg c.jpg\nc.jpg d.jpg\n");
