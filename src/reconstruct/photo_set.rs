@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
+use image::DynamicImage;
 
 use crate::camera::Camera;
 use crate::fault::Fault;
@@ -26,6 +27,18 @@ pub struct SurveyPhoto {
     pub place: Option<Place>,
     /// Which way its camera looked, a unit vector in the world, where it says so.
     pub looks: Option<DVec3>,
+}
+
+impl SurveyPhoto {
+    /// Its pixels, as many as its header says; `camera` is its own. An error says why not, as a clause.
+    pub(crate) fn pixels(&self, camera: &Camera) -> Result<DynamicImage, String> {
+        let image = image::open(&self.path);
+        let image = image.map_err(|error| format!("it cannot be read ({error})"))?;
+        match (image.width(), image.height()) == (camera.width, camera.height) {
+            true => Ok(image),
+            false => Err("its pixels are not as many as its header says".to_owned()),
+        }
+    }
 }
 
 /// Where a photo was taken, by its own receiver.

@@ -24,6 +24,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use cumulus3d_core::Reconstruction;
+use rayon::prelude::*;
 
 use self::options::{Options, Setting};
 use self::program::Program;
@@ -33,7 +34,7 @@ use crate::engine::{Engine, Found};
 use crate::fault::Fault;
 use crate::files::{self, Inputs, Kind};
 use crate::jobs::Progress;
-use crate::photo_set::{PhotoSet, SurveyCamera};
+use crate::photo_set::{LeftOut, PhotoSet, SurveyCamera, SurveyPhoto};
 
 /// COLMAP as an engine.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -80,7 +81,9 @@ impl Engine for Colmap {
             );
             return Err(Fault::new(what, "rename it, or take the embedded engine"));
         }
+        let broken = broken(photos, progress)?;
         let run = Run {
+            broken,
             program: &self.program,
             photos,
             folder: photos_folder(photos),
@@ -89,11 +92,12 @@ impl Engine for Colmap {
             progress,
         };
         run.features()?;
-        run.matches(pairs)?;
+        let is_whole = |pair: &&[usize; 2]| pair.iter().all(|&at| run.broken[at].is_none());
+        run.matches(&pairs.iter().filter(is_whole).copied().collect::<Vec<_>>())?;
         let model = run.largest_model()?;
         Ok(Found {
             model: run.read(&model)?,
-            left_out: Vec::new(),
+            left_out: run.left_out(),
         })
     }
 }
@@ -102,6 +106,8 @@ impl Engine for Colmap {
 struct Run<'a> {
     program: &'a Program,
     photos: &'a PhotoSet,
+    /// Of each photo: why it cannot be read.
+    broken: Vec<Option<String>>,
     folder: PathBuf,
     database: PathBuf,
     work: &'a Path,
@@ -116,9 +122,9 @@ impl Run<'_> {
         self.cameras(&options)?;
         let count = self.photos.photos.len() as u64;
         let mut done = 0;
-        for number in 0..self.photos.cameras.len() {
+        for (id, number) in (1..).zip(self.seen_cameras()) {
             let names = self.names(number);
-            let its = Setting::text("ImageReader.existing_camera_id", (number + 1).to_string());
+            let its = Setting::text("ImageReader.existing_camera_id", id.to_string());
             let said = |line: &str| {
                 if let Some((at, _)) = log::of_total(line) {
                     let _ = self.progress.advance(done + at, count);
@@ -141,14 +147,14 @@ impl Run<'_> {
         for end in ["", "-wal", "-shm"] {
             let _ = fs::remove_file(self.work.join(format!("{DATABASE}{end}")));
         }
-        for (number, camera) in self.photos.cameras.iter().enumerate() {
+        for number in self.seen_cameras() {
             let first = self.names(number).into_iter().take(1);
             let first: Vec<&str> = first.collect();
             let mut settings = vec![
                 Setting::text("ImageReader.single_camera", "1"),
                 Setting::text("ImageReader.camera_model", "OPENCV"),
             ];
-            if let Some(intrinsics) = intrinsics(camera) {
+            if let Some(intrinsics) = intrinsics(&self.photos.cameras[number]) {
                 settings.push(Setting::text("ImageReader.camera_params", intrinsics));
             }
             self.extract(options, number, &first, settings, |_| ())?;
@@ -177,11 +183,28 @@ impl Run<'_> {
         (self.program).run(EXTRACTOR, &settings, said, self.progress)
     }
 
-    /// The photos of a camera.
+    /// Cameras of which a photo can be read.
+    fn seen_cameras(&self) -> impl Iterator<Item = usize> {
+        let all = 0..self.photos.cameras.len();
+        all.filter(|&camera| !self.names(camera).is_empty())
+    }
+
+    /// The photos of a camera that can be read.
     fn names(&self, camera: usize) -> Vec<&str> {
-        let its = self.photos.photos.iter();
-        let its = its.filter(|photo| photo.camera == camera);
-        its.map(|photo| photo.name.as_str()).collect()
+        let its = self.photos.photos.iter().zip(&self.broken);
+        let its = its.filter(|(photo, broken)| photo.camera == camera && broken.is_none());
+        its.map(|(photo, _)| photo.name.as_str()).collect()
+    }
+
+    fn left_out(&self) -> Vec<LeftOut> {
+        let photos = self.photos.photos.iter().zip(&self.broken);
+        let broken = photos.filter_map(|(photo, why)| {
+            Some(LeftOut {
+                photo: photo.name.clone(),
+                why: why.clone()?,
+            })
+        });
+        broken.collect()
     }
 
     /// Matches of the pairs that may show the same. COLMAP writes them into the database when it has all of a list, and
@@ -283,6 +306,22 @@ impl Run<'_> {
 fn cannot_write(path: &Path, error: &io::Error) -> Fault {
     let what = format!("{} cannot be written ({error})", path.display());
     Fault::new(what, "make room on the disk")
+}
+
+/// Of each photo why it cannot be read: COLMAP takes what is there of a file that was cut off.
+fn broken(photos: &PhotoSet, progress: &Progress) -> Result<Vec<Option<String>>, Fault> {
+    progress.stage("reading the photos");
+    progress.advance(0, 1)?;
+    let why = |photo: &SurveyPhoto| {
+        // What is asked of a photo after that is not used.
+        if progress.is_cancelled() {
+            return None;
+        }
+        photo.pixels(&photos.cameras[photo.camera].camera).err()
+    };
+    let broken = photos.photos.par_iter().map(why).collect();
+    progress.advance(1, 1)?;
+    Ok(broken)
 }
 
 fn photos_folder(photos: &PhotoSet) -> PathBuf {

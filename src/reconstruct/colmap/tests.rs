@@ -42,8 +42,8 @@ mapper)
     printf 12345 > "$models/1/images.bin";;
 model_converter)
     to=$(after --output_path "$@")
-    echo '1 OPENCV 4000 3000 3001 3001 2000 1500 0 0 0 0' > "$to/cameras.txt"
-    printf '# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n# POINTS2D\n7 1 0 0 0 1 0 0 1 c.jpg\n8 9 5\n8 1 0 0 0 0 0 0 1 a.jpg\n0 0 -1 3 4 5\n' > "$to/images.txt"
+    echo '1 OPENCV 40 30 3001 3001 20 15 0 0 0 0' > "$to/cameras.txt"
+    printf '# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n# POINTS2D\n7 1 0 0 0 1 0 0 1 c.png\n8 9 5\n8 1 0 0 0 0 0 0 1 a.png\n0 0 -1 3 4 5\n' > "$to/images.txt"
     echo "5 0 0 9 1 2 3 0.1 7 0 8 1" > "$to/points3D.txt";;
 esac
 "##;
@@ -57,22 +57,27 @@ fn colmap(folder: &Path) -> Colmap {
     }
 }
 
-fn photos() -> PhotoSet {
+/// Two photos of a camera and one of another, which lie in the folder.
+fn photos(folder: &Path) -> PhotoSet {
     let photo = |(name, camera): (&str, usize)| SurveyPhoto {
         name: name.to_owned(),
-        path: Path::new("/photos").join(name),
+        path: {
+            let path = folder.join(name);
+            image::GrayImage::new(40, 30).save(&path).unwrap();
+            path
+        },
         camera,
         place: None,
         looks: None,
     };
     let camera = Camera {
         name: "drone".to_owned(),
-        width: 4000,
-        height: 3000,
+        width: 40,
+        height: 30,
         fx: 3000.5,
         fy: 3000.5,
-        cx: 2000.0,
-        cy: 1500.0,
+        cx: 20.0,
+        cy: 15.0,
         skew: 0.0,
         distortion: Distortion::None,
     };
@@ -81,7 +86,7 @@ fn photos() -> PhotoSet {
         focal_error,
     };
     PhotoSet {
-        photos: [("a.jpg", 0), ("c.jpg", 0), ("d.jpg", 1)].map(photo).into(),
+        photos: [("a.png", 0), ("c.png", 0), ("d.png", 1)].map(photo).into(),
         cameras: vec![stated(Some(0.02)), stated(None)],
         left_out: Vec::new(),
         origin: glam::DVec3::ZERO,
@@ -97,13 +102,13 @@ fn the_largest_model_is_what_comes_out() {
     let work = folder.path().join("work");
     fs::create_dir(&work).unwrap();
     let progress = Progress::default();
-    let found = engine.reconstruct(&photos(), &[[0, 1], [1, 2]], &work, &progress);
+    let found = engine.reconstruct(&photos(folder.path()), &[[0, 1], [1, 2]], &work, &progress);
     let found = found.unwrap();
     let names: Vec<&str> = (found.model.images())
         .map(|image| image.name.as_str())
         .collect();
     // As in the folder, though COLMAP numbered them otherwise; points are seen by the same.
-    assert_eq!(names, ["a.jpg", "c.jpg"]);
+    assert_eq!(names, ["a.png", "c.png"]);
     let track = &found.model.point3d(5).unwrap().track;
     let seen = |at: usize| {
         let image = found.model.image(track[at].image_id).unwrap();
@@ -112,13 +117,13 @@ fn the_largest_model_is_what_comes_out() {
     };
     assert_eq!(
         (seen(0), seen(1)),
-        (("c.jpg", 8.0, 9.0), ("a.jpg", 3.0, 4.0))
+        (("c.png", 8.0, 9.0), ("a.png", 3.0, 4.0))
     );
     assert_eq!(found.model.camera(1).unwrap().params[0], 3001.0);
     let read = |name: &str| fs::read_to_string(work.join(name)).unwrap();
-    assert_eq!(read("pairs.txt"), "a.jpg c.jpg\nc.jpg d.jpg\n");
-    assert_eq!(read("camera-0.txt"), "a.jpg\nc.jpg\n");
-    assert_eq!(read("camera-1.txt"), "d.jpg\n");
+    assert_eq!(read("pairs.txt"), "a.png c.png\nc.png d.png\n");
+    assert_eq!(read("camera-0.txt"), "a.png\nc.png\n");
+    assert_eq!(read("camera-1.txt"), "d.png\n");
     let called = fs::read_to_string(folder.path().join("called.txt")).unwrap();
     let of = |command: &str| -> Vec<&str> {
         let starts = |line: &&str| line.starts_with(command);
@@ -126,7 +131,7 @@ fn the_largest_model_is_what_comes_out() {
     };
     let runs = of("feature_extractor --");
     // Both cameras are made first: the one whose photos state a focal length with it, the other without.
-    assert!(runs[0].contains("--ImageReader.camera_params 3000.5,3000.5,2000,1500,0,0,0,0"));
+    assert!(runs[0].contains("--ImageReader.camera_params 3000.5,3000.5,20,15,0,0,0,0"));
     assert!(!runs[1].contains("camera_params"));
     assert!(runs[2].contains("--ImageReader.existing_camera_id 1"));
     assert!(runs[3].contains("--ImageReader.existing_camera_id 2"));
@@ -150,7 +155,7 @@ fn cameras_are_made_once() {
     let made = || {
         fs::write(&called, "").unwrap();
         let progress = Progress::default();
-        let found = engine.reconstruct(&photos(), &[[0, 1]], &work, &progress);
+        let found = engine.reconstruct(&photos(folder.path()), &[[0, 1]], &work, &progress);
         found.unwrap();
         let called = fs::read_to_string(&called).unwrap();
         called.matches("--ImageReader.single_camera 1").count()
@@ -169,12 +174,12 @@ fn pairs_are_compared_some_at_a_time() {
     let engine = colmap(folder.path());
     let pairs = vec![[0, 1]; 2 * PAIRS_AT_ONCE + 1];
     let progress = Progress::default();
-    let found = engine.reconstruct(&photos(), &pairs, folder.path(), &progress);
+    let found = engine.reconstruct(&photos(folder.path()), &pairs, folder.path(), &progress);
     found.unwrap();
     let called = fs::read_to_string(folder.path().join("called.txt")).unwrap();
     assert_eq!(called.matches("matches_importer --").count(), 3);
     let last = fs::read_to_string(folder.path().join("pairs.txt")).unwrap();
-    assert_eq!(last, "a.jpg c.jpg\n");
+    assert_eq!(last, "a.png c.png\n");
 }
 
 #[test]
@@ -183,7 +188,7 @@ fn what_it_says_last_is_told() {
     let engine = colmap(folder.path());
     fs::write(folder.path().join("broken"), "").unwrap();
     let progress = Progress::default();
-    let found = engine.reconstruct(&photos(), &[[0, 1]], folder.path(), &progress);
+    let found = engine.reconstruct(&photos(folder.path()), &[[0, 1]], folder.path(), &progress);
     let said = found.err().unwrap().to_string();
     assert!(said.contains("COLMAP's mapper failed"), "{said}");
     assert!(said.contains("no memory"), "{said}");
@@ -198,7 +203,8 @@ fn cancelling_ends_the_whole_group() {
     let child = folder.path().join("child.pid");
     let progress = Progress::default();
     let (ended, asked) = std::thread::scope(|scope| {
-        let work = || engine.reconstruct(&photos(), &[[0, 1]], folder.path(), &progress);
+        let work =
+            || engine.reconstruct(&photos(folder.path()), &[[0, 1]], folder.path(), &progress);
         let work = scope.spawn(work);
         let started = || fs::read_to_string(&child).is_ok_and(|text| text.ends_with('\n'));
         while !started() {
@@ -227,11 +233,11 @@ fn cancelling_ends_the_whole_group() {
 fn names_with_blanks_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let engine = colmap(folder.path());
-    let mut photos = photos();
-    photos.photos[1].name = "c d.jpg".to_owned();
+    let mut photos = photos(folder.path());
+    photos.photos[1].name = "c d.png".to_owned();
     let progress = Progress::default();
     let found = engine.reconstruct(&photos, &[[0, 1]], folder.path(), &progress);
-    assert!(found.err().unwrap().to_string().contains("'c d.jpg'"));
+    assert!(found.err().unwrap().to_string().contains("'c d.png'"));
 }
 
 #[test]

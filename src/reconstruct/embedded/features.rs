@@ -8,6 +8,7 @@ use cumulus3d_features::{
     CpuSift, FeatureSelection, GrayImage, SiftOptions, extract::extract_for_camera,
 };
 use image::DynamicImage;
+use image::DynamicImage;
 
 use super::{camera_id, image_id};
 use crate::adjusted::failed;
@@ -73,18 +74,10 @@ pub(super) fn find(
                     .map_err(|_| error())?;
             }
             let size = &photos.cameras[photo.camera].camera;
-            let gray = match gray(&photo.path) {
-                Ok(gray)
-                    if (gray.width, gray.height) == (size.width as usize, size.height as usize) =>
-                {
-                    gray
-                }
-                Ok(_) => {
-                    leave_out("its pixels are not as many as its header says".to_owned());
-                    continue;
-                }
+            let gray = match photo.pixels(size) {
+                Ok(pixels) => gray(pixels)?,
                 Err(why) => {
-                    leave_out(format!("it cannot be read ({why})"));
+                    leave_out(why);
                     continue;
                 }
             };
@@ -136,13 +129,10 @@ fn options() -> SiftOptions {
     }
 }
 
-fn gray(path: &Path) -> Result<GrayImage, String> {
-    let bytes = read_bytes(path).map_err(|error| error.fault.what)?;
-    // A photo that is cut off is refused: half of it would be grey, and its depths from nowhere.
-    let photo = picture::decode(&bytes).map_err(|fault| fault.what)?;
-    let image = DynamicImage::ImageRgb8(photo).into_luma8();
+fn gray(pixels: DynamicImage) -> Result<GrayImage, Fault> {
+    let image = pixels.into_luma8();
     let (width, height) = (image.width() as usize, image.height() as usize);
-    GrayImage::new(width, height, image.into_raw()).map_err(|_| "its size".to_owned())
+    GrayImage::new(width, height, image.into_raw()).map_err(|_| failed("finding features"))
 }
 
 /// A camera as cumulus3d has it: OpenCV's model without k3.
