@@ -3,15 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use image::DynamicImage;
+use image::RgbImage;
 
 use crate::camera::Camera;
 use crate::fault::Fault;
-use crate::files::FileError;
+use crate::files::{FileError, read_bytes};
 use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
 use crate::formats::{PhotoCameras, expected_deviation, photos_in};
 use crate::in_world::World;
 use crate::jobs::Progress;
+use crate::picture;
 use crate::twins::Twins;
 
 /// A photo to be reconstructed.
@@ -31,9 +32,11 @@ pub struct SurveyPhoto {
 
 impl SurveyPhoto {
     /// Its pixels, as many as its header says; `camera` is its own. An error says why not, as a clause.
-    pub(crate) fn pixels(&self, camera: &Camera) -> Result<DynamicImage, String> {
-        let image = image::open(&self.path);
-        let image = image.map_err(|error| format!("it cannot be read ({error})"))?;
+    pub(crate) fn pixels(&self, camera: &Camera) -> Result<RgbImage, String> {
+        let bytes = read_bytes(&self.path).map_err(|error| error.fault);
+        // A photo that is cut off is refused: half of it would be grey, and its depths from nowhere.
+        let image = bytes.and_then(|bytes| picture::decode(&bytes));
+        let image = image.map_err(|fault| format!("it cannot be read ({})", fault.what))?;
         match (image.width(), image.height()) == (camera.width, camera.height) {
             true => Ok(image),
             false => Err("its pixels are not as many as its header says".to_owned()),

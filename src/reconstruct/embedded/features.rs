@@ -7,17 +7,14 @@ use cumulus3d_core::{Camera, CameraModelKind, Descriptors, FeatureStore};
 use cumulus3d_features::{
     CpuSift, FeatureSelection, GrayImage, SiftOptions, extract::extract_for_camera,
 };
-use image::DynamicImage;
-use image::DynamicImage;
+use image::{DynamicImage, RgbImage};
 
 use super::{camera_id, image_id};
 use crate::adjusted::failed;
 use crate::camera::Distortion;
 use crate::fault::Fault;
-use crate::files::read_bytes;
 use crate::jobs::Progress;
 use crate::photo_set::{LeftOut, PhotoSet, SurveyCamera};
-use crate::picture;
 
 /// Longer side of what features are looked for in, pixels.
 const SIDE: usize = 3200;
@@ -129,8 +126,8 @@ fn options() -> SiftOptions {
     }
 }
 
-fn gray(pixels: DynamicImage) -> Result<GrayImage, Fault> {
-    let image = pixels.into_luma8();
+fn gray(pixels: RgbImage) -> Result<GrayImage, Fault> {
+    let image = DynamicImage::ImageRgb8(pixels).into_luma8();
     let (width, height) = (image.width() as usize, image.height() as usize);
     GrayImage::new(width, height, image.into_raw()).map_err(|_| failed("finding features"))
 }
