@@ -54,6 +54,8 @@ pub struct FoundPhotos {
     pub photos: Result<PhotoSet, String>,
     /// The folder that is proposed for their flight.
     pub proposed: PathBuf,
+    /// About how long the embedded engine takes here, in the order of [`Quality::ALL`]; empty without photos.
+    pub takes: Vec<String>,
 }
 
 /// What the last run came to.

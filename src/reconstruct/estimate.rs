@@ -41,7 +41,7 @@ pub fn processor_seconds(set: &PhotoSet, quality: Quality) -> f64 {
     sparse + dense
 }
 
-/// The same as time on this computer, in words: "about 6 minutes on 2 cores".
+/// The same as time on this computer, in words: "about 6 minutes".
 pub fn about(set: &PhotoSet, quality: Quality) -> String {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     in_words(processor_seconds(set, quality), cores)
@@ -49,17 +49,12 @@ pub fn about(set: &PhotoSet, quality: Quality) -> String {
 
 fn in_words(seconds: f64, cores: usize) -> String {
     // A tenth of the work does not spread over cores.
-    let wall = seconds * (0.1 + 0.9 / cores as f64);
-    let minutes = wall / 60.0;
-    let time = match minutes {
+    let minutes = seconds * (0.1 + 0.9 / cores as f64) / 60.0;
+    match minutes {
         ..1.0 => "less than a minute".to_owned(),
-        ..2.0 => "about a minute".to_owned(),
+        ..1.5 => "about a minute".to_owned(),
         ..90.0 => format!("about {minutes:.0} minutes"),
         _ => format!("about {:.0} hours", minutes / 60.0),
-    };
-    match cores {
-        1 => format!("{time} on one core"),
-        _ => format!("{time} on {cores} cores"),
     }
 }
 
@@ -127,10 +122,10 @@ mod tests {
     #[test]
     fn times_are_round() {
         for (seconds, cores, words) in [
-            (60.0, 2, "less than a minute on 2 cores"),
-            (100.0, 1, "about a minute on one core"),
-            (3600.0, 4, "about 20 minutes on 4 cores"),
-            (36_000.0, 2, "about 6 hours on 2 cores"),
+            (60.0, 2, "less than a minute"),
+            (80.0, 1, "about a minute"),
+            (3600.0, 4, "about 20 minutes"),
+            (36_000.0, 2, "about 6 hours"),
         ] {
             assert_eq!(in_words(seconds, cores), words);
         }

@@ -2,25 +2,20 @@
 //! the program.
 //!
 //! ```text
-//! photo_set   which files of a folder are photos for it, whose camera, where from
-//! twins       which of them are copies of others
-//! pairs       which photos are compared: neighbours, not all with all
-//! engine      what an engine has to do
+//! photo_set    which files of a folder are photos for it, whose camera, where from
+//! pairs        which photos are compared: neighbours, not all with all
+//! engine       what an engine has to do
 //! engine_name  the engines to choose between
-//! adjusted    what it found, adjusted with the photos' places
-//! embedded    the engine that is always there: cumulus3d's parts, in pure Rust
-//! kept_model  what an engine found, for a run that goes on
-//! estimate    about how long it takes
-//! quality     how much time the cloud may take
+//! embedded     the engine that is always there: cumulus3d's parts, in pure Rust
+//! colmap       COLMAP, where it is installed
+//! adjusted     what an engine found, adjusted with the photos' places
+//! kept_model   the same, kept for a run that goes on
+//! quality      how much time the cloud may take
+//! estimate     about how long all takes
 //! dense_cloud  the dense cloud of a model
-//! colmap      COLMAP, where it is installed
-//! covariance  how sure poses and lenses are
-//! in_world    the photos' own positions as a place in the world
-//! flight_files  poses.csv, pile.laz and flight.toml of a model in the world
-//! report      report.html: what was found, to judge it by
-//! written     the folder that comes out
-//! proposed    where that folder goes, if nobody says otherwise
-//! said        what is said of the photos, and of what came out
+//! covariance   how sure poses and lenses are
+//! written      the folder that comes out, and where it goes if nobody says otherwise
+//! said         what is said of the photos, and of what came out
 //! ```
 //!
 //! What comes of it is COLMAP's text files, which `formats` reads as it reads COLMAP's own: so that an
@@ -39,16 +34,11 @@ mod embedded;
 mod engine;
 mod engine_name;
 mod estimate;
-mod flight_files;
-mod in_world;
 mod kept_model;
 mod pairs;
 mod photo_set;
-mod proposed;
 mod quality;
-mod report;
 mod said;
-mod twins;
 mod written;
 
 use fragscale_core::{
@@ -68,9 +58,9 @@ pub use self::engine::{Engine, Found, Sparse};
 pub use self::engine_name::EngineName;
 pub use self::estimate::{about, processor_seconds};
 pub use self::photo_set::{LeftOut, PhotoSet, SurveyPhoto};
-pub use self::proposed::{may_be_made, proposed_folder};
 pub use self::quality::Quality;
 pub use self::said::{found, left_out, summary};
+pub use self::written::{may_be_made, proposed_folder};
 
 use self::files::FileError;
 use self::jobs::Progress;

@@ -163,6 +163,7 @@ fn a_flight_comes_out() {
     assert!(desk.says("6 photos"));
     assert!(desk.says("6 of 6 say where they were taken, to 0.015 m level and 0.025 m up"));
     assert_eq!(quality(&desk), Quality::Fast);
+    assert!(desk.says("It takes less than a minute on this computer"));
     desk.click(Role::RadioButton, "Quality: Best");
     assert_eq!(quality(&desk), Quality::Best);
     // The dense cloud of so few and small photos takes seconds all the same.

@@ -49,6 +49,7 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         });
         quality_row(&mut form, ui);
         engine_row(held, &mut form, ui);
+        how_long(held, &form, ui);
     });
     if form != held.form {
         commands.push(Command::FromPhotos(FromPhotosStep::Fill(form.clone())));
@@ -79,6 +80,21 @@ fn quality_row(form: &mut FromPhotosForm, ui: &mut egui::Ui) {
             radio.on_hover_text(quality.explained());
         }
     });
+}
+
+/// About how long that takes, where it is known: COLMAP's times are its own.
+fn how_long(held: &FromPhotos, form: &FromPhotosForm, ui: &mut egui::Ui) {
+    let takes = held.found.as_ref().map(|found| &found.takes);
+    let chosen = Quality::ALL
+        .iter()
+        .position(|quality| *quality == form.quality);
+    if let (Some(takes), Some(chosen), EngineName::Embedded) = (takes, chosen, form.engine)
+        && let Some(time) = takes.get(chosen)
+    {
+        ui.weak(format!(
+            "It takes {time} on this computer, by rates of earlier runs."
+        ));
+    }
 }
 
 /// What finds the poses; COLMAP by its version, grey where it is not installed.

@@ -9,8 +9,8 @@ use crate::files::FileError;
 use crate::from_photos::{Ended, FolderField, FoundPhotos, FromPhotosForm, FromPhotosStep};
 use crate::jobs::Progress;
 use crate::reconstruct::{
-    EngineName, PhotoSet, Reconstructed, Request, left_out, may_be_made, proposed_folder,
-    reconstruct, summary,
+    EngineName, PhotoSet, Quality, Reconstructed, Request, about, left_out, may_be_made,
+    proposed_folder, reconstruct, summary,
 };
 use crate::state::{Severity, State};
 use crate::tasks::work::Task;
@@ -97,7 +97,11 @@ impl State {
         let work = move |progress: &Progress| {
             let folder = std::path::absolute(&folder).unwrap_or(folder);
             let photos = PhotoSet::read(&folder, crs.as_deref(), progress);
+            let takes = photos
+                .iter()
+                .flat_map(|set| Quality::ALL.map(|quality| about(set, quality)));
             FoundPhotos {
+                takes: takes.collect(),
                 photos: photos.map_err(|error| error.to_string()),
                 proposed: proposed_folder(&folder),
             }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::written;
+use super::checked;
 
 /// Beside the folder of the photos: "NAME flight", or with a number where another flight is there. A folder
 /// that a run left unfinished is proposed again, for the next one goes on in it.
@@ -18,7 +18,7 @@ pub fn proposed_folder(photos: &Path) -> PathBuf {
 
 /// Whether a flight of photos may be made here: a folder that is new, empty, or of a run that did not end.
 pub fn may_be_made(folder: &Path) -> bool {
-    written::may_be_made(folder).is_ok()
+    checked(folder).is_ok()
 }
 
 #[cfg(test)]

@@ -1,19 +1,22 @@
 //! The photos of a folder that go into a reconstruction: whose camera took them, from where.
 
+mod in_world;
+mod twins;
+
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use image::RgbImage;
 
+use self::in_world::World;
+use self::twins::Twins;
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::files::{FileError, read_bytes};
 use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
 use crate::formats::{PhotoCameras, expected_deviation, photos_in};
-use crate::in_world::World;
 use crate::jobs::Progress;
 use crate::picture;
-use crate::twins::Twins;
 
 /// A photo to be reconstructed.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,11 +1,11 @@
 //! `report.html` of a model: what `exports` writes, gathered.
 
+use super::flight_files::stated;
 use crate::Reconstructed;
 use crate::covariance::Deviations;
 use crate::exports::{
     OffReceiver, ReconstructionReport, SeenPoint, SolvedCamera, SolvedPhoto, reconstruction_report,
 };
-use crate::flight_files::stated;
 use crate::formats::Reconstruction;
 use crate::opening::PositionResidual;
 use crate::photo_set::PhotoSet;

@@ -1,21 +1,27 @@
 //! The folder that comes out: `flight.toml` and what it names, `report.html`, and `reconstruction/` with COLMAP's
 //! text files. While the work goes on it has `unfinished/`, which a second run goes on with.
 
+mod flight_files;
+mod proposed;
+mod report;
+
+pub use self::proposed::{may_be_made, proposed_folder};
+
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use self::flight_files::{FlightOf, SOURCE, flight_files};
+use self::report::{ReportOf, report};
 use crate::dense_cloud::{DenseCloud, dense_cloud};
 use crate::engine::{Engine, Sparse};
 use crate::exports::ply;
 use crate::fault::Fault;
 use crate::files::{self, FileError, Inputs, Kind};
-use crate::flight_files::{FlightOf, SOURCE, flight_files};
 use crate::formats::read_project;
 use crate::jobs::Progress;
 use crate::opening::{GeoreferenceRequest, flight_text_of, georeference_model, path_from};
 use crate::photo_set::PhotoSet;
-use crate::report::{ReportOf, report};
 use crate::{DensePoints, Reconstructed, Request};
 
 const FLIGHT: &str = "flight.toml";
@@ -34,11 +40,11 @@ pub(crate) struct Folder {
     read: Inputs,
 }
 
-/// Whether a flight may be made in a folder: one to be made, an empty one, or that of a run that did not end.
+/// A flight may be made in a folder that is to be made, is empty, or is that of a run that did not end.
 ///
 /// # Errors
 /// Where it holds other things.
-pub(crate) fn may_be_made(to: &Path) -> Result<(), Fault> {
+fn checked(to: &Path) -> Result<(), Fault> {
     let remedy = "name a new folder";
     if to.join(FLIGHT).exists() {
         return Err(Fault::new("there is a flight in it already", remedy));
@@ -60,7 +66,7 @@ pub(crate) fn may_be_made(to: &Path) -> Result<(), Fault> {
 /// Where it may not, or lies among the photos.
 pub(crate) fn folder(to: &Path, photos: &Path) -> Result<Folder, FileError> {
     let at = |fault| FileError::new(to, fault);
-    may_be_made(to).map_err(at)?;
+    checked(to).map_err(at)?;
     let read = Inputs::of([photos]);
     // Said before the work, not after it.
     files::may_write(&to.join(FLIGHT), Kind::Flight, &read, false).map_err(at)?;
