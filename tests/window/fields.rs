@@ -76,7 +76,8 @@ fn the_inspector_shows_the_best_line_of_the_command() {
             // With the digits that its interval allows.
             let at = |key: &str| photo["uncertainty"][end][key].as_f64().expect("an end");
             let wanted = with_interval(scale, at("low"), at("high"));
-            assert_eq!(right_of(&desk, words), wanted);
+            // It stands on one line: with blanks that do not break.
+            assert_eq!(right_of(&desk, words).replace('\u{a0}', " "), wanted);
         }
         let not_counted = photo["uncertainty"]["not_counted"]
             .as_array()

@@ -198,10 +198,11 @@ fn what_the_error_does_to_a_size_is_said() {
     let [top, _] = photo.estimates(photo.pair, unit);
     let top = top.expect("a scale");
     let error = top.size_error().expect("an interval");
+    // Numbers and intervals stand on one line: with blanks that do not break.
+    let normal = |text: &str| text.replace('\u{a0}', " ");
+    let says = |desk: &Desk, said: &str| desk.texts().iter().any(|(text, _)| normal(text) == said);
     let said = format!("top {} px/{unit}: P80 {error}", top.text(5));
-    assert!(desk.says(&said), "{:?}", desk.texts());
+    assert!(says(&desk, &said), "{:?}", desk.texts());
     desk.press(NONE, Key::Escape);
-    let said = format!("P80 {error}").replace(' ', "\u{a0}");
-    let normal = |text: &str| text.replace(' ', "\u{a0}");
-    assert!(desk.texts().iter().any(|(text, _)| normal(text) == said));
+    assert!(says(&desk, &format!("P80 {error}")));
 }

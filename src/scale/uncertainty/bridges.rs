@@ -11,8 +11,8 @@
 //! Nothing is deeper than [`MOST`] times what is seen goes up and down (off the photo's plane): a level floor
 //! with few points has long triangles, too, and hides nothing.
 //!
-//! The constants are fitted to 180 photos of five flights of each place (`benches/coverage.rs`, seeds 1000 to
-//! 1004): README's coverage of fitted scales is, for them, not of other piles.
+//! The constants are fitted to 180 photos of five flights of each place (seeds 1000 to 1004); README's coverage is
+//! of other piles (`benches/coverage.rs`).
 
 use glam::DVec3;
 
