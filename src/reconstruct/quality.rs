@@ -46,8 +46,9 @@ impl Quality {
             }
             Self::Normal => {
                 "A dense cloud, from photos of at most 3 megapixels (larger ones are halved until they fit). \
-                 About ten seconds a megapixel more on two cores, and 35 MB a megapixel on the disk while it runs. \
-                 Corners are surer than in the sparse one; intervals of fitted scales are too narrow yet"
+                 About ten seconds a megapixel of each photo more on two cores, and 35 MB of it on the disk while it runs. \
+                 With plenty of overlap corners are surer than in the sparse one; with little it can be worse, and \
+                 intervals of fitted scales are too narrow yet"
             }
             Self::Best => {
                 "A dense cloud from all pixels. The same as normal for photos of up to 3 megapixels, four times \

@@ -1,4 +1,4 @@
-//! Where the pile is seen by how many photos, as a map.
+//! In how many photos the points of the pile were found, as a map.
 
 use std::collections::BTreeMap;
 
@@ -99,7 +99,12 @@ pub(super) fn map(report: &ReconstructionReport<'_>) -> Option<String> {
     }
     let page = [WIDTH, bottom + LABEL + LEGEND];
     // Only pictures can fail, and there is none.
-    svg::document(&pen.shapes, page, "Photos that show each part of the pile").ok()
+    svg::document(
+        &pen.shapes,
+        page,
+        "Photos in which the points of each part of the pile were found",
+    )
+    .ok()
 }
 
 fn is_inside([x, y]: [f64; 2], frame: &MapFrame) -> bool {
@@ -107,7 +112,7 @@ fn is_inside([x, y]: [f64; 2], frame: &MapFrame) -> bool {
     (left..=left + wide).contains(&x) && (top..=top + high).contains(&y)
 }
 
-/// The mean number of photos that show the points of each cell, by column and row from the south-west.
+/// The mean number of photos in which the points of each cell were found, by column and row from the south-west.
 fn cells(report: &ReconstructionReport<'_>, min: DVec2, cell: f64) -> BTreeMap<(i32, i32), f64> {
     let mut sums: BTreeMap<(i32, i32), (usize, usize)> = BTreeMap::new();
     for seen in &report.points {

@@ -1,6 +1,6 @@
 //! What a reconstruction found, to judge it by: how many points each photo shows and how well they agree,
-//! how far cameras lie from where their receivers say, the lenses, and where the pile is seen by how many
-//! photos. One HTML file.
+//! how far cameras lie from where their receivers say, the lenses, and in how many photos the points of
+//! the pile were found. One HTML file.
 
 mod coverage;
 mod tables;
@@ -80,7 +80,7 @@ pub struct OffReceiver {
 pub struct SeenPoint {
     /// In the world.
     pub point: DVec3,
-    /// How many photos show it.
+    /// In how many photos it was found.
     pub photos: usize,
 }
 
@@ -96,10 +96,10 @@ pub fn reconstruction_report(report: &ReconstructionReport<'_>) -> String {
     let mut body = vec![paragraph(&found_by), facts.collect()];
     body.push(notes(&report.warnings));
     if let Some(map) = coverage::map(report) {
-        body.push(heading(2, "Where the pile is seen by how many photos"));
+        body.push(heading(2, "In how many photos the points were found"));
         body.push(paragraph(
-            "Mean number of photos that show the points of a cell; triangles are cameras. Where it is below 3, \
-             depths rest on two views and gross errors are not noticed.",
+            "Mean number of photos in which the points of a cell were found again; more may show them. Triangles are \
+             cameras. Where it is below 3, depths rest mostly on two views, and gross errors are not noticed.",
         ));
         body.push(html_page::figure(&map));
     }

@@ -66,7 +66,7 @@ pub(super) fn photos(report: &ReconstructionReport<'_>) -> String {
     let head = names(&[
         "Photo",
         "Points",
-        "Reprojection, px",
+        "Reprojection, px rms",
         "Off its receiver, east",
         "north",
         "up",
