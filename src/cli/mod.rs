@@ -13,6 +13,7 @@ mod distribution_arguments;
 mod effort;
 mod export;
 mod flight_arguments;
+mod interrupt;
 mod models;
 mod of_photos;
 mod on_surface;
@@ -204,11 +205,9 @@ pub fn run() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    // Whatever is being written is not finished now. Without the handler (which only fails where
-    // another one is set) an interrupt could leave a temporary file.
-    let _ = ctrlc::set_handler(|| {
-        files::remove_unfinished();
-        std::process::exit(130);
+    interrupt::listen(match &arguments.command {
+        Some(Command::Reconstruct(arguments)) => Some(arguments.kept()),
+        _ => None,
     });
     let Some(command) = arguments.command else {
         #[cfg(feature = "app")]
@@ -264,7 +263,7 @@ pub fn run() -> ExitCode {
     };
     let answer = match run_with_progress(work) {
         Ok(answer) => answer,
-        Err(message) => return fail(&message),
+        Err(message) => return interrupt::interrupted().unwrap_or_else(|| fail(&message)),
     };
     for warning in answer.warnings {
         say(&format!("warning: {}", one_line(&warning)));
@@ -380,6 +379,7 @@ fn run_with_progress<T: Send + 'static>(
     work: impl FnOnce(&Progress) -> Result<T, String> + Send + 'static,
 ) -> Result<T, String> {
     let job = Job::start("work", work).map_err(|fault| fault.to_string())?;
+    interrupt::stops(job.progress());
     if io::stderr().is_terminal() {
         let began = Instant::now();
         let mut bar = None;
@@ -490,7 +490,16 @@ fn usage_in_one_line(text: &str) -> String {
         || "fragscale".to_owned(),
         |name| name.to_string_lossy().into_owned(),
     );
-    format!("{what}; see '{name} --help'")
+    let command = named_command().map_or_else(String::new, |command| format!(" {command}"));
+    format!("{what}; see '{name}{command} --help'")
+}
+
+/// The command that the first word is.
+fn named_command() -> Option<String> {
+    let word = std::env::args_os().nth(1)?;
+    let command = Arguments::command();
+    let found = command.get_subcommands().find(|c| word == c.get_name());
+    found.map(|command| command.get_name().to_owned())
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::ReportObject;
 use crate::fault::{Fault, first_names};
-use crate::flight::{PhotoReview, Review, ScaleObject};
+use crate::flight::{Doubt, PhotoReview, Review, ScaleObject};
 use crate::scale::{EdgeScales, FittedScale, ImageKind, ScaleEstimate, ScalePair, Uncertainty};
 use crate::units::LengthUnit;
 
@@ -113,14 +113,52 @@ impl<'a> ScaleReport<'a> {
 
     /// What fell back or failed, a sentence a photo; one of all photos where more than a few have the same.
     pub fn noted(&self) -> Vec<Noted> {
+        self.grouped(|line| {
+            let notes = line.photo.notes();
+            (!notes.is_empty()).then(|| notes.join("; "))
+        })
+    }
+
+    /// Why photos are not trusted, likewise: all reasons for doubt with the verdict, or what fell back or failed
+    /// where nobody has settled one yet.
+    pub fn reasons(&self) -> Vec<Noted> {
+        self.grouped(|line| {
+            let photo = &line.photo;
+            let Some(verdict) = photo.settled().filter(|_| !photo.doubts.is_empty()) else {
+                let notes = photo.notes();
+                return (!notes.is_empty()).then(|| notes.join("; "));
+            };
+            let doubts: Vec<String> = photo.doubts.iter().map(ToString::to_string).collect();
+            Some(format!("{verdict}: {}", doubts.join("; ")))
+        })
+    }
+
+    /// What to do where half of the photos or more look beyond the surface; `None` elsewhere.
+    pub fn advice(&self) -> Option<String> {
+        let beyond = |doubt: &Doubt| {
+            matches!(
+                doubt,
+                Doubt::NoPoint(_) | Doubt::OffSurface(_) | Doubt::NoFit { .. }
+            )
+        };
+        let lines = self.lines();
+        let beyond = lines.filter(|line| line.photo.doubts.iter().any(beyond));
+        let (beyond, all) = (beyond.count(), self.photos.len());
+        (beyond > 0 && 2 * beyond >= all).then(|| {
+            format!(
+                "{beyond} of {all} photos look beyond the surface's rim: take a cloud that reaches further than \
+                 the photos do (for one, survey photos around the pile as well)"
+            )
+        })
+    }
+
+    /// A sentence a photo that has one; one of all photos where more than a few have the same.
+    fn grouped(&self, of: impl Fn(&PhotoLine<'_>) -> Option<String>) -> Vec<Noted> {
         let mut found: Vec<(String, bool, Vec<&str>)> = Vec::new();
         let mut places: HashMap<(String, bool), usize> = HashMap::new();
         for line in self.lines() {
-            let notes = line.photo.notes();
-            if notes.is_empty() {
-                continue;
-            }
-            let key = (notes.join("; "), line.has_top_and_bottom());
+            let Some(sentence) = of(&line) else { continue };
+            let key = (sentence, line.has_top_and_bottom());
             let place = *places.entry(key.clone()).or_insert(found.len());
             if place == found.len() {
                 found.push((key.0, key.1, Vec::new()));

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::photo_columns::PHOTO_COLUMNS;
-use super::scale_report::{PhotoLine, ScaleReport};
+use super::scale_report::ScaleReport;
 use crate::scale::ImageKind;
 
 /// The report as aligned text: six significant digits, notes below.
@@ -48,36 +48,16 @@ pub fn scales_table(report: &ScaleReport<'_>) -> String {
             "\n95 % ±: how sure the line is that goes to Split-Desktop; off line: how far single pixels are from it\n",
         );
     }
-    let noted = report.noted();
-    let doubted = report
-        .lines()
-        .filter_map(|line| doubts_without_a_note(&line));
-    let doubted: Vec<String> = doubted.collect();
-    if !noted.is_empty() || !doubted.is_empty() {
+    let below = report.reasons();
+    if !below.is_empty() {
         text.push('\n');
     }
-    for noted in noted {
+    for noted in below {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{}: {}", noted.whose, noted.notes);
     }
-    for doubted in doubted {
-        text += &doubted;
-        text.push('\n');
+    if let Some(advice) = report.advice() {
+        let _ = write!(text, "\n{advice}\n");
     }
     text
-}
-
-/// Why a photo is to be checked, where no note says it already.
-fn doubts_without_a_note(line: &PhotoLine<'_>) -> Option<String> {
-    let photo = &line.photo;
-    let verdict = photo.settled()?;
-    if photo.doubts.is_empty() || !photo.notes().is_empty() {
-        return None;
-    }
-    let doubts: Vec<String> = photo.doubts.iter().map(ToString::to_string).collect();
-    Some(format!(
-        "{}: {verdict}: {}",
-        photo.name(),
-        doubts.join("; ")
-    ))
 }

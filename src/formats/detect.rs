@@ -80,6 +80,9 @@ impl Kind {
 /// Everything that can be opened, for messages.
 const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, EPT (ept.json), XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos; a CSV of size distributions";
 
+/// What a folder of a reconstruction holds that is not finished yet: what it is of.
+pub const UNFINISHED: &str = "unfinished/photos.txt";
+
 /// How many bytes of a file are looked at to tell its kind.
 pub(crate) const DETECTED_BY: usize = 4096;
 
@@ -189,6 +192,13 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
     let flight = path.join("flight.toml");
     if flight.is_file() {
         return Ok(Kind::Flight(flight));
+    }
+    if path.join(UNFINISHED).is_file() {
+        let fault = Fault::new(
+            "a reconstruction that is not finished",
+            "reconstruct the same photos into it again: it goes on where it was",
+        );
+        return Err(FileError::new(path, fault));
     }
     let mut meant = Contents::of(path).meant;
     match (meant.pop(), meant.is_empty()) {

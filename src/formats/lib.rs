@@ -30,7 +30,7 @@ use fragscale_fragmentation as fragmentation;
 
 pub use candidates::{Candidate, candidates};
 pub use clouds::CloudFile;
-pub use detect::{CloudFormat, Kind, detect};
+pub use detect::{CloudFormat, Kind, UNFINISHED, detect};
 pub use files::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use packages::Package;
 pub use packages::drone_photos::{Cameras as PhotoCameras, expected_deviation, photos_in};

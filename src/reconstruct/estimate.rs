@@ -77,7 +77,7 @@ mod tests {
                 center: DVec3::new((number % 6) as f64, (number / 6) as f64, 0.0),
                 deviation: None,
             }),
-            looks: None,
+            gimbal: None,
         };
         let camera = Camera {
             name: String::new(),

@@ -1,5 +1,5 @@
-//! What an engine found, kept in the unfinished work: whoever goes on with the dense cloud does not find it
-//! again.
+//! What an engine found, kept in the unfinished work and in the finished flight: whoever goes on with the dense
+//! cloud does not find it again.
 
 use std::fs;
 use std::path::Path;
@@ -26,29 +26,50 @@ pub(crate) fn kept_or_found(
     find: impl FnOnce() -> Result<Sparse, Fault>,
 ) -> Result<(Sparse, bool), Fault> {
     let folder = work.join(KEPT);
-    let shelf = InFolder::new(folder.clone());
-    if let Some(sparse) = kept(&shelf) {
+    if let Some(sparse) = kept_in(&folder) {
         return Ok((sparse, true));
     }
     let sparse = find()?;
-    // A name with a line break is found again rather than misread.
-    let is_plain = |out: &LeftOut| !(out.photo.contains('\n') || out.why.contains(['\n', '\t']));
-    if sparse.left_out.iter().all(is_plain) {
-        fs::create_dir_all(&folder).map_err(|error| {
-            let what = format!("{} cannot be made ({error})", folder.display());
-            Fault::new(what, "choose a folder that may be written to")
-        })?;
-        for (name, bytes) in &sparse.files {
-            shelf.put(name, bytes.clone())?;
-        }
-        let line = |out: &LeftOut| format!("{}\t{}\n", out.why, out.photo);
-        let lines: String = sparse.left_out.iter().map(line).collect();
-        shelf.put(LEFT_OUT, lines.into_bytes())?;
-    }
+    keep(work, &sparse)?;
     Ok((sparse, false))
 }
 
-fn kept(shelf: &InFolder) -> Option<Sparse> {
+/// Keeps a model in `work`, for [`kept_or_found`].
+///
+/// # Errors
+/// Where it cannot be written.
+pub(crate) fn keep(work: &Path, sparse: &Sparse) -> Result<(), Fault> {
+    let folder = work.join(KEPT);
+    let Some(files) = files_of(sparse) else {
+        return Ok(());
+    };
+    fs::create_dir_all(&folder).map_err(|error| {
+        let what = format!("{} cannot be made ({error})", folder.display());
+        Fault::new(what, "choose a folder that may be written to")
+    })?;
+    let shelf = InFolder::new(folder);
+    files
+        .into_iter()
+        .try_for_each(|(name, bytes)| shelf.put(name, bytes))
+}
+
+/// The files that keep a model, by name, in the order in which they have to be written; `None` where its words
+/// cannot be kept: a name with a line break is found again rather than misread.
+pub(crate) fn files_of(sparse: &Sparse) -> Option<Vec<(&'static str, Vec<u8>)>> {
+    let is_plain = |out: &LeftOut| !(out.photo.contains('\n') || out.why.contains(['\n', '\t']));
+    if !sparse.left_out.iter().all(is_plain) {
+        return None;
+    }
+    let line = |out: &LeftOut| format!("{}\t{}\n", out.why, out.photo);
+    let lines: String = sparse.left_out.iter().map(line).collect();
+    let mut files = sparse.files.to_vec();
+    files.push((LEFT_OUT, lines.into_bytes()));
+    Some(files)
+}
+
+/// The model that is kept in a folder, whole.
+pub(crate) fn kept_in(folder: &Path) -> Option<Sparse> {
+    let shelf = InFolder::new(folder.to_owned());
     let lines = String::from_utf8(shelf.get(LEFT_OUT)?).ok()?;
     let left_out = lines.lines().map(|line| {
         let (why, photo) = line.split_once('\t')?;

@@ -71,7 +71,8 @@ use self::opening::Georeferenced;
 pub struct Request {
     /// The folder of the photos.
     pub photos: PathBuf,
-    /// The folder that comes out: new, empty, or one of a run that did not end.
+    /// The folder that comes out: new, empty, one of a run that did not end, or of one of the same photos whose
+    /// cloud is to be another.
     pub to: PathBuf,
     /// The coordinate system of the world; without it the zone of UTM that the photos lie in.
     pub crs: Option<String>,
@@ -123,7 +124,7 @@ pub fn reconstruct(
     engine: &dyn Engine,
     progress: &Progress,
 ) -> Result<Reconstructed, FileError> {
-    let folder = written::folder(&request.to, &request.photos)?;
+    let mut folder = written::folder(&request.to, &request.photos)?;
     let photos = PhotoSet::read(&request.photos, request.crs.as_deref(), progress)?;
     folder.go_on_with(&photos, engine)?;
     let pairs = pairs::pairs(&photos);

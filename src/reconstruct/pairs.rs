@@ -77,7 +77,7 @@ fn looked_at(set: &PhotoSet, centers: &[Option<DVec3>]) -> Vec<Option<DVec3>> {
     let photos = set.photos.iter().zip(centers);
     photos
         .map(|(photo, center)| {
-            let (looks, center) = (photo.looks?, (*center)?);
+            let (looks, center) = (photo.gimbal?.z_axis, (*center)?);
             // Near the horizon it looks at nothing.
             (looks.z < -0.2).then(|| center + looks * ((level - center.z) / looks.z))
         })
@@ -87,6 +87,8 @@ fn looked_at(set: &PhotoSet, centers: &[Option<DVec3>]) -> Vec<Option<DVec3>> {
 #[cfg(test)]
 mod tests {
     use std::path::PathBuf;
+
+    use glam::DMat3;
 
     use super::*;
     use crate::photo_set::{Place, SurveyPhoto};
@@ -100,7 +102,7 @@ mod tests {
                 center,
                 deviation: None,
             }),
-            looks: Some(DVec3::NEG_Z),
+            gimbal: Some(DMat3::from_cols(DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z)),
         };
         PhotoSet {
             photos: places.iter().enumerate().map(photo).collect(),

@@ -167,7 +167,7 @@ mod tests {
                 center: DVec3::ZERO,
                 deviation,
             }),
-            looks: None,
+            gimbal: None,
         }
     }
 

@@ -215,6 +215,37 @@ fn rendered_photos_become_their_flight() {
         assert!(read(&again, name) == read(&twin, name), "{name}");
     }
     is_dense(&again, second.dense.unwrap());
+
+    // The finished flight gets a dense cloud: the model is not found again, and what was set stays.
+    let flight = to.join("flight.toml");
+    let text = fs::read_to_string(&flight).unwrap();
+    let decided = "[[review]]\nphoto = \"IMG_1.jpg\"\ndecision = \"left-out\"\n";
+    fs::write(&flight, format!("{text}\n{decided}")).unwrap();
+    let dense = Request {
+        dense: Some(small()),
+        ..request(photos(), &to)
+    };
+    let third = reconstruct(&dense, &Embedded, &progress).unwrap();
+    assert_eq!(third.dense, second.dense);
+    assert_eq!(third.left_out, made.left_out);
+    for name in ["poses.csv", "pile.laz", "reconstruction/images.txt"] {
+        assert!(read(&to, name) == read(&again, name), "{name}");
+    }
+    let text = fs::read_to_string(&flight).unwrap();
+    assert!(text.contains("decision = \"left-out\""), "{text}");
+    let opened = open_flight(&flight, &OpenOptions::default(), &progress).unwrap();
+    let twins = open_flight(&second.flight, &OpenOptions::default(), &progress).unwrap();
+    let errors = |opened: &crate::opening::Opened| opened.settings.errors;
+    assert_eq!(errors(&opened), errors(&twins));
+    assert!(errors(&opened).surface.is_some());
+    // Other photos do not take its place.
+    let others = folder.path().join("others");
+    fs::create_dir(&others).unwrap();
+    for name in ["IMG_1.jpg", "IMG_2.jpg", "IMG_3.jpg"] {
+        fs::copy(photos().join(name), others.join(name)).unwrap();
+    }
+    let fault = reconstruct(&request(&others, &to), &Embedded, &progress).unwrap_err();
+    assert!(fault.to_string().contains("of other photos"), "{fault}");
 }
 
 /// What all engines have to find in the photos. `of_blank` is in the reason that the blank one is left out for.
@@ -229,8 +260,8 @@ fn is_as_rendered(made: &Reconstructed, of_blank: &str) {
     let said = &made.left_out;
     assert!(why("blank.jpg").contains(of_blank), "{said:?}");
     assert!(why("other.jpg").contains("too little"), "{said:?}");
-    assert!(why("empty.jpg").contains("cannot be read"), "{said:?}");
-    assert!(why("cut.jpg").contains("cannot be read"), "{said:?}");
+    assert_eq!(why("empty.jpg"), "it is empty");
+    assert!(why("cut.jpg").contains("is cut off at"), "{said:?}");
     assert_eq!(why("copy of 5.jpg"), "it is a copy of IMG_5.jpg");
     assert!(made.reprojection_px.unwrap() < 0.5);
 
@@ -340,6 +371,49 @@ fn copy(from: &Path, to: &Path) {
         match path.is_dir() {
             true => copy(&path, &to),
             false => fs::copy(&path, &to).map(|_| ()).unwrap(),
+        }
+    }
+}
+
+/// Without places a model stands upright: by the gimbals' angles, and without them by its points. The rock's waves
+/// are 1.2 m high, and what five photos show of them is 25 m wide: so much is their plane aslant.
+#[test]
+fn models_without_places_are_upright() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, has_gimbal, most) in [("gimbal", true, 0.5), ("nothing", false, 6.0)] {
+        let photos = folder.path().join(name);
+        fs::create_dir(&photos).unwrap();
+        for (number, pose) in (1..6).zip(&poses()) {
+            let looks = pose.rotation.z_axis;
+            let gimbal = DjiGimbal {
+                roll: 0.0,
+                yaw: looks.x.atan2(looks.y).to_degrees(),
+                pitch: looks.z.asin().to_degrees(),
+                relative_altitude: 30.0,
+            };
+            let said = PhotoMetadata {
+                dji: has_gimbal.then_some(gimbal),
+                ..metadata(None)
+            };
+            let bytes = jpeg(&photo(pose, 1), 92, &said).unwrap();
+            fs::write(photos.join(format!("IMG_{number}.jpg")), bytes).unwrap();
+        }
+        let to = folder.path().join(format!("{name} flight"));
+        let made = reconstruct(&request(&photos, &to), &Embedded, &Progress::default()).unwrap();
+        let said = made.warnings.join("; ");
+        let by = match has_gimbal {
+            true => "up is where the gimbals' angles say",
+            false => "up is taken to be across the points",
+        };
+        assert!(said.contains(by) && said.contains("no unit"), "{said}");
+        let model = crate::formats::read_project(&to.join("reconstruction"), &Progress::default());
+        for photo in &model.unwrap().reconstruction.photos {
+            let number = photo.name.as_bytes()[4] - b'1';
+            let truth = poses()[usize::from(number)].rotation;
+            // Up as this photo sees it, in the model.
+            let up = photo.pose.rotation * (truth.transpose() * DVec3::Z);
+            let off = up.angle_between(DVec3::Z).to_degrees();
+            assert!(off < most, "{name}: {} {off}", photo.name);
         }
     }
 }

@@ -469,7 +469,8 @@ fn a_photo_from_under_the_surface_is_not_trusted() {
     let words = Doubt::UnderSurface.to_string();
     let said = format!("{under}: {words}");
     let (table, err) = run(0, &["scales", flight]);
-    assert!(table.ends_with(&format!("\n\n{said}\n")), "{table}");
+    let in_table = format!("\n\n{under}: check: {words}\n");
+    assert!(table.ends_with(&in_table), "{table}");
     assert!(err.contains(&said), "{err}");
     let csv = ["scales", flight, "--unit", "m", "--format", "csv"];
     let notes_of = |csv: &str| -> Vec<String> {

@@ -14,7 +14,7 @@ pub(in crate::cli) struct ReconstructArguments {
     /// The folder of the photos.
     photos: PathBuf,
     /// The folder to make, with a flight.toml; new or empty, or one of a run that was interrupted, which
-    /// goes on.
+    /// goes on. In a finished one the same photos' cloud is made anew, from the same poses.
     #[arg(long, value_name = "DIR")]
     to: PathBuf,
     /// The coordinate system of the world: EPSG:n, WKT or a PROJ text; without it the zone of UTM that
@@ -27,6 +27,14 @@ pub(in crate::cli) struct ReconstructArguments {
     /// How much time the cloud may take.
     #[arg(long, value_enum, default_value_t)]
     quality: CloudQuality,
+}
+
+impl ReconstructArguments {
+    /// What stays of it where it is interrupted.
+    pub(in crate::cli) fn kept(&self) -> String {
+        let to = self.to.display();
+        format!("what is done lies in {to}: the same command goes on with it")
+    }
 }
 
 /// A quality as a word of the command line.

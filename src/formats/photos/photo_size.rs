@@ -19,6 +19,10 @@ pub(crate) fn read(input: impl BufRead + Seek) -> Result<(u32, u32), Fault> {
             "give a JPEG, PNG or TIFF",
         )
     };
+    let mut input = input;
+    if input.fill_buf().is_ok_and(<[u8]>::is_empty) {
+        return Err(Fault::new("it is empty", "copy it from the drone again"));
+    }
     let reader = ImageReader::new(input)
         .with_guessed_format()
         .map_err(|e| unreadable(&e))?;

@@ -5,6 +5,8 @@
 //! whose         which photos and cameras of the folder those of a model are
 //! bundle        poses, points and lenses adjusted together
 //! placing       the model brought to the photos' places, and adjusted with them
+//! level         which way is up without places
+//! stray         points that stand alone
 //! model_files   what comes out
 //! in_order      photos numbered as in the folder
 //! guarded       what cumulus3d does when something goes wrong
@@ -13,8 +15,10 @@
 mod bundle;
 mod guarded;
 mod in_order;
+mod level;
 mod model_files;
 mod placing;
+mod stray;
 mod whose;
 
 use std::path::Path;
@@ -61,6 +65,7 @@ pub(crate) fn adjusted(
             return Err(too_little_in_common());
         }
         let whose = Whose::of(&model, photos);
+        stray::remove(&mut model);
         placing::place(&mut model, &whose, progress)?;
         progress.stage("colouring points");
         model_files::colour(&mut model, &whose, progress)?;

@@ -9,6 +9,7 @@ use glam::{DMat3, DVec3};
 
 use super::Whose;
 use super::bundle::{Adjustment, adjust};
+use super::level::level;
 use crate::fault::Fault;
 use crate::georeference::{Pair, fit};
 use crate::jobs::Progress;
@@ -16,7 +17,7 @@ use crate::jobs::Progress;
 /// Standard deviation that a place has whose receiver states none, metres.
 const USUAL: f64 = 5.0;
 
-/// Brings the model to the photos' places; without three of them it stays where it is.
+/// Brings the model to the photos' places; without three of them it is only turned upright.
 ///
 /// # Errors
 /// Where the adjustment has no solution, or the work was cancelled.
@@ -49,6 +50,7 @@ pub(super) fn place(
     }
     // On a line, too few, or contradicting each other: georeferencing says so of the result.
     let Ok(fitted) = fit(&pairs) else {
+        level(model, whose);
         return Ok(());
     };
     let similarity = &fitted.similarity;
@@ -78,10 +80,10 @@ pub(super) fn place(
     Ok(())
 }
 
-fn vector(v: DVec3) -> Vec3 {
+pub(super) fn vector(v: DVec3) -> Vec3 {
     Vec3::new(v.x, v.y, v.z)
 }
 
-fn matrix(m: &DMat3) -> Mat3 {
+pub(super) fn matrix(m: &DMat3) -> Mat3 {
     Mat3::from_column_slice(&m.to_cols_array())
 }

@@ -68,7 +68,7 @@ fn photos(folder: &Path) -> PhotoSet {
         },
         camera,
         place: None,
-        looks: None,
+        gimbal: None,
     };
     let camera = Camera {
         name: "drone".to_owned(),

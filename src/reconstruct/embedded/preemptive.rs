@@ -152,7 +152,7 @@ mod tests {
                     path: PathBuf::new(),
                     camera: 0,
                     place,
-                    looks: None,
+                    gimbal: None,
                 })
                 .collect(),
             cameras: Vec::new(),

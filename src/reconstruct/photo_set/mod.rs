@@ -5,7 +5,7 @@ mod twins;
 
 use std::path::{Path, PathBuf};
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use image::RgbImage;
 
 use self::in_world::World;
@@ -29,8 +29,9 @@ pub struct SurveyPhoto {
     pub camera: usize,
     /// Where it was taken.
     pub place: Option<Place>,
-    /// Which way its camera looked, a unit vector in the world, where it says so.
-    pub looks: Option<DVec3>,
+    /// How its camera was turned, from its axes (x right, y down, z forward) to east, north and up, where it
+    /// says so.
+    pub gimbal: Option<DMat3>,
 }
 
 impl SurveyPhoto {
@@ -128,7 +129,7 @@ impl PhotoSet {
                     let first = first.file_name().unwrap_or_default().to_string_lossy();
                     format!("it is a copy of {first}")
                 }
-                Err(error) => format!("it cannot be read ({})", error.fault.what),
+                Err(error) => error.fault.what,
             };
             left_out.push(LeftOut { photo: name, why });
         }
@@ -149,7 +150,7 @@ impl PhotoSet {
                 let world = world.as_ref();
                 let center = world.and_then(|world| world.place(&metadata));
                 let measured = metadata.place;
-                let looks = metadata.orientation.as_ref();
+                let orientation = metadata.orientation.as_ref();
                 SurveyPhoto {
                     name,
                     path: path.clone(),
@@ -159,7 +160,7 @@ impl PhotoSet {
                         deviation: measured.and_then(expected_deviation),
                     }),
                     // East and north of the Earth are near enough those of a grid.
-                    looks: looks.map(|looks| looks.pose(DVec3::ZERO).rotation.z_axis),
+                    gimbal: orientation.map(|angles| angles.pose(DVec3::ZERO).rotation),
                 }
             })
             .collect();

@@ -2,114 +2,32 @@
 //! text files. While the work goes on it has `unfinished/`, which a second run goes on with.
 
 mod flight_files;
+mod folder;
 mod proposed;
 mod report;
 
+pub(crate) use self::folder::{Folder, folder};
 pub use self::proposed::{may_be_made, proposed_folder};
 
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use self::flight_files::{FlightOf, SOURCE, flight_files};
+use self::folder::FLIGHT;
 use self::report::{ReportOf, report};
 use crate::dense_cloud::{DenseCloud, dense_cloud};
-use crate::engine::{Engine, Sparse};
+use crate::engine::Sparse;
 use crate::exports::ply;
 use crate::fault::Fault;
-use crate::files::{self, FileError, Inputs, Kind};
+use crate::files::FileError;
 use crate::formats::read_project;
 use crate::jobs::Progress;
 use crate::opening::{GeoreferenceRequest, flight_text_of, georeference_model, path_from};
 use crate::photo_set::PhotoSet;
 use crate::{DensePoints, Reconstructed, Request};
 
-const FLIGHT: &str = "flight.toml";
-const MODEL: &str = "reconstruction";
 const REPORT: &str = "report.html";
-const UNFINISHED: &str = "unfinished";
-/// What the unfinished work is of: a line a photo.
-const OF: &str = "photos.txt";
-
-/// The folder that comes out.
-pub(crate) struct Folder {
-    path: PathBuf,
-    /// For what an engine keeps.
-    pub(crate) work: PathBuf,
-    /// The photos, which are never written over.
-    read: Inputs,
-}
-
-/// A flight may be made in a folder that is to be made, is empty, or is that of a run that did not end.
-///
-/// # Errors
-/// Where it holds other things.
-fn checked(to: &Path) -> Result<(), Fault> {
-    let remedy = "name a new folder";
-    if to.join(FLIGHT).exists() {
-        return Err(Fault::new("there is a flight in it already", remedy));
-    }
-    let is_empty = match fs::read_dir(to) {
-        Ok(mut entries) => entries.next().is_none(),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => true,
-        Err(error) => return Err(cannot("be read", &error)),
-    };
-    match is_empty || to.join(UNFINISHED).join(OF).exists() {
-        true => Ok(()),
-        false => Err(Fault::new("the folder is not empty", remedy)),
-    }
-}
-
-/// The folder, where a flight may be made in it.
-///
-/// # Errors
-/// Where it may not, or lies among the photos.
-pub(crate) fn folder(to: &Path, photos: &Path) -> Result<Folder, FileError> {
-    let at = |fault| FileError::new(to, fault);
-    checked(to).map_err(at)?;
-    let read = Inputs::of([photos]);
-    // Said before the work, not after it.
-    files::may_write(&to.join(FLIGHT), Kind::Flight, &read, false).map_err(at)?;
-    Ok(Folder {
-        path: to.to_owned(),
-        work: to.join(UNFINISHED),
-        read,
-    })
-}
-
-impl Folder {
-    /// Makes the folder; throws unfinished work away that is of other photos, or of another engine's.
-    ///
-    /// # Errors
-    /// Where the folder cannot be written.
-    pub(crate) fn go_on_with(
-        &self,
-        photos: &PhotoSet,
-        engine: &dyn Engine,
-    ) -> Result<(), FileError> {
-        let mut text = format!("{}\n", engine.name());
-        for photo in &photos.photos {
-            let size = fs::metadata(&photo.path).map_or(0, |file| file.len());
-            text += &format!("{} {size} {}\n", photo.camera, photo.name);
-        }
-        let of = self.work.join(OF);
-        let written = |error: io::Error| FileError::new(&of, cannot("be written", &error));
-        if fs::read_to_string(&of).is_ok_and(|before| before == text) {
-            return Ok(());
-        }
-        if self.work.exists() {
-            fs::remove_dir_all(&self.work).map_err(written)?;
-        }
-        fs::create_dir_all(&self.work).map_err(written)?;
-        self.write(&of, text.as_bytes())
-    }
-
-    /// Writes a file of the folder, which nobody else's files lie in.
-    fn write(&self, path: &Path, bytes: &[u8]) -> Result<(), FileError> {
-        let written = files::write(path, bytes, Kind::Result, &self.read, true);
-        written.map_err(|fault| FileError::new(path, fault))
-    }
-}
 
 fn cannot(what: &str, error: &io::Error) -> Fault {
     let what = format!("the folder cannot {what} ({error})");
@@ -128,13 +46,9 @@ pub(crate) fn write(
     (engine, sparse, goes_on): (String, Sparse, bool),
     progress: &Progress,
 ) -> Result<Reconstructed, FileError> {
-    let model = folder.path.join(MODEL);
     let flight = folder.path.join(FLIGHT);
     let at = |error: &io::Error| FileError::new(&folder.path, cannot("be written", error));
-    fs::create_dir_all(&model).map_err(|error| at(&error))?;
-    for (name, bytes) in &sparse.files {
-        folder.write(&model.join(name), bytes)?;
-    }
+    let model = folder.write_model(&sparse)?;
     let read = read_project(&model, progress)?.reconstruction;
     let mut warnings = Vec::new();
     let dense = match &request.dense {
@@ -186,8 +100,12 @@ pub(crate) fn write(
         }
         Err(error) => {
             warnings.push(format!(
-                "the model has no unit and no place in the world: {}",
-                error.fault
+                "the model has no unit and no place in the world: {}; up is {}",
+                error.fault,
+                match photos.photos.iter().any(|photo| photo.gimbal.is_some()) {
+                    true => "where the gimbals' angles say",
+                    false => "taken to be across the points, towards the cameras",
+                }
             ));
             let photos = Some(request.photos.as_path());
             let surface = dense
@@ -221,7 +139,10 @@ pub(crate) fn write(
     });
     folder.write(&folder.path.join(REPORT), report.as_bytes())?;
     for (name, bytes) in &files {
-        folder.write(&folder.path.join(name), bytes)?;
+        match *name {
+            FLIGHT => folder.write_flight(bytes, made.dense.is_some())?,
+            name => folder.write(&folder.path.join(name), bytes)?,
+        }
     }
     // The flight is whole: what is left over harms nobody.
     let _ = fs::remove_dir_all(&folder.work);

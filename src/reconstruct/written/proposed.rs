@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::checked;
+use super::folder::checked;
 
 /// Beside the folder of the photos: "NAME flight", or with a number where another flight is there. A folder
 /// that a run left unfinished is proposed again, for the next one goes on in it.

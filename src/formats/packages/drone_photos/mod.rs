@@ -41,6 +41,10 @@ use crate::photos::image_names::{Ending, is_ending};
 use crate::photos::photo_metadata::{self, Fix, HeightReference, MeasuredPlace, PhotoMetadata};
 pub use cameras::Cameras;
 
+/// What photos without a cloud may become.
+const RECONSTRUCT: &str = "these are photos alone; where they overlap, 'fragscale reconstruct' or File > New from \
+     photos… makes a flight of them";
+
 /// Whether a file is named like a photo.
 pub(crate) fn is_photo(path: &Path) -> bool {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
@@ -61,8 +65,20 @@ pub(crate) fn has_photos(folder: &Path) -> bool {
 /// Where it cannot be read.
 pub fn photos_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
     let failed = |e: std::io::Error| {
-        let what = format!("a folder that cannot be read ({e})");
-        FileError::new(folder, Fault::new(what, "check its permissions"))
+        let (what, remedy) = match e.kind() {
+            std::io::ErrorKind::NotFound => {
+                ("there is no such folder".to_owned(), "check the path")
+            }
+            std::io::ErrorKind::NotADirectory => (
+                "a file, where a folder of photos is needed".to_owned(),
+                "name the folder that it lies in",
+            ),
+            _ => (
+                format!("a folder that cannot be read ({e})"),
+                "check its permissions",
+            ),
+        };
+        FileError::new(folder, Fault::new(what, remedy))
     };
     let mut photos = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {
@@ -152,6 +168,7 @@ pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
     Ok(Project {
         reconstruction,
         photos: Some(folder),
+        surface_note: Some(RECONSTRUCT.to_owned()),
         ..Project::default()
     })
 }
@@ -225,7 +242,7 @@ impl LeftOut {
                 "photos that do not say enough to place them: {}",
                 reasons.join(", ")
             ),
-            "give the reconstruction that was made from them, or a poses.csv, or reconstruct them",
+            "give the reconstruction that was made from them, or a poses.csv, or reconstruct them here: 'fragscale reconstruct', File > New from photos…",
         )
     }
 }

@@ -23,7 +23,7 @@ use std::path::Path;
 
 use glam::{DVec2, DVec3};
 
-use crate::fault::Fault;
+use crate::fault::{Fault, first_names};
 use crate::files::{FileError, read_text};
 use crate::packages::drone_photos;
 use crate::packages::odm::crs_from_text;
@@ -104,20 +104,19 @@ pub fn positions_of_photos(folder: &Path) -> Result<PositionList, FileError> {
     };
     let files = drone_photos::photos_in(folder)?;
     let mut references = BTreeSet::new();
+    let mut without = Vec::new();
     for file in &files {
-        let Ok(metadata) = photo_metadata::read_file(file) else {
-            continue;
-        };
-        let Some((place, height)) = metadata
-            .place
-            .and_then(|place| Some((place, place.height?)))
-        else {
+        let name = file.file_name().unwrap_or_default();
+        let name = name.to_string_lossy().into_owned();
+        let place = photo_metadata::read_file(file).ok();
+        let place = place.and_then(|metadata| metadata.place);
+        let Some((place, height)) = place.and_then(|place| Some((place, place.height?))) else {
+            without.push(name);
             continue;
         };
         references.insert(height);
-        let name = file.file_name().unwrap_or_default();
         list.positions.push(NamedPosition {
-            name: name.to_string_lossy().into_owned(),
+            name,
             position: DVec3::new(
                 place.place.longitude,
                 place.place.latitude,
@@ -134,11 +133,11 @@ pub fn positions_of_photos(folder: &Path) -> Result<PositionList, FileError> {
         let remedy = "give a list of positions, or control points";
         return Err(FileError::new(folder, Fault::new(what, remedy)));
     }
-    let without = files.len() - list.positions.len();
-    if without > 0 {
-        let all = files.len();
+    if !without.is_empty() {
+        let (count, all) = (without.len(), files.len());
+        let names = first_names(&without);
         list.warnings.push(format!(
-            "{without} of {all} photos do not say where and how high they were taken"
+            "{count} of {all} photos do not say where and how high they were taken ({names})"
         ));
     }
     for reference in references {

@@ -1,0 +1,59 @@
+//! Ctrl+C. The work is asked to stop, as the window's Cancel does, so that it ends what it has started (COLMAP)
+//! and removes what is half written; where it does not look up soon enough, the program ends without it.
+
+use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+use super::say;
+use crate::files;
+use crate::jobs::Progress;
+
+/// How long the work has to stop by itself. Cancelling takes at most a second by what it promises.
+const GRACE: Duration = Duration::from_secs(2);
+
+/// The exit status of a command that the user interrupted.
+const INTERRUPTED: u8 = 130;
+
+/// The work under way, and what stays of it.
+static UNDER_WAY: Mutex<(Option<Progress>, Option<String>)> = Mutex::new((None, None));
+
+/// From now on Ctrl+C is answered here. `kept` says what stays of interrupted work, where something does.
+pub(super) fn listen(kept: Option<String>) {
+    under_way(|(_, stays)| *stays = kept);
+    // Without the handler, which only fails where another one is set, an interrupt could leave a temporary file.
+    let _ = ctrlc::set_handler(|| {
+        let work = under_way(|(work, _)| work.clone());
+        if let Some(work) = work.filter(|work| !work.is_cancelled()) {
+            work.cancel();
+            std::thread::sleep(GRACE);
+        }
+        files::remove_unfinished();
+        say_so();
+        std::process::exit(INTERRUPTED.into());
+    });
+}
+
+/// The work that Ctrl+C is to stop.
+pub(super) fn stops(work: &Progress) {
+    under_way(|(under_way, _)| *under_way = Some(work.clone()));
+}
+
+/// Whether the user interrupted the work; it is said then, with the exit status that it has.
+pub(super) fn interrupted() -> Option<ExitCode> {
+    let was = under_way(|(work, _)| work.as_ref().is_some_and(Progress::is_cancelled));
+    was.then(|| {
+        say_so();
+        ExitCode::from(INTERRUPTED)
+    })
+}
+
+fn say_so() {
+    let kept = under_way(|(_, kept)| kept.take());
+    let kept = kept.map_or_else(String::new, |kept| format!("; {kept}"));
+    say(&format!("interrupted{kept}"));
+}
+
+fn under_way<T>(of: impl FnOnce(&mut (Option<Progress>, Option<String>)) -> T) -> T {
+    of(&mut UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner))
+}
