@@ -23,6 +23,8 @@ pub(crate) struct Known {
     pub(crate) centers: Vec<Option<DVec3>>,
     /// Of each camera: the standard deviation of its focal lengths, a part of them, where stated.
     pub(crate) focal: Vec<Option<f64>>,
+    /// Of each camera: whether its lens is a calibration that is kept.
+    pub(crate) is_given: Vec<bool>,
 }
 
 /// Standard deviations.
@@ -47,6 +49,8 @@ const LENS: usize = 8;
 /// singular for want of them. The principal point's is a part of the longer side.
 const CENTRE: f64 = 0.005;
 const COEFFICIENT: f64 = 1.0;
+/// Of those what a number has that is kept.
+const KEPT: f64 = 1e-6;
 
 /// Of a reconstruction in the world; `None` where fewer than three centres are known, so that the world
 /// is not determined, where nothing was observed, or where it has too many photos.
@@ -83,8 +87,14 @@ pub(crate) fn deviations(model: &Reconstruction, known: &Known) -> Option<Deviat
         let middle = CENTRE * f64::from(camera.width.max(camera.height));
         let focal = known.focal.get(number).copied().flatten().unwrap_or(1.0);
         let deviations = [focal * camera.fx, focal * camera.fy, middle, middle];
+        let is_given = known.is_given.get(number) == Some(&true);
         for (place, deviation) in deviations.into_iter().chain([COEFFICIENT; 4]).enumerate() {
             let at = photos * POSE + number * LENS + place;
+            let deviation = if is_given {
+                KEPT * deviation
+            } else {
+                deviation
+            };
             normal[(at, at)] += deviation.powi(-2);
         }
     }
@@ -346,6 +356,7 @@ mod tests {
         let known = Known {
             centers: vec![Some(DVec3::new(0.02, 0.02, 0.04)); 5],
             focal: vec![Some(0.03)],
+            is_given: Vec::new(),
         };
         let found = deviations(&model, &known).unwrap();
         let (photos, points) = (model.photos.len(), model.cloud.points.len());
@@ -426,6 +437,16 @@ mod tests {
     fn two_centres_are_too_few() {
         let centers = [Some(DVec3::ONE), Some(DVec3::ONE), None, None, None].to_vec();
         let focal = vec![None];
-        assert_eq!(deviations(&model(), &Known { centers, focal }), None);
+        assert_eq!(
+            deviations(
+                &model(),
+                &Known {
+                    centers,
+                    focal,
+                    is_given: Vec::new()
+                }
+            ),
+            None
+        );
     }
 }

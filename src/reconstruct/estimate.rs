@@ -95,6 +95,7 @@ mod tests {
             cameras: vec![SurveyCamera {
                 camera,
                 focal_error: None,
+                is_given: false,
             }],
             left_out: Vec::new(),
             origin: DVec3::ZERO,

@@ -63,6 +63,7 @@ pub use self::said::{found, left_out, summary};
 pub use self::written::{may_be_made, proposed_folder};
 
 use self::files::FileError;
+use self::formats::read_camera;
 use self::jobs::Progress;
 use self::opening::Georeferenced;
 
@@ -76,6 +77,8 @@ pub struct Request {
     pub to: PathBuf,
     /// The coordinate system of the world; without it the zone of UTM that the photos lie in.
     pub crs: Option<String>,
+    /// The calibration of its photos' camera, which is kept; without it the lens is found from the photos.
+    pub camera: Option<PathBuf>,
     /// How its dense cloud is found, see [`Quality`]; `None` keeps the sparse one.
     pub dense: Option<DenseOptions>,
 }
@@ -126,6 +129,12 @@ pub fn reconstruct(
 ) -> Result<Reconstructed, FileError> {
     let mut folder = written::folder(&request.to, &request.photos)?;
     let photos = PhotoSet::read(&request.photos, request.crs.as_deref(), progress)?;
+    let photos = match &request.camera {
+        None => photos,
+        Some(path) => photos
+            .with_camera(&read_camera(path)?)
+            .map_err(|fault| FileError::new(path, fault))?,
+    };
     folder.go_on_with(&photos, engine)?;
     let pairs = pairs::pairs(&photos);
     let at = |fault| FileError::new(&request.photos, fault);

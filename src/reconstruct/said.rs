@@ -84,6 +84,7 @@ pub fn found(set: &PhotoSet) -> Vec<String> {
 fn camera_in_words(its: &SurveyCamera, photos: usize) -> String {
     let camera = &its.camera;
     let focal = match its.focal_error {
+        _ if its.is_given => format!("calibration given and kept, {:.1} px", camera.fx),
         Some(error) => format!(
             "focal length stated, {:.0} px ± {} %",
             camera.fx,
@@ -155,6 +156,7 @@ mod tests {
                 distortion: Distortion::None,
             },
             focal_error,
+            is_given: false,
         }
     }
 

@@ -21,6 +21,9 @@ pub(in crate::cli) struct ReconstructArguments {
     /// the photos lie in.
     #[arg(long, value_name = "CRS", allow_hyphen_values = true)]
     crs: Option<String>,
+    /// The calibration of the photos' camera, which is kept; without it the lens is found from the photos.
+    #[arg(long, value_name = "FILE")]
+    camera: Option<PathBuf>,
     /// What finds the poses.
     #[arg(long, value_enum, default_value_t)]
     engine: PosesEngine,
@@ -82,6 +85,7 @@ pub(in crate::cli) fn run(
         photos: arguments.photos.clone(),
         to: arguments.to.clone(),
         crs: arguments.crs.clone(),
+        camera: arguments.camera.clone(),
         dense: arguments.quality.0.dense(),
     };
     let engine = arguments.engine.0.engine();

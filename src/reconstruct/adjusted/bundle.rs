@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet};
 
 use cumulus3d_ba::{BaConfig, Loss, bundle_adjust};
-use cumulus3d_core::{Reconstruction, Vec3};
+use cumulus3d_core::{CameraModelKind, Reconstruction, Vec3};
 
 use super::{Whose, failed};
 use crate::fault::Fault;
@@ -43,12 +43,19 @@ pub(crate) fn adjust(model: &mut Reconstruction, what: Adjustment<'_>) -> Result
     }
     let few = of_camera
         .into_iter()
-        .filter(|&(_, photos)| photos < PHOTOS_OF_A_LENS);
+        .filter(|&(_, photos)| photos < PHOTOS_OF_A_LENS)
+        .map(|(camera, _)| camera);
+    // A calibration that is given, once pixels are those of its pinhole.
+    let given = what.whose.cameras().map(|(camera, _)| camera);
+    let given = given.filter(|&camera| {
+        let camera = model.camera(camera);
+        camera.is_some_and(|camera| camera.model == CameraModelKind::Pinhole)
+    });
     let config = BaConfig {
         refine_focal_length: !is_local,
         refine_principal_point: !is_local,
         refine_extra_params: !is_local,
-        constant_cameras: few.map(|(camera, _)| camera).collect(),
+        constant_cameras: few.chain(given).collect(),
         intrinsics_priors: lenses(what.whose),
         position_priors: what.places,
         images: what.images,

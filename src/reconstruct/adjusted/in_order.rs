@@ -2,7 +2,7 @@
 //! ended.
 
 use cumulus3d_core::reconstruction::{Image, Point3D, Rig, TrackEntry};
-use cumulus3d_core::{Error, Reconstruction};
+use cumulus3d_core::{Error, Reconstruction, Vec2};
 
 use super::failed;
 use crate::fault::Fault;
@@ -13,10 +13,27 @@ use crate::photo_set::PhotoSet;
 /// # Errors
 /// Where the model contradicts itself.
 pub(crate) fn in_order(model: &Reconstruction, photos: &PhotoSet) -> Result<Reconstruction, Fault> {
-    numbered(model, photos).map_err(|_| failed("reading the model"))
+    with_pixels(model, photos, |_, _, _, pixel| pixel)
 }
 
-fn numbered(model: &Reconstruction, photos: &PhotoSet) -> Result<Reconstruction, Error> {
+/// The same with other pixels: of a photo's identifier in `model` and its camera's, the pixel's number, and what it
+/// is.
+///
+/// # Errors
+/// Likewise.
+pub(super) fn with_pixels(
+    model: &Reconstruction,
+    photos: &PhotoSet,
+    pixel: impl FnMut(u32, u32, usize, Vec2) -> Vec2,
+) -> Result<Reconstruction, Fault> {
+    numbered(model, photos, pixel).map_err(|_| failed("reading the model"))
+}
+
+fn numbered(
+    model: &Reconstruction,
+    photos: &PhotoSet,
+    mut changed: impl FnMut(u32, u32, usize, Vec2) -> Vec2,
+) -> Result<Reconstruction, Error> {
     let mut made = Reconstruction::new();
     for (&id, camera) in model.cameras() {
         made.add_camera(camera.clone())?;
@@ -27,8 +44,10 @@ fn numbered(model: &Reconstruction, photos: &PhotoSet) -> Result<Reconstruction,
         let Some(image) = model.image_by_name(&photo.name) else {
             continue;
         };
-        let pixels = image.points2d().iter().map(|point| point.xy);
-        let new = Image::new(id, &photo.name, image.camera_id, pixels);
+        let (was, camera) = (image.image_id, image.camera_id);
+        let pixels = image.points2d().iter().enumerate();
+        let pixels = pixels.map(|(number, point)| changed(was, camera, number, point.xy));
+        let new = Image::new(id, &photo.name, camera, pixels);
         let pose = model.world_to_cam(image.image_id);
         made.add_image_own_frame(new, pose)?;
         if pose.is_some() {

@@ -4,6 +4,7 @@
 //! ```text
 //! whose         which photos and cameras of the folder those of a model are
 //! bundle        poses, points and lenses adjusted together
+//! given_lens    calibrations that are kept
 //! placing       the model brought to the photos' places, and adjusted with them
 //! level         which way is up without places
 //! stray         points that stand alone
@@ -13,6 +14,7 @@
 //! ```
 
 mod bundle;
+mod given_lens;
 mod guarded;
 mod in_order;
 mod level;
@@ -24,11 +26,13 @@ mod whose;
 use std::path::Path;
 
 pub(crate) use self::bundle::{Adjustment, adjust};
+pub(crate) use self::given_lens::may_be_given;
 pub(crate) use self::guarded::{failed, guarded};
 pub(crate) use self::in_order::in_order;
 pub(crate) use self::model_files::read;
 pub(crate) use self::whose::Whose;
 
+use self::given_lens::GivenLenses;
 use crate::engine::{Found, Sparse};
 use crate::fault::Fault;
 use crate::jobs::Progress;
@@ -66,7 +70,14 @@ pub(crate) fn adjusted(
         }
         let whose = Whose::of(&model, photos);
         stray::remove(&mut model);
+        let given = GivenLenses::of(&model, &whose);
+        if let Some(given) = &given {
+            given.as_pinholes(&mut model, photos)?;
+        }
         placing::place(&mut model, &whose, progress)?;
+        if let Some(given) = &given {
+            given.as_shot(&mut model, photos)?;
+        }
         progress.stage("colouring points");
         model_files::colour(&mut model, &whose, progress)?;
         let missing = whose.missing(&model, &left_out).into_iter();
@@ -74,9 +85,10 @@ pub(crate) fn adjusted(
             photo: photo.name.clone(),
             why: "it shows too little of what the others show".to_owned(),
         }));
-        Ok(Sparse {
-            files: model_files::files(&model, work)?,
-            left_out,
-        })
+        let mut files = model_files::files(&model, work)?;
+        if let (Some(given), [(_, cameras), ..]) = (&given, &mut files) {
+            *cameras = given.write(cameras);
+        }
+        Ok(Sparse { files, left_out })
     })
 }

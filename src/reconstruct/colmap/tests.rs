@@ -84,6 +84,7 @@ fn photos(folder: &Path) -> PhotoSet {
     let stated = |focal_error| SurveyCamera {
         camera: camera.clone(),
         focal_error,
+        is_given: false,
     };
     PhotoSet {
         photos: [("a.png", 0), ("c.png", 0), ("d.png", 1)].map(photo).into(),

@@ -137,6 +137,7 @@ fn lens(id: u32, camera: &SurveyCamera) -> Result<Camera, Fault> {
     let SurveyCamera {
         camera,
         focal_error,
+        ..
     } = camera;
     let mut numbers = vec![camera.fx, camera.fy, camera.cx, camera.cy];
     let coefficients = match &camera.distortion {

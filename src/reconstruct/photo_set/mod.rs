@@ -10,6 +10,7 @@ use image::RgbImage;
 
 use self::in_world::World;
 use self::twins::Twins;
+use crate::adjusted::may_be_given;
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::files::{FileError, read_bytes};
@@ -64,6 +65,8 @@ pub struct SurveyCamera {
     pub camera: Camera,
     /// How far its focal length is expected to be off, a part of it.
     pub focal_error: Option<f64>,
+    /// Whether it is a calibration that somebody gave, which is kept.
+    pub is_given: bool,
 }
 
 /// A photo that is left out.
@@ -174,6 +177,44 @@ impl PhotoSet {
     }
 }
 
+/// How far a given focal length may give way while the model grows: from then on it is kept.
+const GIVEN_FOCAL: f64 = 0.01;
+
+impl PhotoSet {
+    /// The same with a calibration for its photos of that size, which is kept.
+    ///
+    /// # Errors
+    /// Where no photo is of that size, or it is of a model that cannot be kept.
+    pub fn with_camera(mut self, given: &Camera) -> Result<Self, Fault> {
+        may_be_given(given)?;
+        let mut used = false;
+        for its in &mut self.cameras {
+            if (its.camera.width, its.camera.height) == (given.width, given.height) {
+                used = true;
+                *its = SurveyCamera {
+                    camera: given.clone(),
+                    focal_error: Some(GIVEN_FOCAL),
+                    is_given: true,
+                };
+            }
+        }
+        if used {
+            return Ok(self);
+        }
+        let sizes = self.cameras.iter().map(|its| &its.camera);
+        let sizes: Vec<String> = sizes
+            .map(|camera| format!("{} x {}", camera.width, camera.height))
+            .collect();
+        let what = format!(
+            "it is for photos of {} x {} px, and these have {} px",
+            given.width,
+            given.height,
+            sizes.join(", ")
+        );
+        Err(Fault::new(what, "give the calibration of these photos"))
+    }
+}
+
 /// The cameras found so far: those of which the photos state the focal length, then the others.
 #[derive(Default)]
 struct Cameras {
@@ -207,6 +248,7 @@ impl Cameras {
             Some((camera, focal)) => SurveyCamera {
                 camera: camera.clone(),
                 focal_error: Some(focal.relative_error),
+                is_given: false,
             },
             None => guessed(photo),
         };
@@ -235,5 +277,6 @@ fn guessed(photo: &PhotoMetadata) -> SurveyCamera {
             distortion: crate::camera::Distortion::None,
         },
         focal_error: None,
+        is_given: false,
     }
 }

@@ -55,16 +55,19 @@ pub(crate) fn flight_files(
     } = *of;
     let report = |error: String| Fault::new(error, "report this");
     model.transform(&placed.similarity);
+    let taken_by = |camera: usize| {
+        let taken = model.photos.iter().find(|photo| photo.camera == camera)?;
+        Some(&photos.cameras[photos.named(&taken.name)?.camera])
+    };
     let known = Known {
         centers: (model.photos.iter())
             .map(|photo| photos.named(&photo.name)?.place?.deviation)
             .collect(),
         focal: (0..model.cameras.len())
-            .map(|camera| {
-                let taken = model.photos.iter().find(|photo| photo.camera == camera)?;
-                let photo = photos.named(&taken.name)?;
-                photos.cameras[photo.camera].focal_error
-            })
+            .map(|camera| taken_by(camera)?.focal_error)
+            .collect(),
+        is_given: (0..model.cameras.len())
+            .map(|camera| taken_by(camera).is_some_and(|camera| camera.is_given))
             .collect(),
     };
     let sure = deviations(&model, &known);
@@ -112,8 +115,13 @@ pub(crate) fn flight_files(
         ..FlightSettings::default()
     };
     settings.errors.world_scale = placed.scale_error.map(stated_percent);
-    let focal = |sure: &Deviations| stated_percent(sure.focal.iter().copied().fold(0.0, f64::max));
-    settings.errors.focal = sure.as_ref().map(focal);
+    // How sure a given calibration is, is for whoever gave it to say.
+    let focal = sure.as_ref().and_then(|sure| {
+        let found = sure.focal.iter().zip(&known.is_given);
+        let found = found.filter(|(_, is_given)| !**is_given);
+        found.map(|(focal, _)| *focal).reduce(f64::max)
+    });
+    settings.errors.focal = focal.map(stated_percent);
     settings.errors.surface = of_surface.map(four_digits);
     let text = FlightFile::for_poses(&flight, &settings).to_toml()?;
     Ok(FlightFiles {

@@ -111,6 +111,9 @@ impl Folder {
         engine: &dyn Engine,
     ) -> Result<(), FileError> {
         let mut text = format!("{}\n", engine.name());
+        for given in photos.cameras.iter().filter(|camera| camera.is_given) {
+            text += &format!("{:?}\n", given.camera);
+        }
         for photo in &photos.photos {
             let size = fs::metadata(&photo.path).map_or(0, |file| file.len());
             text += &format!("{} {size} {}\n", photo.camera, photo.name);

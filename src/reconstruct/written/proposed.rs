@@ -61,6 +61,7 @@ mod tests {
             photos: photos.clone(),
             to: to.clone(),
             crs: None,
+            camera: None,
             dense: None,
         };
         // Nothing overlaps: it ends with a fault.

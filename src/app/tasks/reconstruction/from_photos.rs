@@ -140,6 +140,7 @@ impl State {
         let request = Request {
             photos: absolute(photos),
             to: absolute(to),
+            camera: None,
             crs: typed_text(&form.crs),
             dense: form.quality.dense(),
         };
