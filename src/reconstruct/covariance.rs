@@ -21,10 +21,8 @@ use crate::formats::{Observation, Reconstruction};
 pub(crate) struct Known {
     /// Of each photo of the reconstruction: standard deviations of its centre, units of the world.
     pub(crate) centers: Vec<Option<DVec3>>,
-    /// Of each camera: the standard deviation of its focal lengths, a part of them, where stated.
-    pub(crate) focal: Vec<Option<f64>>,
-    /// Of each camera: whether its lens is a calibration that is kept.
-    pub(crate) is_given: Vec<bool>,
+    /// Of each camera: standard deviations that its lens has without any photo, fx fy cx cy k1 k2 p1 p2.
+    pub(crate) lenses: Vec<[f64; LENS]>,
 }
 
 /// Standard deviations.
@@ -45,13 +43,6 @@ const AT_ONCE: usize = 4096;
 /// Numbers of a pose, and of a lens.
 const POSE: usize = 6;
 const LENS: usize = 8;
-/// Standard deviations that numbers of a lens have of which nobody says anything: wide, but no solution is
-/// singular for want of them. The principal point's is a part of the longer side.
-const CENTRE: f64 = 0.005;
-const COEFFICIENT: f64 = 1.0;
-/// Of those what a number has that is kept.
-const KEPT: f64 = 1e-6;
-
 /// Of a reconstruction in the world; `None` where fewer than three centres are known, so that the world
 /// is not determined, where nothing was observed, or where it has too many photos.
 pub(crate) fn deviations(model: &Reconstruction, known: &Known) -> Option<Deviations> {
@@ -83,18 +74,9 @@ pub(crate) fn deviations(model: &Reconstruction, known: &Known) -> Option<Deviat
             normal[(at, at)] += center[axis].max(1e-9).powi(-2);
         }
     }
-    for (number, camera) in model.cameras.iter().enumerate() {
-        let middle = CENTRE * f64::from(camera.width.max(camera.height));
-        let focal = known.focal.get(number).copied().flatten().unwrap_or(1.0);
-        let deviations = [focal * camera.fx, focal * camera.fy, middle, middle];
-        let is_given = known.is_given.get(number) == Some(&true);
-        for (place, deviation) in deviations.into_iter().chain([COEFFICIENT; 4]).enumerate() {
+    for (number, lens) in known.lenses.iter().enumerate() {
+        for (place, deviation) in lens.iter().enumerate() {
             let at = photos * POSE + number * LENS + place;
-            let deviation = if is_given {
-                KEPT * deviation
-            } else {
-                deviation
-            };
             normal[(at, at)] += deviation.powi(-2);
         }
     }
@@ -353,10 +335,10 @@ mod tests {
     #[test]
     fn deviations_are_those_of_the_whole_matrix() {
         let model = model();
+        let lens = [30.0, 30.03, 6.4, 6.4, 1.0, 1.0, 0.01, 0.01_f64];
         let known = Known {
             centers: vec![Some(DVec3::new(0.02, 0.02, 0.04)); 5],
-            focal: vec![Some(0.03)],
-            is_given: Vec::new(),
+            lenses: vec![lens],
         };
         let found = deviations(&model, &known).unwrap();
         let (photos, points) = (model.photos.len(), model.cloud.points.len());
@@ -405,7 +387,6 @@ mod tests {
                 normal[(at, at)] += deviation.powi(-2);
             }
         }
-        let lens = [30.0, 30.03, 6.4, 6.4, 1.0, 1.0, 1.0, 1.0_f64];
         for (place, deviation) in lens.into_iter().enumerate() {
             let at = photos * 6 + place;
             normal[(at, at)] += deviation.powi(-2);
@@ -436,17 +417,7 @@ mod tests {
     #[test]
     fn two_centres_are_too_few() {
         let centers = [Some(DVec3::ONE), Some(DVec3::ONE), None, None, None].to_vec();
-        let focal = vec![None];
-        assert_eq!(
-            deviations(
-                &model(),
-                &Known {
-                    centers,
-                    focal,
-                    is_given: Vec::new()
-                }
-            ),
-            None
-        );
+        let lenses = vec![[1.0; LENS]];
+        assert_eq!(deviations(&model(), &Known { centers, lenses }), None);
     }
 }

@@ -51,12 +51,16 @@ pub(crate) fn adjust(model: &mut Reconstruction, what: Adjustment<'_>) -> Result
         let camera = model.camera(camera);
         camera.is_some_and(|camera| camera.model == CameraModelKind::Pinhole)
     });
+    let lenses = what.whose.cameras().map(|(camera, known)| {
+        let (values, deviations) = known.expected();
+        (camera, (values.to_vec(), deviations.to_vec()))
+    });
     let config = BaConfig {
         refine_focal_length: !is_local,
         refine_principal_point: !is_local,
         refine_extra_params: !is_local,
         constant_cameras: few.chain(given).collect(),
-        intrinsics_priors: lenses(what.whose),
+        intrinsics_priors: lenses.collect(),
         position_priors: what.places,
         images: what.images,
         loss: Loss::Huber(1.0),
@@ -71,23 +75,4 @@ pub(crate) fn adjust(model: &mut Reconstruction, what: Adjustment<'_>) -> Result
     model.filter_observations_with_large_reprojection_error(FARTHEST_PX, None);
     model.filter_points3d_with_small_triangulation_angle(LEAST_ANGLE, None);
     Ok(())
-}
-
-/// Lenses as they are stated, with standard deviations: fx fy cx cy k1 k2 p1 p2.
-///
-/// Flat ground seen straight down says little of a focal length and less of the principal point. Where
-/// nobody states one, the focal length is free; the principal point is within 1 % of the middle, as those of
-/// drones are.
-fn lenses(whose: &Whose<'_>) -> HashMap<u32, (Vec<f64>, Vec<f64>)> {
-    let cameras = whose.cameras();
-    cameras
-        .map(|(id, known)| {
-            let camera = &known.camera;
-            let focal = known.focal_error.unwrap_or(1.0);
-            let middle = 0.005 * f64::from(camera.width.max(camera.height));
-            let values = vec![camera.fx, camera.fy, camera.cx, camera.cy];
-            let deviations = vec![focal * camera.fx, focal * camera.fy, middle, middle];
-            (id, (values, deviations))
-        })
-        .collect()
 }

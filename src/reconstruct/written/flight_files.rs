@@ -3,6 +3,7 @@
 
 use std::borrow::Cow;
 
+use crate::camera::Camera;
 use crate::covariance::{Deviations, Known, deviations};
 use crate::dense_cloud::DenseCloud;
 use crate::exports::{PoseRow, StatedDeviations, laz, ply, poses_csv};
@@ -59,16 +60,15 @@ pub(crate) fn flight_files(
         let taken = model.photos.iter().find(|photo| photo.camera == camera)?;
         Some(&photos.cameras[photos.named(&taken.name)?.camera])
     };
+    let lens = |(number, camera): (usize, &Camera)| match taken_by(number) {
+        Some(known) => known.expected().1,
+        None => [camera.fx; 8],
+    };
     let known = Known {
         centers: (model.photos.iter())
             .map(|photo| photos.named(&photo.name)?.place?.deviation)
             .collect(),
-        focal: (0..model.cameras.len())
-            .map(|camera| taken_by(camera)?.focal_error)
-            .collect(),
-        is_given: (0..model.cameras.len())
-            .map(|camera| taken_by(camera).is_some_and(|camera| camera.is_given))
-            .collect(),
+        lenses: model.cameras.iter().enumerate().map(lens).collect(),
     };
     let sure = deviations(&model, &known);
     let mut warnings = Vec::new();
@@ -117,9 +117,9 @@ pub(crate) fn flight_files(
     settings.errors.world_scale = placed.scale_error.map(stated_percent);
     // How sure a given calibration is, is for whoever gave it to say.
     let focal = sure.as_ref().and_then(|sure| {
-        let found = sure.focal.iter().zip(&known.is_given);
-        let found = found.filter(|(_, is_given)| !**is_given);
-        found.map(|(focal, _)| *focal).reduce(f64::max)
+        let found = sure.focal.iter().enumerate();
+        let found = found.filter(|(number, _)| taken_by(*number).is_some_and(|its| !its.is_given));
+        found.map(|(_, focal)| *focal).reduce(f64::max)
     });
     settings.errors.focal = focal.map(stated_percent);
     settings.errors.surface = of_surface.map(four_digits);
