@@ -96,11 +96,13 @@ pub fn reconstruction_report(report: &ReconstructionReport<'_>) -> String {
     let mut body = vec![paragraph(&found_by), facts.collect()];
     body.push(notes(&report.warnings));
     if let Some(map) = coverage::map(report) {
+        let north = report.unit.map_or("", |_| " North is up.");
         body.push(heading(2, "In how many photos the points were found"));
-        body.push(paragraph(
+        body.push(paragraph(&format!(
             "Mean number of photos in which the points of a cell were found again; more may show them. Triangles are \
-             cameras. Where it is below 3, depths rest mostly on two views, and gross errors are not noticed.",
-        ));
+             cameras, numbers at the grid {unit}.{north} Where it is below 3, depths rest mostly on two views, and gross \
+             errors are not noticed.",
+        )));
         body.push(html_page::figure(&map));
     }
     body.push(heading(2, "Cameras"));

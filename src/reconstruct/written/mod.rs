@@ -15,6 +15,7 @@ use std::path::PathBuf;
 
 use self::flight_files::{FlightOf, SOURCE, flight_files};
 use self::folder::FLIGHT;
+use self::proposed::name_of;
 use self::report::{ReportOf, report};
 use crate::dense_cloud::{DenseCloud, dense_cloud};
 use crate::engine::Sparse;
@@ -71,8 +72,7 @@ pub(crate) fn write(
         count: dense.cloud.points.len(),
         deviation: dense.deviation,
     });
-    let name = request.photos.canonicalize().unwrap_or_default();
-    let name = name.file_name().unwrap_or_default().to_string_lossy();
+    let name = name_of(&request.photos);
     // flight.toml is the last: with it the folder is a flight.
     let (placed, model, sure, files) = match placed {
         Ok(placed) => {

@@ -8,12 +8,26 @@ use super::folder::checked;
 /// that a run left unfinished is proposed again, for the next one goes on in it.
 pub fn proposed_folder(photos: &Path) -> PathBuf {
     let photos = photos.canonicalize().unwrap_or_else(|_| photos.to_owned());
-    let name = photos.file_name().unwrap_or_default().to_string_lossy();
+    let name = name_of(&photos);
     let beside = photos.parent().unwrap_or(&photos);
     let numbered = (2..).map(|number| format!("{name} flight {number}"));
     let mut names = std::iter::once(format!("{name} flight")).chain(numbered);
     let free = names.find(|name| may_be_made(&beside.join(name)));
     beside.join(free.unwrap_or_default())
+}
+
+/// Folders that are called so say nothing of the blast that their photos are of.
+const PLAIN: [&str; 6] = ["photos", "images", "pictures", "dcim", "jpg", "jpeg"];
+
+/// What a flight of photos in a folder is called: as the folder, or as the one that it lies in where its own name
+/// says nothing.
+pub(super) fn name_of(photos: &Path) -> String {
+    let photos = photos.canonicalize().unwrap_or_else(|_| photos.to_owned());
+    let named = |folder: &Path| Some(folder.file_name()?.to_string_lossy().into_owned());
+    let own = named(&photos).unwrap_or_default();
+    let is_plain = PLAIN.contains(&own.to_lowercase().as_str());
+    let above = photos.parent().filter(|_| is_plain).and_then(named);
+    above.unwrap_or(own)
 }
 
 /// Whether a flight of photos may be made here: a folder that is new, empty, or of a run that did not end.
@@ -42,6 +56,17 @@ mod tests {
         fs::write(first.join("notes.txt"), "mine").unwrap();
         let second = root.join("face 3 flight 2");
         assert_eq!(proposed_folder(&photos), second);
+    }
+
+    #[test]
+    fn a_plain_folder_is_called_as_the_one_above() {
+        let folder = tempfile::tempdir().unwrap();
+        let photos = folder.path().join("face 7").join("DCIM");
+        fs::create_dir_all(&photos).unwrap();
+        assert_eq!(name_of(&photos), "face 7");
+        assert_eq!(name_of(photos.parent().unwrap()), "face 7");
+        assert!(proposed_folder(&photos).ends_with("face 7/face 7 flight"));
+        assert_eq!(name_of(Path::new("/")), "");
     }
 
     /// What a cancelled run leaves is what the next one goes on with.
