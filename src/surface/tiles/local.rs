@@ -1,6 +1,7 @@
 //! The triangulation of the sites in and around one tile, and which triangles of it are the tile's own.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 
 use glam::DVec2;
 use robust::incircle;
@@ -20,6 +21,8 @@ pub(super) struct Local<'a> {
     sites: &'a Sites,
     /// The tile with its margin: all of its sites are here.
     region: Cells,
+    /// The indices of these sites, a range a row, ascending.
+    held: Vec<Range<usize>>,
     /// The sites that are here: those of the region row by row, then those that joined.
     here: Vec<u32>,
     /// Of each of them: whether it is one of the tile's own.
@@ -53,6 +56,7 @@ impl<'a> Local<'a> {
         }
         let mut local = Self {
             sites,
+            held: sites.ranges_of(&region).collect(),
             region,
             here,
             is_own,
@@ -87,8 +91,11 @@ impl<'a> Local<'a> {
     }
 
     fn is_here(&self, site: u32) -> bool {
-        let mut of_region = self.sites.ranges_of(&self.region);
-        self.joined.contains(&site) || of_region.any(|range| range.contains(&(site as usize)))
+        // Around a gap of the cloud circles hold many sites, and each is asked for.
+        let index = site as usize;
+        let row = self.held.partition_point(|range| range.end <= index);
+        let is_held = self.held.get(row).is_some_and(|range| range.contains(&index));
+        is_held || self.joined.contains(&site)
     }
 
     /// Triangulates the sites that are here.
