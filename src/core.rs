@@ -4,6 +4,7 @@
 //! The root of this crate lies beside its modules, its manifest in `src/core/`.
 
 pub mod camera;
+pub mod control;
 pub mod fault;
 pub mod files;
 pub mod flight;

@@ -29,6 +29,7 @@
 //!     picture/                   pixels of photos: undistorting, reducing, drawing on them
 //! F2  scale/                     corner rays -> corner points -> scales; footprints
 //!     survey/                    profiles, areas and volumes on the surface
+//!     control/                   control points: marks in photos, their places, epipolar lines
 //! F1  camera/   surface/         intrinsics, distortion, pose | triangulation, ray casting
 //!     fragmentation/             size distributions: functions, fits, analysis
 //!     geodesy/  georeference/    coordinate systems | a frame of its own brought to the world
@@ -71,8 +72,8 @@ pub mod cli;
 #[cfg(feature = "app")]
 pub use fragscale_app as app;
 pub use fragscale_core::{
-    camera, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, picture, raster,
-    scale, split_mix, surface, survey, units,
+    camera, control, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, picture,
+    raster, scale, split_mix, surface, survey, units,
 };
 pub use fragscale_exports as exports;
 pub use fragscale_formats as formats;

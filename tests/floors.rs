@@ -21,7 +21,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The core's modules and their floors. `fault` is the cellar: a sentence that every floor can say.
-const FLOORS: [(&str, i32); 16] = [
+const FLOORS: [(&str, i32); 17] = [
     ("fault", -1),
     ("files", 0),
     ("geometry", 0),
@@ -36,6 +36,7 @@ const FLOORS: [(&str, i32); 16] = [
     ("surface", 1),
     ("scale", 2),
     ("survey", 2),
+    ("control", 2),
     ("flight", 3),
     ("picture", 3),
 ];

@@ -129,6 +129,7 @@ impl State {
             Command::Decide(photo, decision) => self.decide(photo, decision),
             Command::Review(step) => self.review_step(step),
             Command::ToggleTint => self.toggle_tint(),
+            Command::Control(step) => self.control_step(step),
             Command::Trace(step) => self.trace(step),
             Command::ToggleLoupe => self.toggle_loupe(),
             Command::GoToCorner(name) => {
@@ -165,6 +166,7 @@ impl State {
         }
         if let Some(open) = &mut self.open {
             open.looking.orbit.orthographic = self.preferences.layers.orthographic;
+            open.look_at_control();
         }
         self.look_at_values();
         self.upload_beside();
@@ -258,6 +260,7 @@ impl State {
                     | Asking::VolumeBase
                     | Asking::CloudUse
                     | Asking::AddLayer
+                    | Asking::ControlList
             )
         );
         if needs_flight && self.open.is_none() {
@@ -356,7 +359,8 @@ impl State {
         };
         let now = open.settings();
         let is_same_cloud = open.computed.surface.thinning == now.surface.thinning
-            && open.computed.surface_up == now.surface_up;
+            && open.computed.surface_up == now.surface_up
+            && open.computed.placed == now.placed;
         if is_same_cloud {
             self.start_scales();
         } else {

@@ -11,6 +11,7 @@
 //! state/              everything that panels read
 //! linked/             the point under the mouse, in the pile and in the photos
 //! photo_view/         the selected photo in the middle of the window
+//! control_points/     points that are marked in photos, and what follows from them
 //! map/                the page of the map
 //! from_photos         what the small window for a new flight from photos holds
 //! size_distributions/ the page of size distributions
@@ -22,6 +23,7 @@
 pub mod actions;
 pub mod apply;
 pub mod command;
+pub mod control_points;
 pub mod corner_loupe;
 mod deciding;
 mod fonts;
@@ -44,7 +46,8 @@ pub mod viewport;
 mod writing;
 
 use fragscale_core::{
-    camera, fault, files, flight, geometry, jobs, numbers, picture, scale, surface, survey, units,
+    camera, control, fault, files, flight, geometry, jobs, numbers, picture, scale, surface,
+    survey, units,
 };
 use fragscale_exports as exports;
 use fragscale_formats as formats;
@@ -62,6 +65,7 @@ pub use state::State;
 use command::Asking;
 use flight::Verdict;
 use frame_times::{FrameTimes, Phase};
+use open_flight::OpenFlight;
 use panels::{Inspector, PhotoPanel};
 use photo_view::Middle;
 use size_distributions::{DistributionCommand, Page, PasteForm, ResultTab};
@@ -217,13 +221,18 @@ impl eframe::App for App {
         } else if state.open.is_some() {
             // However narrow the window is, a part of it is left for the viewport: a third of it at first.
             let width = ui.available_width();
+            let marks = |open: &OpenFlight| open.control.is_on && state.page == Page::Pile;
+            let is_marking = state.open.as_deref().is_some_and(marks);
             if state.preferences.left_open {
                 egui::Panel::left("photos")
                     .resizable(true)
                     .default_size((width * 0.36).clamp(180.0, 500.0))
                     .min_size(180.0)
                     .max_size((width * 0.4).max(180.0))
-                    .show(ui, |ui| panels::photos_table(state, ui, out));
+                    .show(ui, |ui| match is_marking {
+                        true => panels::control_points(state, ui, out),
+                        false => panels::photos_table(state, ui, out),
+                    });
             }
             if state.preferences.right_open {
                 self.inspector.crops = self.viewport.crops(state, ui);

@@ -37,6 +37,7 @@ impl State {
             for (request, measured) in measured.into_iter().flatten() {
                 open.take_measured(&request, measured);
             }
+            open.look_at_control();
             if open.selected != before {
                 self.load_preview();
             }

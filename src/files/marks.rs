@@ -33,7 +33,7 @@ pub(super) const LOOKED_AT: u64 = 4096;
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A flight file: what a person has set is in it, so no result takes its place.
+    /// A flight file or a list of control points: what a person has set is in it, so no result takes its place.
     Flight,
     /// Anything that can be made again from what was read: tables, figures, pictures, reports.
     Result,
@@ -42,7 +42,10 @@ pub enum Kind {
 impl Kind {
     /// Of a file that fragscale wrote, told by its beginning; `None` of any other.
     pub(super) fn of(beginning: &[u8]) -> Option<Self> {
-        if beginning.starts_with(FLIGHT_MARK.trim_end().as_bytes()) {
+        // The first line of a list of control points names its coordinate system.
+        let mut lines = beginning.split(|byte| *byte == b'\n').take(2);
+        let mark = FLIGHT_MARK.trim_end().as_bytes();
+        if lines.any(|line| line.starts_with(mark)) {
             return Some(Self::Flight);
         }
         let is_picture = is_png(beginning) || is_tiff(beginning) || is_pdf(beginning);

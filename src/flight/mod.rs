@@ -9,6 +9,7 @@ mod evidence;
 mod file;
 mod name_order;
 mod named_photo;
+mod placed;
 mod placement;
 mod review;
 mod scale_object;
@@ -28,12 +29,14 @@ pub use file::{
     CameraEntry, CameraSource, FlightFile, PhotoSource, PosesFlight, ReconstructionFlight,
 };
 pub use name_order::compare_names;
+pub use placed::{Placed, moved_errors};
 pub use placement::Placement;
 pub use review::{Along, PhotoReview, Review};
 pub use scale_object::{ComparedObject, ScaleObject};
 pub use verdict::{Limits, Verdict};
 
 use crate::camera::{Camera, Pose};
+use crate::control::ControlList;
 use crate::fault::Fault;
 use crate::scale::{Ground, ImageKind, PhotoScale, PoseErrors, ScalePair, StatedErrors};
 use crate::surface::{Surface, SurfaceOptions, UpAxis};
@@ -80,6 +83,10 @@ pub struct FlightSettings {
     pub scale_objects: Vec<ScaleObject>,
     /// What the engineer has decided of photos, each named once: no scale depends on it.
     pub decisions: Vec<Decision>,
+    /// How the flight, as its files give it, was brought to the world by control points.
+    pub placed: Option<Placed>,
+    /// Control points, in a file of their own beside flight.toml: no scale depends on them but through `placed`.
+    pub control: ControlList,
 }
 
 impl Default for FlightSettings {
@@ -96,6 +103,8 @@ impl Default for FlightSettings {
             surface_up: UpAxis::default(),
             scale_objects: Vec::new(),
             decisions: Vec::new(),
+            placed: None,
+            control: ControlList::default(),
         }
     }
 }
@@ -132,12 +141,14 @@ impl FlightSettings {
             surface_up,
             pair: _,
             errors: _,
+            placed,
             scale_objects: _,
             decisions: _,
+            control: _,
         } = self;
         (*unit, *unit_known) == (other.unit, other.unit_known)
             && (*ground, *image, *surface) == (other.ground, other.image, other.surface)
-            && *surface_up == other.surface_up
+            && (*surface_up, placed) == (other.surface_up, &other.placed)
     }
 }
 

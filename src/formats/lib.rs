@@ -24,7 +24,7 @@ pub mod tables;
 pub mod text;
 
 use fragscale_core::{
-    camera, fault, files, geodesy, geometry, jobs, raster, scale, surface, units,
+    camera, control, fault, files, geodesy, geometry, jobs, raster, scale, surface, units,
 };
 use fragscale_fragmentation as fragmentation;
 
@@ -40,7 +40,7 @@ pub use packages::reconstruction::{
 };
 pub use poses::poses_csv::{PoseLine, PosesFile};
 pub use poses::position_list::{
-    ControlPoint, ControlPoints, NamedPosition, PositionList, positions_of_photos,
+    ControlPoints, NamedPosition, PositionList, control_list_text, positions_of_photos,
     read_control_points, read_positions,
 };
 pub use poses::trajectory::TrajectoryFormat;

@@ -63,7 +63,7 @@ fn known_places(path: &Path, format: CloudFormat) -> Option<Fault> {
     }
     let (what, option) = match (read_control_points(path), read_positions(path)) {
         (Ok(list), _) => (
-            format!("{} ground control points", list.points.len()),
+            format!("{} ground control points", list.list.points.len()),
             "gcp",
         ),
         (_, Ok(list)) => (

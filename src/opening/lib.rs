@@ -27,8 +27,8 @@ mod second_surface;
 mod world;
 
 use fragscale_core::{
-    camera, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, picture, scale,
-    surface, units,
+    camera, control, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, picture,
+    scale, surface, units,
 };
 use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
@@ -37,7 +37,8 @@ pub use dropped::Dropped;
 pub use evidence::{Colours, compare_all_colours, compare_colours, look_up};
 pub use georeferencing::{
     GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind, LengthResidual,
-    PositionResidual, flight_text_of, georeference, georeference_model,
+    PositionResidual, control_file, control_text, flight_text_of, georeference,
+    georeference_flight, georeference_model, read_control,
 };
 pub use health::{Health, HealthFinding, HealthItem, Remedy, StatedOfFlight, flight_health};
 pub use info::info;

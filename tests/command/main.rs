@@ -18,6 +18,7 @@ mod own_frame;
 mod wrong_pile;
 
 mod anova;
+mod clicked;
 #[cfg(all(feature = "app", target_os = "linux"))]
 mod clipboard;
 mod contract;

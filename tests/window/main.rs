@@ -25,6 +25,7 @@ mod beside;
 mod broken;
 mod clip;
 mod colors;
+mod control_points;
 mod corner_loupe;
 mod decisions;
 mod desk;

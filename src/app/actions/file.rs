@@ -4,6 +4,7 @@ use egui::{Key, Modifiers};
 
 use super::{Action, SHIFT, keys, on_pile, with_distributions, with_flight};
 use crate::command::{Answers, Asking, Command, Dialog};
+use crate::control_points::ControlStep;
 use crate::from_photos::FromPhotosStep;
 use crate::size_distributions::DistributionCommand;
 
@@ -63,6 +64,16 @@ actions! {
         command: |state| {
             state.open.as_ref()?.files.reconstruction.as_ref()?;
             Some(Command::Ask(Some(Asking::Georeference)))
+        },
+    }
+    CONTROL_POINTS {
+        label: "Control points…",
+        hover: "Click surveyed points and the ends of scale bars in photos: they bring the flight to the world, or \
+                give it its unit",
+        shortcut: keys(Modifiers::NONE, Key::G),
+        command: |state| {
+            let has_photos = state.open.as_ref()?.review.count() > 1;
+            has_photos.then(|| on_pile(state, Command::Control(ControlStep::Toggle)))?
         },
     }
     OPEN_SAMPLE {
@@ -161,6 +172,7 @@ pub const MENU: &[Option<Action>] = &[
     Some(ADD),
     Some(ADD_LAYER),
     Some(GEOREFERENCE),
+    Some(CONTROL_POINTS),
     Some(OPEN_SAMPLE),
     None,
     Some(ADD_DISTRIBUTIONS),

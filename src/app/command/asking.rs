@@ -36,6 +36,8 @@ pub enum Asking {
     SaveFigure,
     /// Where the report on them goes.
     SaveReport,
+    /// Which list has the control points.
+    ControlList,
     /// Which cloud is drawn beside the surface.
     AddLayer,
     /// What the cloud is to be that was dropped or opened beside a flight.

@@ -15,6 +15,7 @@ pub use dialog::{Answers, Chooses, Dialog};
 pub use review_step::ReviewStep;
 pub use view_change::ViewChange;
 
+use crate::control_points::ControlStep;
 use crate::flight::{DecisionKind, FlightSettings, Limits, Verdict};
 use crate::from_photos::FromPhotosStep;
 use crate::geometry::Ray;
@@ -205,6 +206,8 @@ pub enum Command {
     Clip(ClipStep),
     /// Does something with the picked points.
     Pick(PickStep),
+    /// Does something with the control points.
+    Control(ControlStep),
     /// A step of tracing a scale object on the selected photo.
     Trace(Trace),
     /// Shows the corners enlarged, or does no longer.

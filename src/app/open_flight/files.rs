@@ -43,10 +43,12 @@ pub struct FlightFiles {
 impl FlightFiles {
     /// Of a flight that was just read.
     pub(crate) fn new(path: PathBuf, options: OpenOptions, opened: Opened) -> Self {
-        let saved = opened
+        let mut saved = opened
             .file
             .as_ref()
             .map_or_else(|| opened.settings.clone(), |(_, file)| file.settings());
+        // They are in a file of their own.
+        saved.control.clone_from(&opened.settings.control);
         let bundled = is_bundled(&opened.origin.suggested_file());
         Self {
             path,

@@ -21,6 +21,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use glam::DVec3;
 
+use crate::control_points::Control;
 use crate::corner_loupe::CornerFacts;
 use crate::exports::PhotoLine;
 use crate::flight::{
@@ -192,6 +193,8 @@ pub struct OpenFlight {
     pub pointer: Pointer,
     /// Scale objects on its photos.
     pub objects: TracedObjects,
+    /// Marking control points.
+    pub control: Control,
 }
 
 impl OpenFlight {
@@ -264,6 +267,7 @@ impl OpenFlight {
             },
             pointer: Pointer::default(),
             objects: TracedObjects::default(),
+            control: Control::default(),
         };
         open.arrange();
         open.order_line();
@@ -311,6 +315,7 @@ impl OpenFlight {
                 decisions: now.decisions,
                 pair: now.pair,
                 errors: now.errors,
+                control: now.control,
                 ..self.computed.clone()
             });
             self.arrange();

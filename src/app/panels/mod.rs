@@ -1,6 +1,7 @@
 //! The parts of the window. Each is a function that reads the state and sends commands.
 
 mod cloud_alone;
+mod control_points;
 mod corner_loupe;
 mod dialogs;
 mod field;
@@ -26,6 +27,7 @@ mod tool_bar;
 mod verdict;
 mod view_buttons;
 
+pub use control_points::control as control_points;
 pub use corner_loupe::Crops;
 pub use dialogs::ask;
 pub use health::health;

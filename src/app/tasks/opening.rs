@@ -180,6 +180,7 @@ impl State {
         self.start_comparing();
         self.start_geometry();
         self.load_preview();
+        self.load_full_photo();
         self.start_thumbnails();
         let Some(open) = &self.open else {
             return;
@@ -235,11 +236,20 @@ impl OpenFlight {
         self.files.opened_file.clone_from(&before.files.opened_file);
         self.files.read.extend(&before.files.read);
         self.files.bundled = before.files.bundled;
-        self.pointer.measure = before.pointer.measure;
-        std::mem::swap(&mut self.pointer.picked, &mut before.pointer.picked);
         self.colors.keep_limits(&before.colors);
-        self.clip = before.clip;
-        std::mem::swap(&mut self.clip_history, &mut before.clip_history);
+        // Brought to another place by control points, what was clicked and looked at is elsewhere.
+        if self.computed.placed == before.computed.placed {
+            self.pointer.measure = before.pointer.measure;
+            std::mem::swap(&mut self.pointer.picked, &mut before.pointer.picked);
+            self.clip = before.clip;
+            std::mem::swap(&mut self.clip_history, &mut before.clip_history);
+            self.looking = before.looking;
+        } else {
+            self.looking.size = before.looking.size;
+        }
+        std::mem::swap(&mut self.control, &mut before.control);
+        self.photo_view.placing = before.photo_view.placing;
+        self.photo_view.image = before.photo_view.image;
         std::mem::swap(&mut self.beside, &mut before.beside);
         for beside in &mut self.beside {
             // The local frame may be another one.
@@ -252,7 +262,6 @@ impl OpenFlight {
         std::mem::swap(&mut self.history, &mut before.history);
         self.selected = before.selected;
         std::mem::swap(&mut self.table.order, &mut before.table.order);
-        self.looking = before.looking;
         before.let_go();
     }
 }

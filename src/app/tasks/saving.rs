@@ -61,8 +61,14 @@ impl State {
         };
         let (settings, origin) = (open.settings(), open.files.origin.clone());
         let flight = origin.clone();
+        let list = open.control_to_save(&path);
         let work = move |_: &Progress| {
-            let saved = origin.text_at(&path, &settings).and_then(|text| {
+            let text = origin.text_at(&path, &settings);
+            let with_list = text.and_then(|text| {
+                list.iter().try_for_each(|list| list.write(&read))?;
+                Ok(text)
+            });
+            let saved = with_list.and_then(|text| {
                 files::write(&path, text.as_bytes(), Kind::Flight, &read, replace)
                     .map_err(|fault| FileError::new(&path, fault))
             });

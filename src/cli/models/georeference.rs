@@ -24,7 +24,8 @@ pub(in crate::cli) struct GeoreferenceArguments {
     /// A list of the photos' positions: CSV, OpenDroneMap's geo.txt, DJI's .MRK.
     #[arg(long, value_name = "FILE")]
     positions: Option<PathBuf>,
-    /// Ground control points with their marks in photos: OpenDroneMap's gcp_list.txt.
+    /// Ground control points with their marks in photos: OpenDroneMap's gcp_list.txt, or the list with scale bars that
+    /// the window saves beside a flight.
     #[arg(long, value_name = "FILE")]
     gcp: Option<PathBuf>,
     /// A known distance in metres between two points of the reconstruction,
@@ -68,6 +69,7 @@ pub(in crate::cli) fn georeference(
         photos: arguments.photos.clone(),
         positions: arguments.positions.clone(),
         control_points: arguments.gcp.clone(),
+        marked: None,
         distances: arguments.distance.clone(),
         crs: arguments.crs.clone(),
         level: arguments.level,

@@ -2,6 +2,7 @@
 
 use super::{FlightFile, UNKNOWN_UNIT};
 use crate::fault::Fault;
+use crate::geometry::Similarity;
 use crate::scale::Ground;
 use crate::surface::{SurfaceError, UpAxis};
 use crate::units::LengthUnit;
@@ -40,6 +41,23 @@ impl FlightFile {
         if self.crs() == Some("") {
             let what = "world.crs is empty".to_owned();
             return at("world", "crs", what, "name a system, or remove the key");
+        }
+        if let Some(placed) = &self.world.placed {
+            let sixteen: Option<&[f64; 16]> = placed.transform.as_slice().try_into().ok();
+            let trouble = match sixteen.map(Similarity::from_row_major) {
+                None => Some(format!("it has {} numbers", placed.transform.len())),
+                Some(Err(error)) => Some(error.to_string()),
+                Some(Ok(_)) => None,
+            };
+            if let Some(trouble) = trouble {
+                let what = format!("world.placed.transform: {trouble}");
+                return at(
+                    "world",
+                    "placed",
+                    what,
+                    "give the 16 of a row-major 4x4 similarity",
+                );
+            }
         }
         let photos = &self.photos;
         let camera_files = self

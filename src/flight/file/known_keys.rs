@@ -23,7 +23,7 @@ const KNOWN_KEYS: [(&str, &[&str]); 9] = [
             "review",
         ],
     ),
-    ("world", &["unit", "ground", "crs"]),
+    ("world", &["unit", "ground", "crs", "placed"]),
     ("surface", &["file", "up", "max_edge", "thinning"]),
     (
         "camera",

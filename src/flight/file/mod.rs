@@ -18,9 +18,10 @@ pub use self::poses_flight::PosesFlight;
 
 use self::known_keys::{key_line, line_of, nth_key_line, refuse_unknown_keys};
 use self::uncertainty_entry::UncertaintyEntry;
-use super::FlightSettings;
 use super::decision::{Decision, DecisionEntry};
 use super::scale_object::{ScaleObject, ScaleObjectEntry};
+use super::{FlightSettings, Placed};
+use crate::control::ControlList;
 use crate::fault::Fault;
 use crate::files::FLIGHT_MARK;
 use crate::scale::{Ground, ImageKind, ScalePair, StatedErrors};
@@ -63,6 +64,26 @@ pub(super) struct World {
     pub(super) ground: GroundEntry,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) crs: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) placed: Option<PlacedEntry>,
+}
+
+/// How the whole flight was brought to the world.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PlacedEntry {
+    pub(super) transform: Vec<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) crs: Option<String>,
+}
+
+impl From<&Placed> for PlacedEntry {
+    fn from(placed: &Placed) -> Self {
+        Self {
+            transform: placed.transform.to_vec(),
+            crs: placed.crs.clone(),
+        }
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -263,6 +284,7 @@ impl FlightFile {
                 unit: unit_word(settings).to_owned(),
                 ground: GroundEntry(settings.ground),
                 crs: flight.crs.map(str::to_owned),
+                placed: settings.placed.as_ref().map(PlacedEntry::from),
             },
             surface: (surface != SurfaceEntry::default()).then_some(surface),
             cameras: Vec::new(),
@@ -357,7 +379,7 @@ impl FlightFile {
         }
     }
 
-    /// All that can be set while the flight is looked at.
+    /// All that can be set while the flight is looked at, without control points: those are not in this file.
     pub fn settings(&self) -> FlightSettings {
         FlightSettings {
             unit: self.unit().unwrap_or(LengthUnit::Metre),
@@ -370,7 +392,19 @@ impl FlightFile {
             surface_up: self.surface_up(),
             scale_objects: self.scale_objects.iter().map(ScaleObject::from).collect(),
             decisions: self.decisions.iter().map(Decision::from).collect(),
+            placed: self.placed(),
+            control: ControlList::default(),
         }
+    }
+
+    /// How the whole flight was brought to the world.
+    fn placed(&self) -> Option<Placed> {
+        let entry = self.world.placed.as_ref()?;
+        Some(Placed {
+            // `parse` has checked it.
+            transform: entry.transform.as_slice().try_into().ok()?,
+            crs: entry.crs.clone(),
+        })
     }
 
     /// The folder of the image files, relative to flight.toml.

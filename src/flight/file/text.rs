@@ -4,7 +4,7 @@ use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, Value
 
 use super::decisions_text::set_decisions;
 use super::uncertainty_entry::Axes;
-use super::{FlightFile, FlightSettings, ScaleObject, unit_word, up_word};
+use super::{FlightFile, FlightSettings, Placed, ScaleObject, unit_word, up_word};
 use crate::fault::Fault;
 use crate::scale::{Ground, ImageKind, ScalePair, StatedErrors};
 
@@ -70,12 +70,23 @@ impl FlightFile {
         if settings.scale_objects != old.scale_objects {
             set_scale_objects(&mut document, &old.scale_objects, &settings.scale_objects)?;
         }
+        if settings.placed != old.placed {
+            match &settings.placed {
+                Some(placed) => set(&mut document, "world", "placed", inline(placed))?,
+                None => unset(&mut document, "world", "placed"),
+            }
+        }
         if settings.decisions != old.decisions {
             set_decisions(&mut document, &old.decisions, &settings.decisions)?;
         }
         let text = with_line_ends_of(text, document.to_string());
         // What is read next time must be what was meant.
-        if Self::parse(&text)?.settings() == *settings {
+        let meant = FlightSettings {
+            // They are in a file of their own.
+            control: old.control,
+            ..settings.clone()
+        };
+        if Self::parse(&text)?.settings() == meant {
             Ok(text)
         } else {
             Err(Fault::new(
@@ -197,6 +208,17 @@ fn set(
     Ok(())
 }
 
+/// How the flight was brought to the world, as a value in one line.
+fn inline(placed: &Placed) -> Value {
+    let mut table = toml_edit::InlineTable::new();
+    let transform: Array = placed.transform.into_iter().collect();
+    table.insert("transform", transform.into());
+    if let Some(crs) = &placed.crs {
+        table.insert("crs", crs.as_str().into());
+    }
+    table.into()
+}
+
 /// Takes a key out of a table, where there is one.
 fn unset(document: &mut DocumentMut, table: &str, key: &str) {
     if let Some(table) = document.get_mut(table).and_then(as_table) {
@@ -313,6 +335,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::control::ControlList;
     use crate::flight::{Date, Decision, DecisionKind, ReconstructionFlight};
     use crate::scale::PoseErrors;
     use crate::scale::ScaleObjectKind;
@@ -466,13 +489,36 @@ folder = "photos"
                 (errors, pair)
             },
         );
-        (settings, errors, objects, any_decisions()).prop_map(
+        let placed = prop::option::of((0.1..9.0_f64, -1e7..1e7_f64, any::<bool>()));
+        (settings, errors, objects, any_decisions(), placed).prop_map(
             |(
                 (unit, ground, image, max_edge, thinning),
                 (errors, pair),
                 scale_objects,
                 decisions,
+                placed,
             )| {
+                let placed = placed.map(|(scale, x, is_named)| Placed {
+                    transform: [
+                        scale,
+                        0.0,
+                        0.0,
+                        x,
+                        0.0,
+                        scale,
+                        0.0,
+                        5e6,
+                        0.0,
+                        0.0,
+                        scale,
+                        1.0 / 3.0,
+                        0.0,
+                        0.0,
+                        0.0,
+                        1.0,
+                    ],
+                    crs: is_named.then(|| "EPSG:32633".to_owned()),
+                });
                 FlightSettings {
                     pair,
                     errors,
@@ -484,6 +530,8 @@ folder = "photos"
                     surface_up: UpAxis::Z,
                     scale_objects,
                     decisions,
+                    placed,
+                    control: ControlList::default(),
                 }
             },
         )

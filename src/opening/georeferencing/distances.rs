@@ -3,17 +3,19 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::marks::MarkedPoint;
-use super::{GeoreferenceRequest, Georeferenced, KnownEnds, LengthResidual};
+use super::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, LengthResidual};
+use crate::control::ScaleBar;
 use crate::fault::Fault;
 use crate::formats::Reconstruction;
 use crate::geometry::Similarity;
 use crate::georeference::scale_of_lengths;
 use crate::units::LengthUnit;
 
-/// Fits the scale; `warnings` are what was said before.
+/// Fits the scale to `distances`; `warnings` are what was said before.
 pub(super) fn by_distances(
     reconstruction: &Reconstruction,
     request: &GeoreferenceRequest,
+    distances: &[KnownDistance],
     marked: &[MarkedPoint],
     mut warnings: Vec<String>,
 ) -> Result<Georeferenced, Fault> {
@@ -33,7 +35,7 @@ pub(super) fn by_distances(
         })
     };
     let mut lengths = Vec::new();
-    for distance in &request.distances {
+    for distance in distances {
         let (name, a, b) = match &distance.ends {
             KnownEnds::Points(a, b) => {
                 let shown = |p: &DVec3| format!("{},{},{}", p.x, p.y, p.z);
@@ -79,6 +81,52 @@ pub(super) fn by_distances(
         rotation_error_degrees: None,
         warnings,
     })
+}
+
+/// The scale bars whose two ends were found, as known distances; the others are said in `warnings`.
+pub(super) fn of_bars(
+    bars: &[ScaleBar],
+    marked: &[MarkedPoint],
+    warnings: &mut Vec<String>,
+) -> Vec<KnownDistance> {
+    let is_found = |name: &String| marked.iter().any(|point| point.name == *name);
+    let mut known = Vec::new();
+    for bar in bars {
+        let [from, to] = &bar.ends;
+        match bar.ends.iter().find(|end| !is_found(end)) {
+            None => known.push(KnownDistance {
+                ends: KnownEnds::Names(from.clone(), to.clone()),
+                metres: bar.metres(),
+            }),
+            Some(end) => warnings.push(format!(
+                "the scale bar from '{from}' to '{to}' is left out: '{end}' is not marked in two photos"
+            )),
+        }
+    }
+    known
+}
+
+/// How long scale bars are in a fitted world, `metres` to a unit of the reconstruction.
+pub(super) fn compared(
+    bars: &[KnownDistance],
+    marked: &[MarkedPoint],
+    metres: f64,
+) -> Vec<LengthResidual> {
+    let point = |name: &String| {
+        let found = marked.iter().find(|point| point.name == *name);
+        found.map(|point| point.found.point)
+    };
+    let compared = bars.iter().filter_map(|bar| {
+        let KnownEnds::Names(from, to) = &bar.ends else {
+            return None;
+        };
+        Some(LengthResidual {
+            name: format!("{from} to {to}"),
+            known: bar.metres,
+            fitted: point(from)?.distance(point(to)?) * metres,
+        })
+    });
+    compared.collect()
 }
 
 /// The least turn that brings the side of the reconstruction's points on which the cameras are up: the

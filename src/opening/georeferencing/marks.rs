@@ -6,30 +6,26 @@ use glam::{DVec2, DVec3};
 
 use super::photo_names::PhotoNames;
 use crate::camera::{Camera, Pose};
+use crate::control::{ControlList, Located, MarkedView, POOR_PX, locate};
 use crate::fault::Fault;
 use crate::formats::Reconstruction;
 use crate::formats::photos::photo_folder::PhotoFolder;
-use crate::formats::poses::position_list::ControlPoints;
-use crate::georeference::{Sight, Triangulated, triangulate};
-
-/// Marks that fit worse, in pixels, are pointed out.
-const POOR_PX: f64 = 10.0;
 
 /// A control point that was triangulated.
 #[derive(Debug, Clone)]
 pub(super) struct MarkedPoint {
     pub(super) name: String,
-    /// As the list states it.
-    pub(super) position: DVec3,
+    /// As the list states it; `None` where it is the end of a scale bar alone.
+    pub(super) position: Option<DVec3>,
     /// In the reconstruction's frame.
-    pub(super) found: Triangulated,
+    pub(super) found: Located,
 }
 
 /// Triangulates the points that are marked in two photos at least; what cannot be is said in
 /// `warnings`.
 pub(super) fn triangulated(
     reconstruction: &Reconstruction,
-    points: &ControlPoints,
+    points: &ControlList,
     folder: Option<&Path>,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<MarkedPoint>, Fault> {
@@ -48,8 +44,7 @@ pub(super) fn triangulated(
     let folder = PhotoFolder::new(folder);
     let mut found = Vec::new();
     for point in &points.points {
-        let mut sights = Vec::new();
-        let mut views: Vec<(Camera, Pose)> = Vec::new();
+        let mut seen: Vec<(&str, Camera, Pose, DVec2)> = Vec::new();
         for (photo, pixel) in &point.marks {
             let Some(photo) = names
                 .find(photo)
@@ -61,33 +56,34 @@ pub(super) fn triangulated(
             if !camera.contains(*pixel) {
                 return Err(outside(&point.name, &photo.name, *pixel, &camera));
             }
-            let Ok(direction) = camera.direction_as_shot(*pixel) else {
-                continue;
-            };
-            sights.push(Sight {
-                origin: photo.pose.center,
-                direction: photo.pose.rotation * direction,
-                pixel: *pixel,
-            });
-            views.push((camera, photo.pose));
+            seen.push((&photo.name, camera, photo.pose, *pixel));
         }
-        let project = |index: usize, place: DVec3| {
-            let (camera, pose) = views.get(index)?;
-            camera.pixel_as_shot(pose.camera_from_world(place))
-        };
-        match triangulate(&sights, project) {
-            Ok(triangulated) => {
-                let rms = triangulated.rms_px();
+        let views: Vec<MarkedView<'_>> = (seen.iter())
+            .map(|(_, camera, pose, pixel)| MarkedView {
+                camera,
+                pose,
+                pixel: *pixel,
+            })
+            .collect();
+        match locate(&views) {
+            Ok(located) => {
+                let rms = located.rms_px();
                 if rms > POOR_PX {
                     warnings.push(format!(
                         "control point '{}': its marks miss each other by {rms:.0} px",
                         point.name
                     ));
                 }
+                if let Some((photo, ..)) = located.suspect.and_then(|place| seen.get(place)) {
+                    warnings.push(format!(
+                        "control point '{}': its mark in '{photo}' is probably on another thing, the others agree without it",
+                        point.name
+                    ));
+                }
                 found.push(MarkedPoint {
                     name: point.name.clone(),
                     position: point.position,
-                    found: triangulated,
+                    found: located,
                 });
             }
             Err(fault) => warnings.push(format!(

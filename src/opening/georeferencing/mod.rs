@@ -5,12 +5,14 @@
 //! one that the positions are in, else the zone of UTM that they lie in. One unit of its grid is taken
 //! for one unit of length: in UTM that is true to 0.04 % at the zone's middle and 0.1 % at its edges.
 
+mod control_file;
 mod distances;
 mod flight_text;
 mod list_world;
 mod marks;
 mod photo_names;
 
+pub use self::control_file::{control_file, control_text, read_control};
 pub use self::flight_text::flight_text_of;
 
 use std::path::{Path, PathBuf};
@@ -21,12 +23,14 @@ use glam::DVec3;
 use self::list_world::ListWorld;
 use self::marks::MarkedPoint;
 use self::photo_names::PhotoNames;
+use crate::control::ControlList;
 use crate::fault::Fault;
 use crate::files::FileError;
+use crate::flight::Flight;
 use crate::formats::poses::position_list::{
     NamedPosition, PositionList, positions_of_photos, read_control_points, read_positions,
 };
-use crate::formats::{Reconstruction, read_project};
+use crate::formats::{PosedPhoto, Reconstruction, Sizes, read_project};
 use crate::geometry::Similarity;
 use crate::georeference::{Pair, fit};
 use crate::jobs::Progress;
@@ -41,6 +45,8 @@ pub struct GeoreferenceRequest {
     pub positions: Option<PathBuf>,
     /// Ground control points; with positions as well, those are only compared.
     pub control_points: Option<PathBuf>,
+    /// The same as they were marked in the window, instead of a list.
+    pub marked: Option<ControlList>,
     /// Known distances, for the scale alone.
     pub distances: Vec<KnownDistance>,
     /// The coordinate system of the world, and of lists that state none.
@@ -93,6 +99,9 @@ impl FromStr for KnownDistance {
         Ok(Self { ends, metres })
     }
 }
+
+/// Surveyed points that a place in the world needs.
+const LEAST_SURVEYED: usize = 3;
 
 /// What a known position belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -206,24 +215,32 @@ pub fn georeference_model(
 ) -> Result<Georeferenced, FileError> {
     let from_photos = request.photos.is_some() && reconstruction.measured_positions.is_empty();
     let mut warnings = reconstruction.warnings.clone();
-    let points = match &request.control_points {
-        Some(list) => Some(read_control_points(list)?),
-        None => None,
+    let points = match (&request.marked, &request.control_points) {
+        (Some(marked), _) => Some(marked.clone()),
+        (None, Some(list)) => {
+            let read = read_control_points(list)?;
+            let said = read.warnings.iter();
+            warnings.extend(said.map(|w| format!("{}: {w}", list.display())));
+            Some(read.list)
+        }
+        (None, None) => None,
     };
     let mut marked: Vec<MarkedPoint> = Vec::new();
-    if let (Some(list), Some(points)) = (&request.control_points, &points) {
-        warnings.extend(
-            points
-                .warnings
-                .iter()
-                .map(|w| format!("{}: {w}", list.display())),
-        );
+    let mut bars: Vec<KnownDistance> = Vec::new();
+    if let Some(points) = &points {
+        let list = request.control_points.as_deref().unwrap_or(path);
         let photos = request.photos.as_deref();
         marked = marks::triangulated(reconstruction, points, photos, &mut warnings)
             .map_err(|fault| FileError::new(list, fault))?;
+        bars = distances::of_bars(&points.bars, &marked, &mut warnings);
     }
-    if !request.distances.is_empty() {
-        return distances::by_distances(reconstruction, request, &marked, warnings)
+    let surveyed = marked.iter().filter(|p| p.position.is_some()).count();
+    let distances = match surveyed < LEAST_SURVEYED && request.positions.is_none() {
+        true if request.distances.is_empty() => &bars,
+        _ => &request.distances,
+    };
+    if !distances.is_empty() {
+        return distances::by_distances(reconstruction, request, distances, &marked, warnings)
             .map_err(|fault| FileError::new(path, fault));
     }
     let positions = match &request.positions {
@@ -256,7 +273,7 @@ pub fn georeference_model(
         None => positions.as_ref().and_then(|(_, list)| list.crs.as_deref()),
     };
     let all: Vec<DVec3> = match (&points, &positions) {
-        (Some(points), _) => points.points.iter().map(|point| point.position).collect(),
+        (Some(points), _) => points.points.iter().filter_map(|p| p.position).collect(),
         (None, Some((_, list))) => list.positions.iter().map(|p| p.position).collect(),
         (None, None) => Vec::new(),
     };
@@ -265,7 +282,7 @@ pub fn georeference_model(
     let mut known: Vec<Known> = Vec::new();
     if points.is_some() {
         for point in &marked {
-            known.push(Known::of_point(point, &world).map_err(blame)?);
+            known.extend(Known::of_point(point, &world).map_err(blame)?);
         }
     }
     if let Some((list, positions)) = &positions {
@@ -286,6 +303,8 @@ pub fn georeference_model(
     result.heights = Some(world.heights().to_owned());
     result.crs = world.name().map(str::to_owned);
     result.unit = world.unit();
+    let metres = result.similarity.scale * result.unit.metres();
+    result.lengths = distances::compared(&bars, &marked, metres);
     let far = result
         .positions
         .iter()
@@ -309,6 +328,34 @@ pub fn georeference_model(
     }
     result.warnings = warnings;
     Ok(result)
+}
+
+/// The same of a flight by its control points, in the frame of its poses: what [`GeoreferenceRequest::crs`] asks for
+/// is the flight's own system, where it has one. `file` is blamed.
+///
+/// # Errors
+/// Likewise.
+pub fn georeference_flight(
+    file: &Path,
+    flight: &Flight,
+    request: &GeoreferenceRequest,
+) -> Result<Georeferenced, FileError> {
+    let parts = flight.parts();
+    let photos = parts.photos.iter().map(|photo| PosedPhoto {
+        name: photo.name.clone(),
+        camera: photo.camera,
+        pose: photo.pose,
+    });
+    let mut reconstruction = Reconstruction {
+        cameras: parts.cameras.clone(),
+        photos: photos.collect(),
+        sizes: Sizes::Known,
+        ..Reconstruction::default()
+    };
+    if request.level {
+        reconstruction.cloud.points = parts.surface.vertices().collect();
+    }
+    georeference_model(file, &reconstruction, request)
 }
 
 /// The positions in the photos themselves, or those that the package kept of them.
@@ -358,17 +405,21 @@ struct Known {
 }
 
 impl Known {
-    fn of_point(point: &MarkedPoint, world: &ListWorld) -> Result<Self, Fault> {
-        Ok(Self {
+    /// `None` of a point that nobody has surveyed.
+    fn of_point(point: &MarkedPoint, world: &ListWorld) -> Result<Option<Self>, Fault> {
+        let Some(position) = point.position else {
+            return Ok(None);
+        };
+        Ok(Some(Self {
             name: point.name.clone(),
             kind: KnownKind::ControlPoint,
             pair: Pair {
                 source: point.found.point,
-                target: world.of(point.position)?,
+                target: world.of(position)?,
                 accuracy: None,
             },
             marks_px: Some(point.found.rms_px()),
-        })
+        }))
     }
 }
 

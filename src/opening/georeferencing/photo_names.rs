@@ -33,6 +33,8 @@ impl Way {
 /// The photos of a reconstruction by the names that lists call them.
 pub(super) struct PhotoNames {
     way: Way,
+    /// By their whole names, which go before all ways.
+    whole: HashMap<String, usize>,
     /// `None` for a name that two photos have.
     photos: HashMap<String, Option<usize>>,
     /// How they were matched, where that was not by the whole name.
@@ -42,6 +44,9 @@ pub(super) struct PhotoNames {
 impl PhotoNames {
     /// Decides on the way in which the names of a list match the photos.
     pub(super) fn new<'a>(photos: impl Iterator<Item = &'a str> + Clone, list: &[&str]) -> Self {
+        let whole: HashMap<String, usize> = (photos.clone().enumerate())
+            .map(|(index, photo)| (photo.to_owned(), index))
+            .collect();
         let of_way = |way: Way| {
             let mut found: HashMap<String, Option<usize>> = HashMap::new();
             for (index, photo) in photos.clone().enumerate() {
@@ -54,6 +59,7 @@ impl PhotoNames {
             }
             let mut names = Self {
                 way,
+                whole: whole.clone(),
                 photos: found,
                 warning: None,
             };
@@ -74,6 +80,7 @@ impl PhotoNames {
             .or_else(|| all_numbers.then(|| of_way(Way::Number))?)
             .unwrap_or_else(|| Self {
                 way: Way::Name,
+                whole: HashMap::new(),
                 photos: HashMap::new(),
                 warning: None,
             })
@@ -81,7 +88,8 @@ impl PhotoNames {
 
     /// The photo that a name of the list means.
     pub(super) fn find(&self, name: &str) -> Option<usize> {
-        self.photos.get(&self.way.key(name)?).copied().flatten()
+        let whole = self.whole.get(name).copied();
+        whole.or_else(|| self.photos.get(&self.way.key(name)?).copied().flatten())
     }
 }
 

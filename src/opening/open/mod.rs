@@ -6,12 +6,14 @@
 //! cameras   the [[camera]] tables; the cameras meet their photo files
 //! surface   its file
 //! framing   poses and surface are brought to one world
+//! placing   control points bring both to another one
 //! building  the flight
 //! ```
 
 mod building;
 mod cameras;
 mod framing;
+mod placing;
 mod reading;
 mod source;
 mod surface;
@@ -143,7 +145,8 @@ pub fn open_flight_sampled(
     let mut source = reading::read(path, options, progress)?;
     let photo_files = cameras::fit(&mut source)?;
     let surface = surface::read(&mut source, options, on_sample, progress)?;
-    let framed = framing::bring_to_world(&mut source, surface, progress)?;
+    let mut framed = framing::bring_to_world(&mut source, surface, progress)?;
+    placing::place(&mut source, &mut framed, options)?;
     let mut opened = building::build(source, framed, photo_files, options, progress)?;
     let photos = opened.photo_files.iter().flat_map(|file| &file.path);
     opened.read = Inputs::of(opened.inputs.iter().chain(photos)).with_opened(&recording.files());

@@ -14,6 +14,7 @@ use crate::formats::tables::size_distributions::no_flight_but_sizes;
 use crate::formats::{Kind, Package, PoseLine, Reconstruction, Sizes, detect, read_project};
 use crate::geodesy::Crs;
 use crate::geometry::Similarity;
+use crate::georeferencing::{control_file, read_control};
 use crate::jobs::Progress;
 use crate::scale::PoseErrors;
 use crate::world::WorldFrame;
@@ -118,7 +119,26 @@ fn of_file(path: &Path, options: &OpenOptions, progress: &Progress) -> Result<So
         }
     }
     source.flight_file = Some(file);
+    take_control(&mut source, path)?;
     Ok(source)
+}
+
+/// The control points beside a flight.toml, where there are any.
+fn take_control(source: &mut Source, flight_file: &Path) -> Result<(), FileError> {
+    let path = control_file(flight_file);
+    if !path.is_file() {
+        return Ok(());
+    }
+    let photos: Vec<&str> = source
+        .photos
+        .iter()
+        .map(|photo| photo.name.as_str())
+        .collect();
+    let (list, warnings) = read_control(&path, &photos)?;
+    source.settings.control = list;
+    source.warn(&path, &warnings);
+    source.inputs.push(path);
+    Ok(())
 }
 
 /// A cloud or mesh that is opened itself, without photos.

@@ -3,6 +3,7 @@
 
 use super::residuals::residuals;
 use super::{browse, named_field};
+use crate::actions;
 use crate::command::{Answers, Asking, Command, Dialog};
 use crate::numbers::significant_digits;
 use crate::open_flight::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
@@ -38,7 +39,7 @@ pub(super) fn georeference(state: &State, ui: &mut egui::Ui, commands: &mut Vec<
             ));
             ui.add_space(4.0);
             let mut form = open.georeferencing.form.clone();
-            fields(open, &mut form, ui, commands);
+            fields(state, open, &mut form, ui, commands);
             if form != open.georeferencing.form {
                 commands.push(Command::FillGeoreference(form.clone()));
             }
@@ -60,6 +61,7 @@ pub(super) fn georeference(state: &State, ui: &mut egui::Ui, commands: &mut Vec<
 
 /// The source that is chosen, with its fields.
 fn fields(
+    state: &State,
     open: &OpenFlight,
     form: &mut GeoreferenceForm,
     ui: &mut egui::Ui,
@@ -101,6 +103,7 @@ fn fields(
             path_row(list, form, ui, commands);
         }
         KnownFrom::ControlPoints => {
+            click_them(state, ui, commands);
             path_row(points, form, ui, commands);
             path_row(photos, form, ui, commands);
         }
@@ -129,6 +132,17 @@ fn fields(
                 .desired_width(f32::INFINITY);
             named_field(ui.add(field), "Coordinate system", hover, &form.crs);
         });
+    }
+}
+
+/// The way to marking them in the photos of the flight.
+fn click_them(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let action = actions::file::CONTROL_POINTS;
+    if let Some(command) = (action.command)(state) {
+        let button = ui.button("Click them in the photos");
+        if button.on_hover_text(action.hover).clicked() {
+            commands.push(command);
+        }
     }
 }
 

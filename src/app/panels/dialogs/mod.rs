@@ -3,6 +3,7 @@
 
 mod choose;
 mod cloud_use;
+mod control_list;
 mod from_photos;
 mod georeference;
 mod residuals;
@@ -25,6 +26,7 @@ use crate::typed::typed;
 use crate::units::LengthUnit;
 use choose::choose;
 use cloud_use::cloud_use;
+use control_list::control_list;
 use from_photos::from_photos;
 use georeference::{georeference, save_georeferenced};
 use save_measured::{add_layer, save_measured, volume_base};
@@ -48,6 +50,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::AddEffort => "Add times of steps",
             Asking::SaveFigure => "Save figure",
             Asking::SaveReport => "Save report",
+            Asking::ControlList => "Load control points",
             Asking::AddLayer => "Add cloud as layer",
             Asking::CloudUse => "What is this cloud?",
             Asking::VolumeBase => "Base of the volume",
@@ -83,6 +86,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::AddEffort => add_effort(state, ui, commands),
                     Asking::SaveFigure => save_figure(state, ui, commands),
                     Asking::SaveReport => save_report(state, ui, commands),
+                    Asking::ControlList => control_list(state, ui, commands),
                     Asking::AddLayer => add_layer(state, ui, commands),
                     Asking::CloudUse => cloud_use(state, ui, commands),
                     Asking::VolumeBase => volume_base(state, ui, commands),

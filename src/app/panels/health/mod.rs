@@ -3,6 +3,7 @@
 
 use egui::RichText;
 
+use crate::actions;
 use crate::command::Command;
 use crate::flight::Verdict;
 use crate::opening::{Health, HealthFinding, HealthItem};
@@ -62,6 +63,21 @@ fn item(state: &State, finding: &HealthFinding, ui: &mut egui::Ui, commands: &mu
         let hover = format!("{says}\n{}", offer.hover);
         if button.on_hover_text(hover).clicked() {
             commands.push(offer.command);
+        }
+    }
+    let is_of_place = matches!(item, HealthItem::Unit | HealthItem::CoordinateSystem);
+    let action = actions::file::CONTROL_POINTS;
+    if is_of_place
+        && *health == Health::Bad
+        && let Some(command) = (action.command)(state)
+    {
+        let button = ui.small_button(action.label);
+        button.widget_info(|| {
+            let label = format!("{}: {}", name(*item), action.label);
+            egui::WidgetInfo::labeled(egui::Role::Button, true, label)
+        });
+        if button.on_hover_text(action.hover).clicked() {
+            commands.push(command);
         }
     }
     ui.add_space(6.0);

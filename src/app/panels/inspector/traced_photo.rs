@@ -47,7 +47,7 @@ impl PhotoPlace<'_> {
     }
 
     /// Of a pixel of the photo as shot, where the image that is shown has it.
-    fn screen_of_shot(&self, pixel: DVec2) -> Option<Pos2> {
+    pub(in crate::panels) fn screen_of_shot(&self, pixel: DVec2) -> Option<Pos2> {
         let shown = match self.image {
             ImageKind::AsShot => pixel,
             ImageKind::Undistorted => {
@@ -59,7 +59,7 @@ impl PhotoPlace<'_> {
     }
 
     /// The pixel of the photo as shot under a place of the screen.
-    fn shot_under(&self, at: Pos2) -> Option<DVec2> {
+    pub(in crate::panels) fn shot_under(&self, at: Pos2) -> Option<DVec2> {
         let shown = self.pixel_under(at);
         match self.image {
             ImageKind::AsShot => Some(shown),

@@ -1,5 +1,6 @@
 //! The selected photo in the middle of the window: tiles of it as fine as the screen, and what lies over it.
 
+mod control_marks;
 mod head;
 mod overlays;
 
@@ -21,11 +22,12 @@ use crate::picture::{PhotoPyramid, TileKey};
 use crate::state::State;
 use crate::tasks::Task;
 
-/// What the panel keeps: what it has made of the tint, and a point that the mouse moves.
+/// What the panel keeps: what it has made of the tint, and a point or a mark that the mouse moves.
 #[derive(Default)]
 pub struct PhotoPanel {
     tint: Tint,
     dragged: Option<Dragged>,
+    mark: Option<control_marks::DraggedMark>,
 }
 
 impl PhotoPanel {
@@ -54,10 +56,17 @@ impl PhotoPanel {
             egui::WidgetInfo::labeled(egui::Role::Image, true, label)
         });
         keys(ui, commands);
+        control_marks::keys(open, photo, ui, commands);
         let screen = Screen::new(open, reviewed, frame, ui);
         let place = screen.place(open, reviewed);
         let dragged = &mut self.dragged;
-        let taken = traced_photo::mouse(open, photo, &place, dragged, ui, &response, commands);
+        let taken = match open.control.is_on {
+            true => {
+                let mark = &mut self.mark;
+                control_marks::mouse(open, photo, &place, mark, ui, &response, commands)
+            }
+            false => traced_photo::mouse(open, photo, &place, dragged, ui, &response, commands),
+        };
         screen.mouse(ui, &response, taken, commands);
         let full = open.photo_view.full_of(photo);
         match full.map(|full| &full.pixels) {
@@ -94,7 +103,9 @@ impl PhotoPanel {
                 ui,
             );
         }
-        if !is_traced && state.preferences.photo_overlays.corners {
+        // A click there marks a point.
+        let is_marking = open.control.is_on && open.control.chosen.is_some();
+        if !is_traced && !is_marking && state.preferences.photo_overlays.corners {
             let kind = open.flight().parts().image;
             let to_screen = |pixel| {
                 let at = place.to_screen(place.image.pixel_from(kind, place.camera, pixel)?);
@@ -103,6 +114,7 @@ impl PhotoPanel {
             commands.extend(corner_loupe::clicked(reviewed, &response, frame, to_screen));
         }
         traced_photo::draw(open, photo, &place, self.dragged, &painter);
+        control_marks::draw(open, photo, &place, self.mark, &painter);
         linked::on_photo(
             state,
             open,

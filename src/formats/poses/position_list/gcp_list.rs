@@ -15,22 +15,50 @@
 //!
 //! Beside it, lists of points without marks are in use: `name x y z`, or `x y z`. Lines that begin
 //! with # are comments.
+//!
+//! For what has no place in that format, fragscale writes lines that are comments to others, their fields
+//! between tabs:
+//!
+//! ```text
+//! #fragscale point name                                 a point that nobody has surveyed
+//! #fragscale mark pixel_x pixel_y image_name name       a mark of one
+//! #fragscale bar name name length unit                  a scale bar: two points with a known distance
+//! ```
+//!
+//! and "local" in the first line where no coordinate system is stated.
 
 use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 
-use super::geo_file::content;
-use super::{ControlPoint, ControlPoints, check_degrees, is_geographic};
+use super::{ControlPoints, check_degrees, is_geographic};
+use crate::control::{ControlList, ControlPoint, ScaleBar};
 use crate::fault::Fault;
 use crate::photos::image_names::{Ending, is_called};
 use crate::text::separated::Separator;
+use crate::units::LengthUnit;
+
+/// The first line of a list without a coordinate system.
+pub(super) const NO_CRS: &str = "local";
+
+/// How lines begin that are comments to other programs, with what they are of behind it.
+pub(super) const OWN: &str = "#fragscale ";
 
 /// Reads a gcp_list.txt whose first line says `crs`.
 pub(super) fn read(text: &str, crs: Option<String>) -> Result<ControlPoints, Fault> {
     let geographic = is_geographic(crs.as_deref());
     let mut points = Points::default();
-    for (line, number) in content(text) {
+    let mut bars = Vec::new();
+    let mut is_first = true;
+    for (line, number) in text.lines().zip(1..) {
+        let line = line.trim();
+        if let Some(own) = line.strip_prefix(OWN) {
+            points.add_own(own, number, &mut bars)?;
+            continue;
+        }
+        if line.is_empty() || line.starts_with('#') || std::mem::take(&mut is_first) {
+            continue;
+        }
         let fields = split(line);
         let position = |at: usize| -> Result<DVec3, Fault> {
             let [x, y, z] = [(0, "x"), (1, "y"), (2, "z")]
@@ -51,11 +79,12 @@ pub(super) fn read(text: &str, crs: Option<String>) -> Result<ControlPoints, Fau
                     number_at(&fields, 4, "the pixel's y", number)?,
                 );
                 let (photo, name) = photo_and_name(fields.get(5..).unwrap_or_default());
-                points.add(position(0)?, name, Some((photo, pixel + 0.5)))?;
+                points.add(Some(position(0)?), name, Some((photo, pixel + CORNER)));
             }
-            (3, 3) => points.add(position(0)?, None, None)?,
+            (3, 3) => points.add(Some(position(0)?), None, None),
             (4, _) | (5.., 0) => {
-                points.add(position(1)?, fields.first().map(String::as_str), None)?
+                let name = fields.first().map(String::as_str);
+                points.add(Some(position(1)?), name, None);
             }
             _ => {
                 return Err(Fault::at(
@@ -68,11 +97,17 @@ pub(super) fn read(text: &str, crs: Option<String>) -> Result<ControlPoints, Fau
     }
     let warnings = points.warnings();
     Ok(ControlPoints {
-        crs,
-        points: points.points,
+        list: ControlList {
+            crs,
+            points: points.points,
+            bars,
+        },
         warnings,
     })
 }
+
+/// From the centre of the first pixel, where the list counts from, to its corner, where we do.
+pub(super) const CORNER: f64 = 0.5;
 
 /// The fields: between tabs where there are enough of them, else between white space.
 fn split(line: &str) -> Vec<String> {
@@ -125,15 +160,10 @@ struct Points {
 }
 
 impl Points {
-    fn add(
-        &mut self,
-        position: DVec3,
-        name: Option<&str>,
-        mark: Option<(String, DVec2)>,
-    ) -> Result<(), Fault> {
+    fn add(&mut self, position: Option<DVec3>, name: Option<&str>, mark: Option<(String, DVec2)>) {
         let key = match name {
             Some(name) => Key::Name(name.to_owned()),
-            None => Key::Place(position.to_array().map(f64::to_bits)),
+            None => Key::Place(position.unwrap_or_default().to_array().map(f64::to_bits)),
         };
         let next = self.points.len();
         let index = *self.by_key.entry(key).or_insert(next);
@@ -145,20 +175,61 @@ impl Points {
             });
         }
         let Some(point) = self.points.get_mut(index) else {
-            return Ok(());
+            return;
         };
-        let apart = point.position.distance(position);
-        if apart > 0.0 {
+        if let (Some(first), Some(position)) = (point.position, position)
+            && first != position
+        {
             let farthest = self.moved.entry(index).or_default();
-            *farthest = farthest.max(apart);
+            *farthest = farthest.max(first.distance(position));
         }
+        point.position = point.position.or(position);
         let Some((photo, pixel)) = mark else {
-            return Ok(());
+            return;
         };
         if point.marks.iter().any(|(other, _)| *other == photo) {
             self.repeated += 1;
         } else {
             point.marks.push((photo, pixel));
+        }
+    }
+
+    /// Adds what a line of our own says.
+    fn add_own(&mut self, line: &str, number: u64, bars: &mut Vec<ScaleBar>) -> Result<(), Fault> {
+        let remedy = "correct the line, or remove it";
+        let fields: Vec<String> = line
+            .split('\t')
+            .map(|field| field.trim().to_owned())
+            .collect();
+        let fields: Vec<&str> = fields.iter().map(String::as_str).collect();
+        match fields[..] {
+            ["point", name] => self.add(None, Some(name), None),
+            ["mark", x, y, photo, name] => {
+                let numbers = [x, y].map(str::to_owned);
+                let pixel = DVec2::new(
+                    number_at(&numbers, 0, "the pixel's x", number)?,
+                    number_at(&numbers, 1, "the pixel's y", number)?,
+                );
+                self.add(None, Some(name), Some((photo.to_owned(), pixel + CORNER)));
+            }
+            ["bar", from, to, length, unit] => {
+                let metres = number_at(&[length.to_owned()], 0, "the length", number)?;
+                let unit: LengthUnit = (unit.parse())
+                    .map_err(|unknown| Fault::at(number, format!("the unit {unknown}"), remedy))?;
+                if metres <= 0.0 {
+                    let what = format!("a scale bar of length {length}");
+                    return Err(Fault::at(number, what, remedy));
+                }
+                bars.push(ScaleBar {
+                    ends: [from.to_owned(), to.to_owned()],
+                    length: metres,
+                    unit,
+                });
+            }
+            _ => {
+                let what = format!("'{OWN}{line}' is no point, mark or scale bar");
+                return Err(Fault::at(number, what, remedy));
+            }
         }
         Ok(())
     }
@@ -181,13 +252,16 @@ impl Points {
         }
         let mut by_place: HashMap<[u64; 2], &ControlPoint> = HashMap::new();
         for point in &self.points {
-            let DVec3 { x, y, z } = point.position;
+            let Some(DVec3 { x, y, z }) = point.position else {
+                continue;
+            };
             let Some(other) = by_place.insert([x, y].map(f64::to_bits), point) else {
                 continue;
             };
+            let height = other.position.unwrap_or_default().z;
             warnings.push(format!(
-                "'{}' and '{}' have the same x and y, and heights {} and {z}: one of them is mistyped, or they are one point",
-                other.name, point.name, other.position.z
+                "'{}' and '{}' have the same x and y, and heights {height} and {z}: one of them is mistyped, or they are one point",
+                other.name, point.name
             ));
         }
         warnings

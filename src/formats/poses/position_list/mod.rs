@@ -12,19 +12,22 @@
 //! first line names columns, and an .MRK has a week in brackets.
 
 mod gcp_list;
+mod gcp_text;
 mod geo_file;
 pub(crate) mod mrk;
 mod table;
 
+pub use gcp_text::control_list_text;
 pub use mrk::number_of_photo;
 
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
+use crate::control::{ControlList, ControlPoint};
 use crate::fault::{Fault, first_names};
-use crate::files::{FileError, read_text};
+use crate::files::{FLIGHT_MARK, FileError, read_text};
 use crate::packages::drone_photos;
 use crate::packages::odm::crs_from_text;
 use crate::photos::photo_metadata;
@@ -56,24 +59,10 @@ pub struct NamedPosition {
 /// Ground control points.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ControlPoints {
-    /// The coordinate system that the list states, as in [`PositionList::crs`].
-    pub crs: Option<String>,
-    /// In the list's order; no name stands twice.
-    pub points: Vec<ControlPoint>,
+    /// The points, where the list has any marks with these, and the scale bars.
+    pub list: ControlList,
     /// What the reader had to assume or leave out, one sentence each.
     pub warnings: Vec<String>,
-}
-
-/// A surveyed point and where photos show it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ControlPoint {
-    /// What the list calls it; "point 1", ... where it calls it nothing.
-    pub name: String,
-    /// In the list's `crs`, as in [`NamedPosition::position`].
-    pub position: DVec3,
-    /// Photos' names, and the pixel in the photo as shot, (0, 0) at its outer corner. Empty where the
-    /// list has no marks.
-    pub marks: Vec<(String, DVec2)>,
 }
 
 /// Reads a list of photos' positions.
@@ -177,17 +166,25 @@ fn control_points_from_text(text: &str) -> Result<ControlPoints, Fault> {
             once_each(table.positions.iter().map(|point| point.name.as_str()))?;
             let point = |point: NamedPosition| ControlPoint {
                 name: point.name,
-                position: point.position,
+                position: Some(point.position),
                 marks: Vec::new(),
             };
             ControlPoints {
-                crs: table.crs,
-                points: table.positions.into_iter().map(point).collect(),
+                list: ControlList {
+                    crs: table.crs,
+                    points: table.positions.into_iter().map(point).collect(),
+                    bars: Vec::new(),
+                },
                 warnings: table.warnings,
             }
         }
     };
-    if list.points.is_empty() {
+    // A list of ours can have been emptied.
+    let is_own = text
+        .lines()
+        .nth(1)
+        .is_some_and(|line| line == FLIGHT_MARK.trim_end());
+    if list.list.points.is_empty() && !is_own {
         return Err(Fault::new(
             "it has no control points",
             "give a line for each mark",
@@ -228,6 +225,9 @@ impl Shape {
         }
         if is_crs(first) {
             return Ok(Self::Crs(crs_from_text(first)));
+        }
+        if first.trim() == gcp_list::NO_CRS {
+            return Ok(Self::Crs(None));
         }
         Ok(Self::Table)
     }

@@ -1,5 +1,7 @@
 use proptest::prelude::*;
 
+use glam::DVec2;
+
 use super::*;
 use fragscale_test_data::shared_data;
 
@@ -125,26 +127,31 @@ fn control_points_with_and_without_names() {
     let list = points(
         "WGS84 UTM 17N\n1 2 3 100 200 a.jpg\n1 2 3 10.5 20 b.jpg \n4 5 6 7 8 my photo.jpg x\n",
     );
-    assert_eq!(list.crs.as_deref(), Some("EPSG:32617"));
-    assert_eq!(list.points[0].name, "point 1");
+    assert_eq!(list.list.crs.as_deref(), Some("EPSG:32617"));
+    assert_eq!(list.list.points[0].name, "point 1");
     // The first pixel's centre, integer there, is at 0.5 here.
     assert_eq!(
-        list.points[0].marks,
+        list.list.points[0].marks,
         [
             ("a.jpg".to_owned(), DVec2::new(100.5, 200.5)),
             ("b.jpg".to_owned(), DVec2::new(11.0, 20.5))
         ]
     );
-    assert_eq!(list.points[1].name, "x");
-    assert_eq!(list.points[1].marks[0].0, "my photo.jpg");
+    assert_eq!(list.list.points[1].name, "x");
+    assert_eq!(list.list.points[1].marks[0].0, "my photo.jpg");
     let tabs = points("EPSG:2180\n4\t5\t6\t7\t8\t\tmy photo.jpg\tgcp 1\n");
-    assert_eq!(tabs.points[0].name, "gcp 1");
-    assert_eq!(tabs.points[0].marks[0].0, "my photo.jpg");
+    assert_eq!(tabs.list.points[0].name, "gcp 1");
+    assert_eq!(tabs.list.points[0].marks[0].0, "my photo.jpg");
     let moved = points("EPSG:2180\n1 2 3 4 5 a.jpg p\n1 2 5 4 5 b.jpg p\n1 2 9 4 5 b.jpg q\n");
     assert!(moved.warnings[0].contains("'p' stands at places 2 apart"));
     assert!(moved.warnings[1].contains("'p' and 'q' have the same x and y"));
     let unmarked = points("EPSG:2180\np1 1 2 3\n2 1 2 4\n7 8 9\n");
-    let names: Vec<&str> = unmarked.points.iter().map(|p| p.name.as_str()).collect();
+    let names: Vec<&str> = unmarked
+        .list
+        .points
+        .iter()
+        .map(|p| p.name.as_str())
+        .collect();
     assert_eq!(names, ["p1", "2", "point 3"]);
     let fault = control_points_from_text("EPSG:2180\n1 2 3 4 b.jpg\n").unwrap_err();
     assert_eq!(fault.line, Some(2));
@@ -236,10 +243,10 @@ fn control_points_of_the_shared_lists() {
         ("helenenschacht_latlon.csv", "EPSG:4326", 5, 0),
     ] {
         let list = read_control_points(&folder.join(file)).unwrap();
-        assert_eq!(list.crs.as_deref(), Some(crs), "{file}");
-        let all: usize = list.points.iter().map(|point| point.marks.len()).sum();
+        assert_eq!(list.list.crs.as_deref(), Some(crs), "{file}");
+        let all: usize = list.list.points.iter().map(|point| point.marks.len()).sum();
         assert_eq!(
-            (list.points.len(), all),
+            (list.list.points.len(), all),
             (count, marks),
             "{file} {:?}",
             list.warnings
