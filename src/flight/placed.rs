@@ -9,7 +9,7 @@ use crate::scale::PoseErrors;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Placed {
     /// The row-major 4x4 of a similarity: it moves poses and surface.
-    pub transform: [f64; 16],
+    pub transform: Box<[f64; 16]>,
     /// The coordinate system that it leads to; `None` where that is the files' own, or a local one.
     pub crs: Option<String>,
 }
@@ -32,7 +32,7 @@ impl Placed {
             ),
         };
         Self {
-            transform: transform.to_row_major(),
+            transform: Box::new(transform.to_row_major()),
             crs,
         }
     }

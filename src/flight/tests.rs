@@ -67,6 +67,8 @@ fn settings() -> FlightSettings {
         surface_up: Default::default(),
         scale_objects: Vec::new(),
         decisions: Vec::new(),
+        placed: None,
+        control: Default::default(),
     }
 }
 

@@ -12,7 +12,7 @@ use fragscale::units::LengthUnit;
 use glam::{DVec2, DVec3};
 use tempfile::TempDir;
 
-use crate::desk::Desk;
+use crate::desk::{Desk, Screen, flight};
 use crate::own_frame::{CENTERS, model};
 
 /// In the model's frame.
@@ -331,4 +331,36 @@ fn the_tool_is_found_from_what_lacks() {
     assert!(desk.logged("1 of 2 marks are in photos that the flight does not have"));
     desk.fill("Surveyed place of a", "1 2");
     assert!(desk.logged("a surveyed place is three numbers"));
+}
+
+/// The tool as it looks: marks on a ball and on a rock of the sample's fifth photo, and a scale bar between them.
+#[test]
+fn how_it_looks() {
+    let screen = Screen {
+        size: [1000.0, 560.0],
+        pixels_per_point: 1.0,
+        theme: egui::Theme::Dark,
+    };
+    let mut desk = Desk::drawn(Some(&flight("assets/sample")), &screen);
+    desk.press(Modifiers::NONE, Key::G);
+    select(&mut desk, 4);
+    for (point, pixel) in [DVec2::new(478.0, 415.0), DVec2::new(300.0, 235.0)]
+        .into_iter()
+        .enumerate()
+    {
+        step(&mut desk, ControlStep::Add);
+        let pixel = Some(pixel);
+        step(
+            &mut desk,
+            ControlStep::Mark {
+                point,
+                photo: 4,
+                pixel,
+            },
+        );
+    }
+    step(&mut desk, ControlStep::AddBar);
+    desk.harness.remove_cursor();
+    desk.settle();
+    desk.harness.snapshot("control_points");
 }

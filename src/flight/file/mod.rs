@@ -402,7 +402,7 @@ impl FlightFile {
         let entry = self.world.placed.as_ref()?;
         Some(Placed {
             // `parse` has checked it.
-            transform: entry.transform.as_slice().try_into().ok()?,
+            transform: Box::new(entry.transform.as_slice().try_into().ok()?),
             crs: entry.crs.clone(),
         })
     }

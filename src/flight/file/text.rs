@@ -211,7 +211,7 @@ fn set(
 /// How the flight was brought to the world, as a value in one line.
 fn inline(placed: &Placed) -> Value {
     let mut table = toml_edit::InlineTable::new();
-    let transform: Array = placed.transform.into_iter().collect();
+    let transform: Array = placed.transform.iter().copied().collect();
     table.insert("transform", transform.into());
     if let Some(crs) = &placed.crs {
         table.insert("crs", crs.as_str().into());
@@ -499,7 +499,7 @@ folder = "photos"
                 placed,
             )| {
                 let placed = placed.map(|(scale, x, is_named)| Placed {
-                    transform: [
+                    transform: Box::new([
                         scale,
                         0.0,
                         0.0,
@@ -516,7 +516,7 @@ folder = "photos"
                         0.0,
                         0.0,
                         1.0,
-                    ],
+                    ]),
                     crs: is_named.then(|| "EPSG:32633".to_owned()),
                 });
                 FlightSettings {

@@ -59,7 +59,8 @@ fn crs_row(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.label("Surveyed in");
         let hover = "The coordinate system of the surveyed places: EPSG:n, WKT or a PROJ text";
-        let width = ui.available_width();
+        // Its own margin is beside it; else the panel would grow.
+        let width = (ui.available_width() - 12.0).max(60.0);
         let label = "System of the survey";
         if let Some(typed) = hinted_field(ui, label, hover, crs, hint, width) {
             let typed = typed.trim();

@@ -21,8 +21,8 @@ pub(super) fn points(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Co
     let list = open.control_list();
     if list.points.is_empty() {
         ui.weak(
-            "Add a point, or load a list. Then click where a photo shows it; in other photos a line says where it \
-             can be, from two marks on a ring where it should be.",
+            "Add a point, or load a list. Then click where a photo shows it. In other photos a line says where it \
+             can be, and after two marks a ring where it should be.",
         );
     }
     for (place, point) in list.points.iter().enumerate() {
@@ -67,7 +67,8 @@ fn one(
         let text = point.position.map(written).unwrap_or_default();
         let label = format!("Surveyed place of {name}");
         let hover = "East, north and height, typed or pasted from a table; empty for an end of a scale bar alone";
-        let width = (ui.available_width() - 34.0).max(60.0);
+        // Its own margin and the button behind it; else the panel would grow.
+        let width = (ui.available_width() - 52.0).max(60.0);
         if let Some(typed) = hinted_field(ui, &label, hover, &text, "x y z, not surveyed", width) {
             commands.push(match read(&typed) {
                 Ok(position) => Command::Control(ControlStep::Survey(place, position)),

@@ -139,10 +139,11 @@ pub(super) fn draw(
         return;
     }
     let found = &open.control.found;
+    let inside = painter.with_clip_rect(place.rect.intersect(painter.clip_rect()));
     for run in &found.lines {
         let points: Vec<Pos2> = run.iter().map(|pixel| place.to_screen(*pixel)).collect();
         for stroke in [Stroke::new(3.0, SHADE), Stroke::new(1.2, PREDICTED)] {
-            painter.add(egui::Shape::line(points.clone(), stroke));
+            inside.add(egui::Shape::line(points.clone(), stroke));
         }
     }
     if let Some(pixel) = found.predicted {

@@ -89,8 +89,9 @@ impl PhotoPanel {
                 }
             }
         }
-        let is_traced = open.objects.tracing.is_some();
-        if !is_traced {
+        // What is marked may lie under them, and a click on a corner is a mark then.
+        let is_pointed_at = open.objects.tracing.is_some() || open.control.is_on;
+        if !is_pointed_at {
             let tint = tint::wanted(state, open, reviewed);
             overlays::draw(
                 state,
@@ -103,9 +104,7 @@ impl PhotoPanel {
                 ui,
             );
         }
-        // A click there marks a point.
-        let is_marking = open.control.is_on && open.control.chosen.is_some();
-        if !is_traced && !is_marking && state.preferences.photo_overlays.corners {
+        if !is_pointed_at && state.preferences.photo_overlays.corners {
             let kind = open.flight().parts().image;
             let to_screen = |pixel| {
                 let at = place.to_screen(place.image.pixel_from(kind, place.camera, pixel)?);
@@ -115,6 +114,10 @@ impl PhotoPanel {
         }
         traced_photo::draw(open, photo, &place, self.dragged, &painter);
         control_marks::draw(open, photo, &place, self.mark, &painter);
+        if open.control.is_on {
+            // Its ring and its words would lie on what is to be marked.
+            return;
+        }
         linked::on_photo(
             state,
             open,
