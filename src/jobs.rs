@@ -1,12 +1,13 @@
 //! Long work: a named thread with progress, cancel and a result.
 //!
 //! The work is handed a [`Progress`], says now and then how far it is and asks whether it should
-//! stop; whoever started it looks at the same `Progress` whenever it likes. Nobody waits for
+//! stop, or wait; whoever started it looks at the same `Progress` whenever it likes. Nobody waits for
 //! anybody.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use crate::fault::Fault;
 
@@ -20,7 +21,14 @@ struct State {
     fraction: AtomicU64,
     sentence: Mutex<String>,
     cancelled: AtomicBool,
+    /// Whether the work is to wait at its next look. The lock is for waiting alone.
+    paused: AtomicBool,
+    waiting: Mutex<()>,
+    goes_on: Condvar,
 }
+
+/// A paused work looks so often whether it is wanted, should nobody wake it.
+const LOOK: Duration = Duration::from_millis(200);
 
 impl Progress {
     /// Begins a stage of the work: says it in words and starts its fraction anew.
@@ -33,7 +41,7 @@ impl Progress {
         self.0.fraction.store(0.0_f64.to_bits(), Ordering::Relaxed);
     }
 
-    /// Notes that `done` of `total` are done.
+    /// Notes that `done` of `total` are done; waits as long as the work is paused.
     ///
     /// # Errors
     /// A fault "cancelled" once somebody has cancelled the work: pass it on with `?`.
@@ -43,6 +51,7 @@ impl Progress {
         self.0
             .fraction
             .store(fraction.min(1.0).to_bits(), Ordering::Relaxed);
+        self.wait_while_paused();
         if self.is_cancelled() {
             return Err(Fault::new("cancelled", "start it again when you want it"));
         }
@@ -62,9 +71,30 @@ impl Progress {
         )
     }
 
-    /// Asks the work to stop at its next look.
+    /// Asks the work to stop at its next look, also where it is paused.
     pub fn cancel(&self) {
         self.0.cancelled.store(true, Ordering::Relaxed);
+        self.0.goes_on.notify_all();
+    }
+
+    /// Asks the work to wait at its next look, or to go on.
+    pub fn pause(&self, paused: bool) {
+        self.0.paused.store(paused, Ordering::Relaxed);
+        self.0.goes_on.notify_all();
+    }
+
+    /// Whether somebody has asked the work to wait.
+    pub fn is_paused(&self) -> bool {
+        self.0.paused.load(Ordering::Relaxed)
+    }
+
+    fn wait_while_paused(&self) {
+        while self.is_paused() && !self.is_cancelled() {
+            let lock = &self.0.waiting;
+            let guard = lock.lock().unwrap_or_else(PoisonError::into_inner);
+            // Woken between looking and waiting it looks again soon.
+            drop(self.0.goes_on.wait_timeout(guard, LOOK));
+        }
     }
 
     /// Whether somebody has asked the work to stop.
@@ -161,6 +191,55 @@ mod tests {
         assert!(!job.is_finished());
         job.progress().cancel();
         assert_eq!(job.finish(), Ok("stopped"));
+    }
+
+    /// Work on several threads: paused nobody does a piece more, and all of them are done in the end.
+    #[test]
+    fn a_paused_job_waits_and_goes_on() {
+        use std::sync::atomic::AtomicU32;
+        use std::time::Instant;
+        let done = Arc::new(AtomicU32::new(0));
+        let counted = done.clone();
+        let job = Job::start("count", move |progress| {
+            std::thread::scope(|scope| {
+                for _ in 0..3 {
+                    scope.spawn(|| {
+                        for _ in 0..2000 {
+                            if progress.advance(1, 2).is_err() {
+                                return;
+                            }
+                            counted.fetch_add(1, Ordering::Relaxed);
+                            std::thread::sleep(Duration::from_micros(50));
+                        }
+                    });
+                }
+            });
+        })
+        .unwrap();
+        let progress = job.progress().clone();
+        let count = || done.load(Ordering::Relaxed);
+        while count() < 30 {
+            std::thread::yield_now();
+        }
+        progress.pause(true);
+        // Each thread ends the piece that it is at.
+        std::thread::sleep(Duration::from_millis(100));
+        let before = count();
+        std::thread::sleep(Duration::from_millis(300));
+        assert_eq!(count(), before);
+        assert!(before < 6000 && !job.is_finished() && progress.is_paused());
+        progress.pause(false);
+        job.finish().unwrap();
+        assert_eq!(count(), 6000);
+
+        // Cancelled while it waits it ends.
+        let job = Job::start("wait", |progress| while progress.advance(0, 1).is_ok() {}).unwrap();
+        job.progress().pause(true);
+        std::thread::sleep(Duration::from_millis(50));
+        let begun = Instant::now();
+        job.progress().cancel();
+        job.finish().unwrap();
+        assert!(begun.elapsed() < Duration::from_secs(1));
     }
 
     #[test]

@@ -138,6 +138,11 @@ impl State {
                 }
             }
             Command::Photo(command) => self.apply_to_photo(command),
+            Command::View(change) if self.is_growing_seen() => {
+                if let Some(growing) = &mut self.from_photos.growing {
+                    growing.change_view(change);
+                }
+            }
             Command::View(change) if self.opening_preview().is_some() => {
                 if let Some(preview) = &mut self.preview {
                     preview.change_view(change);

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
-use crate::reconstruct::{EngineName, PhotoSet, Quality, Reconstructed};
+use crate::opening_preview::OpeningPreview;
+use crate::reconstruct::{EngineName, Growth, PhotoSet, Quality, Reconstructed};
 
 /// A step of making a flight from photos.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -16,6 +17,8 @@ pub enum FromPhotosStep {
     Fill(FromPhotosForm),
     /// Reconstructs.
     Start,
+    /// Lets the run wait, or go on.
+    Pause(bool),
     /// Opens the flight that came out while another one was looked at.
     Open,
 }
@@ -82,6 +85,10 @@ pub struct FromPhotos {
     pub ended: Option<Ended>,
     /// Photos that could not be opened as a flight: they can be reconstructed.
     pub offered: Option<PathBuf>,
+    /// The model of the run, while it grows and is looked at.
+    pub growing: Option<OpeningPreview>,
+    /// Where the run puts the model as it is now, if nobody is about to take the one before.
+    pub(crate) grown: Arc<Mutex<Option<Growth>>>,
     /// Held by the run that writes: a cancelled one stops at its next look, and the next one waits for that.
     pub(crate) writing: Arc<Mutex<()>>,
 }

@@ -277,7 +277,10 @@ impl eframe::App for App {
                     photo_panel.show(state, ui, out);
                 }
             });
-        } else if let Some(preview) = state.opening_preview() {
+        } else if let Some(preview) = state
+            .opening_preview()
+            .or(state.from_photos.growing.as_ref())
+        {
             let (viewport, times) = (&mut self.viewport, &mut self.times);
             egui::CentralPanel::no_frame().show(ui, |ui| {
                 viewport.show_preview(state, preview, ui, out, times);

@@ -1,15 +1,21 @@
 //! What the window shows of a surface of millions of points while it is read: a sample of them, which can be
-//! turned. It goes when the flight is there, or when opening it is cancelled.
+//! turned. It goes when the flight is there, or when opening it is cancelled. And of a model while it is
+//! reconstructed: its points and the cameras found so far.
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 
+use crate::camera::Pose;
 use crate::command::ViewChange;
 use crate::geometry::{Bounds, LocalFrame};
 use crate::opening::SurfaceSample;
+use crate::reconstruct::Growth;
 use crate::render::{Gpu, Orbit, SurfaceBuffers};
-use crate::surface::bulk_of;
+use crate::surface::{Cloud, bulk_of};
+
+/// How long a camera's pyramid is, as a share of the model.
+const CAMERA: f64 = 0.025;
 
 /// A sample of the surface that is being read.
 #[derive(Debug)]
@@ -18,8 +24,12 @@ pub struct OpeningPreview {
     pub points: Option<Arc<SurfaceBuffers>>,
     /// How many they are.
     pub count: usize,
-    /// How many points there will be.
+    /// How many points there will be, or are in the model.
     pub of: u64,
+    /// Of a model that grows, each camera's centre with the corners of what it looks at; else empty.
+    pub cameras: Vec<[DVec3; 5]>,
+    /// Of a model that grows, how many photos are to be placed.
+    photos: Option<usize>,
     /// Where coordinates are small.
     pub frame: LocalFrame,
     /// How it is looked at.
@@ -47,12 +57,65 @@ impl OpeningPreview {
             points: gpu.map(|gpu| Arc::new(upload(gpu))),
             count: cloud.points.len(),
             of,
+            cameras: Vec::new(),
+            photos: None,
             frame,
             orbit,
             bulk,
             turned: false,
             size: None,
         })
+    }
+
+    /// A model while it grows, turned so that its cameras look down on the whole. Who has turned the one
+    /// `before` goes on looking from there. `None` without a point.
+    pub fn growing(gpu: Option<&Gpu>, growth: Growth, before: Option<&Self>) -> Option<Self> {
+        let Growth {
+            mut points,
+            colors,
+            of,
+            mut cameras,
+            photos,
+        } = growth;
+        let ahead: DVec3 = cameras.iter().map(|camera| camera.rotation.z_axis).sum();
+        let ahead = ahead.try_normalize().unwrap_or(DVec3::NEG_Z);
+        let down = DMat3::from_quat(DQuat::from_rotation_arc(ahead, DVec3::NEG_Z));
+        for point in &mut points {
+            *point = down * *point;
+        }
+        for camera in &mut cameras {
+            camera.center = down * camera.center;
+            camera.rotation = down * camera.rotation;
+        }
+        let cloud = Cloud {
+            points,
+            colors,
+            ..Cloud::default()
+        };
+        let mut next = Self::new(
+            gpu,
+            SurfaceSample {
+                cloud,
+                of: of as u64,
+            },
+        )?;
+        for camera in &cameras {
+            next.bulk.min = next.bulk.min.min(camera.center);
+            next.bulk.max = next.bulk.max.max(camera.center);
+        }
+        let size = next.bulk.size().length() * CAMERA;
+        let corners = [(-0.7, -0.5), (0.7, -0.5), (0.7, 0.5), (-0.7, 0.5)];
+        let pyramid = |camera: &Pose| {
+            let corner = |(x, y)| camera.center + camera.rotation * DVec3::new(x, y, 1.0) * size;
+            let [a, b, c, d] = corners.map(corner);
+            [camera.center, a, b, c, d]
+        };
+        next.cameras = cameras.iter().map(pyramid).collect();
+        next.photos = Some(photos);
+        if let Some(before) = before.filter(|before| before.turned) {
+            (next.orbit, next.turned) = (before.orbit, true);
+        }
+        Some(next)
     }
 
     /// Turns it.
@@ -93,6 +156,13 @@ impl OpeningPreview {
 
     /// In a sentence.
     pub fn in_words(&self) -> String {
+        if let Some(photos) = self.photos {
+            return format!(
+                "The model grows: {} of {photos} photos placed, {} points",
+                self.cameras.len(),
+                thousands(self.of)
+            );
+        }
         format!(
             "A first look: {} of {} points, while all are read",
             thousands(self.count as u64),

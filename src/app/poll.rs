@@ -24,6 +24,7 @@ impl State {
         if !self.is_opening() {
             self.preview = None;
         }
+        self.take_growth();
         if let Some(open) = &mut self.open {
             if !open.photo_view.tiles.take(&self.context) {
                 self.context.request_repaint();

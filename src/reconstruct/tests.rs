@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, OnceLock};
 
 use fragscale_core::split_mix::SplitMix;
 use fragscale_sample::files::photo::jpeg;
@@ -163,6 +163,62 @@ fn request(photos: &Path, to: &Path) -> Request {
         crs: None,
         camera: None,
         dense: None,
+    }
+}
+
+/// Paused while the model grows nothing goes on; then the same comes out to the bit, whoever looks on.
+#[test]
+fn paused_and_shown_the_same_comes_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let [alone, shown] = ["alone", "shown"].map(|name| folder.path().join(name));
+    let progress = Progress::default();
+    reconstruct(&request(photos(), &alone), &Embedded, &progress).unwrap();
+
+    let progress = Progress::default();
+    let grown = Arc::new(Mutex::new(Vec::<Growth>::new()));
+    let stood = Arc::new(Mutex::new(Vec::new()));
+    let (taken, watched, watch) = (grown.clone(), stood.clone(), progress.clone());
+    let on_growth: OnGrowth = Box::new(move |growth| {
+        taken.lock().unwrap().push(growth);
+        if taken.lock().unwrap().len() > 1 {
+            return;
+        }
+        watch.pause(true);
+        let (watch, watched) = (watch.clone(), watched.clone());
+        std::thread::spawn(move || {
+            for _ in 0..4 {
+                std::thread::sleep(std::time::Duration::from_millis(150));
+                watched.lock().unwrap().push(watch.snapshot());
+            }
+            watch.pause(false);
+        });
+    });
+    let engine = EmbeddedShown { on_growth };
+    let begun = std::time::Instant::now();
+    reconstruct(&request(photos(), &shown), &engine, &progress).unwrap();
+    assert!(begun.elapsed() > std::time::Duration::from_millis(600));
+    let stood = stood.lock().unwrap();
+    assert!(
+        stood.len() == 4 && stood.iter().all(|at| *at == stood[0]),
+        "{stood:?}"
+    );
+    for name in [
+        "poses.csv",
+        "pile.laz",
+        "reconstruction/points3D.txt",
+        "reconstruction/images.txt",
+    ] {
+        let read = |folder: &Path| fs::read(folder.join(name)).unwrap();
+        assert!(read(&alone) == read(&shown), "{name}");
+    }
+    // What was shown first are two cameras that look at the same points.
+    let grown = grown.lock().unwrap();
+    let first = &grown[0];
+    assert_eq!((first.cameras.len(), first.points.len()), (2, first.of));
+    assert!(first.of > 50 && first.colors.is_empty());
+    for camera in &first.cameras {
+        let ahead = |point: &&DVec3| camera.camera_from_world(**point).z > 0.0;
+        assert_eq!(first.points.iter().filter(ahead).count(), first.of);
     }
 }
 

@@ -179,15 +179,49 @@ fn a_flight_comes_out() {
     desk.harness.run_steps(5);
     assert!(desk.says("Cancelled. What was done is kept in that folder"));
 
-    // The window can be put away meanwhile; the foot of the window says how far it is.
+    // Paused it says so and waits.
     start(&mut desk);
+    desk.node(Role::Button, "Pause reconstruction").click();
+    desk.harness.run_steps(5);
+    assert!(desk.says("Paused: "));
+    let how_far = |desk: &Desk| {
+        let work = &desk.harness.state().state().work;
+        let mut running = work.running();
+        running.find(|(task, _)| *task == Task::RECONSTRUCT)
+    };
+    // It ends the photo that it is at.
+    std::thread::sleep(Duration::from_millis(1500));
+    let before = how_far(&desk);
+    std::thread::sleep(Duration::from_millis(700));
+    assert!(before.is_some() && how_far(&desk) == before, "{before:?}");
+    desk.node(Role::Button, "Go on with the reconstruction")
+        .click();
+    desk.harness.run_steps(5);
+    assert!(!desk.says("Paused: "));
+
+    // The window can be put away meanwhile; the foot of the window says how far it is.
     desk.harness
         .key_press_modifiers(Modifiers::NONE, Key::Escape);
     desk.harness.step();
     desk.harness.step();
     assert_eq!(asking(&desk), None);
     assert!(desk.shows(Role::Button, "Cancel reconstructing"));
+    // In the viewport the model grows.
+    let mut grown = 0;
+    while is_reconstructing(&desk) {
+        desk.harness.step();
+        let growing = desk.harness.state().state().from_photos.growing.as_ref();
+        if let Some(growing) = growing {
+            let words = growing.in_words();
+            assert!(words.starts_with("The model grows: ") && words.contains(" of 6 photos"));
+            grown = grown.max(growing.cameras.len());
+            assert!(growing.count > 20, "{}", growing.count);
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    assert!(grown >= 2, "{grown} cameras");
     desk.settle();
+    assert!(desk.harness.state().state().from_photos.growing.is_none());
 
     let Some(Ended::Made(made)) = ended(&desk) else {
         panic!("{:?}", ended(&desk));

@@ -286,6 +286,19 @@ impl<S: 'static> Work<S> {
         });
     }
 
+    /// Lets a task wait, or go on.
+    pub fn pause(&self, task: Task, paused: bool) {
+        for running in self.running.iter().filter(|running| running.task == task) {
+            running.job.progress().pause(paused);
+        }
+    }
+
+    /// Whether a task that runs is to wait.
+    pub fn is_paused(&self, task: Task) -> bool {
+        let mut of_task = self.running.iter().filter(|running| running.task == task);
+        of_task.any(|running| running.job.progress().is_paused())
+    }
+
     /// Whether a file is being written.
     pub fn is_writing(&self) -> bool {
         self.running.iter().any(|running| running.task.writes)

@@ -63,6 +63,7 @@ impl Viewport {
             graphics.draw(&scene, &show, ui);
             times.end(Phase::Draw);
         }
+        cameras(preview, &scene, ui);
         let font = FontId::proportional(14.0);
         let color = ui.visuals().strong_text_color();
         let at = place.left_top() + vec2(12.0, 10.0);
@@ -73,6 +74,30 @@ impl Viewport {
         let fill = ui.visuals().window_fill;
         ui.painter().rect_filled(behind, 4.0, fill);
         ui.painter().galley(at, text, color);
+    }
+}
+
+/// The cameras found so far, as small pyramids.
+fn cameras(preview: &OpeningPreview, scene: &Scene, ui: &egui::Ui) {
+    let painter = ui.painter().with_clip_rect(scene.place);
+    let stroke = egui::Stroke::new(1.2, ui.visuals().hyperlink_color);
+    let to_screen = |point| Some(scene.screen(scene.view.project(point, scene.size())?));
+    for camera in &preview.cameras {
+        let ends = camera.map(to_screen);
+        for (from, to) in [
+            (0, 1),
+            (0, 2),
+            (0, 3),
+            (0, 4),
+            (1, 2),
+            (2, 3),
+            (3, 4),
+            (4, 1),
+        ] {
+            if let (Some(from), Some(to)) = (ends[from], ends[to]) {
+                painter.line_segment([from, to], stroke);
+            }
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use cumulus3d_sfm::registration::{
 };
 use cumulus3d_sfm::triangulator::{TrackTriangulator, TrackTriangulatorOptions};
 
+use super::growth::Watch;
 use super::seed::{Seed, seeds};
 use crate::adjusted::{Adjustment, FEWEST_PHOTOS, Whose, adjust, failed, too_little_in_common};
 use crate::fault::Fault;
@@ -24,7 +25,7 @@ const GROWN: f64 = 0.2;
 /// Photos around a new one that are adjusted with it.
 const AROUND: usize = 6;
 
-/// The model.
+/// The model; it is shown to `watch` while it grows.
 ///
 /// # Errors
 /// Where no pair grows to three photos, or the work was cancelled.
@@ -32,6 +33,7 @@ pub(super) fn grow(
     store: &FeatureStore,
     graph: &MatchGraph,
     photos: &PhotoSet,
+    watch: Option<&Watch<'_>>,
     progress: &Progress,
 ) -> Result<Reconstruction, Fault> {
     progress.stage("looking for a pair to begin with");
@@ -41,6 +43,7 @@ pub(super) fn grow(
             store,
             graph,
             photos,
+            watch,
             progress,
         }
         .from(&seed)?;
@@ -64,6 +67,7 @@ struct Growing<'a> {
     store: &'a FeatureStore,
     graph: &'a MatchGraph,
     photos: &'a PhotoSet,
+    watch: Option<&'a Watch<'a>>,
     progress: &'a Progress,
 }
 
@@ -84,6 +88,9 @@ impl Growing<'_> {
             .stage(format!("placing {} photos", self.photos.photos.len()));
         while let Some(image) = self.next(&model, &tries) {
             let count = model.registered_image_count();
+            if let Some(watch) = self.watch {
+                watch.show(&model, self.photos.photos.len());
+            }
             self.progress
                 .advance(count as u64, self.photos.photos.len() as u64)?;
             let options = RegistrationOptions {
@@ -107,6 +114,9 @@ impl Growing<'_> {
         }
         self.progress.stage("adjusting all");
         for round in 0..3 {
+            if let Some(watch) = self.watch {
+                watch.show(&model, self.photos.photos.len());
+            }
             self.progress.advance(round, 4)?;
             let mut triangulator = TrackTriangulator::new(&model, self.graph, tracks());
             let again = triangulator.retriangulate(&mut model, None);

@@ -8,6 +8,7 @@
 //! matching      pairs of photos: matches that one geometry explains
 //! seed          the pair that a model begins with
 //! growing       photo after photo joins the model
+//! growth        what is shown of it meanwhile
 //! ```
 //!
 //! Why cumulus3d, and how far: its SIFT, its two-view geometry (five, seven and eight points), its
@@ -18,6 +19,7 @@
 
 mod features;
 mod growing;
+mod growth;
 mod matching;
 mod nearest_two;
 mod preemptive;
@@ -32,10 +34,18 @@ use crate::engine::{Engine, Found};
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::photo_set::PhotoSet;
+use growth::Watch;
+pub use growth::{Growth, OnGrowth};
 
 /// The engine.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Embedded;
+
+/// The same engine, which shows the model while it grows; the result is the same.
+pub struct EmbeddedShown {
+    /// Is shown it.
+    pub on_growth: OnGrowth,
+}
 
 /// Features and matches found so far, for a run that goes on.
 const KEPT: &str = "features.bin";
@@ -52,20 +62,48 @@ impl Engine for Embedded {
         work: &Path,
         progress: &Progress,
     ) -> Result<Found, Fault> {
-        guarded(|| {
-            let kept = work.join(KEPT);
-            // What was cut off while it was written is made again.
-            let store = FeatureStore::load(&kept).unwrap_or_default();
-            let left_out = features::find(&store, photos, &kept, progress)?;
-            let pairs = preemptive::worth_comparing(&store, photos, pairs, progress)?;
-            matching::compare(&store, photos, &pairs, &kept, progress)?;
-            let graph = MatchGraph::from_store(&store, &MatchGraphOptions::default());
-            Ok(Found {
-                model: growing::grow(&store, &graph, photos, progress)?,
-                left_out,
-            })
-        })
+        find(photos, pairs, work, None, progress)
     }
+}
+
+impl Engine for EmbeddedShown {
+    fn name(&self) -> String {
+        Embedded.name()
+    }
+
+    fn reconstruct(
+        &self,
+        photos: &PhotoSet,
+        pairs: &[[usize; 2]],
+        work: &Path,
+        progress: &Progress,
+    ) -> Result<Found, Fault> {
+        find(photos, pairs, work, Some(&self.on_growth), progress)
+    }
+}
+
+/// [`Engine::reconstruct`], shown to somebody or not.
+fn find(
+    photos: &PhotoSet,
+    pairs: &[[usize; 2]],
+    work: &Path,
+    on_growth: Option<&OnGrowth>,
+    progress: &Progress,
+) -> Result<Found, Fault> {
+    guarded(|| {
+        let kept = work.join(KEPT);
+        // What was cut off while it was written is made again.
+        let store = FeatureStore::load(&kept).unwrap_or_default();
+        let left_out = features::find(&store, photos, &kept, progress)?;
+        let pairs = preemptive::worth_comparing(&store, photos, pairs, progress)?;
+        matching::compare(&store, photos, &pairs, &kept, progress)?;
+        let graph = MatchGraph::from_store(&store, &MatchGraphOptions::default());
+        let watch = on_growth.map(Watch::new);
+        Ok(Found {
+            model: growing::grow(&store, &graph, photos, watch.as_ref(), progress)?,
+            left_out,
+        })
+    })
 }
 
 /// cumulus3d's identifier of a photo.

@@ -29,34 +29,45 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     );
     ui.add_space(4.0);
     let mut form = held.form.clone();
-    ui.add_enabled_ui(run.is_none(), |ui| {
-        folder_row(FolderField::Photos, &mut form, "", ui, commands);
-        what_was_found(state, ui);
-        ui.add_space(4.0);
-        let proposed = held.found.as_ref();
-        let proposed = proposed.map(|found| found.proposed.display().to_string());
-        let hint = proposed.unwrap_or_default();
-        folder_row(FolderField::To, &mut form, &hint, ui, commands);
-        ui.horizontal(|ui| {
-            ui.label("Coordinate system");
-            let hint = "EPSG:n; if empty the zone of UTM";
-            let hover = "Of the world: EPSG:n, WKT or a PROJ text; a projected one";
-            let label = "Coordinate system";
-            let width = ui.available_width();
-            if let Some(typed) = hinted_field(ui, label, hover, &form.crs, hint, width) {
-                form.crs = typed;
-            }
+    if held.growing.is_some() && run.is_some() {
+        // The model behind this window is what one wants to see.
+        names::name(ui, &form.photos);
+    } else {
+        ui.add_enabled_ui(run.is_none(), |ui| {
+            folder_row(FolderField::Photos, &mut form, "", ui, commands);
+            what_was_found(state, ui);
+            ui.add_space(4.0);
+            let proposed = held.found.as_ref();
+            let proposed = proposed.map(|found| found.proposed.display().to_string());
+            let hint = proposed.unwrap_or_default();
+            folder_row(FolderField::To, &mut form, &hint, ui, commands);
+            ui.horizontal(|ui| {
+                ui.label("Coordinate system");
+                let hint = "EPSG:n; if empty the zone of UTM";
+                let hover = "Of the world: EPSG:n, WKT or a PROJ text; a projected one";
+                let label = "Coordinate system";
+                let width = ui.available_width();
+                if let Some(typed) = hinted_field(ui, label, hover, &form.crs, hint, width) {
+                    form.crs = typed;
+                }
+            });
+            quality_row(&mut form, ui);
+            engine_row(held, &mut form, ui);
+            how_long(held, &form, ui);
         });
-        quality_row(&mut form, ui);
-        engine_row(held, &mut form, ui);
-        how_long(held, &form, ui);
-    });
+    }
     if form != held.form {
         commands.push(Command::FromPhotos(FromPhotosStep::Fill(form.clone())));
     }
     ui.separator();
     match run {
-        Some((_, (sentence, fraction))) => progress(&sentence, fraction, ui, commands),
+        Some((_, (sentence, fraction))) => {
+            let pauses = PauseOf {
+                can: form.engine == EngineName::Embedded,
+                is: state.work.is_paused(Task::RECONSTRUCT),
+            };
+            progress(&sentence, fraction, &pauses, ui, commands);
+        }
         None => start(held, &form, ui, commands),
     }
 }
@@ -213,8 +224,23 @@ fn photo_set(set: &PhotoSet, ui: &mut egui::Ui) {
     }
 }
 
-fn progress(sentence: &str, fraction: f64, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    ui.label(sentence);
+/// Whether the run can be paused, and whether it is.
+struct PauseOf {
+    can: bool,
+    is: bool,
+}
+
+fn progress(
+    sentence: &str,
+    fraction: f64,
+    pauses: &PauseOf,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    match pauses.is {
+        true => ui.label(format!("Paused: {sentence}")),
+        false => ui.label(sentence),
+    };
     let bar = egui::ProgressBar::new(fraction as f32).show_percentage();
     ui.add(bar);
     ui.horizontal(|ui| {
@@ -226,7 +252,28 @@ fn progress(sentence: &str, fraction: f64, ui: &mut egui::Ui, commands: &mut Vec
         if cancel.on_hover_text(hover).clicked() {
             commands.push(Command::Cancel(Task::RECONSTRUCT));
         }
-        ui.weak("It goes on when this window is closed.");
+        if pauses.can {
+            let pause = ui.button(if pauses.is { "Go on" } else { "Pause" });
+            pause.widget_info(|| {
+                let name = match pauses.is {
+                    true => "Go on with the reconstruction",
+                    false => "Pause reconstruction",
+                };
+                egui::WidgetInfo::labeled(egui::Role::Button, true, name)
+            });
+            let hover = match pauses.is {
+                true => "Go on where it waits",
+                false => "End the photo or the pair that is being worked on, then wait and use no processor",
+            };
+            if pause.on_hover_text(hover).clicked() {
+                commands.push(Command::FromPhotos(FromPhotosStep::Pause(!pauses.is)));
+            }
+        }
+        ui.weak(match (pauses.can, pauses.is) {
+            (_, true) => "It waits when this window is closed, too.",
+            (true, false) => "It goes on when this window is closed.",
+            (false, false) => "It goes on when this window is closed. COLMAP cannot be paused.",
+        });
     });
 }
 

@@ -8,9 +8,10 @@ use crate::command::{Asking, Command};
 use crate::files::FileError;
 use crate::from_photos::{Ended, FolderField, FoundPhotos, FromPhotosForm, FromPhotosStep};
 use crate::jobs::Progress;
+use crate::opening_preview::OpeningPreview;
 use crate::reconstruct::{
-    EngineName, PhotoSet, Quality, Reconstructed, Request, about, left_out, may_be_made,
-    proposed_folder, reconstruct, summary,
+    EmbeddedShown, EngineName, OnGrowth, PhotoSet, Quality, Reconstructed, Request, about,
+    left_out, may_be_made, proposed_folder, reconstruct, summary,
 };
 use crate::state::{Severity, State};
 use crate::tasks::work::Task;
@@ -47,6 +48,7 @@ impl State {
             FromPhotosStep::Colmap(installed) => self.from_photos.colmap = Some(installed),
             FromPhotosStep::Fill(form) => self.fill_from_photos(form),
             FromPhotosStep::Start => self.start_reconstructing(),
+            FromPhotosStep::Pause(paused) => self.work.pause(Task::RECONSTRUCT, paused),
             FromPhotosStep::Open => {
                 if let Some(Ended::Made(made)) = &self.from_photos.ended {
                     let flight = made.flight.clone();
@@ -147,8 +149,22 @@ impl State {
         let engine = form.engine;
         self.from_photos.ended = None;
         let (writing, opened) = (self.from_photos.writing.clone(), self.opened);
+        self.from_photos.growing = None;
+        // Of its own: a cancelled run may still have something to show.
+        self.from_photos.grown = Default::default();
+        let (grown, context) = (self.from_photos.grown.clone(), self.context.clone());
         let work = move |progress: &Progress| {
             let _writes = alone(&writing, &request.to, progress)?;
+            if engine == EngineName::Embedded {
+                let on_growth: OnGrowth = Box::new(move |growth| {
+                    // Who draws a picture now takes the next model.
+                    if let Ok(mut grown) = grown.try_lock() {
+                        *grown = Some(growth);
+                        context.request_repaint();
+                    }
+                });
+                return reconstruct(&request, &EmbeddedShown { on_growth }, progress);
+            }
             let engine = engine.engine();
             let engine = engine.map_err(|fault| FileError::new(&request.photos, fault))?;
             reconstruct(&request, &*engine, progress)
@@ -161,6 +177,29 @@ impl State {
                 Err(error) => state.take_failed(error.to_string()),
             },
         );
+    }
+
+    /// Takes the model of the run as it is now, where it is looked at: with no other flight on the screen.
+    pub(crate) fn take_growth(&mut self) {
+        let is_seen = self.open.is_none() && self.work.is_running(Task::RECONSTRUCT);
+        if !is_seen {
+            self.from_photos.growing = None;
+            return;
+        }
+        let grown = self.from_photos.grown.try_lock().ok();
+        let Some(growth) = grown.and_then(|mut grown| grown.take()) else {
+            return;
+        };
+        let before = self.from_photos.growing.take();
+        let next = OpeningPreview::growing(self.gpu.as_ref(), growth, before.as_ref());
+        // A model without points is nothing to look at.
+        self.from_photos.growing = next.or(before);
+    }
+
+    /// Whether the viewport shows the model that grows.
+    pub(crate) fn is_growing_seen(&self) -> bool {
+        let is_free = self.open.is_none() && self.opening_preview().is_none();
+        is_free && self.from_photos.growing.is_some()
     }
 
     /// Says what came out and opens it, unless she has opened another flight since.

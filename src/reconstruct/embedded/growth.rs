@@ -1,0 +1,90 @@
+//! What is shown of a model while it grows: some of its points, and the cameras found so far.
+
+use std::cell::Cell;
+use std::time::{Duration, Instant};
+
+use cumulus3d_core::Reconstruction;
+use glam::{DQuat, DVec3};
+
+use crate::camera::Pose;
+
+/// No more often than this, so that showing costs the engine nothing that is felt.
+const PAUSE: Duration = Duration::from_secs(1);
+
+/// Of more points every so many.
+const MOST_POINTS: usize = 40_000;
+
+/// A model as it is while it grows, in a frame of its own that may be another one each time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Growth {
+    /// Some of its points.
+    pub points: Vec<DVec3>,
+    /// As many colours; empty where none is known yet.
+    pub colors: Vec<[u8; 3]>,
+    /// How many points it has.
+    pub of: usize,
+    /// The cameras found so far.
+    pub cameras: Vec<Pose>,
+    /// How many photos there are.
+    pub photos: usize,
+}
+
+/// Takes it over; called by the engine's own thread, so it must not wait.
+pub type OnGrowth = Box<dyn Fn(Growth) + Send + Sync>;
+
+/// Who is shown a model, and when last.
+pub(super) struct Watch<'a> {
+    on_growth: &'a OnGrowth,
+    last: Cell<Option<Instant>>,
+}
+
+impl<'a> Watch<'a> {
+    pub(super) fn new(on_growth: &'a OnGrowth) -> Self {
+        Self {
+            on_growth,
+            last: Cell::new(None),
+        }
+    }
+
+    /// Shows the model of one in so many photos, unless that was done just now.
+    pub(super) fn show(&self, model: &Reconstruction, photos: usize) {
+        let is_early = self.last.get().is_some_and(|last| last.elapsed() < PAUSE);
+        if is_early {
+            return;
+        }
+        (self.on_growth)(growth(model, photos));
+        self.last.set(Some(Instant::now()));
+    }
+}
+
+fn growth(model: &Reconstruction, photos: usize) -> Growth {
+    let of = model.num_points3d();
+    let step = of.div_ceil(MOST_POINTS).max(1);
+    let shown = || model.points3d().step_by(step).map(|(_, point)| point);
+    // Black is what points have before anybody looks.
+    let is_colored = shown().any(|point| point.color != [0; 3]);
+    let pose = |image: u32| {
+        let pose = model.world_to_cam(image)?;
+        let center = model.projection_center(image)?;
+        let turn = pose.rotation;
+        let camera_from_world = DQuat::from_xyzw(turn.x, turn.y, turn.z, turn.w).normalize();
+        Some(Pose {
+            rotation: glam::DMat3::from_quat(camera_from_world.inverse()),
+            center: DVec3::new(center.x, center.y, center.z),
+        })
+    };
+    Growth {
+        points: shown()
+            .map(|point| DVec3::new(point.xyz.x, point.xyz.y, point.xyz.z))
+            .collect(),
+        colors: match is_colored {
+            true => shown().map(|point| point.color).collect(),
+            false => Vec::new(),
+        },
+        of,
+        cameras: (model.registered_images().into_iter())
+            .filter_map(pose)
+            .collect(),
+        photos,
+    }
+}
