@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::finding::{Basis, Found};
 use super::{Applied, ControlStep};
 use crate::control::{ControlList, ControlPoint, ScaleBar};
 use crate::fault::one_line;
@@ -181,6 +182,34 @@ fn merged(own: &ControlList, other: ControlList) -> ControlList {
 }
 
 impl OpenFlight {
+    /// The control points of now.
+    pub fn control_list(&self) -> &ControlList {
+        &self.history.now().control
+    }
+
+    /// Finds what follows from the marks, if that is not known.
+    pub(crate) fn look_at_control(&mut self) {
+        if !self.control.is_on {
+            return;
+        }
+        let flight = self.flight();
+        let list = self.control_list();
+        let chosen = self.control.chosen.filter(|&at| at < list.points.len());
+        let basis = Basis {
+            flight,
+            list,
+            chosen,
+            selected: self.selected,
+            image: self.photo_view.image_for(flight.parts().image),
+        };
+        if self.control.found.is_of(&basis) {
+            return;
+        }
+        let found = Found::of(&basis);
+        self.control.chosen = chosen;
+        self.control.found = found;
+    }
+
     /// Changes a list of control points.
     fn change_control(&mut self, list: &mut ControlList, step: ControlStep) {
         let names: Vec<String> = list.points.iter().map(|p| p.name.clone()).collect();

@@ -6,12 +6,24 @@ use glam::DVec2;
 
 use crate::control::{ControlList, ControlPoint, EpipolarLine, Located, MarkedView, locate};
 use crate::flight::Flight;
-use crate::open_flight::OpenFlight;
 use crate::scale::{ImageKind, Sighting};
 
 /// What the rest follows from.
 #[derive(Debug)]
-struct Basis {
+pub(super) struct Basis<'a> {
+    pub(super) flight: &'a Arc<Flight>,
+    pub(super) list: &'a ControlList,
+    /// Which point.
+    pub(super) chosen: Option<usize>,
+    /// Which photo.
+    pub(super) selected: Option<usize>,
+    /// Which image of it.
+    pub(super) image: ImageKind,
+}
+
+/// The same, kept to be compared with.
+#[derive(Debug)]
+struct Kept {
     flight: Arc<Flight>,
     list: ControlList,
     chosen: Option<usize>,
@@ -22,7 +34,7 @@ struct Basis {
 /// What follows from the marks. Pixels are those of the image that the photo view shows.
 #[derive(Debug, Default)]
 pub struct Found {
-    basis: Option<Basis>,
+    from: Option<Kept>,
     /// Of each point of the list: where it is, or why that is not known yet, in a line.
     pub points: Vec<Result<Located, String>>,
     /// Photos without a mark of the chosen point in which it should be, by their indices.
@@ -31,44 +43,6 @@ pub struct Found {
     pub lines: Vec<Vec<DVec2>>,
     /// And where it should be.
     pub predicted: Option<DVec2>,
-}
-
-impl OpenFlight {
-    /// The control points of now.
-    pub fn control_list(&self) -> &ControlList {
-        &self.history.now().control
-    }
-
-    /// Finds what follows from the marks, if that is not known.
-    pub(crate) fn look_at_control(&mut self) {
-        if !self.control.is_on {
-            return;
-        }
-        let flight = self.flight();
-        let list = self.control_list();
-        let chosen = self.control.chosen.filter(|&at| at < list.points.len());
-        let (selected, image) = (
-            self.selected,
-            self.photo_view.image_for(flight.parts().image),
-        );
-        let is_same = |basis: &Basis| {
-            Arc::ptr_eq(&basis.flight, flight)
-                && (basis.chosen, basis.selected, basis.image) == (chosen, selected, image)
-                && basis.list == *list
-        };
-        if self.control.found.basis.as_ref().is_some_and(is_same) {
-            return;
-        }
-        let basis = Basis {
-            flight: flight.clone(),
-            list: list.clone(),
-            chosen,
-            selected,
-            image,
-        };
-        self.control.chosen = chosen;
-        self.control.found = Found::of(basis);
-    }
 }
 
 /// The marks of a point that are in photos of the flight, with these photos.
@@ -88,33 +62,49 @@ fn marks<'a>(flight: &'a Flight, point: &ControlPoint) -> Vec<(usize, MarkedView
 }
 
 impl Found {
-    fn of(basis: Basis) -> Self {
-        let flight = &basis.flight;
+    /// Whether it follows from this.
+    pub(super) fn is_of(&self, basis: &Basis<'_>) -> bool {
+        self.from.as_ref().is_some_and(|from| {
+            Arc::ptr_eq(&from.flight, basis.flight)
+                && (from.chosen, from.selected, from.image)
+                    == (basis.chosen, basis.selected, basis.image)
+                && from.list == *basis.list
+        })
+    }
+
+    /// What follows from this.
+    pub(super) fn of(basis: &Basis<'_>) -> Self {
         let points: Vec<Result<Located, String>> = (basis.list.points.iter())
             .map(|point| {
-                let views: Vec<MarkedView<'_>> = (marks(flight, point).into_iter())
+                let views: Vec<MarkedView<'_>> = (marks(basis.flight, point).into_iter())
                     .map(|(_, view)| view)
                     .collect();
                 locate(&views).map_err(|fault| fault.what)
             })
             .collect();
         let mut found = Self {
+            from: Some(Kept {
+                flight: basis.flight.clone(),
+                list: basis.list.clone(),
+                chosen: basis.chosen,
+                selected: basis.selected,
+                image: basis.image,
+            }),
             points,
             ..Self::default()
         };
         if let Some(chosen) = basis.chosen {
-            found.look_for(&basis, chosen);
+            found.look_for(basis, chosen);
         }
-        found.basis = Some(basis);
         found
     }
 
     /// Where photos show the chosen point.
-    fn look_for(&mut self, basis: &Basis, chosen: usize) {
+    fn look_for(&mut self, basis: &Basis<'_>, chosen: usize) {
         let Some(point) = basis.list.points.get(chosen) else {
             return;
         };
-        let (flight, image) = (&basis.flight, basis.image);
+        let (flight, image) = (basis.flight, basis.image);
         let marks = marks(flight, point);
         let place = self
             .points

@@ -55,6 +55,7 @@ fn write_point(
 mod tests {
     use super::*;
     use crate::control::ScaleBar;
+    use crate::poses::position_list::control_points_from_text;
     use crate::units::LengthUnit;
     use glam::DVec3;
 
@@ -97,7 +98,7 @@ mod tests {
                 }],
             };
             let text = control_list_text(&list, str::to_owned);
-            let read = super::super::control_points_from_text(&text).unwrap();
+            let read = control_points_from_text(&text).unwrap();
             assert_eq!(read.list, list, "{text}");
             assert!(read.warnings.is_empty());
             // opendm/gcp.py: lines behind the first that are not empty and begin with no #, six parts and more.
@@ -117,7 +118,7 @@ mod tests {
             "flag\ta",
         ] {
             let text = format!("local\n# x\n{OWN}{line}\n");
-            let fault = super::super::control_points_from_text(&text).unwrap_err();
+            let fault = control_points_from_text(&text).unwrap_err();
             assert_eq!(fault.line, Some(3), "{fault}");
         }
     }
