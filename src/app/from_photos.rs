@@ -23,13 +23,15 @@ pub enum FromPhotosStep {
     Open,
 }
 
-/// A field of the small window that names a folder.
+/// A field of the small window that names a folder, or a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FolderField {
     /// The folder of the photos.
     Photos,
     /// The folder to make.
     To,
+    /// The file of a calibration.
+    Calibration,
 }
 
 /// What is typed and chosen in the small window.
@@ -41,6 +43,8 @@ pub struct FromPhotosForm {
     pub to: String,
     /// The coordinate system of the world, if it is not the zone of UTM.
     pub crs: String,
+    /// The file of the calibration that is kept; empty where the lens is found from the photos.
+    pub calibration: String,
     /// How much time the cloud may take.
     pub quality: Quality,
     /// What finds the poses.

@@ -84,7 +84,7 @@ fn photos_without_overlap_are_a_line() {
         "3 by ",
         "1280 x 720 px",
         "no photo says where it was taken",
-        "1 of 4 photos left out: it cannot be read (",
+        "1 of 4 photos left out: it ",
     ] {
         assert!(desk.says(words), "{words}");
     }
@@ -314,4 +314,25 @@ fn light_at_200_percent() {
         theme: Theme::Light,
     };
     looks(&screen, "from_photos_200_percent");
+}
+
+/// A calibration for photos of another size is refused in one line, with its file.
+#[test]
+fn a_calibration_goes_along() {
+    let (folder, photos) = nine_photos();
+    let lens = folder.path().join("lens.yaml");
+    let yaml = fs::read_to_string("assets/sample/ost.yaml").expect("the sample's");
+    let larger = yaml.replace("image_width: 1280", "image_width: 2560");
+    assert_ne!(larger, yaml);
+    fs::write(&lens, larger).expect("written");
+    let mut desk = desk(&photos);
+    desk.fill("Calibration", lens.to_str().expect("UTF-8"));
+    desk.click(Role::Button, "Start reconstruction");
+    let Some(Ended::Failed(why)) = ended(&desk) else {
+        panic!("{:?}", ended(&desk));
+    };
+    assert!(
+        why.contains("lens.yaml: it is for photos of 2560 x 720 px"),
+        "{why}"
+    );
 }

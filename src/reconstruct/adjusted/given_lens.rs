@@ -14,24 +14,6 @@ use crate::camera::{Camera, Distortion};
 use crate::fault::Fault;
 use crate::photo_set::{PhotoSet, SurveyCamera};
 
-/// Whether a calibration can be kept in COLMAP's files.
-///
-/// # Errors
-/// Why not.
-pub(crate) fn may_be_given(camera: &Camera) -> Result<(), Fault> {
-    let what = match &camera.distortion {
-        _ if camera.skew != 0.0 => {
-            "its axes are skew, which a reconstruction cannot keep".to_owned()
-        }
-        Distortion::None | Distortion::Brown(_) | Distortion::Fisheye(_) => return Ok(()),
-        other => format!(
-            "its lens model '{}' is one that a reconstruction cannot keep",
-            other.name()
-        ),
-    };
-    Err(Fault::new(what, "give a calibration of OpenCV's model"))
-}
-
 /// The lenses of a model that are given, and its pixels as shot.
 pub(super) struct GivenLenses<'a> {
     cameras: HashMap<u32, &'a Camera>,

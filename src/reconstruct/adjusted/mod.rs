@@ -26,7 +26,6 @@ mod whose;
 use std::path::Path;
 
 pub(crate) use self::bundle::{Adjustment, adjust};
-pub(crate) use self::given_lens::may_be_given;
 pub(crate) use self::guarded::{failed, guarded};
 pub(crate) use self::in_order::in_order;
 pub(crate) use self::model_files::read;

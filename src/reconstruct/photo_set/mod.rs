@@ -1,5 +1,6 @@
 //! The photos of a folder that go into a reconstruction: whose camera took them, from where.
 
+mod given_camera;
 mod in_world;
 mod twins;
 
@@ -10,7 +11,6 @@ use image::RgbImage;
 
 use self::in_world::World;
 use self::twins::Twins;
-use crate::adjusted::may_be_given;
 use crate::camera::{Camera, Distortion};
 use crate::fault::Fault;
 use crate::files::{FileError, read_bytes};
@@ -207,44 +207,6 @@ impl PhotoSet {
             origin: world.map_or(DVec3::ZERO, |world| world.origin),
             count: files.len(),
         })
-    }
-}
-
-/// How far a given focal length may give way while the model grows: from then on it is kept.
-const GIVEN_FOCAL: f64 = 0.01;
-
-impl PhotoSet {
-    /// The same with a calibration for its photos of that size, which is kept.
-    ///
-    /// # Errors
-    /// Where no photo is of that size, or it is of a model that cannot be kept.
-    pub fn with_camera(mut self, given: &Camera) -> Result<Self, Fault> {
-        may_be_given(given)?;
-        let mut used = false;
-        for its in &mut self.cameras {
-            if (its.camera.width, its.camera.height) == (given.width, given.height) {
-                used = true;
-                *its = SurveyCamera {
-                    camera: given.clone(),
-                    focal_error: Some(GIVEN_FOCAL),
-                    is_given: true,
-                };
-            }
-        }
-        if used {
-            return Ok(self);
-        }
-        let sizes = self.cameras.iter().map(|its| &its.camera);
-        let sizes: Vec<String> = sizes
-            .map(|camera| format!("{} x {}", camera.width, camera.height))
-            .collect();
-        let what = format!(
-            "it is for photos of {} x {} px, and these have {} px",
-            given.width,
-            given.height,
-            sizes.join(", ")
-        );
-        Err(Fault::new(what, "give the calibration of these photos"))
     }
 }
 

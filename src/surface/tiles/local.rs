@@ -94,7 +94,10 @@ impl<'a> Local<'a> {
         // Around a gap of the cloud circles hold many sites, and each is asked for.
         let index = site as usize;
         let row = self.held.partition_point(|range| range.end <= index);
-        let is_held = self.held.get(row).is_some_and(|range| range.contains(&index));
+        let is_held = self
+            .held
+            .get(row)
+            .is_some_and(|range| range.contains(&index));
         is_held || self.joined.contains(&site)
     }
 

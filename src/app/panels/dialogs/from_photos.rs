@@ -23,10 +23,8 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let held = &state.from_photos;
     let mut running = state.work.running();
     let run = running.find(|(task, _)| *task == Task::RECONSTRUCT);
-    ui.label(
-        "Photos that overlap become a flight: a cloud of the rock, where each photo was taken, and the lens. \
-         A drone's survey with 70 % overlap and more is right.",
-    );
+    // One line: in a small window the button is seen without scrolling.
+    ui.label("Photos that overlap by 70 % become a flight: cloud, poses and lens.");
     ui.add_space(4.0);
     let mut form = held.form.clone();
     if held.growing.is_some() && run.is_some() {
@@ -51,6 +49,7 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
                     form.crs = typed;
                 }
             });
+            calibration_row(&mut form, ui, commands);
             quality_row(&mut form, ui);
             engine_row(held, &mut form, ui);
             how_long(held, &form, ui);
@@ -70,6 +69,24 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         }
         None => start(held, &form, ui, commands),
     }
+}
+
+/// A calibration that is kept, with the desktop's dialog.
+fn calibration_row(form: &mut FromPhotosForm, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let label = "Calibration";
+        ui.label(label);
+        let hint = "a file; if empty the lens is found from the photos";
+        let hover = "Of the photos' camera, of OpenCV's model (YAML, XML or JSON): it is kept digit for digit";
+        let width = ui.available_width() - 80.0;
+        if let Some(typed) = hinted_field(ui, label, hover, &form.calibration, hint, width) {
+            form.calibration = typed;
+        }
+        if browse(ui, label) {
+            let dialog = Dialog::file(label).answering(Answers::FromPhotos(FolderField::Calibration));
+            commands.push(Command::Browse(dialog));
+        }
+    });
 }
 
 /// How much time the cloud may take; what that costs stands under the mouse.
@@ -150,7 +167,7 @@ fn folder_row(
             "A path, typed or pasted",
             &mut form.photos,
         ),
-        FolderField::To => (
+        FolderField::To | FolderField::Calibration => (
             "Folder to make",
             "Where the flight goes: a new folder, or one of a run that did not end",
             &mut form.to,

@@ -76,6 +76,7 @@ impl State {
         let mut form = self.from_photos.form.clone();
         match field {
             FolderField::Photos => form.photos = folder.display().to_string(),
+            FolderField::Calibration => form.calibration = folder.display().to_string(),
             FolderField::To if may_be_made(&folder) => form.to = folder.display().to_string(),
             FolderField::To => {
                 let proposed = self.from_photos.found.as_ref().map(|found| &found.proposed);
@@ -142,7 +143,7 @@ impl State {
         let request = Request {
             photos: absolute(photos),
             to: absolute(to),
-            camera: None,
+            camera: typed(&form.calibration).map(absolute),
             crs: typed_text(&form.crs),
             dense: form.quality.dense(),
         };
