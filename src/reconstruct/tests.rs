@@ -295,6 +295,18 @@ fn rendered_photos_become_their_flight() {
     let errors = |opened: &crate::opening::Opened| opened.settings.errors;
     assert_eq!(errors(&opened), errors(&twins));
     assert!(errors(&opened).surface.is_some());
+    // In another system its settings would mean something else.
+    let elsewhere = Request {
+        crs: Some("EPSG:32633".to_owned()),
+        ..request(photos(), &to)
+    };
+    let fault = reconstruct(&elsewhere, &Embedded, &progress).unwrap_err();
+    let said = fault.to_string();
+    assert!(
+        said.contains("EPSG:32632, and this one would have EPSG:32633"),
+        "{said}"
+    );
+    assert!(read(&to, "poses.csv") == read(&again, "poses.csv"));
     // Other photos do not take its place.
     let others = folder.path().join("others");
     fs::create_dir(&others).unwrap();

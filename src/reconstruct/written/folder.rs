@@ -155,6 +155,30 @@ impl Folder {
         Ok(model)
     }
 
+    /// Whether a new flight.toml is of the same world as the one before, whose settings stay: lengths and places in
+    /// it would be wrong in another.
+    ///
+    /// # Errors
+    /// Where it is not.
+    pub(super) fn is_of_its_world(&self, new: &[u8]) -> Result<(), FileError> {
+        let parsed = |text: &str| FlightFile::parse(text).ok();
+        let before = self.before.as_deref().and_then(parsed);
+        let new = std::str::from_utf8(new).ok().and_then(parsed);
+        let (Some(before), Some(new)) = (before, new) else {
+            return Ok(());
+        };
+        if before.crs() == new.crs() {
+            return Ok(());
+        }
+        let named = |flight: &FlightFile| flight.crs().unwrap_or("none").to_owned();
+        let what = format!(
+            "the flight in it has the coordinate system {}, and this one would have {}",
+            named(&before),
+            named(&new)
+        );
+        Err(FileError::new(&self.path, Fault::new(what, ANOTHER)))
+    }
+
     /// Writes flight.toml, in which what the engineer has set since it was first written stays.
     /// `has_noise` says whether the cloud's standard deviation is known.
     pub(super) fn write_flight(&self, new: &[u8], has_noise: bool) -> Result<(), FileError> {

@@ -116,6 +116,9 @@ pub(crate) fn write(
             (None, read, None, vec![(FLIGHT, text.into_bytes())])
         }
     };
+    for (_, text) in files.iter().filter(|(name, _)| *name == FLIGHT) {
+        folder.is_of_its_world(text)?;
+    }
     let mut left_out = photos.left_out.clone();
     left_out.extend(sparse.left_out);
     let made = Reconstructed {
