@@ -44,7 +44,6 @@ use outputs::OutputArguments;
 
 use crate::exports;
 use crate::fault::one_line;
-use crate::files;
 use crate::flight::{Limits, Review};
 use crate::formats::FileError;
 use crate::jobs::{Job, Progress};
@@ -284,7 +283,7 @@ fn window(flight: Vec<PathBuf>) -> ExitCode {
     }
     let ran = crate::app::run(flight);
     // What was being written when the window closed is not finished.
-    files::remove_unfinished();
+    crate::files::remove_unfinished();
     match ran {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => fail(&message),
