@@ -14,6 +14,7 @@ pub mod georeference;
 pub mod jobs;
 pub mod numbers;
 pub mod picture;
+pub mod plan;
 pub mod raster;
 pub mod scale;
 pub mod split_mix;

@@ -29,6 +29,7 @@
 //!     picture/                   pixels of photos: undistorting, reducing, drawing on them
 //! F2  scale/                     corner rays -> corner points -> scales; footprints
 //!     survey/                    profiles, areas and volumes on the surface
+//!     plan/                      where to fly: missions
 //!     control/                   control points: marks in photos, their places, epipolar lines
 //! F1  camera/   surface/         intrinsics, distortion, pose | triangulation, ray casting
 //!     fragmentation/             size distributions: functions, fits, analysis
@@ -73,7 +74,7 @@ pub mod cli;
 pub use fragscale_app as app;
 pub use fragscale_core::{
     camera, control, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, picture,
-    raster, scale, split_mix, surface, survey, units,
+    plan, raster, scale, split_mix, surface, survey, units,
 };
 pub use fragscale_exports as exports;
 pub use fragscale_formats as formats;

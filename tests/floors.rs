@@ -21,7 +21,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The core's modules and their floors. `fault` is the cellar: a sentence that every floor can say.
-const FLOORS: [(&str, i32); 17] = [
+const FLOORS: [(&str, i32); 18] = [
     ("fault", -1),
     ("files", 0),
     ("geometry", 0),
@@ -34,6 +34,7 @@ const FLOORS: [(&str, i32); 17] = [
     ("geodesy", 1),
     ("georeference", 1),
     ("surface", 1),
+    ("plan", 2),
     ("scale", 2),
     ("survey", 2),
     ("control", 2),
