@@ -484,6 +484,10 @@ fn a_given_calibration_is_kept() {
         (truth.fx, truth.fy, truth.cx, truth.cy, truth.distortion)
     );
     assert_eq!(parts.errors.focal, None);
+    // Nor does the report: fx, fy, how sure, the focal length that was given.
+    let report = fs::read_to_string(to.join("report.html")).unwrap();
+    let cells = "<td>600.00</td><td>600.00</td><td>\u{2013}</td><td>600.00</td>";
+    assert!(report.contains(cells), "{report}");
     assert_eq!(made.registered, 9);
     // Receivers are 1 and 2 cm off in what they say, and nothing in what they are.
     for photo in &parts.photos {

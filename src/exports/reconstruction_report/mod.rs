@@ -41,7 +41,7 @@ pub struct ReconstructionReport<'a> {
 pub struct SolvedCamera<'a> {
     /// Its intrinsics.
     pub camera: &'a Camera,
-    /// Standard deviation of its focal length, percent, where it is known.
+    /// Standard deviation of its focal length, percent, where that was found and is known.
     pub focal_percent: Option<f64>,
     /// The focal length that its photos state, pixels.
     pub stated_focal: Option<f64>,

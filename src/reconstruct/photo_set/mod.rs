@@ -15,7 +15,7 @@ use crate::camera::{Camera, Distortion};
 use crate::fault::Fault;
 use crate::files::{FileError, read_bytes};
 use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
-use crate::formats::{PhotoCameras, expected_deviation, photos_in};
+use crate::formats::{PhotoCameras, Reconstruction, expected_deviation, photos_in};
 use crate::jobs::Progress;
 use crate::picture;
 
@@ -135,6 +135,13 @@ impl PhotoSet {
     pub fn named(&self, name: &str) -> Option<&SurveyPhoto> {
         // Sorted as paths are: not quite as names.
         self.photos.iter().find(|photo| photo.name == name)
+    }
+
+    /// What is known of a model's camera, by its place there, before the adjustment: that of the first photo
+    /// that it took. `None` where the model has no photo of it.
+    pub(crate) fn camera_of(&self, model: &Reconstruction, camera: usize) -> Option<&SurveyCamera> {
+        let taken = model.photos.iter().find(|photo| photo.camera == camera)?;
+        self.cameras.get(self.named(&taken.name)?.camera)
     }
 
     /// The photos that lie in a folder. `crs` is the world's, else the zone of UTM of the first place.

@@ -12,7 +12,7 @@ use crate::flight::{FlightFile, FlightSettings, PosesFlight};
 use crate::formats::Reconstruction;
 use crate::numbers::{four_digits, stated_percent};
 use crate::opening::Georeferenced;
-use crate::photo_set::PhotoSet;
+use crate::photo_set::{PhotoSet, SurveyCamera};
 use crate::surface::Cloud;
 
 /// The files, by name, `flight.toml` the last.
@@ -56,11 +56,7 @@ pub(crate) fn flight_files(
     } = *of;
     let report = |error: String| Fault::new(error, "report this");
     model.transform(&placed.similarity);
-    let taken_by = |camera: usize| {
-        let taken = model.photos.iter().find(|photo| photo.camera == camera)?;
-        Some(&photos.cameras[photos.named(&taken.name)?.camera])
-    };
-    let lens = |(number, camera): (usize, &Camera)| match taken_by(number) {
+    let lens = |(number, camera): (usize, &Camera)| match photos.camera_of(&model, number) {
         Some(known) => known.expected().1,
         None => [camera.fx; 8],
     };
@@ -115,11 +111,11 @@ pub(crate) fn flight_files(
         ..FlightSettings::default()
     };
     settings.errors.world_scale = placed.scale_error.map(stated_percent);
-    // How sure a given calibration is, is for whoever gave it to say.
     let focal = sure.as_ref().and_then(|sure| {
-        let found = sure.focal.iter().enumerate();
-        let found = found.filter(|(number, _)| taken_by(*number).is_some_and(|its| !its.is_given));
-        found.map(|(_, focal)| *focal).reduce(f64::max)
+        let cameras = 0..model.cameras.len();
+        let found = cameras
+            .filter_map(|camera| found_focal(sure, photos.camera_of(&model, camera), camera));
+        found.reduce(f64::max)
     });
     settings.errors.focal = focal.map(stated_percent);
     settings.errors.surface = of_surface.map(four_digits);
@@ -143,6 +139,17 @@ pub(crate) fn stated(sure: &Deviations, photo: usize) -> StatedDeviations {
         position,
         angle: (turn.length_squared() / 3.0).sqrt().to_degrees(),
     }
+}
+
+/// Standard deviation of the focal length of a model's camera, a part of it; `expected` is what was known of it
+/// before. `None` for a given calibration, which is not found: how sure it is, is for whoever gave it to say.
+pub(crate) fn found_focal(
+    sure: &Deviations,
+    expected: Option<&SurveyCamera>,
+    camera: usize,
+) -> Option<f64> {
+    expected.filter(|expected| !expected.is_given)?;
+    sure.focal.get(camera).copied()
 }
 
 fn surface(cloud: &Cloud, placed: &Georeferenced) -> Result<(&'static str, Vec<u8>), String> {

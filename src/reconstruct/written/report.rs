@@ -1,6 +1,6 @@
 //! `report.html` of a model: what `exports` writes, gathered.
 
-use super::flight_files::stated;
+use super::flight_files::{found_focal, stated};
 use crate::Reconstructed;
 use crate::covariance::Deviations;
 use crate::exports::{
@@ -49,16 +49,12 @@ pub(crate) fn report(of: &ReportOf<'_>) -> String {
         }
     });
     let cameras = model.cameras.iter().enumerate().map(|(number, camera)| {
-        let taken = model.photos.iter().find(|photo| photo.camera == number);
-        let stated = taken.and_then(|photo| {
-            let camera = of.photos.named(&photo.name)?.camera;
-            let camera = of.photos.cameras.get(camera)?;
-            camera.focal_error.map(|_| camera.camera.fx)
-        });
+        let expected = of.photos.camera_of(model, number);
+        let focal = of.sure.and_then(|sure| found_focal(sure, expected, number));
         SolvedCamera {
             camera,
-            focal_percent: of.sure.map(|sure| sure.focal[number] * 100.0),
-            stated_focal: stated,
+            focal_percent: focal.map(|focal| focal * 100.0),
+            stated_focal: expected.and_then(|its| its.focal_error.map(|_| its.camera.fx)),
         }
     });
     let points = model.cloud.points.iter().zip(shown.by);
