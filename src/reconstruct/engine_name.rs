@@ -44,7 +44,7 @@ impl EngineName {
     /// Where it is not installed, or does not start.
     pub fn engine(self) -> Result<Box<dyn Engine>, Fault> {
         Ok(match self {
-            Self::Embedded => Box::new(Embedded),
+            Self::Embedded => Box::new(Embedded::default()),
             Self::Colmap => Box::new(Colmap::on_path()?),
         })
     }

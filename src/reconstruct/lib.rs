@@ -53,7 +53,7 @@ use std::path::PathBuf;
 
 pub use self::colmap::Colmap;
 pub use self::dense::DenseOptions;
-pub use self::embedded::{Embedded, EmbeddedShown, Growth, OnGrowth};
+pub use self::embedded::{Embedded, Growth, OnGrowth};
 pub use self::engine::{Engine, Found, Sparse};
 pub use self::engine_name::EngineName;
 pub use self::estimate::{about, processor_seconds};

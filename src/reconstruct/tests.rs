@@ -172,7 +172,7 @@ fn paused_and_shown_the_same_comes_out() {
     let folder = tempfile::tempdir().unwrap();
     let [alone, shown] = ["alone", "shown"].map(|name| folder.path().join(name));
     let progress = Progress::default();
-    reconstruct(&request(photos(), &alone), &Embedded, &progress).unwrap();
+    reconstruct(&request(photos(), &alone), &Embedded::default(), &progress).unwrap();
 
     let progress = Progress::default();
     let grown = Arc::new(Mutex::new(Vec::<Growth>::new()));
@@ -193,7 +193,9 @@ fn paused_and_shown_the_same_comes_out() {
             watch.pause(false);
         });
     });
-    let engine = EmbeddedShown { on_growth };
+    let engine = Embedded {
+        on_growth: Some(on_growth),
+    };
     let begun = std::time::Instant::now();
     reconstruct(&request(photos(), &shown), &engine, &progress).unwrap();
     assert!(begun.elapsed() > std::time::Duration::from_millis(600));
@@ -229,7 +231,7 @@ fn rendered_photos_become_their_flight() {
     let folder = tempfile::tempdir().unwrap();
     let to = folder.path().join("flight");
     let progress = Progress::default();
-    let made = reconstruct(&request(photos(), &to), &Embedded, &progress).unwrap();
+    let made = reconstruct(&request(photos(), &to), &Embedded::default(), &progress).unwrap();
     is_as_rendered(&made, "blurred");
     assert_eq!(made.dense, None);
 
@@ -239,15 +241,15 @@ fn rendered_photos_become_their_flight() {
         dense: Some(small()),
         ..request(photos(), &again)
     };
-    cut_off(&dense, &Embedded, "comparing", 0.0);
+    cut_off(&dense, &Embedded::default(), "comparing", 0.0);
     assert!(again.join("unfinished/features.bin").exists());
-    assert!(cut_off(&dense, &Embedded, "refining depths", 0.3) < 1.0);
+    assert!(cut_off(&dense, &Embedded::default(), "refining depths", 0.3) < 1.0);
     assert!(again.join("unfinished/depths/first-8").exists());
     // Its twin keeps the model and finds all depths once more.
     let twin = folder.path().join("twin");
     copy(&again.join("unfinished"), &twin.join("unfinished"));
     fs::remove_dir_all(twin.join("unfinished/depths")).unwrap();
-    let second = reconstruct(&dense, &Embedded, &progress).unwrap();
+    let second = reconstruct(&dense, &Embedded::default(), &progress).unwrap();
     assert!(!again.join("unfinished").exists());
     assert_eq!(
         (second.registered, second.points),
@@ -258,7 +260,9 @@ fn rendered_photos_become_their_flight() {
         ..dense
     };
     assert_eq!(
-        reconstruct(&dense, &Embedded, &progress).unwrap().dense,
+        reconstruct(&dense, &Embedded::default(), &progress)
+            .unwrap()
+            .dense,
         second.dense
     );
     let read = |folder: &Path, name: &str| fs::read(folder.join(name)).unwrap();
@@ -282,7 +286,7 @@ fn rendered_photos_become_their_flight() {
         dense: Some(small()),
         ..request(photos(), &to)
     };
-    let third = reconstruct(&dense, &Embedded, &progress).unwrap();
+    let third = reconstruct(&dense, &Embedded::default(), &progress).unwrap();
     assert_eq!(third.dense, second.dense);
     assert_eq!(third.left_out, made.left_out);
     for name in ["poses.csv", "pile.laz", "reconstruction/images.txt"] {
@@ -300,7 +304,7 @@ fn rendered_photos_become_their_flight() {
         crs: Some("EPSG:32633".to_owned()),
         ..request(photos(), &to)
     };
-    let fault = reconstruct(&elsewhere, &Embedded, &progress).unwrap_err();
+    let fault = reconstruct(&elsewhere, &Embedded::default(), &progress).unwrap_err();
     let said = fault.to_string();
     assert!(
         said.contains("EPSG:32632, and this one would have EPSG:32633"),
@@ -313,7 +317,7 @@ fn rendered_photos_become_their_flight() {
     for name in ["IMG_1.jpg", "IMG_2.jpg", "IMG_3.jpg"] {
         fs::copy(photos().join(name), others.join(name)).unwrap();
     }
-    let fault = reconstruct(&request(&others, &to), &Embedded, &progress).unwrap_err();
+    let fault = reconstruct(&request(&others, &to), &Embedded::default(), &progress).unwrap_err();
     assert!(fault.to_string().contains("of other photos"), "{fault}");
 }
 
@@ -464,14 +468,14 @@ fn a_given_calibration_is_kept() {
         ..request(photos(), &to)
     };
     fs::write(&file, yaml(1280)).unwrap();
-    let fault = reconstruct(&given, &Embedded, &Progress::default()).unwrap_err();
+    let fault = reconstruct(&given, &Embedded::default(), &Progress::default()).unwrap_err();
     let said = fault.to_string();
     assert!(
         said.contains("lens.yaml: it is for photos of 1280 x 480 px"),
         "{said}"
     );
     fs::write(&file, yaml(640)).unwrap();
-    let made = reconstruct(&given, &Embedded, &Progress::default()).unwrap();
+    let made = reconstruct(&given, &Embedded::default(), &Progress::default()).unwrap();
     let opened = open_flight(&made.flight, &OpenOptions::default(), &Progress::default());
     let opened = opened.unwrap();
     let parts = opened.flight.parts();
@@ -521,7 +525,12 @@ fn models_without_places_are_upright() {
             fs::write(photos.join(format!("IMG_{number}.jpg")), bytes).unwrap();
         }
         let to = folder.path().join(format!("{name} flight"));
-        let made = reconstruct(&request(&photos, &to), &Embedded, &Progress::default()).unwrap();
+        let made = reconstruct(
+            &request(&photos, &to),
+            &Embedded::default(),
+            &Progress::default(),
+        )
+        .unwrap();
         let said = made.warnings.join("; ");
         let by = match has_gimbal {
             true => "up is where the gimbals' angles say",
@@ -590,7 +599,7 @@ fn folders_without_photos_that_overlap_are_refused() {
         assert!(error.contains(what), "{error}");
         assert!(!error.contains('\n'));
     };
-    let refused = |what: &str| refused_by(&Embedded, what);
+    let refused = |what: &str| refused_by(&Embedded::default(), what);
     refused("a reconstruction needs three at least");
     for (number, pose) in (1..4).zip(&poses()) {
         let name = format!("IMG_{number}.jpg");

@@ -38,13 +38,10 @@ use growth::Watch;
 pub use growth::{Growth, OnGrowth};
 
 /// The engine.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Embedded;
-
-/// The same engine, which shows the model while it grows; the result is the same.
-pub struct EmbeddedShown {
-    /// Is shown it.
-    pub on_growth: OnGrowth,
+#[derive(Default)]
+pub struct Embedded {
+    /// Is shown the model while it grows; the result is the same.
+    pub on_growth: Option<OnGrowth>,
 }
 
 /// Features and matches found so far, for a run that goes on.
@@ -62,48 +59,21 @@ impl Engine for Embedded {
         work: &Path,
         progress: &Progress,
     ) -> Result<Found, Fault> {
-        find(photos, pairs, work, None, progress)
-    }
-}
-
-impl Engine for EmbeddedShown {
-    fn name(&self) -> String {
-        Embedded.name()
-    }
-
-    fn reconstruct(
-        &self,
-        photos: &PhotoSet,
-        pairs: &[[usize; 2]],
-        work: &Path,
-        progress: &Progress,
-    ) -> Result<Found, Fault> {
-        find(photos, pairs, work, Some(&self.on_growth), progress)
-    }
-}
-
-/// [`Engine::reconstruct`], shown to somebody or not.
-fn find(
-    photos: &PhotoSet,
-    pairs: &[[usize; 2]],
-    work: &Path,
-    on_growth: Option<&OnGrowth>,
-    progress: &Progress,
-) -> Result<Found, Fault> {
-    guarded(|| {
-        let kept = work.join(KEPT);
-        // What was cut off while it was written is made again.
-        let store = FeatureStore::load(&kept).unwrap_or_default();
-        let left_out = features::find(&store, photos, &kept, progress)?;
-        let pairs = preemptive::worth_comparing(&store, photos, pairs, progress)?;
-        matching::compare(&store, photos, &pairs, &kept, progress)?;
-        let graph = MatchGraph::from_store(&store, &MatchGraphOptions::default());
-        let watch = on_growth.map(Watch::new);
-        Ok(Found {
-            model: growing::grow(&store, &graph, photos, watch.as_ref(), progress)?,
-            left_out,
+        guarded(|| {
+            let kept = work.join(KEPT);
+            // What was cut off while it was written is made again.
+            let store = FeatureStore::load(&kept).unwrap_or_default();
+            let left_out = features::find(&store, photos, &kept, progress)?;
+            let pairs = preemptive::worth_comparing(&store, photos, pairs, progress)?;
+            matching::compare(&store, photos, &pairs, &kept, progress)?;
+            let graph = MatchGraph::from_store(&store, &MatchGraphOptions::default());
+            let watch = self.on_growth.as_ref().map(Watch::new);
+            Ok(Found {
+                model: growing::grow(&store, &graph, photos, watch.as_ref(), progress)?,
+                left_out,
+            })
         })
-    })
+    }
 }
 
 /// cumulus3d's identifier of a photo.

@@ -90,7 +90,7 @@ mod tests {
             dense: None,
         };
         // Nothing overlaps: it ends with a fault.
-        reconstruct(&request, &Embedded, &Progress::default()).unwrap_err();
+        reconstruct(&request, &Embedded::default(), &Progress::default()).unwrap_err();
         assert!(fs::read_dir(&to).unwrap().next().is_some());
         assert_eq!(proposed_folder(&photos), to);
         fs::write(to.join("flight.toml"), "").unwrap();

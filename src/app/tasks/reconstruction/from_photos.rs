@@ -10,8 +10,8 @@ use crate::from_photos::{Ended, FolderField, FoundPhotos, FromPhotosForm, FromPh
 use crate::jobs::Progress;
 use crate::opening_preview::OpeningPreview;
 use crate::reconstruct::{
-    EmbeddedShown, EngineName, OnGrowth, PhotoSet, Quality, Reconstructed, Request, about,
-    left_out, may_be_made, proposed_folder, reconstruct, summary,
+    Embedded, EngineName, OnGrowth, PhotoSet, Quality, Reconstructed, Request, about, left_out,
+    may_be_made, proposed_folder, reconstruct, summary,
 };
 use crate::state::{Severity, State};
 use crate::tasks::work::Task;
@@ -164,7 +164,10 @@ impl State {
                         context.request_repaint();
                     }
                 });
-                return reconstruct(&request, &EmbeddedShown { on_growth }, progress);
+                let engine = Embedded {
+                    on_growth: Some(on_growth),
+                };
+                return reconstruct(&request, &engine, progress);
             }
             let engine = engine.engine();
             let engine = engine.map_err(|fault| FileError::new(&request.photos, fault))?;
