@@ -155,48 +155,37 @@ impl Folder {
         Ok(model)
     }
 
-    /// Whether a new flight.toml is of the same world as the one before, whose settings stay: lengths and places in
-    /// it would be wrong in another.
+    /// The text of flight.toml: a new one's, in which what the engineer has set since one was first written stays.
+    /// How sure the cloud is, is the new one's.
     ///
     /// # Errors
-    /// Where it is not.
-    pub(super) fn is_of_its_world(&self, new: &[u8]) -> Result<(), FileError> {
+    /// Where the new one is of another world, in which lengths and places that were set would be wrong.
+    pub(super) fn flight_text(&self, new: Vec<u8>) -> Result<Vec<u8>, FileError> {
         let parsed = |text: &str| FlightFile::parse(text).ok();
-        let before = self.before.as_deref().and_then(parsed);
-        let new = std::str::from_utf8(new).ok().and_then(parsed);
-        let (Some(before), Some(new)) = (before, new) else {
-            return Ok(());
+        let Some(before) = self.before.as_deref() else {
+            return Ok(new);
         };
-        if before.crs() == new.crs() {
-            return Ok(());
+        let made = std::str::from_utf8(&new).ok().and_then(parsed);
+        let (Some(old), Some(made)) = (parsed(before), made) else {
+            return Ok(new);
+        };
+        if old.crs() != made.crs() {
+            let named = |flight: &FlightFile| flight.crs().unwrap_or("none").to_owned();
+            let what = format!(
+                "the flight in it has the coordinate system {}, and this one would have {}",
+                named(&old),
+                named(&made)
+            );
+            return Err(FileError::new(&self.path, Fault::new(what, ANOTHER)));
         }
-        let named = |flight: &FlightFile| flight.crs().unwrap_or("none").to_owned();
-        let what = format!(
-            "the flight in it has the coordinate system {}, and this one would have {}",
-            named(&before),
-            named(&new)
-        );
-        Err(FileError::new(&self.path, Fault::new(what, ANOTHER)))
-    }
-
-    /// Writes flight.toml, in which what the engineer has set since it was first written stays.
-    /// `has_noise` says whether the cloud's standard deviation is known.
-    pub(super) fn write_flight(&self, new: &[u8], has_noise: bool) -> Result<(), FileError> {
-        let path = self.path.join(FLIGHT);
-        let merged = || {
-            let before = self.before.as_ref()?;
-            let new = FlightFile::parse(std::str::from_utf8(new).ok()?).ok()?;
-            let old = FlightFile::parse(before).ok()?;
-            // The cloud lies in a file of another kind: that has to be named.
-            if old.surface() != new.surface() {
-                return None;
-            }
-            let mut settings = old.settings();
-            settings.errors.surface = has_noise.then_some(new.settings().errors.surface).flatten();
-            FlightFile::text_with_settings(before, &settings).ok()
-        };
-        let text = merged();
-        self.write(&path, text.as_ref().map_or(new, String::as_bytes))
+        // The cloud lies in a file of another kind: that has to be named.
+        if old.surface() != made.surface() {
+            return Ok(new);
+        }
+        let mut settings = old.settings();
+        settings.errors.surface = made.settings().errors.surface;
+        let merged = FlightFile::text_with_settings(before, &settings);
+        Ok(merged.map_or(new, String::into_bytes))
     }
 
     /// Writes a file of the folder, which nobody else's files lie in.

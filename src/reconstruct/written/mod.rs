@@ -11,13 +11,12 @@ pub use self::proposed::{may_be_made, proposed_folder};
 
 use std::fs;
 use std::io;
-use std::path::PathBuf;
 
 use self::flight_files::{FlightOf, SOURCE, flight_files};
 use self::folder::FLIGHT;
 use self::proposed::name_of;
 use self::report::{ReportOf, report};
-use crate::dense_cloud::{DenseCloud, dense_cloud};
+use crate::dense_cloud::dense_cloud;
 use crate::engine::Sparse;
 use crate::exports::ply;
 use crate::fault::Fault;
@@ -73,15 +72,15 @@ pub(crate) fn write(
         deviation: dense.deviation,
     });
     let name = name_of(&request.photos);
+    let here = fs::canonicalize(&folder.path).map_err(|error| at(&error))?;
     // flight.toml is the last: with it the folder is a flight.
-    let (placed, model, sure, files) = match placed {
+    let (placed, model, sure, mut files) = match placed {
         Ok(placed) => {
             progress.stage("finding how sure the poses are");
             if let Some(dense) = &mut dense_points {
                 dense.deviation *= placed.similarity.scale;
             }
             warnings.extend(placed.warnings.iter().cloned());
-            let here = fs::canonicalize(&folder.path).map_err(|error| at(&error))?;
             let to_photos = path_from(&here, &request.photos);
             let of = |to_photos: String| {
                 let of = FlightOf {
@@ -108,16 +107,24 @@ pub(crate) fn write(
                 }
             ));
             let photos = Some(request.photos.as_path());
-            let surface = dense
-                .map(|dense| write_in_its_frame(folder, &dense))
-                .transpose()?;
+            let mut files = Vec::new();
+            // In the model's frame, as the poses are.
+            if let Some(dense) = dense {
+                let bytes = ply(&dense.cloud, SOURCE).map_err(|error| {
+                    let fault = Fault::new(error, "report this");
+                    FileError::new(&folder.path, fault)
+                })?;
+                files.push(("pile.ply", bytes));
+            }
+            let surface = files.first().map(|(name, _)| here.join(name));
             let surface = surface.as_deref();
             let text = flight_text_of(None, Some(&name), &flight, &model, photos, surface)?;
-            (None, read, None, vec![(FLIGHT, text.into_bytes())])
+            files.push((FLIGHT, text.into_bytes()));
+            (None, read, None, files)
         }
     };
-    for (_, text) in files.iter().filter(|(name, _)| *name == FLIGHT) {
-        folder.is_of_its_world(text)?;
+    for (_, text) in files.iter_mut().filter(|(name, _)| *name == FLIGHT) {
+        *text = folder.flight_text(std::mem::take(text))?;
     }
     let mut left_out = photos.left_out.clone();
     left_out.extend(sparse.left_out);
@@ -142,23 +149,9 @@ pub(crate) fn write(
     });
     folder.write(&folder.path.join(REPORT), report.as_bytes())?;
     for (name, bytes) in &files {
-        match *name {
-            FLIGHT => folder.write_flight(bytes, made.dense.is_some())?,
-            name => folder.write(&folder.path.join(name), bytes)?,
-        }
+        folder.write(&folder.path.join(name), bytes)?;
     }
     // The flight is whole: what is left over harms nobody.
     let _ = fs::remove_dir_all(&folder.work);
     Ok(made)
-}
-
-/// Writes the dense cloud of a model that has no place in the world, in the model's frame.
-fn write_in_its_frame(folder: &Folder, dense: &DenseCloud) -> Result<PathBuf, FileError> {
-    let path = folder.path.join("pile.ply");
-    let bytes = ply(&dense.cloud, SOURCE).map_err(|error| {
-        let fault = Fault::new(error, "report this");
-        FileError::new(&path, fault)
-    })?;
-    folder.write(&path, &bytes)?;
-    Ok(path)
 }
