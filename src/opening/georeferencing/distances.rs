@@ -1,6 +1,6 @@
 //! The scale alone, from known distances, in a frame that stays the package's own or is turned level.
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DVec3};
 
 use super::marks::MarkedPoint;
 use super::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, LengthResidual};
@@ -8,7 +8,7 @@ use crate::control::ScaleBar;
 use crate::fault::Fault;
 use crate::formats::Reconstruction;
 use crate::geometry::Similarity;
-use crate::georeference::scale_of_lengths;
+use crate::georeference::{levelled, scale_of_lengths};
 use crate::units::LengthUnit;
 
 /// Fits the scale to `distances`; `warnings` are what was said before.
@@ -51,7 +51,16 @@ pub(super) fn by_distances(
         .collect();
     let found = scale_of_lengths(&numbers)?;
     let rotation = match request.level {
-        true => levelled(reconstruction)?,
+        true => {
+            let cameras = reconstruction.photos.iter();
+            let cameras: Vec<DVec3> = cameras.map(|photo| photo.pose.center).collect();
+            levelled(reconstruction.cloud.points.clone(), &cameras).ok_or_else(|| {
+                Fault::new(
+                    "the reconstruction has no plane of points to level by",
+                    "leave the axes as they are (no --level), or give positions",
+                )
+            })?
+        }
         false => DMat3::IDENTITY,
     };
     warnings.push(
@@ -127,46 +136,4 @@ pub(super) fn compared(
         })
     });
     compared.collect()
-}
-
-/// The least turn that brings the side of the reconstruction's points on which the cameras are up: the
-/// normal of their plane, from which the farthest points are dropped three times.
-fn levelled(reconstruction: &Reconstruction) -> Result<DMat3, Fault> {
-    let too_few = || {
-        Fault::new(
-            "the reconstruction has no plane of points to level by",
-            "leave the axes as they are (no --level), or give positions",
-        )
-    };
-    let mut points: Vec<DVec3> = reconstruction.cloud.points.clone();
-    let mut up = DVec3::Z;
-    for _ in 0..4 {
-        if points.len() < 3 {
-            return Err(too_few());
-        }
-        let mean = points.iter().sum::<DVec3>() / points.len() as f64;
-        let sum = (points.iter())
-            .map(|p| *p - mean)
-            .fold(nalgebra::Matrix3::zeros(), |sum, p| {
-                let p = nalgebra::Vector3::from(p.to_array());
-                sum + p * p.transpose()
-            });
-        let eigen = sum.symmetric_eigen();
-        let least = eigen.eigenvalues.imin();
-        let normal = eigen.eigenvectors.column(least);
-        up = DVec3::new(normal[0], normal[1], normal[2]).normalize_or_zero();
-        if up == DVec3::ZERO || !up.is_finite() {
-            return Err(too_few());
-        }
-        let spread = (eigen.eigenvalues[least].max(0.0) / points.len() as f64).sqrt();
-        let cameras = reconstruction
-            .photos
-            .iter()
-            .map(|photo| photo.pose.center - mean);
-        if cameras.sum::<DVec3>().dot(up) < 0.0 {
-            up = -up;
-        }
-        points.retain(|p| (*p - mean).dot(up).abs() <= 2.5 * spread);
-    }
-    Ok(DMat3::from_quat(DQuat::from_rotation_arc(up, DVec3::Z)))
 }

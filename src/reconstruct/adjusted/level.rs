@@ -3,12 +3,12 @@
 //! without them it is across the points, towards the cameras, as over every pile that a drone has flown over.
 
 use cumulus3d_core::Reconstruction;
-use cumulus3d_core::geometry::{Mat3, Quat, Sim3};
+use cumulus3d_core::geometry::{Quat, Sim3};
 use glam::{DMat3, DVec3};
 
 use super::Whose;
 use super::placing::{matrix, vector};
-use crate::georeference::{Pair, fit};
+use crate::georeference::{Pair, fit, levelled};
 
 /// Turns a model so that z is up; it keeps its size.
 pub(super) fn level(model: &mut Reconstruction, whose: &Whose<'_>) {
@@ -44,30 +44,15 @@ fn by_gimbals(model: &Reconstruction, whose: &Whose<'_>) -> Option<DMat3> {
     fit(&pairs).ok().map(|fitted| fitted.similarity.rotation)
 }
 
-/// The direction in which the points spread least, towards the cameras.
+/// Across the points, towards the cameras.
 fn across_points(model: &Reconstruction) -> Option<DMat3> {
-    let points: Vec<DVec3> = model
+    let points = model
         .points3d()
-        .map(|(_, point)| DVec3::from_array(point.xyz.into()))
+        .map(|(_, point)| DVec3::from_array(point.xyz.into()));
+    let cameras = model.registered_images().into_iter();
+    let cameras = cameras.filter_map(|image| model.projection_center(image));
+    let cameras: Vec<DVec3> = cameras
+        .map(|center| DVec3::from_array(center.into()))
         .collect();
-    let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
-    let mut spread = Mat3::zeros();
-    for point in &points {
-        let from = vector(point - middle);
-        spread += from * from.transpose();
-    }
-    let cameras: DVec3 = model
-        .registered_images()
-        .into_iter()
-        .filter_map(|image| model.projection_center(image))
-        .map(|center| DVec3::from_array(center.into()) - middle)
-        .sum();
-    let axes = spread.symmetric_eigen();
-    let least = axes.eigenvalues.imin();
-    let up = DVec3::from_slice(axes.eigenvectors.column(least).as_slice());
-    let up = up.try_normalize()? * if up.dot(cameras) < 0.0 { -1.0 } else { 1.0 };
-    Some(DMat3::from_quat(glam::DQuat::from_rotation_arc(
-        up,
-        DVec3::Z,
-    )))
+    levelled(points.collect(), &cameras)
 }
