@@ -10,10 +10,12 @@
 //! stray         points that stand alone
 //! model_files   what comes out
 //! in_order      photos numbered as in the folder
+//! conversions   cumulus3d's points and poses as ours, and back
 //! guarded       what cumulus3d does when something goes wrong
 //! ```
 
 mod bundle;
+mod conversions;
 mod given_lens;
 mod guarded;
 mod in_order;
@@ -26,6 +28,7 @@ mod whose;
 use std::path::Path;
 
 pub(crate) use self::bundle::{Adjustment, adjust};
+pub(crate) use self::conversions::{point, pose};
 pub(crate) use self::guarded::{failed, guarded};
 pub(crate) use self::in_order::in_order;
 pub(crate) use self::model_files::read;

@@ -3,12 +3,12 @@
 
 use std::collections::{HashMap, HashSet};
 
-use cumulus3d_core::geometry::{Mat3, Quat, Sim3};
+use cumulus3d_core::geometry::Sim3;
 use cumulus3d_core::{Reconstruction, Vec3};
-use glam::{DMat3, DVec3};
 
 use super::Whose;
 use super::bundle::{Adjustment, adjust};
+use super::conversions::{point, to_rotation, to_vector};
 use super::level::level;
 use crate::fault::Fault;
 use crate::georeference::{Pair, fit};
@@ -43,7 +43,7 @@ pub(super) fn place(
             .map_or(USUAL, |d| (d.length_squared() / 3.0).sqrt());
         images.push(image);
         pairs.push(Pair {
-            source: DVec3::new(center.x, center.y, center.z),
+            source: point(&center),
             target: place.center,
             accuracy: Some(deviation),
         });
@@ -56,15 +56,15 @@ pub(super) fn place(
     let similarity = &fitted.similarity;
     model.transform(&Sim3::new(
         similarity.scale,
-        Quat::from_rotation_matrix(&matrix(&similarity.rotation)),
-        vector(similarity.translation),
+        to_rotation(&similarity.rotation),
+        to_vector(similarity.translation),
     ));
     let used = images.iter().zip(&pairs).zip(&fitted.used);
     let places: HashMap<u32, (Vec3, f64)> = used
         .filter(|(_, used)| **used)
         .map(|((&image, pair), _)| {
             let deviation = pair.accuracy.unwrap_or(USUAL);
-            (image, (vector(pair.target), deviation))
+            (image, (to_vector(pair.target), deviation))
         })
         .collect();
     for _ in 0..2 {
@@ -78,12 +78,4 @@ pub(super) fn place(
         adjust(model, adjustment)?;
     }
     Ok(())
-}
-
-pub(super) fn vector(v: DVec3) -> Vec3 {
-    Vec3::new(v.x, v.y, v.z)
-}
-
-pub(super) fn matrix(m: &DMat3) -> Mat3 {
-    Mat3::from_column_slice(&m.to_cols_array())
 }

@@ -4,8 +4,9 @@ use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use cumulus3d_core::Reconstruction;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
+use crate::adjusted::{point, pose};
 use crate::camera::Pose;
 
 /// No more often than this, so that showing costs the engine nothing that is felt.
@@ -63,28 +64,16 @@ fn growth(model: &Reconstruction, photos: usize) -> Growth {
     let shown = || model.points3d().step_by(step).map(|(_, point)| point);
     // Black is what points have before anybody looks.
     let is_colored = shown().any(|point| point.color != [0; 3]);
-    let pose = |image: u32| {
-        let pose = model.world_to_cam(image)?;
-        let center = model.projection_center(image)?;
-        let turn = pose.rotation;
-        let camera_from_world = DQuat::from_xyzw(turn.x, turn.y, turn.z, turn.w).normalize();
-        Some(Pose {
-            rotation: glam::DMat3::from_quat(camera_from_world.inverse()),
-            center: DVec3::new(center.x, center.y, center.z),
-        })
-    };
+    let cameras = model.registered_images().into_iter();
+    let cameras = cameras.filter_map(|image| model.world_to_cam(image));
     Growth {
-        points: shown()
-            .map(|point| DVec3::new(point.xyz.x, point.xyz.y, point.xyz.z))
-            .collect(),
+        points: shown().map(|shown| point(&shown.xyz)).collect(),
         colors: match is_colored {
             true => shown().map(|point| point.color).collect(),
             false => Vec::new(),
         },
         of,
-        cameras: (model.registered_images().into_iter())
-            .filter_map(pose)
-            .collect(),
+        cameras: cameras.map(|found| pose(&found)).collect(),
         photos,
     }
 }
