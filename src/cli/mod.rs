@@ -455,19 +455,16 @@ fn unknown_command() -> Option<String> {
 
 /// Where the first word is a command and a file or folder of that name is there: how that is opened.
 fn folder_called_like_a_command() -> Option<String> {
-    let word = std::env::args_os().nth(1)?;
-    let text = word.to_str()?;
-    let kind = match std::fs::metadata(&word).ok()?.is_dir() {
+    let name = named_command()?;
+    let kind = match std::fs::metadata(&name).ok()?.is_dir() {
         true => "folder",
         false => "file",
     };
     let is_alone = std::env::args_os().len() == 2;
-    let command = Arguments::command();
-    let is_command = command.get_subcommands().any(|c| c.get_name() == text);
-    let there = Path::new(".").join(text);
-    (is_command && is_alone && cfg!(feature = "app")).then(|| {
+    let there = Path::new(".").join(&name);
+    (is_alone && cfg!(feature = "app")).then(|| {
         format!(
-            "'{text}' is a command; to open the {kind} of that name type 'fragscale {}'",
+            "'{name}' is a command; to open the {kind} of that name type 'fragscale {}'",
             there.display()
         )
     })
