@@ -355,8 +355,7 @@ pub static PHOTO_COLUMNS: [PhotoColumn; 30] = [
         hover: "What speaks against the scale, and what the engineer has decided",
         csv: Some("reasons"),
         value: |line| {
-            let doubts = line.photo.doubts.iter().map(ToString::to_string);
-            let all: Vec<String> = doubts.chain(line.photo.decided()).collect();
+            let all = line.photo.reasons_and_decision();
             ColumnValue::Text(all.join("; ").into())
         },
         ..COLUMN

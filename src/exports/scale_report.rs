@@ -113,10 +113,7 @@ impl<'a> ScaleReport<'a> {
 
     /// What fell back or failed, a sentence a photo; one of all photos where more than a few have the same.
     pub fn noted(&self) -> Vec<Noted> {
-        self.grouped(|line| {
-            let notes = line.photo.notes();
-            (!notes.is_empty()).then(|| notes.join("; "))
-        })
+        self.grouped(notes)
     }
 
     /// Why photos are not trusted, likewise: all reasons for doubt with the verdict, or what fell back or failed
@@ -125,11 +122,9 @@ impl<'a> ScaleReport<'a> {
         self.grouped(|line| {
             let photo = &line.photo;
             let Some(verdict) = photo.settled().filter(|_| !photo.doubts.is_empty()) else {
-                let notes = photo.notes();
-                return (!notes.is_empty()).then(|| notes.join("; "));
+                return notes(line);
             };
-            let doubts: Vec<String> = photo.doubts.iter().map(ToString::to_string).collect();
-            Some(format!("{verdict}: {}", doubts.join("; ")))
+            Some(format!("{verdict}: {}", photo.reasons().join("; ")))
         })
     }
 
@@ -191,6 +186,12 @@ impl<'a> ScaleReport<'a> {
             })
         })
     }
+}
+
+/// What fell back or failed, in one sentence; `None` where nothing did.
+fn notes(line: &PhotoLine<'_>) -> Option<String> {
+    let notes = line.photo.notes();
+    (!notes.is_empty()).then(|| notes.join("; "))
 }
 
 impl<'a> PhotoLine<'a> {

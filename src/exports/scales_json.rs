@@ -59,7 +59,7 @@ impl<'a> Photo<'a> {
                 .uncertainty()
                 .map(|uncertainty| Uncertain::new(&uncertainty, line.photo.pair)),
             verdict: line.photo.settled().map(Verdict::as_str),
-            reasons: line.photo.doubts.iter().map(Doubt::to_string).collect(),
+            reasons: line.photo.reasons(),
             decision: line.photo.decision.map(|decision| Decided {
                 decision: decision.kind.as_str(),
                 note: &decision.note,

@@ -189,6 +189,18 @@ impl<'a> PhotoReview<'a> {
         })
     }
 
+    /// Why its scale is doubted, one sentence each.
+    pub fn reasons(&self) -> Vec<String> {
+        self.doubts.iter().map(Doubt::to_string).collect()
+    }
+
+    /// The same, and behind them what the engineer has decided.
+    pub fn reasons_and_decision(&self) -> Vec<String> {
+        let mut all = self.reasons();
+        all.extend(self.decided());
+        all
+    }
+
     /// What every list of scales has to say beside its numbers, one sentence each: what fell back or
     /// failed, that the scale is for another image than the engineer has, that it is not of this pile.
     pub fn notes(&self) -> Vec<String> {

@@ -275,8 +275,7 @@ fn verdict(photo: PhotoReview<'_>, ui: &mut egui::Ui) {
     let words = format!("{} {verdict}", verdict_sign(verdict));
     let words = egui::RichText::new(words).color(verdict_color(verdict, ui.visuals()));
     let label = ui.add(egui::Label::new(words).selectable(false).truncate());
-    let reasons = photo.doubts.iter().map(ToString::to_string);
-    let reasons: Vec<String> = reasons.chain(photo.decided()).collect();
+    let reasons = photo.reasons_and_decision();
     if !reasons.is_empty() {
         label.on_hover_text(reasons.join("\n"));
     }
