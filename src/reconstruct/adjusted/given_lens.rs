@@ -4,7 +4,6 @@
 
 use std::collections::HashMap;
 
-use cumulus3d_core::reconstruction::TrackEntry;
 use cumulus3d_core::{Camera as EngineCamera, CameraModelKind, Reconstruction, Vec2};
 use glam::DVec2;
 
@@ -70,13 +69,12 @@ impl<'a> GivenLenses<'a> {
                 .image(image)
                 .is_some_and(|image| image.point2d(number).has_point3d())
             {
-                let seen = TrackEntry::new(image, number);
                 model
-                    .delete_observation(seen.image_id, seen.point2d_idx)
+                    .delete_observation(image, number)
                     .map_err(|_| failed("reading the model"))?;
             }
         }
-        self.set(model, CameraModelKind::Pinhole)
+        self.set_pinholes(model)
     }
 
     /// The model as the photos were shot, once it is adjusted. Its cameras have the first four numbers alone: see
@@ -99,7 +97,9 @@ impl<'a> GivenLenses<'a> {
         Ok(())
     }
 
-    fn set(&self, model: &mut Reconstruction, kind: CameraModelKind) -> Result<(), Fault> {
+    /// Gives the model pinholes of the given focal lengths and principal points.
+    fn set_pinholes(&self, model: &mut Reconstruction) -> Result<(), Fault> {
+        let kind = CameraModelKind::Pinhole;
         for (&id, given) in &self.cameras {
             let numbers = vec![given.fx, given.fy, given.cx, given.cy];
             let (width, height) = (u64::from(given.width), u64::from(given.height));
