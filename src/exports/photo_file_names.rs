@@ -3,6 +3,7 @@
 
 use std::collections::HashSet;
 
+use crate::files::last_segment;
 use crate::flight::Flight;
 
 /// For each photo of a flight a stem of its own, in their order, to build names of files on.
@@ -23,7 +24,7 @@ pub(crate) fn file_names(photos: &[&str]) -> Vec<(String, String)> {
     let parts: Vec<(String, String, String)> = photos
         .iter()
         .map(|photo| {
-            let last = photo.rsplit(['/', '\\']).next().unwrap_or(photo);
+            let last = last_segment(photo);
             let (stem, extension) = match last.rsplit_once('.') {
                 Some((stem, extension)) if !stem.is_empty() && !extension.is_empty() => {
                     (stem, format!(".{extension}"))

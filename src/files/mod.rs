@@ -1,12 +1,13 @@
 //! Files as such: which were read, what may be written over, and writing whole.
 //!
 //! ```text
-//! overwrite   what may be written over; every file that goes out is written here
-//! inputs      the files that were read, known by identity and not by name
-//! recording   which files are opened on the way
-//! input       opening files: whole bytes, text, errors with the file's name
-//! marks       what tells a file that fragscale wrote
-//! atomic      files and folders that are there whole or not at all
+//! overwrite     what may be written over; every file that goes out is written here
+//! inputs        the files that were read, known by identity and not by name
+//! recording     which files are opened on the way
+//! input         opening files: whole bytes, text, errors with the file's name
+//! last_segment  what a file is called, by a path that a text names
+//! marks         what tells a file that fragscale wrote
+//! atomic        files and folders that are there whole or not at all
 //! ```
 //!
 //! The one place of the lower floors that knows paths.
@@ -14,6 +15,7 @@
 mod atomic;
 mod input;
 mod inputs;
+mod last_segment;
 mod marks;
 mod overwrite;
 mod recording;
@@ -22,6 +24,7 @@ pub use atomic::write_whole;
 pub use atomic::{is_unfinished, make_folder_whole, remove_unfinished};
 pub use input::{FileError, cannot_be, open_file, read_bytes, read_text, text_from_bytes};
 pub use inputs::{Inputs, is_same_file};
+pub use last_segment::last_segment;
 pub use marks::{FLIGHT_MARK, HTML_MARK, Kind, PDF_MARK, SVG_MARK, WORLD_FILE_MARK, marked_png};
 pub use overwrite::{Standing, has_folder, may_write, standing, write};
 pub use recording::{Recording, note_opened};

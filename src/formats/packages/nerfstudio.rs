@@ -36,7 +36,7 @@ use serde::de::IgnoredAny;
 
 use crate::camera::{Brown, Camera, Distortion, Fisheye, HALF_TURN_ABOUT_X, Pose};
 use crate::fault::Fault;
-use crate::files::{FileError, open_file, read_bytes};
+use crate::files::{FileError, last_segment, open_file, read_bytes};
 use crate::packages::reconstruction::{PosedPhoto, Project, Reconstruction, Sizes};
 use crate::photos::photo_size;
 use crate::poses::rounded_rotation::{from_row_major, rounded_rotation};
@@ -233,8 +233,7 @@ fn read(
 /// The name of a photo's file below the folder.
 fn photo_name(file_path: &str, size_of: impl Fn(&str) -> Option<(u32, u32)>) -> String {
     let name = file_path.strip_prefix("./").unwrap_or(file_path);
-    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    if last.contains('.') || size_of(name).is_some() {
+    if last_segment(name).contains('.') || size_of(name).is_some() {
         return name.to_owned();
     }
     format!("{name}.png")

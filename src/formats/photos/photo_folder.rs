@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::image_names::{is_image, readable};
 use super::photo_size;
 use crate::fault::Fault;
-use crate::files::open_file;
+use crate::files::{last_segment, open_file};
 use crate::packages::reconstruction::Reconstruction;
 
 /// How many files an error about a folder names.
@@ -45,7 +45,7 @@ impl<'a> PhotoFolder<'a> {
     /// ("DJI_0025.JPG.tif"), the file may have the first alone.
     pub fn find(&self, photo: &str) -> Option<PathBuf> {
         let folder = self.folder?;
-        let last = photo.rsplit(['/', '\\']).next().unwrap_or(photo);
+        let last = last_segment(photo);
         if last.is_empty() {
             return None;
         }

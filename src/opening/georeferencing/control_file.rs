@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::photo_names::PhotoNames;
 use crate::control::ControlList;
-use crate::files::FileError;
+use crate::files::{FileError, last_segment};
 use crate::formats::{control_list_text, read_control_points};
 
 /// Where the control points of the flight in a flight.toml are: `flight-control-points.txt` beside it.
@@ -52,20 +52,16 @@ pub fn read_control(path: &Path, photos: &[&str]) -> Result<(ControlList, Vec<St
 
 /// The text of that file: photos are called as their files are, where no two of them are called so.
 pub fn control_text(list: &ControlList, photos: &[&str]) -> String {
-    let file_name = |photo: &str| -> String {
-        let last = photo.rsplit(['/', '\\']).next();
-        last.unwrap_or(photo).to_owned()
-    };
     let mut called: HashMap<String, usize> = HashMap::new();
     for photo in photos {
-        *called.entry(file_name(photo).to_lowercase()).or_default() += 1;
+        *called
+            .entry(last_segment(photo).to_lowercase())
+            .or_default() += 1;
     }
     control_list_text(list, |photo| {
-        let name = file_name(photo);
-        match called.get(&name.to_lowercase()) {
-            Some(1) => name,
-            _ => photo.to_owned(),
-        }
+        let name = last_segment(photo);
+        let is_clear = called.get(&name.to_lowercase()) == Some(&1);
+        (if is_clear { name } else { photo }).to_owned()
     })
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use crate::files::last_segment;
 use crate::formats::poses::position_list::number_of_photo;
 
 /// How the names of a list match those of photos: the first of these ways in which any of them do.
@@ -17,8 +18,7 @@ enum Way {
 
 impl Way {
     fn key(self, name: &str) -> Option<String> {
-        let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
-        let name = last.trim().to_lowercase();
+        let name = last_segment(name).trim().to_lowercase();
         match self {
             Self::Name => Some(name),
             Self::Stem => Some(match name.rsplit_once('.') {

@@ -8,6 +8,7 @@ use super::{adding, crs_row, residual};
 use crate::command::Command;
 use crate::control::{ControlPoint, POOR_PX};
 use crate::control_points::ControlStep;
+use crate::files::last_segment;
 use crate::open_flight::OpenFlight;
 use crate::panels::field::{hinted_field, text_field};
 
@@ -204,8 +205,7 @@ fn seen_in(
         ui.weak("Seen in");
         for photo in photos.iter().take(MOST_OFFERED) {
             let photo_name = open.name(*photo);
-            let last = photo_name.rsplit(['/', '\\']).next().unwrap_or(photo_name);
-            let go = ui.small_button(last);
+            let go = ui.small_button(last_segment(photo_name));
             go.widget_info(|| {
                 let label = format!("{} is seen in {photo_name}", point.name);
                 egui::WidgetInfo::labeled(egui::Role::Button, true, label)

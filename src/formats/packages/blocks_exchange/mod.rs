@@ -46,6 +46,7 @@ use roxmltree::{Document, Node};
 
 use crate::camera::Camera;
 use crate::fault::Fault;
+use crate::files::last_segment;
 use crate::geodesy::Geographic;
 use crate::packages::reconstruction::{
     MeasuredPosition, Observation, PosedPhoto, Reconstruction, Sizes,
@@ -289,7 +290,7 @@ impl<'a, 'input> Reader<'a, 'input> {
 
     /// Calls photos by their file's name where that is clear, else by the whole path.
     fn name_photos(&mut self) {
-        let file = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_owned();
+        let file = |path: &str| last_segment(path).to_owned();
         let mut counts: HashMap<String, usize> = HashMap::new();
         for path in &self.paths {
             *counts.entry(file(path)).or_default() += 1;

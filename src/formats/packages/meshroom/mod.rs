@@ -38,7 +38,7 @@ use serde::Deserialize;
 
 use crate::camera::Pose;
 use crate::fault::Fault;
-use crate::files::{FileError, read_bytes};
+use crate::files::{FileError, last_segment, read_bytes};
 use crate::packages::reconstruction::{
     MeasuredPosition, Observation, PosedPhoto, Project, Reconstruction, Sizes,
 };
@@ -400,7 +400,7 @@ impl RawScene {
 
     /// What the views' photos are called.
     fn names(&self) -> Vec<String> {
-        let last = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_owned();
+        let last = |path: &str| last_segment(path).to_owned();
         let mut seen = HashSet::new();
         let mut shared = HashSet::new();
         for view in &self.views.0 {

@@ -21,7 +21,7 @@ use glam::DVec3;
 use super::OpenSfm;
 use super::frame::Hint;
 use super::stats::world_scale_error;
-use crate::files::{FileError, open_file, read_bytes, text_from_bytes};
+use crate::files::{FileError, last_segment, open_file, read_bytes, text_from_bytes};
 use crate::packages::reconstruction::{Project, Reconstruction};
 use crate::photos::photo_folder::folder_of_photos;
 
@@ -157,7 +157,7 @@ fn tracks_file(path: &Path) -> Option<PathBuf> {
 fn unaligned(folder: &Path, reconstruction: &Reconstruction) -> Option<String> {
     let file = folder.join("image_list.txt");
     let list = file.is_file().then(|| read_bytes(&file).ok()).flatten()?;
-    let last = |name: &str| name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned();
+    let last = |name: &str| last_segment(name).to_owned();
     let aligned: HashSet<String> = reconstruction
         .photos
         .iter()

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use serde::Deserialize;
 
+use crate::files::last_segment;
+
 /// project.opf.
 #[derive(Debug, Deserialize)]
 pub(super) struct ProjectFile {
@@ -135,8 +137,7 @@ pub(super) fn path_of(uri: &str) -> PathBuf {
 /// The name of the file that a URI reference names.
 pub(super) fn file_name(uri: &str) -> String {
     let uri = uri.split(['#', '?']).next().unwrap_or(uri);
-    let path = decoded(uri);
-    path.rsplit(['/', '\\']).next().unwrap_or(&path).to_owned()
+    last_segment(&decoded(uri)).to_owned()
 }
 
 /// Percent-encoded bytes as they are meant.

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::files::read_text;
+use crate::files::{last_segment, read_text};
 use crate::packages::reconstruction::Reconstruction;
 use crate::text::xml_document;
 
@@ -54,7 +54,7 @@ pub(super) fn not_calibrated(project: &Path, found: &Reconstruction) -> Option<S
         .descendants()
         .filter(|node| node.has_tag_name("image"))
         .filter_map(|node| node.attribute("path"))
-        .filter(|path| !posed.contains(path.rsplit(['/', '\\']).next().unwrap_or(path)))
+        .filter(|path| !posed.contains(last_segment(path)))
         .count();
     (missing > 0).then(|| format!("{missing} photos were not calibrated and are left out"))
 }

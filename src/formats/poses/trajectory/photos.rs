@@ -7,6 +7,7 @@ use super::stamp::Stamp;
 use super::track::NoPose;
 use crate::camera::Pose;
 use crate::fault::Fault;
+use crate::files::last_segment;
 
 /// Image files with their poses, and what became of the others.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -19,7 +20,7 @@ pub struct PosedFiles {
 
 /// What a file is called without its folder and extension.
 fn stem(file: &str) -> &str {
-    let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
+    let name = last_segment(file);
     name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }
 
