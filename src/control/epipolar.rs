@@ -103,21 +103,8 @@ mod tests {
     use glam::DMat3;
 
     use super::*;
-    use crate::camera::{Brown, Distortion};
-
-    fn camera(distortion: Distortion) -> Camera {
-        Camera {
-            name: String::new(),
-            width: 4000,
-            height: 3000,
-            fx: 3000.0,
-            fy: 3010.0,
-            cx: 1990.0,
-            cy: 1510.0,
-            skew: 0.5,
-            distortion,
-        }
-    }
+    use crate::camera::Distortion;
+    use crate::control::test_camera::{brown, camera};
 
     fn pose(x: f64, y: f64, tilt: f64) -> Pose {
         let down = DMat3::from_cols(DVec3::X, -DVec3::Y, -DVec3::Z);
@@ -159,10 +146,6 @@ mod tests {
             }
         }
         off((low + high) / 2.0)
-    }
-
-    fn brown() -> Distortion {
-        Distortion::Brown(Brown::new([-0.12, 0.04, 1e-3, -5e-4, 0.0, 0.0, 0.0, 0.0]))
     }
 
     /// Through the true pixel of the other photo, with a lens and without, in either image of it.

@@ -114,23 +114,7 @@ mod tests {
     use glam::DMat3;
 
     use super::*;
-    use crate::camera::{Brown, Distortion};
-
-    fn camera() -> Camera {
-        Camera {
-            name: String::new(),
-            width: 4000,
-            height: 3000,
-            fx: 3000.0,
-            fy: 3010.0,
-            cx: 1990.0,
-            cy: 1510.0,
-            skew: 0.0,
-            distortion: Distortion::Brown(Brown::new([
-                -0.12, 0.04, 1e-3, -5e-4, 0.0, 0.0, 0.0, 0.0,
-            ])),
-        }
-    }
+    use crate::control::test_camera::{brown, camera};
 
     /// Five photos over a point, from different sides.
     fn poses() -> Vec<Pose> {
@@ -155,7 +139,7 @@ mod tests {
     /// The fourth mark is 50 px off: it is named, and no other one.
     #[test]
     fn a_mark_on_another_thing_is_named() {
-        let (camera, poses) = (camera(), poses());
+        let (camera, poses) = (camera(brown()), poses());
         let mut views: Vec<MarkedView<'_>> = (poses.iter())
             .map(|pose| MarkedView {
                 camera: &camera,
@@ -186,7 +170,7 @@ mod tests {
 
     #[test]
     fn one_mark_is_too_few() {
-        let (camera, poses) = (camera(), poses());
+        let (camera, poses) = (camera(brown()), poses());
         let view = MarkedView {
             camera: &camera,
             pose: &poses[0],

@@ -6,6 +6,8 @@
 
 mod epipolar;
 mod locate;
+#[cfg(test)]
+mod test_camera;
 
 pub use epipolar::EpipolarLine;
 pub use locate::{Located, MarkedView, POOR_PX, locate};
