@@ -49,6 +49,17 @@ pub fn cannot_be(done: &str, error: &std::io::Error) -> Fault {
     Fault::new(what, "check the disk, or choose another folder")
 }
 
+/// A folder whose files cannot be listed.
+pub fn unreadable_folder(error: &std::io::Error) -> Fault {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => Fault::new("there is no such folder", "check the path"),
+        _ => Fault::new(
+            format!("a folder that cannot be read ({error})"),
+            "check its permissions",
+        ),
+    }
+}
+
 /// Opens a file for reading; a directory is refused in words.
 ///
 /// # Errors
@@ -142,5 +153,15 @@ mod tests {
             "{folder}"
         );
         assert!(read_text(Path::new("no/such")).is_err());
+        let missing = unreadable_folder(&fs::read_dir("no/such").unwrap_err());
+        assert_eq!(
+            missing.to_string(),
+            "there is no such folder; check the path"
+        );
+        let refused = unreadable_folder(&std::io::ErrorKind::PermissionDenied.into());
+        assert_eq!(
+            refused.to_string(),
+            "a folder that cannot be read (permission denied); check its permissions"
+        );
     }
 }

@@ -8,7 +8,7 @@ use crate::cameras::json_camera;
 use crate::candidates::{Contents, only_below, several};
 use crate::clouds::ept;
 use crate::fault::Fault;
-use crate::files::{FileError, open_file};
+use crate::files::{FileError, open_file, unreadable_folder};
 use crate::packages::{self, Package, colmap, metashape, open3d};
 use crate::poses::trajectory::{self, TrajectoryFormat};
 use crate::poses::{poses_csv, poses_opk};
@@ -219,12 +219,12 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
     if let Some(error) = only_below(path) {
         return Err(error);
     }
-    let what = match fs::read_dir(path) {
-        Ok(_) => "a folder with no flight.toml and no reconstruction in it".to_owned(),
-        Err(e) => format!("a folder that cannot be read ({e})"),
+    let fault = match fs::read_dir(path) {
+        Ok(_) => Fault::new(
+            "a folder with no flight.toml and no reconstruction in it",
+            format!("supported are {SUPPORTED}"),
+        ),
+        Err(e) => unreadable_folder(&e),
     };
-    Err(FileError::new(
-        path,
-        Fault::new(what, format!("supported are {SUPPORTED}")),
-    ))
+    Err(FileError::new(path, fault))
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::image_names::{is_image, readable};
 use super::photo_size;
 use crate::fault::Fault;
-use crate::files::{last_segment, open_file};
+use crate::files::{last_segment, open_file, unreadable_folder};
 use crate::packages::reconstruction::Reconstruction;
 
 /// How many files an error about a folder names.
@@ -80,10 +80,7 @@ impl<'a> PhotoFolder<'a> {
             return refuse("a file, where the folder of the photos is needed".to_owned());
         }
         if let Err(e) = std::fs::read_dir(folder) {
-            return match e.kind() {
-                std::io::ErrorKind::NotFound => refuse("there is no such folder".to_owned()),
-                _ => refuse(format!("a folder that cannot be read ({e})")),
-            };
+            return refuse(unreadable_folder(&e).what);
         }
         if photos.iter().any(|photo| self.find(photo).is_some()) {
             return Ok(());

@@ -31,7 +31,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 
 use crate::fault::{Fault, first_names};
-use crate::files::FileError;
+use crate::files::{FileError, unreadable_folder};
 use crate::jobs::Progress;
 use crate::packages::pose_covariance::PoseCovariance;
 use crate::packages::reconstruction::{
@@ -65,20 +65,14 @@ pub(crate) fn has_photos(folder: &Path) -> bool {
 /// Where it cannot be read.
 pub fn photos_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
     let failed = |e: std::io::Error| {
-        let (what, remedy) = match e.kind() {
-            std::io::ErrorKind::NotFound => {
-                ("there is no such folder".to_owned(), "check the path")
-            }
-            std::io::ErrorKind::NotADirectory => (
-                "a file, where a folder of photos is needed".to_owned(),
+        let fault = match e.kind() {
+            std::io::ErrorKind::NotADirectory => Fault::new(
+                "a file, where a folder of photos is needed",
                 "name the folder that it lies in",
             ),
-            _ => (
-                format!("a folder that cannot be read ({e})"),
-                "check its permissions",
-            ),
+            _ => unreadable_folder(&e),
         };
-        FileError::new(folder, Fault::new(what, remedy))
+        FileError::new(folder, fault)
     };
     let mut photos = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {

@@ -38,7 +38,7 @@ use std::path::{Path, PathBuf};
 pub use recording::Recording;
 
 use crate::fault::Fault;
-use crate::files::{FileError, open_file};
+use crate::files::{FileError, open_file, unreadable_folder};
 use crate::jobs::Progress;
 use crate::packages::reconstruction::Project;
 use crate::poses::trajectory::Stamp;
@@ -151,12 +151,8 @@ pub fn read_with_topic(
 /// The files of a recording of ROS 2, in the order of their names, in which rosbag2 numbers them.
 fn files_of(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
     let fault = |what: String, remedy: &str| FileError::new(folder, Fault::new(what, remedy));
-    let entries = fs::read_dir(folder).map_err(|e| {
-        fault(
-            format!("a folder that cannot be read ({e})"),
-            "check its permissions",
-        )
-    })?;
+    let entries = fs::read_dir(folder);
+    let entries = entries.map_err(|e| FileError::new(folder, unreadable_folder(&e)))?;
     let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     files.retain(|file| {
         let name = lower_name(file);
