@@ -55,7 +55,7 @@ const MEMBERS: [(&str, &[&str]); 10] = [
     ("sample", &["core", "exports", "fragmentation", "formats"]),
     (
         "reconstruct",
-        &["core", "dense", "exports", "formats", "opening"],
+        &["core", "dense", "exports", "formats", "opening", "render"],
     ),
     (
         "app",

@@ -49,6 +49,8 @@ pub struct FromPhotosForm {
     pub quality: Quality,
     /// What finds the poses.
     pub engine: EngineName,
+    /// Whether the processor is to do all, also where there is a graphics card.
+    pub processor_only: bool,
 }
 
 /// Its name and version ("COLMAP 3.8"), or why it cannot be taken: one line.

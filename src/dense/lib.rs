@@ -49,9 +49,9 @@ pub use found_maps::DepthMaps;
 pub use fusion::{Fused, fuse};
 pub use neighbours::choose_neighbours;
 pub use options::{DenseOptions, Quality};
-pub use patch_match::Backend;
 pub use patch_match::cpu::Cpu;
-#[cfg(feature = "gpu")]
 pub use patch_match::gpu::Gpu;
+pub use patch_match::plane::Planes;
+pub use patch_match::{Backend, Problem, Sweep};
 pub use shelf::{InFolder, InMemory, Shelf};
 pub use view::{Photos, View};

@@ -460,7 +460,6 @@ fn cancelled_at_once_and_gone_on() {
     assert_eq!(calls, [2, 5, 3]);
 }
 
-#[cfg(feature = "gpu")]
 mod on_a_card {
     use super::*;
 
@@ -480,7 +479,7 @@ mod on_a_card {
     /// planes: nine of ten within 0.1 % (0.04 px), and as good as each other in the middle.
     #[test]
     fn the_card_counts_as_the_processor() {
-        let gpu = Gpu::best().unwrap();
+        let gpu = Gpu::on(fragscale_render::Gpu::fastest().unwrap()).unwrap();
         let (views, photos, own) = found(Scene::Plane, &Cpu);
         let (_, _, theirs) = found(Scene::Plane, &gpu);
         let own = maps_of(&views, &photos, &Cpu, &own).unwrap();

@@ -15,9 +15,11 @@ use std::path::{Path, PathBuf};
 use image::RgbImage;
 
 use crate::camera::{Camera, Distortion};
+use crate::card::CardFirst;
 use crate::dense::{
-    Cpu, DenseOptions, InFolder, Photos, Shelf, View, choose_neighbours, depth_maps, fuse,
+    DenseOptions, InFolder, Photos, Shelf, View, choose_neighbours, depth_maps, fuse,
 };
+use crate::engine::Workplace;
 use crate::fault::{Fault, first_names};
 use crate::formats::{Reconstruction, read_bytes};
 use crate::jobs::Progress;
@@ -54,7 +56,7 @@ pub(crate) fn dense_cloud(
     model: &Reconstruction,
     photos: &PhotoSet,
     options: &DenseOptions,
-    work: &Path,
+    at: &Workplace,
     goes_on: bool,
     progress: &Progress,
 ) -> Result<(Option<DenseCloud>, Vec<String>), Fault> {
@@ -87,14 +89,14 @@ pub(crate) fn dense_cloud(
             first_names(&without)
         ));
     }
-    let shelf = shelf(work, options, goes_on)?;
+    let shelf = shelf(at.folder, options, goes_on)?;
     let undistorted = Undistorted(&seen);
     let maps = depth_maps(
         &views,
         &undistorted,
         &neighbours,
         options,
-        &Cpu,
+        &CardFirst::new(at.card),
         &shelf,
         progress,
     )?;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::card::Card;
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::photo_set::{LeftOut, PhotoSet};
@@ -13,8 +14,8 @@ pub trait Engine {
     /// Its name and version, for reports.
     fn name(&self) -> String;
 
-    /// Finds poses of photos and points of what they show, in a frame of its own. `pairs` are the places in `photos` of photos that may show the same. `work` is a
-    /// folder for what it keeps: a second run goes on from there.
+    /// Finds poses of photos and points of what they show, in a frame of its own. `pairs` are the places in
+    /// `photos` of photos that may show the same.
     ///
     /// # Errors
     /// Where no two photos show the same, or the work was cancelled.
@@ -22,9 +23,18 @@ pub trait Engine {
         &self,
         photos: &PhotoSet,
         pairs: &[[usize; 2]],
-        work: &Path,
+        at: &Workplace,
         progress: &Progress,
     ) -> Result<Found, Fault>;
+}
+
+/// Where an engine works.
+#[derive(Debug, Clone, Copy)]
+pub struct Workplace<'a> {
+    /// A folder for what it keeps: a second run goes on from there.
+    pub folder: &'a Path,
+    /// A graphics card that may be used.
+    pub card: Option<&'a Card>,
 }
 
 /// What an engine found, in a frame of its own.

@@ -6,6 +6,7 @@
 //! pairs        which photos are compared: neighbours, not all with all
 //! engine       what an engine has to do
 //! engine_name  the engines to choose between
+//! card         a graphics card that computes
 //! embedded     the engine that is always there: cumulus3d's parts, in pure Rust
 //! colmap       COLMAP, where it is installed
 //! adjusted     what an engine found, adjusted with the photos' places
@@ -27,6 +28,7 @@
 //! and COLMAP's files count likewise.
 
 mod adjusted;
+mod card;
 mod colmap;
 mod covariance;
 mod dense_cloud;
@@ -51,10 +53,11 @@ use fragscale_opening as opening;
 
 use std::path::PathBuf;
 
+pub use self::card::Card;
 pub use self::colmap::Colmap;
 pub use self::dense::DenseOptions;
 pub use self::embedded::{Embedded, Growth, OnGrowth};
-pub use self::engine::{Engine, Found, Sparse};
+pub use self::engine::{Engine, Found, Sparse, Workplace};
 pub use self::engine_name::EngineName;
 pub use self::estimate::{about, processor_seconds};
 pub use self::photo_set::{LeftOut, PhotoSet, SurveyPhoto};
@@ -68,7 +71,7 @@ use self::jobs::Progress;
 use self::opening::Georeferenced;
 
 /// What is to be reconstructed.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct Request {
     /// The folder of the photos.
     pub photos: PathBuf,
@@ -81,6 +84,8 @@ pub struct Request {
     pub camera: Option<PathBuf>,
     /// How its dense cloud is found, see [`Quality`]; `None` keeps the sparse one.
     pub dense: Option<DenseOptions>,
+    /// The graphics card that may compute; without it the processor does all.
+    pub card: Option<Card>,
 }
 
 /// What came out.
@@ -102,6 +107,8 @@ pub struct Reconstructed {
     pub reprojection_px: Option<f64>,
     /// Its way to the world; `None` where the photos do not say where they were taken.
     pub world: Option<Georeferenced>,
+    /// The graphics card that computed, where one did to the end.
+    pub computed_on: Option<String>,
     /// What is to be said of it, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -139,7 +146,11 @@ pub fn reconstruct(
     let pairs = pairs::pairs(&photos);
     let at = |fault| FileError::new(&request.photos, fault);
     let find = || {
-        let found = engine.reconstruct(&photos, &pairs, &folder.work, progress)?;
+        let place = Workplace {
+            folder: &folder.work,
+            card: request.card.as_ref(),
+        };
+        let found = engine.reconstruct(&photos, &pairs, &place, progress)?;
         adjusted::adjusted(found, &photos, &folder.work, progress)
     };
     let (sparse, goes_on) = kept_model::kept_or_found(&folder.work, find).map_err(at)?;

@@ -36,6 +36,7 @@ pub(crate) fn facts(made: &Reconstructed) -> Vec<String> {
         }
         lines.push(text);
     }
+    lines.extend(made.computed_on.clone());
     if let Some(world) = &made.world {
         let crs = world.crs.as_deref().unwrap_or("local");
         let mut text = format!("world: {crs}, in {}", world.unit);

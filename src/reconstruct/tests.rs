@@ -163,6 +163,7 @@ fn request(photos: &Path, to: &Path) -> Request {
         crs: None,
         camera: None,
         dense: None,
+        card: None,
     }
 }
 
@@ -222,6 +223,40 @@ fn paused_and_shown_the_same_comes_out() {
         let ahead = |point: &&DVec3| camera.camera_from_world(**point).z > 0.0;
         assert_eq!(first.points.iter().filter(ahead).count(), first.of);
     }
+}
+
+/// On a card (here a driver that computes on the processor) the same model comes out to the bit. Where it is lost,
+/// the processor goes on to the end, and it is said.
+#[test]
+fn a_card_computes_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let progress = Progress::default();
+    let on = |name: &str, card: Option<Card>, dense: Option<DenseOptions>| {
+        let to = folder.path().join(name);
+        let request = Request {
+            dense,
+            card,
+            ..request(photos(), &to)
+        };
+        let made = reconstruct(&request, &Embedded::default(), &progress).unwrap();
+        let points = fs::read(to.join("reconstruction/points3D.txt")).unwrap();
+        (made, points)
+    };
+    let gpu = fragscale_render::Gpu::fastest().unwrap();
+    let (processor, points) = on("processor", None, Some(small()));
+    assert_eq!(processor.computed_on, None);
+    let (card, its_points) = on("card", Some(Card::on(gpu.clone())), None);
+    assert!(points == its_points);
+    let said = summary(&card).join("\n");
+    let expected = format!("computed on {}", gpu.name);
+    assert!(said.contains(&expected), "{said}");
+
+    gpu.device.destroy();
+    let (lost, its_points) = on("lost", Some(Card::on(gpu)), Some(small()));
+    assert!(points == its_points);
+    assert_eq!((lost.dense, lost.computed_on), (processor.dense, None));
+    let said = lost.warnings.join("\n");
+    assert!(said.contains("the processor went on"), "{said}");
 }
 
 /// Poses, lens, points, standard errors and coordinate system are those that the photos were rendered with; what

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 
 use crate::cli::Answer;
 use crate::jobs::Progress;
-use crate::reconstruct::{EngineName, Quality, Request, left_out, reconstruct, summary};
+use crate::reconstruct::{Card, EngineName, Quality, Request, left_out, reconstruct, summary};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ReconstructArguments {
@@ -30,6 +30,9 @@ pub(in crate::cli) struct ReconstructArguments {
     /// How much time the cloud may take.
     #[arg(long, value_enum, default_value_t)]
     quality: CloudQuality,
+    /// Let the processor do all, also where there is a graphics card.
+    #[arg(long)]
+    no_gpu: bool,
 }
 
 impl ReconstructArguments {
@@ -87,6 +90,7 @@ pub(in crate::cli) fn run(
         crs: arguments.crs.clone(),
         camera: arguments.camera.clone(),
         dense: arguments.quality.0.dense(),
+        card: (!arguments.no_gpu).then(Card::found).flatten(),
     };
     let engine = arguments.engine.0.engine();
     let engine = engine.map_err(|fault| fault.to_string())?;

@@ -5,9 +5,7 @@
 //! under 100 MiB: what a photo of 100 megapixels needs at a time stays far under 2 GiB.
 
 use bytemuck::{Pod, Zeroable};
-use fragscale_render::device_descriptor;
-use wgpu::util::DeviceExt;
-use wgpu::{Backends, BufferUsages, DeviceType};
+use wgpu::BufferUsages;
 
 use super::pair::project;
 use super::plane::{Plane, Planes};
@@ -27,7 +25,6 @@ const STICKS_OUT: f32 = 32.0;
 pub struct Gpu {
     gpu: fragscale_render::Gpu,
     pipeline: wgpu::ComputePipeline,
-    name: String,
     largest_tile: usize,
 }
 
@@ -109,81 +106,17 @@ fn word(number: usize) -> u32 {
 }
 
 impl Gpu {
-    /// The best device: a card of its own before one in the processor, software last.
+    /// On this device.
     ///
     /// # Errors
-    /// Where there is no graphics driver that computes.
-    pub fn best() -> Result<Self, Fault> {
-        let mut wanted = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-        if std::env::var_os("WGPU_BACKEND").is_none() {
-            wanted.backends = Backends::PRIMARY;
-        }
-        let backends = wanted.backends;
-        let instance = wgpu::Instance::new(wanted);
-        let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
-        adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
-            DeviceType::DiscreteGpu => 0,
-            DeviceType::IntegratedGpu | DeviceType::VirtualGpu => 1,
-            DeviceType::Other => 2,
-            DeviceType::Cpu => 3,
-        });
-        let mut why = "none was found".to_owned();
-        for adapter in adapters {
-            match pollster::block_on(adapter.request_device(&device_descriptor(&adapter))) {
-                Ok((device, queue)) => {
-                    let info = adapter.get_info();
-                    let gpu = fragscale_render::Gpu::of_window(device, queue, &info);
-                    return Self::on(gpu, format!("{} ({:?})", info.name, info.backend));
-                }
-                Err(error) => why = error.to_string(),
-            }
-        }
-        Err(Fault::new(
-            format!("no graphics driver can be used ({why})"),
-            "install a graphics driver, or let the processor do it",
-        ))
-    }
-
-    fn on(gpu: fragscale_render::Gpu, name: String) -> Result<Self, Fault> {
-        let module = gpu
-            .device
-            .create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some("patch match"),
-                source: wgpu::ShaderSource::Wgsl(
-                    include_str!("../../../shaders/patch_match.wgsl").into(),
-                ),
-            });
-        let pipeline = gpu
-            .device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some("patch match"),
-                layout: None,
-                module: &module,
-                entry_point: Some("sweep"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            });
-        let own = Self {
+    /// Where the device refuses the shader.
+    pub fn on(gpu: fragscale_render::Gpu) -> Result<Self, Fault> {
+        let shader = include_str!("../../../shaders/patch_match.wgsl");
+        Ok(Self {
+            pipeline: gpu.compute_pipeline("patch match", shader, "sweep")?,
             gpu,
-            pipeline,
-            name,
             largest_tile: LARGEST_TILE,
-        };
-        own.check()?;
-        Ok(own)
-    }
-
-    /// Whether the processor computes in the card's stead.
-    #[must_use]
-    pub fn is_software(&self) -> bool {
-        self.gpu.software
-    }
-
-    fn check(&self) -> Result<(), Fault> {
-        match self.gpu.take_error() {
-            None => Ok(()),
-            Some(sentence) => Err(Fault::new(sentence, "let the processor do it")),
-        }
+        })
     }
 
     /// The sweeps over one tile; hands back its planes, margins and all.
@@ -195,7 +128,6 @@ impl Gpu {
         sweeps: &[Sweep],
         progress: &Progress,
     ) -> Result<Vec<[f32; 4]>, Fault> {
-        let device = &self.gpu.device;
         let (width, height) = (problem.luma.width, problem.luma.height);
         let own = outer.grown(5, width, height);
         let mut levels = Vec::new();
@@ -239,33 +171,14 @@ impl Gpu {
                 [plane.inverse_depth, plane.slope[0], plane.slope[1], cost]
             }));
         }
-        let buffer = |label, contents: &[u8], usage| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some(label),
-                contents,
-                usage,
-            })
+        let storage = |label, contents: &[u8]| {
+            let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+            self.gpu.buffer(label, contents, usage)
         };
-        let state = buffer(
-            "planes",
-            bytemuck::cast_slice(&own_planes),
-            BufferUsages::STORAGE | BufferUsages::COPY_SRC,
-        );
-        let levels = buffer(
-            "grey levels",
-            bytemuck::cast_slice(&levels),
-            BufferUsages::STORAGE,
-        );
-        let depths = buffer(
-            "depths",
-            bytemuck::cast_slice(&depths),
-            BufferUsages::STORAGE,
-        );
-        let others_buffer = buffer(
-            "views",
-            bytemuck::cast_slice(&others),
-            BufferUsages::STORAGE,
-        );
+        let state = storage("planes", bytemuck::cast_slice(&own_planes));
+        let levels = storage("grey levels", bytemuck::cast_slice(&levels));
+        let depths = storage("depths", bytemuck::cast_slice(&depths));
+        let others_buffer = storage("views", bytemuck::cast_slice(&others));
         for sweep in sweeps {
             for parity in 0..2 {
                 if progress.is_cancelled() {
@@ -287,85 +200,21 @@ impl Gpu {
                     crop_origin: own.origin(),
                     crop: own.size(),
                 };
-                let settings = buffer(
-                    "settings",
-                    bytemuck::bytes_of(&settings),
-                    BufferUsages::UNIFORM,
-                );
-                let entries: Vec<_> = (0_u32..)
-                    .zip([&settings, &state, &levels, &depths, &others_buffer])
-                    .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                        binding,
-                        resource: buffer.as_entire_binding(),
-                    })
-                    .collect();
-                let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: Some("patch match"),
-                    layout: &self.pipeline.get_bind_group_layout(0),
-                    entries: &entries,
-                });
-                let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
-                    label: Some("patch match"),
-                });
-                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-                pass.set_pipeline(&self.pipeline);
-                pass.set_bind_group(0, &group, &[]);
+                let bytes = bytemuck::bytes_of(&settings);
+                let settings = self.gpu.buffer("settings", bytes, BufferUsages::UNIFORM);
                 let columns = outer.width.div_ceil(2);
-                pass.dispatch_workgroups(
-                    word(columns.div_ceil(8)),
-                    word(outer.height.div_ceil(8)),
-                    1,
-                );
-                drop(pass);
-                // Each half sweep on its own: systems end programs that keep a card for seconds.
-                self.gpu.queue.submit([encoder.finish()]);
-                self.wait()?;
+                self.gpu.compute(
+                    &self.pipeline,
+                    &[&settings, &state, &levels, &depths, &others_buffer],
+                    [word(columns.div_ceil(8)), word(outer.height.div_ceil(8))],
+                )?;
             }
         }
-        self.read(&state, outer.pixels())
-    }
-
-    fn wait(&self) -> Result<(), Fault> {
-        let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        self.check()?;
-        waited.map(drop).map_err(|error| {
-            Fault::new(
-                format!("the graphics device does not answer ({error})"),
-                "let the processor do it",
-            )
-        })
-    }
-
-    fn read(&self, state: &wgpu::Buffer, pixels: usize) -> Result<Vec<[f32; 4]>, Fault> {
-        let copy = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("read back"),
-            size: state.size(),
-            usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder = self
-            .gpu
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor {
-                label: Some("read back"),
-            });
-        encoder.copy_buffer_to_buffer(state, 0, &copy, 0, state.size());
-        self.gpu.queue.submit([encoder.finish()]);
-        copy.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-        self.wait()?;
-        let bytes = copy.get_mapped_range(..).map_err(|error| {
-            Fault::new(
-                format!("the depths cannot be read back from the graphics device ({error})"),
-                "let the processor do it",
-            )
-        })?;
-        let mut planes = Vec::with_capacity(pixels);
-        planes.extend(
-            bytes
-                .chunks_exact(16)
-                .map(bytemuck::pod_read_unaligned::<[f32; 4]>),
-        );
-        Ok(planes)
+        let bytes = self.gpu.contents(&state)?;
+        let planes = bytes.chunks_exact(16);
+        Ok(planes
+            .map(bytemuck::pod_read_unaligned::<[f32; 4]>)
+            .collect())
     }
 }
 
@@ -434,7 +283,7 @@ fn words(problem: &Problem, outer: Crop) -> usize {
 
 impl Backend for Gpu {
     fn name(&self) -> String {
-        self.name.clone()
+        self.gpu.name.clone()
     }
 
     fn sweep(

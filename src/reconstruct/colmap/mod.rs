@@ -30,7 +30,7 @@ use self::options::{Options, Setting};
 use self::program::Program;
 use crate::adjusted::{guarded, in_order, read, too_little_in_common};
 use crate::camera::Camera;
-use crate::engine::{Engine, Found};
+use crate::engine::{Engine, Found, Workplace};
 use crate::fault::Fault;
 use crate::files::{self, Inputs, Kind};
 use crate::jobs::Progress;
@@ -70,7 +70,7 @@ impl Engine for Colmap {
         &self,
         photos: &PhotoSet,
         pairs: &[[usize; 2]],
-        work: &Path,
+        at: &Workplace,
         progress: &Progress,
     ) -> Result<Found, Fault> {
         let blank = |name: &str| name.contains(char::is_whitespace);
@@ -87,8 +87,8 @@ impl Engine for Colmap {
             program: &self.program,
             photos,
             folder: photos_folder(photos),
-            database: work.join(DATABASE),
-            work,
+            database: at.folder.join(DATABASE),
+            work: at.folder,
             progress,
         };
         run.features()?;

@@ -95,6 +95,11 @@ fn photos(folder: &Path) -> PhotoSet {
     }
 }
 
+/// COLMAP has its own way to cards.
+fn at(folder: &Path) -> Workplace<'_> {
+    Workplace { folder, card: None }
+}
+
 #[test]
 fn the_largest_model_is_what_comes_out() {
     let folder = tempfile::tempdir().unwrap();
@@ -103,7 +108,12 @@ fn the_largest_model_is_what_comes_out() {
     let work = folder.path().join("work");
     fs::create_dir(&work).unwrap();
     let progress = Progress::default();
-    let found = engine.reconstruct(&photos(folder.path()), &[[0, 1], [1, 2]], &work, &progress);
+    let found = engine.reconstruct(
+        &photos(folder.path()),
+        &[[0, 1], [1, 2]],
+        &at(&work),
+        &progress,
+    );
     let found = found.unwrap();
     let names: Vec<&str> = (found.model.images())
         .map(|image| image.name.as_str())
@@ -156,7 +166,7 @@ fn cameras_are_made_once() {
     let made = || {
         fs::write(&called, "").unwrap();
         let progress = Progress::default();
-        let found = engine.reconstruct(&photos(folder.path()), &[[0, 1]], &work, &progress);
+        let found = engine.reconstruct(&photos(folder.path()), &[[0, 1]], &at(&work), &progress);
         found.unwrap();
         let called = fs::read_to_string(&called).unwrap();
         called.matches("--ImageReader.single_camera 1").count()
@@ -175,7 +185,12 @@ fn pairs_are_compared_some_at_a_time() {
     let engine = colmap(folder.path());
     let pairs = vec![[0, 1]; 2 * PAIRS_AT_ONCE + 1];
     let progress = Progress::default();
-    let found = engine.reconstruct(&photos(folder.path()), &pairs, folder.path(), &progress);
+    let found = engine.reconstruct(
+        &photos(folder.path()),
+        &pairs,
+        &at(folder.path()),
+        &progress,
+    );
     found.unwrap();
     let called = fs::read_to_string(folder.path().join("called.txt")).unwrap();
     assert_eq!(called.matches("matches_importer --").count(), 3);
@@ -189,7 +204,12 @@ fn what_it_says_last_is_told() {
     let engine = colmap(folder.path());
     fs::write(folder.path().join("broken"), "").unwrap();
     let progress = Progress::default();
-    let found = engine.reconstruct(&photos(folder.path()), &[[0, 1]], folder.path(), &progress);
+    let found = engine.reconstruct(
+        &photos(folder.path()),
+        &[[0, 1]],
+        &at(folder.path()),
+        &progress,
+    );
     let said = found.err().unwrap().to_string();
     assert!(said.contains("COLMAP's mapper failed"), "{said}");
     assert!(said.contains("no memory"), "{said}");
@@ -204,8 +224,14 @@ fn cancelling_ends_the_whole_group() {
     let child = folder.path().join("child.pid");
     let progress = Progress::default();
     let (ended, asked) = std::thread::scope(|scope| {
-        let work =
-            || engine.reconstruct(&photos(folder.path()), &[[0, 1]], folder.path(), &progress);
+        let work = || {
+            engine.reconstruct(
+                &photos(folder.path()),
+                &[[0, 1]],
+                &at(folder.path()),
+                &progress,
+            )
+        };
         let work = scope.spawn(work);
         let started = || fs::read_to_string(&child).is_ok_and(|text| text.ends_with('\n'));
         while !started() {
@@ -237,7 +263,7 @@ fn names_with_blanks_are_refused() {
     let mut photos = photos(folder.path());
     photos.photos[1].name = "c d.png".to_owned();
     let progress = Progress::default();
-    let found = engine.reconstruct(&photos, &[[0, 1]], folder.path(), &progress);
+    let found = engine.reconstruct(&photos, &[[0, 1]], &at(folder.path()), &progress);
     assert!(found.err().unwrap().to_string().contains("'c d.png'"));
 }
 

@@ -4,12 +4,14 @@
 use std::path::Path;
 
 use cumulus3d_core::FeatureStore;
-use cumulus3d_matching::{PairMatchingOptions, match_pairs};
+use cumulus3d_matching::{MatcherBackend, PairMatchingOptions, match_pairs};
 
 use super::features::keep;
 use super::image_id;
 use super::nearest_two::Products;
+use super::on_card::OnCard;
 use crate::adjusted::failed;
+use crate::card::Card;
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::photo_set::PhotoSet;
@@ -28,8 +30,14 @@ pub(super) fn compare(
     photos: &PhotoSet,
     pairs: &[[usize; 2]],
     kept: &Path,
+    card: Option<&Card>,
     progress: &Progress,
 ) -> Result<(), Fault> {
+    let on_card = card.and_then(OnCard::new);
+    let matcher: &dyn MatcherBackend = match &on_card {
+        Some(card) => card,
+        None => &Products,
+    };
     progress.stage(format!("comparing {} pairs of photos", pairs.len()));
     let mut options = PairMatchingOptions::default();
     options.geometry.ransac.random_seed = Some(1);
@@ -45,7 +53,7 @@ pub(super) fn compare(
         if some.is_empty() {
             continue;
         }
-        match_pairs(store, &some, &options, &Products).map_err(|_| failed("comparing photos"))?;
+        match_pairs(store, &some, &options, matcher).map_err(|_| failed("comparing photos"))?;
         unwritten += some.len();
         if unwritten >= WRITTEN_EACH {
             keep(store, kept)?;

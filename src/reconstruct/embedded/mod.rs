@@ -5,6 +5,7 @@
 //! features      SIFT of each photo
 //! preemptive    which of many pairs are worth comparing, where nobody knows neighbours
 //! nearest_two   the two nearest descriptors, by a product of matrices
+//! on_card       the same on a graphics card
 //! matching      pairs of photos: matches that one geometry explains
 //! seed          the pair that a model begins with
 //! growing       photo after photo joins the model
@@ -22,15 +23,14 @@ mod growing;
 mod growth;
 mod matching;
 mod nearest_two;
+mod on_card;
 mod preemptive;
 mod seed;
-
-use std::path::Path;
 
 use cumulus3d_core::{FeatureStore, MatchGraph, MatchGraphOptions};
 
 use crate::adjusted::guarded;
-use crate::engine::{Engine, Found};
+use crate::engine::{Engine, Found, Workplace};
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::photo_set::PhotoSet;
@@ -56,16 +56,16 @@ impl Engine for Embedded {
         &self,
         photos: &PhotoSet,
         pairs: &[[usize; 2]],
-        work: &Path,
+        at: &Workplace,
         progress: &Progress,
     ) -> Result<Found, Fault> {
         guarded(|| {
-            let kept = work.join(KEPT);
+            let kept = at.folder.join(KEPT);
             // What was cut off while it was written is made again.
             let store = FeatureStore::load(&kept).unwrap_or_default();
             let left_out = features::find(&store, photos, &kept, progress)?;
             let pairs = preemptive::worth_comparing(&store, photos, pairs, progress)?;
-            matching::compare(&store, photos, &pairs, &kept, progress)?;
+            matching::compare(&store, photos, &pairs, &kept, at.card, progress)?;
             let graph = MatchGraph::from_store(&store, &MatchGraphOptions::default());
             let watch = self.on_growth.as_ref().map(Watch::new);
             Ok(Found {

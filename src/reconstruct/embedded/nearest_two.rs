@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// Bytes of a descriptor.
-const LENGTH: usize = 128;
+pub(super) const LENGTH: usize = 128;
 /// Rows that one thread works on at a time, and columns: their products stay in the cache.
 const ROWS: usize = 256;
 const COLUMNS: usize = 256;

@@ -16,8 +16,9 @@ use self::flight_files::{FlightOf, SOURCE, flight_files};
 use self::folder::FLIGHT;
 use self::proposed::name_of;
 use self::report::{ReportOf, report};
+use crate::card::Card;
 use crate::dense_cloud::dense_cloud;
-use crate::engine::Sparse;
+use crate::engine::{Sparse, Workplace};
 use crate::exports::ply;
 use crate::fault::Fault;
 use crate::files::FileError;
@@ -54,7 +55,11 @@ pub(crate) fn write(
     let dense = match &request.dense {
         None => None,
         Some(options) => {
-            let found = dense_cloud(&read, photos, options, &folder.work, goes_on, progress);
+            let place = Workplace {
+                folder: &folder.work,
+                card: request.card.as_ref(),
+            };
+            let found = dense_cloud(&read, photos, options, &place, goes_on, progress);
             let (dense, said) = found.map_err(|fault| FileError::new(&request.photos, fault))?;
             warnings.extend(said);
             dense
@@ -126,6 +131,14 @@ pub(crate) fn write(
     for (_, text) in files.iter_mut().filter(|(name, _)| *name == FLIGHT) {
         *text = folder.flight_text(std::mem::take(text))?;
     }
+    let computed_on = match request.card.as_ref().map(Card::said) {
+        None => None,
+        Some(Ok(said)) => Some(said),
+        Some(Err(said)) => {
+            warnings.push(said);
+            None
+        }
+    };
     let mut left_out = photos.left_out.clone();
     left_out.extend(sparse.left_out);
     let made = Reconstructed {
@@ -137,6 +150,7 @@ pub(crate) fn write(
         dense: dense_points,
         reprojection_px: model.median_reprojection_px(),
         world: placed,
+        computed_on,
         warnings,
     };
     let report = report(&ReportOf {

@@ -88,6 +88,7 @@ mod tests {
             crs: None,
             camera: None,
             dense: None,
+            card: None,
         };
         // Nothing overlaps: it ends with a fault.
         reconstruct(&request, &Embedded::default(), &Progress::default()).unwrap_err();

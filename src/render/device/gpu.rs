@@ -19,6 +19,8 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// Whether the processor draws: then one sample a pixel is all it can afford.
     pub software: bool,
+    /// What it is, and through which interface: `NVIDIA H100 (Vulkan)`.
+    pub name: String,
     errors: Arc<Mutex<Option<String>>>,
     /// Whether the window lost a frame to a resize.
     lost_frame: Arc<AtomicBool>,
@@ -51,20 +53,35 @@ impl Gpu {
     /// # Errors
     /// Where there is no graphics driver, naming the package to install.
     pub fn headless() -> Result<Self, Fault> {
+        Self::first_usable(Backends::PRIMARY | Backends::GL, |info| {
+            let is_gl = u8::from(info.backend == Backend::Gl);
+            2 * u8::from(info.device_type != DeviceType::Cpu) + is_gl
+        })
+    }
+
+    /// A device to compute with: a card of its own before one in the processor, software last.
+    ///
+    /// # Errors
+    /// Where there is no graphics driver that computes, naming the package to install.
+    pub fn fastest() -> Result<Self, Fault> {
+        Self::first_usable(Backends::PRIMARY, |info| match info.device_type {
+            DeviceType::DiscreteGpu => 0,
+            DeviceType::IntegratedGpu | DeviceType::VirtualGpu => 1,
+            DeviceType::Other => 2,
+            DeviceType::Cpu => 3,
+        })
+    }
+
+    /// The usable device of the smallest rank. The environment's `WGPU_BACKEND` goes before `backends`.
+    fn first_usable(backends: Backends, rank: impl Fn(&AdapterInfo) -> u8) -> Result<Self, Fault> {
         let mut wanted = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
         if std::env::var_os("WGPU_BACKEND").is_none() {
-            wanted.backends = Backends::PRIMARY | Backends::GL;
+            wanted.backends = backends;
         }
         let backends = wanted.backends;
         let instance = wgpu::Instance::new(wanted);
         let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
-        adapters.sort_by_key(|adapter| {
-            let info = adapter.get_info();
-            (
-                info.device_type != DeviceType::Cpu,
-                info.backend == Backend::Gl,
-            )
-        });
+        adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
         let mut why = "none was found".to_owned();
         for adapter in adapters {
             match pollster::block_on(adapter.request_device(&device_descriptor(&adapter))) {
@@ -110,6 +127,7 @@ impl Gpu {
             device,
             queue,
             software: adapter.device_type == DeviceType::Cpu,
+            name: format!("{} ({:?})", adapter.name, adapter.backend),
             errors,
             lost_frame,
         }

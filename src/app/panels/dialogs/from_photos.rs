@@ -107,6 +107,13 @@ fn quality_row(form: &mut FromPhotosForm, ui: &mut egui::Ui) {
             });
             radio.on_hover_text(quality.explained());
         }
+        let mut may_use = !form.processor_only;
+        let card = ui.checkbox(&mut may_use, "Graphics card");
+        form.processor_only = !may_use;
+        card.on_hover_text(
+            "Where there is one, photos are compared and depths found on it, whoever made it. Without it, or where \
+             it fails, the processor does the same",
+        );
     });
 }
 

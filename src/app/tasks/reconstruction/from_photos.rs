@@ -10,8 +10,8 @@ use crate::from_photos::{Ended, FolderField, FoundPhotos, FromPhotosForm, FromPh
 use crate::jobs::Progress;
 use crate::opening_preview::OpeningPreview;
 use crate::reconstruct::{
-    Embedded, EngineName, OnGrowth, PhotoSet, Quality, Reconstructed, Request, about, left_out,
-    may_be_made, proposed_folder, reconstruct, summary,
+    Card, Embedded, EngineName, OnGrowth, PhotoSet, Quality, Reconstructed, Request, about,
+    left_out, may_be_made, proposed_folder, reconstruct, summary,
 };
 use crate::state::{Severity, State};
 use crate::tasks::work::Task;
@@ -146,8 +146,9 @@ impl State {
             camera: typed(&form.calibration).map(absolute),
             crs: typed_text(&form.crs),
             dense: form.quality.dense(),
+            card: None,
         };
-        let engine = form.engine;
+        let (engine, processor_only) = (form.engine, form.processor_only);
         self.from_photos.ended = None;
         let (writing, opened) = (self.from_photos.writing.clone(), self.opened);
         self.from_photos.growing = None;
@@ -156,6 +157,9 @@ impl State {
         let (grown, context) = (self.from_photos.grown.clone(), self.context.clone());
         let work = move |progress: &Progress| {
             let _writes = alone(&writing, &request.to, progress)?;
+            // (Drivers take a while to say what there is.)
+            let card = (!processor_only).then(Card::found).flatten();
+            let request = Request { card, ..request };
             if engine == EngineName::Embedded {
                 let on_growth: OnGrowth = Box::new(move |growth| {
                     // Who draws a picture now takes the next model.
