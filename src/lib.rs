@@ -22,8 +22,8 @@
 //!     reconstruct/               photos alone -> a flight: engines behind a trait
 //!     dense/                     photos with known poses -> depth maps -> a cloud with standard errors
 //!     sample/                    the paper's lab, simulated
-//! F4  formats/                   bytes -> types: clouds cameras packages poses photos tables text
-//!     exports/                   what goes out: table, CSV, JSON, sheet, Split-Desktop, figures, maps
+//! F4  formats/                   bytes -> types: clouds cameras packages poses photos tables missions text
+//!     exports/                   what goes out: table, CSV, JSON, sheet, Split-Desktop, figures, maps, missions
 //!     --- the core (core.rs) and fragmentation/ ---
 //! F3  flight/                    Flight, validated when made; review: doubts, verdicts; flight.toml
 //!     picture/                   pixels of photos: undistorting, reducing, drawing on them
@@ -57,6 +57,7 @@
 //! | a subcommand with progress | `src/cli/mod.rs` | a variant; its work is a file beside it |
 //! | a JSON key of a photo | `src/exports/scales_json.rs` | a field and its value; the contract |
 //! | a distribution function | `src/fragmentation/functions/mod.rs` | the enum of models; the function is a file beside it, its coordinates for fitting in `fit/family.rs` |
+//! | a ground station's missions | `src/formats/missions/mod.rs`, `src/exports/missions/format.rs` | what reads and what writes it, a file each beside them; `exports/missions/tests/round_trip.rs` holds that all say the same |
 //! | a reconstruction engine | `src/reconstruct/engine.rs` | the trait; the engine is a folder beside it, and leaves COLMAP's text files |
 //! | a job with a panel | `src/app/tasks/mod.rs` | the job with its task and its ending is a file beside it, the panel one in `panels/`; `command/mod.rs` and `apply.rs` start it |
 //!

@@ -6,6 +6,7 @@ mod flight_files;
 mod html_page;
 mod markup;
 mod measured;
+mod missions;
 mod photo_columns;
 mod photo_file_names;
 mod plan;
@@ -32,6 +33,7 @@ pub use measured::{
     MeasuredUnit, PointsReport, ProfileReport, VolumeReport, points_csv, points_table, profile_csv,
     profile_json, profile_table, volume_csv, volume_json, volume_table, volume_warning,
 };
+pub use missions::{MissionFiles, MissionFormat, WrittenMission, mission_files, write_mission};
 pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};
 pub use photo_file_names::photo_file_stems;
 pub use plan::{

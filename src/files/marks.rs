@@ -14,6 +14,9 @@ pub const PDF_MARK: &str = "% Written by fragscale.\n";
 /// In the head of a page.
 pub const HTML_MARK: &str = "<meta name=\"generator\" content=\"fragscale\"/>\n";
 
+/// Who wrote DJI's template of a mission, as its author says: the first file in its zip, not deflated.
+pub const KMZ_MARK: &str = "fragscale";
+
 /// How the line begins that stands below the six of a world file.
 pub const WORLD_FILE_MARK: &str = "fragscale: ";
 
@@ -49,7 +52,7 @@ impl Kind {
             return Some(Self::Flight);
         }
         let is_picture = is_png(beginning) || is_tiff(beginning) || is_pdf(beginning);
-        let is_result = is_picture || is_text(beginning);
+        let is_result = is_picture || is_kmz(beginning) || is_text(beginning);
         is_result.then_some(Self::Result)
     }
 }
@@ -77,6 +80,12 @@ fn is_pdf(beginning: &[u8]) -> bool {
     beginning.starts_with(b"%PDF-") && lines.nth(2) == Some(PDF_MARK.as_bytes())
 }
 
+fn is_kmz(beginning: &[u8]) -> bool {
+    let author = format!("<wpml:author>{KMZ_MARK}</wpml:author>");
+    let mut windows = beginning.windows(author.len());
+    beginning.starts_with(b"PK\x03\x04") && windows.any(|window| window == author.as_bytes())
+}
+
 fn is_text(beginning: &[u8]) -> bool {
     let text = String::from_utf8_lossy(beginning);
     let first = text.lines().next().unwrap_or_default();
@@ -100,6 +109,10 @@ fn is_text(beginning: &[u8]) -> bool {
         || begins("{\"between\":{\"df\":")
         // Times.
         || begins("{\"unit\":\"min\",\"columns\":[")
+        // Missions: QGroundControl's, GeoJSON, KML.
+        || begins("{\n  \"fileType\": \"Plan\",\n  \"groundStation\": \"fragscale\",")
+        || begins("{\"type\":\"FeatureCollection\",\"fragscale\":\"mission")
+        || begins("<?xml ") && text.lines().nth(1) == Some(svg)
 }
 
 /// The heads of our CSV files.

@@ -6,6 +6,7 @@
 //! candidates  the reconstructions that lie in a folder
 //! read        which reader takes it
 //! clouds  cameras  packages  poses  photos  tables      the readers
+//! missions    of drones, each told by what is in it
 //! text        numbers, lines, JSON and XML with their places
 //! ```
 //!
@@ -16,6 +17,7 @@ pub mod cameras;
 mod candidates;
 pub mod clouds;
 mod detect;
+pub mod missions;
 pub mod packages;
 pub mod photos;
 pub mod poses;
@@ -32,6 +34,7 @@ pub use candidates::{Candidate, candidates};
 pub use clouds::CloudFile;
 pub use detect::{CloudFormat, Kind, UNFINISHED, detect};
 pub use files::{FileError, open_file, read_bytes, read_text, text_from_bytes};
+pub use missions::{MissionFile, read_mission};
 pub use packages::Package;
 pub use packages::drone_photos::{Cameras as PhotoCameras, expected_deviation, photos_in};
 pub use packages::pose_covariance::PoseCovariance;

@@ -9,6 +9,7 @@
 mod crs;
 mod definition;
 mod geocentric;
+mod geoid;
 mod heights;
 mod proj_text;
 mod wkt;
@@ -16,6 +17,7 @@ mod wkt;
 pub use crs::{Crs, CrsKind};
 pub use definition::stated_unit_metres;
 pub use geocentric::{ecef_from_geographic, enu_axes, geographic_from_ecef};
+pub use geoid::geoid_height;
 
 /// Whether a text names a system at all: packages leave the text of a frame of their own empty.
 pub fn is_stated(crs: &str) -> bool {

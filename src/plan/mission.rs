@@ -2,6 +2,7 @@
 //! each in its own way; `formats::missions` reads them, `exports::missions` writes them.
 
 use crate::fault::Fault;
+use crate::geodesy::geoid_height;
 
 /// What a drone is told: where to go, where to look, when to shoot.
 ///
@@ -142,6 +143,15 @@ impl Height {
             above: Above::TakeOff,
         }
     }
+
+    /// Metres above the ellipsoid at a place, of a height in a datum.
+    fn above_ellipsoid(self, latitude: f64, longitude: f64) -> Option<f64> {
+        match self.above {
+            Above::Ellipsoid => Some(self.metres),
+            Above::Geoid => Some(self.metres + geoid_height(latitude, longitude)),
+            Above::TakeOff | Above::Ground | Above::Unknown => None,
+        }
+    }
 }
 
 impl Above {
@@ -171,16 +181,12 @@ const FASTEST: f64 = 300.0;
 
 impl Mission {
     /// Whether a drone could be told this: places on the Earth, finite heights and angles, a speed above
-    /// zero, at least one stop.
+    /// zero. One without stops is none to be flown, but may have been read.
     ///
     /// # Errors
     /// What is not so, with the number of the stop counted from 1.
     pub fn check(&self) -> Result<(), Fault> {
         let remedy = "correct it, or plan the mission again";
-        if self.stops.is_empty() {
-            let remedy = "give a mission that has waypoints";
-            return Err(Fault::new("the mission has no stops", remedy));
-        }
         if let Some(take_off) = &self.take_off {
             check_place(take_off.latitude, take_off.longitude)
                 .and_then(|()| take_off.elevation.map_or(Ok(()), check_height))
@@ -219,6 +225,52 @@ impl Mission {
             }
         }
         Ok(())
+    }
+}
+
+impl Mission {
+    /// A height at a place (degrees, WGS 84) counted from the place of take-off, the ellipsoid or the geoid;
+    /// `None` where it needs what is not known: the take-off's elevation in a datum, the ground, the datum
+    /// itself.
+    pub fn height_above(
+        &self,
+        latitude: f64,
+        longitude: f64,
+        height: Height,
+        above: Above,
+    ) -> Option<f64> {
+        if height.above == above {
+            return Some(height.metres);
+        }
+        let absolute = height.above_ellipsoid(latitude, longitude);
+        let absolute = match height.above {
+            Above::TakeOff => height.metres + self.take_off_above_ellipsoid()?,
+            _ => absolute?,
+        };
+        match above {
+            Above::Ellipsoid => Some(absolute),
+            Above::Geoid => Some(absolute - geoid_height(latitude, longitude)),
+            Above::TakeOff => Some(absolute - self.take_off_above_ellipsoid()?),
+            Above::Ground | Above::Unknown => None,
+        }
+    }
+
+    fn take_off_above_ellipsoid(&self) -> Option<f64> {
+        let take_off = self.take_off?;
+        let elevation = take_off.elevation?;
+        elevation.above_ellipsoid(take_off.latitude, take_off.longitude)
+    }
+
+    /// Where the gimbal points at each stop, in degrees as [`Stop::gimbal_pitch`]: that of the last stop
+    /// that says it.
+    pub fn gimbal_pitches(&self) -> Vec<Option<f64>> {
+        let stops = self.stops.iter();
+        stops
+            .scan(None, |last, stop| {
+                *last = stop.gimbal_pitch.or(*last);
+                Some(*last)
+            })
+            .collect()
     }
 }
 
@@ -296,7 +348,6 @@ mod tests {
     #[test]
     fn what_no_drone_can_do_is_refused_with_its_stop() {
         assert_eq!(mission().check(), Ok(()));
-        assert!(Mission::default().check().is_err());
         let changes: [fn(&mut Stop); 7] = [
             |stop| stop.latitude = 90.1,
             |stop| stop.longitude = f64::NAN,
@@ -338,5 +389,44 @@ mod tests {
             });
             assert_eq!(with.check().is_ok(), is_good, "{above:?}");
         }
+    }
+
+    /// At 38.628155 N 90.220845 W the geoid lies 31.628 m below the ellipsoid (NGA's test of EGM96).
+    #[test]
+    fn heights_are_counted_from_elsewhere() {
+        let (latitude, longitude) = (38.628_155, -90.220_845);
+        let mut mission = mission();
+        let height = |metres, above| Height { metres, above };
+        let of = |mission: &Mission, height, above| {
+            mission.height_above(latitude, longitude, height, above)
+        };
+        let near = |found: Option<f64>, expected: f64| (found.unwrap() - expected).abs() < 2e-3;
+        let on_geoid = height(100.0, Above::Geoid);
+        assert!(near(of(&mission, on_geoid, Above::Ellipsoid), 68.372));
+        let on_ellipsoid = height(68.372, Above::Ellipsoid);
+        assert!(near(of(&mission, on_ellipsoid, Above::Geoid), 100.0));
+        let relative = Height::above_take_off(-12.0);
+        assert_eq!(of(&mission, relative, Above::TakeOff), Some(-12.0));
+        assert_eq!(of(&mission, relative, Above::Geoid), None);
+        mission.take_off = Some(TakeOff {
+            latitude,
+            longitude,
+            elevation: Some(height(90.0, Above::Geoid)),
+        });
+        assert!(near(of(&mission, relative, Above::Geoid), 78.0));
+        assert!(near(of(&mission, on_ellipsoid, Above::TakeOff), 10.0));
+        for above in [Above::Ground, Above::Unknown] {
+            assert_eq!(of(&mission, height(1.0, above), Above::Geoid), None);
+            assert_eq!(of(&mission, on_geoid, above), None);
+        }
+    }
+
+    #[test]
+    fn a_gimbal_stays_where_it_was() {
+        let mut mission = mission();
+        mission.stops[0].gimbal_pitch = None;
+        mission.stops.push(mission.stops[0].clone());
+        let expected = [None, Some(-90.0), Some(-90.0)];
+        assert_eq!(mission.gimbal_pitches(), expected);
     }
 }

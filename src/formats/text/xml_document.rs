@@ -81,6 +81,28 @@ pub(crate) fn line_of(node: roxmltree::Node<'_, '_>) -> u64 {
     u64::from(node.document().text_pos_at(node.range().start).row)
 }
 
+/// The elements of a name directly inside another, whatever their namespace.
+pub(crate) fn children<'a, 'd, 'n>(
+    node: roxmltree::Node<'a, 'd>,
+    name: &'n str,
+) -> impl Iterator<Item = roxmltree::Node<'a, 'd>> + use<'a, 'd, 'n> {
+    node.children()
+        .filter(move |child| child.has_tag_name(name))
+}
+
+/// The first element of a name directly inside another.
+pub(crate) fn child<'a, 'd>(
+    node: roxmltree::Node<'a, 'd>,
+    name: &str,
+) -> Option<roxmltree::Node<'a, 'd>> {
+    children(node, name).next()
+}
+
+/// The text of an element, without white space at its ends.
+pub(crate) fn text<'a>(node: roxmltree::Node<'a, '_>) -> &'a str {
+    node.text().unwrap_or_default().trim()
+}
+
 /// Looks at the tags alone, before anything is built.
 fn guard(text: &str, writer: &Writer) -> Result<(), Fault> {
     let mut depth = 0_usize;

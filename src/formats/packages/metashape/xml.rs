@@ -6,6 +6,8 @@ use crate::fault::Fault;
 use crate::text::fields::{Fields, shown};
 use crate::text::xml_document::{Writer, parse_of};
 
+pub(super) use crate::text::xml_document::{child, children, text};
+
 /// What to do about XML that is not as Agisoft writes it.
 pub(super) const EXPORT: &str = "export it from Metashape again (File > Export > Export Cameras)";
 
@@ -56,25 +58,6 @@ pub(super) fn root_element(start: &[u8]) -> Option<&str> {
 /// The line of an element, from 1.
 pub(super) fn line(node: Node<'_, '_>) -> u64 {
     u64::from(node.document().text_pos_at(node.range().start).row)
-}
-
-/// The elements of a name directly inside another.
-pub(super) fn children<'a, 'd>(
-    node: Node<'a, 'd>,
-    name: &'static str,
-) -> impl Iterator<Item = Node<'a, 'd>> {
-    node.children()
-        .filter(move |child| child.has_tag_name(name))
-}
-
-/// The first element of a name directly inside another.
-pub(super) fn child<'a, 'd>(node: Node<'a, 'd>, name: &'static str) -> Option<Node<'a, 'd>> {
-    children(node, name).next()
-}
-
-/// The text of an element, without white space at its ends.
-pub(super) fn text<'a>(node: Node<'a, '_>) -> &'a str {
-    node.text().unwrap_or_default().trim()
 }
 
 /// Whether an attribute says no; one that is not there says yes.

@@ -1,0 +1,186 @@
+//! A mission as MAVLink's commands for ArduPilot's Copter (mavlink.io, "MAV_CMD"; ArduPilot, "Mission
+//! Commands"): take off, set the speed; at each stop 16 fly there, 115 turn, 1000 move the gimbal, 93
+//! wait, 2000 shoot; return or land.
+//!
+//! - Copter ignores a waypoint's own yaw, so it turns by a command. The waypoint has it nevertheless, for
+//!   who looks at the file.
+//! - Nothing in MAVLink waits for a gimbal, and Copter's wait begins when it has arrived at the place:
+//!   the wait has to cover turn and gimbal.
+//! - Heights above take-off are of frame 3: they count from where the drone armed, not from the first
+//!   stop.
+
+use fragscale_core::plan::{Above, Finish, Height, Mission, Stop, TakeOff};
+
+use super::heights::metres_above;
+use crate::fault::Fault;
+
+/// One command; `None` is what the vehicle chooses.
+pub(super) struct Command {
+    /// `MAV_CMD`.
+    pub(super) command: u32,
+    /// `MAV_FRAME`.
+    pub(super) frame: u32,
+    /// Parameters 1 to 7.
+    pub(super) parameters: [Option<f64>; 7],
+}
+
+const IN_MISSION: u32 = 2;
+const ABOVE_HOME: u32 = 3;
+
+/// The commands that a file has besides those of its stops: home, take-off, speed, the end.
+pub(super) const BESIDE_STOPS: usize = 4;
+
+/// A wait that hardly covers a turn and a gimbal, in seconds.
+const SHORT_WAIT: f64 = 2.0;
+
+/// How many commands a stop has.
+pub(super) fn commands_at(stop: &Stop) -> usize {
+    1 + usize::from(stop.heading.is_some())
+        + usize::from(stop.gimbal_pitch.is_some())
+        + usize::from(stop.settle > 0.0)
+        + usize::from(stop.photo.is_some())
+}
+
+fn other(command: u32, parameters: [f64; 7]) -> Command {
+    let parameters = parameters.map(Some);
+    Command {
+        command,
+        frame: IN_MISSION,
+        parameters,
+    }
+}
+
+/// Where the take-off of a file is: of a mission that does not say it, the first stop.
+pub(super) fn home(mission: &Mission, notes: &mut Vec<String>) -> Result<TakeOff, Fault> {
+    let Some(take_off) = mission.take_off else {
+        let note = "the place of take-off is not known: the file has the first stop, and the drone takes its own when it arms";
+        notes.push(note.to_owned());
+        let first = mission
+            .stops
+            .first()
+            .map_or((0.0, 0.0), |stop| (stop.latitude, stop.longitude));
+        let (latitude, longitude) = first;
+        return Ok(TakeOff {
+            latitude,
+            longitude,
+            elevation: None,
+        });
+    };
+    // Above mean sea level; it is shown and not flown.
+    let (latitude, longitude) = (take_off.latitude, take_off.longitude);
+    let sea = |height| mission.height_above(latitude, longitude, height, Above::Geoid);
+    let elevation = take_off.elevation.and_then(sea).map(|metres| Height {
+        metres,
+        above: Above::Geoid,
+    });
+    Ok(TakeOff {
+        elevation,
+        ..take_off
+    })
+}
+
+/// The commands of a mission without home.
+///
+/// # Errors
+/// Where a height cannot be brought to what MAVLink's heights count from.
+pub(super) fn commands(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec<Command>, Fault> {
+    notes.push(
+        "the file is for ArduPilot's Copter; PX4 does not take the command that turns (115)"
+            .to_owned(),
+    );
+    let mut commands = Vec::new();
+    match mission.safe_height {
+        Some(height) => {
+            let place = mission
+                .take_off
+                .map_or([0.0; 2], |at| [at.latitude, at.longitude]);
+            let zero = Some(0.0);
+            commands.push(Command {
+                command: 22,
+                frame: ABOVE_HOME,
+                parameters: [
+                    zero,
+                    zero,
+                    zero,
+                    None,
+                    Some(place[0]),
+                    Some(place[1]),
+                    Some(height),
+                ],
+            });
+        }
+        None => notes.push(
+            "no height to climb to is known: the file has no take-off, fly up by hand".to_owned(),
+        ),
+    }
+    if let Some(speed) = mission.speed {
+        // Over ground, throttle as it is.
+        commands.push(other(178, [1.0, speed, -1.0, 0.0, 0.0, 0.0, 0.0]));
+    }
+    for (stop, number) in mission.stops.iter().zip(1..) {
+        let (frame, metres) = match stop.height.above {
+            Above::TakeOff => (ABOVE_HOME, stop.height.metres),
+            Above::Ground => (10, stop.height.metres),
+            _ => (0, metres_above(mission, stop, number, Above::Geoid)?),
+        };
+        if frame == 10 {
+            notes.push(
+                "heights above ground need terrain data on the drone (TERRAIN_ENABLE)".to_owned(),
+            );
+        }
+        let (zero, place) = (Some(0.0), [stop.latitude, stop.longitude].map(Some));
+        commands.push(Command {
+            command: 16,
+            frame,
+            parameters: [
+                zero,
+                zero,
+                zero,
+                stop.heading,
+                place[0],
+                place[1],
+                Some(metres),
+            ],
+        });
+        aim_and_shoot(stop, &mut commands, notes);
+    }
+    match mission.finish {
+        Finish::ReturnHome => commands.push(other(20, [0.0; 7])),
+        // Where it is.
+        Finish::Land => commands.push(Command {
+            command: 21,
+            frame: ABOVE_HOME,
+            parameters: [0.0; 7].map(Some),
+        }),
+        Finish::Hover => {}
+    }
+    Ok(commands)
+}
+
+/// What is done at a stop. The order is what makes the photo: see `a_gimbal_arrives_before_the_shot`.
+fn aim_and_shoot(stop: &Stop, commands: &mut Vec<Command>, notes: &mut Vec<String>) {
+    if let Some(heading) = stop.heading {
+        // An absolute angle, the short way round.
+        commands.push(other(115, [heading, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
+    }
+    if let Some(pitch) = stop.gimbal_pitch {
+        // Roll and pitch stay with the horizon (4 + 8), the yaw follows the nose.
+        let zero = Some(0.0);
+        commands.push(Command {
+            command: 1000,
+            frame: IN_MISSION,
+            parameters: [Some(pitch), zero, None, None, Some(12.0), zero, zero],
+        });
+    }
+    if stop.settle > 0.0 {
+        commands.push(other(93, [stop.settle, -1.0, -1.0, -1.0, 0.0, 0.0, 0.0]));
+    }
+    if stop.photo.is_some() {
+        if stop.settle < SHORT_WAIT && (stop.gimbal_pitch.is_some() || stop.heading.is_some()) {
+            notes.push(format!(
+                "ArduPilot waits for no gimbal, and some photos have less than {SHORT_WAIT} s for turn and gimbal: let the drone settle for longer"
+            ));
+        }
+        commands.push(other(2000, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]));
+    }
+}

@@ -1,0 +1,197 @@
+//! Missions for ground stations, and to look at.
+//!
+//! ```text
+//! format     which there are, how many stops each takes
+//! parts      more stops than that become several missions
+//! heights    what a target's heights count from
+//! wpml       DJI's .kmz: template.kml and waylines.wpml, the XML of which is in xml
+//! mavlink    the commands that the next two have in common
+//! plan       QGroundControl's .plan
+//! waypoints  Mission Planner's .waypoints
+//! litchi     Litchi's CSV
+//! kml        to look at
+//! geojson    to look at, and all that a mission says, digit for digit
+//! ```
+//!
+//! At each stop the drone arrives, stops, turns, moves the gimbal and waits for it, settles, shoots: in
+//! that order in every format.
+
+mod format;
+mod geojson;
+mod heights;
+mod kml;
+mod litchi;
+mod mavlink;
+mod parts;
+mod plan;
+mod waypoints;
+mod wpml;
+mod xml;
+
+#[cfg(test)]
+mod tests;
+
+use std::path::{Path, PathBuf};
+
+use fragscale_core::plan::{Above, Mission};
+
+pub use format::MissionFormat;
+
+use crate::fault::Fault;
+use crate::files::{self, FileError, Inputs, Kind};
+use parts::parts;
+
+/// A mission as the bytes of one file or several.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MissionFiles {
+    /// Where the name of the file is given, what is added to its stem ("", or "-1", "-2", ...); its bytes.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// What the pilot must know, one sentence each: what the target ignores, what its app has to be told.
+    pub notes: Vec<String>,
+}
+
+/// What was written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WrittenMission {
+    /// One file, or several where the target takes fewer stops.
+    pub files: Vec<PathBuf>,
+    /// What the pilot must know, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// A mission as the files of a target.
+///
+/// # Errors
+/// Where the mission has no stops or tells a drone what no drone can do; where a height counts from a
+/// datum that is not said, or from what the target does not know; where the target needs more than it says.
+pub fn mission_files(mission: &Mission, format: MissionFormat) -> Result<MissionFiles, Fault> {
+    mission.check()?;
+    if mission.stops.is_empty() {
+        let remedy = "give a mission that has waypoints";
+        return Err(Fault::new("the mission has no stops", remedy));
+    }
+    let elevation = mission.take_off.and_then(|take_off| take_off.elevation);
+    if elevation.is_some_and(|elevation| elevation.above == Above::Unknown) {
+        return Err(heights::no_datum("the elevation of the take-off"));
+    }
+    if let Some(index) = (mission.stops.iter()).position(|stop| stop.height.above == Above::Unknown)
+    {
+        return Err(heights::no_datum(&format!(
+            "the height of stop {}",
+            index + 1
+        )));
+    }
+    let parts = parts(mission, format);
+    let mut notes = Vec::new();
+    if parts.len() > 1 {
+        notes.push(format!(
+            "{} takes {}: the mission is in {} files, to be flown one after the other",
+            format.in_words(),
+            format.limit_in_words(),
+            parts.len()
+        ));
+    }
+    if !mission.fences.is_empty() && !format.has_fences() {
+        notes.push(format!(
+            "{} has no fences: they are not in the file",
+            format.in_words()
+        ));
+    }
+    let count = parts.len();
+    let mut files = Vec::new();
+    for (part, number) in parts.iter().zip(1..) {
+        let bytes = match format {
+            MissionFormat::DjiWpml => wpml::bytes(part, &mut notes)?,
+            MissionFormat::QGroundControl => plan::bytes(part, &mut notes)?,
+            MissionFormat::Waypoints => waypoints::bytes(part, &mut notes)?,
+            MissionFormat::Litchi => litchi::bytes(part, &mut notes)?,
+            MissionFormat::Kml => kml::bytes(part, &mut notes),
+            MissionFormat::GeoJson => geojson::bytes(part)?,
+        };
+        let suffix = match count {
+            1 => String::new(),
+            _ => format!("-{number}"),
+        };
+        files.push((suffix, bytes));
+    }
+    // The parts say the same of the target.
+    let mut said: Vec<String> = Vec::new();
+    for note in notes {
+        if !said.contains(&note) {
+            said.push(note);
+        }
+    }
+    Ok(MissionFiles { files, notes: said })
+}
+
+/// Writes a mission where `path` says, in the format of its ending; of several files each has a number
+/// behind its stem. Each is whole or not there; nothing that was read is written over.
+///
+/// # Errors
+/// With the file: an ending that is none of a mission, what [`mission_files`] says, and what the rule of
+/// [`files::write`] says.
+pub fn write_mission(
+    mission: &Mission,
+    path: &Path,
+    inputs: &Inputs,
+    force: bool,
+) -> Result<WrittenMission, FileError> {
+    let at = |fault| FileError::new(path, fault);
+    let format = MissionFormat::of(path).map_err(at)?;
+    let MissionFiles { files, notes } = mission_files(mission, format).map_err(at)?;
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    let named: Vec<(PathBuf, Vec<u8>)> = files
+        .into_iter()
+        .map(|(suffix, bytes)| {
+            (
+                path.with_file_name(format!("{stem}{suffix}.{ending}")),
+                bytes,
+            )
+        })
+        .collect();
+    // None of them is written where one may not be.
+    for (path, _) in &named {
+        files::has_folder(path)
+            .and_then(|()| files::may_write(path, Kind::Result, inputs, force))
+            .map_err(|fault| FileError::new(path, fault))?;
+    }
+    let mut written = Vec::new();
+    for (path, bytes) in named {
+        files::write(&path, &bytes, Kind::Result, inputs, force)
+            .map_err(|fault| FileError::new(&path, fault))?;
+        written.push(path);
+    }
+    Ok(WrittenMission {
+        files: written,
+        notes,
+    })
+}
+
+/// A number with so many decimals, without zeros that say nothing: `-90`, `12.34`.
+fn decimal(number: f64, decimals: usize) -> String {
+    let text = format!("{number:.decimals$}");
+    let short = match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.'),
+        false => &text,
+    };
+    match short {
+        "-0" => "0".to_owned(),
+        short => short.to_owned(),
+    }
+}
+
+/// Degrees of a place: a tenth of a millimetre.
+fn degrees(number: f64) -> String {
+    decimal(number, 9)
+}
+
+/// Metres: a hundredth of a millimetre.
+fn metres(number: f64) -> String {
+    decimal(number, 5)
+}
+
+/// Degrees of an angle.
+fn angle(number: f64) -> String {
+    decimal(number, 4)
+}

@@ -1,0 +1,430 @@
+//! DJI's WPML (Cloud API, "DJI WPML"): a .kmz of `wpmz/template.kml`, which Pilot 2 and FlightHub show and
+//! edit, and `wpmz/waylines.wpml`, which the drone flies. What both have in common is written by the same
+//! lines, so they agree.
+//!
+//! - Heights above the take-off are `relativeToStartPoint` in both. Absolute ones are above the ellipsoid
+//!   in the waylines (`WGS84`) and above the geoid in the template (`EGM96`).
+//! - The nose turns on the way (`smoothTransition`). The actions of a stop are one group in a sequence:
+//!   each begins when the one before has ended, so the gimbal has arrived when the drone waits and shoots.
+//!   The order `rotateYaw` is not given: it would turn a nose that has arrived once around.
+//! - Coordinates are longitude, latitude; only `takeOffRefPoint` is latitude, longitude.
+
+use std::io::{Cursor, Write};
+
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
+
+use fragscale_core::plan::{Above, DroneCodes, Finish, Mission, Stop};
+
+use super::heights::metres_above;
+use super::xml::Xml;
+use super::{angle, decimal, degrees, metres};
+use crate::fault::Fault;
+use crate::files::KMZ_MARK;
+
+/// The namespace with its version, that of Pilot 2 for the Mavic 3 Enterprise and since.
+const NAMESPACES: &str =
+    "xmlns=\"http://www.opengis.net/kml/2.2\" xmlns:wpml=\"http://www.dji.com/wpmz/1.0.6\"";
+
+/// `takeOffSecurityHeight` of a remote controller, in metres above take-off.
+const SAFE_HEIGHTS: (f64, f64) = (1.2, 1500.0);
+
+/// `globalTransitionalSpeed`, in m/s.
+const FASTEST_TRANSIT: f64 = 15.0;
+
+/// Drones with their cameras (`droneEnumValue`, `droneSubEnumValue`; `payloadEnumValue`s), from the Cloud
+/// API's "Common Elements" and "Product Support".
+const DRONES: [(u32, u32, &[u32]); 11] = [
+    // M300 RTK and M350 RTK with H20, H20T, P1, H20N, H30, H30T or one made with the Payload SDK.
+    (60, 0, &[42, 43, 50, 61, 82, 83, 65_534]),
+    (89, 0, &[42, 43, 50, 61, 82, 83, 65_534]),
+    // M30, M30T.
+    (67, 0, &[52]),
+    (67, 1, &[53]),
+    // Mavic 3E, 3T, 3M.
+    (77, 0, &[66, 65_534]),
+    (77, 1, &[67, 65_534]),
+    (77, 2, &[68]),
+    // Matrice 3D, 3TD.
+    (91, 0, &[80]),
+    (91, 1, &[81]),
+    // Matrice 4E, 4T.
+    (99, 0, &[88]),
+    (99, 1, &[89]),
+];
+
+/// Drones that have to be told which lens shoots (`payloadLensIndex`): M30 and Matrice 3D.
+const ASK_FOR_A_LENS: [u32; 2] = [67, 91];
+
+/// What both files say of the whole mission.
+struct Common<'a> {
+    mission: &'a Mission,
+    codes: DroneCodes,
+    speed: f64,
+    safe_height: f64,
+    is_relative: bool,
+}
+
+/// A stop with its heights: flown, above the ellipsoid where it is absolute, and of the template.
+struct Placed<'a> {
+    stop: &'a Stop,
+    index: usize,
+    flown: f64,
+    shown: f64,
+}
+
+/// The file of a mission.
+pub(super) fn bytes(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec<u8>, Fault> {
+    let common = common(mission, notes)?;
+    let placed = placed(&common)?;
+    if mission
+        .stops
+        .iter()
+        .any(|stop| stop.gimbal_pitch.is_none() && stop.photo.is_some())
+    {
+        notes.push("photos without a gimbal's pitch are shot as the gimbal was left".to_owned());
+    }
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    let failed = |error: &dyn std::fmt::Display| {
+        let what = format!("it cannot be packed ({error})");
+        Fault::new(what, "plan the mission again")
+    };
+    // The first is not deflated: its beginning says who wrote it.
+    for (name, text, method) in [
+        (
+            "wpmz/template.kml",
+            template(&common, &placed),
+            zip::CompressionMethod::Stored,
+        ),
+        (
+            "wpmz/waylines.wpml",
+            waylines(&common, &placed),
+            zip::CompressionMethod::Deflated,
+        ),
+    ] {
+        let options = SimpleFileOptions::default().compression_method(method);
+        zip.start_file(name, options)
+            .map_err(|error| failed(&error))?;
+        zip.write_all(text.as_bytes())
+            .map_err(|error| failed(&error))?;
+    }
+    let bytes = zip.finish().map_err(|error| failed(&error))?;
+    Ok(bytes.into_inner())
+}
+
+fn common<'a>(mission: &'a Mission, notes: &mut Vec<String>) -> Result<Common<'a>, Fault> {
+    let lacks = |what: &str, remedy: &str| Fault::new(format!("DJI's files need {what}"), remedy);
+    let codes = mission.drone.ok_or_else(|| {
+        lacks(
+            "the drone, and the mission does not say it",
+            "name the drone",
+        )
+    })?;
+    let speed = mission.speed.ok_or_else(|| {
+        lacks(
+            "a speed, and the mission does not say it",
+            "give a speed in m/s",
+        )
+    })?;
+    let safe_height = mission.safe_height.ok_or_else(|| {
+        let what = "a height to climb to first, and the mission does not say it";
+        lacks(what, "give it in metres above the place of take-off")
+    })?;
+    let (lowest, highest) = SAFE_HEIGHTS;
+    if !(lowest..=highest).contains(&safe_height) {
+        let what = format!(
+            "a height to climb to first from {lowest} to {highest} m, and the mission has {safe_height}"
+        );
+        return Err(lacks(&what, "give another"));
+    }
+    let known = DRONES
+        .iter()
+        .find(|(drone, sub, _)| (*drone, *sub) == (codes.drone, codes.drone_sub));
+    let (drone, sub) = (codes.drone, codes.drone_sub);
+    match (known, codes.payload) {
+        (None, _) => notes.push(format!(
+            "drone {drone}/{sub} is not in DJI's tables of those that fly such missions: see whether its app opens the file"
+        )),
+        (Some((.., cameras)), Some(camera)) if !cameras.contains(&camera.payload) => {
+            notes.push(format!(
+                "camera {} is not one of drone {drone}/{sub} in DJI's tables: see whether its app opens the file",
+                camera.payload
+            ));
+        }
+        (Some(_), None) => notes.push(format!("the camera of drone {drone}/{sub} is not named: see whether its app opens the file")),
+        _ => {}
+    }
+    let has = |above| mission.stops.iter().any(|stop| stop.height.above == above);
+    if has(Above::Ground) {
+        let what = "heights above the ground are flown by the drone's own terrain data, which DJI takes in mapping only";
+        return Err(Fault::new(what, "plan heights above the place of take-off"));
+    }
+    Ok(Common {
+        mission,
+        codes,
+        speed,
+        safe_height,
+        is_relative: has(Above::TakeOff),
+    })
+}
+
+fn placed<'a>(common: &Common<'a>) -> Result<Vec<Placed<'a>>, Fault> {
+    let mission = common.mission;
+    // Mixed ones become relative, which DJI's own apps write.
+    let (flown, shown) = match common.is_relative {
+        true => (Above::TakeOff, Above::TakeOff),
+        false => (Above::Ellipsoid, Above::Geoid),
+    };
+    (mission.stops.iter())
+        .zip(0..)
+        .map(|(stop, index)| {
+            Ok(Placed {
+                stop,
+                index,
+                flown: metres_above(mission, stop, index + 1, flown)?,
+                shown: metres_above(mission, stop, index + 1, shown)?,
+            })
+        })
+        .collect()
+}
+
+/// `wpmz/template.kml`.
+fn template(common: &Common<'_>, placed: &[Placed<'_>]) -> String {
+    let mut xml = Xml::new("kml", NAMESPACES);
+    xml.element("Document", |xml| {
+        xml.leaf("wpml:author", KMZ_MARK);
+        config(xml, common, false);
+        xml.element("Folder", |xml| {
+            xml.leaf("wpml:templateType", "waypoint");
+            xml.leaf("wpml:templateId", 0);
+            xml.element("wpml:waylineCoordinateSysParam", |xml| {
+                xml.leaf("wpml:coordinateMode", "WGS84");
+                let mode = if common.is_relative {
+                    "relativeToStartPoint"
+                } else {
+                    "EGM96"
+                };
+                xml.leaf("wpml:heightMode", mode);
+                xml.leaf("wpml:positioningType", "GPS");
+            });
+            xml.leaf("wpml:autoFlightSpeed", decimal(common.speed, 3));
+            let first = placed.first().map_or(0.0, |placed| placed.shown);
+            xml.leaf("wpml:globalHeight", metres(first));
+            xml.leaf("wpml:caliFlightEnable", 0);
+            xml.leaf("wpml:gimbalPitchMode", "manual");
+            xml.element("wpml:globalWaypointHeadingParam", |xml| {
+                heading(xml, None, false)
+            });
+            xml.leaf("wpml:globalWaypointTurnMode", STOP);
+            xml.leaf("wpml:globalUseStraightLine", 1);
+            for placed in placed {
+                xml.element("Placemark", |xml| {
+                    point(xml, placed);
+                    xml.leaf("wpml:ellipsoidHeight", metres(placed.flown));
+                    xml.leaf("wpml:height", metres(placed.shown));
+                    xml.leaf("wpml:useGlobalHeight", 0);
+                    xml.leaf("wpml:useGlobalSpeed", 1);
+                    xml.leaf("wpml:useGlobalHeadingParam", 0);
+                    xml.element("wpml:waypointHeadingParam", |xml| {
+                        heading(xml, placed.stop.heading, false);
+                    });
+                    xml.leaf("wpml:useGlobalTurnParam", 1);
+                    xml.leaf("wpml:useStraightLine", 1);
+                    actions(xml, placed, common.codes);
+                });
+            }
+            xml.element("wpml:payloadParam", |xml| {
+                xml.leaf("wpml:payloadPositionIndex", position(common.codes));
+            });
+        });
+    });
+    xml.finish()
+}
+
+/// `wpmz/waylines.wpml`.
+fn waylines(common: &Common<'_>, placed: &[Placed<'_>]) -> String {
+    let mut xml = Xml::new("kml", NAMESPACES);
+    xml.element("Document", |xml| {
+        config(xml, common, true);
+        xml.element("Folder", |xml| {
+            xml.leaf("wpml:templateId", 0);
+            let mode = if common.is_relative {
+                "relativeToStartPoint"
+            } else {
+                "WGS84"
+            };
+            xml.leaf("wpml:executeHeightMode", mode);
+            xml.leaf("wpml:waylineId", 0);
+            xml.leaf("wpml:autoFlightSpeed", decimal(common.speed, 3));
+            for placed in placed {
+                xml.element("Placemark", |xml| {
+                    point(xml, placed);
+                    xml.leaf("wpml:executeHeight", metres(placed.flown));
+                    xml.leaf("wpml:waypointSpeed", decimal(common.speed, 3));
+                    xml.element("wpml:waypointHeadingParam", |xml| {
+                        heading(xml, placed.stop.heading, true);
+                    });
+                    xml.element("wpml:waypointTurnParam", |xml| {
+                        xml.leaf("wpml:waypointTurnMode", STOP);
+                        xml.leaf("wpml:waypointTurnDampingDist", 0);
+                    });
+                    xml.leaf("wpml:useStraightLine", 1);
+                    actions(xml, placed, common.codes);
+                });
+            }
+        });
+    });
+    xml.finish()
+}
+
+/// Straight to the point, and stop there.
+const STOP: &str = "toPointAndStopWithDiscontinuityCurvature";
+
+fn config(xml: &mut Xml, common: &Common<'_>, is_flown: bool) {
+    xml.element("wpml:missionConfig", |xml| {
+        xml.leaf("wpml:flyToWaylineMode", "safely");
+        let finish = match common.mission.finish {
+            Finish::ReturnHome => "goHome",
+            Finish::Hover => "noAction",
+            Finish::Land => "autoLand",
+        };
+        xml.leaf("wpml:finishAction", finish);
+        xml.leaf("wpml:exitOnRCLost", "executeLostAction");
+        xml.leaf("wpml:executeRCLostAction", "goBack");
+        xml.leaf("wpml:takeOffSecurityHeight", metres(common.safe_height));
+        if let Some(take_off) = common.mission.take_off {
+            let (latitude, longitude) = (take_off.latitude, take_off.longitude);
+            let ellipsoid = |height| {
+                (common.mission).height_above(latitude, longitude, height, Above::Ellipsoid)
+            };
+            let known = take_off.elevation.and_then(ellipsoid);
+            // Without an elevation there is no point: it has three numbers.
+            if let (Some(elevation), false) = (known, is_flown) {
+                let point = [degrees(latitude), degrees(longitude), metres(elevation)];
+                xml.leaf("wpml:takeOffRefPoint", point.join(","));
+                xml.leaf("wpml:takeOffRefPointAGLHeight", 0);
+            }
+        }
+        let transit = common.speed.min(FASTEST_TRANSIT);
+        xml.leaf("wpml:globalTransitionalSpeed", decimal(transit, 3));
+        xml.leaf("wpml:globalRTHHeight", metres(common.safe_height));
+        xml.element("wpml:droneInfo", |xml| {
+            xml.leaf("wpml:droneEnumValue", common.codes.drone);
+            xml.leaf("wpml:droneSubEnumValue", common.codes.drone_sub);
+        });
+        if let Some(payload) = common.codes.payload {
+            xml.element("wpml:payloadInfo", |xml| {
+                xml.leaf("wpml:payloadEnumValue", payload.payload);
+                xml.leaf("wpml:payloadSubEnumValue", payload.payload_sub);
+                xml.leaf("wpml:payloadPositionIndex", payload.position);
+            });
+        }
+    });
+}
+
+fn point(xml: &mut Xml, placed: &Placed<'_>) {
+    xml.element("Point", |xml| {
+        let stop = placed.stop;
+        let place = format!("{},{}", degrees(stop.longitude), degrees(stop.latitude));
+        xml.leaf("coordinates", place);
+    });
+    xml.leaf("wpml:index", placed.index);
+}
+
+/// Where the nose looks when the drone arrives; along the way where nobody says it.
+fn heading(xml: &mut Xml, heading: Option<f64>, is_flown: bool) {
+    let mode = heading.map_or("followWayline", |_| "smoothTransition");
+    xml.leaf("wpml:waypointHeadingMode", mode);
+    // From -180 to 180.
+    let degrees = heading.map_or(0.0, |heading| {
+        if heading > 180.0 {
+            heading - 360.0
+        } else {
+            heading
+        }
+    });
+    xml.leaf("wpml:waypointHeadingAngle", angle(degrees));
+    xml.leaf("wpml:waypointPoiPoint", "0.000000,0.000000,0.000000");
+    if is_flown {
+        xml.leaf(
+            "wpml:waypointHeadingAngleEnable",
+            u8::from(heading.is_some()),
+        );
+    }
+    xml.leaf("wpml:waypointHeadingPathMode", "followBadArc");
+    xml.leaf("wpml:waypointHeadingPoiIndex", 0);
+}
+
+/// What is done at a stop, one after the other: the gimbal, the wait, the photo.
+fn actions(xml: &mut Xml, placed: &Placed<'_>, codes: DroneCodes) {
+    let stop = placed.stop;
+    if stop.gimbal_pitch.is_none() && stop.settle <= 0.0 && stop.photo.is_none() {
+        return;
+    }
+    let position = position(codes);
+    xml.element("wpml:actionGroup", |xml| {
+        xml.leaf("wpml:actionGroupId", placed.index);
+        xml.leaf("wpml:actionGroupStartIndex", placed.index);
+        xml.leaf("wpml:actionGroupEndIndex", placed.index);
+        xml.leaf("wpml:actionGroupMode", "sequence");
+        xml.element("wpml:actionTrigger", |xml| {
+            xml.leaf("wpml:actionTriggerType", "reachPoint");
+        });
+        let mut id = 0;
+        let mut action = |xml: &mut Xml, function: &str, fill: &dyn Fn(&mut Xml)| {
+            xml.element("wpml:action", |xml| {
+                xml.leaf("wpml:actionId", id);
+                xml.leaf("wpml:actionActuatorFunc", function);
+                xml.element("wpml:actionActuatorFuncParam", fill);
+            });
+            id += 1;
+        };
+        if let Some(pitch) = stop.gimbal_pitch {
+            action(xml, "gimbalRotate", &|xml| gimbal(xml, pitch, position));
+        }
+        if stop.settle > 0.0 {
+            action(xml, "hover", &|xml| {
+                xml.leaf("wpml:hoverTime", decimal(stop.settle, 3))
+            });
+        }
+        if let Some(photo) = &stop.photo {
+            action(xml, "takePhoto", &|xml| {
+                xml.leaf("wpml:payloadPositionIndex", position);
+                xml.leaf("wpml:fileSuffix", suffix(photo.name.as_deref()));
+                if ASK_FOR_A_LENS.contains(&codes.drone) {
+                    xml.leaf("wpml:payloadLensIndex", "wide");
+                }
+                xml.leaf("wpml:useGlobalPayloadLensIndex", 0);
+            });
+        }
+    });
+}
+
+fn gimbal(xml: &mut Xml, pitch: f64, position: u32) {
+    xml.leaf("wpml:payloadPositionIndex", position);
+    xml.leaf("wpml:gimbalHeadingYawBase", "north");
+    xml.leaf("wpml:gimbalRotateMode", "absoluteAngle");
+    xml.leaf("wpml:gimbalPitchRotateEnable", 1);
+    xml.leaf("wpml:gimbalPitchRotateAngle", angle(pitch));
+    for turn in ["Roll", "Yaw"] {
+        xml.leaf(&format!("wpml:gimbal{turn}RotateEnable"), 0);
+        xml.leaf(&format!("wpml:gimbal{turn}RotateAngle"), 0);
+    }
+    // As fast as it goes, and the next action when it is there.
+    xml.leaf("wpml:gimbalRotateTimeEnable", 0);
+    xml.leaf("wpml:gimbalRotateTime", 0);
+}
+
+/// What is added to the file's name: of a photo's name the letters and digits, and signs that no file
+/// system minds.
+fn suffix(name: Option<&str>) -> String {
+    let name = name.unwrap_or_default();
+    let is_good = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
+    name.chars()
+        .map(|c| if is_good(c) { c } else { '_' })
+        .collect()
+}
+
+fn position(codes: DroneCodes) -> u32 {
+    codes.payload.map_or(0, |payload| payload.position)
+}

@@ -1,0 +1,130 @@
+//! Missions of drones as ground stations wrote them, told by what is in them and not by their names.
+//!
+//! ```text
+//! route      places, turns, gimbal, waits and shots, one after the other, become stops
+//! notes      what a file says and a mission does not, counted
+//! wpml       DJI: .kmz, its folder, waylines.wpml, template.kml
+//! mavlink    the commands that the next two have in common
+//! plan       QGroundControl's .plan
+//! waypoints  Mission Planner's .waypoints: QGC WPL 110
+//! litchi     Litchi's CSV
+//! geojson    our own
+//! ```
+//!
+//! A stop comes of every photo, and of every place without one. What a mission has no place for (splines,
+//! video, photos by time or distance) is passed over and said. Positions are WGS 84; latitude comes first
+//! in all but DJI's files and GeoJSON.
+
+mod geojson;
+mod litchi;
+mod mavlink;
+mod notes;
+mod plan;
+mod route;
+mod waypoints;
+mod wpml;
+
+#[cfg(test)]
+mod tests;
+
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+
+use fragscale_core::plan::Mission;
+
+use crate::fault::Fault;
+use crate::files::{FileError, open_file, text_from_bytes};
+
+/// How large a file may be, in bytes: a mission of 65 536 waypoints in DJI's XML has about 100 MB, but
+/// nobody flies a tenth of them.
+const LARGEST: u64 = 64 << 20;
+
+/// What to do with a file that is none of these.
+const KNOWN: &str = "give a DJI .kmz, a QGroundControl .plan, a Mission Planner .waypoints, a Litchi .csv or a mission's .geojson that fragscale wrote";
+
+/// A mission that was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MissionFile {
+    /// What the drone is told. It may have no stops: that is in the notes.
+    pub mission: Mission,
+    /// What the file is, in words.
+    pub format: &'static str,
+    /// One sentence for each thing that the file says and the mission does not.
+    pub notes: Vec<String>,
+}
+
+/// Reads a mission: a file of any ground station, or the folder of a DJI .kmz.
+///
+/// # Errors
+/// With the file and the place in it: what is no mission, of a version that is not known, cut off, or
+/// tells a drone what no drone can do.
+pub fn read_mission(path: &Path) -> Result<MissionFile, FileError> {
+    let at = |fault| FileError::new(path, fault);
+    let mut found = if path.is_dir() {
+        wpml::read_folder(path)?
+    } else {
+        let bytes = read_small(path)?;
+        read_bytes(&bytes).map_err(at)?
+    };
+    found.mission.check().map_err(at)?;
+    if found.mission.stops.is_empty() {
+        found.notes.insert(0, "it has no waypoint".to_owned());
+    }
+    if found.mission.name.is_empty() {
+        let stem = path.file_stem().unwrap_or_default();
+        found.mission.name = stem.to_string_lossy().into_owned();
+    }
+    Ok(found)
+}
+
+/// A mission from the bytes of its file. Its name stays empty where the file does not say it.
+fn read_bytes(bytes: &[u8]) -> Result<MissionFile, Fault> {
+    if bytes.starts_with(b"PK") {
+        return wpml::read_kmz(bytes);
+    }
+    let text = text_from_bytes(bytes)?;
+    let first = text.lines().next().unwrap_or_default();
+    match text.trim_start().chars().next() {
+        None => Err(Fault::new("it is empty", "export it again")),
+        Some('<') => wpml::read_xml(text),
+        Some('{') if geojson::is_ours(text) => geojson::read(text),
+        Some('{') => plan::read(text),
+        _ if first.starts_with("QGC WPL") => waypoints::read(text),
+        _ if litchi::is_header(first) => litchi::read(text),
+        _ => Err(Fault::new("it holds no mission of a known kind", KNOWN)),
+    }
+}
+
+/// The bytes of a file that is not larger than a mission can be.
+fn read_small(path: &Path) -> Result<Vec<u8>, FileError> {
+    let mut bytes = Vec::new();
+    let read = open_file(path)?.take(LARGEST + 1).read_to_end(&mut bytes);
+    read.map_err(|error| {
+        let what = format!("it cannot be read to its end ({error})");
+        FileError::new(path, Fault::new(what, "check the disk"))
+    })?;
+    if bytes.len() as u64 > LARGEST {
+        let what = format!("it is larger than {} MB, no mission", LARGEST >> 20);
+        return Err(FileError::new(path, Fault::new(what, KNOWN)));
+    }
+    Ok(bytes)
+}
+
+/// The text of a file in a folder, if it is there.
+fn text_in(folder: &Path, name: &str) -> Result<Option<String>, FileError> {
+    let path = folder.join(name);
+    if !fs::metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
+        return Ok(None);
+    }
+    let bytes = read_small(&path)?;
+    let text = text_from_bytes(&bytes).map_err(|fault| FileError::new(&path, fault))?;
+    Ok(Some(text.to_owned()))
+}
+
+/// An angle as a heading: 0 to 360 degrees without the latter.
+fn heading(degrees: f64) -> f64 {
+    let turned = degrees.rem_euclid(360.0);
+    // A negative angle that is almost nothing is turned to 360 itself.
+    if turned < 360.0 { turned } else { 0.0 }
+}

@@ -1,0 +1,256 @@
+//! DJI's WPML (Cloud API, "DJI WPML"): a zip file or folder `wpmz` of `waylines.wpml`, which is what the
+//! drone flies, and `template.kml`, from which the app made it. Both are KML with elements of DJI's own;
+//! the first is read, the second where the first is missing.
+//!
+//! Elements are known by their names whatever their namespace, of which there are seven versions under
+//! two addresses (www.dji.com and www.uav.com). Coordinates are longitude, latitude.
+
+mod actions;
+mod folder;
+
+use std::borrow::Cow;
+use std::io::{Cursor, Read};
+use std::path::Path;
+
+use roxmltree::{Document, Node};
+use zip::ZipArchive;
+
+use fragscale_core::plan::{Above, DroneCodes, Finish, Height, Mission, PayloadCodes, TakeOff};
+
+use self::folder::add_folder;
+use super::notes::Notes;
+use super::route::Route;
+use super::{LARGEST, MissionFile, text_in};
+use crate::fault::Fault;
+use crate::files::{FileError, last_segment, text_from_bytes};
+use crate::text::fields::shown;
+use crate::text::xml_document::{Writer, child, line_of, parse_of, text};
+
+const EXPORT: &str = "export the mission from DJI's app again";
+
+/// A waypoint with many actions has about 300 nodes.
+const DJI: Writer = Writer {
+    name: None,
+    if_damaged: EXPORT,
+    if_foreign: EXPORT,
+    longest_tag: 20_000,
+    most_attributes: usize::MAX,
+    has_namespaces: true,
+    most_nodes: 4_000_000,
+};
+
+/// What is read, best first.
+const FILES: [&str; 2] = ["waylines.wpml", "template.kml"];
+
+/// Reads a .kmz.
+pub(super) fn read_kmz(bytes: &[u8]) -> Result<MissionFile, Fault> {
+    let broken =
+        |error: &dyn std::fmt::Display| Fault::new(format!("its zip is damaged ({error})"), EXPORT);
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| broken(&error))?;
+    for file in FILES {
+        let is_it = |name: &str| last_segment(name) == file;
+        let named = {
+            let mut names = archive.file_names().filter_map(Result::ok);
+            names.find(|name| is_it(name)).map(Cow::into_owned)
+        };
+        let Some(name) = named else { continue };
+        let entry = archive.by_name(&name).map_err(|error| broken(&error))?;
+        let mut inflated = Vec::new();
+        let read = entry.take(LARGEST + 1).read_to_end(&mut inflated);
+        read.map_err(|error| broken(&error))?;
+        if inflated.len() as u64 > LARGEST {
+            let what = format!("its {file} inflates to more than {} MB", LARGEST >> 20);
+            return Err(Fault::new(what, EXPORT));
+        }
+        let text = text_from_bytes(&inflated);
+        return text
+            .and_then(read_xml)
+            .map_err(|fault| in_file(file, fault));
+    }
+    let what = "it holds neither waylines.wpml nor template.kml";
+    Err(Fault::new(what, super::KNOWN))
+}
+
+/// A fault in a file inside of another, whose lines are not those of the other.
+fn in_file(file: &str, fault: Fault) -> Fault {
+    let place = match fault.line {
+        Some(line) => format!("its {file}, line {line}"),
+        None => format!("its {file}"),
+    };
+    Fault::new(format!("{place}: {}", fault.what), fault.remedy)
+}
+
+/// Reads a folder that holds what a .kmz holds.
+pub(super) fn read_folder(path: &Path) -> Result<MissionFile, FileError> {
+    for file in FILES {
+        for folder in [path.join("wpmz"), path.to_owned()] {
+            if let Some(text) = text_in(&folder, file)? {
+                let at = |fault| FileError::new(&folder.join(file), fault);
+                return read_xml(&text).map_err(at);
+            }
+        }
+    }
+    let what = "a folder without waylines.wpml and template.kml";
+    Err(FileError::new(path, Fault::new(what, super::KNOWN)))
+}
+
+/// Reads a waylines.wpml or a template.kml.
+pub(super) fn read_xml(xml: &str) -> Result<MissionFile, Fault> {
+    let document = parse_of(xml, &DJI)?;
+    let config = document
+        .descendants()
+        .find(|node| node.has_tag_name("missionConfig"));
+    let Some(config) = config else {
+        let what = match document.root_element().has_tag_name("kml") {
+            true => "KML without DJI's missionConfig is no mission",
+            false => "XML that is not DJI's WPML is no mission",
+        };
+        return Err(Fault::new(what, super::KNOWN));
+    };
+    let mut notes = Notes::default();
+    let mut mission = of_config(config, &mut notes)?;
+    let mut route = Route::default();
+    let folders = folders(&document);
+    if folders.len() > 1 {
+        notes.say(format!(
+            "its {} waylines are read one behind the other",
+            folders.len()
+        ));
+    }
+    for folder in folders {
+        let speed = add_folder(folder, &mut route, &mut notes)?;
+        mission.speed = mission.speed.or(speed);
+    }
+    mission.stops = route.stops();
+    Ok(MissionFile {
+        mission,
+        format: "a mission of DJI (WPML)",
+        notes: notes.sentences(),
+    })
+}
+
+fn folders<'a, 'd>(document: &'a Document<'d>) -> Vec<Node<'a, 'd>> {
+    let nodes = document.descendants();
+    nodes.filter(|node| node.has_tag_name("Folder")).collect()
+}
+
+/// What holds for the whole mission.
+fn of_config(config: Node<'_, '_>, notes: &mut Notes) -> Result<Mission, Fault> {
+    let finish = match child(config, "finishAction").map(text) {
+        Some("goHome") => Finish::ReturnHome,
+        Some("autoLand") => Finish::Land,
+        Some("gotoFirstWaypoint") => {
+            notes.say("at the end it flies to the first waypoint and hovers: read as hovering");
+            Finish::Hover
+        }
+        _ => Finish::Hover,
+    };
+    let codes = |info: &'static str, names: [&'static str; 3]| -> Result<_, Fault> {
+        let Some(info) = child(config, info) else {
+            return Ok(None);
+        };
+        let Some(kind) = whole(info, names[0])? else {
+            return Ok(None);
+        };
+        let sub = whole(info, names[1])?.unwrap_or(0);
+        Ok(Some((kind, sub, whole(info, names[2])?.unwrap_or(0))))
+    };
+    let drone = codes("droneInfo", ["droneEnumValue", "droneSubEnumValue", ""])?;
+    let payload = codes(
+        "payloadInfo",
+        [
+            "payloadEnumValue",
+            "payloadSubEnumValue",
+            "payloadPositionIndex",
+        ],
+    )?;
+    let payload = payload.map(|(payload, payload_sub, position)| PayloadCodes {
+        payload,
+        payload_sub,
+        position,
+    });
+    Ok(Mission {
+        drone: drone.map(|(drone, drone_sub, _)| DroneCodes {
+            drone,
+            drone_sub,
+            payload,
+        }),
+        take_off: take_off(config)?,
+        safe_height: number(config, "takeOffSecurityHeight")?,
+        finish,
+        ..Mission::default()
+    })
+}
+
+/// "Latitude, longitude, altitude", above the ellipsoid.
+fn take_off(config: Node<'_, '_>) -> Result<Option<TakeOff>, Fault> {
+    let Some(point) = child(config, "takeOffRefPoint") else {
+        return Ok(None);
+    };
+    let numbers = numbers_of(point)?;
+    let &[latitude, longitude, ref rest @ ..] = &numbers[..] else {
+        return Err(fault(
+            point,
+            "takeOffRefPoint is no latitude,longitude,altitude",
+        ));
+    };
+    let elevation = rest.first().map(|&metres| Height {
+        metres,
+        above: Above::Ellipsoid,
+    });
+    // FlightHub writes zeros where nobody chose a place.
+    Ok((latitude != 0.0 || longitude != 0.0).then_some(TakeOff {
+        latitude,
+        longitude,
+        elevation,
+    }))
+}
+
+/// A fault at an element.
+fn fault(node: Node<'_, '_>, what: impl Into<String>) -> Fault {
+    Fault::at(line_of(node), what, EXPORT)
+}
+
+/// The finite number in an element directly inside another, if there is one.
+fn number(node: Node<'_, '_>, name: &str) -> Result<Option<f64>, Fault> {
+    let Some(child) = child(node, name).filter(|child| !text(*child).is_empty()) else {
+        return Ok(None);
+    };
+    match numbers_of(child)?[..] {
+        [number] => Ok(Some(number)),
+        _ => Err(fault(child, format!("<{name}> is not one number"))),
+    }
+}
+
+/// The whole number in an element directly inside another, if there is one.
+fn whole(node: Node<'_, '_>, name: &str) -> Result<Option<u32>, Fault> {
+    let Some(child) = child(node, name).filter(|child| !text(*child).is_empty()) else {
+        return Ok(None);
+    };
+    text(child).parse().map(Some).map_err(|_| {
+        let found = shown(text(child));
+        fault(child, format!("<{name}> is '{found}', not a whole number"))
+    })
+}
+
+/// The numbers between commas that an element consists of, finite all.
+fn numbers_of(node: Node<'_, '_>) -> Result<Vec<f64>, Fault> {
+    let words = text(node).split(',');
+    let numbers = words.map(|word| match word.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => {
+            let name = node.tag_name().name();
+            let found = shown(word.trim());
+            Err(fault(
+                node,
+                format!("<{name}> holds '{found}', not a number"),
+            ))
+        }
+    });
+    numbers.collect()
+}
+
+/// Whether an element directly inside another says yes.
+fn is_on(node: Node<'_, '_>, name: &str) -> bool {
+    child(node, name).is_some_and(|child| text(child) == "1")
+}
