@@ -14,6 +14,7 @@ mod effort;
 mod export;
 mod flight_arguments;
 mod interrupt;
+mod mission;
 mod models;
 mod of_photos;
 mod on_surface;
@@ -97,6 +98,8 @@ enum Command {
     Profile(profile::ProfileArguments),
     /// Measure area and volume inside a polygon, over a level, its rim or another surface.
     Volume(volume::VolumeArguments),
+    /// Say what a drone's mission does, or write it for another ground station.
+    Mission(mission::MissionArguments),
     /// Say what a file or folder holds.
     Info(InfoArguments),
     /// Reconstruct a flight from its photos alone: poses, lenses, a cloud.
@@ -241,6 +244,7 @@ pub fn run() -> ExitCode {
         }
         Command::Anova(arguments) => Box::new(move |_| anova::anova(&arguments)),
         Command::Effort(arguments) => Box::new(move |_| effort::effort(&arguments)),
+        Command::Mission(arguments) => Box::new(move |_| mission::mission(&arguments)),
         Command::Psd(command) => Box::new(move |progress| psd::psd(&command, progress)),
         Command::Profile(arguments) => {
             Box::new(move |progress| profile::profile(&arguments, progress))

@@ -83,8 +83,8 @@ pub struct Stop {
     pub longitude: f64,
     /// How high.
     pub height: Height,
-    /// Where the camera looks, in degrees clockwise from true north, 0 to 360 without the latter; `None`
-    /// where it is left to the ground station.
+    /// Where the camera looks, in degrees clockwise from true north, 0 to 360 without the latter; of one that
+    /// looks straight down, where the top of its image is. `None` where it is left to the ground station.
     pub heading: Option<f64>,
     /// Degrees: 0 is level, -90 straight down, above 0 up; `None` where the gimbal stays as it is.
     pub gimbal_pitch: Option<f64>,

@@ -30,6 +30,7 @@ mod geotiff;
 mod independent_answers;
 mod intervals;
 mod map;
+mod mission;
 mod on_surface;
 mod overwriting;
 mod psd_compare;

@@ -40,6 +40,9 @@ use crate::files::{FileError, open_file, text_from_bytes};
 /// nobody flies a tenth of them.
 const LARGEST: u64 = 64 << 20;
 
+/// The same of JSON, whose items take ten times their bytes in memory: a .plan of 30 000 commands.
+const LARGEST_JSON: usize = 16 << 20;
+
 /// What to do with a file that is none of these.
 const KNOWN: &str = "give a DJI .kmz, a QGroundControl .plan, a Mission Planner .waypoints, a Litchi .csv or a mission's .geojson that fragscale wrote";
 
@@ -88,6 +91,10 @@ fn read_bytes(bytes: &[u8]) -> Result<MissionFile, Fault> {
     match text.trim_start().chars().next() {
         None => Err(Fault::new("it is empty", "export it again")),
         Some('<') => wpml::read_xml(text),
+        Some('{') if text.len() > LARGEST_JSON => {
+            let what = format!("it is larger than {} MB, no mission", LARGEST_JSON >> 20);
+            Err(Fault::new(what, KNOWN))
+        }
         Some('{') if geojson::is_ours(text) => geojson::read(text),
         Some('{') => plan::read(text),
         _ if first.starts_with("QGC WPL") => waypoints::read(text),

@@ -70,7 +70,7 @@ struct MissionPart {
 #[serde(rename_all = "camelCase")]
 struct PlanItem {
     #[serde(rename = "type")]
-    kind: Option<String>,
+    kind: String,
     command: Option<u32>,
     frame: Option<u32>,
     params: Option<Vec<Option<f64>>>,
@@ -193,9 +193,9 @@ fn add(
     number: usize,
     notes: &mut Notes,
 ) -> Result<(), Fault> {
-    match item.kind.as_deref() {
-        Some("SimpleItem") => items.push(simple(item, Place::Item(number, None))?),
-        Some("ComplexItem") => {
+    match item.kind.as_str() {
+        "SimpleItem" => items.push(simple(item, Place::Item(number, None))?),
+        "ComplexItem" => {
             let name = item.complex_item_type.as_deref().unwrap_or("complex item");
             if let Some((_, from, to)) = COMPLEX.iter().find(|(known, ..)| *known == name)
                 && !(item.version).is_some_and(|v| (f64::from(*from)..=f64::from(*to)).contains(&v))
@@ -216,8 +216,8 @@ fn add(
             }
         }
         other => {
-            let kind = shown(other.unwrap_or("none"));
-            let what = format!("item {number}: its \"type\" is {kind}, which is not known");
+            let kind = shown(other);
+            let what = format!("item {number}: its \"type\" is \"{kind}\", which is not known");
             return Err(Fault::new(what, EXPORT));
         }
     }

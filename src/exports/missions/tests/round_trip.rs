@@ -94,7 +94,15 @@ fn all_say_the_same(mission: &Mission) {
                 .abs()
                 .max((a.longitude - b.longitude).abs());
             assert!(place < 1e-7, "{format:?}: {place}");
+            let elevation = read
+                .height_above(b.latitude, b.longitude, b.elevation.unwrap(), Above::Geoid)
+                .unwrap();
+            let planned = mission
+                .height_above(a.latitude, a.longitude, a.elevation.unwrap(), Above::Geoid)
+                .unwrap();
+            assert!((elevation - planned).abs() < 1e-3, "{format:?}");
         }
+        assert!(read.take_off.is_some(), "{format:?}");
         if format == MissionFormat::QGroundControl {
             assert_eq!(read.fences, mission.fences);
         }
@@ -209,6 +217,30 @@ proptest! {
     #[test]
     fn missions_above_the_geoid(mission in missions(Above::Geoid, 250.0..500.0)) {
         all_say_the_same(&mission);
+    }
+}
+
+/// What we write, with bytes changed: read or refused in one line, never a panic.
+#[test]
+fn damaged_files_are_read_or_refused() {
+    let mut random = fragscale_core::split_mix::SplitMix(17);
+    let mut below = |limit: usize| usize::try_from(random.next() % limit as u64).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for format in FORMATS {
+        let bytes = file(&mission(), format);
+        let path = folder.path().join("damaged");
+        for _ in 0..200 {
+            let mut changed = bytes.clone();
+            for _ in 0..=below(4) {
+                let at = below(changed.len());
+                changed[at] = b"0123456789-.,:<>{}[]\"\tnule\xff\0"[below(28)];
+            }
+            changed.truncate(changed.len() - below(2) * below(bytes.len()));
+            std::fs::write(&path, &changed).unwrap();
+            if let Err(error) = read_mission(&path) {
+                assert_eq!(error.to_string().lines().count(), 1, "{error}");
+            }
+        }
     }
 }
 

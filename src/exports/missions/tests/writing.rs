@@ -133,27 +133,20 @@ fn kml_is_to_be_looked_at() {
     assert!(text(&nowhere, MissionFormat::Kml).contains("<name>a&lt;b&gt;&amp;</name>"));
 }
 
-/// Every kind of file into the folder that `FRAGSCALE_MISSIONS_OUT` names, for the programs of
-/// `shared/check-missions`.
-#[test]
-fn files_for_others_to_check() {
-    let Some(folder) = std::env::var_os("FRAGSCALE_MISSIONS_OUT") else {
-        return;
-    };
-    let folder = Path::new(&folder);
+/// Missions of all kinds that a ground station may get, written into a folder.
+fn write_all_kinds(folder: &Path) -> Vec<PathBuf> {
     let mut absolute = mission();
     for stop in &mut absolute.stops {
         let metres = 160.0 + stop.height.metres;
-        stop.height = Height {
-            metres,
-            above: Above::Geoid,
-        };
+        let above = Above::Geoid;
+        stop.height = Height { metres, above };
     }
     let mut long = mission();
+    let first = long.stops[0].clone();
     long.stops = (0..400)
         .map(|i| Stop {
             latitude: 50.0 + f64::from(i) * 1e-5,
-            ..long.stops[0].clone()
+            ..first.clone()
         })
         .collect();
     let mut hover = mission();
@@ -162,6 +155,7 @@ fn files_for_others_to_check() {
     let mut land = mission();
     land.finish = Finish::Land;
     land.take_off = None;
+    let mut files = Vec::new();
     for (name, mission) in [
         ("relative", mission()),
         ("absolute", absolute),
@@ -171,9 +165,62 @@ fn files_for_others_to_check() {
     ] {
         for format in MissionFormat::ALL {
             let path = folder.join(format!("{name}.{}", format.ending()));
-            if let Err(error) = write_mission(&mission, &path, &Inputs::default(), true) {
-                panic!("{error}");
-            }
+            let written = write_mission(&mission, &path, &Inputs::default(), true);
+            files.extend(written.unwrap_or_else(|error| panic!("{error}")).files);
+        }
+    }
+    files
+}
+
+/// The programs of `shared/check-missions`, where they run: DJI's tables (Python alone), ArduPilot's
+/// pymavlink, the KML schema (fastkml), litchi_wp. `FRAGSCALE_MISSIONS_OUT` names a folder in which the
+/// files stay, for `load_missions.py`, which needs a port.
+#[test]
+fn others_take_the_files() {
+    let own = tempfile::tempdir().unwrap();
+    let named = std::env::var_os("FRAGSCALE_MISSIONS_OUT").map(PathBuf::from);
+    let folder = named.as_deref().unwrap_or(own.path());
+    let files = write_all_kinds(folder);
+    let (Some(data), Some(python)) = (
+        fragscale_test_data::shared_data("missions"),
+        fragscale_test_data::program("python3"),
+    ) else {
+        return;
+    };
+    let checks = data.join("../../check-missions");
+    for (program, ending, bad) in [
+        ("wpml_check.py", "kmz", "FAIL"),
+        ("wp.py", "waypoints", "REFUSED"),
+        ("kml.py", "kml", "REFUSED"),
+        ("litchi.py", "csv", "REFUSED"),
+    ] {
+        let of_it: Vec<&PathBuf> = files
+            .iter()
+            .filter(|file| file.extension().is_some_and(|own| own == ending))
+            .collect();
+        let output = std::process::Command::new(&python)
+            .arg(checks.join(program))
+            .args(&of_it)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stdout);
+        let wrong = String::from_utf8_lossy(&output.stderr);
+        if wrong.contains("ModuleNotFoundError") || wrong.contains("No such file") {
+            continue;
+        }
+        assert!(output.status.success(), "{wrong}");
+        assert!(!said.contains(bad) && !said.contains("False"), "{said}");
+        let good = match ending {
+            "kmz" => said.matches("OK  ").count(),
+            "waypoints" => said.matches("round trip same: True").count(),
+            "kml" => said.matches(" True").count(),
+            _ => said.lines().count(),
+        };
+        assert_eq!(good, of_it.len(), "{said}");
+        if ending == "csv" {
+            // Of those with a stop below the take-off it takes all other lines: it knows no pits.
+            assert_eq!(said.matches("2 of 3 lines valid").count(), 3, "{said}");
+            assert_eq!(said.matches("99 of 99 lines valid").count(), 4, "{said}");
         }
     }
 }

@@ -115,6 +115,15 @@ fn a_folder_of_flighthub_for_a_matrice_4t() {
         (mission.speed, mission.safe_height),
         (Some(15.0), Some(20.0))
     );
+    // It stands in the template alone.
+    let take_off = mission.take_off.unwrap();
+    let place_of_it = (take_off.latitude, take_off.longitude);
+    assert_eq!(place_of_it, (31.089_768, 104.391_869));
+    let elevation = take_off.elevation.unwrap();
+    assert_eq!(
+        (elevation.metres, elevation.above),
+        (423.438_678, Above::Ellipsoid)
+    );
     let stops = &mission.stops;
     assert_eq!(stops.len(), 6);
     assert!(all_above(mission, Above::Ellipsoid));

@@ -270,6 +270,12 @@ fn what_is_no_mission_is_refused_in_a_line() {
     assert!(cut.starts_with("a.plan:2: EOF"), "{cut}");
     let deep = refused("a.plan", format!("{{\"mission\":{}", "[".repeat(1_000_000)));
     assert!(deep.starts_with("a.plan:1: "), "{deep}");
+    // Three bytes of JSON would be a hundred in memory.
+    let many = format!(
+        "{{\"fileType\": \"Plan\", \"x\": \"{}\"}}",
+        " ".repeat(17 << 20)
+    );
+    assert!(refused("a.plan", many).starts_with("a.plan: it is larger than 16 MB, no mission"));
     let folder = tempfile::tempdir().unwrap();
     let empty = read_mission(folder.path()).unwrap_err().to_string();
     assert!(

@@ -9,6 +9,7 @@ mod actions;
 mod folder;
 
 use std::borrow::Cow;
+use std::fmt::Display;
 use std::io::{Cursor, Read};
 use std::path::Path;
 
@@ -44,31 +45,45 @@ const FILES: [&str; 2] = ["waylines.wpml", "template.kml"];
 
 /// Reads a .kmz.
 pub(super) fn read_kmz(bytes: &[u8]) -> Result<MissionFile, Fault> {
-    let broken =
-        |error: &dyn std::fmt::Display| Fault::new(format!("its zip is damaged ({error})"), EXPORT);
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| broken(&error))?;
+    let mut found = None;
     for file in FILES {
-        let is_it = |name: &str| last_segment(name) == file;
-        let named = {
-            let mut names = archive.file_names().filter_map(Result::ok);
-            names.find(|name| is_it(name)).map(Cow::into_owned)
+        let Some(text) = unpacked(&mut archive, file)? else {
+            continue;
         };
-        let Some(name) = named else { continue };
-        let entry = archive.by_name(&name).map_err(|error| broken(&error))?;
-        let mut inflated = Vec::new();
-        let read = entry.take(LARGEST + 1).read_to_end(&mut inflated);
-        read.map_err(|error| broken(&error))?;
-        if inflated.len() as u64 > LARGEST {
-            let what = format!("its {file} inflates to more than {} MB", LARGEST >> 20);
-            return Err(Fault::new(what, EXPORT));
+        match &mut found {
+            None => found = Some(read_xml(&text).map_err(|fault| in_file(file, fault))?),
+            Some(found) => add_take_off(found, &text),
         }
-        let text = text_from_bytes(&inflated);
-        return text
-            .and_then(read_xml)
-            .map_err(|fault| in_file(file, fault));
     }
     let what = "it holds neither waylines.wpml nor template.kml";
-    Err(Fault::new(what, super::KNOWN))
+    found.ok_or_else(|| Fault::new(what, super::KNOWN))
+}
+
+fn broken(error: &dyn Display) -> Fault {
+    Fault::new(format!("its zip is damaged ({error})"), EXPORT)
+}
+
+/// The text of the file of this name in a zip, whatever folder it is in.
+fn unpacked(archive: &mut ZipArchive<Cursor<&[u8]>>, file: &str) -> Result<Option<String>, Fault> {
+    let named = {
+        let mut names = archive.file_names().filter_map(Result::ok);
+        let is_it = |name: &str| last_segment(name) == file;
+        names.find(|name| is_it(name)).map(Cow::into_owned)
+    };
+    let Some(name) = named else {
+        return Ok(None);
+    };
+    let entry = archive.by_name(&name).map_err(|error| broken(&error))?;
+    let mut inflated = Vec::new();
+    let read = entry.take(LARGEST + 1).read_to_end(&mut inflated);
+    read.map_err(|error| broken(&error))?;
+    if inflated.len() as u64 > LARGEST {
+        let what = format!("its {file} inflates to more than {} MB", LARGEST >> 20);
+        return Err(Fault::new(what, EXPORT));
+    }
+    let text = text_from_bytes(&inflated).map_err(|fault| in_file(file, fault))?;
+    Ok(Some(text.to_owned()))
 }
 
 /// A fault in a file inside of another, whose lines are not those of the other.
@@ -82,25 +97,45 @@ fn in_file(file: &str, fault: Fault) -> Fault {
 
 /// Reads a folder that holds what a .kmz holds.
 pub(super) fn read_folder(path: &Path) -> Result<MissionFile, FileError> {
+    let mut found = None;
     for file in FILES {
         for folder in [path.join("wpmz"), path.to_owned()] {
-            if let Some(text) = text_in(&folder, file)? {
-                let at = |fault| FileError::new(&folder.join(file), fault);
-                return read_xml(&text).map_err(at);
+            let Some(text) = text_in(&folder, file)? else {
+                continue;
+            };
+            let at = |fault| FileError::new(&folder.join(file), fault);
+            match &mut found {
+                None => found = Some(read_xml(&text).map_err(at)?),
+                Some(found) => add_take_off(found, &text),
             }
+            break;
         }
     }
     let what = "a folder without waylines.wpml and template.kml";
-    Err(FileError::new(path, Fault::new(what, super::KNOWN)))
+    found.ok_or_else(|| FileError::new(path, Fault::new(what, super::KNOWN)))
+}
+
+/// The place of take-off stands in templates alone. What is wrong with one beside good waylines is no
+/// matter: the drone does not fly by it.
+fn add_take_off(found: &mut MissionFile, template: &str) {
+    if found.mission.take_off.is_none()
+        && let Ok(document) = parse_of(template, &DJI)
+        && let Some(config) = config_of(&document)
+        && let Ok(take_off) = take_off(config)
+    {
+        found.mission.take_off = take_off;
+    }
+}
+
+fn config_of<'a, 'd>(document: &'a Document<'d>) -> Option<Node<'a, 'd>> {
+    let mut nodes = document.descendants();
+    nodes.find(|node| node.has_tag_name("missionConfig"))
 }
 
 /// Reads a waylines.wpml or a template.kml.
 pub(super) fn read_xml(xml: &str) -> Result<MissionFile, Fault> {
     let document = parse_of(xml, &DJI)?;
-    let config = document
-        .descendants()
-        .find(|node| node.has_tag_name("missionConfig"));
-    let Some(config) = config else {
+    let Some(config) = config_of(&document) else {
         let what = match document.root_element().has_tag_name("kml") {
             true => "KML without DJI's missionConfig is no mission",
             false => "XML that is not DJI's WPML is no mission",

@@ -9,16 +9,19 @@
 //!   The order `rotateYaw` is not given: it would turn a nose that has arrived once around.
 //! - Coordinates are longitude, latitude; only `takeOffRefPoint` is latitude, longitude.
 
+mod stop;
+
 use std::io::{Cursor, Write};
 
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use fragscale_core::plan::{Above, DroneCodes, Finish, Mission, Stop};
+use fragscale_core::plan::{Above, DroneCodes, Finish, Mission};
 
+use self::stop::{Placed, actions, heading, point, position};
 use super::heights::metres_above;
 use super::xml::Xml;
-use super::{angle, decimal, degrees, metres};
+use super::{decimal, degrees, metres};
 use crate::fault::Fault;
 use crate::files::KMZ_MARK;
 
@@ -53,9 +56,6 @@ const DRONES: [(u32, u32, &[u32]); 11] = [
     (99, 1, &[89]),
 ];
 
-/// Drones that have to be told which lens shoots (`payloadLensIndex`): M30 and Matrice 3D.
-const ASK_FOR_A_LENS: [u32; 2] = [67, 91];
-
 /// What both files say of the whole mission.
 struct Common<'a> {
     mission: &'a Mission,
@@ -63,14 +63,6 @@ struct Common<'a> {
     speed: f64,
     safe_height: f64,
     is_relative: bool,
-}
-
-/// A stop with its heights: flown, above the ellipsoid where it is absolute, and of the template.
-struct Placed<'a> {
-    stop: &'a Stop,
-    index: usize,
-    flown: f64,
-    shown: f64,
 }
 
 /// The file of a mission.
@@ -320,111 +312,4 @@ fn config(xml: &mut Xml, common: &Common<'_>, is_flown: bool) {
             });
         }
     });
-}
-
-fn point(xml: &mut Xml, placed: &Placed<'_>) {
-    xml.element("Point", |xml| {
-        let stop = placed.stop;
-        let place = format!("{},{}", degrees(stop.longitude), degrees(stop.latitude));
-        xml.leaf("coordinates", place);
-    });
-    xml.leaf("wpml:index", placed.index);
-}
-
-/// Where the nose looks when the drone arrives; along the way where nobody says it.
-fn heading(xml: &mut Xml, heading: Option<f64>, is_flown: bool) {
-    let mode = heading.map_or("followWayline", |_| "smoothTransition");
-    xml.leaf("wpml:waypointHeadingMode", mode);
-    // From -180 to 180.
-    let degrees = heading.map_or(0.0, |heading| {
-        if heading > 180.0 {
-            heading - 360.0
-        } else {
-            heading
-        }
-    });
-    xml.leaf("wpml:waypointHeadingAngle", angle(degrees));
-    xml.leaf("wpml:waypointPoiPoint", "0.000000,0.000000,0.000000");
-    if is_flown {
-        xml.leaf(
-            "wpml:waypointHeadingAngleEnable",
-            u8::from(heading.is_some()),
-        );
-    }
-    xml.leaf("wpml:waypointHeadingPathMode", "followBadArc");
-    xml.leaf("wpml:waypointHeadingPoiIndex", 0);
-}
-
-/// What is done at a stop, one after the other: the gimbal, the wait, the photo.
-fn actions(xml: &mut Xml, placed: &Placed<'_>, codes: DroneCodes) {
-    let stop = placed.stop;
-    if stop.gimbal_pitch.is_none() && stop.settle <= 0.0 && stop.photo.is_none() {
-        return;
-    }
-    let position = position(codes);
-    xml.element("wpml:actionGroup", |xml| {
-        xml.leaf("wpml:actionGroupId", placed.index);
-        xml.leaf("wpml:actionGroupStartIndex", placed.index);
-        xml.leaf("wpml:actionGroupEndIndex", placed.index);
-        xml.leaf("wpml:actionGroupMode", "sequence");
-        xml.element("wpml:actionTrigger", |xml| {
-            xml.leaf("wpml:actionTriggerType", "reachPoint");
-        });
-        let mut id = 0;
-        let mut action = |xml: &mut Xml, function: &str, fill: &dyn Fn(&mut Xml)| {
-            xml.element("wpml:action", |xml| {
-                xml.leaf("wpml:actionId", id);
-                xml.leaf("wpml:actionActuatorFunc", function);
-                xml.element("wpml:actionActuatorFuncParam", fill);
-            });
-            id += 1;
-        };
-        if let Some(pitch) = stop.gimbal_pitch {
-            action(xml, "gimbalRotate", &|xml| gimbal(xml, pitch, position));
-        }
-        if stop.settle > 0.0 {
-            action(xml, "hover", &|xml| {
-                xml.leaf("wpml:hoverTime", decimal(stop.settle, 3))
-            });
-        }
-        if let Some(photo) = &stop.photo {
-            action(xml, "takePhoto", &|xml| {
-                xml.leaf("wpml:payloadPositionIndex", position);
-                xml.leaf("wpml:fileSuffix", suffix(photo.name.as_deref()));
-                if ASK_FOR_A_LENS.contains(&codes.drone) {
-                    xml.leaf("wpml:payloadLensIndex", "wide");
-                }
-                xml.leaf("wpml:useGlobalPayloadLensIndex", 0);
-            });
-        }
-    });
-}
-
-fn gimbal(xml: &mut Xml, pitch: f64, position: u32) {
-    xml.leaf("wpml:payloadPositionIndex", position);
-    xml.leaf("wpml:gimbalHeadingYawBase", "north");
-    xml.leaf("wpml:gimbalRotateMode", "absoluteAngle");
-    xml.leaf("wpml:gimbalPitchRotateEnable", 1);
-    xml.leaf("wpml:gimbalPitchRotateAngle", angle(pitch));
-    for turn in ["Roll", "Yaw"] {
-        xml.leaf(&format!("wpml:gimbal{turn}RotateEnable"), 0);
-        xml.leaf(&format!("wpml:gimbal{turn}RotateAngle"), 0);
-    }
-    // As fast as it goes, and the next action when it is there.
-    xml.leaf("wpml:gimbalRotateTimeEnable", 0);
-    xml.leaf("wpml:gimbalRotateTime", 0);
-}
-
-/// What is added to the file's name: of a photo's name the letters and digits, and signs that no file
-/// system minds.
-fn suffix(name: Option<&str>) -> String {
-    let name = name.unwrap_or_default();
-    let is_good = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
-    name.chars()
-        .map(|c| if is_good(c) { c } else { '_' })
-        .collect()
-}
-
-fn position(codes: DroneCodes) -> u32 {
-    codes.payload.map_or(0, |payload| payload.position)
 }
