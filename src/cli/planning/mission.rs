@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::Answer;
-use super::outputs::Force;
+use crate::cli::Answer;
+use crate::cli::outputs::Force;
 use crate::exports::write_mission;
 use crate::fault::one_line;
 use crate::files::Inputs;
@@ -14,7 +14,7 @@ use crate::formats::{MissionFile, read_mission};
 use crate::plan::{Finish, Height, Mission};
 
 #[derive(Debug, Args)]
-pub(super) struct MissionArguments {
+pub(in crate::cli) struct MissionArguments {
     /// A mission: DJI's .kmz or its folder, .plan, .waypoints, Litchi's .csv, or a .geojson of fragscale.
     file: PathBuf,
     /// Write it for another ground station, by the ending: .kmz, .plan, .waypoints, .csv (Litchi), .kml,
@@ -25,7 +25,7 @@ pub(super) struct MissionArguments {
     force: Force,
 }
 
-pub(super) fn mission(arguments: &MissionArguments) -> Result<Answer, String> {
+pub(in crate::cli) fn mission(arguments: &MissionArguments) -> Result<Answer, String> {
     let MissionFile {
         mission,
         format,

@@ -1,0 +1,3 @@
+//! The commands about flights that are to be flown.
+
+pub(super) mod mission;
