@@ -80,6 +80,18 @@ impl MissionFormat {
         }
     }
 
+    /// What its files are called.
+    pub(super) fn file_in_words(self) -> &'static str {
+        match self {
+            Self::DjiWpml => "a .kmz",
+            Self::QGroundControl => "a .plan",
+            Self::Waypoints => "a .waypoints",
+            Self::Litchi => "Litchi's CSV",
+            Self::Kml => "KML",
+            Self::GeoJson => "GeoJSON",
+        }
+    }
+
     /// How many units of [`parts`](super::parts::parts) a file takes: stops, or of MAVLink's commands.
     pub(super) fn most(self) -> usize {
         match self {

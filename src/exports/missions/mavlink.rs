@@ -30,8 +30,9 @@ const ABOVE_HOME: u32 = 3;
 /// The commands that a file has besides those of its stops: home, take-off, speed, the end.
 pub(super) const BESIDE_STOPS: usize = 4;
 
-/// A wait that hardly covers a turn and a gimbal, in seconds.
-const SHORT_WAIT: f64 = 2.0;
+/// A shorter wait may end before the drone has turned, in seconds: on its way it looks ahead, and Copter turns
+/// by 60 degrees per second (ArduCopter's `AUTO_YAW_SLEW_RATE`), which for half a turn is 3 s. Gimbals are faster.
+const SHORT_WAIT: f64 = 3.0;
 
 /// How many commands a stop has.
 pub(super) fn commands_at(stop: &Stop) -> usize {

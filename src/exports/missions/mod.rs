@@ -93,8 +93,8 @@ pub fn mission_files(mission: &Mission, format: MissionFormat) -> Result<Mission
     }
     if !mission.fences.is_empty() && !format.has_fences() {
         notes.push(format!(
-            "{} has no fences: they are not in the file",
-            format.in_words()
+            "the fences are not in the file, for {} has no place for them: set them in the ground station",
+            format.file_in_words()
         ));
     }
     let count = parts.len();

@@ -8,7 +8,7 @@
 //!   other way round.
 //! - A gimbal's yaw counts from the drone's nose, or from north if its flag says so (YAW_LOCK, 16).
 
-use fragscale_core::plan::{Above, Finish, Height, Stop};
+use fragscale_core::plan::{Above, Finish, Height, Stop, TakeOff};
 
 use super::heading;
 use super::notes::Notes;
@@ -80,6 +80,20 @@ pub(super) enum Autopilot {
     Px4,
     /// They have none.
     ArduPilot,
+}
+
+/// Home: degrees, and metres above mean sea level, of which ground stations write 0 where they do not know.
+/// `None` at 0, 0, which is nobody's.
+pub(super) fn home(latitude: f64, longitude: f64, metres: f64) -> Option<TakeOff> {
+    let is_known = metres != 0.0 && metres.is_finite();
+    (latitude != 0.0 || longitude != 0.0).then_some(TakeOff {
+        latitude,
+        longitude,
+        elevation: is_known.then_some(Height {
+            metres,
+            above: Above::Geoid,
+        }),
+    })
 }
 
 /// What the commands tell.

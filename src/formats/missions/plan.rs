@@ -5,10 +5,10 @@
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use fragscale_core::plan::{Above, Fence, Height, Mission, TakeOff};
+use fragscale_core::plan::{Fence, Mission, TakeOff};
 
 use super::MissionFile;
-use super::mavlink::{Autopilot, Item, Place, told};
+use super::mavlink::{Autopilot, Item, Place, home, told};
 use super::notes::Notes;
 use crate::fault::Fault;
 use crate::text::fields::shown;
@@ -126,7 +126,7 @@ pub(super) fn read(text: &str) -> Result<MissionFile, Fault> {
             notes.say(format!("{count} {what} are not read"));
         }
     }
-    let home = take_off(mission.planned_home_position.as_deref());
+    let planned = take_off(mission.planned_home_position.as_deref());
     let on_ground = told.take_off.map(|[latitude, longitude]| TakeOff {
         latitude,
         longitude,
@@ -137,7 +137,7 @@ pub(super) fn read(text: &str) -> Result<MissionFile, Fault> {
         corners: polygon.polygon,
     });
     let mission = Mission {
-        take_off: home.or(on_ground),
+        take_off: planned.or(on_ground),
         speed: told
             .speed
             .or(mission.hover_speed.filter(|speed| *speed > 0.0)),
@@ -170,20 +170,13 @@ fn version(name: &str, found: Option<f64>, known: f64) -> Result<(), Fault> {
     }
 }
 
-/// Latitude, longitude and height above mean sea level; the place where nobody is stands for none.
-fn take_off(home: Option<&[Option<f64>]>) -> Option<TakeOff> {
-    let &[Some(latitude), Some(longitude), ref rest @ ..] = home? else {
+/// Latitude, longitude, height above mean sea level.
+fn take_off(position: Option<&[Option<f64>]>) -> Option<TakeOff> {
+    let &[Some(latitude), Some(longitude), ref rest @ ..] = position? else {
         return None;
     };
     let metres = rest.first().copied().flatten();
-    (latitude != 0.0 || longitude != 0.0).then_some(TakeOff {
-        latitude,
-        longitude,
-        elevation: metres.map(|metres| Height {
-            metres,
-            above: Above::Geoid,
-        }),
-    })
+    home(latitude, longitude, metres.unwrap_or(0.0))
 }
 
 /// Adds the commands of item `number`, from 1.

@@ -3,10 +3,10 @@
 //! autocontinue. The first one is home, if it is a waypoint with an absolute height (ArduPilot keeps home
 //! there); it counts in the indices.
 
-use fragscale_core::plan::{Above, Height, Mission, TakeOff};
+use fragscale_core::plan::{Above, Mission, TakeOff};
 
 use super::MissionFile;
-use super::mavlink::{Autopilot, Item, Place, above, told};
+use super::mavlink::{Autopilot, Item, Place, above, home, told};
 use super::notes::Notes;
 use crate::fault::Fault;
 use crate::text::fields::{Fields, shown};
@@ -61,15 +61,7 @@ pub(super) fn read(text: &str) -> Result<MissionFile, Fault> {
         && above(first.frame) == Some(Above::Geoid)
     {
         let [.., latitude, longitude, metres] = first.parameters;
-        if latitude != 0.0 || longitude != 0.0 {
-            let above = Above::Geoid;
-            let elevation = Some(Height { metres, above });
-            take_off = Some(TakeOff {
-                latitude,
-                longitude,
-                elevation,
-            });
-        }
+        take_off = home(latitude, longitude, metres);
         items.remove(0);
     }
     let told = told(&items, Autopilot::ArduPilot, &mut notes)?;

@@ -133,6 +133,19 @@ fn a_mission_by_hand() {
     }
 }
 
+/// An elevation that nobody said is not 0 when it is read.
+#[test]
+fn what_is_not_known_is_not_made_up() {
+    let mut unknown = mission();
+    if let Some(take_off) = &mut unknown.take_off {
+        take_off.elevation = None;
+    }
+    for format in [MissionFormat::QGroundControl, MissionFormat::Waypoints] {
+        let read = read_back(&unknown, format).mission;
+        assert_eq!(read.take_off, unknown.take_off, "{format:?}");
+    }
+}
+
 fn stops(above: Above, heights: std::ops::Range<f64>) -> impl Strategy<Value = Stop> {
     let aim = (
         prop_oneof![0.0..360.0, Just(0.0), Just(180.0), Just(359.999_99)],

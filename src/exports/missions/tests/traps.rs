@@ -69,9 +69,9 @@ fn copter_turns_by_a_command() {
     assert_eq!(lines[11][3..5], ["1000", "-90"]);
     assert_eq!(lines[7][3..7], ["2000", "0", "0", "1"]);
     assert!(notes(&mission(), MissionFormat::Waypoints).contains("PX4 does not take"));
-    // A short wait is said.
+    // A wait in which Copter cannot turn half around is said.
     let mut hasty = mission();
-    hasty.stops[0].settle = 0.5;
+    hasty.stops[0].settle = 2.9;
     assert!(notes(&hasty, MissionFormat::Waypoints).contains("ArduPilot waits for no gimbal"));
     assert!(!notes(&mission(), MissionFormat::Waypoints).contains("waits for no gimbal"));
 }
@@ -221,7 +221,10 @@ fn litchi_is_told_how_to_be_set() {
     let notes = notes(&mission(), MissionFormat::Litchi);
     assert!(notes.contains("set the heading mode to Custom"), "{notes}");
     assert!(notes.contains("set the finish action to RTH"), "{notes}");
-    assert!(notes.contains("has no fences"), "{notes}");
+    assert!(
+        notes.contains("the fences are not in the file, for Litchi's CSV has no place"),
+        "{notes}"
+    );
     let mut high = mission();
     high.stops[2].height.metres = 501.0;
     let expected = "stop 3 is 501 m high, and Litchi flies from -200 to 500; take off nearer to it";
@@ -348,6 +351,12 @@ fn what_dji_asks_for_is_asked_for() {
         payload: None,
     });
     assert!(notes(&mission, MissionFormat::DjiWpml).contains("drone 68/0 is not in DJI's tables"));
+    if let Some(photo) = &mut mission.stops[0].photo {
+        photo.name = Some("a/b <1>".to_owned());
+    }
+    assert!(notes(&mission, MissionFormat::DjiWpml).contains("are written as _"));
+    let waylines = unzipped(file(&mission, MissionFormat::DjiWpml), "wpmz/waylines.wpml");
+    assert!(waylines.contains("<wpml:fileSuffix>a_b__1_</"));
     let mut swapped = mavic_3e();
     swapped.drone_sub = 1;
     mission.drone = Some(swapped);

@@ -18,7 +18,7 @@ use zip::write::SimpleFileOptions;
 
 use fragscale_core::plan::{Above, DroneCodes, Finish, Mission};
 
-use self::stop::{Placed, actions, heading, point, position};
+use self::stop::{Placed, actions, heading, point, position, suffix};
 use super::heights::metres_above;
 use super::xml::Xml;
 use super::{decimal, degrees, metres};
@@ -75,6 +75,13 @@ pub(super) fn bytes(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec<u8
         .any(|stop| stop.gimbal_pitch.is_none() && stop.photo.is_some())
     {
         notes.push("photos without a gimbal's pitch are shot as the gimbal was left".to_owned());
+    }
+    let photos = mission.stops.iter().filter_map(|stop| stop.photo.as_ref());
+    let mut names = photos.filter_map(|photo| photo.name.as_deref());
+    if names.any(|name| suffix(Some(name)) != name) {
+        notes.push(
+            "signs of photos' names that files' names do not take are written as _".to_owned(),
+        );
     }
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     let failed = |error: &dyn std::fmt::Display| {

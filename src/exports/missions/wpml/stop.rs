@@ -115,7 +115,7 @@ fn gimbal(xml: &mut Xml, pitch: f64, position: u32) {
 
 /// What is added to the file's name: of a photo's name the letters and digits, and signs that no file
 /// system minds.
-fn suffix(name: Option<&str>) -> String {
+pub(super) fn suffix(name: Option<&str>) -> String {
     let name = name.unwrap_or_default();
     let is_good = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
     name.chars()
