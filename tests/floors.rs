@@ -34,7 +34,7 @@ const FLOORS: [(&str, i32); 18] = [
     ("geodesy", 1),
     ("georeference", 1),
     ("surface", 1),
-    ("plan", 2),
+    ("plan", 3),
     ("scale", 2),
     ("survey", 2),
     ("control", 2),

@@ -1,0 +1,184 @@
+//! How well photos cover an area: how much they share, and the widest gap that they leave.
+//!
+//! Counted on the terrain's pixels: a pixel is in a photo where its point lies inside the image. What hides behind
+//! other ground counts as seen, for photos look down on it; the forecasts say what they really show.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::PlannedPhoto;
+use super::terrain::Terrain;
+use crate::camera::Camera;
+use crate::survey::Polygon;
+
+/// How photos cover an area.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Cover {
+    /// The share of the area that some photo shows.
+    pub covered: f64,
+    /// The diameter of the largest circle inside the area that no photo shows, world units.
+    pub widest_gap: f64,
+    /// Where its middle lies.
+    pub gap_at: Option<DVec2>,
+    /// Of each photo: the share of what it shows that other photos show, too.
+    pub shared: Vec<f64>,
+}
+
+impl Cover {
+    /// Of photos of one camera.
+    pub fn of(photos: &[PlannedPhoto], camera: &Camera, area: &Polygon, terrain: &Terrain) -> Self {
+        let raster = terrain.raster();
+        let (columns, rows) = (raster.columns as usize, raster.rows as usize);
+        let seen: Vec<Vec<usize>> = photos
+            .par_iter()
+            .map(|photo| seen_by(photo, camera, terrain))
+            .collect();
+        let mut counts = vec![0_u32; columns * rows];
+        for place in seen.iter().flatten() {
+            counts[*place] += 1;
+        }
+        let shared = seen.iter().map(|seen| {
+            let others = seen.iter().filter(|place| counts[**place] > 1).count();
+            others as f64 / seen.len().max(1) as f64
+        });
+        let shared = shared.collect();
+        let inside: Vec<bool> = (0..columns * rows)
+            .into_par_iter()
+            .map(|place| {
+                let middle = DVec2::new((place % columns) as f64, (place / columns) as f64) + 0.5;
+                let is_ground = !terrain.heights()[place].is_nan();
+                is_ground && contains(area, raster.world_from_pixel(middle))
+            })
+            .collect();
+        let in_area = inside.iter().filter(|inside| **inside).count();
+        let is_gap: Vec<bool> = (inside.iter().zip(&counts))
+            .map(|(inside, count)| *inside && *count == 0)
+            .collect();
+        let in_gaps = is_gap.iter().filter(|gap| **gap).count();
+        let depths = squared_distances_to_edge(&is_gap, columns);
+        let deepest = (depths.iter().zip(0..)).max_by(|a, b| a.0.total_cmp(b.0));
+        let (deepest, place) = deepest.map_or((0.0, 0_usize), |(depth, place)| (*depth, place));
+        let middle = DVec2::new((place % columns) as f64, (place / columns) as f64) + 0.5;
+        Self {
+            covered: 1.0 - in_gaps as f64 / in_area.max(1) as f64,
+            widest_gap: 2.0 * deepest.sqrt() * raster.pixel,
+            gap_at: (deepest > 0.0).then(|| raster.world_from_pixel(middle)),
+            shared,
+        }
+    }
+}
+
+/// Whether a place lies inside a polygon (crossings of a ray to the east are odd).
+pub(super) fn contains(area: &Polygon, place: DVec2) -> bool {
+    let corners = area.corners();
+    let ends = corners.iter().zip(corners.iter().cycle().skip(1));
+    let crossed = ends.filter(|(a, b)| {
+        let over = (a.y > place.y) != (b.y > place.y);
+        over && place.x < a.x + (place.y - a.y) / (b.y - a.y) * (b.x - a.x)
+    });
+    crossed.count() % 2 == 1
+}
+
+/// The terrain's pixels that lie inside a photo.
+fn seen_by(photo: &PlannedPhoto, camera: &Camera, terrain: &Terrain) -> Vec<usize> {
+    let raster = terrain.raster();
+    let columns = raster.columns as usize;
+    let points = terrain.around(photo.target.truncate(), photo.reach);
+    let seen = points.filter(|point| {
+        let pixel = camera.pixel_undistorted(photo.pose.camera_from_world(*point));
+        pixel.is_some_and(|pixel| camera.contains(pixel))
+    });
+    let place = |point: DVec2| {
+        let at = raster.pixel_from_world(point);
+        at.y as usize * columns + at.x as usize
+    };
+    seen.map(|point| place(point.truncate())).collect()
+}
+
+/// Of each place that is in, the squared distance to the nearest that is not, in pixels; 0 for the others. What
+/// lies beyond the raster is in no gap. (Felzenszwalb & Huttenlocher 2012, along columns and then rows.)
+fn squared_distances_to_edge(is_in: &[bool], columns: usize) -> Vec<f64> {
+    let rows = is_in.len() / columns.max(1);
+    // The distance along the column first.
+    let mut distances = vec![0.0_f64; is_in.len()];
+    for column in 0..columns {
+        let place = |row: usize| row * columns + column;
+        let mut run = 0.0;
+        for row in 0..rows {
+            run = if is_in[place(row)] { run + 1.0 } else { 0.0 };
+            distances[place(row)] = run;
+        }
+        run = 0.0;
+        for row in (0..rows).rev() {
+            run = if is_in[place(row)] { run + 1.0 } else { 0.0 };
+            distances[place(row)] = distances[place(row)].min(run);
+        }
+    }
+    let nearest_in_row = |row: &[f64]| -> Vec<f64> {
+        let least = |column: usize| {
+            let mut least = row[column].powi(2);
+            // Nothing farther away along the row can be nearer.
+            for step in 1.. {
+                if (step as f64).powi(2) >= least {
+                    break;
+                }
+                let beside = [column.checked_sub(step), Some(column + step)];
+                for beside in beside {
+                    let down = beside.and_then(|beside| row.get(beside)).copied();
+                    least = least.min(down.unwrap_or(0.0).powi(2) + (step as f64).powi(2));
+                }
+            }
+            least
+        };
+        (0..row.len()).map(least).collect()
+    };
+    distances
+        .par_chunks(columns.max(1))
+        .flat_map_iter(nearest_in_row)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against every place with every other.
+    #[test]
+    fn distances_are_those_of_all_pairs() {
+        let columns = 9;
+        let is_in: Vec<bool> = (0..columns * 8).map(|i| (i * 31) % 11 > 1).collect();
+        let found = squared_distances_to_edge(&is_in, columns);
+        let at = |place: usize| [(place % columns) as f64, (place / columns) as f64];
+        for (place, own) in found.iter().enumerate() {
+            let [x, y] = at(place);
+            let outside = |x: f64, y: f64| x < 0.0 || y < 0.0 || x >= 9.0 || y >= 8.0;
+            let mut least = f64::MAX;
+            for dx in -9..=9 {
+                for dy in -8..=8 {
+                    let (there_x, there_y) = (x + f64::from(dx), y + f64::from(dy));
+                    let is_out = outside(there_x, there_y)
+                        || !is_in[there_y as usize * columns + there_x as usize];
+                    if is_out {
+                        least = least.min(f64::from(dx * dx + dy * dy));
+                    }
+                }
+            }
+            assert_eq!(*own, least, "{place}");
+        }
+    }
+
+    #[test]
+    fn inside_is_inside() {
+        let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 1.0), (0.0, 4.0)];
+        let area = Polygon::new(&corners.map(DVec2::from)).unwrap();
+        for (x, y, expected) in [
+            (1.0, 0.5, true),
+            (2.0, 2.0, false),
+            (3.9, 3.5, true),
+            (-1.0, 0.5, false),
+            (5.0, 0.5, false),
+        ] {
+            assert_eq!(contains(&area, DVec2::new(x, y)), expected, "{x} {y}");
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! The surface as a drone's pilot needs it: heights on a raster, the plane that the ground is near a place, and how
+//! near a point in the air is to it.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use crate::fault::Fault;
+use crate::jobs::Progress;
+use crate::surface::{MapRaster, Surface};
+
+/// The most pixels of the raster: 32 MB.
+const MOST: f64 = 4e6;
+/// The least share of a window that has heights, or it says nothing of the ground.
+const LEAST_COVERED: f64 = 0.3;
+
+/// Heights of a surface on a raster of the map.
+#[derive(Debug, Clone)]
+pub struct Terrain {
+    raster: MapRaster,
+    /// World z, row by row; NaN where there is no surface.
+    heights: Vec<f64>,
+    /// A height near all others, so that sums of differences lose nothing.
+    base: f64,
+}
+
+/// The plane that lies best through the surface around a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundPlane {
+    /// On it, at the place.
+    pub point: DVec3,
+    /// Its normal, upwards, of length 1.
+    pub normal: DVec3,
+}
+
+impl Terrain {
+    /// The surface inside a box of the map (least and greatest x and y). Its pixels are of side `pixel`, or larger
+    /// where they would be more than four million.
+    ///
+    /// # Errors
+    /// Where the surface cannot be triangulated, or the work was cancelled.
+    pub fn of(
+        surface: &Surface,
+        [min, max]: [DVec2; 2],
+        pixel: f64,
+        progress: &Progress,
+    ) -> Result<Self, Fault> {
+        let size = max - min;
+        let pixel = pixel.max((size.x * size.y / MOST).sqrt() * 1.01);
+        let raster = MapRaster::over([min, max], pixel, MOST as u64 * 2)?;
+        let heights = surface.heights_from_above(&raster, progress)?;
+        let known = heights.iter().copied().find(|height| !height.is_nan());
+        let base = known.unwrap_or(0.0);
+        Ok(Self {
+            raster,
+            heights,
+            base,
+        })
+    }
+
+    /// Its raster.
+    pub fn raster(&self) -> &MapRaster {
+        &self.raster
+    }
+
+    /// World z row by row; NaN where there is no surface.
+    pub fn heights(&self) -> &[f64] {
+        &self.heights
+    }
+
+    /// The middle of a pixel in the world, on the surface; `None` where there is none.
+    pub fn point(&self, column: u32, row: u32) -> Option<DVec3> {
+        let place = row as usize * self.raster.columns as usize + column as usize;
+        let height = self.heights.get(place).copied()?;
+        let middle = DVec2::new(f64::from(column), f64::from(row)) + 0.5;
+        let place = self.raster.world_from_pixel(middle);
+        (!height.is_nan()).then(|| place.extend(height))
+    }
+
+    /// The surface's height in the pixel of a place.
+    pub fn height(&self, place: DVec2) -> Option<f64> {
+        let [column, row] = self.pixel(place)?;
+        Some(self.point(column, row)?.z)
+    }
+
+    fn pixel(&self, place: DVec2) -> Option<[u32; 2]> {
+        let at = self.raster.pixel_from_world(place);
+        let size = DVec2::new(f64::from(self.raster.columns), f64::from(self.raster.rows));
+        let inside = at.cmpge(DVec2::ZERO).all() && at.cmplt(size).all();
+        // Within u32: it is inside.
+        inside.then_some([at.x as u32, at.y as u32])
+    }
+
+    /// The pixels with heights whose middles lie at most `reach` from a place along both axes.
+    pub(super) fn around(&self, place: DVec2, reach: f64) -> impl Iterator<Item = DVec3> {
+        let corner = |sign: f64| {
+            let at = self
+                .raster
+                .pixel_from_world(place + DVec2::new(sign, -sign) * reach);
+            [at.x, at.y]
+        };
+        let (from, to) = (corner(-1.0), corner(1.0));
+        // `as` saturates.
+        let range = |i: usize, count: u32| {
+            let first = (from[i] - 0.5).ceil().max(0.0) as u32;
+            first..((to[i] - 0.5).floor() + 1.0).clamp(0.0, f64::from(count)) as u32
+        };
+        let (columns, rows) = (range(0, self.raster.columns), range(1, self.raster.rows));
+        rows.flat_map(move |row| columns.clone().map(move |column| (column, row)))
+            .filter_map(|(column, row)| self.point(column, row))
+    }
+
+    /// The plane through the surface around a place, by least squares in z over a square window of this side: what
+    /// is smaller than the window is smoothed away. `None` where too little of the window has heights.
+    pub fn plane(&self, place: DVec2, side: f64) -> Option<GroundPlane> {
+        let (mut square, mut right) = (DMat3::ZERO, DVec3::ZERO);
+        let mut count = 0_usize;
+        for point in self.around(place, side / 2.0) {
+            // From the place, in windows: sums stay near 1.
+            let off = (point.truncate() - place) / side;
+            let row = DVec3::new(1.0, off.x, off.y);
+            square += DMat3::from_cols(row * row.x, row * row.y, row * row.z);
+            right += row * (point.z - self.base);
+            count += 1;
+        }
+        let whole = (side / self.raster.pixel).powi(2);
+        if (count as f64) < (LEAST_COVERED * whole).max(3.0)
+            || square.determinant().abs() < 1e-9 * (count as f64).powi(3)
+        {
+            return None;
+        }
+        let [z, east, north] = (square.inverse() * right).to_array();
+        Some(GroundPlane {
+            point: place.extend(z + self.base),
+            normal: DVec3::new(-east / side, -north / side, 1.0).normalize(),
+        })
+    }
+
+    /// Whether a point in the air is nearer than `clearance` to the surface, or below it.
+    pub fn is_near(&self, point: DVec3, clearance: f64) -> bool {
+        let below = self.height(point.truncate());
+        below.is_some_and(|z| point.z < z + clearance)
+            || self
+                .around(point.truncate(), clearance)
+                .any(|of_surface| of_surface.distance(point) < clearance)
+    }
+
+    /// The highest of the surface within `reach` of the line between two places; `None` where there is none.
+    pub fn highest_along(&self, from: DVec2, to: DVec2, reach: f64) -> Option<f64> {
+        self.steps(from, to, reach)
+            .flat_map(|place| self.around(place, reach))
+            .map(|point| point.z)
+            .reduce(f64::max)
+    }
+
+    /// Whether a straight leg is nearer than `clearance` to the surface anywhere.
+    pub fn is_leg_near(&self, from: DVec3, to: DVec3, clearance: f64) -> bool {
+        let count = (from.distance(to) / self.step(clearance)).ceil().max(1.0);
+        let at = |step: f64| from.lerp(to, step / count);
+        // `as` saturates; legs are kilometres at most.
+        (0..=count as u64).any(|step| self.is_near(at(step as f64), clearance))
+    }
+
+    /// How far apart a leg is looked at: no spike of a pixel slips between.
+    fn step(&self, clearance: f64) -> f64 {
+        (clearance / 2.0).max(self.raster.pixel)
+    }
+
+    fn steps(&self, from: DVec2, to: DVec2, reach: f64) -> impl Iterator<Item = DVec2> {
+        let count = (from.distance(to) / self.step(reach)).ceil().max(1.0);
+        (0..=count as u64).map(move |step| from.lerp(to, step as f64 / count))
+    }
+}

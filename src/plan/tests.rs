@@ -1,0 +1,223 @@
+//! Plans over surfaces whose answers are known.
+
+use super::*;
+use crate::camera::Distortion;
+use crate::geodesy::{Crs, Geographic};
+use crate::surface::Cloud;
+
+fn camera() -> Camera {
+    Camera {
+        name: String::new(),
+        width: 600,
+        height: 400,
+        fx: 500.0,
+        fy: 500.0,
+        cx: 310.0,
+        cy: 195.0,
+        skew: 0.0,
+        distortion: Distortion::None,
+    }
+}
+
+fn surface(height: impl Fn(DVec2) -> f64) -> Surface {
+    let points = (0..301 * 301).map(|i| {
+        let place = DVec2::new(f64::from(i % 301), f64::from(i / 301)) - 150.0;
+        (place + DVec2::new(500_000.0, 5_000_000.0)).extend(height(place))
+    });
+    let cloud = Cloud {
+        points: points.collect(),
+        ..Cloud::default()
+    };
+    Surface::new(cloud).unwrap()
+}
+
+fn square(half: f64) -> Polygon {
+    let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
+    let corners = corners.map(|corner| DVec2::from(corner) + DVec2::new(500_000.0, 5_000_000.0));
+    Polygon::new(&corners).unwrap()
+}
+
+fn wish(pattern: Pattern) -> Wish {
+    Wish {
+        pattern,
+        size: Size::Scale {
+            pixels: 25.0,
+            within: Some(0.5),
+        },
+        overlap: 0.0,
+        gap: 0.1,
+        tilt: 90.0,
+        off_normal: 5.0,
+        gimbal: [-90.0, 20.0],
+        clearance: 5.0,
+    }
+}
+
+fn plan(surface: &Surface, half: f64, wish: Wish) -> Plan {
+    Plan::new(surface, &camera(), square(half), wish, &Progress::default()).unwrap()
+}
+
+/// On a plane that falls by 3 in 4 to the north-east every photo looks along the one normal, from the distance
+/// f / s = 20, has the wished scale everywhere, and they lie edge to edge.
+#[test]
+fn an_inclined_plane_is_photographed_squarely() {
+    let down = DVec2::new(1.0, 1.0).normalize();
+    let surface = surface(|place| 300.0 - 0.75 * place.dot(down));
+    let plan = plan(&surface, 40.0, wish(Pattern::Slope));
+    assert!(plan.refused.is_empty());
+    let normal = (down * 0.6).extend(0.8);
+    for (number, photo) in plan.photos.iter().enumerate() {
+        let axis = photo.pose.rotation * DVec3::Z;
+        assert!(axis.distance(-normal) < 1e-6, "{axis}");
+        assert!((photo.tilt - 53.130_102).abs() < 1e-4 && (photo.pan - 225.0).abs() < 1e-4);
+        assert!((photo.distance - 20.0).abs() < 1e-4, "{}", photo.distance);
+        let forecast = photo.forecast.unwrap();
+        assert!((forecast.least - 25.0).abs() < 1e-4 && (forecast.greatest - 25.0).abs() < 1e-4);
+        assert_eq!(forecast.covered, 1.0);
+        assert_eq!(plan.troubles(number), Vec::<String>::new());
+    }
+    // Footprints are 24 x 16: strips of 24 across the fall over a square of diagonal 113.1, and 16 down along the
+    // ground, which is 1.25 times as long as its map.
+    let strips = (113.137_f64 / 24.0).ceil() as usize;
+    assert!(plan.photos.len() >= 6400 * 5 / 4 / (24 * 16));
+    assert!(plan.photos.len() <= strips * (113.137_f64 * 1.25 / 16.0).ceil() as usize);
+    assert!(plan.cover.covered > 0.995, "{:?}", plan.cover.covered);
+    assert!(plan.cover.widest_gap < 1.6, "{}", plan.cover.widest_gap);
+    let shared = plan.cover.shared.iter().copied().fold(0.0, f64::max);
+    assert!(shared < 0.12, "{shared}");
+}
+
+/// A ridge: both sides are photographed squarely, and no leg comes near the ground.
+#[test]
+fn a_ridge_is_photographed_on_both_sides_and_flown_over() {
+    let surface = surface(|place| (30.0 - 0.8 * place.x.abs()).max(0.0));
+    let plan = plan(&surface, 36.0, wish(Pattern::Slope));
+    let looks = |pan: f64| {
+        plan.photos
+            .iter()
+            .filter(move |photo| (photo.pan - pan).abs() < 1.0 && photo.tilt < 60.0)
+    };
+    // Uphill is east on the western side.
+    assert!(looks(90.0).count() > 4 && looks(270.0).count() > 4);
+    let take_off = DVec3::new(500_000.0 - 100.0, 5_000_000.0, 0.0);
+    let way = Way::through(&plan, take_off);
+    assert_eq!(way.photos(), plan.photos.len());
+    assert!(way.safe_height >= 5.0);
+    // Against the ridge itself, in steps of a decimetre.
+    let ground = |place: DVec3| (30.0 - 0.8 * (place.x - 500_000.0).abs()).max(0.0);
+    for leg in way.points.windows(2) {
+        let (from, to) = (leg[0].place, leg[1].place);
+        let count = (from.distance(to) * 10.0).ceil();
+        for step in 0..=count as u32 {
+            let place = from.lerp(to, f64::from(step) / count);
+            // The distance to a flank of slope 0.8.
+            let over = (place.z - ground(place)) / 0.8_f64.hypot(1.0);
+            assert!(over > 4.6, "{over} at {place}");
+        }
+    }
+}
+
+/// The gimbal of most drones does not look up a wall; those photos are named, not planned.
+#[test]
+fn what_the_gimbal_cannot_do_is_refused() {
+    let surface = surface(|place| (place.x * 1.5).clamp(-30.0, 30.0));
+    let mut wish = wish(Pattern::Slope);
+    wish.gimbal = [-90.0, -60.0];
+    let plan = plan(&surface, 15.0, wish);
+    assert!(!plan.refused.is_empty());
+    for refused in &plan.refused {
+        assert!(refused.why.contains("gimbal"), "{}", refused.why);
+    }
+}
+
+/// The paper's rows: one height, one tilt, every second row flown the other way.
+#[test]
+fn rows_have_one_height() {
+    let surface = surface(|place| 0.1 * place.x);
+    let mut wish = wish(Pattern::Paper);
+    wish.tilt = 83.0;
+    wish.size = Size::Distance(20.0);
+    let plan = plan(&surface, 40.0, wish);
+    let height = plan.photos[0].pose.center.z;
+    for photo in &plan.photos {
+        assert!((photo.pose.center.z - height).abs() < 1e-9);
+        assert!((photo.tilt - 83.0).abs() < 1e-12);
+    }
+    let pans: std::collections::BTreeSet<i64> = plan
+        .photos
+        .iter()
+        .map(|photo| photo.pan.round() as i64)
+        .collect();
+    assert_eq!(pans.len(), 2);
+    // Above the highest of the area, 4, by the distance along the axis.
+    let expected = 4.0 + 20.0 * 83.0_f64.to_radians().sin();
+    assert!((height - expected).abs() < 0.3, "{height} {expected}");
+}
+
+#[test]
+fn no_wish_is_refused() {
+    let surface = surface(|_| 0.0);
+    let refused = |change: fn(&mut Wish)| {
+        let mut wish = wish(Pattern::Slope);
+        change(&mut wish);
+        let made = Plan::new(
+            &surface,
+            &camera(),
+            square(20.0),
+            wish,
+            &Progress::default(),
+        );
+        made.unwrap_err().what
+    };
+    assert!(refused(|wish| wish.overlap = 1.0).contains("overlap"));
+    assert!(refused(|wish| wish.tilt = 0.0).contains("tilt"));
+    assert!(refused(|wish| wish.size = Size::Distance(f64::NAN)).contains("positive"));
+    let tiny = Size::Scale {
+        pixels: 1e5,
+        within: None,
+    };
+    let mut wish = wish(Pattern::Slope);
+    wish.size = tiny;
+    let made = Plan::new(
+        &surface,
+        &camera(),
+        square(40.0),
+        wish,
+        &Progress::default(),
+    );
+    assert!(made.unwrap_err().what.contains("more than"));
+}
+
+/// In UTM at the zone's edge north of the grid is not north: headings are from true north, heights from take-off.
+#[test]
+fn a_mission_is_told_in_degrees() {
+    let surface = surface(|_| 100.0);
+    let plan = plan(&surface, 20.0, wish(Pattern::Slope));
+    let way = Way::through(&plan, DVec3::new(500_000.0, 5_000_000.0 - 60.0, 97.0));
+    let crs = Crs::understand("EPSG:32632").unwrap();
+    let told = Told {
+        name: "pile".to_owned(),
+        speed: 4.0,
+        settle: 1.0,
+    };
+    let mission = mission(&plan, &way, &crs, &told).unwrap();
+    assert_eq!(mission.stops.len(), way.points.len());
+    for (stop, point) in mission.stops.iter().zip(&way.points) {
+        // In the middle of zone 32: 9 degrees east, and 45.15 north by pyproj.
+        assert!((stop.longitude - 9.0).abs() < 1e-3 && (stop.latitude - 45.1536).abs() < 1e-3);
+        assert!((stop.height.metres - (point.place.z - 97.0)).abs() < 1e-9);
+        let photo = &plan.photos[point.photo.unwrap()];
+        assert!((stop.gimbal_pitch.unwrap() + photo.tilt).abs() < 1e-12);
+        // On the zone's middle meridian, to its convergence 20 m beside.
+        let off = (stop.heading.unwrap() - photo.pan + 180.0).rem_euclid(360.0) - 180.0;
+        assert!(off.abs() < 1e-3, "{off}");
+    }
+    // 3 degrees off the middle meridian at 50 degrees north: convergence 3 sin 50 = 2.298 degrees.
+    let east = Geographic {
+        longitude: 12.0,
+        latitude: 50.0,
+        height: 0.0,
+    };
+    let north = told::heading(0.0, &crs, east).unwrap();
+    assert!((north - 2.298).abs() < 0.01, "{north}");
+}

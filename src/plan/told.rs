@@ -1,0 +1,79 @@
+//! A way as the mission that a drone is told: degrees, headings from true north, metres above the take-off.
+//!
+//! Heights are relative to the take-off, because that needs no datum: the drone measures them with its barometer
+//! from where it stood. So the take-off has to be where it was planned; a metre too high there is one everywhere.
+
+use glam::{DVec2, DVec3};
+
+use super::{Finish, Height, Mission, PhotoOf, Plan, Stop, TakeOff, Way};
+use crate::fault::Fault;
+use crate::geodesy::{Crs, Geographic};
+
+/// What the mission is told beside the way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Told {
+    /// The mission's name.
+    pub name: String,
+    /// Metres a second between stops.
+    pub speed: f64,
+    /// Seconds between the gimbal's arrival and the shot.
+    pub settle: f64,
+}
+
+/// The mission of a way over a surface in a coordinate system.
+///
+/// # Errors
+/// Where a place of the way lies where the coordinate system does not hold.
+pub fn mission(plan: &Plan, way: &Way, crs: &Crs, told: &Told) -> Result<Mission, Fault> {
+    let off = || {
+        let what = format!("the plan lies where {} does not hold", crs.name());
+        Fault::new(what, "check the coordinate system of the surface")
+    };
+    let geographic = |place: DVec3| crs.to_geographic(place).ok_or_else(off);
+    let take_off = geographic(way.take_off)?;
+    let unit = crs.vertical_unit_metres();
+    let above = |z: f64| (z - way.take_off.z) * unit;
+    let mut stops = Vec::with_capacity(way.points.len());
+    for point in &way.points {
+        let place = geographic(point.place)?;
+        let photo = point.photo.and_then(|photo| plan.photos.get(photo));
+        let heading = photo.map(|photo| heading(photo.pan, crs, place).ok_or_else(off));
+        stops.push(Stop {
+            latitude: place.latitude,
+            longitude: place.longitude,
+            height: Height::above_take_off(above(point.place.z)),
+            heading: heading.transpose()?,
+            gimbal_pitch: photo.map(|photo| -photo.tilt),
+            settle: photo.map_or(0.0, |_| told.settle),
+            photo: photo.map(|photo| PhotoOf {
+                name: Some(photo.name.clone()),
+            }),
+        });
+    }
+    let mission = Mission {
+        name: told.name.clone(),
+        drone: None,
+        take_off: Some(TakeOff {
+            latitude: take_off.latitude,
+            longitude: take_off.longitude,
+            elevation: None,
+        }),
+        speed: Some(told.speed),
+        safe_height: Some(above(way.safe_height)),
+        finish: Finish::ReturnHome,
+        stops,
+        fences: Vec::new(),
+    };
+    mission.check()?;
+    Ok(mission)
+}
+
+/// A direction of the grid, degrees clockwise from its +y, as degrees from true north.
+pub(super) fn heading(pan: f64, crs: &Crs, place: Geographic) -> Option<f64> {
+    let (sine, cosine) = pan.to_radians().sin_cos();
+    let on_grid = DVec2::new(sine, cosine).extend(0.0);
+    let enu = crs.grid_from_enu(place)?.transpose() * on_grid;
+    let heading = enu.x.atan2(enu.y).to_degrees().rem_euclid(360.0);
+    // A hair under 0 becomes 360 in rounding.
+    Some(if heading >= 360.0 { 0.0 } else { heading })
+}

@@ -1,0 +1,155 @@
+//! In which order photos are taken, and which climbs keep the drone off the ground between them.
+//!
+//! The way begins and ends at the take-off. Photos are in the order in which they were laid out, made shorter by
+//! 2-opt (Croes 1958) until no two legs are better swapped: deterministic, and a lawn-mower's rows stay rows, for
+//! they are short already. A leg that comes too near to the ground goes up first, over, and down: straight up and
+//! down is free, for the ground has one height at each place.
+
+use glam::DVec3;
+
+use super::Plan;
+
+/// A place that the drone flies to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WayPoint {
+    /// In the world.
+    pub place: DVec3,
+    /// The photo that is taken there, by its place in the plan.
+    pub photo: Option<usize>,
+}
+
+/// The way through all photos.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Way {
+    /// Where the drone takes off and lands, on the ground.
+    pub take_off: DVec3,
+    /// The height in the world at which it begins and ends: above all on its first and last leg.
+    pub safe_height: f64,
+    /// In order; take-off and landing are not among them.
+    pub points: Vec<WayPoint>,
+    /// The length of all of it, world units, with climb and descent at take-off.
+    pub length: f64,
+}
+
+/// A gain of less is rounding.
+const GAIN: f64 = 1e-9;
+/// Rounds of 2-opt; each goes over all pairs.
+const ROUNDS: usize = 40;
+
+impl Way {
+    /// Through the photos of a plan, from a place on the ground and back.
+    pub fn through(plan: &Plan, take_off: DVec3) -> Self {
+        let places: Vec<DVec3> = plan.photos.iter().map(|photo| photo.pose.center).collect();
+        let clearance = plan.wish.clearance;
+        let over = |from: DVec3, to: DVec3| {
+            let highest = (plan.terrain)
+                .highest_along(from.truncate(), to.truncate(), clearance)
+                .unwrap_or(f64::MIN);
+            (highest + clearance).max(from.z).max(to.z)
+        };
+        let order = order(take_off, &places);
+        let ends = [order.first(), order.last()].map(|end| end.map(|photo| places[*photo]));
+        let safe_height = (ends.into_iter().flatten())
+            .map(|end| over(take_off, end))
+            .fold(take_off.z + clearance, f64::max);
+        let mut points: Vec<WayPoint> = Vec::new();
+        for photo in order {
+            let to = places[photo];
+            if let Some(last) = points.last()
+                && plan.terrain.is_leg_near(last.place, to, clearance)
+            {
+                let height = over(last.place, to);
+                for under in [last.place, to] {
+                    let place = under.truncate().extend(height);
+                    if place != under {
+                        points.push(WayPoint { place, photo: None });
+                    }
+                }
+            }
+            let photo = Some(photo);
+            points.push(WayPoint { place: to, photo });
+        }
+        let up = take_off.truncate().extend(safe_height);
+        let above =
+            |end: Option<&WayPoint>| end.map(|end| end.place.truncate().extend(safe_height));
+        let all: Vec<DVec3> = [take_off, up]
+            .into_iter()
+            .chain(above(points.first()))
+            .chain(points.iter().map(|point| point.place))
+            .chain(above(points.last()))
+            .chain([up, take_off])
+            .collect();
+        Self {
+            take_off,
+            safe_height,
+            points,
+            length: all.windows(2).map(|leg| leg[0].distance(leg[1])).sum(),
+        }
+    }
+
+    /// How many photos are taken.
+    pub fn photos(&self) -> usize {
+        self.points
+            .iter()
+            .filter(|point| point.photo.is_some())
+            .count()
+    }
+}
+
+/// The order of places on a short way that begins and ends at `from`.
+fn order(from: DVec3, places: &[DVec3]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..places.len()).collect();
+    let at = |order: &[usize], place: usize| {
+        let before_all = place == 0 || place > order.len();
+        if before_all {
+            from
+        } else {
+            places[order[place - 1]]
+        }
+    };
+    for _ in 0..ROUNDS {
+        let mut is_better = false;
+        // Legs from `first` to `first + 1` and from `last` to `last + 1`, take-off being 0 and behind the last.
+        for first in 0..order.len() {
+            for last in first + 1..=order.len() {
+                let (a, b) = (at(&order, first), at(&order, first + 1));
+                let (c, d) = (at(&order, last), at(&order, last + 1));
+                let gain = a.distance(b) + c.distance(d) - a.distance(c) - b.distance(d);
+                if gain > GAIN * (1.0 + a.distance(b)) {
+                    order[first..last].reverse();
+                    is_better = true;
+                }
+            }
+        }
+        if !is_better {
+            break;
+        }
+    }
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A circle in a shuffled order is flown around, whichever way.
+    #[test]
+    fn a_ring_is_flown_around() {
+        let at = |i: usize| {
+            let angle = (i * 7 % 24) as f64 / 24.0 * std::f64::consts::TAU;
+            DVec3::new(angle.cos(), angle.sin(), 1.0)
+        };
+        let places: Vec<DVec3> = (0..24).map(at).collect();
+        let order = order(DVec3::new(1.2, 0.0, 1.0), &places);
+        let way: f64 = order
+            .windows(2)
+            .map(|leg| places[leg[0]].distance(places[leg[1]]))
+            .sum();
+        // 23 of the 24 sides of the polygon.
+        let side = 2.0 * (std::f64::consts::PI / 24.0).sin();
+        assert!((way / (23.0 * side) - 1.0).abs() < 1e-9, "{way}");
+        let mut sorted = order.clone();
+        sorted.sort_unstable();
+        assert_eq!(sorted, (0..24).collect::<Vec<_>>());
+    }
+}
