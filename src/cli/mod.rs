@@ -42,7 +42,7 @@ use models::{georeference, reconstruct};
 use of_photos::{map, rectify, scale_map};
 use on_surface::{profile, volume};
 use outputs::OutputArguments;
-use planning::mission;
+use planning::{mission, plan};
 
 use crate::exports;
 use crate::fault::one_line;
@@ -99,6 +99,8 @@ enum Command {
     Profile(profile::ProfileArguments),
     /// Measure area and volume inside a polygon, over a level, its rim or another surface.
     Volume(volume::VolumeArguments),
+    /// Plan a flight over the surface, so that each photo has the wished scale; write its mission.
+    Plan(Box<plan::PlanArguments>),
     /// Say what a drone's mission does, or write it for another ground station.
     Mission(mission::MissionArguments),
     /// Say what a file or folder holds.
@@ -253,6 +255,7 @@ pub fn run() -> ExitCode {
         Command::Volume(arguments) => {
             Box::new(move |progress| volume::volume(&arguments, progress))
         }
+        Command::Plan(arguments) => Box::new(move |progress| plan::plan(&arguments, progress)),
         Command::Info(arguments) => Box::new(move |progress| info(&arguments, progress)),
         Command::Reconstruct(arguments) => {
             Box::new(move |progress| reconstruct::run(&arguments, progress))

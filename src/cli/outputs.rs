@@ -8,9 +8,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::ScalesFormat;
+use crate::exports::write_mission;
 use crate::fault::Fault;
 use crate::files::{self, Inputs, Kind};
 use crate::formats::FileError;
+use crate::plan::Mission;
 
 /// `--force`.
 #[derive(Debug, Clone, Copy, Args)]
@@ -192,6 +194,17 @@ impl<'a> Outputs<'a> {
     pub(super) fn write(&self, path: &Path, bytes: &[u8], kind: Kind) -> Result<(), String> {
         files::write(path, bytes, kind, &self.inputs, self.force)
             .map_err(|fault| FileError::new(path, fault).to_string())
+    }
+
+    /// Writes a mission for the ground station that the file's ending names. What the pilot must know, one sentence
+    /// each.
+    pub(super) fn write_mission(
+        &self,
+        mission: &Mission,
+        path: &Path,
+    ) -> Result<Vec<String>, String> {
+        let written = write_mission(mission, path, &self.inputs, self.force);
+        Ok(written.map_err(|error| error.to_string())?.notes)
     }
 
     /// Writes the answer where it goes; what is left is for standard output.

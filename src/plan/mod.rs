@@ -105,6 +105,8 @@ pub struct Plan {
     pub terrain: Terrain,
     /// What was asked for.
     pub wish: Wish,
+    /// A photo's width and height on a plane across its axis, from the distance that was asked for.
+    pub footprint: DVec2,
 }
 
 impl Plan {
@@ -123,7 +125,7 @@ impl Plan {
         let distance = distance(camera, &wish)?;
         is_not_too_many(camera, &area, &wish, distance)?;
         progress.stage("looking at the ground");
-        let terrain = terrain_of(surface, camera, &area, distance, progress)?;
+        let terrain = terrain_of(surface, camera, &area, (&wish, distance), progress)?;
         let ground = Ground {
             camera,
             area: &area,
@@ -170,8 +172,14 @@ impl Plan {
             area,
             cover,
             terrain,
+            footprint: footprint(camera, distance),
             wish,
         })
+    }
+
+    /// Whether the photos leave a wider gap than was asked for.
+    pub fn has_wide_gap(&self) -> bool {
+        self.cover.widest_gap > self.wish.gap * self.footprint.min_element()
     }
 
     /// What of the wish a photo does not hold, one clause each.
@@ -268,12 +276,12 @@ fn footprint(camera: &Camera, distance: f64) -> DVec2 {
     size / DVec2::new(camera.fx, camera.fy) * distance
 }
 
-/// The terrain under an area and around it, as far as photos of it may look.
+/// The terrain under an area and around it, as far as photos of it may look, and as far as the take-off.
 fn terrain_of(
     surface: &Surface,
     camera: &Camera,
     area: &Polygon,
-    distance: f64,
+    (wish, distance): (&Wish, f64),
     progress: &Progress,
 ) -> Result<Terrain, Fault> {
     let footprint = footprint(camera, distance);
@@ -284,9 +292,16 @@ fn terrain_of(
             (min.min(*corner), max.max(*corner))
         });
     let around = footprint.max_element() + distance;
+    let (mut min, mut max) = (min - around, max + around);
+    if let Some(place) = wish.take_off {
+        min = min.min(place - wish.clearance);
+        max = max.max(place + wish.clearance);
+    }
     let bounds = surface.bounds();
-    let min = (min - around).max(bounds.min.truncate());
-    let max = (max + around).min(bounds.max.truncate());
+    let (min, max) = (
+        min.max(bounds.min.truncate()),
+        max.min(bounds.max.truncate()),
+    );
     if !min.cmplt(max).all() {
         let what = "the area lies off the surface";
         return Err(Fault::new(

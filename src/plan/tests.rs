@@ -50,6 +50,7 @@ fn wish(pattern: Pattern) -> Wish {
         off_normal: 5.0,
         gimbal: [-90.0, 20.0],
         clearance: 5.0,
+        take_off: None,
     }
 }
 
@@ -91,7 +92,10 @@ fn an_inclined_plane_is_photographed_squarely() {
 #[test]
 fn a_ridge_is_photographed_on_both_sides_and_flown_over() {
     let surface = surface(|place| (30.0 - 0.8 * place.x.abs()).max(0.0));
-    let plan = plan(&surface, 36.0, wish(Pattern::Slope));
+    let take_off = DVec3::new(500_000.0 - 100.0, 5_000_000.0, 0.0);
+    let mut wish = wish(Pattern::Slope);
+    wish.take_off = Some(take_off.truncate());
+    let plan = plan(&surface, 36.0, wish);
     let looks = |pan: f64| {
         plan.photos
             .iter()
@@ -99,7 +103,6 @@ fn a_ridge_is_photographed_on_both_sides_and_flown_over() {
     };
     // Uphill is east on the western side.
     assert!(looks(90.0).count() > 4 && looks(270.0).count() > 4);
-    let take_off = DVec3::new(500_000.0 - 100.0, 5_000_000.0, 0.0);
     let way = Way::through(&plan, take_off);
     assert_eq!(way.photos(), plan.photos.len());
     assert!(way.safe_height >= 5.0);

@@ -1,5 +1,7 @@
 //! What is wished of a plan.
 
+use glam::DVec2;
+
 use super::Pattern;
 
 /// What is wished of a plan. Lengths are in world units, angles in degrees.
@@ -22,6 +24,8 @@ pub struct Wish {
     pub gimbal: [f64; 2],
     /// How near the drone may come to the surface.
     pub clearance: f64,
+    /// Where the drone takes off and lands, if that is known: the ground is looked at as far as there.
+    pub take_off: Option<DVec2>,
 }
 
 /// How large the rock is to be in the photos.

@@ -23,7 +23,7 @@ pub(in crate::cli) fn places(text: &str) -> Result<(Vec<DVec2>, Vec<String>), St
 }
 
 /// One place, `x,y`.
-pub(super) fn place(text: &str) -> Result<DVec2, String> {
+pub(in crate::cli) fn place(text: &str) -> Result<DVec2, String> {
     match typed_places(text).map_err(|fault| fault.to_string())?[..] {
         [place] => Ok(place),
         _ => Err("give one place: x,y".to_owned()),

@@ -1,3 +1,4 @@
 //! The commands about flights that are to be flown.
 
 pub(super) mod mission;
+pub(super) mod plan;

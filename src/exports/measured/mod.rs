@@ -60,7 +60,7 @@ fn coordinate(number: f64) -> String {
 }
 
 /// A share in percent. What is not all of it is not called 100 %.
-fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match share < 1.0 && percent > 99.94 {
         true if share < 1.0 - 1e-9 => "almost 100 %".to_owned(),
@@ -70,7 +70,7 @@ fn percent(share: f64) -> String {
 }
 
 /// Rows of a name and what is said of it, aligned.
-fn rows_of_text(rows: &[(&str, String)]) -> String {
+pub(crate) fn rows_of_text(rows: &[(&str, String)]) -> String {
     let width = rows.iter().map(|(name, _)| name.chars().count());
     let width = width.max().unwrap_or(0);
     let lines = rows
@@ -80,7 +80,7 @@ fn rows_of_text(rows: &[(&str, String)]) -> String {
 }
 
 /// CSV of a header and records.
-fn csv_of(records: impl IntoIterator<Item = Vec<String>>) -> Result<String, csv::Error> {
+pub(crate) fn csv_of(records: impl IntoIterator<Item = Vec<String>>) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for record in records {
         writer.write_record(record)?;

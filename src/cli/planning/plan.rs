@@ -1,0 +1,280 @@
+//! `fragscale plan`: where to fly, so that each photo has the wished scale on this surface.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::builder::PossibleValue;
+use clap::{Args, ValueEnum};
+use glam::DVec2;
+
+use crate::camera::Camera;
+use crate::cli::Answer;
+use crate::cli::flight_arguments::FlightArguments;
+use crate::cli::on_surface::places::{place, places};
+use crate::cli::outputs::NamedAnswerArguments;
+use crate::exports::{self, MissionFormat, PlanReport};
+use crate::fault::Fault;
+use crate::files::Kind;
+use crate::formats::{FileError, read_camera};
+use crate::geodesy::Crs;
+use crate::jobs::Progress;
+use crate::opening::Opened;
+use crate::plan::{self, Pattern, Plan, Size, Told, Way, Wish};
+use crate::survey::Polygon;
+use crate::units::LengthUnit;
+
+/// How far scales may be off where nobody says it: a tenth of the wished one, as a scale of 20 ± 2.
+const WITHIN: f64 = 0.1;
+/// Overlap of the survey where nobody says it.
+const SURVEY_OVERLAP: f64 = 0.7;
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct PlanArguments {
+    #[command(flatten)]
+    flight: FlightArguments,
+    /// The scale that each photo is to have, as '20 px/cm'.
+    #[arg(long, value_name = "N px/UNIT", required_unless_present = "height")]
+    scale: Option<PixelScale>,
+    /// How far it may be off anywhere in a photo, as '2 px/cm'; else a tenth of it.
+    #[arg(long, value_name = "N px/UNIT", requires = "scale")]
+    within: Option<PixelScale>,
+    /// Fly so high instead, in the world's unit: above the highest of the area, of the slope pattern from the
+    /// ground.
+    #[arg(long, value_name = "LENGTH", conflicts_with = "scale")]
+    height: Option<f64>,
+    /// How the photos lie.
+    #[arg(long, value_enum, default_value_t)]
+    pattern: PhotoPattern,
+    /// How much a photo shares with the next, in percent of its width and height; else 0, of a survey 70.
+    #[arg(long, value_name = "PERCENT")]
+    overlap: Option<f64>,
+    /// The camera's axis below the horizon, of the paper's pattern, degrees.
+    #[arg(long, value_name = "DEGREES", default_value_t = 83.0)]
+    tilt: f64,
+    /// The corners of what is to be photographed, in the world, or a file with one a line; without it the pile
+    /// that stands out of its floor.
+    #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
+    area: Option<String>,
+    /// The calibration of the camera that is to fly; without it the first one of the flight.
+    #[arg(long, value_name = "FILE")]
+    camera: Option<PathBuf>,
+    /// The gimbal's lowest and highest pitch in degrees, -90 straight down.
+    #[arg(long, value_name = "LOW,HIGH", value_parser = place, default_value = "-90,0", allow_hyphen_values = true)]
+    gimbal: DVec2,
+    /// The drone stays so far from the surface, in the world's unit.
+    #[arg(long, value_name = "LENGTH", default_value_t = 5.0)]
+    clearance: f64,
+    /// Where the drone takes off and lands, in the world: on the surface, and heights of a mission count from there.
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
+    take_off: Option<DVec2>,
+    /// Metres a second between photos.
+    #[arg(long, value_name = "M/S", default_value_t = 4.0)]
+    speed: f64,
+    /// Seconds that the drone waits at a photo, for the gimbal to settle.
+    #[arg(long, value_name = "SECONDS", default_value_t = 2.0)]
+    settle: f64,
+    /// Write the mission to this file, for the ground station that its ending names: .kmz (DJI), .plan
+    /// (QGroundControl), .waypoints (Mission Planner), .csv (Litchi), .kml or .geojson. May be given several times.
+    #[arg(long, value_name = "FILE", requires = "take_off")]
+    mission: Vec<PathBuf>,
+    #[command(flatten)]
+    answer: NamedAnswerArguments,
+}
+
+/// A pattern as a word of the command line.
+#[derive(Debug, Clone, Copy, Default)]
+struct PhotoPattern(Pattern);
+
+impl ValueEnum for PhotoPattern {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [PhotoPattern; 3] = [
+            PhotoPattern(Pattern::Slope),
+            PhotoPattern(Pattern::Paper),
+            PhotoPattern(Pattern::Survey),
+        ];
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.0.as_str()).help(self.0.explained()))
+    }
+}
+
+/// Pixels per a unit of length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct PixelScale {
+    pixels: f64,
+    unit: LengthUnit,
+}
+
+impl FromStr for PixelScale {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || "give pixels per a unit, as '20 px/cm'".to_owned();
+        let (number, unit) = text.split_once('/').ok_or_else(wrong)?;
+        let number = number.trim().trim_end_matches("px").trim();
+        let pixels: f64 = number.parse().map_err(|_| wrong())?;
+        let unit = unit.trim().parse().map_err(|_| wrong())?;
+        let is_scale = pixels > 0.0 && pixels.is_finite();
+        is_scale.then_some(Self { pixels, unit }).ok_or_else(wrong)
+    }
+}
+
+impl PixelScale {
+    /// Pixels per this unit.
+    fn per(self, unit: LengthUnit) -> f64 {
+        self.pixels * unit.in_units_of(self.unit)
+    }
+}
+
+pub(in crate::cli) fn plan(
+    arguments: &PlanArguments,
+    progress: &Progress,
+) -> Result<Answer, String> {
+    let inputs = arguments.flight.files().chain(&arguments.camera);
+    let mut outputs = arguments.answer.output.outputs(inputs)?;
+    for path in &arguments.mission {
+        MissionFormat::of(path).map_err(|fault| FileError::new(path, fault).to_string())?;
+        outputs = outputs.and(path, Kind::Result)?;
+    }
+    let area = arguments.area.as_deref().map(places).transpose()?;
+    let opened = arguments.flight.open_to_measure(progress)?;
+    outputs.read(&opened.read)?;
+    let in_flight = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
+    let parts = opened.flight.parts();
+    if !parts.unit_known {
+        let what = "nobody says in which unit its coordinates are";
+        let remedy = "say it in flight.toml (world.unit), or georeference it";
+        return Err(in_flight(Fault::new(what, remedy)));
+    }
+    let camera = camera(arguments, &opened)?;
+    let mut warnings = Vec::new();
+    let area = match area {
+        Some((corners, said)) => {
+            warnings.extend(said);
+            Polygon::new(&corners).map_err(|error| format!("area: {error}"))?
+        }
+        None => {
+            progress.stage("looking for the pile");
+            plan::pile(&parts.surface, progress).map_err(in_flight)?
+        }
+    };
+    let wish = wish(arguments, parts.unit);
+    let plan = Plan::new(&parts.surface, &camera, area, wish, progress).map_err(in_flight)?;
+    let way = match arguments.take_off {
+        None => None,
+        Some(place) => {
+            progress.stage("the way through the photos");
+            let ground = plan.terrain.height(place).ok_or_else(|| {
+                let what = "the take-off does not lie on the surface";
+                in_flight(Fault::new(what, "give a place on it, in its coordinates"))
+            })?;
+            Some(Way::through(&plan, place.extend(ground)))
+        }
+    };
+    let report = PlanReport {
+        flight: &parts.name,
+        world: parts.unit,
+        scales: arguments.scale.map_or(parts.unit, |scale| scale.unit),
+        plan: &plan,
+        way: way.as_ref().map(|way| (way, arguments.speed)),
+        stop: arguments.settle,
+    };
+    let text = arguments.answer.deliver(
+        &outputs,
+        &report,
+        exports::plan_table,
+        exports::plan_csv,
+        exports::plan_json,
+    )?;
+    warnings.extend(exports::plan_warnings(&report));
+    if let (Some(way), [_, ..]) = (&way, &arguments.mission[..]) {
+        let crs = opened.crs.as_deref().ok_or_else(|| {
+            let what = "nobody says in which coordinate system its places are";
+            in_flight(Fault::new(what, "say it in flight.toml (world.crs)"))
+        })?;
+        let crs = Crs::understand(crs).map_err(in_flight)?;
+        let told = Told {
+            name: parts.name.clone(),
+            speed: arguments.speed,
+            settle: arguments.settle,
+        };
+        let mission = plan::mission(&plan, way, &crs, &told).map_err(in_flight)?;
+        for path in &arguments.mission {
+            warnings.extend(outputs.write_mission(&mission, path)?);
+        }
+    }
+    warnings.extend(opened.all_warnings());
+    Ok(Answer::new(text, warnings))
+}
+
+/// The camera that is to fly, without what its lens bends: plans are for undistorted images.
+fn camera(arguments: &PlanArguments, opened: &Opened) -> Result<Camera, String> {
+    if let Some(path) = &arguments.camera {
+        return read_camera(path).map_err(|error| error.to_string());
+    }
+    opened
+        .flight
+        .parts()
+        .cameras
+        .first()
+        .cloned()
+        .ok_or_else(|| {
+            let fault = Fault::new(
+                "it has no camera",
+                "give the one that is to fly: --camera FILE",
+            );
+            FileError::new(&arguments.flight.flight, fault).to_string()
+        })
+}
+
+fn wish(arguments: &PlanArguments, unit: LengthUnit) -> Wish {
+    let pattern = arguments.pattern.0;
+    let size = match (arguments.scale, arguments.height) {
+        (Some(scale), _) => Size::Scale {
+            pixels: scale.per(unit),
+            within: Some(match arguments.within {
+                Some(within) => within.per(unit),
+                None => WITHIN * scale.per(unit),
+            }),
+        },
+        // One of the two is there.
+        (None, height) => Size::Distance(height.unwrap_or(f64::NAN)),
+    };
+    let overlap = match (arguments.overlap, pattern) {
+        (Some(percent), _) => percent / 100.0,
+        (None, Pattern::Survey) => SURVEY_OVERLAP,
+        (None, _) => 0.0,
+    };
+    Wish {
+        pattern,
+        size,
+        overlap,
+        gap: 0.1,
+        tilt: arguments.tilt,
+        off_normal: 5.0,
+        gimbal: arguments.gimbal.to_array(),
+        clearance: arguments.clearance,
+        take_off: arguments.take_off,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scales_have_a_unit() {
+        let scale = |text: &str| {
+            text.parse::<PixelScale>()
+                .map(|scale| scale.per(LengthUnit::Metre))
+        };
+        assert_eq!(scale("20 px/cm"), Ok(2000.0));
+        assert_eq!(scale("0.5px/mm"), Ok(500.0));
+        assert_eq!(scale("30/m"), Ok(30.0));
+        for wrong in ["20", "px/cm", "-1 px/cm", "20 px/km", "inf/m", ""] {
+            assert!(scale(wrong).is_err(), "{wrong}");
+        }
+    }
+}

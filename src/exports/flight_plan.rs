@@ -1,0 +1,251 @@
+//! A plan of photos, going out: a table for people, CSV, JSON. Lengths are in the world's unit, scales in pixels per a
+//! unit that the reader chose; both are said.
+
+use serde_json::{Value, json};
+
+use crate::measured::{csv_of, percent, rows_of_text};
+use crate::numbers::significant_digits;
+use crate::units::LengthUnit;
+use fragscale_core::plan::{Plan, PlannedPhoto, Way};
+
+/// A plan, and how it is to be said.
+#[derive(Debug, Clone, Copy)]
+pub struct PlanReport<'a> {
+    /// The flight's name, of whose surface it is.
+    pub flight: &'a str,
+    /// The world's unit.
+    pub world: LengthUnit,
+    /// Scales are in pixels per this unit.
+    pub scales: LengthUnit,
+    /// The plan.
+    pub plan: &'a Plan,
+    /// The way through its photos, where the take-off is known, and the metres a second on it.
+    pub way: Option<(&'a Way, f64)>,
+    /// Seconds that the drone stands still for a photo.
+    pub stop: f64,
+}
+
+impl PlanReport<'_> {
+    /// Pixels per the reader's unit of pixels per world unit.
+    fn scale(&self, pixels: f64) -> f64 {
+        pixels * self.scales.in_units_of(self.world)
+    }
+
+    /// Seconds in the air.
+    fn seconds(&self, (way, speed): (&Way, f64)) -> f64 {
+        way.length * self.world.metres() / speed + self.stop * way.photos() as f64
+    }
+}
+
+/// What stands in a row of a photo.
+struct Row {
+    name: String,
+    tilt: f64,
+    pan: f64,
+    distance: f64,
+    /// Least, greatest, top and bottom of the fitted line.
+    scales: [Option<f64>; 4],
+    off_line: Option<f64>,
+    shows: f64,
+    shared: f64,
+    troubles: String,
+}
+
+fn row(report: &PlanReport<'_>, number: usize, photo: &PlannedPhoto) -> Row {
+    let forecast = photo.forecast.as_ref();
+    let fitted = forecast.and_then(|forecast| forecast.fitted);
+    let scale = |pixels: Option<f64>| pixels.map(|pixels| report.scale(pixels));
+    Row {
+        name: photo.name.clone(),
+        tilt: photo.tilt,
+        pan: photo.pan,
+        distance: photo.distance,
+        scales: [
+            scale(forecast.map(|forecast| forecast.least)),
+            scale(forecast.map(|forecast| forecast.greatest)),
+            scale(fitted.map(|fitted| fitted.top)),
+            scale(fitted.map(|fitted| fitted.bottom)),
+        ],
+        off_line: fitted.map(|fitted| fitted.rms_percent),
+        shows: forecast.map_or(0.0, |forecast| forecast.covered),
+        shared: (report.plan.cover.shared)
+            .get(number)
+            .copied()
+            .unwrap_or(0.0),
+        troubles: report.plan.troubles(number).join("; "),
+    }
+}
+
+fn rows<'a>(report: &'a PlanReport<'a>) -> impl Iterator<Item = Row> + 'a {
+    let photos = report.plan.photos.iter().enumerate();
+    photos.map(|(number, photo)| row(report, number, photo))
+}
+
+/// The photos and what is to be said of all of them, as text.
+pub fn plan_table(report: &PlanReport<'_>) -> String {
+    let PlanReport {
+        flight,
+        world,
+        scales,
+        plan,
+        ..
+    } = report;
+    let number = |number: f64| significant_digits(number, 4);
+    let maybe = |scale: Option<f64>| scale.map_or("-".to_owned(), number);
+    let mut text = format!(
+        "{flight}: plan of {} photos; scales in px/{scales}, lengths in {world}\n\n{:<6} {:>6} {:>6} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>7}  troubles\n",
+        plan.photos.len(),
+        "photo",
+        "tilt",
+        "pan",
+        "distance",
+        "least",
+        "top",
+        "bottom",
+        "greatest",
+        "off line",
+        "shared"
+    );
+    for row in rows(report) {
+        let [least, greatest, top, bottom] = row.scales.map(maybe);
+        let off_line = row
+            .off_line
+            .map_or("-".to_owned(), |off| format!("{off:.1} %"));
+        text += &format!(
+            "{:<6} {:>5.1}° {:>5.1}° {:>9} {least:>8} {top:>8} {bottom:>8} {greatest:>8} {off_line:>8} {:>5.0} %  {}\n",
+            row.name,
+            row.tilt,
+            row.pan,
+            number(row.distance),
+            row.shared * 100.0,
+            row.troubles
+        );
+    }
+    let gap = plan.cover.widest_gap;
+    let mut said = vec![
+        ("area", format!("{} {world}²", number(plan.area.area()))),
+        ("photographed", percent(plan.cover.covered)),
+        ("widest gap", format!("{} {world} across", number(gap))),
+    ];
+    if let Some(way) = report.way {
+        let length = format!("{} {world}", number(way.0.length));
+        let minutes = report.seconds(way) / 60.0;
+        said.push(("way", format!("{length}, {minutes:.0} min in the air")));
+    }
+    text + "\n" + &rows_of_text(&said)
+}
+
+/// What is to be said of a plan beside its numbers, one sentence each.
+pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
+    let PlanReport { plan, world, .. } = report;
+    let mut said = Vec::new();
+    let count =
+        |wrong: &dyn Fn(usize) -> bool| (0..plan.photos.len()).filter(|n| wrong(*n)).count();
+    let troubled = count(&|number| !plan.troubles(number).is_empty());
+    if troubled > 0 {
+        said.push(format!(
+            "{troubled} of {} photos do not hold what was asked for; the table says why",
+            plan.photos.len()
+        ));
+    }
+    for refused in &plan.refused {
+        let [x, y] = refused.place.to_array();
+        said.push(format!("no photo at ({x:.1}, {y:.1}): {}", refused.why));
+    }
+    if let (Some(at), true) = (plan.cover.gap_at, plan.has_wide_gap()) {
+        let gap = significant_digits(plan.cover.widest_gap, 2);
+        said.push(format!(
+            "photos leave a gap {gap} {world} across at ({:.1}, {:.1}): give more overlap, or fly it by hand",
+            at.x, at.y
+        ));
+    }
+    said
+}
+
+/// A line a photo. Numbers read back to the same f64.
+///
+/// # Errors
+/// Where memory runs out.
+pub fn plan_csv(report: &PlanReport<'_>) -> Result<String, csv::Error> {
+    let (world, scales) = (report.world, report.scales);
+    let head = [
+        "photo".to_owned(),
+        format!("x_{world}"),
+        format!("y_{world}"),
+        format!("z_{world}"),
+        "tilt".to_owned(),
+        "pan".to_owned(),
+        format!("distance_{world}"),
+        format!("least_px_per_{scales}"),
+        format!("greatest_px_per_{scales}"),
+        format!("top_px_per_{scales}"),
+        format!("bottom_px_per_{scales}"),
+        "off_line_percent".to_owned(),
+        "shows".to_owned(),
+        "shared".to_owned(),
+        "off_normal".to_owned(),
+        "troubles".to_owned(),
+    ];
+    let maybe = |number: Option<f64>| number.map_or(String::new(), |number| number.to_string());
+    let lines = rows(report).zip(&report.plan.photos).map(|(row, photo)| {
+        let [x, y, z] = photo.pose.center.to_array().map(|place| place.to_string());
+        let numbers = [row.tilt, row.pan, row.distance].map(|number| number.to_string());
+        let mut line = vec![row.name, x, y, z];
+        line.extend(numbers);
+        line.extend(row.scales.map(maybe));
+        line.push(maybe(row.off_line));
+        line.extend([row.shows, row.shared, photo.off_normal].map(|number| number.to_string()));
+        line.push(row.troubles);
+        line
+    });
+    csv_of(std::iter::once(head.to_vec()).chain(lines))
+}
+
+/// All of it as JSON.
+///
+/// # Errors
+/// Where memory runs out.
+pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
+    let plan = report.plan;
+    let photos = rows(report).zip(&plan.photos).enumerate();
+    let photos: Vec<Value> = photos
+        .map(|(number, (row, photo))| {
+            let [least, greatest, top, bottom] = row.scales;
+            json!({
+                "photo": row.name,
+                "center": photo.pose.center.to_array(),
+                "tilt": row.tilt,
+                "pan": row.pan,
+                "target": photo.target.to_array(),
+                "distance": row.distance,
+                "least": least,
+                "greatest": greatest,
+                "top": top,
+                "bottom": bottom,
+                "off_line_percent": row.off_line,
+                "shows": row.shows,
+                "shared": row.shared,
+                "off_normal": photo.off_normal,
+                "troubles": plan.troubles(number),
+            })
+        })
+        .collect();
+    let refused: Vec<Value> = (plan.refused.iter())
+        .map(|refused| json!({"place": refused.place.to_array(), "why": refused.why}))
+        .collect();
+    let area: Vec<[f64; 2]> = plan.area.corners().iter().map(|c| c.to_array()).collect();
+    let value = json!({
+        "flight": report.flight,
+        "unit": report.world.symbol(),
+        "scale_unit": report.scales.symbol(),
+        "pattern": plan.wish.pattern.as_str(),
+        "area": area,
+        "photographed": plan.cover.covered,
+        "widest_gap": plan.cover.widest_gap,
+        "way_length": report.way.map(|(way, _)| way.length),
+        "seconds": report.way.map(|way| report.seconds(way)),
+        "photos": photos,
+        "refused": refused,
+    });
+    serde_json::to_string_pretty(&value).map(|text| text + "\n")
+}
