@@ -125,7 +125,13 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
     let mut said = vec![
         ("area", format!("{} {world}²", number(plan.area.area()))),
         ("photographed", percent(plan.cover.covered)),
-        ("widest gap", format!("{} {world} across", number(gap))),
+        (
+            "widest gap",
+            match gap > 0.0 {
+                true => format!("{} {world} across", number(gap)),
+                false => "none".to_owned(),
+            },
+        ),
     ];
     if let Some(way) = report.way {
         let length = format!("{} {world}", number(way.0.length));

@@ -10,6 +10,8 @@ use crate::survey::Polygon;
 
 /// Pixels along the longer side of the raster that the pile is looked for on.
 const ACROSS: f64 = 200.0;
+/// Stones and bridges between them are no pile: a pixel is where most of the pixels up to so far along both axes are.
+const BESIDE: usize = 4;
 /// The share of the surface's pixels that count as its rim: where the floor is looked for.
 const RIM: f64 = 0.15;
 /// What stands above the floor by so many standard deviations of the floor is no floor.
@@ -61,7 +63,7 @@ pub fn pile(surface: &Surface, progress: &Progress) -> Result<Polygon, Fault> {
         .iter()
         .map(|z| *z > (PILE * highest).max(stands_out))
         .collect();
-    let piece = largest_piece(&is_pile, columns);
+    let piece = largest_piece(&where_most_are(&is_pile, columns), columns);
     let corners: Vec<DVec2> = piece
         .iter()
         .map(|place| {
@@ -142,6 +144,23 @@ fn floor(terrain: &Terrain) -> Option<Floor> {
         rim = kept;
     }
     floor
+}
+
+/// Pixels in whose neighbourhood most pixels are in.
+fn where_most_are(is_in: &[bool], columns: usize) -> Vec<bool> {
+    let rows = is_in.len() / columns.max(1);
+    let around = |at: usize, count: usize| at.saturating_sub(BESIDE)..(at + BESIDE + 1).min(count);
+    (0..is_in.len())
+        .map(|place| {
+            let (columns_near, rows_near) = (
+                around(place % columns, columns),
+                around(place / columns, rows),
+            );
+            let size = columns_near.len() * rows_near.len();
+            let near = rows_near.flat_map(|row| &is_in[row * columns..][columns_near.clone()]);
+            2 * near.filter(|near| **near).count() > size
+        })
+        .collect()
 }
 
 /// The pixels of the largest piece whose pixels touch along their sides.

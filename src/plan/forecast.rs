@@ -13,6 +13,9 @@ pub struct Forecast {
     pub least: f64,
     /// The greatest.
     pub greatest: f64,
+    /// Between these lie 98 of 100 of its scales: a stray point of the cloud, or the top of one stone, decides the
+    /// least and the greatest.
+    pub bulk: [f64; 2],
     /// The best line; `None` where less than half of the photo shows the surface.
     pub fitted: Option<FittedScale>,
     /// The share of the photo that shows the surface.
@@ -39,20 +42,25 @@ impl Forecast {
         let mut scales: Vec<f64> = places
             .filter_map(|(column, row)| field.scale_at(column, row))
             .collect();
-        scales.sort_by(f64::total_cmp);
-        let (Some(&least), Some(&greatest)) = (scales.first(), scales.last()) else {
+        let bulk = bulk_of(&mut scales);
+        let (Some(&least), Some(&greatest), Some(bulk)) = (scales.first(), scales.last(), bulk)
+        else {
             return Ok(None);
         };
         Ok(Some(Self {
             least,
             greatest,
+            bulk,
             fitted: FittedScale::of(&field),
             covered: scales.len() as f64 / grid.len() as f64,
         }))
     }
+}
 
-    /// The middle between the least and the greatest scale.
-    pub fn middle(&self) -> f64 {
-        (self.least + self.greatest) / 2.0
-    }
+/// The limits between which 98 of 100 numbers lie; sorts them. `None` without numbers.
+pub(super) fn bulk_of(numbers: &mut [f64]) -> Option<[f64; 2]> {
+    numbers.sort_by(f64::total_cmp);
+    let last = numbers.len().checked_sub(1)?;
+    let tail = numbers.len() / 100;
+    Some([numbers[tail], numbers[last - tail]])
 }

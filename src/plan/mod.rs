@@ -4,6 +4,7 @@
 //! ```text
 //! wish       what is asked for: scale, pattern, gaps, gimbal, clearance
 //! terrain    heights on a raster, planes of the ground, how near a point in the air is to it
+//! drones     cameras and gimbals that are often flown
 //! area       the ground to be photographed: the pile found by itself
 //! patterns   where photos are taken from: slope, paper, survey
 //! forecast   what a photo will show: its field of scales
@@ -21,6 +22,7 @@
 
 mod area;
 mod cover;
+mod drones;
 mod forecast;
 mod mission;
 mod patterns;
@@ -36,6 +38,7 @@ use rayon::prelude::*;
 
 pub use area::pile;
 pub use cover::Cover;
+pub use drones::Drone;
 pub use forecast::Forecast;
 pub use mission::{
     Above, DroneCodes, Fence, Finish, Height, Mission, PayloadCodes, PhotoOf, Stop, TakeOff,
@@ -55,6 +58,8 @@ use patterns::{Ground, MOST};
 
 /// Pixels of the terrain along the shorter side of a footprint.
 const FINENESS: f64 = 24.0;
+/// Of a photo that shows so much of the surface nobody asks for the rest.
+const NEARLY_ALL: f64 = 0.99;
 /// How often the distance of a photo is set so that its scales lie around the wished one.
 const ROUNDS: usize = 3;
 
@@ -197,7 +202,8 @@ impl Plan {
                     within: Some(within),
                 },
             ) => {
-                let off = (forecast.greatest - pixels).max(pixels - forecast.least);
+                let [least, greatest] = forecast.bulk;
+                let off = (greatest - pixels).max(pixels - least);
                 if off > within {
                     let percent = off / pixels * 100.0;
                     troubles.push(format!(
@@ -208,7 +214,7 @@ impl Plan {
             _ => {}
         }
         if let Some(forecast) = &photo.forecast
-            && forecast.covered < 1.0
+            && forecast.covered < NEARLY_ALL
         {
             let share = (1.0 - forecast.covered) * 100.0;
             troubles.push(format!("{share:.0} % of it looks beyond the surface"));
@@ -313,26 +319,24 @@ fn terrain_of(
     Terrain::of(surface, [min, max], pixel, progress)
 }
 
-/// Moves a photo along its axis until the middle between its least and greatest scale is the wished one, by the
+/// Moves a photo along its axis until the middle of the bulk of its scales is the wished one, by the
 /// terrain's raster.
 fn set_distance(photo: &mut PlannedPhoto, camera: &Camera, terrain: &Terrain, pixels: f64) {
     let focal = (camera.fx * camera.fy).sqrt();
     let away = (photo.pose.center - photo.target) / photo.distance;
     for _ in 0..ROUNDS {
-        let mut range = (f64::MAX, f64::MIN);
-        for point in terrain.around(photo.target.truncate(), photo.reach) {
+        let points = terrain.around(photo.target.truncate(), photo.reach);
+        let scale = |point: DVec3| {
             let in_camera = photo.pose.camera_from_world(point);
-            let seen = camera.pixel_undistorted(in_camera);
-            if seen.is_some_and(|pixel| camera.contains(pixel)) {
-                let scale = focal / in_camera.z;
-                range = (range.0.min(scale), range.1.max(scale));
-            }
-        }
-        if range.1 < range.0 {
+            let pixel = camera.pixel_undistorted(in_camera)?;
+            camera.contains(pixel).then(|| focal / in_camera.z)
+        };
+        let mut scales: Vec<f64> = points.filter_map(scale).collect();
+        let Some([least, greatest]) = forecast::bulk_of(&mut scales) else {
             return;
-        }
+        };
         // Both ends move alike, nearly: a few rounds do.
-        let middle = (range.0 + range.1) / 2.0;
+        let middle = (least + greatest) / 2.0;
         photo.distance *= middle / pixels;
         photo.pose.center = photo.target + away * photo.distance;
     }

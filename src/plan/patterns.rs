@@ -56,6 +56,8 @@ impl Pattern {
     }
 }
 
+/// Why there is no plane of the ground.
+const NO_GROUND: &str = "most of the photo would look beyond the surface, or into a hole of it";
 /// How many steps an edge of a footprint is walked in, along the ground.
 const STEPS: f64 = 8.0;
 /// The tilt of the survey's photos that look aslant, degrees below the horizon.
@@ -114,11 +116,15 @@ impl Ground<'_> {
         // Strips are told apart along the ground through the area's middle.
         let middle = |across: f64| strips.place(0.0, across);
         let (mut photos, mut refused) = (Vec::new(), Vec::new());
-        for across in self.walk(range, step.x, middle) {
+        for (strip, across) in self.walk(range, step.x, middle).into_iter().enumerate() {
             let Some(range) = self.in_strip(&strips, across, footprint.x) else {
                 continue;
             };
-            for along in self.walk(range, step.y, |along| strips.place(along, across)) {
+            let mut places = self.walk(range, step.y, |along| strips.place(along, across));
+            if strip % 2 == 1 {
+                places.reverse();
+            }
+            for along in places {
                 if photos.len() + refused.len() >= MOST {
                     break;
                 }
@@ -136,7 +142,7 @@ impl Ground<'_> {
     fn square_to_ground(&self, place: DVec2, along: DVec2) -> Result<PlannedPhoto, String> {
         let side = self.footprint().max_element();
         let ground = self.terrain.plane(place, side);
-        let ground = ground.ok_or("the surface has a hole there")?;
+        let ground = ground.ok_or(NO_GROUND)?;
         let normal = ground.normal;
         // The normal's part in the upright plane of the strip.
         let sideways = along.perp().extend(0.0);
@@ -208,7 +214,7 @@ impl Ground<'_> {
                 let place = strips.place(along, across);
                 let side = footprint.max_element();
                 let Some(ground) = self.terrain.plane(place, side) else {
-                    let why = "the surface has a hole there".to_owned();
+                    let why = NO_GROUND.to_owned();
                     refused.push(Refused { place, why });
                     continue;
                 };

@@ -200,6 +200,7 @@ fn a_mission_is_told_in_degrees() {
     let crs = Crs::understand("EPSG:32632").unwrap();
     let told = Told {
         name: "pile".to_owned(),
+        drone: None,
         speed: 4.0,
         settle: 1.0,
     };

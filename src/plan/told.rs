@@ -5,7 +5,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Finish, Height, Mission, PhotoOf, Plan, Stop, TakeOff, Way};
+use super::{DroneCodes, Finish, Height, Mission, PhotoOf, Plan, Stop, TakeOff, Way};
 use crate::fault::Fault;
 use crate::geodesy::{Crs, Geographic};
 
@@ -14,6 +14,8 @@ use crate::geodesy::{Crs, Geographic};
 pub struct Told {
     /// The mission's name.
     pub name: String,
+    /// DJI's numbers of the drone, where they are known.
+    pub drone: Option<DroneCodes>,
     /// Metres a second between stops.
     pub speed: f64,
     /// Seconds between the gimbal's arrival and the shot.
@@ -52,7 +54,7 @@ pub fn mission(plan: &Plan, way: &Way, crs: &Crs, told: &Told) -> Result<Mission
     }
     let mission = Mission {
         name: told.name.clone(),
-        drone: None,
+        drone: told.drone,
         take_off: Some(TakeOff {
             latitude: take_off.latitude,
             longitude: take_off.longitude,

@@ -33,9 +33,9 @@ pub struct Wish {
 pub enum Size {
     /// This scale, and how far it may be off anywhere in a photo: pixels per world unit.
     Scale {
-        /// In the middle between a photo's least and greatest.
+        /// In the middle of what 98 of 100 of a photo's pixels have.
         pixels: f64,
-        /// On both sides of it.
+        /// On both sides of it, for 98 of 100 pixels.
         within: Option<f64>,
     },
     /// Photos from so far: above the highest of the area, where one height is for all; else from the ground.

@@ -33,6 +33,7 @@ mod map;
 mod mission;
 mod on_surface;
 mod overwriting;
+mod plan;
 mod psd_compare;
 mod real_data;
 mod reconstruct;

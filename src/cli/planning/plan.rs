@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::builder::PossibleValue;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
 use glam::DVec2;
 
@@ -19,7 +19,7 @@ use crate::formats::{FileError, read_camera};
 use crate::geodesy::Crs;
 use crate::jobs::Progress;
 use crate::opening::Opened;
-use crate::plan::{self, Pattern, Plan, Size, Told, Way, Wish};
+use crate::plan::{self, Drone, Pattern, Plan, Size, Told, Way, Wish};
 use crate::survey::Polygon;
 use crate::units::LengthUnit;
 
@@ -27,6 +27,8 @@ use crate::units::LengthUnit;
 const WITHIN: f64 = 0.1;
 /// Overlap of the survey where nobody says it.
 const SURVEY_OVERLAP: f64 = 0.7;
+/// Degrees that every gimbal of a camera drone reaches.
+const GIMBAL: [f64; 2] = [-90.0, 0.0];
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct PlanArguments {
@@ -51,16 +53,23 @@ pub(in crate::cli) struct PlanArguments {
     /// The camera's axis below the horizon, of the paper's pattern, degrees.
     #[arg(long, value_name = "DEGREES", default_value_t = 83.0)]
     tilt: f64,
+    /// How far a photo's axis may lie off the normal of the ground, of the slope pattern, degrees: photos that are
+    /// square in their strips share less with their neighbours.
+    #[arg(long, value_name = "DEGREES", default_value_t = 10.0)]
+    off_normal: f64,
     /// The corners of what is to be photographed, in the world, or a file with one a line; without it the pile
     /// that stands out of its floor.
     #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
     area: Option<String>,
-    /// The calibration of the camera that is to fly; without it the first one of the flight.
+    /// The drone that is to fly: its camera, its gimbal, and DJI's numbers for its mission.
+    #[arg(long, value_name = "NAME", value_parser = drone_values())]
+    drone: Option<String>,
+    /// The calibration of the camera that is to fly; without it the drone's nominal one, or the first of the flight.
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
-    /// The gimbal's lowest and highest pitch in degrees, -90 straight down.
-    #[arg(long, value_name = "LOW,HIGH", value_parser = place, default_value = "-90,0", allow_hyphen_values = true)]
-    gimbal: DVec2,
+    /// The gimbal's lowest and highest pitch in degrees, -90 straight down; else the drone's, or -90 to 0.
+    #[arg(long, value_name = "LOW,HIGH", value_parser = place, allow_hyphen_values = true)]
+    gimbal: Option<DVec2>,
     /// The drone stays so far from the surface, in the world's unit.
     #[arg(long, value_name = "LENGTH", default_value_t = 5.0)]
     clearance: f64,
@@ -79,6 +88,17 @@ pub(in crate::cli) struct PlanArguments {
     mission: Vec<PathBuf>,
     #[command(flatten)]
     answer: NamedAnswerArguments,
+}
+
+impl PlanArguments {
+    fn drone(&self) -> Option<Drone> {
+        Drone::named(self.drone.as_deref()?)
+    }
+}
+
+fn drone_values() -> PossibleValuesParser {
+    let values = Drone::ALL.map(|drone| PossibleValue::new(drone.name).help(drone.title));
+    PossibleValuesParser::new(values)
 }
 
 /// A pattern as a word of the command line.
@@ -150,6 +170,11 @@ pub(in crate::cli) fn plan(
     }
     let camera = camera(arguments, &opened)?;
     let mut warnings = Vec::new();
+    if arguments.camera.is_none() && arguments.drone.is_some() {
+        warnings.push(
+            "the focal length is the maker's nominal one: scales may be off by 2 %; --camera takes a calibration".to_owned(),
+        );
+    }
     let area = match area {
         Some((corners, said)) => {
             warnings.extend(said);
@@ -189,7 +214,7 @@ pub(in crate::cli) fn plan(
         exports::plan_json,
     )?;
     warnings.extend(exports::plan_warnings(&report));
-    if let (Some(way), [_, ..]) = (&way, &arguments.mission[..]) {
+    if let (Some(way), false) = (&way, arguments.mission.is_empty()) {
         let crs = opened.crs.as_deref().ok_or_else(|| {
             let what = "nobody says in which coordinate system its places are";
             in_flight(Fault::new(what, "say it in flight.toml (world.crs)"))
@@ -197,6 +222,7 @@ pub(in crate::cli) fn plan(
         let crs = Crs::understand(crs).map_err(in_flight)?;
         let told = Told {
             name: parts.name.clone(),
+            drone: arguments.drone().and_then(|drone| drone.codes),
             speed: arguments.speed,
             settle: arguments.settle,
         };
@@ -253,8 +279,12 @@ fn wish(arguments: &PlanArguments, unit: LengthUnit) -> Wish {
         overlap,
         gap: 0.1,
         tilt: arguments.tilt,
-        off_normal: 5.0,
-        gimbal: arguments.gimbal.to_array(),
+        off_normal: arguments.off_normal,
+        gimbal: match (arguments.gimbal, arguments.drone()) {
+            (Some(gimbal), _) => gimbal.to_array(),
+            (None, Some(drone)) => drone.gimbal,
+            (None, None) => GIMBAL,
+        },
         clearance: arguments.clearance,
         take_off: arguments.take_off,
     }

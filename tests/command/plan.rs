@@ -1,0 +1,161 @@
+//! `fragscale plan`: over a surface that is made here, and read back.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::common::{fragscale, stdout_of};
+
+/// A plane in UTM that falls to the east by 1 in 2, and a flight of one photo over it.
+fn plane(folder: &std::path::Path) -> String {
+    let mut points = String::new();
+    for i in 0..41 * 41 {
+        let (x, y) = (f64::from(i % 41) * 5.0, f64::from(i / 41) * 5.0);
+        points += &format!(
+            "{} {} {}\n",
+            450_000.0 + x,
+            5_400_000.0 + y,
+            300.0 - 0.5 * x
+        );
+    }
+    fs::write(folder.join("plane.xyz"), points).unwrap();
+    let pose = "photo,x,y,z,tilt,pan\nA.jpg,450100,5400100,350,90,0\n";
+    fs::write(folder.join("poses.csv"), pose).unwrap();
+    let camera = std::path::absolute("assets/sample/ost.yaml").unwrap();
+    let text = format!(
+        "format = 1\n[world]\nunit = \"m\"\ncrs = \"EPSG:32632\"\n[surface]\nfile = \"plane.xyz\"\n\
+         [[camera]]\nfile = '{}'\n[photos]\nposes = \"poses.csv\"\n",
+        camera.display()
+    );
+    fs::write(folder.join("flight.toml"), text).unwrap();
+    folder.join("flight.toml").display().to_string()
+}
+
+#[test]
+fn a_plan_becomes_missions_that_say_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let area = "450060,5400060;450140,5400060;450140,5400140;450060,5400140";
+    let missions = ["m.kmz", "m.plan", "m.waypoints", "m.csv"].map(path);
+    let mut arguments = vec![
+        "plan",
+        &flight,
+        "--drone",
+        "mavic-3e",
+        "--scale",
+        "0.5 px/cm",
+    ];
+    arguments.extend([
+        "--area",
+        area,
+        "--take-off",
+        "450020,5400020",
+        "--format",
+        "json",
+    ]);
+    for mission in &missions {
+        arguments.extend(["--mission", mission]);
+    }
+    let output = fragscale(&arguments);
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{notes}");
+    assert!(notes.contains("nominal"), "{notes}");
+    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let photos = told["photos"].as_array().unwrap();
+    assert!(photos.len() > 1);
+    for photo in photos {
+        // Squarely at the plane: atan(1/2) off straight down, uphill is west; everywhere the wished scale.
+        assert!(
+            (photo["tilt"].as_f64().unwrap() - 63.434_949).abs() < 1e-3,
+            "{photo}"
+        );
+        assert!((photo["pan"].as_f64().unwrap() - 270.0).abs() < 1e-3);
+        for scale in ["least", "greatest", "top", "bottom"] {
+            assert!(
+                (photo[scale].as_f64().unwrap() - 0.5).abs() < 1e-4,
+                "{photo}"
+            );
+        }
+    }
+    // Latitude, longitude, height, heading, gimbal of each stop.
+    let stops = missions.each_ref().map(|mission| {
+        let told = stdout_of(&["mission", mission]);
+        let numbers = |line: &str| -> Vec<f64> {
+            let words = line.split([' ', ',']);
+            words.skip(1).filter_map(|word| word.parse().ok()).collect()
+        };
+        let lines = told.lines().filter(|line| line.contains("  gimbal "));
+        lines.map(numbers).collect::<Vec<_>>()
+    });
+    assert_eq!(stops[0].len(), photos.len());
+    for other in &stops[1..] {
+        assert_eq!(other.len(), photos.len());
+        for (ours, theirs) in stops[0].iter().zip(other) {
+            let off = ours.iter().zip(theirs).map(|(a, b)| (a - b).abs());
+            // Written to seven decimals of a degree and a centimetre.
+            let most = [1.5e-7, 1.5e-7, 0.011, 0.11, 0.11, 0.0];
+            assert_eq!(ours.len(), most.len(), "{ours:?}");
+            assert!(
+                off.zip(most).all(|(off, most)| off <= most),
+                "{ours:?} {theirs:?}"
+            );
+        }
+    }
+    // A take-off beside the surface has no height to count from.
+    let off = [
+        "plan",
+        &flight,
+        "--scale",
+        "0.5 px/cm",
+        "--area",
+        area,
+        "--take-off",
+        "440000,5400020",
+    ];
+    let refused = fragscale(&off);
+    assert_eq!(refused.status.code(), Some(1));
+    let error = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(
+        error.contains("take-off does not lie on the surface"),
+        "{error}"
+    );
+}
+
+#[test]
+fn what_makes_no_plan_is_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    let error_of = |more: &[&str], code: i32| {
+        let mut arguments = vec!["plan", flight.as_str()];
+        arguments.extend(more);
+        let output = fragscale(&arguments);
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{error}");
+        error
+    };
+    let drone = ["--drone", "mavic-3e"];
+    let with = |more: &[&'static str]| [&drone[..], more].concat();
+    let error = error_of(&with(&["--scale", "1 px/cm"]), 1);
+    assert!(error.contains("no pile stands out of the floor"), "{error}");
+    // The cloud alone: nobody says in which unit it is.
+    let cloud = folder.path().join("plane.xyz").display().to_string();
+    let output = fragscale(&["plan", &cloud, "--drone", "mavic-3e", "--scale", "1 px/cm"]);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(error.contains("nobody says in which unit"), "{error}");
+    let error = error_of(&with(&["--scale", "1 px/cm", "--area", "0,0;1,0;1,1"]), 1);
+    assert!(error.contains("off the surface"), "{error}");
+    error_of(&with(&["--scale", "twenty"]), 2);
+    error_of(&with(&["--scale", "1 px/cm", "--mission", "m.kmz"]), 2);
+    let area = ["--area", "450060,5400060;450140,5400060;450140,5400140"];
+    let error = error_of(
+        &[
+            &drone[..],
+            &area,
+            &["--scale", "1 px/cm", "--overlap", "100"],
+        ]
+        .concat(),
+        1,
+    );
+    assert!(error.contains("overlap"), "{error}");
+}
