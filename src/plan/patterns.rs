@@ -86,7 +86,7 @@ impl Strips {
         self.origin + self.along * along - self.along.perp() * across
     }
 
-    fn from_world(&self, place: DVec2) -> DVec2 {
+    fn strips_from_world(&self, place: DVec2) -> DVec2 {
         let off = place - self.origin;
         DVec2::new(off.dot(self.along), -off.dot(self.along.perp()))
     }
@@ -111,7 +111,7 @@ impl Ground<'_> {
         let footprint = self.footprint();
         let step = footprint * (1.0 - self.wish.overlap);
         let corners = self.area.corners().iter();
-        let across: Vec<f64> = corners.map(|&c| strips.from_world(c).y).collect();
+        let across: Vec<f64> = corners.map(|&c| strips.strips_from_world(c).y).collect();
         let range = extent(across.iter().copied());
         // Strips are told apart along the ground through the area's middle.
         let middle = |across: f64| strips.place(0.0, across);
@@ -193,7 +193,12 @@ impl Ground<'_> {
         let footprint = self.footprint() * DVec2::new(1.0, 1.0 / sine);
         let strips = self.longest_side();
         let step = footprint * (1.0 - self.wish.overlap);
-        let corners = || self.area.corners().iter().map(|&c| strips.from_world(c));
+        let corners = || {
+            self.area
+                .corners()
+                .iter()
+                .map(|&c| strips.strips_from_world(c))
+        };
         let across = extent(corners().map(|c| c.y));
         let level = self.level();
         let (mut photos, mut refused) = (Vec::new(), Vec::new());
@@ -228,7 +233,12 @@ impl Ground<'_> {
     fn survey(&self) -> (Vec<PlannedPhoto>, Vec<Refused>) {
         let (mut photos, refused) = self.rows(90.0);
         let strips = self.longest_side();
-        let corners = || self.area.corners().iter().map(|&c| strips.from_world(c));
+        let corners = || {
+            self.area
+                .corners()
+                .iter()
+                .map(|&c| strips.strips_from_world(c))
+        };
         let (along, across) = (
             extent(corners().map(|c| c.x)),
             extent(corners().map(|c| c.y)),
@@ -326,7 +336,7 @@ impl Ground<'_> {
     /// From where to where the area lies in a strip of this width; `None` where it does not.
     fn in_strip(&self, strips: &Strips, across: f64, width: f64) -> Option<(f64, f64)> {
         let corners: Vec<DVec2> = (self.area.corners().iter())
-            .map(|&c| strips.from_world(c))
+            .map(|&c| strips.strips_from_world(c))
             .collect();
         let (low, high) = (across - width / 2.0, across + width / 2.0);
         let mut range: Option<(f64, f64)> = None;
