@@ -42,7 +42,7 @@ use models::{georeference, reconstruct};
 use of_photos::{map, rectify, scale_map};
 use on_surface::{profile, volume};
 use outputs::OutputArguments;
-use planning::{mission, plan};
+use planning::{flown, mission, plan};
 
 use crate::exports;
 use crate::fault::one_line;
@@ -103,6 +103,8 @@ enum Command {
     Plan(Box<plan::PlanArguments>),
     /// Say what a drone's mission does, or write it for another ground station.
     Mission(mission::MissionArguments),
+    /// Compare a mission with the flight that came of it: how far off each photo is, which are missing.
+    Flown(flown::FlownArguments),
     /// Say what a file or folder holds.
     Info(InfoArguments),
     /// Reconstruct a flight from its photos alone: poses, lenses, a cloud.
@@ -256,6 +258,7 @@ pub fn run() -> ExitCode {
             Box::new(move |progress| volume::volume(&arguments, progress))
         }
         Command::Plan(arguments) => Box::new(move |progress| plan::plan(&arguments, progress)),
+        Command::Flown(arguments) => Box::new(move |progress| flown::flown(&arguments, progress)),
         Command::Info(arguments) => Box::new(move |progress| info(&arguments, progress)),
         Command::Reconstruct(arguments) => {
             Box::new(move |progress| reconstruct::run(&arguments, progress))

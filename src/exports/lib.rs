@@ -4,6 +4,7 @@
 mod drawing;
 mod flight_files;
 mod flight_plan;
+mod flown_report;
 mod html_page;
 mod markup;
 mod measured;
@@ -31,6 +32,7 @@ use fragscale_fragmentation as fragmentation;
 
 pub use flight_files::{Orientation, PoseRow, StatedDeviations, laz, ply, poses_csv};
 pub use flight_plan::{PlanReport, plan_csv, plan_json, plan_table, plan_warnings};
+pub use flown_report::{FlownReport, flown_csv, flown_json, flown_table, flown_warnings};
 pub use measured::{
     MeasuredUnit, PointsReport, ProfileReport, VolumeReport, points_csv, points_table, profile_csv,
     profile_json, profile_table, volume_csv, volume_json, volume_table, volume_warning,

@@ -11,6 +11,7 @@
 //! cover      how much photos share, and the widest gap that they leave
 //! way        in which order, with which climbs
 //! told       the way as a mission, in degrees and metres above take-off
+//! flown      planned against flown
 //! mission    take-off, stops with the camera's direction, what happens at the end
 //! ```
 //!
@@ -23,6 +24,7 @@
 mod area;
 mod cover;
 mod drones;
+mod flown;
 mod forecast;
 mod mission;
 mod patterns;
@@ -39,6 +41,7 @@ use rayon::prelude::*;
 pub use area::pile;
 pub use cover::Cover;
 pub use drones::Drone;
+pub use flown::{Flown, PlannedPose, Residual, Taken, planned_poses};
 pub use forecast::Forecast;
 pub use mission::{
     Above, DroneCodes, Fence, Finish, Height, Mission, PayloadCodes, PhotoOf, Stop, TakeOff,

@@ -159,3 +159,65 @@ fn what_makes_no_plan_is_one_line() {
     );
     assert!(error.contains("overlap"), "{error}");
 }
+
+/// A mission that was flown half a metre to the east, 0.2 to the south and 0.1 too high, without its second photo.
+#[test]
+fn what_was_flown_is_compared_with_its_mission() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let area = "450060,5400060;450140,5400060;450140,5400140;450060,5400140";
+    let (mission, plan) = (path("m.kmz"), path("plan.json"));
+    let mut arguments = vec![
+        "plan",
+        &flight,
+        "--drone",
+        "mavic-3e",
+        "--scale",
+        "0.5 px/cm",
+    ];
+    arguments.extend(["--area", area, "--take-off", "450020,5400020", "-o", &plan]);
+    arguments.extend(["--mission", &mission]);
+    assert_eq!(fragscale(&arguments).status.code(), Some(0));
+    let told: Value = serde_json::from_slice(&fs::read(&plan).unwrap()).unwrap();
+    let photos = told["photos"].as_array().unwrap();
+    let mut poses = "photo,x,y,z,tilt,pan\n".to_owned();
+    for (number, photo) in photos.iter().enumerate().filter(|(number, _)| *number != 1) {
+        let at = |i: usize| photo["center"][i].as_f64().unwrap();
+        let angle = |name: &str| photo[name].as_f64().unwrap();
+        let (x, y, z) = (at(0) + 0.5, at(1) - 0.2, at(2) + 0.1);
+        let (tilt, pan) = (angle("tilt"), angle("pan"));
+        poses += &format!(
+            "DJI_{number:04}.JPG,{x},{y},{z},{},{}\n",
+            tilt - 0.5,
+            pan + 1.0
+        );
+    }
+    fs::write(folder.path().join("poses.csv"), poses).unwrap();
+    let output = fragscale(&["flown", &flight, "--mission", &mission, "--format", "json"]);
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{notes}");
+    assert!(notes.contains("1 planned photos were not taken"), "{notes}");
+    let said: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found: Vec<&Value> = (said["photos"].as_array().unwrap().iter())
+        .map(|photo| &photo["flown"])
+        .filter(|flown| !flown.is_null())
+        .collect();
+    assert_eq!(found.len(), photos.len() - 1);
+    for flown in found {
+        // DJI's file keeps 1e-7 degrees (a centimetre), millimetres and hundredths of a degree.
+        for (i, expected) in [0.5, -0.2, 0.1].into_iter().enumerate() {
+            let off = flown["offset"][i].as_f64().unwrap() - expected;
+            assert!(off.abs() < 0.011, "{flown}");
+        }
+        assert!(
+            (flown["tilt"].as_f64().unwrap() + 0.5).abs() < 0.011,
+            "{flown}"
+        );
+        assert!(
+            (flown["pan"].as_f64().unwrap() - 1.0).abs() < 0.011,
+            "{flown}"
+        );
+        assert!(flown["shared"].as_f64().unwrap() > 0.9, "{flown}");
+    }
+}
