@@ -61,13 +61,15 @@ pub struct Flown {
     pub unplanned: Vec<usize>,
 }
 
-/// The planned photos of a mission in the coordinate system of a surface. `ground` is the surface's height at a place.
+/// The planned photos of a mission in the coordinate system of a surface. `take_off` is where the drone took off in the
+/// world, where the mission does not say it; `ground` is the surface's height at a place.
 ///
 /// # Errors
 /// Where a stop has no direction, or its height counts from something that the surface does not tell.
 pub fn planned_poses(
     mission: &Mission,
     crs: &Crs,
+    take_off: Option<DVec2>,
     ground: impl Fn(DVec2) -> Option<f64>,
 ) -> Result<Vec<PlannedPose>, Fault> {
     let world = |latitude: f64, longitude: f64| {
@@ -86,9 +88,14 @@ pub fn planned_poses(
         let what = format!("{what} lies off the surface, so that nobody knows how high it is");
         Fault::new(what, "give a surface that reaches so far: --surface FILE")
     };
-    let take_off = match mission.take_off {
-        None => None,
-        Some(at) => ground(world(at.latitude, at.longitude)?.1.truncate()),
+    let take_off = match (take_off, mission.take_off) {
+        (Some(place), _) => Some(place),
+        (None, Some(at)) => Some(world(at.latitude, at.longitude)?.1.truncate()),
+        (None, None) => None,
+    };
+    let unsaid = || {
+        let what = "it does not say where the drone takes off, from where its heights count";
+        Fault::new(what, "say it: --take-off X,Y")
     };
     let unit = crs.vertical_unit_metres();
     let pitches = mission.gimbal_pitches();
@@ -98,18 +105,19 @@ pub fn planned_poses(
             continue;
         };
         let (place, point) = world(stop.latitude, stop.longitude)?;
-        let below = match stop.height.above {
-            Above::TakeOff => take_off.ok_or_else(|| off_surface("the take-off"))?,
-            Above::Ground => {
-                ground(point.truncate()).ok_or_else(|| off_surface(&format!("stop {number}")))?
-            }
-            above => {
-                let above = above.in_words();
-                let what = format!("the heights of the mission count from {above}");
-                let remedy = "give one whose heights count from the take-off or the ground";
-                return Err(Fault::new(what, remedy));
-            }
-        };
+        let below =
+            match stop.height.above {
+                Above::TakeOff => ground(take_off.ok_or_else(unsaid)?)
+                    .ok_or_else(|| off_surface("the take-off"))?,
+                Above::Ground => ground(point.truncate())
+                    .ok_or_else(|| off_surface(&format!("stop {number}")))?,
+                above => {
+                    let above = above.in_words();
+                    let what = format!("the heights of the mission count from {above}");
+                    let remedy = "give one whose heights count from the take-off or the ground";
+                    return Err(Fault::new(what, remedy));
+                }
+            };
         let center = point.truncate().extend(below + stop.height.metres / unit);
         planned.push(PlannedPose {
             name: photo.name.clone().unwrap_or_else(|| number.to_string()),

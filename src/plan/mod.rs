@@ -47,7 +47,7 @@ pub use mission::{
     Above, DroneCodes, Fence, Finish, Height, Mission, PayloadCodes, PhotoOf, Stop, TakeOff,
 };
 pub use patterns::Pattern;
-pub use terrain::{GroundPlane, Terrain};
+pub use terrain::{GroundPlane, Terrain, ground_at};
 pub use told::{Told, mission};
 pub use way::{Way, WayPoint};
 pub use wish::{Size, Wish};

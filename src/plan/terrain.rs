@@ -4,6 +4,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::fault::Fault;
+use crate::geometry::Ray;
 use crate::jobs::Progress;
 use crate::surface::{MapRaster, Surface};
 
@@ -29,6 +30,16 @@ pub struct GroundPlane {
     pub point: DVec3,
     /// Its normal, upwards, of length 1.
     pub normal: DVec3,
+}
+
+/// The surface's height at a place, to the last digit: the highest there. `None` where there is none.
+pub fn ground_at(surface: &Surface, place: DVec2) -> Option<f64> {
+    let bounds = surface.bounds();
+    let down = Ray {
+        origin: place.extend(bounds.max.z + bounds.size().max_element().max(1.0)),
+        direction: DVec3::NEG_Z,
+    };
+    Some(surface.caster().ok()?.cast(&down)?.point.z)
 }
 
 impl Terrain {

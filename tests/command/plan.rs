@@ -194,7 +194,20 @@ fn what_was_flown_is_compared_with_its_mission() {
         );
     }
     fs::write(folder.path().join("poses.csv"), poses).unwrap();
-    let output = fragscale(&["flown", &flight, "--mission", &mission, "--format", "json"]);
+    // DJI's file has no place for a take-off without an elevation.
+    let refused = fragscale(&["flown", &flight, "--mission", &mission]);
+    let error = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(error.contains("say it: --take-off X,Y"), "{error}");
+    let output = fragscale(&[
+        "flown",
+        &flight,
+        "--mission",
+        &mission,
+        "--take-off",
+        "450020,5400020",
+        "--format",
+        "json",
+    ]);
     let notes = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(0), "{notes}");
     assert!(notes.contains("1 planned photos were not taken"), "{notes}");

@@ -3,19 +3,18 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use crate::cli::Answer;
 use crate::cli::flight_arguments::FlightArguments;
+use crate::cli::on_surface::places::place;
 use crate::cli::outputs::NamedAnswerArguments;
 use crate::exports::{self, FlownReport};
 use crate::fault::Fault;
 use crate::formats::{FileError, read_mission};
 use crate::geodesy::Crs;
-use crate::geometry::Ray;
 use crate::jobs::Progress;
-use crate::plan::{Flown, Taken, planned_poses};
-use crate::surface::Surface;
+use crate::plan::{Flown, Taken, ground_at, planned_poses};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct FlownArguments {
@@ -24,6 +23,9 @@ pub(in crate::cli) struct FlownArguments {
     /// The mission as it was planned: a file of any ground station that 'fragscale mission' reads.
     #[arg(long, value_name = "FILE")]
     mission: PathBuf,
+    /// Where the drone took off, in the world and on the surface, if that is not where the mission says.
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
+    take_off: Option<DVec2>,
     #[command(flatten)]
     answer: NamedAnswerArguments,
 }
@@ -45,9 +47,8 @@ pub(in crate::cli) fn flown(
         in_flight(Fault::new(what, "say it in flight.toml (world.crs)"))
     })?;
     let crs = Crs::understand(crs).map_err(in_flight)?;
-    let planned = planned_poses(&mission.mission, &crs, |place| {
-        ground(&parts.surface, place)
-    });
+    let ground = |place| ground_at(&parts.surface, place);
+    let planned = planned_poses(&mission.mission, &crs, arguments.take_off, ground);
     let planned = planned.map_err(in_mission)?;
     if planned.is_empty() {
         let what = "it has no photos to compare with";
@@ -85,15 +86,4 @@ pub(in crate::cli) fn flown(
     warnings.extend(mission.notes);
     warnings.extend(opened.all_warnings());
     Ok(Answer::new(text, warnings))
-}
-
-/// The surface's height at a place: the highest that a ray from above meets.
-fn ground(surface: &Surface, place: DVec2) -> Option<f64> {
-    let bounds = surface.bounds();
-    let over = bounds.max.z + bounds.size().max_element().max(1.0);
-    let down = Ray {
-        origin: place.extend(over),
-        direction: DVec3::NEG_Z,
-    };
-    Some(surface.caster().ok()?.cast(&down)?.point.z)
 }

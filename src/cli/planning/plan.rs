@@ -191,7 +191,7 @@ pub(in crate::cli) fn plan(
         None => None,
         Some(place) => {
             progress.stage("the way through the photos");
-            let ground = plan.terrain.height(place).ok_or_else(|| {
+            let ground = plan::ground_at(&parts.surface, place).ok_or_else(|| {
                 let what = "the take-off does not lie on the surface";
                 in_flight(Fault::new(what, "give a place on it, in its coordinates"))
             })?;
