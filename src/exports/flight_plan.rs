@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use crate::measured::{csv_of, percent, rows_of_text};
 use crate::numbers::significant_digits;
 use crate::units::LengthUnit;
-use fragscale_core::plan::{Plan, PlannedPhoto, Way};
+use fragscale_core::plan::{Pace, Plan, PlannedPhoto, Way};
 
 /// A plan, and how it is to be said.
 #[derive(Debug, Clone, Copy)]
@@ -19,10 +19,10 @@ pub struct PlanReport<'a> {
     pub scales: LengthUnit,
     /// The plan.
     pub plan: &'a Plan,
-    /// The way through its photos, where the take-off is known, and the metres a second on it.
-    pub way: Option<(&'a Way, f64)>,
-    /// Seconds that the drone stands still for a photo.
-    pub stop: f64,
+    /// The ways through its photos, one a battery; empty where the take-off is not known.
+    pub ways: &'a [Way],
+    /// How fast they are flown.
+    pub pace: Pace,
 }
 
 impl PlanReport<'_> {
@@ -31,9 +31,13 @@ impl PlanReport<'_> {
         pixels * self.scales.in_units_of(self.world)
     }
 
+    fn way_length(&self) -> f64 {
+        self.ways.iter().map(|way| way.length).sum()
+    }
+
     /// Seconds in the air.
-    fn seconds(&self, (way, speed): (&Way, f64)) -> f64 {
-        way.length * self.world.metres() / speed + self.stop * way.photos() as f64
+    fn seconds(&self) -> f64 {
+        self.ways.iter().map(|way| way.seconds(&self.pace)).sum()
     }
 }
 
@@ -133,10 +137,14 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
             },
         ),
     ];
-    if let Some(way) = report.way {
-        let length = format!("{} {world}", number(way.0.length));
-        let minutes = report.seconds(way) / 60.0;
-        said.push(("way", format!("{length}, {minutes:.0} min in the air")));
+    if !report.ways.is_empty() {
+        let length = format!("{} {world}", number(report.way_length()));
+        let minutes = report.seconds() / 60.0;
+        let mut way = format!("{length}, {minutes:.0} min in the air");
+        if report.ways.len() > 1 {
+            way += &format!(" with {} batteries", report.ways.len());
+        }
+        said.push(("way", way));
     }
     text + "\n" + &rows_of_text(&said)
 }
@@ -248,8 +256,12 @@ pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
         "area": area,
         "photographed": plan.cover.covered,
         "widest_gap": plan.cover.widest_gap,
-        "way_length": report.way.map(|(way, _)| way.length),
-        "seconds": report.way.map(|way| report.seconds(way)),
+        "ways": report.ways.iter().map(|way| json!({
+            "length": way.length,
+            "seconds": way.seconds(&report.pace),
+            "photos": way.points.iter().filter_map(|point| plan.photos.get(point.photo?))
+                .map(|photo| photo.name.as_str()).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
         "photos": photos,
         "refused": refused,
     });

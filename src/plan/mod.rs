@@ -49,7 +49,7 @@ pub use mission::{
 pub use patterns::Pattern;
 pub use terrain::{GroundPlane, Terrain, ground_at};
 pub use told::{Told, mission};
-pub use way::{Way, WayPoint};
+pub use way::{Pace, Way, WayPoint};
 pub use wish::{Size, Wish};
 
 use crate::camera::{Camera, Pose};

@@ -58,6 +58,59 @@ fn plan(surface: &Surface, half: f64, wish: Wish) -> Plan {
     Plan::new(surface, &camera(), square(half), wish, &Progress::default()).unwrap()
 }
 
+fn ways(plan: &Plan, take_off: DVec3, battery: Option<f64>) -> Result<Vec<Way>, Fault> {
+    let pace = Pace {
+        speed: 4.0,
+        stop: 3.0,
+        battery,
+    };
+    Way::through(plan, take_off, &pace)
+}
+
+/// Each battery lasts, with one photo more it would not, and every photo is taken once, in the one order.
+#[test]
+fn a_way_is_cut_where_the_battery_ends() {
+    let surface = surface(|_| 0.0);
+    let plan = plan(&surface, 60.0, wish(Pattern::Slope));
+    let take_off = DVec3::new(500_000.0 - 80.0, 5_000_000.0, 0.0);
+    let whole = ways(&plan, take_off, None).unwrap();
+    let cut = ways(&plan, take_off, Some(120.0)).unwrap();
+    assert!(cut.len() > 2, "{}", cut.len());
+    let pace = Pace {
+        speed: 4.0,
+        stop: 3.0,
+        battery: None,
+    };
+    let photos = |ways: &[Way]| -> Vec<usize> {
+        let points = ways.iter().flat_map(|way| &way.points);
+        points.filter_map(|point| point.photo).collect()
+    };
+    assert_eq!(photos(&cut), photos(&whole));
+    for way in &cut {
+        assert!(way.seconds(&pace) <= 120.0);
+        // The level parts, the climb and the photos, by hand.
+        let level: Vec<DVec2> = [take_off.truncate()]
+            .into_iter()
+            .chain(way.points.iter().map(|point| point.place.truncate()))
+            .chain([take_off.truncate()])
+            .collect();
+        let level: f64 = level.windows(2).map(|leg| leg[0].distance(leg[1])).sum();
+        let expected = (level + 2.0 * 20.0) / 4.0 + 3.0 * way.photos() as f64;
+        assert!(
+            (way.seconds(&pace) / expected - 1.0).abs() < 0.02,
+            "{expected}"
+        );
+    }
+    for way in &cut[..cut.len() - 1] {
+        assert!(way.seconds(&pace) > 120.0 - 3.0 - 2.0 * 24.0 / 4.0);
+    }
+    let error = ways(&plan, take_off, Some(20.0)).unwrap_err();
+    assert!(
+        error.what.contains("a battery does not last to photo"),
+        "{error}"
+    );
+}
+
 /// On a plane that falls by 3 in 4 to the north-east every photo looks along the one normal, from the distance
 /// f / s = 20, has the wished scale everywhere, and they lie edge to edge.
 #[test]
@@ -103,7 +156,9 @@ fn a_ridge_is_photographed_on_both_sides_and_flown_over() {
     };
     // Uphill is east on the western side.
     assert!(looks(90.0).count() > 4 && looks(270.0).count() > 4);
-    let way = Way::through(&plan, take_off);
+    let [way] = &ways(&plan, take_off, None).unwrap()[..] else {
+        panic!("one way");
+    };
     assert_eq!(way.photos(), plan.photos.len());
     assert!(way.safe_height >= 5.0);
     // Against the ridge itself, in steps of a decimetre.
@@ -196,7 +251,9 @@ fn no_wish_is_refused() {
 fn a_mission_is_told_in_degrees() {
     let surface = surface(|_| 100.0);
     let plan = plan(&surface, 20.0, wish(Pattern::Slope));
-    let way = Way::through(&plan, DVec3::new(500_000.0, 5_000_000.0 - 60.0, 97.0));
+    let way = ways(&plan, DVec3::new(500_000.0, 5_000_000.0 - 60.0, 97.0), None)
+        .unwrap()
+        .remove(0);
     let crs = Crs::understand("EPSG:32632").unwrap();
     let told = Told {
         name: "pile".to_owned(),

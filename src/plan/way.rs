@@ -2,12 +2,14 @@
 //!
 //! The way begins and ends at the take-off. Photos are in the order in which they were laid out, made shorter by
 //! 2-opt (Croes 1958) until no two legs are better swapped: deterministic, and a lawn-mower's rows stay rows, for
-//! they are short already. A leg that comes too near to the ground goes up first, over, and down: straight up and
+//! they are short already. Where one battery does not last, the way is cut: each piece goes out from the take-off and
+//! back to it. A leg that comes too near to the ground goes up first, over, and down: straight up and
 //! down is free, for the ground has one height at each place.
 
 use glam::DVec3;
 
 use super::Plan;
+use crate::fault::Fault;
 
 /// A place that the drone flies to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,9 +38,66 @@ const GAIN: f64 = 1e-9;
 /// Rounds of 2-opt; each goes over all pairs.
 const ROUNDS: usize = 40;
 
+/// What a battery has to last for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pace {
+    /// World units a second.
+    pub speed: f64,
+    /// Seconds that the drone stands still for a photo.
+    pub stop: f64,
+    /// Seconds in the air that a battery lasts; `None` where nobody asks.
+    pub battery: Option<f64>,
+}
+
 impl Way {
-    /// Through the photos of a plan, from a place on the ground and back.
-    pub fn through(plan: &Plan, take_off: DVec3) -> Self {
+    /// The ways through the photos of a plan, from a place on the ground and back: as many as batteries are needed.
+    ///
+    /// # Errors
+    /// Where a battery does not last for a single photo.
+    pub fn through(plan: &Plan, take_off: DVec3, pace: &Pace) -> Result<Vec<Self>, Fault> {
+        let places: Vec<DVec3> = plan.photos.iter().map(|photo| photo.pose.center).collect();
+        let order = order(take_off, &places);
+        let mut left = &order[..];
+        let mut ways = Vec::new();
+        while !left.is_empty() {
+            let lasts = |count: usize| {
+                let seconds = Self::over(plan, take_off, &left[..count]).seconds(pace);
+                pace.battery.is_none_or(|battery| seconds <= battery)
+            };
+            // The most photos that it lasts for: one more always takes longer.
+            let (mut most, mut too_many) = (0, left.len() + 1);
+            if lasts(left.len()) {
+                most = left.len();
+            }
+            while most < left.len() && too_many - most > 1 {
+                let middle = (most + too_many) / 2;
+                match lasts(middle) {
+                    true => most = middle,
+                    false => too_many = middle,
+                }
+            }
+            if most == 0 {
+                let name = left.first().and_then(|photo| plan.photos.get(*photo));
+                let name = name.map_or("", |photo| photo.name.as_str());
+                let what = format!("a battery does not last to photo {name} and back");
+                return Err(Fault::new(
+                    what,
+                    "take off nearer, fly faster, or leave it out of the area",
+                ));
+            }
+            ways.push(Self::over(plan, take_off, &left[..most]));
+            left = &left[most..];
+        }
+        Ok(ways)
+    }
+
+    /// Seconds in the air.
+    pub fn seconds(&self, pace: &Pace) -> f64 {
+        self.length / pace.speed + pace.stop * self.photos() as f64
+    }
+
+    /// Through these photos of a plan in this order.
+    fn over(plan: &Plan, take_off: DVec3, order: &[usize]) -> Self {
         let places: Vec<DVec3> = plan.photos.iter().map(|photo| photo.pose.center).collect();
         let clearance = plan.wish.clearance;
         let over = |from: DVec3, to: DVec3| {
@@ -47,13 +106,12 @@ impl Way {
                 .unwrap_or(f64::MIN);
             (highest + clearance).max(from.z).max(to.z)
         };
-        let order = order(take_off, &places);
         let ends = [order.first(), order.last()].map(|end| end.map(|photo| places[*photo]));
         let safe_height = (ends.into_iter().flatten())
             .map(|end| over(take_off, end))
             .fold(take_off.z + clearance, f64::max);
         let mut points: Vec<WayPoint> = Vec::new();
-        for photo in order {
+        for &photo in order {
             let to = places[photo];
             if let Some(last) = points.last()
                 && plan.terrain.is_leg_near(last.place, to, clearance)

@@ -19,7 +19,7 @@ use crate::formats::{FileError, read_camera};
 use crate::geodesy::Crs;
 use crate::jobs::Progress;
 use crate::opening::Opened;
-use crate::plan::{self, Drone, Pattern, Plan, Size, Told, Way, Wish};
+use crate::plan::{self, Drone, Pace, Pattern, Plan, Size, Told, Way, Wish};
 use crate::survey::Polygon;
 use crate::units::LengthUnit;
 
@@ -27,6 +27,8 @@ use crate::units::LengthUnit;
 const WITHIN: f64 = 0.1;
 /// Overlap of the survey where nobody says it.
 const SURVEY_OVERLAP: f64 = 0.7;
+/// Seconds for turning, the gimbal's way and the shot, beside the wait.
+const SHOT: f64 = 2.0;
 /// Degrees that every gimbal of a camera drone reaches.
 const GIMBAL: [f64; 2] = [-90.0, 0.0];
 
@@ -42,7 +44,7 @@ pub(in crate::cli) struct PlanArguments {
     within: Option<PixelScale>,
     /// Fly so high instead, in the world's unit: above the highest of the area, of the slope pattern from the
     /// ground.
-    #[arg(long, value_name = "LENGTH", conflicts_with = "scale")]
+    #[arg(long, value_name = "LENGTH", value_parser = positive, conflicts_with = "scale")]
     height: Option<f64>,
     /// How the photos lie.
     #[arg(long, value_enum, default_value_t)]
@@ -55,7 +57,7 @@ pub(in crate::cli) struct PlanArguments {
     tilt: f64,
     /// How far a photo's axis may lie off the normal of the ground, of the slope pattern, degrees: photos that are
     /// square in their strips share less with their neighbours.
-    #[arg(long, value_name = "DEGREES", default_value_t = 10.0)]
+    #[arg(long, value_name = "DEGREES", value_parser = positive, default_value_t = 10.0)]
     off_normal: f64,
     /// The corners of what is to be photographed, in the world, or a file with one a line; without it the pile
     /// that stands out of its floor.
@@ -71,17 +73,20 @@ pub(in crate::cli) struct PlanArguments {
     #[arg(long, value_name = "LOW,HIGH", value_parser = place, allow_hyphen_values = true)]
     gimbal: Option<DVec2>,
     /// The drone stays so far from the surface, in the world's unit.
-    #[arg(long, value_name = "LENGTH", default_value_t = 5.0)]
+    #[arg(long, value_name = "LENGTH", value_parser = positive, default_value_t = 5.0)]
     clearance: f64,
     /// Where the drone takes off and lands, in the world: on the surface, and heights of a mission count from there.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     take_off: Option<DVec2>,
     /// Metres a second between photos.
-    #[arg(long, value_name = "M/S", default_value_t = 4.0)]
+    #[arg(long, value_name = "M/S", value_parser = positive, default_value_t = 4.0)]
     speed: f64,
     /// Seconds that the drone waits at a photo, for the gimbal to settle.
-    #[arg(long, value_name = "SECONDS", default_value_t = 2.0)]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 2.0)]
     settle: f64,
+    /// Minutes in the air that a battery lasts: a longer way becomes several missions, NAME-battery-1 and so on.
+    #[arg(long, value_name = "MINUTES", value_parser = positive, requires = "take_off")]
+    battery: Option<f64>,
     /// Write the mission to this file, for the ground station that its ending names: .kmz (DJI), .plan
     /// (QGroundControl), .waypoints (Mission Planner), .csv (Litchi), .kml or .geojson. May be given several times.
     #[arg(long, value_name = "FILE", requires = "take_off")]
@@ -94,6 +99,13 @@ impl PlanArguments {
     fn drone(&self) -> Option<Drone> {
         Drone::named(self.drone.as_deref()?)
     }
+}
+
+/// A number above zero.
+fn positive(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.trim().parse().ok();
+    let number = number.filter(|number| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| "give a number above zero".to_owned())
 }
 
 fn drone_values() -> PossibleValuesParser {
@@ -187,15 +199,20 @@ pub(in crate::cli) fn plan(
     };
     let wish = wish(arguments, parts.unit);
     let plan = Plan::new(&parts.surface, &camera, area, wish, progress).map_err(in_flight)?;
-    let way = match arguments.take_off {
-        None => None,
+    let pace = Pace {
+        speed: arguments.speed / parts.unit.metres(),
+        stop: arguments.settle + SHOT,
+        battery: arguments.battery.map(|minutes| minutes * 60.0),
+    };
+    let ways = match arguments.take_off {
+        None => Vec::new(),
         Some(place) => {
             progress.stage("the way through the photos");
             let ground = plan::ground_at(&parts.surface, place).ok_or_else(|| {
                 let what = "the take-off does not lie on the surface";
                 in_flight(Fault::new(what, "give a place on it, in its coordinates"))
             })?;
-            Some(Way::through(&plan, place.extend(ground)))
+            Way::through(&plan, place.extend(ground), &pace).map_err(in_flight)?
         }
     };
     let report = PlanReport {
@@ -203,8 +220,8 @@ pub(in crate::cli) fn plan(
         world: parts.unit,
         scales: arguments.scale.map_or(parts.unit, |scale| scale.unit),
         plan: &plan,
-        way: way.as_ref().map(|way| (way, arguments.speed)),
-        stop: arguments.settle,
+        ways: &ways,
+        pace,
     };
     let text = arguments.answer.deliver(
         &outputs,
@@ -214,21 +231,32 @@ pub(in crate::cli) fn plan(
         exports::plan_json,
     )?;
     warnings.extend(exports::plan_warnings(&report));
-    if let (Some(way), false) = (&way, arguments.mission.is_empty()) {
+    if !arguments.mission.is_empty() && !ways.is_empty() {
         let crs = opened.crs.as_deref().ok_or_else(|| {
             let what = "nobody says in which coordinate system its places are";
             in_flight(Fault::new(what, "say it in flight.toml (world.crs)"))
         })?;
         let crs = Crs::understand(crs).map_err(in_flight)?;
-        let told = Told {
-            name: parts.name.clone(),
-            drone: arguments.drone().and_then(|drone| drone.codes),
-            speed: arguments.speed,
-            settle: arguments.settle,
-        };
-        let mission = plan::mission(&plan, way, &crs, &told).map_err(in_flight)?;
-        for path in &arguments.mission {
-            warnings.extend(outputs.write_mission(&mission, path)?);
+        for (way, number) in ways.iter().zip(1..) {
+            let battery = (ways.len() > 1).then(|| format!("-battery-{number}"));
+            let battery = battery.unwrap_or_default();
+            let told = Told {
+                name: format!("{}{battery}", parts.name),
+                drone: arguments.drone().and_then(|drone| drone.codes),
+                speed: arguments.speed,
+                settle: arguments.settle,
+            };
+            let mission = plan::mission(&plan, way, &crs, &told).map_err(in_flight)?;
+            for path in &arguments.mission {
+                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+                let ending = path.extension().unwrap_or_default().to_string_lossy();
+                let path = path.with_file_name(format!("{stem}{battery}.{ending}"));
+                for note in outputs.write_mission(&mission, &path)? {
+                    if !warnings.contains(&note) {
+                        warnings.push(note);
+                    }
+                }
+            }
         }
     }
     warnings.extend(opened.all_warnings());
