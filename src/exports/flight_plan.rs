@@ -46,7 +46,8 @@ struct Row {
     name: String,
     tilt: f64,
     pan: f64,
-    distance: f64,
+    /// Along the axis, to the surface.
+    distance: Option<f64>,
     /// Least, greatest, top and bottom of the fitted line.
     scales: [Option<f64>; 4],
     off_line: Option<f64>,
@@ -63,7 +64,7 @@ fn row(report: &PlanReport<'_>, number: usize, photo: &PlannedPhoto) -> Row {
         name: photo.name.clone(),
         tilt: photo.tilt,
         pan: photo.pan,
-        distance: photo.distance,
+        distance: forecast.and_then(|forecast| forecast.depth),
         scales: [
             scale(forecast.map(|forecast| forecast.least)),
             scale(forecast.map(|forecast| forecast.greatest)),
@@ -120,7 +121,7 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
             row.name,
             row.tilt,
             row.pan,
-            number(row.distance),
+            maybe(row.distance),
             row.shared * 100.0,
             row.troubles
         );
@@ -139,8 +140,8 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
     ];
     if !report.ways.is_empty() {
         let length = format!("{} {world}", number(report.way_length()));
-        let minutes = report.seconds() / 60.0;
-        let mut way = format!("{length}, {minutes:.0} min in the air");
+        let minutes = significant_digits(report.seconds() / 60.0, 2);
+        let mut way = format!("{length}, about {minutes} min in the air");
         if report.ways.len() > 1 {
             way += &format!(" with {} batteries", report.ways.len());
         }
@@ -160,6 +161,12 @@ pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
         said.push(format!(
             "{troubled} of {} photos do not hold what was asked for; the table says why",
             plan.photos.len()
+        ));
+    }
+    if plan.cover.off_surface > 0.01 {
+        let off = percent(plan.cover.off_surface);
+        said.push(format!(
+            "{off} of the area lies beside the surface or in holes of it: no photo is planned there"
         ));
     }
     for refused in &plan.refused {
@@ -187,28 +194,32 @@ pub fn plan_csv(report: &PlanReport<'_>) -> Result<String, csv::Error> {
         format!("x_{world}"),
         format!("y_{world}"),
         format!("z_{world}"),
-        "tilt".to_owned(),
-        "pan".to_owned(),
+        "tilt_degrees".to_owned(),
+        "pan_degrees".to_owned(),
         format!("distance_{world}"),
         format!("least_px_per_{scales}"),
         format!("greatest_px_per_{scales}"),
         format!("top_px_per_{scales}"),
         format!("bottom_px_per_{scales}"),
         "off_line_percent".to_owned(),
-        "shows".to_owned(),
-        "shared".to_owned(),
-        "off_normal".to_owned(),
+        "shows_percent".to_owned(),
+        "shared_percent".to_owned(),
+        "off_normal_degrees".to_owned(),
         "troubles".to_owned(),
     ];
     let maybe = |number: Option<f64>| number.map_or(String::new(), |number| number.to_string());
     let lines = rows(report).zip(&report.plan.photos).map(|(row, photo)| {
         let [x, y, z] = photo.pose.center.to_array().map(|place| place.to_string());
-        let numbers = [row.tilt, row.pan, row.distance].map(|number| number.to_string());
+        let angles = [row.tilt, row.pan].map(|number| number.to_string());
         let mut line = vec![row.name, x, y, z];
-        line.extend(numbers);
+        line.extend(angles);
+        line.push(maybe(row.distance));
         line.extend(row.scales.map(maybe));
         line.push(maybe(row.off_line));
-        line.extend([row.shows, row.shared, photo.off_normal].map(|number| number.to_string()));
+        line.extend(
+            [100.0 * row.shows, 100.0 * row.shared, photo.off_normal]
+                .map(|number| number.to_string()),
+        );
         line.push(row.troubles);
         line
     });
@@ -252,6 +263,9 @@ pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
         "flight": report.flight,
         "unit": report.world.symbol(),
         "scale_unit": report.scales.symbol(),
+        "overlap": plan.wish.overlap,
+        "clearance": plan.wish.clearance,
+        "take_off": plan.wish.take_off.map(|place| place.to_array()),
         "pattern": plan.wish.pattern.as_str(),
         "area": area,
         "photographed": plan.cover.covered,

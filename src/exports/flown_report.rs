@@ -119,10 +119,10 @@ pub fn flown_csv(report: &FlownReport<'_>) -> Result<String, csv::Error> {
         format!("x_{unit}"),
         format!("y_{unit}"),
         format!("z_{unit}"),
-        "tilt".to_owned(),
-        "pan".to_owned(),
-        "turn".to_owned(),
-        "shared".to_owned(),
+        "tilt_degrees".to_owned(),
+        "pan_degrees".to_owned(),
+        "turn_degrees".to_owned(),
+        "shared_percent".to_owned(),
     ];
     let lines = report.rows().map(|(plan, found)| {
         let mut line = vec![plan.name.clone()];
@@ -136,7 +136,7 @@ pub fn flown_csv(report: &FlownReport<'_>) -> Result<String, csv::Error> {
                 line.push(
                     residual
                         .shared
-                        .map_or(String::new(), |shared| shared.to_string()),
+                        .map_or(String::new(), |shared| (100.0 * shared).to_string()),
                 );
             }
         }

@@ -109,6 +109,9 @@ fn is_text(beginning: &[u8]) -> bool {
         || begins("{\"between\":{\"df\":")
         // Times.
         || begins("{\"unit\":\"min\",\"columns\":[")
+        // A plan of photos, and what was flown of it.
+        || begins("{\n  \"area\": [\n    [\n")
+        || begins("{\n  \"flight\": \"") && has("\n  \"photos\": [\n    {\n      \"center\": [")
         // Missions: QGroundControl's, GeoJSON, KML.
         || begins("{\n  \"fileType\": \"Plan\",\n  \"groundStation\": \"fragscale\",")
         || begins("{\"type\":\"FeatureCollection\",\"fragscale\":\"mission")
@@ -134,6 +137,9 @@ fn is_csv(first: &str) -> bool {
         || first.starts_with("distance_") && first.ends_with(",part")
         || first.starts_with("flight,base,fill_")
         || first.starts_with("point,x_") && first.contains(",y_") && first.contains(",z_")
+        // A plan of photos, and what was flown of it.
+        || first.starts_with("photo,x_") && first.ends_with(",off_normal_degrees,troubles")
+        || first.starts_with("planned,photo,x_")
         // Of the window's frames.
         || first.starts_with("start_s,logic,panels,upload,draw,commands,")
 }
@@ -141,8 +147,11 @@ fn is_csv(first: &str) -> bool {
 /// The first lines of our tables for people.
 fn is_table(first: &str) -> bool {
     let has = |part: &str| first.contains(part);
-    // Scales.
-    has(": scales of the ") && has(" in pixels per ")
+    // A plan of photos, and what was flown of it.
+    has(": plan of ") && has(" photos; scales in px/")
+        || has(": flown less planned, lengths in ")
+        // Scales.
+        || has(": scales of the ") && has(" in pixels per ")
         // Fitted functions.
         || has(" fitted to ") && has(" points") && has("; sizes in ")
         // A comparison.

@@ -14,8 +14,10 @@ use crate::survey::Polygon;
 /// How photos cover an area.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cover {
-    /// The share of the area that some photo shows.
+    /// The share of the area that some photo shows; what lies beside the surface nobody shows.
     pub covered: f64,
+    /// The share of the area that lies beside the surface or in holes of it.
+    pub off_surface: f64,
     /// The diameter of the largest circle inside the area that no photo shows, world units.
     pub widest_gap: f64,
     /// Where its middle lies.
@@ -55,12 +57,14 @@ impl Cover {
             .map(|(inside, count)| *inside && *count == 0)
             .collect();
         let in_gaps = is_gap.iter().filter(|gap| **gap).count();
+        let pixel_area = raster.pixel * raster.pixel;
         let depths = squared_distances_to_edge(&is_gap, columns);
         let deepest = (depths.iter().zip(0..)).max_by(|a, b| a.0.total_cmp(b.0));
         let (deepest, place) = deepest.map_or((0.0, 0_usize), |(depth, place)| (*depth, place));
         let middle = DVec2::new((place % columns) as f64, (place / columns) as f64) + 0.5;
         Self {
-            covered: 1.0 - in_gaps as f64 / in_area.max(1) as f64,
+            covered: ((in_area - in_gaps) as f64 * pixel_area / area.area()).min(1.0),
+            off_surface: (1.0 - in_area as f64 * pixel_area / area.area()).max(0.0),
             widest_gap: 2.0 * deepest.sqrt() * raster.pixel,
             gap_at: (deepest > 0.0).then(|| raster.world_from_pixel(middle)),
             shared,

@@ -18,6 +18,8 @@ pub struct Forecast {
     pub bulk: [f64; 2],
     /// The best line; `None` where less than half of the photo shows the surface.
     pub fitted: Option<FittedScale>,
+    /// From the camera to what its middle shows, along the axis, world units; `None` where that is nothing.
+    pub depth: Option<f64>,
     /// The share of the photo that shows the surface.
     pub covered: f64,
 }
@@ -52,6 +54,7 @@ impl Forecast {
             greatest,
             bulk,
             fitted: FittedScale::of(&field),
+            depth: field.depth_at(grid.columns / 2, grid.rows / 2),
             covered: scales.len() as f64 / grid.len() as f64,
         }))
     }

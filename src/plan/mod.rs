@@ -101,7 +101,7 @@ pub struct Refused {
 /// Where to fly.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// The photos, in the order in which they were laid out.
+    /// The photos, in the order in which they are flown.
     pub photos: Vec<PlannedPhoto>,
     /// Those that cannot be taken.
     pub refused: Vec<Refused>,
@@ -134,7 +134,11 @@ impl Plan {
         is_not_too_many(camera, &area, &wish, distance)?;
         progress.stage("looking at the ground");
         let terrain = terrain_of(surface, camera, &area, (&wish, distance), progress)?;
+        // Pixels are looked at in their middles; the highest place of a slope is at a corner.
+        let corners = area.corners().iter();
+        let highest = corners.filter_map(|corner| ground_at(surface, *corner));
         let ground = Ground {
+            highest_corner: highest.reduce(f64::max),
             camera,
             area: &area,
             terrain: &terrain,
@@ -155,15 +159,24 @@ impl Plan {
         photos.retain(|photo| {
             let is_near = terrain.is_near(photo.pose.center, wish.clearance);
             if is_near {
-                let why = format!(
-                    "the drone would come nearer than {} to the ground",
-                    wish.clearance
-                );
+                let why = "the drone would come nearer to the ground than the clearance".to_owned();
                 let place = photo.target.truncate();
                 refused.push(Refused { place, why });
             }
             !is_near
         });
+        if photos.is_empty() {
+            return Err(none(&refused));
+        }
+        // In the order in which they are flown, so that a table is read beside the drone.
+        let places: Vec<DVec3> = photos.iter().map(|photo| photo.pose.center).collect();
+        let begin = match wish.take_off {
+            Some(place) => place.extend(places[0].z),
+            None => places[0],
+        };
+        let mut photos: Vec<PlannedPhoto> = (way::order(begin, &places).into_iter())
+            .map(|photo| photos[photo].clone())
+            .collect();
         for (photo, number) in photos.iter_mut().zip(1..) {
             photo.name = format!("P{number:03}");
         }
@@ -256,6 +269,14 @@ fn distance(camera: &Camera, wish: &Wish) -> Result<f64, Fault> {
         );
     }
     Ok(distance)
+}
+
+fn none(refused: &[Refused]) -> Fault {
+    let what = match refused.first() {
+        None => "no photo of the area can be planned".to_owned(),
+        Some(first) => format!("no photo of the area can be taken: {}", first.why),
+    };
+    Fault::new(what, "try another scale, another area, or another drone")
 }
 
 fn too_many() -> Fault {

@@ -71,6 +71,8 @@ pub(super) struct Ground<'a> {
     pub(super) area: &'a Polygon,
     pub(super) terrain: &'a Terrain,
     pub(super) wish: &'a Wish,
+    /// The highest that the surface is at a corner of the area.
+    pub(super) highest_corner: Option<f64>,
     /// The distance along the axis, world units.
     pub(super) distance: f64,
 }
@@ -167,11 +169,18 @@ impl Ground<'_> {
     /// The photo whose middle shows a point from the distance, by tilt and pan in degrees.
     fn looking_at(&self, target: DVec3, angles: [f64; 2], ground: GroundPlane) -> PlannedPhoto {
         let camera = self.camera;
+        // A height above all is one: aslant the way to it is longer.
+        let distance = match (self.wish.size, self.wish.pattern) {
+            (Size::Distance(height), Pattern::Paper | Pattern::Survey) => {
+                height / angles[0].to_radians().sin()
+            }
+            _ => self.distance,
+        };
         let middle = DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
         let direction = camera.direction_undistorted(middle);
         let direction = direction / direction.z;
         let level = Pose::from_tilt_pan(DVec3::ZERO, angles);
-        let center = target - level.rotation * direction * self.distance;
+        let center = target - level.rotation * direction * distance;
         let axis = level.rotation * DVec3::Z;
         PlannedPhoto {
             name: String::new(),
@@ -179,7 +188,7 @@ impl Ground<'_> {
             tilt: angles[0],
             pan: angles[1].rem_euclid(360.0),
             target,
-            distance: self.distance,
+            distance,
             off_normal: (-axis).angle_between(ground.normal).to_degrees(),
             // Aslant footprints are longer.
             reach: self.footprint().length() / axis.z.abs().max(0.3),
@@ -276,7 +285,9 @@ impl Ground<'_> {
         let heights: Vec<f64> = inside.map(|point| point.z).collect();
         match self.wish.size {
             Size::Scale { .. } => heights.iter().sum::<f64>() / heights.len().max(1) as f64,
-            Size::Distance(_) => heights.iter().copied().fold(f64::MIN, f64::max),
+            Size::Distance(_) => {
+                (heights.iter().copied()).fold(self.highest_corner.unwrap_or(f64::MIN), f64::max)
+            }
         }
     }
 

@@ -1,6 +1,8 @@
 //! The surface as a drone's pilot needs it: heights on a raster, the plane that the ground is near a place, and how
 //! near a point in the air is to it.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::fault::Fault;
@@ -86,20 +88,6 @@ impl Terrain {
         (!height.is_nan()).then(|| place.extend(height))
     }
 
-    /// The surface's height in the pixel of a place.
-    pub fn height(&self, place: DVec2) -> Option<f64> {
-        let [column, row] = self.pixel(place)?;
-        Some(self.point(column, row)?.z)
-    }
-
-    fn pixel(&self, place: DVec2) -> Option<[u32; 2]> {
-        let at = self.raster.pixel_from_world(place);
-        let size = DVec2::new(f64::from(self.raster.columns), f64::from(self.raster.rows));
-        let inside = at.cmpge(DVec2::ZERO).all() && at.cmplt(size).all();
-        // Within u32: it is inside.
-        inside.then_some([at.x as u32, at.y as u32])
-    }
-
     /// The pixels with heights whose middles lie at most `reach` from a place along both axes.
     pub(super) fn around(&self, place: DVec2, reach: f64) -> impl Iterator<Item = DVec3> {
         let corner = |sign: f64| {
@@ -145,13 +133,16 @@ impl Terrain {
         })
     }
 
-    /// Whether a point in the air is nearer than `clearance` to the surface, or below it.
+    /// Whether a point in the air is nearer than `clearance` to the ground, or in it. The ground is solid from each
+    /// pixel's height downwards, so that the face of a wall between two pixels is as near as the wall; pixels count as
+    /// near as their nearest corner.
     pub fn is_near(&self, point: DVec3, clearance: f64) -> bool {
-        let below = self.height(point.truncate());
-        below.is_some_and(|z| point.z < z + clearance)
-            || self
-                .around(point.truncate(), clearance)
-                .any(|of_surface| of_surface.distance(point) < clearance)
+        let corner = self.raster.pixel * FRAC_1_SQRT_2;
+        self.around(point.truncate(), clearance + corner)
+            .any(|top| {
+                let beside = (top.truncate().distance(point.truncate()) - corner).max(0.0);
+                beside.hypot((point.z - top.z).max(0.0)) < clearance
+            })
     }
 
     /// The highest of the surface within `reach` of the line between two places; `None` where there is none.

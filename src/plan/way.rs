@@ -1,6 +1,7 @@
 //! In which order photos are taken, and which climbs keep the drone off the ground between them.
 //!
-//! The way begins and ends at the take-off. Photos are in the order in which they were laid out, made shorter by
+//! The way begins and ends at the take-off, and goes up to a safe height before the first photo and behind the last: as
+//! stops of their own, for some ground stations know no such height, and fly straight. Photos are in the order in which they were laid out, made shorter by
 //! 2-opt (Croes 1958) until no two legs are better swapped: deterministic, and a lawn-mower's rows stay rows, for
 //! they are short already. Where one battery does not last, the way is cut: each piece goes out from the take-off and
 //! back to it. A leg that comes too near to the ground goes up first, over, and down: straight up and
@@ -55,8 +56,7 @@ impl Way {
     /// # Errors
     /// Where a battery does not last for a single photo.
     pub fn through(plan: &Plan, take_off: DVec3, pace: &Pace) -> Result<Vec<Self>, Fault> {
-        let places: Vec<DVec3> = plan.photos.iter().map(|photo| photo.pose.center).collect();
-        let order = order(take_off, &places);
+        let order: Vec<usize> = (0..plan.photos.len()).collect();
         let mut left = &order[..];
         let mut ways = Vec::new();
         while !left.is_empty() {
@@ -111,9 +111,16 @@ impl Way {
             .map(|end| over(take_off, end))
             .fold(take_off.z + clearance, f64::max);
         let mut points: Vec<WayPoint> = Vec::new();
+        // Where the photo is not taken from there anyway.
+        let above = |photo: usize| {
+            let place = places[photo].truncate().extend(safe_height);
+            (place != places[photo]).then_some(WayPoint { place, photo: None })
+        };
+        points.extend(order.first().and_then(|photo| above(*photo)));
         for &photo in order {
             let to = places[photo];
             if let Some(last) = points.last()
+                && last.photo.is_some()
                 && plan.terrain.is_leg_near(last.place, to, clearance)
             {
                 let height = over(last.place, to);
@@ -127,14 +134,11 @@ impl Way {
             let photo = Some(photo);
             points.push(WayPoint { place: to, photo });
         }
+        points.extend(order.last().and_then(|photo| above(*photo)));
         let up = take_off.truncate().extend(safe_height);
-        let above =
-            |end: Option<&WayPoint>| end.map(|end| end.place.truncate().extend(safe_height));
         let all: Vec<DVec3> = [take_off, up]
             .into_iter()
-            .chain(above(points.first()))
             .chain(points.iter().map(|point| point.place))
-            .chain(above(points.last()))
             .chain([up, take_off])
             .collect();
         Self {
@@ -155,7 +159,7 @@ impl Way {
 }
 
 /// The order of places on a short way that begins and ends at `from`.
-fn order(from: DVec3, places: &[DVec3]) -> Vec<usize> {
+pub(super) fn order(from: DVec3, places: &[DVec3]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..places.len()).collect();
     let at = |order: &[usize], place: usize| {
         let before_all = place == 0 || place > order.len();

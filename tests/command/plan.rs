@@ -85,10 +85,18 @@ fn a_plan_becomes_missions_that_say_the_same() {
             let words = line.split([' ', ',']);
             words.skip(1).filter_map(|word| word.parse().ok()).collect()
         };
-        let lines = told.lines().filter(|line| line.contains("  gimbal "));
+        let lines = told.lines().filter(|line| line.contains("  photo"));
         lines.map(numbers).collect::<Vec<_>>()
     });
     assert_eq!(stops[0].len(), photos.len());
+    // The drone's own camera: its focal length over the scale, 50 pixels a metre.
+    let focal = 5280_f64.hypot(3956.0) / 2.0 / 42_f64.to_radians().tan();
+    for photo in photos {
+        assert!(
+            (photo["distance"].as_f64().unwrap() / (focal / 50.0) - 1.0).abs() < 1e-3,
+            "{photo}"
+        );
+    }
     for other in &stops[1..] {
         assert_eq!(other.len(), photos.len());
         for (ours, theirs) in stops[0].iter().zip(other) {
@@ -101,6 +109,32 @@ fn a_plan_becomes_missions_that_say_the_same() {
                 "{ours:?} {theirs:?}"
             );
         }
+    }
+    // The same again writes over its own; .waypoints and Litchi's CSV bear no mark.
+    let table = path("plan.csv");
+    for _ in 0..2 {
+        let again = fragscale(&[
+            "plan",
+            &flight,
+            "--drone",
+            "mavic-3e",
+            "--scale",
+            "0.5 px/cm",
+            "--area",
+            area,
+            "--take-off",
+            "450020,5400020",
+            "--mission",
+            &missions[0],
+            "-o",
+            &table,
+        ]);
+        assert_eq!(
+            again.status.code(),
+            Some(0),
+            "{}",
+            String::from_utf8_lossy(&again.stderr)
+        );
     }
     // A take-off beside the surface has no height to count from.
     let off = [
@@ -143,6 +177,25 @@ fn what_makes_no_plan_is_one_line() {
     let output = fragscale(&["plan", &cloud, "--drone", "mavic-3e", "--scale", "1 px/cm"]);
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(error.contains("nobody says in which unit"), "{error}");
+    let area = "450060,5400060;450140,5400060;450140,5400140";
+    let mut said = vec![
+        "plan", &cloud, "--drone", "mavic-3e", "--scale", "1 px/cm", "--unit", "m",
+    ];
+    said.extend(["--area", area]);
+    let output = fragscale(&said);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    said[5] = "1e-9 px/cm";
+    let output = fragscale(&said);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        error.contains("no photo of the area can be taken"),
+        "{error}"
+    );
     let error = error_of(&with(&["--scale", "1 px/cm", "--area", "0,0;1,0;1,1"]), 1);
     assert!(error.contains("off the surface"), "{error}");
     error_of(&with(&["--scale", "twenty"]), 2);

@@ -6,7 +6,7 @@ use crate::units::LengthUnit;
 
 /// A length with its unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Length {
+pub(in crate::cli) struct Length {
     value: f64,
     unit: LengthUnit,
 }
@@ -37,7 +37,7 @@ impl FromStr for Length {
 
 impl Length {
     /// How many of these units it is.
-    pub(super) fn in_units_of(self, unit: LengthUnit) -> f64 {
+    pub(in crate::cli) fn in_units_of(self, unit: LengthUnit) -> f64 {
         self.value * self.unit.in_units_of(unit)
     }
 }

@@ -7,11 +7,12 @@ use clap::Args;
 
 use crate::cli::Answer;
 use crate::cli::outputs::Force;
+use crate::cli::planning::plan::drone_values;
 use crate::exports::write_mission;
 use crate::fault::one_line;
 use crate::files::Inputs;
 use crate::formats::{MissionFile, read_mission};
-use crate::plan::{Finish, Height, Mission};
+use crate::plan::{Drone, Finish, Height, Mission};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct MissionArguments {
@@ -21,16 +22,22 @@ pub(in crate::cli) struct MissionArguments {
     /// .geojson. More stops than it takes become several files.
     #[arg(long, value_name = "FILE")]
     to: Option<PathBuf>,
+    /// The drone that flies it, where the file does not say it: DJI's files need one.
+    #[arg(long, value_name = "NAME", value_parser = drone_values())]
+    drone: Option<String>,
     #[command(flatten)]
     force: Force,
 }
 
 pub(in crate::cli) fn mission(arguments: &MissionArguments) -> Result<Answer, String> {
     let MissionFile {
-        mission,
+        mut mission,
         format,
         notes: mut warnings,
     } = read_mission(&arguments.file).map_err(|e| e.to_string())?;
+    if let Some(drone) = arguments.drone.as_deref().and_then(Drone::named) {
+        mission.drone = drone.codes;
+    }
     let mut text = told(&mission, format);
     if let Some(to) = &arguments.to {
         let inputs = Inputs::of([&arguments.file]);
@@ -66,7 +73,7 @@ fn told(mission: &Mission, format: &str) -> String {
         );
     }
     if let Some(height) = mission.safe_height {
-        let _ = writeln!(text, "climbs to: {height} m above it first");
+        let _ = writeln!(text, "climbs to: {height:.2} m above it first");
     }
     if let Some(speed) = mission.speed {
         let _ = writeln!(text, "speed: {speed} m/s");

@@ -10,6 +10,7 @@ use glam::DVec2;
 use crate::camera::Camera;
 use crate::cli::Answer;
 use crate::cli::flight_arguments::FlightArguments;
+use crate::cli::of_photos::length::Length;
 use crate::cli::on_surface::places::{place, places};
 use crate::cli::outputs::NamedAnswerArguments;
 use crate::exports::{self, MissionFormat, PlanReport};
@@ -29,6 +30,8 @@ const WITHIN: f64 = 0.1;
 const SURVEY_OVERLAP: f64 = 0.7;
 /// Seconds for turning, the gimbal's way and the shot, beside the wait.
 const SHOT: f64 = 2.0;
+/// How hard a drone brakes and starts, metres a second squared.
+const PULL: f64 = 2.0;
 /// Degrees that every gimbal of a camera drone reaches.
 const GIMBAL: [f64; 2] = [-90.0, 0.0];
 
@@ -42,10 +45,9 @@ pub(in crate::cli) struct PlanArguments {
     /// How far it may be off anywhere in a photo, as '2 px/cm'; else a tenth of it.
     #[arg(long, value_name = "N px/UNIT", requires = "scale")]
     within: Option<PixelScale>,
-    /// Fly so high instead, in the world's unit: above the highest of the area, of the slope pattern from the
-    /// ground.
-    #[arg(long, value_name = "LENGTH", value_parser = positive, conflicts_with = "scale")]
-    height: Option<f64>,
+    /// Fly so high instead, as 30m: above the highest of the area, of the slope pattern from the ground.
+    #[arg(long, value_name = "LENGTH", conflicts_with = "scale")]
+    height: Option<Length>,
     /// How the photos lie.
     #[arg(long, value_enum, default_value_t)]
     pattern: PhotoPattern,
@@ -63,6 +65,12 @@ pub(in crate::cli) struct PlanArguments {
     /// that stands out of its floor.
     #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
     area: Option<String>,
+    /// The unit of the surface's coordinates, where nobody says it: m, ft, ...
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<LengthUnit>,
+    /// The coordinate system of the surface, where nobody says it, for a mission: EPSG:n, WKT or a PROJ text.
+    #[arg(long, value_name = "CRS", allow_hyphen_values = true)]
+    crs: Option<String>,
     /// The drone that is to fly: its camera, its gimbal, and DJI's numbers for its mission.
     #[arg(long, value_name = "NAME", value_parser = drone_values())]
     drone: Option<String>,
@@ -72,9 +80,9 @@ pub(in crate::cli) struct PlanArguments {
     /// The gimbal's lowest and highest pitch in degrees, -90 straight down; else the drone's, or -90 to 0.
     #[arg(long, value_name = "LOW,HIGH", value_parser = place, allow_hyphen_values = true)]
     gimbal: Option<DVec2>,
-    /// The drone stays so far from the surface, in the world's unit.
-    #[arg(long, value_name = "LENGTH", value_parser = positive, default_value_t = 5.0)]
-    clearance: f64,
+    /// The drone stays so far from the surface.
+    #[arg(long, value_name = "LENGTH", default_value = "5m")]
+    clearance: Length,
     /// Where the drone takes off and lands, in the world: on the surface, and heights of a mission count from there.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     take_off: Option<DVec2>,
@@ -108,7 +116,7 @@ fn positive(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "give a number above zero".to_owned())
 }
 
-fn drone_values() -> PossibleValuesParser {
+pub(super) fn drone_values() -> PossibleValuesParser {
     let values = Drone::ALL.map(|drone| PossibleValue::new(drone.name).help(drone.title));
     PossibleValuesParser::new(values)
 }
@@ -175,11 +183,18 @@ pub(in crate::cli) fn plan(
     outputs.read(&opened.read)?;
     let in_flight = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
     let parts = opened.flight.parts();
-    if !parts.unit_known {
-        let what = "nobody says in which unit its coordinates are";
-        let remedy = "say it in flight.toml (world.unit), or georeference it";
-        return Err(in_flight(Fault::new(what, remedy)));
+    if let Some(gimbal) = arguments.gimbal.filter(|gimbal| gimbal.x > gimbal.y) {
+        return Err(format!(
+            "gimbal: {} is above {}; give the lowest pitch first",
+            gimbal.x, gimbal.y
+        ));
     }
+    let unit = arguments.unit.or(parts.unit_known.then_some(parts.unit));
+    let Some(unit) = unit else {
+        let what = "nobody says in which unit its coordinates are";
+        let remedy = "say it: --unit m; or world.unit in flight.toml";
+        return Err(in_flight(Fault::new(what, remedy)));
+    };
     let camera = camera(arguments, &opened)?;
     let mut warnings = Vec::new();
     if arguments.camera.is_none() && arguments.drone.is_some() {
@@ -194,14 +209,27 @@ pub(in crate::cli) fn plan(
         }
         None => {
             progress.stage("looking for the pile");
-            plan::pile(&parts.surface, progress).map_err(in_flight)?
+            let pile = plan::pile(&parts.surface, progress).map_err(in_flight)?;
+            let (min, max) = pile
+                .corners()
+                .iter()
+                .fold((DVec2::MAX, DVec2::MIN), |(min, max), c| {
+                    (min.min(*c), max.max(*c))
+                });
+            let (size, middle) = (max - min, (min + max) / 2.0);
+            warnings.push(format!(
+                "the area is the pile that was found, {:.1} x {:.1} {} around ({:.1}, {:.1}); --area takes another",
+                size.x, size.y, unit, middle.x, middle.y
+            ));
+            pile
         }
     };
-    let wish = wish(arguments, parts.unit);
+    let wish = wish(arguments, unit);
     let plan = Plan::new(&parts.surface, &camera, area, wish, progress).map_err(in_flight)?;
     let pace = Pace {
-        speed: arguments.speed / parts.unit.metres(),
-        stop: arguments.settle + SHOT,
+        speed: arguments.speed / unit.metres(),
+        // Braking and starting again take as long as the speed at an even pull.
+        stop: arguments.settle + SHOT + arguments.speed / PULL,
         battery: arguments.battery.map(|minutes| minutes * 60.0),
     };
     let ways = match arguments.take_off {
@@ -217,8 +245,8 @@ pub(in crate::cli) fn plan(
     };
     let report = PlanReport {
         flight: &parts.name,
-        world: parts.unit,
-        scales: arguments.scale.map_or(parts.unit, |scale| scale.unit),
+        world: unit,
+        scales: arguments.scale.map_or(unit, |scale| scale.unit),
         plan: &plan,
         ways: &ways,
         pace,
@@ -232,10 +260,17 @@ pub(in crate::cli) fn plan(
     )?;
     warnings.extend(exports::plan_warnings(&report));
     if !arguments.mission.is_empty() && !ways.is_empty() {
-        let crs = opened.crs.as_deref().ok_or_else(|| {
-            let what = "nobody says in which coordinate system its places are";
-            in_flight(Fault::new(what, "say it in flight.toml (world.crs)"))
-        })?;
+        let crs = arguments
+            .crs
+            .as_deref()
+            .or(opened.crs.as_deref())
+            .ok_or_else(|| {
+                let what = "nobody says in which coordinate system its places are";
+                in_flight(Fault::new(
+                    what,
+                    "say it: --crs EPSG:n; or world.crs in flight.toml",
+                ))
+            })?;
         let crs = Crs::understand(crs).map_err(in_flight)?;
         for (way, number) in ways.iter().zip(1..) {
             let battery = (ways.len() > 1).then(|| format!("-battery-{number}"));
@@ -268,6 +303,9 @@ fn camera(arguments: &PlanArguments, opened: &Opened) -> Result<Camera, String> 
     if let Some(path) = &arguments.camera {
         return read_camera(path).map_err(|error| error.to_string());
     }
+    if let Some(drone) = arguments.drone() {
+        return Ok(drone.camera());
+    }
     opened
         .flight
         .parts()
@@ -277,7 +315,7 @@ fn camera(arguments: &PlanArguments, opened: &Opened) -> Result<Camera, String> 
         .ok_or_else(|| {
             let fault = Fault::new(
                 "it has no camera",
-                "give the one that is to fly: --camera FILE",
+                "say which is to fly: --drone NAME or --camera FILE",
             );
             FileError::new(&arguments.flight.flight, fault).to_string()
         })
@@ -294,7 +332,9 @@ fn wish(arguments: &PlanArguments, unit: LengthUnit) -> Wish {
             }),
         },
         // One of the two is there.
-        (None, height) => Size::Distance(height.unwrap_or(f64::NAN)),
+        (None, height) => {
+            Size::Distance(height.map_or(f64::NAN, |height| height.in_units_of(unit)))
+        }
     };
     let overlap = match (arguments.overlap, pattern) {
         (Some(percent), _) => percent / 100.0,
@@ -313,7 +353,7 @@ fn wish(arguments: &PlanArguments, unit: LengthUnit) -> Wish {
             (None, Some(drone)) => drone.gimbal,
             (None, None) => GIMBAL,
         },
-        clearance: arguments.clearance,
+        clearance: arguments.clearance.in_units_of(unit),
         take_off: arguments.take_off,
     }
 }
