@@ -1,6 +1,9 @@
 //! A graphics card that computes: descriptors are compared and depths are found on it. What it cannot do, or not any
 //! more, the processor does, and it is said.
 
+use std::ffi::OsStr;
+use std::fs::{self, ReadDir};
+use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use fragscale_render::Gpu;
@@ -20,6 +23,9 @@ impl Card {
     /// This computer's. `None` where it has none but a driver that draws on the processor: what we write for the
     /// processor is faster than what such a driver makes of what we write for cards.
     pub fn found() -> Option<Self> {
+        if !may_have_one() {
+            return None;
+        }
         let gpu = Gpu::fastest().ok()?;
         (!gpu.software).then(|| Self::on(gpu))
     }
@@ -58,6 +64,20 @@ impl Card {
             }
         }
     }
+}
+
+/// Whether the system has anything that a driver of a card could talk to: asked first, because drivers take a while
+/// to start, and on a server print lines of their own.
+fn may_have_one() -> bool {
+    if !cfg!(target_os = "linux") {
+        return true;
+    }
+    // NVIDIA's, Windows' own below Linux, and of telephones.
+    let devices = ["/dev/nvidia0", "/dev/dxg", "/dev/kgsl-3d0", "/dev/mali0"];
+    let renders = |name: &OsStr| name.to_string_lossy().starts_with("renderD");
+    let has_node = |folder: ReadDir| folder.flatten().any(|entry| renders(&entry.file_name()));
+    devices.iter().any(|device| Path::new(device).exists())
+        || fs::read_dir("/dev/dri").is_ok_and(has_node)
 }
 
 /// Depths by a card where there is one, else by the processor.
