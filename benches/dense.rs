@@ -4,7 +4,7 @@
 //! fragscale sample muckpile --preset muckpile --ring 24 --lens none --no-labels
 //! fragscale sample mesh --preset muckpile --ring 24 --lens none --no-labels --no-photos --surface mesh
 //! fragscale scale-map mesh/flight.toml --all --layers depth -o depth
-//! cargo bench -p fragscale-dense -- muckpile depth [--gpu] [--views RING_0001,RING_0002]
+//! cargo bench -p fragscale-dense --features gpu -- muckpile depth [--gpu] [--views RING_0001,RING_0002]
 //! ```
 //!
 //! Per photo: the relative errors of the depth along the optical axis, over all pixels and over the more
@@ -197,6 +197,7 @@ fn main() {
         graded
     };
     let on_cpu = (!has("--no-cpu")).then(|| run(&Cpu));
+    #[cfg(feature = "gpu")]
     if has("--gpu") {
         let card = fragscale_render::Gpu::fastest().expect("a graphics device");
         let on_gpu = run(&fragscale_dense::Gpu::on(card).expect("a shader that it takes"));
@@ -250,6 +251,7 @@ fn report(names: &[&str], maps: &[DepthMap], truths: &[Vec<f32>]) {
 }
 
 /// Where two back ends differ.
+#[cfg(feature = "gpu")]
 fn compare(a: &[DepthMap], b: &[DepthMap]) {
     let pairs = || {
         a.iter()

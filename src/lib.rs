@@ -26,10 +26,10 @@
 //!     exports/                   what goes out: table, CSV, JSON, sheet, Split-Desktop, figures, maps, missions
 //!     --- the core (core.rs) and fragmentation/ ---
 //! F3  flight/                    Flight, validated when made; review: doubts, verdicts; flight.toml
+//!     plan/                      where to fly over a surface: photos, their scales beforehand, missions
 //!     picture/                   pixels of photos: undistorting, reducing, drawing on them
 //! F2  scale/                     corner rays -> corner points -> scales; footprints
 //!     survey/                    profiles, areas and volumes on the surface
-//!     plan/                      where to fly: missions
 //!     control/                   control points: marks in photos, their places, epipolar lines
 //! F1  camera/   surface/         intrinsics, distortion, pose | triangulation, ray casting
 //!     fragmentation/             size distributions: functions, fits, analysis
@@ -57,6 +57,8 @@
 //! | a subcommand with progress | `src/cli/mod.rs` | a variant; its work is a file beside it |
 //! | a JSON key of a photo | `src/exports/scales_json.rs` | a field and its value; the contract |
 //! | a distribution function | `src/fragmentation/functions/mod.rs` | the enum of models; the function is a file beside it, its coordinates for fitting in `fit/family.rs` |
+//! | a pattern of planned photos | `src/plan/patterns.rs` | a variant and where its photos lie; `src/cli/planning/plan.rs` offers it |
+//! | a drone | `src/plan/drones.rs` | one row: camera, gimbal, DJI's numbers, each with its source |
 //! | a ground station's missions | `src/formats/missions/mod.rs`, `src/exports/missions/format.rs` | what reads and what writes it, a file each beside them; `exports/missions/tests/round_trip.rs` holds that all say the same |
 //! | a reconstruction engine | `src/reconstruct/engine.rs` | the trait; the engine is a folder beside it, and leaves COLMAP's text files |
 //! | a job with a panel | `src/app/tasks/mod.rs` | the job with its task and its ending is a file beside it, the panel one in `panels/`; `command/mod.rs` and `apply.rs` start it |

@@ -50,6 +50,7 @@ pub use fusion::{Fused, fuse};
 pub use neighbours::choose_neighbours;
 pub use options::{DenseOptions, Quality};
 pub use patch_match::cpu::Cpu;
+#[cfg(feature = "gpu")]
 pub use patch_match::gpu::Gpu;
 pub use patch_match::plane::Planes;
 pub use patch_match::{Backend, Problem, Sweep};

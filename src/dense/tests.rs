@@ -460,6 +460,7 @@ fn cancelled_at_once_and_gone_on() {
     assert_eq!(calls, [2, 5, 3]);
 }
 
+#[cfg(feature = "gpu")]
 mod on_a_card {
     use super::*;
 

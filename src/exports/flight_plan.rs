@@ -163,7 +163,7 @@ pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
             plan.photos.len()
         ));
     }
-    if plan.cover.off_surface > 0.01 {
+    if plan.cover.off_surface > 0.03 {
         let off = percent(plan.cover.off_surface);
         said.push(format!(
             "{off} of the area lies beside the surface or in holes of it: no photo is planned there"

@@ -6,7 +6,7 @@
 //! pairs        which photos are compared: neighbours, not all with all
 //! engine       what an engine has to do
 //! engine_name  the engines to choose between
-//! card         a graphics card that computes
+//! card         a graphics card that computes; no_card where it is built without graphics
 //! embedded     the engine that is always there: cumulus3d's parts, in pure Rust
 //! colmap       COLMAP, where it is installed
 //! adjusted     what an engine found, adjusted with the photos' places
@@ -28,6 +28,10 @@
 //! and COLMAP's files count likewise.
 
 mod adjusted;
+#[cfg(feature = "gpu")]
+mod card;
+#[cfg(not(feature = "gpu"))]
+#[path = "no_card.rs"]
 mod card;
 mod colmap;
 mod covariance;

@@ -12,6 +12,7 @@
 //! plane is seen at 60 degrees.
 
 pub(crate) mod cpu;
+#[cfg(feature = "gpu")]
 pub(crate) mod gpu;
 pub(crate) mod pair;
 pub(crate) mod plane;

@@ -9,6 +9,7 @@ use cumulus3d_matching::{MatcherBackend, PairMatchingOptions, match_pairs};
 use super::features::keep;
 use super::image_id;
 use super::nearest_two::Products;
+#[cfg(feature = "gpu")]
 use super::on_card::OnCard;
 use crate::adjusted::failed;
 use crate::card::Card;
@@ -33,7 +34,10 @@ pub(super) fn compare(
     card: Option<&Card>,
     progress: &Progress,
 ) -> Result<(), Fault> {
+    #[cfg(feature = "gpu")]
     let on_card = card.and_then(OnCard::new);
+    #[cfg(not(feature = "gpu"))]
+    let on_card = card.map(|_| Products);
     let matcher: &dyn MatcherBackend = match &on_card {
         Some(card) => card,
         None => &Products,

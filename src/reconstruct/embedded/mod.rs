@@ -23,6 +23,7 @@ mod growing;
 mod growth;
 mod matching;
 mod nearest_two;
+#[cfg(feature = "gpu")]
 mod on_card;
 mod preemptive;
 mod seed;
