@@ -35,8 +35,8 @@ mod tests {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders");
         let files = std::fs::read_dir(folder).unwrap();
         let names = files.map(|file| file.unwrap().path().file_stem().unwrap().to_owned());
-        // Parts of others; and what draws nothing, which the tests of `dense` run.
-        let apart = ["frame", "surface", "patch_match"];
+        // Parts of others; and what draws nothing, which the tests of `dense` and `reconstruct` run.
+        let apart = ["frame", "surface", "patch_match", "match"];
         for name in names.filter(|name| !apart.iter().any(|apart| name == apart)) {
             assert!(SHADERS.iter().any(|shader| name == shader.0), "{name:?}");
         }
