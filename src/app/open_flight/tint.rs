@@ -44,8 +44,7 @@ impl PhotoTint {
 
     /// Of a field of the photo at this place.
     pub fn new(photo: usize, field: ScaleField, errors: Option<PixelErrors>, number: u64) -> Self {
-        let FieldGrid { columns, rows } = field.grid;
-        let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+        let places = field.grid.cells();
         let scales = places.filter_map(|(column, row)| field.scale_at(column, row));
         let mut scales: Vec<f64> = scales.collect();
         let range = scales.len().checked_sub(1).map(|last| {

@@ -147,10 +147,16 @@ impl ScaleField {
 
     /// The share of the grid's points that have a scale.
     pub fn covered(&self) -> f64 {
-        let cells =
-            (0..self.grid.rows).flat_map(|row| (0..self.grid.columns).map(move |c| (c, row)));
+        let cells = self.grid.cells();
         let with_scale = cells.filter(|&(column, row)| self.scale_at(column, row).is_some());
         with_scale.count() as f64 / self.grid.len().max(1) as f64
+    }
+
+    /// What its photo shows of the surface, in the world, row by row.
+    pub fn points(&self) -> Vec<DVec3> {
+        let cells = self.grid.cells();
+        let met = cells.filter_map(|(column, row)| Some(self.at(column, row)?.point));
+        met.collect()
     }
 
     /// The ray of a column and a row, (x, y, 1) in camera axes; `None` where the lens shows nothing.

@@ -48,6 +48,11 @@ impl FieldGrid {
         self.len() == 0
     }
 
+    /// Its columns and rows, row by row.
+    pub fn cells(self) -> impl Iterator<Item = (u32, u32)> {
+        (0..self.rows).flat_map(move |row| (0..self.columns).map(move |column| (column, row)))
+    }
+
     /// The pixel of the image at a column and a row.
     pub fn pixel(self, camera: &Camera, column: u32, row: u32) -> DVec2 {
         let at = |place: u32, size: u32, count: u32| {

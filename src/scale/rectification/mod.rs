@@ -88,7 +88,7 @@ impl Rectification {
             Onto::HorizontalPlane | Onto::Surface => PlaneFrame::horizontal(field)?,
         };
         let pixel = pixel_size(&frame, field, size.asked, size.round_in)?;
-        let points = plane::points(field);
+        let points = field.points();
         let mut rectification = Self {
             raster: PlaneRaster::over(frame, [DVec2::ZERO; 2], pixel)?,
             off_plane: None,

@@ -29,7 +29,7 @@ impl PlaneFrame {
     /// # Errors
     /// Where it shows too little, or the camera looks along the plane.
     pub fn fitted(field: &ScaleField) -> Result<Self, Fault> {
-        let points = points(field);
+        let points = field.points();
         let mean = mean(&points)?;
         // About the mean, where squares lose nothing.
         let mut spread = DMat3::ZERO;
@@ -69,7 +69,7 @@ impl PlaneFrame {
     /// # Errors
     /// Where it shows nothing, or the camera looks along the plane or stands under it.
     pub fn horizontal(field: &ScaleField) -> Result<Self, Fault> {
-        let mean = mean(&points(field))?;
+        let mean = mean(&field.points())?;
         let to_camera = field.pose().center - mean;
         if to_camera.z < 0.0 {
             return Err(Fault::new(
@@ -113,14 +113,6 @@ impl PlaneFrame {
         let met = pose.center + direction * far;
         (far > 0.0 && met.is_finite()).then(|| self.plane_from_world(met))
     }
-}
-
-/// What the photo shows of the surface, on the field's grid, in the world.
-pub(super) fn points(field: &ScaleField) -> Vec<DVec3> {
-    let grid = field.grid;
-    let all = (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (column, row)));
-    all.filter_map(|(column, row)| Some(field.at(column, row)?.point))
-        .collect()
 }
 
 fn mean(points: &[DVec3]) -> Result<DVec3, Fault> {

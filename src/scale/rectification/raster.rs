@@ -2,7 +2,7 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
-use super::plane::{PlaneFrame, points};
+use super::plane::PlaneFrame;
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::numbers::round_near;
@@ -84,11 +84,11 @@ impl PlaneRaster {
 /// there were such.
 pub(super) fn extent(frame: &PlaneFrame, field: &ScaleField) -> Option<([DVec2; 2], bool)> {
     let (camera, pose, grid) = (field.camera(), field.pose(), field.grid);
-    let feet = points(field);
+    let feet = field.points();
     let feet = around(feet.iter().map(|point| frame.plane_from_world(*point)))?;
     let room = (feet[1] - feet[0]) * FARTHEST;
     let allowed = [feet[0] - room, feet[1] + room];
-    let all = (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (column, row)));
+    let all = grid.cells();
     let seen = all.filter_map(|(column, row)| {
         field.depth_at(column, row)?;
         frame.meet(pose, field.direction_at(column, row)?)
@@ -178,7 +178,7 @@ pub(super) fn pixel_size(
     let middle = camera.direction_as_shot(middle).ok();
     let middle = middle.and_then(|direction| frame.meet(field.pose(), direction));
     let mean = || {
-        let points = points(field);
+        let points = field.points();
         let count = points.len().max(1) as f64;
         let feet = points.iter().map(|point| frame.plane_from_world(*point));
         feet.sum::<DVec2>() / count

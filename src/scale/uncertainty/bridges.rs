@@ -18,7 +18,7 @@ use glam::DVec3;
 
 use super::holes::Line;
 use crate::scale::FittedScale;
-use crate::scale::field::{FieldGrid, ScaleField};
+use crate::scale::field::ScaleField;
 
 /// Edges of so many times the median one are no bridges.
 const USUAL: f64 = 2.0;
@@ -44,8 +44,8 @@ pub(super) struct Bridged {
 
 /// Of the line through a field over a cloud, with the photo's plane (`surface_error::plane_of`).
 pub(super) fn of_bridges(field: &ScaleField, fitted: &FittedScale, plane: DVec3) -> Bridged {
-    let FieldGrid { columns, rows } = field.grid;
-    let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+    let rows = field.grid.rows;
+    let places = field.grid.cells();
     let pixels = places.filter_map(|(column, row)| {
         Some(Pixel {
             down: (f64::from(row) + 0.5) / f64::from(rows),

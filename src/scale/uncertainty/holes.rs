@@ -30,7 +30,7 @@ const SEED: u64 = 7;
 /// of them; 0 where it has none.
 pub(super) fn of_holes(field: &ScaleField, fitted: &FittedScale) -> [f64; 2] {
     let FieldGrid { columns, rows } = field.grid;
-    let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+    let places = field.grid.cells();
     let off = places.map(|(column, row)| match field.scale_at(column, row) {
         Some(scale) => {
             let down = (f64::from(row) + 0.5) / f64::from(rows);

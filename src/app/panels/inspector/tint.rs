@@ -80,7 +80,7 @@ impl Tint {
         let range = self.range.unwrap_or_default();
         let FieldGrid { columns, rows } = tint.field.grid;
         let at = |column, row| Some(tint.field.scale_at(column, row)? * factor);
-        let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+        let places = tint.field.grid.cells();
         let pixels = places.map(|(column, row)| {
             let scale = at(column, row);
             scale.map_or(Color32::TRANSPARENT, |scale| {
