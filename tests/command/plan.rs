@@ -31,33 +31,25 @@ fn plane(folder: &std::path::Path) -> String {
     folder.join("flight.toml").display().to_string()
 }
 
+/// The middle of it.
+const AREA: &str = "450060,5400060;450140,5400060;450140,5400140;450060,5400140";
+
+/// Plans photos of it from a drone of DJI's, with what stands behind that.
+fn planned(flight: &str, more: &[&str]) -> std::process::Output {
+    let scale = ["--drone", "mavic-3e", "--scale", "0.5 px/cm"];
+    let places = ["--area", AREA, "--take-off", "450020,5400020"];
+    fragscale(&[&["plan", flight][..], &scale, &places, more].concat())
+}
+
 #[test]
 fn a_plan_becomes_missions_that_say_the_same() {
     let folder = tempfile::tempdir().unwrap();
     let flight = plane(folder.path());
     let path = |name: &str| folder.path().join(name).display().to_string();
-    let area = "450060,5400060;450140,5400060;450140,5400140;450060,5400140";
     let missions = ["m.kmz", "m.plan", "m.waypoints", "m.csv"].map(path);
-    let mut arguments = vec![
-        "plan",
-        &flight,
-        "--drone",
-        "mavic-3e",
-        "--scale",
-        "0.5 px/cm",
-    ];
-    arguments.extend([
-        "--area",
-        area,
-        "--take-off",
-        "450020,5400020",
-        "--format",
-        "json",
-    ]);
-    for mission in &missions {
-        arguments.extend(["--mission", mission]);
-    }
-    let output = fragscale(&arguments);
+    let mut more = vec!["--format", "json"];
+    more.extend(missions.iter().flat_map(|mission| ["--mission", mission]));
+    let output = planned(&flight, &more);
     let notes = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(0), "{notes}");
     assert!(notes.contains("nominal"), "{notes}");
@@ -113,22 +105,7 @@ fn a_plan_becomes_missions_that_say_the_same() {
     // The same again writes over its own; .waypoints and Litchi's CSV bear no mark.
     let table = path("plan.csv");
     for _ in 0..2 {
-        let again = fragscale(&[
-            "plan",
-            &flight,
-            "--drone",
-            "mavic-3e",
-            "--scale",
-            "0.5 px/cm",
-            "--area",
-            area,
-            "--take-off",
-            "450020,5400020",
-            "--mission",
-            &missions[0],
-            "-o",
-            &table,
-        ]);
+        let again = planned(&flight, &["--mission", &missions[0], "-o", &table]);
         assert_eq!(
             again.status.code(),
             Some(0),
@@ -143,7 +120,7 @@ fn a_plan_becomes_missions_that_say_the_same() {
         "--scale",
         "0.5 px/cm",
         "--area",
-        area,
+        AREA,
         "--take-off",
         "440000,5400020",
     ];
@@ -219,19 +196,9 @@ fn what_was_flown_is_compared_with_its_mission() {
     let folder = tempfile::tempdir().unwrap();
     let flight = plane(folder.path());
     let path = |name: &str| folder.path().join(name).display().to_string();
-    let area = "450060,5400060;450140,5400060;450140,5400140;450060,5400140";
     let (mission, plan) = (path("m.kmz"), path("plan.json"));
-    let mut arguments = vec![
-        "plan",
-        &flight,
-        "--drone",
-        "mavic-3e",
-        "--scale",
-        "0.5 px/cm",
-    ];
-    arguments.extend(["--area", area, "--take-off", "450020,5400020", "-o", &plan]);
-    arguments.extend(["--mission", &mission]);
-    assert_eq!(fragscale(&arguments).status.code(), Some(0));
+    let output = planned(&flight, &["-o", &plan, "--mission", &mission]);
+    assert_eq!(output.status.code(), Some(0));
     let told: Value = serde_json::from_slice(&fs::read(&plan).unwrap()).unwrap();
     let photos = told["photos"].as_array().unwrap();
     let mut poses = "photo,x,y,z,tilt,pan\n".to_owned();
