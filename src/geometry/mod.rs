@@ -4,6 +4,7 @@ mod bounds;
 mod level_box;
 mod local_frame;
 mod median;
+mod outline;
 mod ray;
 mod similarity;
 
@@ -11,5 +12,6 @@ pub use bounds::Bounds;
 pub use level_box::LevelBox;
 pub use local_frame::LocalFrame;
 pub use median::median;
+pub use outline::{extent, surrounds};
 pub use ray::Ray;
 pub use similarity::{NotSimilarity, Similarity};

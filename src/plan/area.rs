@@ -1,11 +1,11 @@
 //! Which ground is to be photographed: a polygon, or the pile found by itself.
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 
-use super::terrain::Terrain;
+use super::terrain::{Terrain, plane_through};
 use crate::fault::Fault;
 use crate::jobs::Progress;
-use crate::surface::Surface;
+use crate::surface::{Surface, convex_hull};
 use crate::survey::Polygon;
 
 /// Pixels along the longer side of the raster that the pile is looked for on.
@@ -64,15 +64,17 @@ pub fn pile(surface: &Surface, progress: &Progress) -> Result<Polygon, Fault> {
         .map(|z| *z > (PILE * highest).max(stands_out))
         .collect();
     let piece = largest_piece(&where_most_are(&is_pile, columns), columns);
-    let corners: Vec<DVec2> = piece
+    let middles: Vec<DVec3> = piece
         .iter()
         .map(|place| {
             let (column, row) = (place % columns, place / columns);
             let middle = DVec2::new(column as f64, row as f64) + 0.5;
-            raster.world_from_pixel(middle)
+            raster.world_from_pixel(middle).extend(0.0)
         })
         .collect();
-    Polygon::new(&hull(corners)).map_err(|_| none())
+    let hull = convex_hull(&middles);
+    let corners: Vec<DVec2> = hull.iter().map(|corner| corner.truncate()).collect();
+    Polygon::new(&corners).map_err(|_| none())
 }
 
 /// A plane that is nearly level.
@@ -98,9 +100,7 @@ fn floor(terrain: &Terrain) -> Option<Floor> {
     let [min, max] = raster.bounds();
     let from = (min + max) / 2.0;
     let half = (max - min) / 2.0;
-    let mut points: Vec<(f64, DVec3)> = (0..raster.rows)
-        .flat_map(|row| (0..raster.columns).map(move |column| (column, row)))
-        .filter_map(|(column, row)| terrain.point(column, row))
+    let mut points: Vec<(f64, DVec3)> = (terrain.points())
         .map(|point| {
             let off = ((point.truncate() - from) / half).abs().max_element();
             (off, point)
@@ -117,17 +117,9 @@ fn floor(terrain: &Terrain) -> Option<Floor> {
     let base = rim.first()?.z;
     let mut floor = None;
     for _ in 0..ROUNDS {
-        let (mut square, mut right) = (DMat3::ZERO, DVec3::ZERO);
-        for point in &rim {
-            let off = (point.truncate() - from) / half;
-            let row = DVec3::new(1.0, off.x, off.y);
-            square += DMat3::from_cols(row * row.x, row * row.y, row * row.z);
-            right += row * (point.z - base);
-        }
-        if rim.len() < 3 || square.determinant().abs() < 1e-9 * (rim.len() as f64).powi(3) {
+        let Some((z, _)) = plane_through(rim.iter().copied(), from.extend(base), half) else {
             break;
-        }
-        let z = square.inverse() * right;
+        };
         let mut found = Floor {
             from,
             z: DVec3::new(base + z.x, z.y / half.x, z.z / half.y),
@@ -195,27 +187,6 @@ fn largest_piece(is_in: &[bool], columns: usize) -> Vec<usize> {
         }
     }
     largest
-}
-
-/// The corners of the convex hull, counter-clockwise (Andrew's monotone chain).
-fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    let half = |points: &mut dyn Iterator<Item = DVec2>| {
-        let mut corners: Vec<DVec2> = Vec::new();
-        for point in points {
-            while let [.., a, b] = corners[..]
-                && (b - a).perp_dot(point - a) <= 0.0
-            {
-                corners.pop();
-            }
-            corners.push(point);
-        }
-        corners.pop();
-        corners
-    };
-    let mut corners = half(&mut points.iter().copied());
-    corners.extend(half(&mut points.iter().rev().copied()));
-    corners
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::PlannedPhoto;
 use super::terrain::Terrain;
 use crate::camera::Camera;
+use crate::geometry::surrounds;
 use crate::survey::Polygon;
 
 /// How photos cover an area.
@@ -49,7 +50,7 @@ impl Cover {
             .map(|place| {
                 let middle = DVec2::new((place % columns) as f64, (place / columns) as f64) + 0.5;
                 let is_ground = !terrain.heights()[place].is_nan();
-                is_ground && contains(area, raster.world_from_pixel(middle))
+                is_ground && surrounds(area.corners(), raster.world_from_pixel(middle))
             })
             .collect();
         let in_area = inside.iter().filter(|inside| **inside).count();
@@ -72,31 +73,16 @@ impl Cover {
     }
 }
 
-/// Whether a place lies inside a polygon (crossings of a ray to the east are odd).
-pub(super) fn contains(area: &Polygon, place: DVec2) -> bool {
-    let corners = area.corners();
-    let ends = corners.iter().zip(corners.iter().cycle().skip(1));
-    let crossed = ends.filter(|(a, b)| {
-        let over = (a.y > place.y) != (b.y > place.y);
-        over && place.x < a.x + (place.y - a.y) / (b.y - a.y) * (b.x - a.x)
-    });
-    crossed.count() % 2 == 1
-}
-
 /// The terrain's pixels that lie inside a photo.
 fn seen_by(photo: &PlannedPhoto, camera: &Camera, terrain: &Terrain) -> Vec<usize> {
     let raster = terrain.raster();
     let columns = raster.columns as usize;
-    let points = terrain.around(photo.target.truncate(), photo.reach);
-    let seen = points.filter(|point| {
-        let pixel = camera.pixel_undistorted(photo.pose.camera_from_world(*point));
-        pixel.is_some_and(|pixel| camera.contains(pixel))
-    });
     let place = |point: DVec2| {
         let at = raster.pixel_from_world(point);
         at.y as usize * columns + at.x as usize
     };
-    seen.map(|point| place(point.truncate())).collect()
+    let seen = photo.sees(camera, terrain);
+    seen.map(|(point, _)| place(point.truncate())).collect()
 }
 
 /// Of each place that is in, the squared distance to the nearest that is not, in pixels; 0 for the others. What
@@ -168,21 +154,6 @@ mod tests {
                 }
             }
             assert_eq!(*own, least, "{place}");
-        }
-    }
-
-    #[test]
-    fn inside_is_inside() {
-        let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 1.0), (0.0, 4.0)];
-        let area = Polygon::new(&corners.map(DVec2::from)).unwrap();
-        for (x, y, expected) in [
-            (1.0, 0.5, true),
-            (2.0, 2.0, false),
-            (3.9, 3.5, true),
-            (-1.0, 0.5, false),
-            (5.0, 0.5, false),
-        ] {
-            assert_eq!(contains(&area, DVec2::new(x, y)), expected, "{x} {y}");
         }
     }
 }

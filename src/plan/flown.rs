@@ -245,12 +245,7 @@ fn residual(
     let between = plan.pose.rotation.transpose() * taken.pose.rotation;
     let trace = between.x_axis.x + between.y_axis.y + between.z_axis.z;
     let shared = field.and_then(|field| {
-        let grid = field.grid;
-        let cells =
-            (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (column, row)));
-        let points: Vec<DVec3> = cells
-            .filter_map(|(column, row)| Some(field.at(column, row)?.point))
-            .collect();
+        let points = field.points();
         let inside = points.iter().filter(|point| {
             let in_camera = taken.pose.camera_from_world(**point);
             let pixel = taken.camera.pixel_undistorted(in_camera);

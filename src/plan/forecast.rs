@@ -39,9 +39,7 @@ impl Forecast {
         let image = ImageKind::Undistorted;
         let field = ScaleField::compute(camera, pose, image, grid, surface, progress)
             .map_err(|error| Fault::new(error.to_string(), "check the surface file"))?;
-        let places =
-            (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (column, row)));
-        let mut scales: Vec<f64> = places
+        let mut scales: Vec<f64> = (grid.cells())
             .filter_map(|(column, row)| field.scale_at(column, row))
             .collect();
         let bulk = bulk_of(&mut scales);

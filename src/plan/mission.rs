@@ -135,6 +135,13 @@ pub struct Fence {
     pub corners: Vec<[f64; 2]>,
 }
 
+/// An angle as a heading: 0 to 360 degrees without the latter.
+pub fn heading(degrees: f64) -> f64 {
+    let turned = degrees.rem_euclid(360.0);
+    // A negative angle that is almost nothing is turned to 360 itself.
+    if turned < 360.0 { turned } else { 0.0 }
+}
+
 impl Height {
     /// Metres above the place of take-off.
     pub fn above_take_off(metres: f64) -> Self {

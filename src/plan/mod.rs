@@ -45,6 +45,7 @@ pub use flown::{Flown, PlannedPose, Residual, Taken, planned_poses};
 pub use forecast::Forecast;
 pub use mission::{
     Above, DroneCodes, Fence, Finish, Height, Mission, PayloadCodes, PhotoOf, Stop, TakeOff,
+    heading,
 };
 pub use patterns::Pattern;
 pub use terrain::{GroundPlane, Terrain, ground_at};
@@ -54,6 +55,7 @@ pub use wish::{Size, Wish};
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
+use crate::geometry::extent;
 use crate::jobs::Progress;
 use crate::surface::Surface;
 use crate::survey::Polygon;
@@ -87,6 +89,22 @@ pub struct PlannedPhoto {
     pub reach: f64,
     /// What it will show; `None` where that is nothing of the surface.
     pub forecast: Option<Forecast>,
+}
+
+impl PlannedPhoto {
+    /// The terrain's points inside its image, in the world and in camera axes; what hides behind others, too.
+    fn sees<'a>(
+        &'a self,
+        camera: &'a Camera,
+        terrain: &'a Terrain,
+    ) -> impl Iterator<Item = (DVec3, DVec3)> + 'a {
+        let points = terrain.around(self.target.truncate(), self.reach);
+        points.filter_map(|point| {
+            let in_camera = self.pose.camera_from_world(point);
+            let pixel = camera.pixel_undistorted(in_camera)?;
+            camera.contains(pixel).then_some((point, in_camera))
+        })
+    }
 }
 
 /// A photo that cannot be taken.
@@ -315,12 +333,7 @@ fn terrain_of(
     progress: &Progress,
 ) -> Result<Terrain, Fault> {
     let footprint = footprint(camera, distance);
-    let (min, max) = area
-        .corners()
-        .iter()
-        .fold((DVec2::MAX, DVec2::MIN), |(min, max), corner| {
-            (min.min(*corner), max.max(*corner))
-        });
+    let [min, max] = extent(area.corners());
     let around = footprint.max_element() + distance;
     let (mut min, mut max) = (min - around, max + around);
     if let Some(place) = wish.take_off {
@@ -349,13 +362,8 @@ fn set_distance(photo: &mut PlannedPhoto, camera: &Camera, terrain: &Terrain, pi
     let focal = (camera.fx * camera.fy).sqrt();
     let away = (photo.pose.center - photo.target) / photo.distance;
     for _ in 0..ROUNDS {
-        let points = terrain.around(photo.target.truncate(), photo.reach);
-        let scale = |point: DVec3| {
-            let in_camera = photo.pose.camera_from_world(point);
-            let pixel = camera.pixel_undistorted(in_camera)?;
-            camera.contains(pixel).then(|| focal / in_camera.z)
-        };
-        let mut scales: Vec<f64> = points.filter_map(scale).collect();
+        let seen = photo.sees(camera, terrain);
+        let mut scales: Vec<f64> = seen.map(|(_, in_camera)| focal / in_camera.z).collect();
         let Some([least, greatest]) = forecast::bulk_of(&mut scales) else {
             return;
         };

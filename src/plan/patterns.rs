@@ -15,6 +15,7 @@ use super::terrain::{GroundPlane, Terrain};
 use super::wish::{Size, Wish};
 use super::{PlannedPhoto, Refused, footprint};
 use crate::camera::{Camera, Pose};
+use crate::geometry::{extent, surrounds};
 use crate::survey::Polygon;
 
 /// How photos lie.
@@ -114,7 +115,7 @@ impl Ground<'_> {
         let step = footprint * (1.0 - self.wish.overlap);
         let corners = self.area.corners().iter();
         let across: Vec<f64> = corners.map(|&c| strips.strips_from_world(c).y).collect();
-        let range = extent(across.iter().copied());
+        let range = range_of(across.iter().copied());
         // Strips are told apart along the ground through the area's middle.
         let middle = |across: f64| strips.place(0.0, across);
         let (mut photos, mut refused) = (Vec::new(), Vec::new());
@@ -208,7 +209,7 @@ impl Ground<'_> {
                 .iter()
                 .map(|&c| strips.strips_from_world(c))
         };
-        let across = extent(corners().map(|c| c.y));
+        let across = range_of(corners().map(|c| c.y));
         let level = self.level();
         let (mut photos, mut refused) = (Vec::new(), Vec::new());
         for (row, across) in evenly(across, step.x).into_iter().enumerate() {
@@ -249,8 +250,8 @@ impl Ground<'_> {
                 .map(|&c| strips.strips_from_world(c))
         };
         let (along, across) = (
-            extent(corners().map(|c| c.x)),
-            extent(corners().map(|c| c.y)),
+            range_of(corners().map(|c| c.x)),
+            range_of(corners().map(|c| c.y)),
         );
         let middle = DVec2::new(along.0 + along.1, across.0 + across.1) / 2.0;
         let half = DVec2::new(along.1 - along.0, across.1 - across.0) / 2.0;
@@ -277,11 +278,8 @@ impl Ground<'_> {
     /// The height that photos of one height look at: the area's mean, where the scale is to be right; the highest
     /// of it, where the height above is said.
     fn level(&self) -> f64 {
-        let raster = self.terrain.raster();
-        let places = (0..raster.rows).flat_map(|row| (0..raster.columns).map(move |c| (c, row)));
-        let inside = places
-            .filter_map(|(column, row)| self.terrain.point(column, row))
-            .filter(|point| super::cover::contains(self.area, point.truncate()));
+        let inside = (self.terrain.points())
+            .filter(|point| surrounds(self.area.corners(), point.truncate()));
         let heights: Vec<f64> = inside.map(|point| point.z).collect();
         match self.wish.size {
             Size::Scale { .. } => heights.iter().sum::<f64>() / heights.len().max(1) as f64,
@@ -294,10 +292,7 @@ impl Ground<'_> {
     /// The direction in which the ground rises most in the mean; of level ground that of the longest side.
     fn strips(&self) -> Strips {
         let side = self.footprint().max_element();
-        let corners = self.area.corners().iter();
-        let (min, max) = corners.fold((DVec2::MAX, DVec2::MIN), |(min, max), c| {
-            (min.min(*c), max.max(*c))
-        });
+        let [min, max] = extent(self.area.corners());
         let mut sum = DMat2::ZERO;
         let mut count = 0_u32;
         let step = ((max - min) / (side / 2.0))
@@ -307,7 +302,7 @@ impl Ground<'_> {
             for j in 0..step.y as u32 {
                 let share = (DVec2::new(f64::from(i), f64::from(j)) + 0.5) / step;
                 let place = min + (max - min) * share;
-                if !super::cover::contains(self.area, place) {
+                if !surrounds(self.area.corners(), place) {
                     continue;
                 }
                 if let Some(plane) = self.terrain.plane(place, side) {
@@ -412,7 +407,7 @@ fn evenly((from, to): (f64, f64), step: f64) -> Vec<f64> {
         .collect()
 }
 
-fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
+fn range_of(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::MAX, f64::MIN), |(low, high), value| {
         (low.min(value), high.max(value))
     })

@@ -34,6 +34,28 @@ pub struct GroundPlane {
     pub normal: DVec3,
 }
 
+/// The height of the plane that lies best through points (least squares in z) over a place, and its growth along x and y
+/// over one of these sizes; the height is from that of the place. And how many points there are. `None` where
+/// they are fewer than three, or on one line.
+pub(super) fn plane_through(
+    points: impl Iterator<Item = DVec3>,
+    from: DVec3,
+    size: DVec2,
+) -> Option<(DVec3, usize)> {
+    let (mut square, mut right) = (DMat3::ZERO, DVec3::ZERO);
+    let mut count = 0_usize;
+    for point in points {
+        // From the place, in sizes: sums stay near 1.
+        let off = (point - from).truncate() / size;
+        let row = DVec3::new(1.0, off.x, off.y);
+        square += DMat3::from_cols(row * row.x, row * row.y, row * row.z);
+        right += row * (point.z - from.z);
+        count += 1;
+    }
+    let is_plane = count >= 3 && square.determinant().abs() >= 1e-9 * (count as f64).powi(3);
+    is_plane.then(|| (square.inverse() * right, count))
+}
+
 /// The surface's height at a place, to the last digit: the highest there. `None` where there is none.
 pub fn ground_at(surface: &Surface, place: DVec2) -> Option<f64> {
     let bounds = surface.bounds();
@@ -88,6 +110,13 @@ impl Terrain {
         (!height.is_nan()).then(|| place.extend(height))
     }
 
+    /// The points of all pixels that have heights.
+    pub fn points(&self) -> impl Iterator<Item = DVec3> {
+        let columns = self.raster.columns;
+        let places = (0..self.raster.rows).flat_map(move |row| (0..columns).map(move |c| (c, row)));
+        places.filter_map(|(column, row)| self.point(column, row))
+    }
+
     /// The pixels with heights whose middles lie at most `reach` from a place along both axes.
     pub(super) fn around(&self, place: DVec2, reach: f64) -> impl Iterator<Item = DVec3> {
         let corner = |sign: f64| {
@@ -110,23 +139,16 @@ impl Terrain {
     /// The plane through the surface around a place, by least squares in z over a square window of this side: what
     /// is smaller than the window is smoothed away. `None` where too little of the window has heights.
     pub fn plane(&self, place: DVec2, side: f64) -> Option<GroundPlane> {
-        let (mut square, mut right) = (DMat3::ZERO, DVec3::ZERO);
-        let mut count = 0_usize;
-        for point in self.around(place, side / 2.0) {
-            // From the place, in windows: sums stay near 1.
-            let off = (point.truncate() - place) / side;
-            let row = DVec3::new(1.0, off.x, off.y);
-            square += DMat3::from_cols(row * row.x, row * row.y, row * row.z);
-            right += row * (point.z - self.base);
-            count += 1;
-        }
+        let (plane, count) = plane_through(
+            self.around(place, side / 2.0),
+            place.extend(self.base),
+            DVec2::splat(side),
+        )?;
         let whole = (side / self.raster.pixel).powi(2);
-        if (count as f64) < (LEAST_COVERED * whole).max(3.0)
-            || square.determinant().abs() < 1e-9 * (count as f64).powi(3)
-        {
+        if (count as f64) < LEAST_COVERED * whole {
             return None;
         }
-        let [z, east, north] = (square.inverse() * right).to_array();
+        let [z, east, north] = plane.to_array();
         Some(GroundPlane {
             point: place.extend(z + self.base),
             normal: DVec3::new(-east / side, -north / side, 1.0).normalize(),

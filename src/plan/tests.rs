@@ -335,6 +335,40 @@ fn a_mission_is_told_in_degrees() {
         latitude: 50.0,
         height: 0.0,
     };
-    let north = told::heading(0.0, &crs, east).unwrap();
+    let north = told::true_heading(0.0, &crs, east).unwrap();
     assert!((north - 2.298).abs() < 0.01, "{north}");
+}
+
+/// Over a surface in US survey feet a mission's heights are metres.
+#[test]
+fn a_mission_over_feet_is_told_in_metres() {
+    let surface = surface(|_| 100.0);
+    let plan = plan(&surface, 20.0, wish(Pattern::Slope));
+    let take_off = DVec3::new(500_000.0, 5_000_000.0 - 60.0, 100.0);
+    let way = ways(&plan, take_off, None).unwrap().remove(0);
+    let crs = "+proj=utm +zone=32 +datum=WGS84 +units=us-ft +no_defs";
+    let crs = Crs::understand(crs).unwrap();
+    let told = Told {
+        name: String::new(),
+        drone: None,
+        speed: 4.0,
+        settle: 1.0,
+    };
+    let mission = mission(&plan, &way, &crs, &told).unwrap();
+    let foot = 1200.0 / 3937.0;
+    for (stop, point) in mission.stops.iter().zip(&way.points) {
+        let expected = (point.place.z - 100.0) * foot;
+        assert!((stop.height.metres - expected).abs() < 1e-9, "{expected}");
+    }
+    // Photos from 20 feet, of which one is 0.3048006 m.
+    let photo = mission
+        .stops
+        .iter()
+        .find(|stop| stop.photo.is_some())
+        .unwrap();
+    assert!(
+        (photo.height.metres - 6.096_012).abs() < 1e-4,
+        "{}",
+        photo.height.metres
+    );
 }

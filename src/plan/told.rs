@@ -5,7 +5,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{DroneCodes, Finish, Height, Mission, PhotoOf, Plan, Stop, TakeOff, Way};
+use super::{DroneCodes, Finish, Height, Mission, PhotoOf, Plan, Stop, TakeOff, Way, heading};
 use crate::fault::Fault;
 use crate::geodesy::{Crs, Geographic};
 
@@ -39,7 +39,7 @@ pub fn mission(plan: &Plan, way: &Way, crs: &Crs, told: &Told) -> Result<Mission
     for point in &way.points {
         let place = geographic(point.place)?;
         let photo = point.photo.and_then(|photo| plan.photos.get(photo));
-        let heading = photo.map(|photo| heading(photo.pan, crs, place).ok_or_else(off));
+        let heading = photo.map(|photo| true_heading(photo.pan, crs, place).ok_or_else(off));
         stops.push(Stop {
             latitude: place.latitude,
             longitude: place.longitude,
@@ -71,11 +71,9 @@ pub fn mission(plan: &Plan, way: &Way, crs: &Crs, told: &Told) -> Result<Mission
 }
 
 /// A direction of the grid, degrees clockwise from its +y, as degrees from true north.
-pub(super) fn heading(pan: f64, crs: &Crs, place: Geographic) -> Option<f64> {
+pub(super) fn true_heading(pan: f64, crs: &Crs, place: Geographic) -> Option<f64> {
     let (sine, cosine) = pan.to_radians().sin_cos();
     let on_grid = DVec2::new(sine, cosine).extend(0.0);
     let enu = crs.grid_from_enu(place)?.transpose() * on_grid;
-    let heading = enu.x.atan2(enu.y).to_degrees().rem_euclid(360.0);
-    // A hair under 0 becomes 360 in rounding.
-    Some(if heading >= 360.0 { 0.0 } else { heading })
+    Some(heading(enu.x.atan2(enu.y).to_degrees()))
 }

@@ -1,11 +1,13 @@
 //! In which order photos are taken, and which climbs keep the drone off the ground between them.
 //!
 //! The way begins and ends at the take-off, and goes up to a safe height before the first photo and behind the last: as
-//! stops of their own, for some ground stations know no such height, and fly straight. Photos are in the order in which they were laid out, made shorter by
-//! 2-opt (Croes 1958) until no two legs are better swapped: deterministic, and a lawn-mower's rows stay rows, for
-//! they are short already. Where one battery does not last, the way is cut: each piece goes out from the take-off and
-//! back to it. A leg that comes too near to the ground goes up first, over, and down: straight up and
-//! down is free, for the ground has one height at each place.
+//! stops of their own, for some ground stations know no such height, and fly straight. Photos are put in a short order
+//! when they are planned: as they were laid out, made shorter by 2-opt (Croes 1958) until no two legs are better
+//! swapped; deterministic, and a lawn-mower's rows stay rows, for they are short already. Where one battery does not
+//! last, the way is cut: each piece goes out from the take-off and back to it. A leg that comes too near to the ground
+//! goes up first, over, and down: straight up and down is free, for the ground has one height at each place.
+
+use std::ops::Range;
 
 use glam::DVec3;
 
@@ -56,39 +58,44 @@ impl Way {
     /// # Errors
     /// Where a battery does not last for a single photo.
     pub fn through(plan: &Plan, take_off: DVec3, pace: &Pace) -> Result<Vec<Self>, Fault> {
-        let order: Vec<usize> = (0..plan.photos.len()).collect();
-        let mut left = &order[..];
+        let (mut first, end) = (0, plan.photos.len());
         let mut ways = Vec::new();
-        while !left.is_empty() {
-            let lasts = |count: usize| {
-                let seconds = Self::over(plan, take_off, &left[..count]).seconds(pace);
-                pace.battery.is_none_or(|battery| seconds <= battery)
-            };
-            // The most photos that it lasts for: one more always takes longer.
-            let (mut most, mut too_many) = (0, left.len() + 1);
-            if lasts(left.len()) {
-                most = left.len();
-            }
-            while most < left.len() && too_many - most > 1 {
-                let middle = (most + too_many) / 2;
-                match lasts(middle) {
-                    true => most = middle,
-                    false => too_many = middle,
-                }
-            }
-            if most == 0 {
-                let name = left.first().and_then(|photo| plan.photos.get(*photo));
-                let name = name.map_or("", |photo| photo.name.as_str());
+        while first < end {
+            let Some((reached, way)) = Self::longest(plan, take_off, first, pace) else {
+                let name = &plan.photos[first].name;
                 let what = format!("a battery does not last to photo {name} and back");
-                return Err(Fault::new(
-                    what,
-                    "take off nearer, fly faster, or leave it out of the area",
-                ));
-            }
-            ways.push(Self::over(plan, take_off, &left[..most]));
-            left = &left[most..];
+                let remedy = "take off nearer, fly faster, or leave it out of the area";
+                return Err(Fault::new(what, remedy));
+            };
+            ways.push(way);
+            first = reached;
         }
         Ok(ways)
+    }
+
+    /// The way from a photo on through as many as a battery lasts for, and behind which it ends; `None` where it does
+    /// not last for one.
+    fn longest(plan: &Plan, take_off: DVec3, first: usize, pace: &Pace) -> Option<(usize, Self)> {
+        let end = plan.photos.len();
+        let lasting = |end: usize| {
+            let way = Self::over(plan, take_off, first..end);
+            let battery = pace.battery;
+            let lasts = battery.is_none_or(|battery| way.seconds(pace) <= battery);
+            lasts.then_some((end, way))
+        };
+        if let Some(all) = lasting(end) {
+            return Some(all);
+        }
+        // One photo more always takes longer.
+        let (mut reached, mut too_far, mut longest) = (first, end, None);
+        while too_far - reached > 1 {
+            let middle = (reached + too_far) / 2;
+            match lasting(middle) {
+                Some(found) => (reached, longest) = (middle, Some(found)),
+                None => too_far = middle,
+            }
+        }
+        longest
     }
 
     /// Seconds in the air.
@@ -96,9 +103,10 @@ impl Way {
         self.length / pace.speed + pace.stop * self.photos() as f64
     }
 
-    /// Through these photos of a plan in this order.
-    fn over(plan: &Plan, take_off: DVec3, order: &[usize]) -> Self {
-        let places: Vec<DVec3> = plan.photos.iter().map(|photo| photo.pose.center).collect();
+    /// Through these photos of a plan, one at least.
+    fn over(plan: &Plan, take_off: DVec3, photos: Range<usize>) -> Self {
+        let place_of = |photo: usize| plan.photos[photo].pose.center;
+        let ends = [photos.start, photos.end - 1];
         let clearance = plan.wish.clearance;
         let over = |from: DVec3, to: DVec3| {
             let highest = (plan.terrain)
@@ -106,19 +114,18 @@ impl Way {
                 .unwrap_or(f64::MIN);
             (highest + clearance).max(from.z).max(to.z)
         };
-        let ends = [order.first(), order.last()].map(|end| end.map(|photo| places[*photo]));
-        let safe_height = (ends.into_iter().flatten())
-            .map(|end| over(take_off, end))
+        let safe_height = (ends.into_iter())
+            .map(|end| over(take_off, place_of(end)))
             .fold(take_off.z + clearance, f64::max);
         let mut points: Vec<WayPoint> = Vec::new();
         // Where the photo is not taken from there anyway.
         let above = |photo: usize| {
-            let place = places[photo].truncate().extend(safe_height);
-            (place != places[photo]).then_some(WayPoint { place, photo: None })
+            let place = place_of(photo).truncate().extend(safe_height);
+            (place != place_of(photo)).then_some(WayPoint { place, photo: None })
         };
-        points.extend(order.first().and_then(|photo| above(*photo)));
-        for &photo in order {
-            let to = places[photo];
+        points.extend(above(ends[0]));
+        for photo in photos {
+            let to = place_of(photo);
             if let Some(last) = points.last()
                 && last.photo.is_some()
                 && plan.terrain.is_leg_near(last.place, to, clearance)
@@ -134,7 +141,7 @@ impl Way {
             let photo = Some(photo);
             points.push(WayPoint { place: to, photo });
         }
-        points.extend(order.last().and_then(|photo| above(*photo)));
+        points.extend(above(ends[1]));
         let up = take_off.truncate().extend(safe_height);
         let all: Vec<DVec3> = [take_off, up]
             .into_iter()

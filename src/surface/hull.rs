@@ -5,7 +5,7 @@ use robust::{Coord, orient2d};
 
 /// The corners of the convex hull in (x, y), counter-clockwise, without points inside its edges.
 /// Fewer than three where all points lie on one line. Exact: decided by adaptive predicates.
-pub(super) fn convex_hull(points: &[DVec3]) -> Vec<DVec3> {
+pub fn convex_hull(points: &[DVec3]) -> Vec<DVec3> {
     let mut candidates = outside_of_extremes(points);
     candidates.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     // Andrew's monotone chain: the lower hull from left to right, the upper one back.

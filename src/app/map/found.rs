@@ -4,6 +4,7 @@
 use glam::DVec2;
 
 use crate::exports::Plan;
+use crate::geometry::surrounds;
 
 /// Cells along the longer side.
 const CELLS: f64 = 96.0;
@@ -73,7 +74,7 @@ impl PhotosAt {
         let near = self.inside.get(row * self.cells[0] + column)?;
         let shows = near.iter().filter_map(|&index| {
             let photo = plan.photos.get(index)?;
-            contains(&photo.outline, place).then(|| {
+            surrounds(&photo.outline, place).then(|| {
                 let middle = photo.middle.unwrap_or(photo.camera);
                 (index, middle.distance(place))
             })
@@ -81,44 +82,5 @@ impl PhotosAt {
         shows
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(index, _)| index)
-    }
-}
-
-/// Whether a closed outline surrounds a place: a ray to the east crosses it an odd number of times.
-fn contains(outline: &[DVec2], place: DVec2) -> bool {
-    let next = outline.iter().cycle().skip(1);
-    let crossed = outline.iter().zip(next).filter(|(a, b)| {
-        let reaches = (a.y > place.y) != (b.y > place.y);
-        reaches && place.x < a.x + (place.y - a.y) / (b.y - a.y) * (b.x - a.x)
-    });
-    crossed.count() % 2 == 1
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_outline_surrounds_what_is_inside() {
-        // An L.
-        let outline = [
-            (0.0, 0.0),
-            (4.0, 0.0),
-            (4.0, 1.0),
-            (1.0, 1.0),
-            (1.0, 3.0),
-            (0.0, 3.0),
-        ];
-        let outline = outline.map(DVec2::from);
-        for (place, inside) in [
-            ((0.5, 2.5), true),
-            ((3.5, 0.5), true),
-            ((2.0, 2.0), false),
-            ((-0.1, 0.5), false),
-            ((0.5, 3.5), false),
-        ] {
-            assert_eq!(contains(&outline, place.into()), inside, "{place:?}");
-        }
-        assert!(!contains(&[], DVec2::ZERO));
     }
 }

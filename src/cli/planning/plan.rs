@@ -18,6 +18,7 @@ use crate::fault::Fault;
 use crate::files::Kind;
 use crate::formats::{FileError, read_camera};
 use crate::geodesy::Crs;
+use crate::geometry::extent;
 use crate::jobs::Progress;
 use crate::opening::Opened;
 use crate::plan::{self, Drone, Pace, Pattern, Plan, Size, Told, Way, Wish};
@@ -210,12 +211,7 @@ pub(in crate::cli) fn plan(
         None => {
             progress.stage("looking for the pile");
             let pile = plan::pile(&parts.surface, progress).map_err(in_flight)?;
-            let (min, max) = pile
-                .corners()
-                .iter()
-                .fold((DVec2::MAX, DVec2::MIN), |(min, max), c| {
-                    (min.min(*c), max.max(*c))
-                });
+            let [min, max] = extent(pile.corners());
             let (size, middle) = (max - min, (min + max) / 2.0);
             warnings.push(format!(
                 "the area is the pile that was found, {:.1} x {:.1} {} around ({:.1}, {:.1}); --area takes another",

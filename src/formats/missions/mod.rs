@@ -31,7 +31,7 @@ use std::fs;
 use std::io::Read;
 use std::path::Path;
 
-use fragscale_core::plan::Mission;
+use fragscale_core::plan::{Mission, heading};
 
 use crate::fault::Fault;
 use crate::files::{FileError, open_file, text_from_bytes};
@@ -127,11 +127,4 @@ fn text_in(folder: &Path, name: &str) -> Result<Option<String>, FileError> {
     let bytes = read_small(&path)?;
     let text = text_from_bytes(&bytes).map_err(|fault| FileError::new(&path, fault))?;
     Ok(Some(text.to_owned()))
-}
-
-/// An angle as a heading: 0 to 360 degrees without the latter.
-fn heading(degrees: f64) -> f64 {
-    let turned = degrees.rem_euclid(360.0);
-    // A negative angle that is almost nothing is turned to 360 itself.
-    if turned < 360.0 { turned } else { 0.0 }
 }
