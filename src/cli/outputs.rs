@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::ScalesFormat;
-use crate::exports::write_mission;
+use crate::exports::write_missions;
 use crate::fault::Fault;
 use crate::files::{self, Inputs, Kind};
 use crate::formats::FileError;
@@ -196,14 +196,14 @@ impl<'a> Outputs<'a> {
             .map_err(|fault| FileError::new(path, fault).to_string())
     }
 
-    /// Writes a mission for the ground station that the file's ending names. What the pilot must know, one sentence
+    /// Writes missions for the ground station that the file's ending names. What the pilot must know, one sentence
     /// each.
-    pub(super) fn write_mission(
+    pub(super) fn write_missions(
         &self,
-        mission: &Mission,
+        missions: &[(String, Mission)],
         path: &Path,
     ) -> Result<Vec<String>, String> {
-        let written = write_mission(mission, path, &self.inputs, self.force);
+        let written = write_missions(missions, path, &self.inputs, self.force);
         Ok(written.map_err(|error| error.to_string())?.notes)
     }
 

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use crate::measured::{csv_of, percent, rows_of_text};
 use crate::numbers::significant_digits;
+use crate::survey::Polygon;
 use crate::units::LengthUnit;
 use fragscale_core::plan::{Pace, Plan, PlannedPhoto, Way};
 
@@ -51,6 +52,8 @@ struct Row {
     /// Least, greatest, top and bottom of the fitted line.
     scales: [Option<f64>; 4],
     off_line: Option<f64>,
+    /// Half of the 95 % interval that the drone's errors give its scale, percent.
+    interval: Option<f64>,
     shows: f64,
     shared: f64,
     troubles: String,
@@ -72,6 +75,7 @@ fn row(report: &PlanReport<'_>, number: usize, photo: &PlannedPhoto) -> Row {
             scale(fitted.map(|fitted| fitted.bottom)),
         ],
         off_line: fitted.map(|fitted| fitted.rms_percent),
+        interval: photo.interval,
         shows: forecast.map_or(0.0, |forecast| forecast.covered),
         shared: (report.plan.cover.shared)
             .get(number)
@@ -98,7 +102,7 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
     let number = |number: f64| significant_digits(number, 4);
     let maybe = |scale: Option<f64>| scale.map_or("-".to_owned(), number);
     let mut text = format!(
-        "{flight}: plan of {} photos; scales in px/{scales}, lengths in {world}\n\n{:<6} {:>6} {:>6} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>7}  troubles\n",
+        "{flight}: plan of {} photos; scales in px/{scales}, lengths in {world}\n\n{:<6} {:>6} {:>6} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>7} {:>7}  troubles\n",
         plan.photos.len(),
         "photo",
         "tilt",
@@ -109,6 +113,7 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
         "bottom",
         "greatest",
         "off line",
+        "95 %",
         "shared"
     );
     for row in rows(report) {
@@ -116,8 +121,11 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
         let off_line = row
             .off_line
             .map_or("-".to_owned(), |off| format!("{off:.1} %"));
+        let interval = row
+            .interval
+            .map_or("-".to_owned(), |interval| format!("±{interval:.1} %"));
         text += &format!(
-            "{:<6} {:>5.1}° {:>5.1}° {:>9} {least:>8} {top:>8} {bottom:>8} {greatest:>8} {off_line:>8} {:>5.0} %  {}\n",
+            "{:<6} {:>5.1}° {:>5.1}° {:>9} {least:>8} {top:>8} {bottom:>8} {greatest:>8} {off_line:>8} {interval:>7} {:>5.0} %  {}\n",
             row.name,
             row.tilt,
             row.pan,
@@ -202,6 +210,7 @@ pub fn plan_csv(report: &PlanReport<'_>) -> Result<String, csv::Error> {
         format!("top_px_per_{scales}"),
         format!("bottom_px_per_{scales}"),
         "off_line_percent".to_owned(),
+        "interval_95_percent".to_owned(),
         "shows_percent".to_owned(),
         "shared_percent".to_owned(),
         "off_normal_degrees".to_owned(),
@@ -215,7 +224,7 @@ pub fn plan_csv(report: &PlanReport<'_>) -> Result<String, csv::Error> {
         line.extend(angles);
         line.push(maybe(row.distance));
         line.extend(row.scales.map(maybe));
-        line.push(maybe(row.off_line));
+        line.extend([row.off_line, row.interval].map(maybe));
         line.extend(
             [100.0 * row.shows, 100.0 * row.shared, photo.off_normal]
                 .map(|number| number.to_string()),
@@ -248,6 +257,7 @@ pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
                 "top": top,
                 "bottom": bottom,
                 "off_line_percent": row.off_line,
+                "interval_95_percent": row.interval,
                 "shows": row.shows,
                 "shared": row.shared,
                 "off_normal": photo.off_normal,
@@ -258,16 +268,28 @@ pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
     let refused: Vec<Value> = (plan.refused.iter())
         .map(|refused| json!({"place": refused.place.to_array(), "why": refused.why}))
         .collect();
-    let area: Vec<[f64; 2]> = plan.area.corners().iter().map(|c| c.to_array()).collect();
+    let corners = |area: &Polygon| -> Vec<[f64; 2]> {
+        area.corners()
+            .iter()
+            .map(|corner| corner.to_array())
+            .collect()
+    };
     let value = json!({
         "flight": report.flight,
         "unit": report.world.symbol(),
         "scale_unit": report.scales.symbol(),
         "overlap": plan.wish.overlap,
         "clearance": plan.wish.clearance,
+        "keep_out": plan.wish.keep_out.iter().map(corners).collect::<Vec<_>>(),
+        "drone_errors": {
+            "level": plan.wish.errors.level,
+            "upright": plan.wish.errors.upright,
+            "pitch_degrees": plan.wish.errors.pitch,
+            "heading_degrees": plan.wish.errors.heading,
+        },
         "take_off": plan.wish.take_off.map(|place| place.to_array()),
         "pattern": plan.wish.pattern.as_str(),
-        "area": area,
+        "area": corners(&plan.area),
         "photographed": plan.cover.covered,
         "widest_gap": plan.cover.widest_gap,
         "ways": report.ways.iter().map(|way| json!({

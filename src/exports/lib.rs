@@ -37,7 +37,7 @@ pub use measured::{
     MeasuredUnit, PointsReport, ProfileReport, VolumeReport, points_csv, points_table, profile_csv,
     profile_json, profile_table, volume_csv, volume_json, volume_table, volume_warning,
 };
-pub use missions::{MissionFiles, MissionFormat, WrittenMission, mission_files, write_mission};
+pub use missions::{MissionFiles, MissionFormat, WrittenMission, mission_files, write_missions};
 pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};
 pub use photo_file_names::photo_file_stems;
 pub use plan::{

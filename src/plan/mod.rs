@@ -2,17 +2,18 @@
 //! photo will show, and the mission that a drone is told.
 //!
 //! ```text
-//! wish       what is asked for: scale, pattern, gaps, gimbal, clearance
-//! terrain    heights on a raster, planes of the ground, how near a point in the air is to it
-//! drones     cameras and gimbals that are often flown
-//! area       the ground to be photographed: the pile found by itself
-//! patterns   where photos are taken from: slope, paper, survey
-//! forecast   what a photo will show: its field of scales
-//! cover      how much photos share, and the widest gap that they leave
-//! way        in which order, with which climbs
-//! told       the way as a mission, in degrees and metres above take-off
-//! flown      planned against flown
-//! mission    take-off, stops with the camera's direction, what happens at the end
+//! wish        what is asked for: scale, pattern, gaps, gimbal, clearance; and what is usual
+//! terrain     heights on a raster, planes of the ground, how near a point in the air is to it
+//! drones      cameras and gimbals that are often flown
+//! area        the ground to be photographed: the pile found by itself
+//! keep_out    the ground that is not flown over, and the way around it
+//! photo       a planned photo
+//! patterns    where photos are taken from: slope, paper, survey
+//! forecast    what a photo will show: its field of scales
+//! steadiness  how well a drone holds its pose, and what that makes of the scale
+//! cover       how much photos share, and the widest gap that they leave
+//! way         in which order, with which climbs
+//! mission/    what a drone is told, and what came of it
 //! ```
 //!
 //! A plan is in the unit and the frame of its surface. It is made in two looks at the ground: the terrain's raster
@@ -24,14 +25,15 @@
 mod area;
 mod cover;
 mod drones;
-mod flown;
 mod forecast;
+mod keep_out;
 mod mission;
 mod patterns;
+mod photo;
+mod steadiness;
 mod terrain;
 #[cfg(test)]
 mod tests;
-mod told;
 mod way;
 mod wish;
 
@@ -41,80 +43,31 @@ use rayon::prelude::*;
 pub use area::pile;
 pub use cover::Cover;
 pub use drones::Drone;
-pub use flown::{Flown, PlannedPose, Residual, Taken, planned_poses};
 pub use forecast::Forecast;
 pub use mission::{
-    Above, DroneCodes, Fence, Finish, Height, Mission, PayloadCodes, PhotoOf, Stop, TakeOff,
-    heading,
+    Above, DroneCodes, Fence, Finish, Flown, Height, Mission, PayloadCodes, PhotoOf, PlannedPose,
+    Residual, Stop, TakeOff, Taken, Told, heading, missions, planned_poses,
 };
 pub use patterns::Pattern;
+pub use photo::{PlannedPhoto, Refused};
+pub use steadiness::{PoseErrors, Positioning};
 pub use terrain::{GroundPlane, Terrain, ground_at};
-pub use told::{Told, mission};
-pub use way::{Pace, Way, WayPoint};
-pub use wish::{Size, Wish};
+pub use way::{Pace, USUAL_SETTLE, USUAL_SPEED, Way, WayPoint};
+pub use wish::{Size, USUAL_CLEARANCE, USUAL_OFF_NORMAL, USUAL_TILT, Wish};
 
-use crate::camera::{Camera, Pose};
+use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::geometry::extent;
 use crate::jobs::Progress;
 use crate::surface::Surface;
 use crate::survey::Polygon;
+use keep_out::KeepOut;
 use patterns::{Ground, MOST};
 
 /// Pixels of the terrain along the shorter side of a footprint.
 const FINENESS: f64 = 24.0;
 /// Of a photo that shows so much of the surface nobody asks for the rest.
 const NEARLY_ALL: f64 = 0.99;
-/// How often the distance of a photo is set so that its scales lie around the wished one.
-const ROUNDS: usize = 3;
-
-/// A photo that is to be taken.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlannedPhoto {
-    /// Its place in the plan: P001, P002, …
-    pub name: String,
-    /// Where from, in the world.
-    pub pose: Pose,
-    /// The axis below the horizon, degrees: 90 straight down.
-    pub tilt: f64,
-    /// Where it looks, degrees clockwise from world +y, 0 to under 360.
-    pub pan: f64,
-    /// What its middle shows, on the ground as it is smoothed over a footprint.
-    pub target: DVec3,
-    /// From there to the camera, along the axis.
-    pub distance: f64,
-    /// The angle between its axis and the normal of the ground, degrees.
-    pub off_normal: f64,
-    /// Nothing farther than this from its target along x or y is in it.
-    pub reach: f64,
-    /// What it will show; `None` where that is nothing of the surface.
-    pub forecast: Option<Forecast>,
-}
-
-impl PlannedPhoto {
-    /// The terrain's points inside its image, in the world and in camera axes; what hides behind others, too.
-    fn sees<'a>(
-        &'a self,
-        camera: &'a Camera,
-        terrain: &'a Terrain,
-    ) -> impl Iterator<Item = (DVec3, DVec3)> + 'a {
-        let points = terrain.around(self.target.truncate(), self.reach);
-        points.filter_map(|point| {
-            let in_camera = self.pose.camera_from_world(point);
-            let pixel = camera.pixel_undistorted(in_camera)?;
-            camera.contains(pixel).then_some((point, in_camera))
-        })
-    }
-}
-
-/// A photo that cannot be taken.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Refused {
-    /// What it was to show.
-    pub place: DVec2,
-    /// Why, one clause.
-    pub why: String,
-}
 
 /// Where to fly.
 #[derive(Debug, Clone)]
@@ -131,6 +84,8 @@ pub struct Plan {
     pub terrain: Terrain,
     /// What was asked for.
     pub wish: Wish,
+    /// What is to fly.
+    pub camera: Camera,
     /// A photo's width and height on a plane across its axis, from the distance that was asked for.
     pub footprint: DVec2,
 }
@@ -152,36 +107,20 @@ impl Plan {
         is_not_too_many(camera, &area, &wish, distance)?;
         progress.stage("looking at the ground");
         let terrain = terrain_of(surface, camera, &area, (&wish, distance), progress)?;
-        // Pixels are looked at in their middles; the highest place of a slope is at a corner.
-        let corners = area.corners().iter();
-        let highest = corners.filter_map(|corner| ground_at(surface, *corner));
-        let ground = Ground {
-            highest_corner: highest.reduce(f64::max),
-            camera,
-            area: &area,
-            terrain: &terrain,
-            wish: &wish,
-            distance,
-        };
+        let ground = Ground::new((surface, &terrain), camera, &area, &wish, distance);
         let (mut photos, mut refused) = ground.photos();
         if photos.len() + refused.len() >= MOST {
             return Err(too_many());
         }
-        if wish.pattern == Pattern::Slope
-            && let Size::Scale { pixels, .. } = wish.size
-        {
-            photos
-                .par_iter_mut()
-                .for_each(|photo| set_distance(photo, camera, &terrain, pixels));
-        }
-        photos.retain(|photo| {
-            let is_near = terrain.is_near(photo.pose.center, wish.clearance);
-            if is_near {
-                let why = "the drone would come nearer to the ground than the clearance".to_owned();
+        (photos.par_iter_mut()).for_each(|photo| ground.set_distance(photo));
+        let keep_out = KeepOut::new(&wish.keep_out, wish.clearance)?;
+        photos.retain(|photo| match ground.not_flown(photo, &keep_out) {
+            None => true,
+            Some(why) => {
                 let place = photo.target.truncate();
                 refused.push(Refused { place, why });
+                false
             }
-            !is_near
         });
         if photos.is_empty() {
             return Err(none(&refused));
@@ -196,24 +135,123 @@ impl Plan {
             .map(|photo| photos[photo].clone())
             .collect();
         for (photo, number) in photos.iter_mut().zip(1..) {
-            photo.name = format!("P{number:03}");
+            photo.name = name(number);
         }
         progress.stage("what each photo will show");
         let count = photos.len() as u64;
         for (photo, done) in photos.iter_mut().zip(0..) {
             progress.advance(done, count)?;
-            photo.forecast = Forecast::of(camera, &photo.pose, surface, progress)?;
+            ground.foresee(photo, surface, progress)?;
         }
         let cover = Cover::of(&photos, camera, &area, &terrain);
         Ok(Self {
             photos,
             refused,
-            area,
             cover,
-            terrain,
             footprint: footprint(camera, distance),
+            camera: camera.clone(),
+            area,
+            terrain,
             wish,
         })
+    }
+
+    /// The same plan with one photo that looks at another place, by the same rule of its pattern; of photos of one tilt
+    /// it keeps its direction.
+    ///
+    /// # Errors
+    /// Where no photo can be taken of that place, or the work was cancelled.
+    pub fn with_photo_at(
+        &self,
+        photo: usize,
+        place: DVec2,
+        surface: &Surface,
+        progress: &Progress,
+    ) -> Result<Self, Fault> {
+        let Some(before) = self.photos.get(photo) else {
+            return Ok(self.clone());
+        };
+        let mut plan = self.clone();
+        plan.photos[photo] = self.photo_of(place, before, surface, progress)?;
+        plan.cover = Cover::of(&plan.photos, &plan.camera, &plan.area, &plan.terrain);
+        Ok(plan)
+    }
+
+    /// The same plan with one photo more, where the way to it is shortest; of a pattern of one tilt it looks as the one
+    /// next to it.
+    ///
+    /// # Errors
+    /// Where no photo can be taken of that place, there are too many, or the work was cancelled.
+    pub fn with_photo(
+        &self,
+        place: DVec2,
+        surface: &Surface,
+        progress: &Progress,
+    ) -> Result<Self, Fault> {
+        if self.photos.len() >= MOST {
+            return Err(too_many());
+        }
+        let away = |photo: &PlannedPhoto| photo.target.truncate().distance(place);
+        let nearest = (self.photos.iter()).min_by(|a, b| away(a).total_cmp(&away(b)));
+        let Some(nearest) = nearest else {
+            return Ok(self.clone());
+        };
+        let mut photo = self.photo_of(place, nearest, surface, progress)?;
+        let numbers = self
+            .photos
+            .iter()
+            .filter_map(|photo| photo.name.get(1..)?.parse().ok());
+        let number: usize = numbers.max().unwrap_or(0) + 1;
+        photo.name = name(number);
+        let at = way::cheapest(
+            &self
+                .photos
+                .iter()
+                .map(|photo| photo.pose.center)
+                .collect::<Vec<_>>(),
+            photo.pose.center,
+        );
+        let mut plan = self.clone();
+        plan.photos.insert(at, photo);
+        plan.cover = Cover::of(&plan.photos, &plan.camera, &plan.area, &plan.terrain);
+        Ok(plan)
+    }
+
+    /// The same plan without a photo; the last one stays.
+    #[must_use]
+    pub fn without_photo(&self, photo: usize) -> Self {
+        let mut plan = self.clone();
+        if photo < plan.photos.len() && plan.photos.len() > 1 {
+            plan.photos.remove(photo);
+            plan.cover = Cover::of(&plan.photos, &plan.camera, &plan.area, &plan.terrain);
+        }
+        plan
+    }
+
+    /// A photo of a place that looks as another one of the plan, and is called like it.
+    fn photo_of(
+        &self,
+        place: DVec2,
+        like: &PlannedPhoto,
+        surface: &Surface,
+        progress: &Progress,
+    ) -> Result<PlannedPhoto, Fault> {
+        let refuse = |why: String| {
+            let what = format!("no photo at ({:.1}, {:.1}): {why}", place.x, place.y);
+            Fault::new(what, "take one of another place")
+        };
+        let distance = distance(&self.camera, &self.wish)?;
+        let terrain = (surface, &self.terrain);
+        let ground = Ground::new(terrain, &self.camera, &self.area, &self.wish, distance);
+        let mut photo = ground.photo_of(place, like).map_err(refuse)?;
+        ground.set_distance(&mut photo);
+        let keep_out = KeepOut::new(&self.wish.keep_out, self.wish.clearance)?;
+        if let Some(why) = ground.not_flown(&photo, &keep_out) {
+            return Err(refuse(why));
+        }
+        ground.foresee(&mut photo, surface, progress)?;
+        photo.name.clone_from(&like.name);
+        Ok(photo)
     }
 
     /// Whether the photos leave a wider gap than was asked for.
@@ -259,6 +297,11 @@ impl Plan {
         }
         troubles
     }
+}
+
+/// What a photo of this number is called.
+fn name(number: usize) -> String {
+    format!("P{number:03}")
 }
 
 /// How far along the axis the wish asks for.
@@ -354,22 +397,4 @@ fn terrain_of(
     }
     let pixel = footprint.min_element() / FINENESS;
     Terrain::of(surface, [min, max], pixel, progress)
-}
-
-/// Moves a photo along its axis until the middle of the bulk of its scales is the wished one, by the
-/// terrain's raster.
-fn set_distance(photo: &mut PlannedPhoto, camera: &Camera, terrain: &Terrain, pixels: f64) {
-    let focal = (camera.fx * camera.fy).sqrt();
-    let away = (photo.pose.center - photo.target) / photo.distance;
-    for _ in 0..ROUNDS {
-        let seen = photo.sees(camera, terrain);
-        let mut scales: Vec<f64> = seen.map(|(_, in_camera)| focal / in_camera.z).collect();
-        let Some([least, greatest]) = forecast::bulk_of(&mut scales) else {
-            return;
-        };
-        // Both ends move alike, nearly: a few rounds do.
-        let middle = (least + greatest) / 2.0;
-        photo.distance *= middle / pixels;
-        photo.pose.center = photo.target + away * photo.distance;
-    }
 }

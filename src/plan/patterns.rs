@@ -11,11 +11,18 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
-use super::terrain::{GroundPlane, Terrain};
+use super::footprint;
+use super::forecast::{Forecast, bulk_of};
+use super::keep_out::KeepOut;
+use super::photo::{PlannedPhoto, Refused};
+use super::steadiness::interval;
+use super::terrain::{GroundPlane, Terrain, ground_at};
 use super::wish::{Size, Wish};
-use super::{PlannedPhoto, Refused, footprint};
 use crate::camera::{Camera, Pose};
+use crate::fault::Fault;
 use crate::geometry::{extent, surrounds};
+use crate::jobs::Progress;
+use crate::surface::Surface;
 use crate::survey::Polygon;
 
 /// How photos lie.
@@ -66,16 +73,19 @@ const ASLANT: f64 = 50.0;
 /// The most photos: more is a mistake of units.
 pub(super) const MOST: usize = 20_000;
 
+/// How often the distance of a photo is set so that its scales lie around the wished one.
+const ROUNDS: usize = 3;
+
 /// What the patterns work on.
 pub(super) struct Ground<'a> {
-    pub(super) camera: &'a Camera,
-    pub(super) area: &'a Polygon,
-    pub(super) terrain: &'a Terrain,
-    pub(super) wish: &'a Wish,
+    camera: &'a Camera,
+    area: &'a Polygon,
+    terrain: &'a Terrain,
+    wish: &'a Wish,
     /// The highest that the surface is at a corner of the area.
-    pub(super) highest_corner: Option<f64>,
+    highest_corner: Option<f64>,
     /// The distance along the axis, world units.
-    pub(super) distance: f64,
+    distance: f64,
 }
 
 /// A frame of the map: its origin, and the directions along and across the strips.
@@ -95,7 +105,89 @@ impl Strips {
     }
 }
 
-impl Ground<'_> {
+impl<'a> Ground<'a> {
+    pub(super) fn new(
+        (surface, terrain): (&Surface, &'a Terrain),
+        camera: &'a Camera,
+        area: &'a Polygon,
+        wish: &'a Wish,
+        distance: f64,
+    ) -> Self {
+        // Pixels of the terrain are looked at in their middles; the highest place of a slope is at a corner.
+        let corners = area.corners().iter();
+        let highest = corners.filter_map(|corner| ground_at(surface, *corner));
+        Self {
+            highest_corner: highest.reduce(f64::max),
+            camera,
+            area,
+            terrain,
+            wish,
+            distance,
+        }
+    }
+
+    /// A photo of a place, as the pattern has it; of photos of one tilt it looks as another one does.
+    pub(super) fn photo_of(
+        &self,
+        place: DVec2,
+        like: &PlannedPhoto,
+    ) -> Result<PlannedPhoto, String> {
+        match self.wish.pattern {
+            Pattern::Slope => self.square_to_ground(place, self.strips().along),
+            Pattern::Paper | Pattern::Survey => {
+                let side = self.footprint().max_element();
+                let ground = self.terrain.plane(place, side).ok_or(NO_GROUND)?;
+                let target = place.extend(self.level());
+                Ok(self.looking_at(target, [like.tilt, like.pan], ground))
+            }
+        }
+    }
+
+    /// Moves a photo of the slope pattern along its axis until the middle of the bulk of its scales is the wished one,
+    /// by the terrain's raster.
+    pub(super) fn set_distance(&self, photo: &mut PlannedPhoto) {
+        let (Pattern::Slope, Size::Scale { pixels, .. }) = (self.wish.pattern, self.wish.size)
+        else {
+            return;
+        };
+        let focal = (self.camera.fx * self.camera.fy).sqrt();
+        let away = (photo.pose.center - photo.target) / photo.distance;
+        for _ in 0..ROUNDS {
+            let seen = photo.sees(self.camera, self.terrain);
+            let mut scales: Vec<f64> = seen.map(|(_, in_camera)| focal / in_camera.z).collect();
+            let Some([least, greatest]) = bulk_of(&mut scales) else {
+                return;
+            };
+            // Both ends move alike, nearly: a few rounds do.
+            let middle = (least + greatest) / 2.0;
+            photo.distance *= middle / pixels;
+            photo.pose.center = photo.target + away * photo.distance;
+        }
+    }
+
+    /// Why the drone does not go to where a photo is to be taken from, one clause; `None` where it does.
+    pub(super) fn not_flown(&self, photo: &PlannedPhoto, keep_out: &KeepOut<'_>) -> Option<String> {
+        let from = photo.pose.center;
+        if self.terrain.is_near(from, self.wish.clearance) {
+            let why = "the drone would come nearer to the ground than the clearance";
+            return Some(why.to_owned());
+        }
+        let why = "the drone would stand over an area to keep out of, or too near to it";
+        keep_out.holds(from.truncate()).then(|| why.to_owned())
+    }
+
+    /// Says what a photo will show, and how sure its scale is.
+    pub(super) fn foresee(
+        &self,
+        photo: &mut PlannedPhoto,
+        surface: &Surface,
+        progress: &Progress,
+    ) -> Result<(), Fault> {
+        photo.forecast = Forecast::of(self.camera, &photo.pose, surface, progress)?;
+        photo.interval = interval(photo, self.camera, self.terrain, &self.wish.errors);
+        Ok(())
+    }
+
     /// A photo's width and height on a plane across its axis, at the distance.
     fn footprint(&self) -> DVec2 {
         footprint(self.camera, self.distance)
@@ -194,6 +286,7 @@ impl Ground<'_> {
             // Aslant footprints are longer.
             reach: self.footprint().length() / axis.z.abs().max(0.3),
             forecast: None,
+            interval: None,
         }
     }
 

@@ -50,6 +50,8 @@ fn wish(pattern: Pattern) -> Wish {
         off_normal: 5.0,
         gimbal: [-90.0, 20.0],
         clearance: 5.0,
+        keep_out: Vec::new(),
+        errors: Positioning::Rtk.errors(1.0),
         take_off: None,
     }
 }
@@ -58,13 +60,17 @@ fn plan(surface: &Surface, half: f64, wish: Wish) -> Plan {
     Plan::new(surface, &camera(), square(half), wish, &Progress::default()).unwrap()
 }
 
-fn ways(plan: &Plan, take_off: DVec3, battery: Option<f64>) -> Result<Vec<Way>, Fault> {
+fn ways(
+    (plan, surface): (&Plan, &Surface),
+    take_off: DVec2,
+    battery: Option<f64>,
+) -> Result<Vec<Way>, Fault> {
     let pace = Pace {
         speed: 4.0,
         stop: 3.0,
         battery,
     };
-    Way::through(plan, take_off, &pace)
+    Way::through(plan, surface, take_off, &pace)
 }
 
 /// Each battery lasts, with one photo more it would not, and every photo is taken once, in the one order.
@@ -72,9 +78,9 @@ fn ways(plan: &Plan, take_off: DVec3, battery: Option<f64>) -> Result<Vec<Way>, 
 fn a_way_is_cut_where_the_battery_ends() {
     let surface = surface(|_| 0.0);
     let plan = plan(&surface, 60.0, wish(Pattern::Slope));
-    let take_off = DVec3::new(500_000.0 - 80.0, 5_000_000.0, 0.0);
-    let whole = ways(&plan, take_off, None).unwrap();
-    let cut = ways(&plan, take_off, Some(120.0)).unwrap();
+    let take_off = DVec2::new(500_000.0 - 80.0, 5_000_000.0);
+    let whole = ways((&plan, &surface), take_off, None).unwrap();
+    let cut = ways((&plan, &surface), take_off, Some(120.0)).unwrap();
     assert!(cut.len() > 2, "{}", cut.len());
     let pace = Pace {
         speed: 4.0,
@@ -89,10 +95,10 @@ fn a_way_is_cut_where_the_battery_ends() {
     for way in &cut {
         assert!(way.seconds(&pace) <= 120.0);
         // The level parts, the climb and the photos, by hand.
-        let level: Vec<DVec2> = [take_off.truncate()]
+        let level: Vec<DVec2> = [take_off]
             .into_iter()
             .chain(way.points.iter().map(|point| point.place.truncate()))
-            .chain([take_off.truncate()])
+            .chain([take_off])
             .collect();
         let level: f64 = level.windows(2).map(|leg| leg[0].distance(leg[1])).sum();
         let expected = (level + 2.0 * 20.0) / 4.0 + 3.0 * way.photos() as f64;
@@ -104,7 +110,7 @@ fn a_way_is_cut_where_the_battery_ends() {
     for way in &cut[..cut.len() - 1] {
         assert!(way.seconds(&pace) > 120.0 - 3.0 - 2.0 * 24.0 / 4.0);
     }
-    let error = ways(&plan, take_off, Some(20.0)).unwrap_err();
+    let error = ways((&plan, &surface), take_off, Some(20.0)).unwrap_err();
     assert!(
         error.what.contains("a battery does not last to photo"),
         "{error}"
@@ -145,9 +151,9 @@ fn an_inclined_plane_is_photographed_squarely() {
 #[test]
 fn a_ridge_is_photographed_on_both_sides_and_flown_over() {
     let surface = surface(|place| (30.0 - 0.8 * place.x.abs()).max(0.0));
-    let take_off = DVec3::new(500_000.0 - 100.0, 5_000_000.0, 0.0);
+    let take_off = DVec2::new(500_000.0 - 100.0, 5_000_000.0);
     let mut wish = wish(Pattern::Slope);
-    wish.take_off = Some(take_off.truncate());
+    wish.take_off = Some(take_off);
     let plan = plan(&surface, 36.0, wish);
     let looks = |pan: f64| {
         plan.photos
@@ -156,7 +162,7 @@ fn a_ridge_is_photographed_on_both_sides_and_flown_over() {
     };
     // Uphill is east on the western side.
     assert!(looks(90.0).count() > 4 && looks(270.0).count() > 4);
-    let [way] = &ways(&plan, take_off, None).unwrap()[..] else {
+    let [way] = &ways((&plan, &surface), take_off, None).unwrap()[..] else {
         panic!("one way");
     };
     assert_eq!(way.photos(), plan.photos.len());
@@ -298,11 +304,15 @@ fn no_wish_is_refused() {
 /// In UTM at the zone's edge north of the grid is not north: headings are from true north, heights from take-off.
 #[test]
 fn a_mission_is_told_in_degrees() {
-    let surface = surface(|_| 100.0);
+    let surface = surface(|place| if place.y < -50.0 { 97.0 } else { 100.0 });
     let plan = plan(&surface, 20.0, wish(Pattern::Slope));
-    let way = ways(&plan, DVec3::new(500_000.0, 5_000_000.0 - 60.0, 97.0), None)
-        .unwrap()
-        .remove(0);
+    let way = ways(
+        (&plan, &surface),
+        DVec2::new(500_000.0, 5_000_000.0 - 60.0),
+        None,
+    )
+    .unwrap()
+    .remove(0);
     let crs = Crs::understand("EPSG:32632").unwrap();
     let told = Told {
         name: "pile".to_owned(),
@@ -310,7 +320,9 @@ fn a_mission_is_told_in_degrees() {
         speed: 4.0,
         settle: 1.0,
     };
-    let mission = mission(&plan, &way, &crs, &told).unwrap();
+    let (_, mission) = missions(&plan, &[way.clone()], &crs, &told)
+        .unwrap()
+        .remove(0);
     assert_eq!(mission.stops.len(), way.points.len());
     // Up before the first photo and behind the last, for every ground station.
     for stop in [mission.stops.first(), mission.stops.last()] {
@@ -335,7 +347,7 @@ fn a_mission_is_told_in_degrees() {
         latitude: 50.0,
         height: 0.0,
     };
-    let north = told::true_heading(0.0, &crs, east).unwrap();
+    let north = mission::true_heading(0.0, &crs, east).unwrap();
     assert!((north - 2.298).abs() < 0.01, "{north}");
 }
 
@@ -344,8 +356,8 @@ fn a_mission_is_told_in_degrees() {
 fn a_mission_over_feet_is_told_in_metres() {
     let surface = surface(|_| 100.0);
     let plan = plan(&surface, 20.0, wish(Pattern::Slope));
-    let take_off = DVec3::new(500_000.0, 5_000_000.0 - 60.0, 100.0);
-    let way = ways(&plan, take_off, None).unwrap().remove(0);
+    let take_off = DVec2::new(500_000.0, 5_000_000.0 - 60.0);
+    let way = ways((&plan, &surface), take_off, None).unwrap().remove(0);
     let crs = "+proj=utm +zone=32 +datum=WGS84 +units=us-ft +no_defs";
     let crs = Crs::understand(crs).unwrap();
     let told = Told {
@@ -354,7 +366,9 @@ fn a_mission_over_feet_is_told_in_metres() {
         speed: 4.0,
         settle: 1.0,
     };
-    let mission = mission(&plan, &way, &crs, &told).unwrap();
+    let (_, mission) = missions(&plan, &[way.clone()], &crs, &told)
+        .unwrap()
+        .remove(0);
     let foot = 1200.0 / 3937.0;
     for (stop, point) in mission.stops.iter().zip(&way.points) {
         let expected = (point.place.z - 100.0) * foot;
@@ -371,4 +385,136 @@ fn a_mission_over_feet_is_told_in_metres() {
         "{}",
         photo.height.metres
     );
+}
+
+/// A square across the field, between the take-off and some photos: none is taken above it or near it, no leg leads over
+/// it, at safe height neither, and the mission has it as a fence.
+#[test]
+fn what_is_kept_out_of_is_flown_around() {
+    let surface = surface(|_| 0.0);
+    let at = |x: f64, y: f64| DVec2::new(500_000.0 + x, 5_000_000.0 + y);
+    let corners = [
+        at(-30.0, -20.0),
+        at(-5.0, -20.0),
+        at(-5.0, 20.0),
+        at(-30.0, 20.0),
+    ];
+    let keep_out = Polygon::new(&corners).unwrap();
+    let free = plan(&surface, 60.0, wish(Pattern::Slope));
+    let wish = Wish {
+        keep_out: vec![keep_out.clone()],
+        ..wish(Pattern::Slope)
+    };
+    let plan = plan(&surface, 60.0, wish);
+    let is_near = |place: DVec3| keep_out.distance_to_leg(place.truncate(), place.truncate()) < 5.0;
+    let near = free
+        .photos
+        .iter()
+        .filter(|photo| is_near(photo.pose.center))
+        .count();
+    assert!(near > 3, "{near}");
+    assert_eq!(plan.refused.len(), near);
+    assert!(
+        plan.refused[0].why.contains("keep out"),
+        "{}",
+        plan.refused[0].why
+    );
+    let ways = ways((&plan, &surface), at(-80.0, 0.0), None).unwrap();
+    let take_off = at(-80.0, 0.0).extend(0.0);
+    let places = ways[0].points.iter().map(|point| point.place);
+    let all: Vec<DVec3> = [take_off]
+        .into_iter()
+        .chain(places)
+        .chain([take_off])
+        .collect();
+    for leg in all.windows(2) {
+        let off = keep_out.distance_to_leg(leg[0].truncate(), leg[1].truncate());
+        assert!(off >= 5.0 - 1e-9, "{off}: {leg:?}");
+    }
+    assert_eq!(ways[0].photos(), plan.photos.len());
+    let crs = Crs::understand("EPSG:32632").unwrap();
+    let told = Told {
+        name: String::new(),
+        drone: None,
+        speed: 4.0,
+        settle: 1.0,
+    };
+    let (_, mission) = missions(&plan, &ways, &crs, &told).unwrap().remove(0);
+    assert!(!mission.fences[0].keep_in && mission.fences[0].corners.len() == 4);
+    // From inside nobody takes off.
+    let pace = Pace::of(4.0, 2.0, None, 1.0);
+    let inside = Way::through(&plan, &surface, at(-10.0, 0.0), &pace).unwrap_err();
+    assert!(inside.what.contains("keep out"), "{inside}");
+}
+
+/// On a plane of any slope, the camera along its normal n from the distance d: an error e of the place changes the depth
+/// by n e, and turning by a small angle nothing to first order. So the share is sqrt(n' S n) / d.
+#[test]
+fn the_interval_of_a_scale_is_that_of_its_distance() {
+    for slope in [0.0, 0.4] {
+        let surface = surface(|place| slope * place.x);
+        for pattern in Positioning::ALL {
+            let wish = Wish {
+                errors: pattern.errors(1.0),
+                ..wish(Pattern::Slope)
+            };
+            let plan = plan(&surface, 40.0, wish.clone());
+            let [x, z] = [slope / slope.hypot(1.0), 1.0 / slope.hypot(1.0)];
+            let error = (x * wish.errors.level).hypot(z * wish.errors.upright);
+            for photo in &plan.photos {
+                let expected = 100.0 * 1.96 * error / photo.distance;
+                let found = photo.interval.unwrap();
+                assert!((found / expected - 1.0).abs() < 0.05, "{found} {expected}");
+            }
+        }
+    }
+}
+
+/// A photo that is moved looks squarely at its new place, from where the scale is the wished one; the others stay.
+#[test]
+fn photos_are_moved_added_and_left_out() {
+    let surface = surface(|place| 0.3 * place.y);
+    let before = plan(&surface, 60.0, wish(Pattern::Slope));
+    let progress = Progress::default();
+    let to = DVec2::new(500_000.0 + 13.0, 5_000_000.0 - 7.0);
+    let after = before.with_photo_at(2, to, &surface, &progress).unwrap();
+    let moved = &after.photos[2];
+    assert!(moved.target.truncate().distance(to) < 1e-9);
+    assert_eq!(moved.name, before.photos[2].name);
+    let forecast = moved.forecast.as_ref().unwrap();
+    let [least, greatest] = forecast.bulk;
+    assert!(
+        ((least + greatest) / 2.0 / 25.0 - 1.0).abs() < 1e-3,
+        "{least} {greatest}"
+    );
+    assert!(moved.off_normal < 1e-6, "{}", moved.off_normal);
+    let others = |plan: &Plan| -> Vec<PlannedPhoto> {
+        let photos = plan.photos.iter().enumerate();
+        photos
+            .filter(|(at, _)| *at != 2)
+            .map(|(_, photo)| photo.clone())
+            .collect()
+    };
+    assert_eq!(others(&after), others(&before));
+    assert!(after.cover.covered < before.cover.covered);
+    // Once more beside itself, it shares all that it shows.
+    let more = before
+        .with_photo(before.photos[4].target.truncate(), &surface, &progress)
+        .unwrap();
+    assert_eq!(more.photos.len(), before.photos.len() + 1);
+    let twins = [4, 5].map(|at| more.cover.shared[at]);
+    assert!(twins.iter().all(|shared| *shared > 0.99), "{twins:?}");
+    let names: std::collections::HashSet<&str> = more
+        .photos
+        .iter()
+        .map(|photo| photo.name.as_str())
+        .collect();
+    assert_eq!(names.len(), more.photos.len());
+    let less = more.without_photo(4);
+    assert_eq!(less.photos.len(), before.photos.len());
+    // Beyond the surface nothing is photographed.
+    let off = before
+        .with_photo_at(0, to + 4000.0, &surface, &progress)
+        .unwrap_err();
+    assert!(off.what.contains("beyond the surface"), "{off}");
 }

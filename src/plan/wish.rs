@@ -1,8 +1,22 @@
-//! What is wished of a plan.
+//! What is wished of a plan, and what is usual where nobody says it: the window and the command line ask here.
 
 use glam::DVec2;
 
-use super::Pattern;
+use super::{Drone, Pattern, PoseErrors, Positioning};
+use crate::survey::Polygon;
+
+/// How far scales may be off where nobody says it: a tenth of the wished one, as a scale of 20 ± 2.
+const WITHIN: f64 = 0.1;
+/// Overlap of the survey where nobody says it.
+const SURVEY_OVERLAP: f64 = 0.7;
+/// Degrees that every gimbal of a camera drone reaches.
+const GIMBAL: [f64; 2] = [-90.0, 0.0];
+/// The axis below the horizon of the paper's photos, degrees (III-B).
+pub const USUAL_TILT: f64 = 83.0;
+/// Degrees off the normal of the ground that the slope pattern allows.
+pub const USUAL_OFF_NORMAL: f64 = 10.0;
+/// Metres between drone and surface.
+pub const USUAL_CLEARANCE: f64 = 5.0;
 
 /// What is wished of a plan. Lengths are in world units, angles in degrees.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,10 +36,36 @@ pub struct Wish {
     pub off_normal: f64,
     /// The gimbal's lowest and highest pitch, -90 straight down.
     pub gimbal: [f64; 2],
-    /// How near the drone may come to the surface.
+    /// How near the drone may come to the surface, and to what it keeps out of.
     pub clearance: f64,
+    /// Ground that it does not fly over, at any height.
+    pub keep_out: Vec<Polygon>,
+    /// How well it holds its pose.
+    pub errors: PoseErrors,
     /// Where the drone takes off and lands, if that is known: the ground is looked at as far as there.
     pub take_off: Option<DVec2>,
+}
+
+impl Wish {
+    /// What is usual, of a surface whose unit has so many metres, and of a drone, where it is known.
+    pub fn usual(pattern: Pattern, size: Size, drone: Option<Drone>, unit_metres: f64) -> Self {
+        Self {
+            pattern,
+            size,
+            overlap: match pattern {
+                Pattern::Survey => SURVEY_OVERLAP,
+                Pattern::Slope | Pattern::Paper => 0.0,
+            },
+            gap: 0.1,
+            tilt: USUAL_TILT,
+            off_normal: USUAL_OFF_NORMAL,
+            gimbal: drone.map_or(GIMBAL, |drone| drone.gimbal),
+            clearance: USUAL_CLEARANCE / unit_metres,
+            keep_out: Vec::new(),
+            errors: Positioning::default().errors(unit_metres),
+            take_off: None,
+        }
+    }
 }
 
 /// How large the rock is to be in the photos.
@@ -40,4 +80,14 @@ pub enum Size {
     },
     /// Photos from so far: above the highest of the area, where one height is for all; else from the ground.
     Distance(f64),
+}
+
+impl Size {
+    /// This scale, pixels per world unit, within what is usual.
+    pub fn scale(pixels: f64) -> Self {
+        Self::Scale {
+            pixels,
+            within: Some(WITHIN * pixels),
+        }
+    }
 }

@@ -4,6 +4,7 @@ use glam::DVec2;
 use robust::{Coord, orient2d};
 
 use super::SurveyError;
+use crate::geometry::surrounds;
 
 /// The most corners of a polygon: every side is compared with every other.
 pub const MOST_CORNERS: usize = 2000;
@@ -87,6 +88,24 @@ impl Polygon {
         self.twice_signed_area() / 2.0
     }
 
+    /// How far the straight leg between two places stays from it in plan, world units: 0 where it leads over it.
+    pub fn distance_to_leg(&self, from: DVec2, to: DVec2) -> f64 {
+        let sides = || self.corners.iter().zip(self.corners.iter().cycle().skip(1));
+        let meets = surrounds(&self.corners, from) || sides().any(|(a, b)| touch(from, to, *a, *b));
+        if meets {
+            return 0.0;
+        }
+        // Of two that do not meet, the nearest places are an end of one of them and a place of the other.
+        let distances = sides().flat_map(|(a, b)| {
+            [
+                to_segment(from, [*a, *b]),
+                to_segment(to, [*a, *b]),
+                to_segment(*a, [from, to]),
+            ]
+        });
+        distances.fold(f64::MAX, f64::min)
+    }
+
     fn twice_signed_area(&self) -> f64 {
         // From its first corner: squares of UTM coordinates would lose the digits.
         let from = self.corners[0];
@@ -148,6 +167,18 @@ fn side(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     orient2d(coord(a), coord(b), coord(c))
 }
 
+/// How far a place is from the nearest of a straight piece.
+fn to_segment(place: DVec2, [from, to]: [DVec2; 2]) -> f64 {
+    let leg = to - from;
+    let length = leg.length_squared();
+    let share = if length > 0.0 {
+        (place - from).dot(leg) / length
+    } else {
+        0.0
+    };
+    place.distance(from + leg * share.clamp(0.0, 1.0))
+}
+
 /// Whether two sides have a point in common.
 fn touch(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
     let apart = a.max(b).cmplt(c.min(d)).any() || c.max(d).cmplt(a.min(b)).any();
@@ -157,4 +188,31 @@ fn touch(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
     let crosses =
         |one: f64, other: f64| (one >= 0.0 && other <= 0.0) || (one <= 0.0 && other >= 0.0);
     crosses(side(a, b, c), side(a, b, d)) && crosses(side(c, d, a), side(c, d, b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a square of side 2 about the origin, turned by 45 degrees: half its diagonal is the root of 2.
+    #[test]
+    fn legs_keep_their_distance() {
+        let half = 2.0_f64.sqrt();
+        let corners = [(half, 0.0), (0.0, half), (-half, 0.0), (0.0, -half)].map(DVec2::from);
+        let square = Polygon::new(&corners).unwrap();
+        for (from, to, expected) in [
+            // Beside a corner, along a side, off an end, over it, inside of it, along its side.
+            ((3.0, -9.0), (3.0, 9.0), 3.0 - half),
+            ((0.0, 3.0), (3.0, 0.0), 3.0 / half - 1.0),
+            ((4.0, 0.0), (9.0, 1.0), 4.0 - half),
+            ((-9.0, 0.1), (9.0, 0.1), 0.0),
+            ((0.1, 0.1), (0.2, 0.1), 0.0),
+            ((half, 0.0), (0.0, half), 0.0),
+            // No leg, but a place: nearest to a side.
+            ((2.0, 2.0), (2.0, 2.0), 4.0 / half - 1.0),
+        ] {
+            let found = square.distance_to_leg(from.into(), to.into());
+            assert!((found - expected).abs() < 1e-12, "{from:?} {to:?}: {found}");
+        }
+    }
 }

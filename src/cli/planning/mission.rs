@@ -8,7 +8,7 @@ use clap::Args;
 use crate::cli::Answer;
 use crate::cli::outputs::Force;
 use crate::cli::planning::plan::drone_values;
-use crate::exports::write_mission;
+use crate::exports::write_missions;
 use crate::fault::one_line;
 use crate::files::Inputs;
 use crate::formats::{MissionFile, read_mission};
@@ -41,7 +41,12 @@ pub(in crate::cli) fn mission(arguments: &MissionArguments) -> Result<Answer, St
     let mut text = told(&mission, format);
     if let Some(to) = &arguments.to {
         let inputs = Inputs::of([&arguments.file]);
-        let written = write_mission(&mission, to, &inputs, arguments.force.force);
+        let written = write_missions(
+            &[(String::new(), mission)],
+            to,
+            &inputs,
+            arguments.force.force,
+        );
         let written = written.map_err(|e| e.to_string())?;
         for file in &written.files {
             // Writing to a String cannot fail.

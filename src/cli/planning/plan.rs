@@ -21,20 +21,9 @@ use crate::geodesy::Crs;
 use crate::geometry::extent;
 use crate::jobs::Progress;
 use crate::opening::Opened;
-use crate::plan::{self, Drone, Pace, Pattern, Plan, Size, Told, Way, Wish};
+use crate::plan::{self, Drone, Pace, Pattern, Plan, Positioning, Size, Told, Way, Wish};
 use crate::survey::Polygon;
 use crate::units::LengthUnit;
-
-/// How far scales may be off where nobody says it: a tenth of the wished one, as a scale of 20 ± 2.
-const WITHIN: f64 = 0.1;
-/// Overlap of the survey where nobody says it.
-const SURVEY_OVERLAP: f64 = 0.7;
-/// Seconds for turning, the gimbal's way and the shot, beside the wait.
-const SHOT: f64 = 2.0;
-/// How hard a drone brakes and starts, metres a second squared.
-const PULL: f64 = 2.0;
-/// Degrees that every gimbal of a camera drone reaches.
-const GIMBAL: [f64; 2] = [-90.0, 0.0];
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct PlanArguments {
@@ -56,11 +45,11 @@ pub(in crate::cli) struct PlanArguments {
     #[arg(long, value_name = "PERCENT")]
     overlap: Option<f64>,
     /// The camera's axis below the horizon, of the paper's pattern, degrees.
-    #[arg(long, value_name = "DEGREES", default_value_t = 83.0)]
+    #[arg(long, value_name = "DEGREES", default_value_t = plan::USUAL_TILT)]
     tilt: f64,
     /// How far a photo's axis may lie off the normal of the ground, of the slope pattern, degrees: photos that are
     /// square in their strips share less with their neighbours.
-    #[arg(long, value_name = "DEGREES", value_parser = positive, default_value_t = 10.0)]
+    #[arg(long, value_name = "DEGREES", value_parser = positive, default_value_t = plan::USUAL_OFF_NORMAL)]
     off_normal: f64,
     /// The corners of what is to be photographed, in the world, or a file with one a line; without it the pile
     /// that stands out of its floor.
@@ -81,17 +70,24 @@ pub(in crate::cli) struct PlanArguments {
     /// The gimbal's lowest and highest pitch in degrees, -90 straight down; else the drone's, or -90 to 0.
     #[arg(long, value_name = "LOW,HIGH", value_parser = place, allow_hyphen_values = true)]
     gimbal: Option<DVec2>,
-    /// The drone stays so far from the surface.
-    #[arg(long, value_name = "LENGTH", default_value = "5m")]
-    clearance: Length,
+    /// The drone stays so far from the surface; else 5 m.
+    #[arg(long, value_name = "LENGTH")]
+    clearance: Option<Length>,
+    /// The corners of ground that the drone does not fly over, at any height (misfires, people), or a file with one a
+    /// line. May be given several times.
+    #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
+    keep_out: Vec<String>,
+    /// By what the drone knows its place: how far a photo's scale may be off by that.
+    #[arg(long, value_enum, default_value_t)]
+    positioning: DronePositioning,
     /// Where the drone takes off and lands, in the world: on the surface, and heights of a mission count from there.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     take_off: Option<DVec2>,
     /// Metres a second between photos.
-    #[arg(long, value_name = "M/S", value_parser = positive, default_value_t = 4.0)]
+    #[arg(long, value_name = "M/S", value_parser = positive, default_value_t = plan::USUAL_SPEED)]
     speed: f64,
     /// Seconds that the drone waits at a photo, for the gimbal to settle.
-    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 2.0)]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = plan::USUAL_SETTLE)]
     settle: f64,
     /// Minutes in the air that a battery lasts: a longer way becomes several missions, NAME-battery-1 and so on.
     #[arg(long, value_name = "MINUTES", value_parser = positive, requires = "take_off")]
@@ -141,6 +137,24 @@ impl ValueEnum for PhotoPattern {
     }
 }
 
+/// By what a drone knows its place, as a word of the command line.
+#[derive(Debug, Clone, Copy, Default)]
+struct DronePositioning(Positioning);
+
+impl ValueEnum for DronePositioning {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [DronePositioning; 2] = [
+            DronePositioning(Positioning::Gnss),
+            DronePositioning(Positioning::Rtk),
+        ];
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.0.as_str()).help(self.0.explained()))
+    }
+}
+
 /// Pixels per a unit of length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct PixelScale {
@@ -180,6 +194,8 @@ pub(in crate::cli) fn plan(
         outputs = outputs.and(path, Kind::Result)?;
     }
     let area = arguments.area.as_deref().map(places).transpose()?;
+    let keep_out = arguments.keep_out.iter().map(|text| places(text));
+    let keep_out: Vec<_> = keep_out.collect::<Result<_, String>>()?;
     let opened = arguments.flight.open_to_measure(progress)?;
     outputs.read(&opened.read)?;
     let in_flight = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
@@ -220,23 +236,24 @@ pub(in crate::cli) fn plan(
             pile
         }
     };
-    let wish = wish(arguments, unit);
+    let mut wish = wish(arguments, unit);
+    for (corners, said) in keep_out {
+        warnings.extend(said);
+        let area = Polygon::new(&corners).map_err(|error| format!("keep-out: {error}"))?;
+        wish.keep_out.push(area);
+    }
     let plan = Plan::new(&parts.surface, &camera, area, wish, progress).map_err(in_flight)?;
-    let pace = Pace {
-        speed: arguments.speed / unit.metres(),
-        // Braking and starting again take as long as the speed at an even pull.
-        stop: arguments.settle + SHOT + arguments.speed / PULL,
-        battery: arguments.battery.map(|minutes| minutes * 60.0),
-    };
+    let pace = Pace::of(
+        arguments.speed,
+        arguments.settle,
+        arguments.battery,
+        unit.metres(),
+    );
     let ways = match arguments.take_off {
         None => Vec::new(),
         Some(place) => {
             progress.stage("the way through the photos");
-            let ground = plan::ground_at(&parts.surface, place).ok_or_else(|| {
-                let what = "the take-off does not lie on the surface";
-                in_flight(Fault::new(what, "give a place on it, in its coordinates"))
-            })?;
-            Way::through(&plan, place.extend(ground), &pace).map_err(in_flight)?
+            Way::through(&plan, &parts.surface, place, &pace).map_err(in_flight)?
         }
     };
     let report = PlanReport {
@@ -268,24 +285,17 @@ pub(in crate::cli) fn plan(
                 ))
             })?;
         let crs = Crs::understand(crs).map_err(in_flight)?;
-        for (way, number) in ways.iter().zip(1..) {
-            let battery = (ways.len() > 1).then(|| format!("-battery-{number}"));
-            let battery = battery.unwrap_or_default();
-            let told = Told {
-                name: format!("{}{battery}", parts.name),
-                drone: arguments.drone().and_then(|drone| drone.codes),
-                speed: arguments.speed,
-                settle: arguments.settle,
-            };
-            let mission = plan::mission(&plan, way, &crs, &told).map_err(in_flight)?;
-            for path in &arguments.mission {
-                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-                let ending = path.extension().unwrap_or_default().to_string_lossy();
-                let path = path.with_file_name(format!("{stem}{battery}.{ending}"));
-                for note in outputs.write_mission(&mission, &path)? {
-                    if !warnings.contains(&note) {
-                        warnings.push(note);
-                    }
+        let told = Told {
+            name: parts.name.clone(),
+            drone: arguments.drone().and_then(|drone| drone.codes),
+            speed: arguments.speed,
+            settle: arguments.settle,
+        };
+        let missions = plan::missions(&plan, &ways, &crs, &told).map_err(in_flight)?;
+        for path in &arguments.mission {
+            for note in outputs.write_missions(&missions, path)? {
+                if !warnings.contains(&note) {
+                    warnings.push(note);
                 }
             }
         }
@@ -318,39 +328,35 @@ fn camera(arguments: &PlanArguments, opened: &Opened) -> Result<Camera, String> 
 }
 
 fn wish(arguments: &PlanArguments, unit: LengthUnit) -> Wish {
-    let pattern = arguments.pattern.0;
     let size = match (arguments.scale, arguments.height) {
-        (Some(scale), _) => Size::Scale {
-            pixels: scale.per(unit),
-            within: Some(match arguments.within {
-                Some(within) => within.per(unit),
-                None => WITHIN * scale.per(unit),
-            }),
+        (Some(scale), _) => match arguments.within {
+            None => Size::scale(scale.per(unit)),
+            Some(within) => Size::Scale {
+                pixels: scale.per(unit),
+                within: Some(within.per(unit)),
+            },
         },
         // One of the two is there.
         (None, height) => {
             Size::Distance(height.map_or(f64::NAN, |height| height.in_units_of(unit)))
         }
     };
-    let overlap = match (arguments.overlap, pattern) {
-        (Some(percent), _) => percent / 100.0,
-        (None, Pattern::Survey) => SURVEY_OVERLAP,
-        (None, _) => 0.0,
-    };
+    let metres = unit.metres();
+    let usual = Wish::usual(arguments.pattern.0, size, arguments.drone(), metres);
+    let clearance = arguments.clearance.map(|length| length.in_units_of(unit));
     Wish {
-        pattern,
-        size,
-        overlap,
-        gap: 0.1,
+        overlap: arguments
+            .overlap
+            .map_or(usual.overlap, |percent| percent / 100.0),
         tilt: arguments.tilt,
         off_normal: arguments.off_normal,
-        gimbal: match (arguments.gimbal, arguments.drone()) {
-            (Some(gimbal), _) => gimbal.to_array(),
-            (None, Some(drone)) => drone.gimbal,
-            (None, None) => GIMBAL,
-        },
-        clearance: arguments.clearance.in_units_of(unit),
+        gimbal: arguments
+            .gimbal
+            .map_or(usual.gimbal, |gimbal| gimbal.to_array()),
+        clearance: clearance.unwrap_or(usual.clearance),
+        errors: arguments.positioning.0.errors(metres),
         take_off: arguments.take_off,
+        ..usual
     }
 }
 

@@ -124,32 +124,37 @@ pub fn mission_files(mission: &Mission, format: MissionFormat) -> Result<Mission
     Ok(MissionFiles { files, notes: said })
 }
 
-/// Writes a mission where `path` says, in the format of its ending; of several files each has a number
-/// behind its stem. Each is whole or not there; nothing that was read is written over.
+/// Writes missions where `path` says, in the format of its ending, each with its own words behind the stem; of a mission
+/// that needs several files each has a number behind that. Each is whole or not there; nothing that was read is written
+/// over.
 ///
 /// # Errors
 /// With the file: an ending that is none of a mission, what [`mission_files`] says, and what the rule of
 /// [`files::write`] says.
-pub fn write_mission(
-    mission: &Mission,
+pub fn write_missions(
+    missions: &[(String, Mission)],
     path: &Path,
     inputs: &Inputs,
     force: bool,
 ) -> Result<WrittenMission, FileError> {
     let at = |fault| FileError::new(path, fault);
     let format = MissionFormat::of(path).map_err(at)?;
-    let MissionFiles { files, notes } = mission_files(mission, format).map_err(at)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let ending = path.extension().unwrap_or_default().to_string_lossy();
-    let named: Vec<(PathBuf, Vec<u8>)> = files
-        .into_iter()
-        .map(|(suffix, bytes)| {
-            (
-                path.with_file_name(format!("{stem}{suffix}.{ending}")),
-                bytes,
-            )
-        })
-        .collect();
+    let mut named: Vec<(PathBuf, Vec<u8>)> = Vec::new();
+    let mut said: Vec<String> = Vec::new();
+    for (words, mission) in missions {
+        let MissionFiles { files, notes } = mission_files(mission, format).map_err(at)?;
+        for (suffix, bytes) in files {
+            let name = format!("{stem}{words}{suffix}.{ending}");
+            named.push((path.with_file_name(name), bytes));
+        }
+        for note in notes {
+            if !said.contains(&note) {
+                said.push(note);
+            }
+        }
+    }
     // None of them is written where one may not be.
     for (path, _) in &named {
         files::has_folder(path)
@@ -164,7 +169,7 @@ pub fn write_mission(
     }
     Ok(WrittenMission {
         files: written,
-        notes,
+        notes: said,
     })
 }
 

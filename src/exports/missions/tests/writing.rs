@@ -4,6 +4,28 @@ use fragscale_formats::read_mission;
 
 use super::*;
 
+fn write_mission(
+    mission: &Mission,
+    path: &Path,
+    inputs: &Inputs,
+    force: bool,
+) -> Result<WrittenMission, FileError> {
+    write_missions(&[(String::new(), mission.clone())], path, inputs, force)
+}
+
+/// Two batteries of which each needs three files.
+#[test]
+fn batteries_and_parts_are_in_the_names() {
+    let mut long = mission();
+    long.stops = vec![long.stops[0].clone(); 250];
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("pile.csv");
+    let batteries = ["-battery-1", "-battery-2"].map(|name| (name.to_owned(), long.clone()));
+    let written = write_missions(&batteries, &path, &Inputs::default(), false).unwrap();
+    assert_eq!(written.files.len(), 6);
+    assert!(folder.path().join("pile-battery-2-3.csv").exists());
+}
+
 #[test]
 fn more_stops_than_litchi_takes_are_several_missions() {
     let mut long = mission();

@@ -5,9 +5,10 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{DroneCodes, Finish, Height, Mission, PhotoOf, Plan, Stop, TakeOff, Way, heading};
+use super::{DroneCodes, Fence, Finish, Height, Mission, PhotoOf, Stop, TakeOff, heading};
 use crate::fault::Fault;
 use crate::geodesy::{Crs, Geographic};
+use crate::plan::{Plan, Way};
 
 /// What the mission is told beside the way.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,11 +23,38 @@ pub struct Told {
     pub settle: f64,
 }
 
-/// The mission of a way over a surface in a coordinate system.
+/// A mission for each way of a plan over a surface in a coordinate system, with what the name of its file has behind
+/// that of the plan: nothing, or the number of the battery.
 ///
 /// # Errors
-/// Where a place of the way lies where the coordinate system does not hold.
-pub fn mission(plan: &Plan, way: &Way, crs: &Crs, told: &Told) -> Result<Mission, Fault> {
+/// Where a place of a way lies where the coordinate system does not hold.
+pub fn missions(
+    plan: &Plan,
+    ways: &[Way],
+    crs: &Crs,
+    told: &Told,
+) -> Result<Vec<(String, Mission)>, Fault> {
+    let numbered = ways.iter().zip(1..).map(|(way, number)| {
+        let battery = match ways.len() {
+            0 | 1 => String::new(),
+            _ => format!("-battery-{number}"),
+        };
+        let name = format!("{}{battery}", told.name);
+        let mission = mission(
+            plan,
+            way,
+            crs,
+            Told {
+                name,
+                ..told.clone()
+            },
+        )?;
+        Ok((battery, mission))
+    });
+    numbered.collect()
+}
+
+fn mission(plan: &Plan, way: &Way, crs: &Crs, told: Told) -> Result<Mission, Fault> {
     let off = || {
         let what = format!("the plan lies where {} does not hold", crs.name());
         Fault::new(what, "check the coordinate system of the surface")
@@ -52,8 +80,18 @@ pub fn mission(plan: &Plan, way: &Way, crs: &Crs, told: &Told) -> Result<Mission
             }),
         });
     }
+    let fences = plan.wish.keep_out.iter().map(|area| {
+        let corners = area.corners().iter().map(|corner| {
+            let place = geographic(corner.extend(way.take_off.z))?;
+            Ok([place.latitude, place.longitude])
+        });
+        Ok(Fence {
+            keep_in: false,
+            corners: corners.collect::<Result<_, Fault>>()?,
+        })
+    });
     let mission = Mission {
-        name: told.name.clone(),
+        name: told.name,
         drone: told.drone,
         take_off: Some(TakeOff {
             latitude: take_off.latitude,
@@ -64,14 +102,14 @@ pub fn mission(plan: &Plan, way: &Way, crs: &Crs, told: &Told) -> Result<Mission
         safe_height: Some(above(way.safe_height)),
         finish: Finish::ReturnHome,
         stops,
-        fences: Vec::new(),
+        fences: fences.collect::<Result<_, Fault>>()?,
     };
     mission.check()?;
     Ok(mission)
 }
 
 /// A direction of the grid, degrees clockwise from its +y, as degrees from true north.
-pub(super) fn true_heading(pan: f64, crs: &Crs, place: Geographic) -> Option<f64> {
+pub(in crate::plan) fn true_heading(pan: f64, crs: &Crs, place: Geographic) -> Option<f64> {
     let (sine, cosine) = pan.to_radians().sin_cos();
     let on_grid = DVec2::new(sine, cosine).extend(0.0);
     let enu = crs.grid_from_enu(place)?.transpose() * on_grid;

@@ -1,5 +1,18 @@
 //! A mission: where to fly, where to look, when to shoot. It is what the files of all ground stations say,
 //! each in its own way; `formats::missions` reads them, `exports::missions` writes them.
+//!
+//! ```text
+//! told   the ways of a plan as missions, in degrees and metres above take-off
+//! flown  planned against flown
+//! ```
+
+mod flown;
+mod told;
+
+pub use flown::{Flown, PlannedPose, Residual, Taken, planned_poses};
+#[cfg(test)]
+pub(super) use told::true_heading;
+pub use told::{Told, missions};
 
 use crate::fault::Fault;
 use crate::geodesy::geoid_height;
