@@ -5,7 +5,9 @@ use crate::flight::FlightSettings;
 use crate::from_photos::Ended;
 use crate::geometry::LevelBox;
 use crate::open_flight::OpenFlight;
+use crate::open_flight::picker::Purpose;
 use crate::open_flight::survey::picked::PickedPoint;
+use crate::planning::PlanStep;
 use crate::scale::ScalePair;
 use crate::size_distributions::Page;
 use crate::state::bundled::sample_flight;
@@ -67,6 +69,9 @@ impl State {
                     if task == Task::SAVE {
                         self.after_saving = None;
                     }
+                    if task == Task::PLAN {
+                        self.plan_cancelled();
+                    }
                     if task == Task::RECONSTRUCT {
                         self.from_photos.ended = Some(Ended::Cancelled);
                     }
@@ -92,6 +97,7 @@ impl State {
             Command::Zoom(factor) => self.context.set_zoom_factor(factor.clamp(0.5, 3.0)),
             Command::Page(page) => self.page = page,
             Command::Map(command) => self.apply_to_map(command),
+            Command::Plan(step) => self.plan_step(step),
             Command::Distributions(command) => self.apply_to_distributions(command),
             Command::Tab(tab) => self.show_tab(tab),
             Command::ToggleLog => self.preferences.log_open ^= true,
@@ -113,6 +119,8 @@ impl State {
             Command::Redo if self.page == Page::SizeDistributions => {
                 self.undo_distributions(History::redo);
             }
+            Command::Undo if self.page == Page::Plan => self.undo_plan(History::undo),
+            Command::Redo if self.page == Page::Plan => self.undo_plan(History::redo),
             Command::Undo => {
                 self.undo_picks_or_settings(History::undo, History::undo, History::undo);
                 // Else the last word at the foot of the window may be "saved".
@@ -150,6 +158,14 @@ impl State {
             }
             Command::Select(photo) => self.select(|open| open.select(photo)),
             Command::SelectBy(rows) => self.select(|open| open.select_by(rows)),
+            Command::Click(ray) if self.page == Page::Plan => {
+                if let Some(open) = &mut self.open {
+                    open.pick(Purpose::Plan, ray);
+                }
+            }
+            Command::DoubleClick(_) if self.is_drawing_on_plan() => {
+                self.plan_step(PlanStep::Finish);
+            }
             Command::Click(_)
             | Command::Hover(..)
             | Command::DoubleClick(_)

@@ -13,6 +13,7 @@
 //! photo_view/         the selected photo in the middle of the window
 //! control_points/     points that are marked in photos, and what follows from them
 //! map/                the page of the map
+//! planning/           the page of the flight plan
 //! from_photos         what the small window for a new flight from photos holds
 //! size_distributions/ the page of size distributions
 //! ```
@@ -36,6 +37,7 @@ pub mod open_flight;
 pub mod opening_preview;
 pub mod panels;
 pub mod photo_view;
+pub mod planning;
 pub mod poll;
 mod reviewing;
 pub mod size_distributions;
@@ -46,8 +48,8 @@ pub mod viewport;
 mod writing;
 
 use fragscale_core::{
-    camera, control, fault, files, flight, geometry, jobs, numbers, picture, scale, surface,
-    survey, units,
+    camera, control, fault, files, flight, geodesy, geometry, jobs, numbers, picture, plan, scale,
+    surface, survey, units,
 };
 use fragscale_exports as exports;
 use fragscale_formats as formats;
@@ -229,9 +231,10 @@ impl eframe::App for App {
                     .default_size((width * 0.36).clamp(180.0, 500.0))
                     .min_size(180.0)
                     .max_size((width * 0.4).max(180.0))
-                    .show(ui, |ui| match is_marking {
-                        true => panels::control_points(state, ui, out),
-                        false => panels::photos_table(state, ui, out),
+                    .show(ui, |ui| match state.page {
+                        Page::Plan => panels::asked_of_plan(state, ui, out),
+                        _ if is_marking => panels::control_points(state, ui, out),
+                        _ => panels::photos_table(state, ui, out),
                     });
             }
             if state.preferences.right_open {
@@ -242,7 +245,10 @@ impl eframe::App for App {
                     .default_size((width * 0.32).clamp(220.0, 330.0))
                     .min_size(220.0)
                     .max_size((width * 0.4).max(220.0))
-                    .show(ui, |ui| panels::right_panel(state, inspector, ui, out));
+                    .show(ui, |ui| match state.page {
+                        Page::Plan => panels::planned_photos(state, ui, out),
+                        _ => panels::right_panel(state, inspector, ui, out),
+                    });
             }
             let photo_panel = &mut self.photo_panel;
             if state.middle == Middle::Both && state.page == Page::Pile {
@@ -266,10 +272,12 @@ impl eframe::App for App {
                     panels::map(state, ui, out);
                 } else if let Some(preview) = state.opening_preview() {
                     viewport.show_preview(state, preview, ui, out, times);
-                } else if state.middle.has_pile() {
+                } else if state.middle.has_pile() || state.page == Page::Plan {
                     viewport.show(state, ui, out, times);
                     overlays(state, ui, place, out);
-                    panels::survey_panel(state, ui.ctx(), place, out);
+                    if state.page == Page::Pile {
+                        panels::survey_panel(state, ui.ctx(), place, out);
+                    }
                 } else {
                     let fill = ui.visuals().panel_fill;
                     ui.painter().rect_filled(place, 0.0, fill);
@@ -322,7 +330,7 @@ fn overlays(state: &State, ui: &mut egui::Ui, place: egui::Rect, commands: &mut 
     let through = state
         .open
         .as_ref()
-        .is_some_and(|open| open.looking.through.is_some());
+        .is_some_and(|open| open.looking.through.is_some() && state.page == Page::Pile);
     if through {
         egui::Frame::popup(ui.style()).show(ui, |ui| panels::blend_slider(state, ui, commands));
     }
@@ -364,7 +372,7 @@ fn drop_hint(state: &State, context: &egui::Context) {
             place.center(),
             egui::Align2::CENTER_CENTER,
             match state.page {
-                Page::Pile | Page::Map => "Let go to open this flight",
+                Page::Pile | Page::Map | Page::Plan => "Let go to open this flight",
                 Page::SizeDistributions if state.distributions.tab == ResultTab::Effort => {
                     "Let go to add these times of steps"
                 }

@@ -34,8 +34,9 @@ pub use flight_files::{Orientation, PoseRow, StatedDeviations, laz, ply, poses_c
 pub use flight_plan::{PlanReport, plan_csv, plan_json, plan_table, plan_warnings};
 pub use flown_report::{FlownReport, flown_csv, flown_json, flown_table, flown_warnings};
 pub use measured::{
-    MeasuredUnit, PointsReport, ProfileReport, VolumeReport, points_csv, points_table, profile_csv,
-    profile_json, profile_table, volume_csv, volume_json, volume_table, volume_warning,
+    MeasuredUnit, PointsReport, ProfileReport, VolumeReport, percent, points_csv, points_table,
+    profile_csv, profile_json, profile_table, volume_csv, volume_json, volume_table,
+    volume_warning,
 };
 pub use missions::{MissionFiles, MissionFormat, WrittenMission, mission_files, write_missions};
 pub use photo_columns::{ColumnKind, ColumnValue, PHOTO_COLUMNS, PhotoColumn};

@@ -1,10 +1,16 @@
 //! What a planned photo will show: its field of scales on the surface, before take-off.
 
+use glam::{DVec2, DVec3};
+
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
+use crate::geometry::Ray;
 use crate::jobs::Progress;
 use crate::scale::{FieldGrid, FittedScale, ImageKind, ScaleField};
 use crate::surface::Surface;
+
+/// Points of an outline along each edge of the image.
+const PER_EDGE: u32 = 8;
 
 /// What a photo will show (contract, section 7), of the undistorted image. Scales are in pixels per world unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,6 +62,33 @@ impl Forecast {
             covered: scales.len() as f64 / grid.len() as f64,
         }))
     }
+}
+
+/// Where the edges of an undistorted photo lie on the surface, clockwise from the top left corner; without what looks beyond
+/// the surface.
+pub(super) fn outline(
+    camera: &Camera,
+    pose: &Pose,
+    surface: &Surface,
+) -> Result<Vec<DVec3>, Fault> {
+    let mut caster = (surface.caster())
+        .map_err(|error| Fault::new(error.to_string(), "check the surface file"))?;
+    let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+    let corners = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y].map(|corner| corner * size);
+    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+    let pixels = edges.flat_map(|(from, to)| {
+        let step = |step: u32| from.lerp(*to, f64::from(step) / f64::from(PER_EDGE));
+        (0..PER_EDGE).map(step)
+    });
+    let points = pixels.filter_map(|pixel| {
+        let direction = pose.rotation * camera.direction_undistorted(pixel);
+        let ray = Ray {
+            origin: pose.center,
+            direction: direction.normalize(),
+        };
+        Some(caster.cast(&ray)?.point)
+    });
+    Ok(points.collect())
 }
 
 /// The limits between which 98 of 100 numbers lie; sorts them. `None` without numbers.

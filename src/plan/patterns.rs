@@ -12,7 +12,7 @@
 use glam::{DMat2, DVec2, DVec3};
 
 use super::footprint;
-use super::forecast::{Forecast, bulk_of};
+use super::forecast::{Forecast, bulk_of, outline};
 use super::keep_out::KeepOut;
 use super::photo::{PlannedPhoto, Refused};
 use super::steadiness::interval;
@@ -50,6 +50,23 @@ impl Pattern {
         }
     }
 
+    /// Its name in the window.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Paper => "Rows",
+            Self::Slope => "Along the slope",
+            Self::Survey => "Survey",
+        }
+    }
+
+    /// The overlap that is usual of it, 0 to under 1.
+    pub fn usual_overlap(self) -> f64 {
+        match self {
+            Self::Paper | Self::Slope => 0.0,
+            Self::Survey => SURVEY_OVERLAP,
+        }
+    }
+
     /// What speaks for it.
     pub fn explained(self) -> &'static str {
         match self {
@@ -64,6 +81,8 @@ impl Pattern {
     }
 }
 
+/// Overlap of the survey where nobody says it.
+const SURVEY_OVERLAP: f64 = 0.7;
 /// Why there is no plane of the ground.
 const NO_GROUND: &str = "most of the photo would look beyond the surface, or into a hole of it";
 /// How many steps an edge of a footprint is walked in, along the ground.
@@ -184,6 +203,7 @@ impl<'a> Ground<'a> {
         progress: &Progress,
     ) -> Result<(), Fault> {
         photo.forecast = Forecast::of(self.camera, &photo.pose, surface, progress)?;
+        photo.outline = outline(self.camera, &photo.pose, surface)?;
         photo.interval = interval(photo, self.camera, self.terrain, &self.wish.errors);
         Ok(())
     }
@@ -286,6 +306,7 @@ impl<'a> Ground<'a> {
             // Aslant footprints are longer.
             reach: self.footprint().length() / axis.z.abs().max(0.3),
             forecast: None,
+            outline: Vec::new(),
             interval: None,
         }
     }

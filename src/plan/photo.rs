@@ -27,6 +27,9 @@ pub struct PlannedPhoto {
     pub reach: f64,
     /// What it will show; `None` where that is nothing of the surface.
     pub forecast: Option<Forecast>,
+    /// Where the edges of its image lie on the surface, clockwise from the top left corner; what looks beyond the surface
+    /// is missing.
+    pub outline: Vec<DVec3>,
     /// How far its scale may be off, because the drone does not stand where it is told to: half the width of the 95 %
     /// interval, percent. `None` where it shows nothing.
     pub interval: Option<f64>,

@@ -49,6 +49,14 @@ impl Positioning {
         }
     }
 
+    /// Its name in the window.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Gnss => "Satellites (GNSS)",
+            Self::Rtk => "RTK",
+        }
+    }
+
     /// What it means.
     pub fn explained(self) -> &'static str {
         match self {

@@ -155,16 +155,32 @@ impl Terrain {
         })
     }
 
-    /// Whether a point in the air is nearer than `clearance` to the ground, or in it. The ground is solid from each
-    /// pixel's height downwards, so that the face of a wall between two pixels is as near as the wall; pixels count as
-    /// near as their nearest corner.
-    pub fn is_near(&self, point: DVec3, clearance: f64) -> bool {
+    /// The height of the pixel that a place lies in; `None` where there is none.
+    pub fn height(&self, place: DVec2) -> Option<f64> {
+        let at = self.raster.pixel_from_world(place).floor();
+        let inside = at.cmpge(DVec2::ZERO).all()
+            && at.x < f64::from(self.raster.columns)
+            && at.y < f64::from(self.raster.rows);
+        // `as` is exact: it lies inside.
+        Some(self.point(at.x as u32, at.y as u32).filter(|_| inside)?.z)
+    }
+
+    /// How far a point in the air is from the ground, where that is nearer than `within`; else that. The ground is solid
+    /// from each pixel's height downwards, so that the face of a wall between two pixels is as near as the wall; pixels
+    /// count as near as their nearest corner.
+    pub fn clearance(&self, point: DVec3, within: f64) -> f64 {
         let corner = self.raster.pixel * FRAC_1_SQRT_2;
-        self.around(point.truncate(), clearance + corner)
-            .any(|top| {
+        self.around(point.truncate(), within + corner)
+            .map(|top| {
                 let beside = (top.truncate().distance(point.truncate()) - corner).max(0.0);
-                beside.hypot((point.z - top.z).max(0.0)) < clearance
+                beside.hypot((point.z - top.z).max(0.0))
             })
+            .fold(within, f64::min)
+    }
+
+    /// Whether a point in the air is nearer than `clearance` to the ground, or in it.
+    pub fn is_near(&self, point: DVec3, clearance: f64) -> bool {
+        self.clearance(point, clearance) < clearance
     }
 
     /// The highest of the surface within `reach` of the line between two places; `None` where there is none.

@@ -123,6 +123,22 @@ impl Way {
         self.length / pace.speed + pace.stop * self.photos() as f64
     }
 
+    /// Seconds in the air until a photo of the plan is taken; `None` where this way does not lead there.
+    pub fn seconds_to(&self, photo: usize, pace: &Pace) -> Option<f64> {
+        let up = self.take_off.truncate().extend(self.safe_height);
+        let mut length = self.take_off.distance(up);
+        let (mut last, mut photos) = (up, 0_u32);
+        for point in &self.points {
+            length += last.distance(point.place);
+            last = point.place;
+            photos += u32::from(point.photo.is_some());
+            if point.photo == Some(photo) {
+                return Some(length / pace.speed + pace.stop * f64::from(photos));
+            }
+        }
+        None
+    }
+
     /// How many photos are taken.
     pub fn photos(&self) -> usize {
         self.points

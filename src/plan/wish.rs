@@ -7,8 +7,6 @@ use crate::survey::Polygon;
 
 /// How far scales may be off where nobody says it: a tenth of the wished one, as a scale of 20 ± 2.
 const WITHIN: f64 = 0.1;
-/// Overlap of the survey where nobody says it.
-const SURVEY_OVERLAP: f64 = 0.7;
 /// Degrees that every gimbal of a camera drone reaches.
 const GIMBAL: [f64; 2] = [-90.0, 0.0];
 /// The axis below the horizon of the paper's photos, degrees (III-B).
@@ -52,10 +50,7 @@ impl Wish {
         Self {
             pattern,
             size,
-            overlap: match pattern {
-                Pattern::Survey => SURVEY_OVERLAP,
-                Pattern::Slope | Pattern::Paper => 0.0,
-            },
+            overlap: pattern.usual_overlap(),
             gap: 0.1,
             tilt: USUAL_TILT,
             off_normal: USUAL_OFF_NORMAL,

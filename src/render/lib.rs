@@ -41,7 +41,7 @@ pub use scene::ground::drawn_ground;
 pub use scene::photo_geometry::PhotoGeometry;
 pub use scene::photo_image::PhotoImage;
 pub use scene::{CloudGeometry, MeshGeometry, Normals};
-pub use show::{Background, ColorBy, PhotoLook, Scope, Show};
+pub use show::{Background, ColorBy, PhotoLook, PlannedLine, Scope, Show};
 pub use streamed::{MEMORY as STREAMED_MEMORY, POINTS as STREAMED_POINTS};
 pub use surface_buffers::{MOST_TRIANGULATED, Shapes, SurfaceBuffers};
 pub use view::orbit::Orbit;

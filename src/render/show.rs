@@ -1,5 +1,7 @@
 //! What is shown, and how.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -101,6 +103,8 @@ pub struct Show {
     pub drawn_lines: Vec<Vec<DVec3>>,
     /// Their points, which are marked.
     pub drawn_points: Vec<DVec3>,
+    /// Lines in the air and on the ground, each of its own colour: a flight that is planned.
+    pub planned_lines: Arc<Vec<PlannedLine>>,
     /// The selected photo laid on the surface that it sees ([`super::Renderer::set_projected_photo`]).
     pub project_photo: bool,
     /// How much of the photo lies over the view that looks through its camera, 0 to 1.
@@ -147,6 +151,7 @@ impl Default for Show {
             picked: Vec::new(),
             drawn_lines: Vec::new(),
             drawn_points: Vec::new(),
+            planned_lines: Arc::default(),
             project_photo: false,
             photo_blend: 0.0,
             selected: None,
@@ -166,9 +171,21 @@ impl Show {
             clip: None,
             drawn_lines: Vec::new(),
             drawn_points: Vec::new(),
+            planned_lines: Arc::default(),
             ..self.clone()
         }
     }
+}
+
+/// A line of a planned flight.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedLine {
+    /// In the world.
+    pub points: Vec<DVec3>,
+    /// Red, green, blue.
+    pub color: [u8; 3],
+    /// Points of the user interface.
+    pub width: f64,
 }
 
 /// How one photo looks; cheap to change.

@@ -78,3 +78,21 @@ fn the_start_page() {
     let mut desk = Desk::drawn(None, &screen);
     desk.harness.snapshot("window_start");
 }
+
+/// The page of the flight plan with a photo that is looked at and the way.
+#[test]
+fn planning() {
+    let screen = Screen {
+        size: [1000.0, 560.0],
+        pixels_per_point: 1.0,
+        theme: Theme::Dark,
+    };
+    sample(&screen, "window_planning", |desk| {
+        desk.press(Modifiers::COMMAND, Key::Num4);
+        desk.fill("Clearance", "0.1");
+        desk.click(Role::Button, "Set take-off");
+        let place = desk.viewport();
+        desk.click_at(place.center() + egui::vec2(-0.25 * place.width(), 0.12 * place.height()));
+        desk.press(Modifiers::NONE, Key::ArrowDown);
+    });
+}

@@ -45,6 +45,7 @@ mod opening;
 mod overwriting;
 mod photo_view;
 mod photos;
+mod planning;
 mod points;
 mod random;
 mod reviewing;

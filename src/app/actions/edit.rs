@@ -2,9 +2,10 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, SHIFT, beside_photos, keys, with_flight};
+use super::{Action, SHIFT, beside_photos, keys, on_plan, with_flight};
 use crate::command::{Choice, Command};
 use crate::size_distributions::{DistributionCommand, Page};
+use crate::state::history::History;
 
 actions! {
     UNDO {
@@ -15,6 +16,10 @@ actions! {
         command: |state| {
             if state.page == Page::SizeDistributions {
                 let can = state.distributions.history.can_undo();
+                return can.then_some(Command::Undo);
+            }
+            if let Some(planning) = on_plan(state) {
+                let can = planning.asked.as_ref().is_some_and(History::can_undo);
                 return can.then_some(Command::Undo);
             }
             let open = state.open.as_ref()?;
@@ -32,6 +37,10 @@ actions! {
         command: |state| {
             if state.page == Page::SizeDistributions {
                 let can = state.distributions.history.can_redo();
+                return can.then_some(Command::Redo);
+            }
+            if let Some(planning) = on_plan(state) {
+                let can = planning.asked.as_ref().is_some_and(History::can_redo);
                 return can.then_some(Command::Redo);
             }
             let open = state.open.as_ref()?;

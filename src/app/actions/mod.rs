@@ -34,6 +34,7 @@ pub mod view;
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::command::{Asking, Command};
+use crate::planning::Planning;
 use crate::size_distributions::Page;
 use crate::state::State;
 
@@ -91,9 +92,21 @@ fn on_pile(state: &State, command: Command) -> Option<Command> {
     in_sight.then(|| with_flight(state, command)).flatten()
 }
 
+/// What is done with the view of the surface: over the pile, or under the flight plan.
+fn in_viewport(state: &State, command: Command) -> Option<Command> {
+    let in_sight = matches!(state.page, Page::Pile | Page::Plan);
+    in_sight.then(|| with_flight(state, command)).flatten()
+}
+
+/// The flight plan, while its page is shown.
+fn on_plan(state: &State) -> Option<&Planning> {
+    let open = state.open.as_ref().filter(|_| state.page == Page::Plan)?;
+    Some(&open.planning)
+}
+
 /// What is done with the table of photos beside it, or beside the map.
 fn beside_photos(state: &State, command: Command) -> Option<Command> {
-    let in_sight = state.page != Page::SizeDistributions;
+    let in_sight = matches!(state.page, Page::Pile | Page::Map);
     in_sight.then(|| with_flight(state, command)).flatten()
 }
 

@@ -2,13 +2,14 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, beside_photos, keys, on_pile, survey, with_photo};
+use super::{Action, beside_photos, keys, on_pile, on_plan, survey, with_photo};
 use crate::command::{Command, ReviewStep, ViewChange};
 use crate::open_flight::Measure;
 use crate::open_flight::survey::SurveyStep;
 use crate::open_flight::survey::picked::PickStep;
 use crate::open_flight::tracing::Trace;
 use crate::photo_view::{Middle, PhotoCommand};
+use crate::planning::{PlanStep, PlanTool};
 use crate::scale::ScaleObjectKind;
 use crate::state::State;
 
@@ -23,13 +24,19 @@ actions! {
         label: "Next photo",
         hover: "Select the next photo of the table",
         shortcut: keys(Modifiers::NONE, Key::ArrowDown),
-        command: |state| beside_photos(state, Command::SelectBy(1)),
+        command: |state| match on_plan(state) {
+            Some(_) => Some(Command::Plan(PlanStep::SelectBy(1))),
+            None => beside_photos(state, Command::SelectBy(1)),
+        },
     }
     PREVIOUS {
         label: "Previous photo",
         hover: "Select the photo above in the table",
         shortcut: keys(Modifiers::NONE, Key::ArrowUp),
-        command: |state| beside_photos(state, Command::SelectBy(-1)),
+        command: |state| match on_plan(state) {
+            Some(_) => Some(Command::Plan(PlanStep::SelectBy(-1))),
+            None => beside_photos(state, Command::SelectBy(-1)),
+        },
     }
     MEASURE {
         label: "Measure a distance",
@@ -60,6 +67,10 @@ actions! {
         hover: "Make a scale object of the points, as a click on the first one does; in a review accept the photo",
         shortcut: keys(Modifiers::NONE, Key::Enter),
         command: |state| {
+            if let Some(planning) = on_plan(state) {
+                let has_corners = !planning.drawing.is_empty();
+                return has_corners.then_some(Command::Plan(PlanStep::Finish));
+            }
             let open = state.open.as_ref()?;
             let Some(tracing) = &open.objects.tracing else {
                 let drawn = open.pointer.drawn.as_ref().filter(|drawn| !drawn.finished);
@@ -77,6 +88,10 @@ actions! {
         hover: "Take the last point of the outline back",
         shortcut: keys(Modifiers::NONE, Key::Backspace),
         command: |state| {
+            if let Some(planning) = on_plan(state) {
+                let has_corners = !planning.drawing.is_empty();
+                return has_corners.then_some(Command::Plan(PlanStep::RemoveLast));
+            }
             let open = state.open.as_ref()?;
             let Some(tracing) = &open.objects.tracing else {
                 let drawn = open.pointer.drawn.as_ref();
@@ -94,6 +109,15 @@ actions! {
         command: |state| {
             // It closes the small window first.
             let open = state.open.as_ref().filter(|_| state.asking.is_none())?;
+            if let Some(planning) = on_plan(state) {
+                return match planning.tool {
+                    PlanTool::Select if planning.through => {
+                        Some(Command::Plan(PlanStep::ToggleThrough))
+                    }
+                    PlanTool::Select => planning.selected.map(|_| Command::Plan(PlanStep::Select(None))),
+                    tool => Some(Command::Plan(PlanStep::Tool(tool))),
+                };
+            }
             if open.objects.tracing.is_some() {
                 return Some(Command::Trace(Trace::GiveUp));
             }

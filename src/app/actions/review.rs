@@ -2,8 +2,9 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, keys};
+use super::{Action, keys, on_plan};
 use crate::command::{Command, ReviewStep};
+use crate::planning::PlanStep;
 use crate::state::State;
 
 fn reviewed(state: &State, step: ReviewStep) -> Option<Command> {
@@ -45,6 +46,9 @@ actions! {
         hover: "Leave the photo out of the export, with the note, and go on to the next one",
         shortcut: keys(Modifiers::NONE, Key::Delete),
         command: |state| {
+            if let Some(planning) = on_plan(state) {
+                return planning.photo().map(|_| Command::Plan(PlanStep::Leave));
+            }
             let (_, photo) = state.reviewed_flight()?.selected_review()?;
             photo.is_doubtful().then(|| reviewed(state, ReviewStep::LeaveOut)).flatten()
         },

@@ -3,7 +3,7 @@
 
 use egui::Key;
 
-use super::{Action, on_pile};
+use super::{Action, in_viewport};
 use crate::command::{Command, ViewChange};
 use crate::state::State;
 use crate::state::layers::Layers;
@@ -12,7 +12,7 @@ use crate::state::layers::Layers;
 const STEP: f64 = 15.0;
 
 fn turn(state: &State, left: f64, up: f64) -> Option<Command> {
-    on_pile(state, Command::View(ViewChange::Turn { left, up }))
+    in_viewport(state, Command::View(ViewChange::Turn { left, up }))
 }
 
 actions! {
@@ -21,7 +21,7 @@ actions! {
         hover: "Look from the other side: from below after from above, from the north after from the south",
         shortcut: None,
         keypad: Key::Num9,
-        command: |state| on_pile(state, Command::View(ViewChange::Opposite)),
+        command: |state| in_viewport(state, Command::View(ViewChange::Opposite)),
     }
     PARALLEL {
         label: "Parallel or perspective",
@@ -31,7 +31,7 @@ actions! {
         command: |state| {
             let layers = state.preferences.layers;
             let orthographic = !layers.orthographic;
-            on_pile(state, Command::Layers(Layers { orthographic, ..layers }))
+            in_viewport(state, Command::Layers(Layers { orthographic, ..layers }))
         },
     }
     LEFT {

@@ -2,9 +2,10 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, keys, on_pile, turning, with_flight, with_photo};
+use super::{Action, in_viewport, keys, on_pile, on_plan, turning, with_flight, with_photo};
 use crate::command::{Command, ViewChange};
 use crate::photo_view::{Middle, PhotoCommand};
+use crate::planning::PlanStep;
 use crate::size_distributions::Page;
 use crate::state::State;
 
@@ -23,7 +24,7 @@ fn in_photo(state: &State, command: PhotoCommand) -> Option<Command> {
 
 fn has_panels(state: &State, command: Command) -> Option<Command> {
     let has = match state.page {
-        Page::Pile | Page::Map => state.open.is_some(),
+        Page::Pile | Page::Map | Page::Plan => state.open.is_some(),
         Page::SizeDistributions => !state.distributions.sources().is_empty(),
     };
     has.then_some(command)
@@ -42,6 +43,12 @@ actions! {
         shortcut: keys(Modifiers::COMMAND, Key::Num3),
         command: |state| with_flight(state, Command::Page(Page::Map)),
     }
+    PLAN {
+        label: "Flight plan",
+        hover: "Plan photos of this surface: where from, what each will show, and the mission for the drone",
+        shortcut: keys(Modifiers::COMMAND, Key::Num4),
+        command: |state| with_flight(state, Command::Page(Page::Plan)),
+    }
     SIZE_DISTRIBUTIONS {
         label: "Size distributions",
         hover: "Show size distributions: fits, the reference, repeatability",
@@ -53,34 +60,34 @@ actions! {
         hover: "Look straight down, north up",
         shortcut: keys(Modifiers::NONE, Key::T),
         keypad: Key::Num7,
-        command: |state| on_pile(state, Command::View(ViewChange::Top)),
+        command: |state| in_viewport(state, Command::View(ViewChange::Top)),
     }
     FRONT {
         label: "From the front",
         hover: "Look to the north, level",
         shortcut: keys(Modifiers::NONE, Key::F),
         keypad: Key::Num1,
-        command: |state| on_pile(state, Command::View(ViewChange::Front)),
+        command: |state| in_viewport(state, Command::View(ViewChange::Front)),
     }
     SIDE {
         label: "From the side",
         hover: "Look to the west, level",
         shortcut: keys(Modifiers::NONE, Key::S),
         keypad: Key::Num3,
-        command: |state| on_pile(state, Command::View(ViewChange::Side)),
+        command: |state| in_viewport(state, Command::View(ViewChange::Side)),
     }
     FIT {
         label: "Show everything",
         hover: "Bring the whole flight into sight, without points that lie far off it",
         shortcut: keys(Modifiers::NONE, Key::Home),
         keypad: Key::Num0,
-        command: |state| on_pile(state, Command::View(ViewChange::Fit)),
+        command: |state| in_viewport(state, Command::View(ViewChange::Fit)),
     }
     FIT_ALL {
         label: "Show all points",
         hover: "Bring everything into sight, with the points that lie far off",
         shortcut: keys(Modifiers::SHIFT, Key::Home),
-        command: |state| on_pile(state, Command::View(ViewChange::FitAll)),
+        command: |state| in_viewport(state, Command::View(ViewChange::FitAll)),
     }
     FIT_SELECTED {
         label: "Show the selected photo",
@@ -92,7 +99,10 @@ actions! {
         label: "Look through the camera",
         hover: "See the surface as the selected photo does, with the photo over it",
         shortcut: keys(Modifiers::NONE, Key::C),
-        command: |state| with_photo(state, Command::View(ViewChange::Through)),
+        command: |state| match on_plan(state) {
+            Some(planning) => planning.photo().map(|_| Command::Plan(PlanStep::ToggleThrough)),
+            None => with_photo(state, Command::View(ViewChange::Through)),
+        },
     }
     PHOTO_ALONE {
         label: "Photo in the middle",
@@ -148,6 +158,7 @@ actions! {
 pub const MENU: &[Option<Action>] = &[
     Some(PILE),
     Some(MAP),
+    Some(PLAN),
     Some(SIZE_DISTRIBUTIONS),
     None,
     Some(TOP),

@@ -26,6 +26,10 @@ pub enum Asking {
     Picture,
     /// Where the map goes.
     Map,
+    /// Where the planned mission goes.
+    Mission,
+    /// Where the table of the plan goes.
+    PlanTable,
     /// Which files of size distributions to add.
     AddDistributions,
     /// A table of size distributions.

@@ -30,6 +30,7 @@ use crate::open_flight::table::SortBy;
 use crate::open_flight::tracing::Trace;
 use crate::opening::GeoreferenceRequest;
 use crate::photo_view::PhotoCommand;
+use crate::planning::PlanStep;
 use crate::render::ColorBy;
 use crate::scale::CornerName;
 use crate::size_distributions::{DistributionCommand, Page};
@@ -179,6 +180,8 @@ pub enum Command {
     Page(Page),
     /// Does something on the map.
     Map(MapCommand),
+    /// Does something with the flight plan.
+    Plan(PlanStep),
     /// Does something with the size distributions.
     Distributions(DistributionCommand),
     /// Shows a tab of the right panel.

@@ -98,7 +98,7 @@ impl OpenFlight {
         Some(Command::Set(settings))
     }
 
-    fn pick(&mut self, purpose: Purpose, ray: Ray) {
+    pub(crate) fn pick(&mut self, purpose: Purpose, ray: Ray) {
         self.pick_in(purpose, ray, self.clip.clipping());
     }
 

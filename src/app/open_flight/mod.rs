@@ -32,6 +32,7 @@ use crate::linked::{LinkedPoint, PointFrom};
 use crate::map::FlightMap;
 use crate::opening::{Colours, HealthFinding, StatedOfFlight, flight_health};
 use crate::photo_view::PhotoView;
+use crate::planning::Planning;
 use crate::render::{LargePhoto, Orbit, PhotoImage, PhotoZoom, SurfaceBuffers, drawn_ground};
 use crate::scale::{FieldFacts, PhotoScale, ViewFacts};
 use crate::state::history::History;
@@ -167,6 +168,8 @@ pub struct OpenFlight {
     pub photo_view: PhotoView,
     /// The flight as a plan.
     pub map: FlightMap,
+    /// The flight that is planned over its surface.
+    pub planning: Planning,
     /// What the selected photo's corners lie on, where that is looked at.
     pub corners: Option<CornerFacts>,
     /// The scale field of the selected photo, where it is to be tinted.
@@ -242,6 +245,7 @@ impl OpenFlight {
             },
             photo_view: PhotoView::default(),
             map: FlightMap::default(),
+            planning: Planning::default(),
             corners: None,
             tint: None,
             tints: 0,

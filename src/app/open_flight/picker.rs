@@ -28,6 +28,8 @@ pub enum Purpose {
     Draw,
     /// A point for the list.
     Pick,
+    /// A click on the page of the flight plan.
+    Plan,
 }
 
 /// A ray and what it met.

@@ -2,8 +2,12 @@
 
 use std::sync::Arc;
 
+use glam::DVec2;
+
+use crate::camera::{Camera, Pose};
 use crate::open_flight::picker::{Picked, Purpose};
 use crate::open_flight::{Measure, OpenFlight};
+use crate::planning::PlanTool;
 
 impl OpenFlight {
     /// Takes what a ray met.
@@ -45,49 +49,63 @@ impl OpenFlight {
                     };
                 }
             }
+            Purpose::Plan if self.planning.tool == PlanTool::Select => {
+                let made = self.planning.made.clone();
+                self.planning.selected = made.and_then(|made| {
+                    let photos = made.plan.photos.iter();
+                    photo_at(
+                        &picked,
+                        photos.map(|photo| (&photo.pose, &made.plan.camera)),
+                    )
+                });
+                self.planning.through &= self.planning.selected.is_some();
+            }
+            Purpose::Plan => {
+                if let Some(point) = point {
+                    self.plan_at(point.truncate());
+                }
+            }
             Purpose::Select => {
-                if let Some(photo) = self.photo_at(&picked) {
+                let flight = self.flight().clone();
+                let photos = flight.parts().photos.iter();
+                let photos = photos.map(|photo| (&photo.pose, flight.camera(photo)));
+                if let Some(photo) = photo_at(&picked, photos) {
                     self.select(Some(photo));
                 }
             }
         }
     }
+}
 
-    /// The photo that a click means: the camera next to the ray, else the photo that sees the place
-    /// nearest to its middle.
-    fn photo_at(&self, picked: &Picked) -> Option<usize> {
-        let photos = &self.flight().parts().photos;
-        // A camera is hit within this share of its distance: about ten pixels on the screen.
-        let reach = 0.012;
-        let camera = photos
-            .iter()
-            .enumerate()
-            .filter_map(|(index, photo)| {
-                let way = photo.pose.center - picked.ray.origin;
-                let along = way.dot(picked.ray.direction);
-                let beside = (way - picked.ray.direction * along).length();
-                let before_surface = picked.hit.is_none_or(|hit| along < hit.t);
-                (along > 0.0 && before_surface && beside < reach * along)
-                    .then_some((index, beside / along))
-            })
-            .min_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((index, _)) = camera {
-            return Some(index);
-        }
-        let point = picked.hit?.point;
-        photos
-            .iter()
-            .enumerate()
-            .filter_map(|(index, photo)| {
-                let camera = self.flight().camera(photo);
-                let pixel = camera.pixel_undistorted(photo.pose.camera_from_world(point))?;
-                let half =
-                    glam::DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
-                camera
-                    .contains(pixel)
-                    .then(|| (index, ((pixel - half) / half).abs().max_element()))
-            })
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-            .map(|(index, _)| index)
+/// The photo that a click means: the camera next to the ray, else the photo that sees the place
+/// nearest to its middle.
+fn photo_at<'a>(
+    picked: &Picked,
+    photos: impl Iterator<Item = (&'a Pose, &'a Camera)> + Clone,
+) -> Option<usize> {
+    // A camera is hit within this share of its distance: about ten pixels on the screen.
+    let reach = 0.012;
+    let camera = (photos.clone().enumerate())
+        .filter_map(|(index, (pose, _))| {
+            let way = pose.center - picked.ray.origin;
+            let along = way.dot(picked.ray.direction);
+            let beside = (way - picked.ray.direction * along).length();
+            let before_surface = picked.hit.is_none_or(|hit| along < hit.t);
+            (along > 0.0 && before_surface && beside < reach * along)
+                .then_some((index, beside / along))
+        })
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    if let Some((index, _)) = camera {
+        return Some(index);
     }
+    let point = picked.hit?.point;
+    photos
+        .enumerate()
+        .filter_map(|(index, (pose, camera))| {
+            let pixel = camera.pixel_undistorted(pose.camera_from_world(point))?;
+            let half = DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
+            (camera.contains(pixel)).then(|| (index, ((pixel - half) / half).abs().max_element()))
+        })
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(index, _)| index)
 }

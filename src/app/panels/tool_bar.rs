@@ -117,14 +117,15 @@ fn pages(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     for (page, name, action) in [
         (Page::Pile, "Pile", actions::view::PILE),
         (Page::Map, "Map", actions::view::MAP),
+        (Page::Plan, "Plan", actions::view::PLAN),
         (
             Page::SizeDistributions,
             "Size distributions",
             actions::view::SIZE_DISTRIBUTIONS,
         ),
     ] {
-        // Without a flight there is no map.
-        if page == Page::Map && state.open.is_none() {
+        // Without a flight there is no map and nothing to plan over.
+        if matches!(page, Page::Map | Page::Plan) && state.open.is_none() {
             continue;
         }
         let chosen = state.page == page;

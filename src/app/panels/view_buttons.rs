@@ -5,6 +5,7 @@ use crate::command::{Command, ViewChange};
 use crate::open_flight::Measure;
 use crate::open_flight::survey::SurveyTool;
 use crate::photo_view::Middle;
+use crate::size_distributions::Page;
 use crate::state::State;
 
 /// A viewport that is narrower, points, has signs in place of the longer words, so that the row does not fill it.
@@ -35,7 +36,11 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
             commands.extend(command);
         }
     };
-    let through = open.looking.through.is_some();
+    let is_plan = state.page == Page::Plan;
+    let through = match is_plan {
+        true => open.planning.through,
+        false => open.looking.through.is_some(),
+    };
     button(actions::view::FIT, "Fit", false, ui);
     // Only where it shows something else.
     if open.extent.bulk != open.extent.surface {
@@ -50,6 +55,9 @@ pub fn view_buttons(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         through,
         ui,
     );
+    if is_plan {
+        return;
+    }
     let middle = state.middle;
     let photo = actions::view::PHOTO_ALONE;
     button(photo, text("Photo", "🖼"), middle == Middle::Photo, ui);

@@ -42,6 +42,8 @@ pub enum Page {
     Pile,
     /// The flight as a plan, or the start page.
     Map,
+    /// A flight that is planned over the surface of this one, or the start page.
+    Plan,
     /// The size distributions.
     SizeDistributions,
 }

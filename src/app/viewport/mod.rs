@@ -8,6 +8,7 @@ mod crops;
 mod drawn;
 mod graphics;
 mod mouse;
+mod planned;
 mod preview;
 mod words;
 
@@ -21,6 +22,7 @@ use crate::linked::PointFrom;
 use crate::open_flight::OpenFlight;
 use crate::panels::linked;
 use crate::render::{Background, Gpu, Renderer, Show, View};
+use crate::size_distributions::Page;
 use crate::state::State;
 use crate::tasks::Task;
 use clip_handles::clip_handles;
@@ -93,7 +95,7 @@ impl Viewport {
             place,
             pixels_per_point,
             size,
-            view: view(open),
+            view: view(state, open),
         };
         if open.looking.size != Some(scene.size()) {
             commands.push(Command::View(ViewChange::Resized(scene.size())));
@@ -127,7 +129,10 @@ impl Viewport {
                 legend(&scene, graphics.renderer.legend(&show).as_ref(), ui);
             }
         }
-        clip_handles(open, &scene, ui, commands);
+        match state.page {
+            Page::Plan => planned::handles(open, &scene, ui, commands),
+            _ => clip_handles(open, &scene, ui, commands),
+        }
         point(state, open, &scene, ui, &response, commands);
         if open.geometry.is_none() && state.work.is_running(Task::GEOMETRY) {
             let text = "Preparing the surface…";
@@ -173,6 +178,9 @@ impl Viewport {
         }
         show.selected = if corner_rays { None } else { open.selected };
         show.photo_blend = blend(open);
+        if state.page == Page::Plan {
+            planned::show_planned(open, &mut show);
+        }
         // Lines as thick as in a report's figure, whatever the size.
         show.pixels_per_point = (f64::from(size[0].max(size[1])) / 1280.0).max(1.0);
         show.background = if transparent {
@@ -182,7 +190,7 @@ impl Viewport {
         };
         graphics.upload(open, &egui::Visuals::light());
         graphics.uploaded.looks.clear();
-        let mut view = view(open);
+        let mut view = view(state, open);
         if let Some(seen) = open.looking.size {
             view = view.reframed(seen, DVec2::from(size.map(f64::from)));
         }
@@ -217,7 +225,10 @@ impl Scene {
     }
 }
 
-fn view(open: &OpenFlight) -> View {
+fn view(state: &State, open: &OpenFlight) -> View {
+    if state.page == Page::Plan {
+        return planned::view(open).unwrap_or_else(|| open.looking.orbit.view());
+    }
     let through = open.looking.through;
     match through.and_then(|photo| open.review.photo(photo)) {
         None => open.looking.orbit.view(),
@@ -240,11 +251,14 @@ fn point(
         let painter = ui.painter().with_clip_rect(scene.place);
         let to_screen = |point| Some(scene.screen(scene.view.project(point, scene.size())?));
         let at = linked::glow(&painter, linked, to_screen);
-        if open.pointer.from == Some(PointFrom::Pile) {
+        // What the flight's own photos see of it is beside the matter where others are planned.
+        if open.pointer.from == Some(PointFrom::Pile) && state.page == Page::Pile {
             linked::beside(state, open, linked, &painter, scene.place, at);
         }
     }
-    linked::menu(open, response, commands);
+    if state.page == Page::Pile {
+        linked::menu(open, response, commands);
+    }
     linked::copy(open, ui, response, commands);
 }
 
@@ -272,5 +286,8 @@ fn show(state: &State, open: &OpenFlight, ui: &egui::Ui, pixels_per_point: f64) 
     show.pixels_per_point = pixels_per_point;
     let [red, green, blue, _] = ui.visuals().extreme_bg_color.to_array();
     show.background = Background::Color([red, green, blue]);
+    if state.page == Page::Plan {
+        planned::show_planned(open, &mut show);
+    }
     show
 }

@@ -60,7 +60,7 @@ pub(super) fn legend(scene: &Scene, legend: Option<&crate::render::Legend>, ui: 
 }
 
 /// A text with a halo, because what lies behind may be of any colour.
-fn haloed(
+pub(super) fn haloed(
     painter: &egui::Painter,
     at: Pos2,
     anchor: Align2,

@@ -60,7 +60,7 @@ fn coordinate(number: f64) -> String {
 }
 
 /// A share in percent. What is not all of it is not called 100 %.
-pub(crate) fn percent(share: f64) -> String {
+pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match share < 1.0 && percent > 99.94 {
         true if share < 1.0 - 1e-9 => "almost 100 %".to_owned(),

@@ -16,6 +16,18 @@ pub(super) fn strokes(view: &View, show: &Show, size: DVec2) -> Vec<Stroke> {
     let rim = ink(show).map(|channel| 255 - channel);
     let pens = [Pen::new(rim, 4.5).pale(0.55), Pen::new(COLOR, 2.0)];
     let mut strokes = Vec::new();
+    for line in show.planned_lines.iter() {
+        for pen in [
+            Pen::new(rim, line.width + 2.0).pale(0.45),
+            Pen::new(line.color, line.width),
+        ] {
+            for ends in line.points.windows(2) {
+                if let (Some(from), Some(to)) = (place(ends[0]), place(ends[1])) {
+                    strokes.push(pen.line(from, to));
+                }
+            }
+        }
+    }
     for pen in pens {
         for line in &show.drawn_lines {
             for ends in line.windows(2) {

@@ -1,0 +1,51 @@
+//! Where mission and table of the flight plan go.
+
+use super::proposed;
+use crate::command::{Command, Dialog};
+use crate::panels::path_field::path_field;
+use crate::planning::PlanStep;
+use crate::state::State;
+use crate::typed::typed;
+
+pub(super) fn mission(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    ui.label(
+        "The name's ending says for whom: .kmz for DJI, .plan for QGroundControl, .waypoints for Mission Planner, .csv for \
+         Litchi; .kml and .geojson to look at. Each battery has a file of its own.",
+    );
+    let drone = open.planning.now().and_then(|asked| asked.drone);
+    if drone.and_then(|drone| drone.codes).is_none() {
+        ui.weak("DJI's files name the drone: for .kmz choose one of DJI's as the camera.");
+    }
+    let start = proposed(open, Some("mission.kmz"));
+    let browse = [("Browse…", Dialog::new_file("Save mission", "mission.kmz"))];
+    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Write mission"));
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::Plan(PlanStep::SaveMission(path.into())));
+    }
+}
+
+pub(super) fn plan_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    ui.label("Every photo with what it will show, as 'fragscale plan' writes it: .csv, or .json.");
+    let start = proposed(open, Some("plan.csv"));
+    let browse = [("Browse…", Dialog::new_file("Save table", "plan.csv"))];
+    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Write table"));
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::Plan(PlanStep::SaveTable(path.into())));
+    }
+}

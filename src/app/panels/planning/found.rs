@@ -1,0 +1,82 @@
+//! What the plan comes to, and what it lacks.
+
+use egui::Ui;
+
+use crate::command::Command;
+use crate::numbers::significant_digits;
+use crate::open_flight::OpenFlight;
+use crate::panels::rows::Rows;
+use crate::planning::PlanStep;
+use crate::state::State;
+use crate::tasks::Task;
+
+pub(super) fn found(state: &State, open: &OpenFlight, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let planning = &open.planning;
+    if let Some(why) = planning.refused() {
+        ui.colored_label(ui.visuals().error_fg_color, why);
+        if ui
+            .button("Plan again")
+            .on_hover_text("Try the same once more")
+            .clicked()
+        {
+            commands.push(Command::Plan(PlanStep::Make));
+        }
+    } else if state.work.is_running(Task::PLAN) {
+        ui.horizontal(|ui| {
+            ui.spinner();
+            ui.label("Planning…");
+            if ui.button("Cancel").on_hover_text("Stop planning").clicked() {
+                commands.push(Command::Cancel(Task::PLAN));
+            }
+        });
+    }
+    let Some(made) = &planning.made else {
+        return;
+    };
+    let unit = open.flight().parts().unit;
+    let plan = &made.plan;
+    let number = |number: f64| significant_digits(number, 4);
+    let mut rows = vec![
+        ("Photos", plan.photos.len().to_string()),
+        ("Area", format!("{} {unit}²", number(plan.area.area()))),
+        ("Photographed", crate::exports::percent(plan.cover.covered)),
+        (
+            "Widest gap",
+            match plan.cover.widest_gap > 0.0 {
+                true => format!("{} {unit} across", number(plan.cover.widest_gap)),
+                false => "none".to_owned(),
+            },
+        ),
+    ];
+    let seconds: f64 = made.ways.iter().map(|way| way.seconds(&made.pace)).sum();
+    if !made.ways.is_empty() {
+        let length: f64 = made.ways.iter().map(|way| way.length).sum();
+        rows.push(("Way", format!("{} {unit}", number(length))));
+        rows.push((
+            "In the air",
+            format!("{} min", significant_digits(seconds / 60.0, 2)),
+        ));
+        if made.pace.battery.is_some() {
+            rows.push(("Batteries", made.ways.len().to_string()));
+        }
+    }
+    let rows = rows
+        .into_iter()
+        .map(|(name, said)| vec![name.to_owned(), said]);
+    let rows = Rows {
+        id: "numbers of the plan",
+        heads: None,
+        rows: rows.collect(),
+    };
+    rows.show(ui, |ui, _, name| {
+        ui.label(name);
+    });
+    if let Some(why) = &made.no_way {
+        ui.colored_label(ui.visuals().error_fg_color, why);
+    } else if made.ways.is_empty() {
+        ui.weak("Set the take-off to see the way, its time, and to write a mission.");
+    }
+    for warning in &made.warnings {
+        ui.colored_label(ui.visuals().warn_fg_color, warning);
+    }
+}

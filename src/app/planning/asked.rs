@@ -1,0 +1,164 @@
+//! What the engineer asks of a plan.
+
+use glam::DVec2;
+
+use crate::plan::{
+    Drone, Pattern, Positioning, Size, USUAL_CLEARANCE, USUAL_OFF_NORMAL, USUAL_SETTLE,
+    USUAL_SPEED, USUAL_TILT, Wish,
+};
+use crate::survey::{Polygon, SurveyError};
+
+/// What the engineer asks of a plan. Lengths are in world units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AskedPlan {
+    /// How photos lie.
+    pub pattern: Pattern,
+    /// How large the rock is to be in them.
+    pub size: Size,
+    /// 0 to under 1; `None` is the pattern's usual one.
+    pub overlap: Option<f64>,
+    /// Degrees below the horizon, of the paper's pattern.
+    pub tilt: f64,
+    /// Degrees off the normal of the ground, of the slope pattern.
+    pub off_normal: f64,
+    /// What flies; `None` is the flight's first camera.
+    pub drone: Option<Drone>,
+    /// By what it knows its place.
+    pub positioning: Positioning,
+    /// How near it may come to the surface.
+    pub clearance: f64,
+    /// What is photographed; `None` is the pile that is found.
+    pub area: Option<Vec<DVec2>>,
+    /// What is not flown over.
+    pub keep_out: Vec<Vec<DVec2>>,
+    /// Where it takes off and lands.
+    pub take_off: Option<DVec2>,
+    /// Metres a second between photos.
+    pub speed: f64,
+    /// Seconds that it waits at a photo.
+    pub settle: f64,
+    /// Minutes that a battery lasts.
+    pub battery: Option<f64>,
+    /// What was changed of single photos by hand, in order.
+    pub edits: Vec<Edit>,
+}
+
+/// A change of single photos by hand.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Edit {
+    /// The photo of this name shows another place.
+    Move(String, DVec2),
+    /// One more, of this place.
+    Add(DVec2),
+    /// The photo of this name is left out.
+    Leave(String),
+}
+
+/// What can be dragged in the viewport.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Handle {
+    /// The middle of what the photo of this name shows.
+    Photo(String),
+    /// A corner of the area.
+    Area(usize),
+    /// A corner of an area to keep out of.
+    KeepOut(usize, usize),
+    /// The take-off.
+    TakeOff,
+}
+
+impl AskedPlan {
+    /// What is usual for photos of this size, in a world whose unit has so many metres.
+    pub fn usual(size: Size, drone: Option<Drone>, unit_metres: f64) -> Self {
+        Self {
+            pattern: Pattern::default(),
+            size,
+            overlap: None,
+            tilt: USUAL_TILT,
+            off_normal: USUAL_OFF_NORMAL,
+            drone,
+            positioning: Positioning::default(),
+            clearance: USUAL_CLEARANCE / unit_metres,
+            area: None,
+            keep_out: Vec::new(),
+            take_off: None,
+            speed: USUAL_SPEED,
+            settle: USUAL_SETTLE,
+            battery: None,
+            edits: Vec::new(),
+        }
+    }
+
+    /// The same without what was changed by hand, and without what only the way depends on.
+    pub(super) fn base(&self) -> Self {
+        Self {
+            edits: Vec::new(),
+            speed: USUAL_SPEED,
+            settle: USUAL_SETTLE,
+            battery: None,
+            ..self.clone()
+        }
+    }
+
+    /// Whether photos are planned anew for it: it is not only flown otherwise.
+    pub fn is_other_ground(&self, other: &Self) -> bool {
+        self.base() != other.base()
+    }
+
+    /// As the plan takes it.
+    ///
+    /// # Errors
+    /// Where an area to keep out of is none.
+    pub(super) fn wish(&self, unit_metres: f64) -> Result<Wish, SurveyError> {
+        let usual = Wish::usual(self.pattern, self.size, self.drone, unit_metres);
+        let keep_out = self.keep_out.iter().map(|corners| Polygon::new(corners));
+        Ok(Wish {
+            overlap: self.overlap.unwrap_or(usual.overlap),
+            tilt: self.tilt,
+            off_normal: self.off_normal,
+            clearance: self.clearance,
+            errors: self.positioning.errors(unit_metres),
+            keep_out: keep_out.collect::<Result<_, _>>()?,
+            take_off: self.take_off,
+            ..usual
+        })
+    }
+
+    /// The same with something dragged to another place; `area` is the one that was found, where none was drawn.
+    #[must_use]
+    pub(super) fn dragged(&self, handle: &Handle, to: DVec2, area: &[DVec2]) -> Self {
+        let mut asked = self.clone();
+        match handle {
+            Handle::Photo(name) => {
+                // One move of a photo is enough.
+                if let Some(Edit::Move(last, _)) = asked.edits.last()
+                    && last == name
+                {
+                    asked.edits.pop();
+                }
+                asked.edits.push(Edit::Move(name.clone(), to));
+            }
+            Handle::TakeOff => asked.take_off = Some(to),
+            Handle::Area(corner) => {
+                let corners = asked.area.get_or_insert_with(|| area.to_vec());
+                if let Some(corner) = corners.get_mut(*corner) {
+                    *corner = to;
+                }
+            }
+            Handle::KeepOut(area, corner) => {
+                let corner = asked
+                    .keep_out
+                    .get_mut(*area)
+                    .and_then(|area| area.get_mut(*corner));
+                if let Some(corner) = corner {
+                    *corner = to;
+                }
+            }
+        }
+        // Photos of other places have other names.
+        if !matches!(handle, Handle::Photo(_)) {
+            asked.edits.clear();
+        }
+        asked
+    }
+}

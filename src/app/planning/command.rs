@@ -1,0 +1,53 @@
+//! What the engineer does on the page of the plan, as data.
+
+use glam::DVec2;
+
+use super::asked::{AskedPlan, Handle};
+use crate::command::Destination;
+
+/// One thing to do on the page of the plan.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PlanStep {
+    /// Asks for something else.
+    Ask(Box<AskedPlan>),
+    /// Makes the plan of what is asked for now.
+    Make,
+    /// What a click in the viewport does from now on; what was drawn halfway is forgotten.
+    Tool(PlanTool),
+    /// Ends the area that is being drawn.
+    Finish,
+    /// Takes the last corner of it back.
+    RemoveLast,
+    /// Selects a photo by its place in the plan.
+    Select(Option<usize>),
+    /// Selects one that is so many further on the way.
+    SelectBy(i32),
+    /// Shows what the selected photo will, or does no longer.
+    ToggleThrough,
+    /// Drags something over the ground.
+    Drag(Handle, DVec2),
+    /// Lets it go.
+    Drop,
+    /// Leaves the selected photo out.
+    Leave,
+    /// Writes the missions, for the ground station that the name's ending says.
+    SaveMission(Destination),
+    /// Writes the table: CSV or JSON, by the name's ending.
+    SaveTable(Destination),
+}
+
+/// What a click in the viewport does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PlanTool {
+    /// Selects a photo.
+    #[default]
+    Select,
+    /// Adds a corner of what is photographed.
+    Area,
+    /// Adds a corner of what is not flown over.
+    KeepOut,
+    /// Sets the take-off.
+    TakeOff,
+    /// Adds a photo.
+    Add,
+}

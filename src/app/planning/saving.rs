@@ -1,0 +1,145 @@
+//! Mission and table of the plan as files: what the command `plan` writes.
+
+use std::sync::Arc;
+
+use super::{MadePlan, PlanStep};
+use crate::command::{Command, Destination};
+use crate::exports::{MissionFormat, PlanReport, plan_csv, plan_json, write_missions};
+use crate::fault::Fault;
+use crate::files::{self, Kind};
+use crate::formats::FileError;
+use crate::geodesy::Crs;
+use crate::jobs::Progress;
+use crate::plan::{Told, missions};
+use crate::state::{Severity, State};
+use crate::tasks::Task;
+
+impl Task {
+    /// Writing a mission, or the plan's table.
+    pub const SAVE_PLAN: Self = Self::new("Writing the plan").writing();
+}
+
+impl State {
+    /// The plan of what is asked for now; else says why there is none.
+    fn plan_to_save(&mut self) -> Option<Arc<MadePlan>> {
+        self.asking = None;
+        if self.is_busy(Task::SAVE_PLAN) {
+            return None;
+        }
+        let planning = &self.open.as_ref()?.planning;
+        let made = planning.made.clone().filter(|_| planning.is_of_now());
+        if made.is_none() {
+            let text = "the plan is still being made, or cannot be; write it when it is there";
+            self.say(Severity::Error, text);
+        }
+        made
+    }
+
+    /// Writes the missions; asks before a file is replaced.
+    pub(super) fn save_mission(&mut self, to: Destination) {
+        let Some(made) = self.plan_to_save() else {
+            return;
+        };
+        let Some(open) = &self.open else {
+            return;
+        };
+        let name = open.flight().parts().name.clone();
+        let asked = &made.asked;
+        let told = Told {
+            name,
+            drone: asked.drone.and_then(|drone| drone.codes),
+            speed: asked.speed,
+            settle: asked.settle,
+        };
+        let missions = (MissionFormat::of(&to.path))
+            .and_then(|_| match &made.no_way {
+                Some(why) => Err(Fault::new(why, "change the plan")),
+                None if made.ways.is_empty() => {
+                    let what = "nobody says where the drone takes off";
+                    Err(Fault::new(what, "set the take-off"))
+                }
+                None => Ok(()),
+            })
+            .and_then(|()| {
+                open.files.crs.as_deref().ok_or_else(|| {
+                    let what = "nobody says in which coordinate system the flight's places are";
+                    Fault::new(what, "set it under Flight")
+                })
+            })
+            .and_then(Crs::understand)
+            .and_then(|crs| missions(&made.plan, &made.ways, &crs, &told));
+        let missions = match missions {
+            Ok(missions) => missions,
+            Err(fault) => {
+                let error = FileError::new(&to.path, fault);
+                return self.say(Severity::Error, &error.to_string());
+            }
+        };
+        let read = self.read();
+        let command = |to| Command::Plan(PlanStep::SaveMission(to));
+        if !self.may_write(&to, Kind::Result, &read, command) {
+            return;
+        }
+        let work = move |progress: &Progress| {
+            progress.stage("writing");
+            let Destination { path, replace } = to;
+            write_missions(&missions, &path, &read, replace)
+        };
+        self.start(Task::SAVE_PLAN, work, |state, written| match written {
+            Ok(written) => {
+                for note in &written.notes {
+                    state.say(Severity::Warning, note);
+                }
+                for path in written.files {
+                    state.take_written(Ok(path));
+                }
+            }
+            Err(error) => state.say(Severity::Error, &error.to_string()),
+        });
+    }
+
+    /// Writes the plan's table; asks before a file is replaced.
+    pub(super) fn save_plan_table(&mut self, to: Destination) {
+        let Some(made) = self.plan_to_save() else {
+            return;
+        };
+        let Some(open) = &self.open else {
+            return;
+        };
+        let parts = open.flight().parts();
+        let report = PlanReport {
+            flight: &parts.name,
+            world: parts.unit,
+            scales: self.preferences.unit(),
+            plan: &made.plan,
+            ways: &made.ways,
+            pace: made.pace,
+        };
+        let is_json = to
+            .path
+            .extension()
+            .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+        let text = match is_json {
+            true => plan_json(&report).map_err(|error| error.to_string()),
+            false => plan_csv(&report).map_err(|error| error.to_string()),
+        };
+        let text = match text {
+            Ok(text) => text,
+            Err(error) => return self.say(Severity::Error, &error),
+        };
+        let read = self.read();
+        let command = |to| Command::Plan(PlanStep::SaveTable(to));
+        if !self.may_write(&to, Kind::Result, &read, command) {
+            return;
+        }
+        let work = move |progress: &Progress| {
+            progress.stage("writing");
+            let Destination { path, replace } = to;
+            match files::write(&path, text.as_bytes(), Kind::Result, &read, replace) {
+                Ok(()) => Ok(path),
+                Err(fault) => Err(FileError::new(&path, fault).to_string()),
+            }
+        };
+        self.start(Task::SAVE_PLAN, work, Self::take_written);
+    }
+}

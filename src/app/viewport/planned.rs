@@ -1,0 +1,172 @@
+//! The flight plan over the surface: its lines in the picture, and handles for what is dragged over the ground.
+
+use std::sync::Arc;
+
+use egui::{Color32, CursorIcon, Rect, Sense, Stroke, vec2};
+use glam::{DVec2, DVec3};
+
+use super::Scene;
+use super::words::haloed;
+use crate::command::Command;
+use crate::geometry::Ray;
+use crate::open_flight::OpenFlight;
+use crate::plan::Terrain;
+use crate::planning::{Handle, PlanStep, PlanTool};
+use crate::render::{Scope, Show, View};
+
+/// Side of what the mouse takes hold of, points.
+const HOLD: f32 = 18.0;
+const RADIUS: f32 = 5.0;
+/// How often the place under the mouse is looked for again at the height of the place before.
+const ROUNDS: usize = 12;
+
+/// What the viewport looks from while the selected photo's camera is looked through.
+pub(super) fn view(open: &OpenFlight) -> Option<View> {
+    let planning = &open.planning;
+    let (_, photo) = planning.photo().filter(|_| planning.through)?;
+    let camera = &planning.made.as_ref()?.plan.camera;
+    Some(View::of_photo(camera, &photo.pose, photo.distance))
+}
+
+/// The plan in place of the flight's own photos.
+pub(super) fn show_planned(open: &OpenFlight, show: &mut Show) {
+    show.frusta = Scope::None;
+    show.images = Scope::None;
+    show.corner_rays = Scope::None;
+    show.outlines = Scope::None;
+    show.fills = Scope::None;
+    show.flight_line = false;
+    show.project_photo = false;
+    show.photo_blend = 0.0;
+    show.measured.clear();
+    show.drawn_lines.clear();
+    show.drawn_points.clear();
+    let planning = &open.planning;
+    let Some(made) = &planning.made else {
+        return;
+    };
+    if !planning.through {
+        show.planned_lines = Arc::new(made.lines(planning.selected));
+    }
+    let terrain = &made.plan.terrain;
+    let mut corners = planning.drawing.clone();
+    if !corners.is_empty() {
+        corners.extend(open.pointer.hover.map(|point| point.truncate()));
+    }
+    show.drawn_points = corners.iter().map(|corner| at(*corner, terrain)).collect();
+    show.drawn_lines.push(show.drawn_points.clone());
+}
+
+/// A place of the map on the ground; where there is none, at the height of its lowest corner.
+fn at(place: DVec2, terrain: &Terrain) -> DVec3 {
+    let lowest = || {
+        let heights = terrain.heights().iter().filter(|height| !height.is_nan());
+        heights.copied().fold(f64::MAX, f64::min)
+    };
+    place.extend(terrain.height(place).unwrap_or_else(lowest))
+}
+
+/// Where a ray meets the ground: on the level of the place before, again and again.
+fn on_ground(ray: &Ray, from: DVec3, terrain: &Terrain) -> Option<DVec2> {
+    let mut height = from.z;
+    let mut place = None;
+    for _ in 0..ROUNDS {
+        let along = (height - ray.origin.z) / ray.direction.z;
+        if !(along > 0.0 && along.is_finite()) {
+            break;
+        }
+        let found = (ray.origin + ray.direction * along).truncate();
+        place = Some(found);
+        match terrain.height(found) {
+            // Half of the way: a steep slope would be jumped over.
+            Some(ground) => height = (height + ground) / 2.0,
+            None => break,
+        }
+    }
+    place
+}
+
+/// Draws the handles, and drags them.
+pub(super) fn handles(
+    open: &OpenFlight,
+    scene: &Scene,
+    ui: &egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    let planning = &open.planning;
+    let (Some(made), Some(now)) = (&planning.made, planning.now()) else {
+        return;
+    };
+    // A click that is to be a corner must not be taken by one that is there.
+    if planning.through || planning.tool != PlanTool::Select {
+        return;
+    }
+    let mut all: Vec<(Handle, DVec2, String, Color32)> = Vec::new();
+    let area = now.area.as_deref().unwrap_or(made.plan.area.corners());
+    for (corner, place) in area.iter().enumerate() {
+        let label = format!("Corner {} of the area", corner + 1);
+        all.push((Handle::Area(corner), *place, label, Color32::WHITE));
+    }
+    for (area, corners) in now.keep_out.iter().enumerate() {
+        for (corner, place) in corners.iter().enumerate() {
+            let label = format!("Corner {} of keep-out {}", corner + 1, area + 1);
+            let color = Color32::from_rgb(225, 60, 60);
+            all.push((Handle::KeepOut(area, corner), *place, label, color));
+        }
+    }
+    if let Some(place) = now.take_off {
+        let color = Color32::from_rgb(90, 160, 255);
+        all.push((Handle::TakeOff, place, "Take-off".to_owned(), color));
+    }
+    if let Some((_, photo)) = planning.photo() {
+        let place = photo.target.truncate();
+        let label = format!("Middle of {}", photo.name);
+        let color = Color32::from_rgb(240, 190, 40);
+        all.push((Handle::Photo(photo.name.clone()), place, label, color));
+    }
+    let painter = ui.painter().with_clip_rect(scene.place);
+    let terrain = &made.plan.terrain;
+    for (handle, place, label, color) in all {
+        let point = at(place, terrain);
+        let Some(pixel) = scene.view.project(point, scene.size()) else {
+            continue;
+        };
+        let on_screen = scene.screen(pixel);
+        if !scene.place.contains(on_screen) {
+            continue;
+        }
+        let id = ui.scope_id().with(("handle of the plan", &label));
+        let hold = Rect::from_center_size(on_screen, vec2(HOLD, HOLD));
+        let response = ui.interact(hold, id, Sense::drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, &label));
+        let is_held = response.hovered() || response.dragged();
+        let radius = if is_held { RADIUS + 2.0 } else { RADIUS };
+        let rim = Stroke::new(1.5, Color32::from_black_alpha(200));
+        painter.circle(on_screen, radius, color, rim);
+        if handle == Handle::TakeOff {
+            let corner = on_screen + vec2(0.0, 9.0);
+            haloed(
+                &painter,
+                corner,
+                egui::Align2::CENTER_TOP,
+                "take-off",
+                13.0,
+                color,
+                ui,
+            );
+        }
+        if response.dragged()
+            && let Some(mouse) = response.interact_pointer_pos()
+        {
+            let ray = scene.view.ray(scene.pixel(mouse), scene.size());
+            if let Some(to) = on_ground(&ray, point, terrain).filter(|to| *to != place) {
+                commands.push(Command::Plan(PlanStep::Drag(handle, to)));
+            }
+        } else if response.drag_stopped() {
+            commands.push(Command::Plan(PlanStep::Drop));
+        }
+        response
+            .on_hover_cursor(CursorIcon::Grab)
+            .on_hover_text(label);
+    }
+}
