@@ -4,13 +4,9 @@ use glam::{DVec2, DVec3};
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
-use crate::geometry::Ray;
 use crate::jobs::Progress;
 use crate::scale::{FieldGrid, FittedScale, ImageKind, ScaleField};
 use crate::surface::Surface;
-
-/// Points of an outline along each edge of the image.
-const PER_EDGE: u32 = 8;
 
 /// What a photo will show (contract, section 7), of the undistorted image. Scales are in pixels per world unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +27,8 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    /// Of a photo from this pose; `None` where it shows nothing of the surface.
+    /// Of a photo from this pose, and where its edges lie on the surface, clockwise from the top left corner; `None`
+    /// where it shows nothing of it.
     ///
     /// # Errors
     /// Where the surface cannot be triangulated, or the work was cancelled.
@@ -40,7 +37,7 @@ impl Forecast {
         pose: &Pose,
         surface: &Surface,
         progress: &Progress,
-    ) -> Result<Option<Self>, Fault> {
+    ) -> Result<Option<(Self, Vec<DVec3>)>, Fault> {
         let grid = FieldGrid::of_fit(camera);
         let image = ImageKind::Undistorted;
         let field = ScaleField::compute(camera, pose, image, grid, surface, progress)
@@ -53,42 +50,42 @@ impl Forecast {
         else {
             return Ok(None);
         };
-        Ok(Some(Self {
+        let forecast = Self {
             least,
             greatest,
             bulk,
             fitted: FittedScale::of(&field),
             depth: field.depth_at(grid.columns / 2, grid.rows / 2),
             covered: scales.len() as f64 / grid.len() as f64,
-        }))
+        };
+        Ok(Some((forecast, outline(&field))))
     }
 }
 
-/// Where the edges of an undistorted photo lie on the surface, clockwise from the top left corner; without what looks beyond
-/// the surface.
-pub(super) fn outline(
-    camera: &Camera,
-    pose: &Pose,
-    surface: &Surface,
-) -> Result<Vec<DVec3>, Fault> {
-    let mut caster = (surface.caster())
-        .map_err(|error| Fault::new(error.to_string(), "check the surface file"))?;
+/// Where the edges of a photo lie on the surface, clockwise from the top left corner: at the depths of the cells along them. What
+/// looks beyond the surface is missing.
+fn outline(field: &ScaleField) -> Vec<DVec3> {
+    let (camera, pose, grid) = (field.camera(), field.pose(), field.grid);
     let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
-    let corners = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y].map(|corner| corner * size);
-    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-    let pixels = edges.flat_map(|(from, to)| {
-        let step = |step: u32| from.lerp(*to, f64::from(step) / f64::from(PER_EDGE));
-        (0..PER_EDGE).map(step)
-    });
-    let points = pixels.filter_map(|pixel| {
-        let direction = pose.rotation * camera.direction_undistorted(pixel);
-        let ray = Ray {
-            origin: pose.center,
-            direction: direction.normalize(),
-        };
-        Some(caster.cast(&ray)?.point)
-    });
-    Ok(points.collect())
+    let cells = DVec2::new(f64::from(grid.columns), f64::from(grid.rows));
+    let point = |[column, row]: [u32; 2], onto: DVec2| {
+        let depth = field.depth_at(column, row)?;
+        let cell = DVec2::new(f64::from(column), f64::from(row)) + 0.5;
+        // The middle of the cell, moved out to the edge.
+        let pixel = (cell / cells + onto * (0.5 / cells)) * size;
+        Some(pose.center + pose.rotation * camera.direction_undistorted(pixel) * depth)
+    };
+    let (last_column, last_row) = (grid.columns - 1, grid.rows - 1);
+    let top = (0..=last_column).map(|column| ([column, 0], DVec2::NEG_Y));
+    let right = (0..=last_row).map(|row| ([last_column, row], DVec2::X));
+    let bottom = (0..=last_column)
+        .rev()
+        .map(|column| ([column, last_row], DVec2::Y));
+    let left = (0..=last_row).rev().map(|row| ([0, row], DVec2::NEG_X));
+    let around = top.chain(right).chain(bottom).chain(left);
+    around
+        .filter_map(|(cell, onto)| point(cell, onto))
+        .collect()
 }
 
 /// The limits between which 98 of 100 numbers lie; sorts them. `None` without numbers.

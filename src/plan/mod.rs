@@ -37,6 +37,8 @@ mod tests;
 mod way;
 mod wish;
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -139,10 +141,12 @@ impl Plan {
         }
         progress.stage("what each photo will show");
         let count = photos.len() as u64;
-        for (photo, done) in photos.iter_mut().zip(0..) {
-            progress.advance(done, count)?;
-            ground.foresee(photo, surface, progress)?;
-        }
+        let done = AtomicU64::new(0);
+        (photos.par_iter_mut()).try_for_each(|photo| {
+            progress.advance(done.fetch_add(1, Ordering::Relaxed), count)?;
+            // Its own stages would come between.
+            ground.foresee(photo, surface, &Progress::default())
+        })?;
         let cover = Cover::of(&photos, camera, &area, &terrain);
         Ok(Self {
             photos,

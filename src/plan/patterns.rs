@@ -12,7 +12,7 @@
 use glam::{DMat2, DVec2, DVec3};
 
 use super::footprint;
-use super::forecast::{Forecast, bulk_of, outline};
+use super::forecast::{Forecast, bulk_of};
 use super::keep_out::KeepOut;
 use super::photo::{PlannedPhoto, Refused};
 use super::steadiness::interval;
@@ -202,8 +202,12 @@ impl<'a> Ground<'a> {
         surface: &Surface,
         progress: &Progress,
     ) -> Result<(), Fault> {
-        photo.forecast = Forecast::of(self.camera, &photo.pose, surface, progress)?;
-        photo.outline = outline(self.camera, &photo.pose, surface)?;
+        let foreseen = Forecast::of(self.camera, &photo.pose, surface, progress)?;
+        photo.outline.clear();
+        photo.forecast = foreseen.map(|(forecast, outline)| {
+            photo.outline = outline;
+            forecast
+        });
         photo.interval = interval(photo, self.camera, self.terrain, &self.wish.errors);
         Ok(())
     }
