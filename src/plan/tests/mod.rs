@@ -1,5 +1,7 @@
 //! Plans over surfaces whose answers are known.
 
+mod random_surfaces;
+
 use super::*;
 use crate::camera::Distortion;
 use crate::geodesy::{Crs, Geographic};
