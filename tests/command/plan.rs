@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::common::{fragscale, stdout_of};
+use crate::common::{fragscale, shared_data, stdout_of};
 
 /// A plane in UTM that falls to the east by 1 in 2, and a flight of one photo over it.
 fn plane(folder: &std::path::Path) -> String {
@@ -252,5 +252,98 @@ fn what_was_flown_is_compared_with_its_mission() {
             "{flown}"
         );
         assert!(flown["shared"].as_f64().unwrap() > 0.9, "{flown}");
+    }
+}
+
+/// Ground to keep out of is a fence of the mission, and no stop lies over it; how far the drone's errors move a scale is
+/// that of its distance.
+#[test]
+fn what_is_kept_out_of_is_a_fence() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    let mission = folder.path().join("m.plan").display().to_string();
+    let corners = "450090,5400090;450110,5400090;450110,5400110;450090,5400110";
+    let more = [
+        "--keep-out",
+        corners,
+        "--mission",
+        &mission,
+        "--format",
+        "json",
+        "--positioning",
+    ];
+    let output = planned(&flight, &[&more[..], &["rtk"]].concat());
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{notes}");
+    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for photo in told["photos"].as_array().unwrap() {
+        let at = |i: usize| photo["center"][i].as_f64().unwrap();
+        let inside =
+            (450_085.0..450_115.0).contains(&at(0)) && (5_400_085.0..5_400_115.0).contains(&at(1));
+        assert!(!inside, "{photo}");
+        // Along the normal of the plane 0.1 m is 0.1 m, whichever way: 1.96 of it over the distance.
+        let expected = 100.0 * 1.96 * 0.1 / photo["distance"].as_f64().unwrap();
+        let interval = photo["interval_95_percent"].as_f64().unwrap();
+        assert!(
+            (interval / expected - 1.0).abs() < 0.1,
+            "{interval} {expected}"
+        );
+    }
+    let written: Value = serde_json::from_slice(&fs::read(&mission).unwrap()).unwrap();
+    let fence = &written["geoFence"]["polygons"][0];
+    assert_eq!(fence["inclusion"], false);
+    assert_eq!(fence["polygon"].as_array().unwrap().len(), 4);
+    let inside = planned(
+        &flight,
+        &["--keep-out", "450010,5400010;450030,5400010;450020,5400040"],
+    );
+    let error = String::from_utf8_lossy(&inside.stderr).into_owned();
+    assert_eq!(inside.status.code(), Some(1));
+    assert!(
+        error.contains("take-off lies in an area to keep out of"),
+        "{error}"
+    );
+}
+
+/// A real quarry, whose file has y upwards: every photo shows the wished scale, or says what is wrong.
+#[test]
+fn a_real_quarry_is_planned() {
+    let Some(terrain) = shared_data("authume-quarry-terrain/Geometries/Point_cloud/Terrain.xyz")
+    else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    // A cloud alone has z upwards.
+    let turned = fs::read_to_string(terrain).unwrap();
+    let turned: String = (turned.lines())
+        .filter_map(|line| {
+            let mut numbers = line
+                .split_whitespace()
+                .filter_map(|word| word.parse::<f64>().ok());
+            let (x, y, z) = (numbers.next()?, numbers.next()?, numbers.next()?);
+            Some(format!("{x} {} {y}\n", -z))
+        })
+        .collect();
+    let cloud = folder.path().join("quarry.xyz");
+    fs::write(&cloud, turned).unwrap();
+    let flight = cloud.display().to_string();
+    let area = ["--unit", "m", "--area", "20,-380;90,-380;90,-260;20,-260"];
+    let asked = [
+        "--drone", "mavic-3e", "--scale", "1 px/cm", "--format", "json",
+    ];
+    let told = fragscale(&[&["plan", &flight][..], &asked, &area].concat());
+    let notes = String::from_utf8_lossy(&told.stderr).into_owned();
+    assert_eq!(told.status.code(), Some(0), "{notes}");
+    let told: Value = serde_json::from_slice(&told.stdout).unwrap();
+    let photos = told["photos"].as_array().unwrap();
+    assert!(photos.len() > 5, "{}", photos.len());
+    for photo in photos {
+        let scale = |name: &str| photo[name].as_f64();
+        let is_named = !photo["troubles"].as_array().unwrap().is_empty();
+        let is_right = [scale("top"), scale("bottom")]
+            .iter()
+            .flatten()
+            .all(|scale| (scale - 1.0).abs() < 0.1);
+        assert!(is_named || is_right, "{photo}");
     }
 }
