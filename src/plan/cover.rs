@@ -74,7 +74,7 @@ impl Cover {
 }
 
 /// The terrain's pixels that lie inside a photo.
-fn seen_by(photo: &PlannedPhoto, camera: &Camera, terrain: &Terrain) -> Vec<usize> {
+pub(super) fn seen_by(photo: &PlannedPhoto, camera: &Camera, terrain: &Terrain) -> Vec<usize> {
     let raster = terrain.raster();
     let columns = raster.columns as usize;
     let place = |point: DVec2| {

@@ -11,6 +11,7 @@
 //! patterns    where photos are taken from: slope, paper, survey
 //! forecast    what a photo will show: its field of scales
 //! steadiness  how well a drone holds its pose, and what that makes of the scale
+//! sun         where the sun stands, and what lies in shadow
 //! cover       how much photos share, and the widest gap that they leave
 //! way         in which order, with which climbs
 //! mission/    what a drone is told, and what came of it
@@ -31,6 +32,7 @@ mod mission;
 mod patterns;
 mod photo;
 mod steadiness;
+mod sun;
 mod terrain;
 #[cfg(test)]
 mod tests;
@@ -53,6 +55,7 @@ pub use mission::{
 pub use patterns::Pattern;
 pub use photo::{PlannedPhoto, Refused};
 pub use steadiness::{PoseErrors, Positioning};
+pub use sun::{Shadows, Sun};
 pub use terrain::{GroundPlane, Terrain, ground_at};
 pub use way::{Pace, USUAL_SETTLE, USUAL_SPEED, Way, WayPoint};
 pub use wish::{Size, USUAL_CLEARANCE, USUAL_OFF_NORMAL, USUAL_TILT, Wish};

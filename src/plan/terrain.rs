@@ -183,6 +183,32 @@ impl Terrain {
         self.clearance(point, clearance) < clearance
     }
 
+    /// Whether the ground stands between one of its points and the sun in this direction, of length 1. Nothing of it is
+    /// higher than `highest`. A pixel does not shade itself.
+    pub(super) fn is_shadowed(&self, point: DVec3, toward: DVec3, highest: f64) -> bool {
+        let level = toward.truncate().length();
+        if toward.z <= 0.0 {
+            return true;
+        }
+        if level == 0.0 {
+            return false;
+        }
+        // A pixel on with each step.
+        let step = toward / level * self.raster.pixel;
+        let [min, max] = self.raster.bounds();
+        let mut at = point + step;
+        while at.z < highest && at.truncate().cmpge(min).all() && at.truncate().cmple(max).all() {
+            if self
+                .height(at.truncate())
+                .is_some_and(|height| height > at.z)
+            {
+                return true;
+            }
+            at += step;
+        }
+        false
+    }
+
     /// The highest of the surface within `reach` of the line between two places; `None` where there is none.
     pub fn highest_along(&self, from: DVec2, to: DVec2, reach: f64) -> Option<f64> {
         self.steps(from, to, reach)

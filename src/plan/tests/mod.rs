@@ -520,3 +520,28 @@ fn photos_are_moved_added_and_left_out() {
         .unwrap_err();
     assert!(off.what.contains("beyond the surface"), "{off}");
 }
+
+/// A wall 10 m high along x = 0, the ground behind it as high: the sun in the east at 45 degrees leaves 10 m in front of it in
+/// shadow, of 60 m; in the west none; at night all.
+#[test]
+fn a_wall_throws_its_shadow() {
+    let surface = surface(|place| if place.x < 0.0 { 0.0 } else { 10.0 });
+    let plan = plan(&surface, 30.0, wish(Pattern::Paper));
+    let sun = |x: f64, z: f64| Sun {
+        elevation: z.atan2(x.abs()).to_degrees(),
+        azimuth: 90.0,
+        toward: DVec3::new(x, 0.0, z).normalize(),
+    };
+    let east = plan.shadows(&sun(1.0, 1.0));
+    assert!((east.area - 1.0 / 6.0).abs() < 0.025, "{}", east.area);
+    assert_eq!(plan.shadows(&sun(-1.0, 1.0)).area, 0.0);
+    assert_eq!(plan.shadows(&sun(1.0, -0.1)).area, 1.0);
+    assert_eq!(east.photos.len(), plan.photos.len());
+    let [min, max] = [0.0_f64, 1.0].map(|end| {
+        (east.photos.iter().copied()).fold(
+            1.0 - end,
+            |a, b| if end == 0.0 { a.min(b) } else { a.max(b) },
+        )
+    });
+    assert!(min < 0.01 && max > 0.2, "{min} {max}");
+}
