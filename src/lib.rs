@@ -57,7 +57,7 @@
 //! | a subcommand with progress | `src/cli/mod.rs` | a variant; its work is a file beside it |
 //! | a JSON key of a photo | `src/exports/scales_json.rs` | a field and its value; the contract |
 //! | a distribution function | `src/fragmentation/functions/mod.rs` | the enum of models; the function is a file beside it, its coordinates for fitting in `fit/family.rs` |
-//! | a pattern of planned photos | `src/plan/patterns.rs` | a variant and where its photos lie; `src/cli/planning/plan.rs` offers it |
+//! | a pattern of planned photos | `src/plan/patterns/mod.rs` | a variant and where its photos lie; `src/cli/planning/plan.rs` offers it |
 //! | a drone | `src/plan/drones.rs` | one row: camera, gimbal, DJI's numbers, each with its source |
 //! | a ground station's missions | `src/formats/missions/mod.rs`, `src/exports/missions/format.rs` | what reads and what writes it, a file each beside them; `exports/missions/tests/round_trip.rs` holds that all say the same |
 //! | a reconstruction engine | `src/reconstruct/engine.rs` | the trait; the engine is a folder beside it, and leaves COLMAP's text files |
