@@ -7,7 +7,7 @@ use crate::measured::{csv_of, percent, rows_of_text};
 use crate::numbers::significant_digits;
 use crate::survey::Polygon;
 use crate::units::LengthUnit;
-use fragscale_core::plan::{Pace, Plan, PlannedPhoto, Way};
+use fragscale_core::plan::{Pace, Plan, PlannedPhoto, Refused, Way};
 
 /// A plan, and how it is to be said.
 #[derive(Debug, Clone, Copy)]
@@ -28,35 +28,35 @@ pub struct PlanReport<'a> {
 
 impl PlanReport<'_> {
     /// Pixels per the reader's unit of pixels per world unit.
-    fn scale(&self, pixels: f64) -> f64 {
+    pub(crate) fn scale(&self, pixels: f64) -> f64 {
         pixels * self.scales.in_units_of(self.world)
     }
 
-    fn way_length(&self) -> f64 {
+    pub(crate) fn way_length(&self) -> f64 {
         self.ways.iter().map(|way| way.length).sum()
     }
 
     /// Seconds in the air.
-    fn seconds(&self) -> f64 {
+    pub(crate) fn seconds(&self) -> f64 {
         self.ways.iter().map(|way| way.seconds(&self.pace)).sum()
     }
 }
 
-/// What stands in a row of a photo.
-struct Row {
-    name: String,
-    tilt: f64,
-    pan: f64,
+/// What stands in a row of a photo; scales in pixels per the reader's unit, angles in degrees, shares 0 to 1.
+pub(crate) struct Row {
+    pub(crate) name: String,
+    pub(crate) tilt: f64,
+    pub(crate) pan: f64,
     /// Along the axis, to the surface.
-    distance: Option<f64>,
+    pub(crate) distance: Option<f64>,
     /// Least, greatest, top and bottom of the fitted line.
-    scales: [Option<f64>; 4],
-    off_line: Option<f64>,
+    pub(crate) scales: [Option<f64>; 4],
+    pub(crate) off_line: Option<f64>,
     /// Half of the 95 % interval that the drone's errors give its scale, percent.
-    interval: Option<f64>,
+    pub(crate) interval: Option<f64>,
     shows: f64,
-    shared: f64,
-    troubles: String,
+    pub(crate) shared: f64,
+    pub(crate) troubles: String,
 }
 
 fn row(report: &PlanReport<'_>, number: usize, photo: &PlannedPhoto) -> Row {
@@ -85,7 +85,7 @@ fn row(report: &PlanReport<'_>, number: usize, photo: &PlannedPhoto) -> Row {
     }
 }
 
-fn rows<'a>(report: &'a PlanReport<'a>) -> impl Iterator<Item = Row> + 'a {
+pub(crate) fn rows<'a>(report: &'a PlanReport<'a>) -> impl Iterator<Item = Row> + 'a {
     let photos = report.plan.photos.iter().enumerate();
     photos.map(|(number, photo)| row(report, number, photo))
 }
@@ -177,10 +177,7 @@ pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
             "{off} of the area lies beside the surface or in holes of it: no photo is planned there"
         ));
     }
-    for refused in &plan.refused {
-        let [x, y] = refused.place.to_array();
-        said.push(format!("no photo at ({x:.1}, {y:.1}): {}", refused.why));
-    }
+    said.extend(plan.refused.iter().map(refused_in_words));
     if let (Some(at), true) = (plan.cover.gap_at, plan.has_wide_gap()) {
         let gap = significant_digits(plan.cover.widest_gap, 2);
         said.push(format!(
@@ -189,6 +186,12 @@ pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
         ));
     }
     said
+}
+
+/// A photo that cannot be taken, in a sentence.
+pub(crate) fn refused_in_words(refused: &Refused) -> String {
+    let [x, y] = refused.place.to_array();
+    format!("no photo at ({x:.1}, {y:.1}): {}", refused.why)
 }
 
 /// A line a photo. Numbers read back to the same f64.

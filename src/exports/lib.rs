@@ -4,6 +4,7 @@
 mod drawing;
 mod flight_files;
 mod flight_plan;
+mod flight_sheet;
 mod flown_report;
 mod html_page;
 mod markup;
@@ -32,6 +33,7 @@ use fragscale_fragmentation as fragmentation;
 
 pub use flight_files::{Orientation, PoseRow, StatedDeviations, laz, ply, poses_csv};
 pub use flight_plan::{PlanReport, plan_csv, plan_json, plan_table, plan_warnings};
+pub use flight_sheet::{FlightSheet, flight_sheet};
 pub use flown_report::{FlownReport, flown_csv, flown_json, flown_table, flown_warnings};
 pub use measured::{
     MeasuredUnit, PointsReport, ProfileReport, VolumeReport, percent, points_csv, points_table,

@@ -3,3 +3,4 @@
 pub(super) mod flown;
 pub(super) mod mission;
 pub(super) mod plan;
+mod sheet;

@@ -13,7 +13,8 @@ use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::of_photos::length::Length;
 use crate::cli::on_surface::places::{place, places};
 use crate::cli::outputs::NamedAnswerArguments;
-use crate::exports::{self, MissionFormat, PlanReport};
+use crate::cli::planning::sheet::SheetArguments;
+use crate::exports::{self, FlightSheet, MissionFormat, PlanReport};
 use crate::fault::Fault;
 use crate::files::Kind;
 use crate::formats::{FileError, read_camera};
@@ -96,6 +97,8 @@ pub(in crate::cli) struct PlanArguments {
     /// (QGroundControl), .waypoints (Mission Planner), .csv (Litchi), .kml or .geojson. May be given several times.
     #[arg(long, value_name = "FILE", requires = "take_off")]
     mission: Vec<PathBuf>,
+    #[command(flatten)]
+    sheet: SheetArguments,
     #[command(flatten)]
     answer: NamedAnswerArguments,
 }
@@ -193,6 +196,7 @@ pub(in crate::cli) fn plan(
         MissionFormat::of(path).map_err(|fault| FileError::new(path, fault).to_string())?;
         outputs = outputs.and(path, Kind::Result)?;
     }
+    outputs = arguments.sheet.among(outputs)?;
     let area = arguments.area.as_deref().map(places).transpose()?;
     let keep_out = arguments.keep_out.iter().map(|text| places(text));
     let keep_out: Vec<_> = keep_out.collect::<Result<_, String>>()?;
@@ -300,6 +304,16 @@ pub(in crate::cli) fn plan(
             }
         }
     }
+    let sheet = FlightSheet {
+        report: &report,
+        surface: &parts.surface,
+        camera: &camera,
+        drone: arguments.drone().map(|drone| drone.title),
+        settle: arguments.settle,
+        crs: arguments.crs.as_deref().or(opened.crs.as_deref()),
+        warnings: &warnings,
+    };
+    arguments.sheet.write(&outputs, &sheet, progress)?;
     warnings.extend(opened.all_warnings());
     Ok(Answer::new(text, warnings))
 }

@@ -8,7 +8,8 @@
 mod table;
 
 pub(crate) use self::table::{
-    Cell, NONE, heading, inside, names, notes, paragraph, percent, signed, table,
+    Cell, NONE, blanks, boxes, heading, inside, names, notes, pairs, paragraph, percent, signed,
+    table,
 };
 
 use crate::files::HTML_MARK;
@@ -32,4 +33,9 @@ pub(crate) fn page(title: &str, window: &str, body: &str) -> String {
 /// A drawing in a page; `svg` is markup.
 pub(crate) fn figure(svg: &str) -> String {
     format!("<figure>\n{svg}</figure>\n")
+}
+
+/// A drawing that is as large on paper as it says; `svg` is markup.
+pub(crate) fn figure_to_scale(svg: &str) -> String {
+    format!("<figure class=\"to-scale\">\n{svg}</figure>\n")
 }

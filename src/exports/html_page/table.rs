@@ -64,6 +64,31 @@ pub(crate) fn notes<'a>(notes: impl IntoIterator<Item = &'a String>) -> String {
     }
 }
 
+/// Names and what is said of them, in two columns of the page.
+pub(crate) fn pairs(pairs: &[(&str, String)]) -> String {
+    let rows = pairs.iter().map(|(name, said)| {
+        let (name, said) = (escaped(name), escaped(said));
+        format!("<div><dt>{name}</dt><dd>{said}</dd></div>\n")
+    });
+    format!("<dl class=\"pairs\">\n{}</dl>\n", rows.collect::<String>())
+}
+
+/// Sentences with a box before each, to tick on paper.
+pub(crate) fn boxes(sentences: &[String]) -> String {
+    let items = sentences
+        .iter()
+        .map(|sentence| format!("<li>{}</li>\n", escaped(sentence)));
+    format!("<ul class=\"boxes\">\n{}</ul>\n", items.collect::<String>())
+}
+
+/// Names with a line behind each, to write on.
+pub(crate) fn blanks(names: &[&str]) -> String {
+    let blanks = names
+        .iter()
+        .map(|name| format!("<span>{}</span>", escaped(name)));
+    format!("<p class=\"blanks\">{}</p>\n", blanks.collect::<String>())
+}
+
 /// Names for `table`.
 pub(crate) fn names(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| (*name).to_owned()).collect()

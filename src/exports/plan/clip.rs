@@ -1,11 +1,11 @@
 //! What of an outline lies within a frame.
 
 /// A rectangle: least and greatest x and y.
-pub(super) type Box2 = [[f64; 2]; 2];
+pub(crate) type Box2 = [[f64; 2]; 2];
 
 /// A closed outline cut to a rectangle, for filling (Sutherland and Hodgman, "Reentrant polygon clipping",
 /// 1974).
-pub(super) fn area(outline: &[[f64; 2]], [min, max]: Box2) -> Vec<[f64; 2]> {
+pub(crate) fn area(outline: &[[f64; 2]], [min, max]: Box2) -> Vec<[f64; 2]> {
     let mut cut = outline.to_vec();
     for (axis, limit, sign) in [
         (0, min[0], 1.0),
@@ -31,7 +31,7 @@ pub(super) fn area(outline: &[[f64; 2]], [min, max]: Box2) -> Vec<[f64; 2]> {
 
 /// The parts of a line within a rectangle, for drawing (Liang and Barsky, "A new concept and method for line
 /// clipping", 1984).
-pub(super) fn line(points: &[[f64; 2]], [min, max]: Box2) -> Vec<Vec<[f64; 2]>> {
+pub(crate) fn line(points: &[[f64; 2]], [min, max]: Box2) -> Vec<Vec<[f64; 2]>> {
     let mut parts: Vec<Vec<[f64; 2]>> = Vec::new();
     for ends in points.windows(2) {
         let (from, to) = (ends[0], ends[1]);
@@ -57,7 +57,11 @@ pub(super) fn line(points: &[[f64; 2]], [min, max]: Box2) -> Vec<Vec<[f64; 2]>> 
         if first > last {
             continue;
         }
-        let at = |share: f64| [0, 1].map(|i| from[i] + share * (to[i] - from[i]));
+        // The very ends, without rounding: the next part begins where this one ends.
+        let at = |share: f64| match share == 1.0 {
+            true => to,
+            false => [0, 1].map(|i| from[i] + share * (to[i] - from[i])),
+        };
         let continues = first == 0.0 && parts.last().and_then(|part| part.last()) == Some(&from);
         match parts.last_mut().filter(|_| continues) {
             Some(part) => part.push(at(last)),

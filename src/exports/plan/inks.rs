@@ -55,7 +55,7 @@ impl PlanInks {
 }
 
 /// The dash of a photo's lines: whoever sees no colours, or prints in grey, has this.
-pub(super) fn dash(verdict: Option<Verdict>) -> Dash {
+pub(crate) fn dash(verdict: Option<Verdict>) -> Dash {
     match verdict {
         Some(Verdict::Trust | Verdict::Accepted) => Dash::Solid,
         Some(Verdict::Check) => Dash::Long,

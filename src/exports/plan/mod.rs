@@ -10,23 +10,25 @@
 //! inks      colours and dashes of verdicts
 //! clip      outlines within a frame
 //! photos    footprints, cameras and names, drawn
-//! page      title, grid, north, bar and legend around it
+//! furniture grid lines, coordinates, north and bar of a printed map
+//! page      the whole of it on A4, with title and legend
 //! geotiff   pixels with their place on the Earth
 //! format    which of them a file's name asks for
 //! ```
 //!
 //! Nothing in it knows the window.
 
-mod clip;
+pub(crate) mod clip;
 mod extent;
 mod format;
 mod frame;
+pub(crate) mod furniture;
 mod geotiff;
 mod grid;
 mod ground;
-mod inks;
+pub(crate) mod inks;
 mod page;
-mod photos;
+pub(crate) mod photos;
 #[cfg(test)]
 mod tests;
 
@@ -40,6 +42,7 @@ pub use frame::MapFrame;
 pub use grid::{Grid, GridLine};
 pub use ground::{GroundOf, PhotoPixels, PlanGround, ground};
 pub use inks::PlanInks;
+pub(crate) use page::ground as ground_shape;
 pub use photos::RoomForNames;
 
 use crate::fault::Fault;
@@ -47,6 +50,7 @@ use crate::flight::{Date, Review, Verdict};
 use crate::geodesy::{Crs, CrsKind, is_stated};
 use crate::jobs::Progress;
 use crate::numbers::{round_down, round_near};
+use crate::scale::Footprint;
 use crate::surface::{Light, MapRaster};
 use crate::units::{LengthUnit, in_words, round_length_in_words};
 
@@ -158,6 +162,31 @@ pub struct PlanPhoto {
     pub camera: DVec2,
 }
 
+impl PlanPhoto {
+    /// With what of its footprint is known, from this camera.
+    pub(crate) fn new(
+        name: &str,
+        verdict: Option<Verdict>,
+        footprint: Option<&Footprint>,
+        camera: DVec2,
+    ) -> Self {
+        let points = footprint.iter().flat_map(|footprint| &footprint.outline);
+        let points = points.filter_map(|point| Some(point.point()?.truncate()));
+        let middle = footprint.and_then(|footprint| {
+            let (columns, rows) = (footprint.columns, footprint.rows);
+            let index = rows / 2 * (columns + 1) + columns / 2;
+            Some(footprint.grid.get(index as usize)?.point()?.truncate())
+        });
+        Self {
+            name: name.to_owned(),
+            verdict,
+            outline: points.filter(|point| point.is_finite()).collect(),
+            middle: middle.filter(|point| point.is_finite()),
+            camera,
+        }
+    }
+}
+
 impl Plan {
     /// The plan of a reviewed flight; footprints are on it once the review has looked at them. `photos` reads the
     /// photos' pixels, for a ground of photos.
@@ -226,20 +255,8 @@ impl Plan {
         let photos = review.photos().enumerate().map(|(index, photo)| {
             let view = views.and_then(|views| views.get(index)?.as_ref());
             let footprint = view.map(|view| &view.footprint);
-            let points = footprint.iter().flat_map(|footprint| &footprint.outline);
-            let points = points.filter_map(|point| Some(point.point()?.truncate()));
-            let middle = footprint.and_then(|footprint| {
-                let (columns, rows) = (footprint.columns, footprint.rows);
-                let index = rows / 2 * (columns + 1) + columns / 2;
-                Some(footprint.grid.get(index as usize)?.point()?.truncate())
-            });
-            PlanPhoto {
-                name: photo.name().to_owned(),
-                verdict: photo.settled(),
-                outline: points.filter(|point| point.is_finite()).collect(),
-                middle: middle.filter(|point| point.is_finite()),
-                camera: photo.photo.pose.center.truncate(),
-            }
+            let camera = photo.photo.pose.center.truncate();
+            PlanPhoto::new(photo.name(), photo.settled(), footprint, camera)
         });
         photos.collect()
     }

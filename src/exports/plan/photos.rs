@@ -5,7 +5,7 @@ use super::{MapFrame, Plan, PlanInks, PlanPhoto, clip};
 use crate::drawing::{Anchor, Dash, Marker, Pen, png};
 
 /// Height of a name's line, units.
-pub(super) const NAME: f64 = 13.5;
+pub(crate) const NAME: f64 = 13.5;
 /// Of a footprint's outline.
 const OUTLINE: f64 = 1.6;
 const SHADE: f64 = 0.10;
@@ -35,7 +35,7 @@ pub struct RoomForNames {
 
 impl RoomForNames {
     /// All of a frame.
-    pub(super) fn all_of(frame: &MapFrame) -> Self {
+    pub(crate) fn all_of(frame: &MapFrame) -> Self {
         let ([left, top], [width, height]) = (frame.at, frame.size);
         Self {
             sight: [[left, top], [left + width, top + height]],
@@ -75,7 +75,7 @@ fn around([x, y]: [f64; 2], half: f64) -> clip::Box2 {
     [[x - half, y - half], [x + half, y + half]]
 }
 
-pub(super) fn draw(
+pub(crate) fn draw(
     plan: &Plan,
     frame: &MapFrame,
     room: &RoomForNames,
@@ -156,7 +156,7 @@ pub(super) fn measured_line(points: &[[f64; 2]], inks: &PlanInks, pen: &mut Pen)
     }
 }
 
-pub(super) fn camera_mark(at: [f64; 2], inks: &PlanInks, pen: &mut Pen) {
+pub(crate) fn camera_mark(at: [f64; 2], inks: &PlanInks, pen: &mut Pen) {
     let [x, y] = at;
     for (half, colour) in [(CAMERA + 1.2, inks.paper), (CAMERA, inks.ink)] {
         let outline = [
@@ -168,12 +168,12 @@ pub(super) fn camera_mark(at: [f64; 2], inks: &PlanInks, pen: &mut Pen) {
     }
 }
 
-pub(super) fn middle_mark(at: [f64; 2], colour: [u8; 3], pen: &mut Pen) {
+pub(crate) fn middle_mark(at: [f64; 2], colour: [u8; 3], pen: &mut Pen) {
     pen.marker(at, Marker::Cross, MIDDLE, colour);
 }
 
 /// A line of a footprint for the legend.
-pub(super) fn sample(from: [f64; 2], to: [f64; 2], colour: [u8; 3], dash: Dash, pen: &mut Pen) {
+pub(crate) fn sample(from: [f64; 2], to: [f64; 2], colour: [u8; 3], dash: Dash, pen: &mut Pen) {
     pen.area(
         &[from, [to[0], from[1]], to, [from[0], to[1]]],
         colour,
@@ -193,7 +193,7 @@ fn overlap(a: &clip::Box2, b: &clip::Box2) -> bool {
     (0..2).all(|i| a[0][i] < b[1][i] && b[0][i] < a[1][i])
 }
 
-pub(super) fn shortened(name: &str) -> String {
+pub(crate) fn shortened(name: &str) -> String {
     match name.chars().count() > LONGEST {
         true => name.chars().take(LONGEST - 1).chain(['…']).collect(),
         false => name.to_owned(),

@@ -1,0 +1,395 @@
+//! The map of a sheet: as wide as A4 has room for, at a round scale, true where the page is printed at 100 %.
+//!
+//! Lengths are CSS pixels, 96 to an inch; x to the right, y down.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use image::{Rgba, RgbaImage};
+
+use super::FlightSheet;
+use crate::drawing::{Anchor, Colour, Dash, Marker, Pen, png, svg};
+use crate::fault::Fault;
+use crate::flight::Verdict;
+use crate::jobs::Progress;
+use crate::plan::furniture::{self, A_MILLIMETRE, LABEL, TEXT};
+use crate::plan::inks::dash;
+use crate::plan::photos::{NAME, camera_mark, draw, middle_mark, sample};
+use crate::plan::{Grid, MapFrame, Plan, PlanGround, PlanInks, PlanPhoto, RoomForNames, clip};
+use crate::scale::{Footprint, FootprintDetail, Ground, GroundFinder, ImageKind};
+use crate::surface::{Light, MapRaster, hillshade};
+use fragscale_core::plan::{Terrain, Way};
+
+/// What a browser leaves of A4 between the page's margins and those of a figure.
+const WIDE: f64 = 180.0 * A_MILLIMETRE;
+/// So high at most, with the legend: title and numbers go on the same page.
+const HIGH: f64 = 185.0 * A_MILLIMETRE;
+/// Left of the map: its coordinates. They reach beyond its other sides by half their length.
+const LEFT: f64 = LABEL + 10.0;
+const TOP: f64 = 22.0;
+const RIGHT: f64 = 18.0;
+/// Below the map: its coordinates, the legend.
+const COORDINATES: f64 = LABEL + 20.0;
+const ROW: f64 = 18.0;
+const COLUMN: f64 = 218.0;
+/// North, and below it the bar.
+const NORTH: f64 = 104.0;
+/// The longest bar.
+const BAR: f64 = 170.0;
+/// What is left free around everything, in its larger side.
+const ROOM: f64 = 0.03;
+/// The most pixels of the ground.
+const MOST: u32 = 1_000_000;
+
+/// Paler than the relief of a map: the lines over it are what the pilot looks at.
+const DARKEST: f64 = 140.0;
+const LIGHT: f64 = 110.0;
+
+const WAY: Colour = [25, 70, 160];
+const AREA: Colour = [90, 20, 110];
+/// From the middle of a leg to the tip of its arrow.
+const ARROW: f64 = 5.0;
+/// A leg that is shorter has none.
+const SHORTEST_WITH_ARROW: f64 = 26.0;
+/// Half the width of the mark of the take-off.
+const TAKE_OFF: f64 = 6.0;
+
+/// The ways of batteries are told apart by these, in turn.
+const DASHES: [Dash; 4] = [Dash::Solid, Dash::Long, Dash::Short, Dash::DashDot];
+
+/// The map as a document of SVG.
+///
+/// # Errors
+/// Where the surface cannot be triangulated, the ground cannot be encoded, or the work was cancelled.
+pub(super) fn map(sheet: &FlightSheet<'_>, progress: &Progress) -> Result<String, Fault> {
+    let photos = photos(sheet, progress)?;
+    let extent = extent(sheet, &photos);
+    let whole = extent[1] - extent[0];
+    let legend = legend(sheet);
+    let below = COORDINATES + NORTH.max(legend.len().div_ceil(2) as f64 * ROW);
+    let room = [WIDE - LEFT - RIGHT, HIGH - TOP - below];
+    let fit = (room[0] / whole.x).min(room[1] / whole.y);
+    let round = furniture::round_scale(fit, sheet.report.world);
+    let (scale, denominator) = round.ok_or_else(|| {
+        let what = "the plan has no size that could be drawn";
+        Fault::new(what, "report it: this is a defect")
+    })?;
+    let high = (whole.y * scale).clamp(room[1].min(120.0), room[1]);
+    let middle = (extent[0] + extent[1]) / 2.0;
+    let frame = MapFrame::around(middle, [LEFT, TOP], [room[0], high], scale);
+    let (raster, ground) = ground(&sheet.report.plan.terrain, &frame);
+    let plan = Plan {
+        flight: sheet.report.flight.to_owned(),
+        crs: sheet.crs.map(str::to_owned),
+        taken: None,
+        unit: sheet.report.world,
+        unit_known: true,
+        extent,
+        raster,
+        ground: Arc::new(ground),
+        ground_kind: PlanGround::Relief,
+        warnings: Vec::new(),
+        light: Light::default(),
+        photos,
+        measured: Vec::new(),
+    };
+    let size = [WIDE, TOP + high + below];
+    let mut pen = Pen::default();
+    on_the_ground(sheet, &plan, &frame, &mut pen);
+    let foot = TOP + high + COORDINATES;
+    for (index, row) in legend.iter().enumerate() {
+        let (column, line) = (index % 2, index / 2);
+        let at = [
+            LEFT + column as f64 * COLUMN,
+            foot + (line as f64 + 0.5) * ROW,
+        ];
+        row.draw(at, &mut pen);
+    }
+    let at = [LEFT + 2.0 * COLUMN + 10.0, foot];
+    let inks = &PlanInks::PAPER;
+    furniture::north(&plan, at, inks, &mut pen);
+    if let Some(bar) = plan.bar(scale, BAR, sheet.report.world) {
+        furniture::scale_bar(&bar, [at[0], at[1] + 68.0], inks, &mut pen);
+    }
+    let words = format!("1 : {denominator}, printed at 100 %");
+    let place = [at[0], at[1] + 96.0];
+    pen.text(place, LABEL, &words, Anchor::Left, inks.ink);
+    let title = format!("Map of the plan over {}", sheet.report.flight);
+    svg::document(&pen.shapes, size.map(hundredth), &title)
+}
+
+fn hundredth(length: f64) -> f64 {
+    (length * 100.0).round() / 100.0
+}
+
+/// Everything within the frame, and its edge.
+fn on_the_ground(sheet: &FlightSheet<'_>, plan: &Plan, frame: &MapFrame, pen: &mut Pen) {
+    let inks = &PlanInks::PAPER;
+    let ([left, top], [width, height]) = (frame.at, frame.size);
+    let bounds = [[left, top], [left + width, top + height]];
+    pen.shapes.push(crate::plan::ground_shape(plan, frame));
+    let grid = Grid::of(frame);
+    furniture::grid_lines(frame, &grid, inks, pen);
+    let corners = sheet.report.plan.area.corners();
+    let around = corners.iter().chain(corners.first());
+    let around: Vec<[f64; 2]> = around.map(|corner| frame.place(*corner)).collect();
+    for part in clip::line(&around, bounds) {
+        area_line(&part, pen);
+    }
+    for (number, way) in sheet.report.ways.iter().enumerate() {
+        let places: Vec<[f64; 2]> = level(way)
+            .into_iter()
+            .map(|place| frame.place(place))
+            .collect();
+        way_line(&places, DASHES[number % DASHES.len()], pen);
+    }
+    let mut room = RoomForNames::all_of(frame);
+    let take_off = take_off(sheet).map(|place| frame.place(place));
+    let words = "take-off";
+    let long = png::text_width(NAME, words) * 1.06;
+    let beside = take_off.map(|[x, y]| {
+        let left = match x + TAKE_OFF + 6.0 + long < bounds[1][0] {
+            true => x + TAKE_OFF + 4.0,
+            false => x - TAKE_OFF - 4.0 - long,
+        };
+        [
+            [left - 2.0, y - NAME / 2.0],
+            [left + long + 2.0, y + NAME / 2.0],
+        ]
+    });
+    room.covered.extend(beside);
+    draw(plan, frame, &room, inks, pen);
+    if let (Some(at), Some([[x0, y0], [x1, y1]])) = (take_off, beside) {
+        pen.marker(at, Marker::Diamond, TAKE_OFF, WAY);
+        pen.area(&[[x0, y0], [x1, y0], [x1, y1], [x0, y1]], inks.paper, 0.72);
+        pen.text([x0 + 2.0, at[1]], NAME, words, Anchor::Left, inks.ink);
+    }
+    furniture::border(frame, &grid, inks, pen);
+}
+
+/// Where the ways begin and end.
+fn take_off(sheet: &FlightSheet<'_>) -> Option<DVec2> {
+    Some(sheet.report.ways.first()?.take_off.truncate())
+}
+
+/// The places of a way as they are seen from above, from take-off to take-off; climbs are none.
+fn level(way: &Way) -> Vec<DVec2> {
+    let take_off = way.take_off.truncate();
+    let points = way.points.iter().map(|point| point.place.truncate());
+    let mut places: Vec<DVec2> = [take_off].into_iter().chain(points).collect();
+    places.push(take_off);
+    places.dedup();
+    places
+}
+
+fn way_line(places: &[[f64; 2]], dash: Dash, pen: &mut Pen) {
+    pen.line(places, [255; 3], 3.4, Dash::Solid);
+    pen.line(places, WAY, 1.4, dash);
+    for leg in places.windows(2) {
+        let [from, to] = [leg[0], leg[1]].map(DVec2::from);
+        let long = from.distance(to);
+        if long < SHORTEST_WITH_ARROW {
+            continue;
+        }
+        let along = (to - from) / long * ARROW;
+        let (middle, aside) = ((from + to) / 2.0, along.perp() * 0.7);
+        let corners = [
+            middle + along,
+            middle - along + aside,
+            middle - along - aside,
+        ];
+        pen.area(&corners.map(|corner| corner.to_array()), WAY, 1.0);
+    }
+}
+
+fn area_line(points: &[[f64; 2]], pen: &mut Pen) {
+    pen.line(points, AREA, 1.8, Dash::DashDot);
+}
+
+/// The photos with what they show on the surface, and the refused ones as places without footprint or camera.
+fn photos(sheet: &FlightSheet<'_>, progress: &Progress) -> Result<Vec<PlanPhoto>, Fault> {
+    let plan = sheet.report.plan;
+    let detail = FootprintDetail {
+        per_edge: 8,
+        columns: 2,
+        rows: 2,
+    };
+    let broken =
+        |error: &dyn std::fmt::Display| Fault::new(error.to_string(), "check the surface file");
+    let mut caster = (sheet.surface.caster()).map_err(|error| broken(&error))?;
+    let mut ground = GroundFinder::new(Ground::Auto, sheet.surface);
+    let mut drawn = Vec::with_capacity(plan.photos.len() + plan.refused.len());
+    for (number, photo) in plan.photos.iter().enumerate() {
+        let image = ImageKind::Undistorted;
+        let (camera, pose) = (sheet.camera, &photo.pose);
+        let footprint = Footprint::compute(
+            camera,
+            pose,
+            image,
+            detail,
+            &mut ground,
+            &mut caster,
+            progress,
+        );
+        let (footprint, _) = footprint.map_err(|error| broken(&error))?;
+        let verdict = match plan.troubles(number).is_empty() {
+            true => Verdict::Trust,
+            false => Verdict::Check,
+        };
+        let camera = pose.center.truncate();
+        drawn.push(PlanPhoto::new(
+            &photo.name,
+            Some(verdict),
+            Some(&footprint),
+            camera,
+        ));
+    }
+    for (refused, number) in plan.refused.iter().zip(1..) {
+        let nowhere = DVec2::NAN;
+        let name = super::words::refused_name(number);
+        drawn.push(PlanPhoto {
+            middle: Some(refused.place),
+            ..PlanPhoto::new(&name, Some(Verdict::NoScale), None, nowhere)
+        });
+    }
+    Ok(drawn)
+}
+
+/// Least and greatest coordinates of what the map holds, with room around. What a photo shows far beside the area
+/// does not make the map small.
+fn extent(sheet: &FlightSheet<'_>, photos: &[PlanPhoto]) -> [DVec2; 2] {
+    let plan = sheet.report.plan;
+    let cameras = photos.iter().map(|photo| photo.camera);
+    let refused = plan.refused.iter().map(|refused| refused.place);
+    let places: Vec<DVec2> = (plan.area.corners().iter().copied())
+        .chain(cameras)
+        .chain(refused)
+        .chain(take_off(sheet))
+        .filter(|place| place.is_finite())
+        .collect();
+    let [min, max] = crate::geometry::extent(&places);
+    let far = plan.footprint.max_element();
+    let shown = photos
+        .iter()
+        .flat_map(|photo| photo.outline.iter().copied());
+    let shown = shown.filter(|point| point.cmpge(min - far).all() && point.cmple(max + far).all());
+    let all: Vec<DVec2> = [min, max].into_iter().chain(shown).collect();
+    let [min, max] = crate::geometry::extent(&all);
+    let room = (max - min).max_element() * ROOM;
+    [min - room, max + room]
+}
+
+/// The relief of what lies within a frame, and where its pixels lie.
+fn ground(terrain: &Terrain, frame: &MapFrame) -> (MapRaster, RgbaImage) {
+    let raster = terrain.raster();
+    let shades = hillshade(raster, terrain.heights(), Light::default());
+    let [min, max] = frame.bounds();
+    let first = raster.pixel_from_world(DVec2::new(min.x, max.y)).ceil();
+    let last = raster.pixel_from_world(DVec2::new(max.x, min.y)).floor();
+    // `as` saturates; whole pixels inside both.
+    let from = [first.x.max(0.0) as u32, first.y.max(0.0) as u32];
+    let to = [
+        (last.x as u32).min(raster.columns),
+        (last.y as u32).min(raster.rows),
+    ];
+    let [columns, rows] = [0, 1].map(|axis| to[axis].saturating_sub(from[axis]));
+    let step = (f64::from(columns) * f64::from(rows) / f64::from(MOST))
+        .sqrt()
+        .ceil()
+        .max(1.0) as u32;
+    let part = MapRaster {
+        corner: raster.world_from_pixel(DVec2::new(f64::from(from[0]), f64::from(from[1]))),
+        pixel: raster.pixel * f64::from(step),
+        columns: (columns / step).max(1),
+        rows: (rows / step).max(1),
+    };
+    let picture = RgbaImage::from_fn(part.columns, part.rows, |column, row| {
+        let (column, row) = (from[0] + column * step, from[1] + row * step);
+        let place = row as usize * raster.columns as usize + column as usize;
+        match shades.get(place) {
+            Some(shade) if !shade.is_nan() => {
+                // At most 250.
+                let grey = (DARKEST + LIGHT * shade).round() as u8;
+                Rgba([grey, grey, grey, 255])
+            }
+            _ => Rgba([255, 255, 255, 0]),
+        }
+    });
+    (part, picture)
+}
+
+/// What a line of the legend shows, and its words.
+struct Row {
+    sign: Sign,
+    words: String,
+}
+
+enum Sign {
+    Footprint(Verdict),
+    Camera,
+    Middle,
+    Refused,
+    Way(Dash),
+    TakeOff,
+    Area,
+}
+
+fn legend(sheet: &FlightSheet<'_>) -> Vec<Row> {
+    let report = sheet.report;
+    let plan = report.plan;
+    let count = plan.photos.len();
+    let troubled = (0..count).filter(|n| !plan.troubles(*n).is_empty()).count();
+    let row = |sign, words: String| Row { sign, words };
+    let mut rows = Vec::new();
+    if troubled < count {
+        let words = format!("photo as wished: {}", count - troubled);
+        rows.push(row(Sign::Footprint(Verdict::Trust), words));
+    }
+    if troubled > 0 {
+        let words = format!("photo with a trouble: {troubled}");
+        rows.push(row(Sign::Footprint(Verdict::Check), words));
+    }
+    rows.push(row(Sign::Camera, "drone at a photo".to_owned()));
+    rows.push(row(Sign::Middle, "middle of a photo".to_owned()));
+    rows.push(row(Sign::Area, "area".to_owned()));
+    if !plan.refused.is_empty() {
+        let words = format!("no photo possible: {}", plan.refused.len());
+        rows.push(row(Sign::Refused, words));
+    }
+    for (number, dash) in (1..=report.ways.len()).zip(DASHES) {
+        let again = (number..=report.ways.len()).step_by(DASHES.len());
+        let numbers: Vec<String> = again.map(|number| number.to_string()).collect();
+        let words = match report.ways.len() {
+            1 => "way of the drone".to_owned(),
+            _ => format!("way, battery {}", numbers.join(", ")),
+        };
+        rows.push(row(Sign::Way(dash), words));
+    }
+    if !report.ways.is_empty() {
+        rows.push(row(Sign::TakeOff, "take-off and landing".to_owned()));
+    }
+    rows
+}
+
+impl Row {
+    fn draw(&self, [left, y]: [f64; 2], pen: &mut Pen) {
+        let inks = &PlanInks::PAPER;
+        let middle = [left + 13.0, y];
+        let ends = [[left, y], [left + 26.0, y]];
+        match self.sign {
+            Sign::Footprint(verdict) => {
+                let (from, to) = ([left, y - 5.0], [left + 26.0, y + 5.0]);
+                let verdict = Some(verdict);
+                sample(from, to, inks.of(verdict), dash(verdict), pen);
+            }
+            Sign::Camera => camera_mark(middle, inks, pen),
+            Sign::Middle => middle_mark(middle, inks.of(Some(Verdict::Trust)), pen),
+            Sign::Refused => middle_mark(middle, inks.of(Some(Verdict::NoScale)), pen),
+            Sign::Way(dash) => way_line(&ends, dash, pen),
+            Sign::TakeOff => pen.marker(middle, Marker::Diamond, TAKE_OFF, WAY),
+            Sign::Area => area_line(&ends, pen),
+        }
+        let at = [left + 34.0, y];
+        pen.text(at, TEXT, &self.words, Anchor::Left, inks.ink);
+    }
+}

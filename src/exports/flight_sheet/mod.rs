@@ -1,0 +1,95 @@
+//! A plan of photos as a sheet for whoever flies it: one HTML page that prints on A4, with a map at a round scale, the
+//! numbers, what the plan warns of, a checklist and the table of photos.
+//!
+//! It is HTML alone: a plan has as many rows as it has photos, and a browser breaks them over pages with their
+//! heads, in the letters of any language, and saves the same as PDF; our own PDF has one page and the letters of western
+//! Europe. Who wants the map alone as a drawing has it inside, as SVG. Nobody here has a clock: the day and the names of
+//! the crew are lines to write on.
+//!
+//! ```text
+//! map      the map: ground, footprints, way, take-off, scale bar, legend
+//! numbers  what is to be known before take-off
+//! words    checklist, photos, what was not planned
+//! ```
+
+mod map;
+mod numbers;
+#[cfg(test)]
+mod tests;
+mod words;
+
+use std::path::Path;
+
+use crate::camera::Camera;
+use crate::fault::Fault;
+use crate::flight_plan::{PlanReport, refused_in_words};
+use crate::html_page::{self, blanks, heading, notes, paragraph};
+use crate::jobs::Progress;
+use crate::surface::Surface;
+
+/// A plan with what its sheet says besides.
+#[derive(Clone, Copy)]
+pub struct FlightSheet<'a> {
+    /// The plan and how it is to be said.
+    pub report: &'a PlanReport<'a>,
+    /// What it is planned over.
+    pub surface: &'a Surface,
+    /// The camera that is to fly.
+    pub camera: &'a Camera,
+    /// The drone, as its maker writes it, where it is known.
+    pub drone: Option<&'a str>,
+    /// Seconds that the drone waits at a photo for its gimbal.
+    pub settle: f64,
+    /// The coordinate system of the surface, where it is known.
+    pub crs: Option<&'a str>,
+    /// What is to be said beside the plan, one sentence each.
+    pub warnings: &'a [String],
+}
+
+impl FlightSheet<'_> {
+    /// Whether a sheet can be written to a file of this name.
+    ///
+    /// # Errors
+    /// Another ending than HTML's.
+    pub fn check_name(path: &Path) -> Result<(), Fault> {
+        let ending = path.extension().unwrap_or_default().to_string_lossy();
+        match ending.to_lowercase().as_str() {
+            "html" | "htm" => Ok(()),
+            _ => Err(Fault::new(
+                "a sheet for the pilot is an HTML page",
+                "let its name end in .html: a browser prints it on A4, or saves it as PDF",
+            )),
+        }
+    }
+}
+
+/// The sheet as HTML.
+///
+/// # Errors
+/// Where the surface cannot be triangulated, the map cannot be encoded, or the work was cancelled.
+pub fn flight_sheet(sheet: &FlightSheet<'_>, progress: &Progress) -> Result<String, Fault> {
+    progress.stage("drawing the sheet");
+    let map = map::map(sheet, progress)?;
+    let title = format!("Flight plan: {}", sheet.report.flight);
+    let mut body = vec![
+        blanks(&["Date", "Pilot", "Observer", "Drone", "Wind"]),
+        html_page::figure_to_scale(&map),
+    ];
+    body.push(html_page::pairs(&numbers::numbers(sheet)));
+    // Refused photos have a table of their own.
+    let refused: Vec<String> = (sheet.report.plan.refused.iter())
+        .map(refused_in_words)
+        .collect();
+    let others = sheet.warnings.iter();
+    body.push(notes(others.filter(|warning| !refused.contains(warning))));
+    body.push(heading(2, "Before take-off"));
+    body.push(html_page::boxes(&words::checklist(sheet)));
+    body.push(heading(2, "Photos, in the order of the flight"));
+    body.push(paragraph(&words::columns_in_words(sheet.report)));
+    body.push(words::photos(sheet.report));
+    if !sheet.report.plan.refused.is_empty() {
+        body.push(heading(2, "Not planned"));
+        body.push(words::refused(sheet.report));
+    }
+    Ok(html_page::page(&title, &title, &body.concat()))
+}
