@@ -47,6 +47,7 @@ const LIGHT: f64 = 110.0;
 
 const WAY: Colour = [25, 70, 160];
 const AREA: Colour = [90, 20, 110];
+const KEEP_OUT: Colour = [190, 15, 40];
 /// From the middle of a leg to the tip of its arrow.
 const ARROW: f64 = 5.0;
 /// A leg that is shorter has none.
@@ -130,17 +131,19 @@ fn on_the_ground(sheet: &FlightSheet<'_>, plan: &Plan, frame: &MapFrame, pen: &m
     pen.shapes.push(crate::plan::ground_shape(plan, frame));
     let grid = Grid::of(frame);
     furniture::grid_lines(frame, &grid, inks, pen);
-    let corners = sheet.report.plan.area.corners();
-    let around = corners.iter().chain(corners.first());
-    let around: Vec<[f64; 2]> = around.map(|corner| frame.place(*corner)).collect();
+    let place = |corner: &DVec2| frame.place(*corner);
+    let plan_of_photos = sheet.report.plan;
+    for keep_out in &plan_of_photos.wish.keep_out {
+        let corners: Vec<[f64; 2]> = keep_out.corners().iter().map(place).collect();
+        keep_out_area(&clip::area(&corners, bounds), pen);
+    }
+    let corners = plan_of_photos.area.corners();
+    let around: Vec<[f64; 2]> = corners.iter().chain(corners.first()).map(place).collect();
     for part in clip::line(&around, bounds) {
         area_line(&part, pen);
     }
     for (number, way) in sheet.report.ways.iter().enumerate() {
-        let places: Vec<[f64; 2]> = level(way)
-            .into_iter()
-            .map(|place| frame.place(place))
-            .collect();
+        let places: Vec<[f64; 2]> = level(way).iter().map(place).collect();
         way_line(&places, DASHES[number % DASHES.len()], pen);
     }
     let mut room = RoomForNames::all_of(frame);
@@ -206,6 +209,13 @@ fn area_line(points: &[[f64; 2]], pen: &mut Pen) {
     pen.line(points, AREA, 1.8, Dash::DashDot);
 }
 
+/// An area that is not flown over.
+fn keep_out_area(corners: &[[f64; 2]], pen: &mut Pen) {
+    pen.area(corners, KEEP_OUT, 0.25);
+    let around: Vec<[f64; 2]> = corners.iter().chain(corners.first()).copied().collect();
+    pen.line(&around, KEEP_OUT, 2.4, Dash::Solid);
+}
+
 /// The photos with what they show on the surface, and the refused ones as places without footprint or camera.
 fn photos(sheet: &FlightSheet<'_>, progress: &Progress) -> Result<Vec<PlanPhoto>, Fault> {
     let plan = sheet.report.plan;
@@ -261,7 +271,8 @@ fn extent(sheet: &FlightSheet<'_>, photos: &[PlanPhoto]) -> [DVec2; 2] {
     let plan = sheet.report.plan;
     let cameras = photos.iter().map(|photo| photo.camera);
     let refused = plan.refused.iter().map(|refused| refused.place);
-    let places: Vec<DVec2> = (plan.area.corners().iter().copied())
+    let keep_out = plan.wish.keep_out.iter().flat_map(|area| area.corners());
+    let places: Vec<DVec2> = (plan.area.corners().iter().chain(keep_out).copied())
         .chain(cameras)
         .chain(refused)
         .chain(take_off(sheet))
@@ -332,6 +343,7 @@ enum Sign {
     Way(Dash),
     TakeOff,
     Area,
+    KeepOut,
 }
 
 fn legend(sheet: &FlightSheet<'_>) -> Vec<Row> {
@@ -352,6 +364,9 @@ fn legend(sheet: &FlightSheet<'_>) -> Vec<Row> {
     rows.push(row(Sign::Camera, "drone at a photo".to_owned()));
     rows.push(row(Sign::Middle, "middle of a photo".to_owned()));
     rows.push(row(Sign::Area, "area".to_owned()));
+    if !plan.wish.keep_out.is_empty() {
+        rows.push(row(Sign::KeepOut, "keep out, at any height".to_owned()));
+    }
     if !plan.refused.is_empty() {
         let words = format!("no photo possible: {}", plan.refused.len());
         rows.push(row(Sign::Refused, words));
@@ -388,6 +403,11 @@ impl Row {
             Sign::Way(dash) => way_line(&ends, dash, pen),
             Sign::TakeOff => pen.marker(middle, Marker::Diamond, TAKE_OFF, WAY),
             Sign::Area => area_line(&ends, pen),
+            Sign::KeepOut => {
+                let [right, top, bottom] = [left + 26.0, y - 5.0, y + 5.0];
+                let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+                keep_out_area(&corners, pen);
+            }
         }
         let at = [left + 34.0, y];
         pen.text(at, TEXT, &self.words, Anchor::Left, inks.ink);

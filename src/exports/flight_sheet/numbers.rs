@@ -61,6 +61,11 @@ pub(super) fn numbers(sheet: &FlightSheet<'_>) -> Vec<(&'static str, String)> {
         ),
     ));
     let metres = report.pace.speed * unit.metres();
+    let keep_out = plan.wish.keep_out.len();
+    if keep_out > 0 {
+        let words = format!("{keep_out} on the map, the clearance beside them at any height");
+        said.push(("Keep out", words));
+    }
     said.push((
         "Speed",
         format!(

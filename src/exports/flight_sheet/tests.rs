@@ -45,19 +45,17 @@ fn surface() -> Surface {
 fn plan(surface: &Surface) -> Plan {
     let corners = [(-30.0, -20.0), (30.0, -20.0), (30.0, 20.0), (-30.0, 20.0)];
     let corners = corners.map(|corner| MIDDLE + DVec2::from(corner));
+    let misfire = [(60.0, 30.0), (75.0, 30.0), (75.0, 45.0)];
+    let misfire = misfire.map(|corner| MIDDLE + DVec2::from(corner));
+    let size = Size::Scale {
+        pixels: 25.0,
+        within: Some(0.5),
+    };
     let wish = Wish {
-        pattern: Pattern::Paper,
-        size: Size::Scale {
-            pixels: 25.0,
-            within: Some(0.5),
-        },
-        overlap: 0.0,
-        gap: 0.1,
         tilt: 90.0,
-        off_normal: 5.0,
-        gimbal: [-90.0, 20.0],
-        clearance: 5.0,
+        keep_out: vec![Polygon::new(&misfire).unwrap()],
         take_off: Some(MIDDLE - 50.0),
+        ..Wish::usual(Pattern::Paper, size, None, 1.0)
     };
     let area = Polygon::new(&corners).unwrap();
     let mut plan = Plan::new(surface, &camera(), area, wish, &Progress::default()).unwrap();
@@ -85,9 +83,8 @@ fn sheet(world: LengthUnit, with_take_off: bool) -> Sheet {
         stop: 3.0,
         battery: None,
     };
-    let take_off = (MIDDLE - 50.0).extend(100.0);
     let ways = match with_take_off {
-        true => Way::through(&plan, take_off, &pace).unwrap(),
+        true => Way::through(&plan, &surface, MIDDLE - 50.0, &pace).unwrap(),
         false => Vec::new(),
     };
     let report = PlanReport {
@@ -195,6 +192,10 @@ fn places_on_paper_are_those_of_the_scale() {
         });
         assert!(has(&corners), "{} {corners:?}", photo.name);
     }
+    let misfire = [(60.0, 30.0), (75.0, 30.0), (75.0, 45.0)];
+    assert!(has(
+        &misfire.map(|corner| place(MIDDLE + DVec2::from(corner)))
+    ));
     // The area, and the way from the take-off over all photos.
     let area = [(-30.0, -20.0), (30.0, -20.0), (30.0, 20.0), (-30.0, 20.0)];
     assert!(has(&area.map(|corner| place(MIDDLE + DVec2::from(corner)))));
@@ -267,7 +268,7 @@ fn everything_is_said_and_nothing_becomes_markup() {
         ticks
             .flat_map(|list| list.children().filter(Node::is_element))
             .count(),
-        11
+        12
     );
 }
 

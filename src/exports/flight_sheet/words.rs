@@ -27,6 +27,11 @@ pub(super) fn checklist(sheet: &FlightSheet<'_>) -> Vec<String> {
         }
         None => list.push(said("The take-off is chosen and the plan made again with --take-off: without it there is no way, no safe height and no mission")),
     }
+    if !report.plan.wish.keep_out.is_empty() {
+        list.push(said(
+            "Return-to-home flies straight, over the areas to keep out of, too: in need, bring the drone back by hand",
+        ));
+    }
     list.push(match report.ways.len() {
         0 | 1 => said("Battery is full and warm; the way and a reserve are within what it lasts"),
         batteries => format!(
@@ -47,7 +52,8 @@ pub(super) fn columns_in_words(report: &PlanReport<'_>) -> String {
     format!(
         "Tilt is below the horizon, 90 straight down; pan clockwise from north (y). Distance in {unit} along the axis. \
          Top and bottom: the scale at the edges of the photo in px/{scales}, of the line that fits best; off line: how \
-         far its scales lie off that, rms. Shared: what other photos show, too.",
+         far its scales lie off that, rms; 95 %: how far the drone's errors may move them. Shared: what other photos \
+         show, too.",
         unit = report.world,
         scales = report.scales,
     )
@@ -63,6 +69,7 @@ pub(super) fn photos(report: &PlanReport<'_>) -> String {
         "Top",
         "Bottom",
         "Off line, %",
+        "95 %, ±",
         "Shared, %",
         "Troubles",
     ]);
@@ -70,6 +77,9 @@ pub(super) fn photos(report: &PlanReport<'_>) -> String {
     let maybe = |number: Option<f64>| number.map_or(NONE.to_owned(), digits);
     let rows = rows(report).map(|row| {
         let [_, _, top, bottom] = row.scales;
+        let interval = row
+            .interval
+            .map_or(NONE.to_owned(), |interval| format!("{interval:.1} %"));
         let off_line = row
             .off_line
             .map_or(NONE.to_owned(), |off| format!("{off:.1}"));
@@ -81,6 +91,7 @@ pub(super) fn photos(report: &PlanReport<'_>) -> String {
             maybe(top).into(),
             maybe(bottom).into(),
             off_line.into(),
+            interval.into(),
             format!("{:.0}", row.shared * 100.0).into(),
             row.troubles.into(),
         ]
