@@ -106,6 +106,26 @@ pub fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
     Ok(bytes)
 }
 
+/// The whole of a file that is not larger than `most` bytes: what is larger is none of its `kind` ("mission"), which
+/// the remedy names.
+///
+/// # Errors
+/// Where it cannot be read, or is larger.
+pub fn read_small(path: &Path, most: u64, kind: &str, remedy: &str) -> Result<Vec<u8>, FileError> {
+    use std::io::Read;
+    let mut bytes = Vec::new();
+    let read = open_file(path)?.take(most + 1).read_to_end(&mut bytes);
+    read.map_err(|e| {
+        let what = format!("it cannot be read to its end ({e})");
+        FileError::new(path, Fault::new(what, "check the disk"))
+    })?;
+    if bytes.len() as u64 > most {
+        let what = format!("it is larger than {} MB, no {kind}", most >> 20);
+        return Err(FileError::new(path, Fault::new(what, remedy)));
+    }
+    Ok(bytes)
+}
+
 /// Bytes as text: UTF-8, without the byte order mark that some programs put in front.
 ///
 /// # Errors

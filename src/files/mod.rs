@@ -23,7 +23,8 @@ mod recording;
 pub use atomic::write_whole;
 pub use atomic::{is_unfinished, make_folder_whole, remove_unfinished};
 pub use input::{
-    FileError, cannot_be, open_file, read_bytes, read_text, text_from_bytes, unreadable_folder,
+    FileError, cannot_be, open_file, read_bytes, read_small, read_text, text_from_bytes,
+    unreadable_folder,
 };
 pub use inputs::{Inputs, is_same_file};
 pub use last_segment::last_segment;

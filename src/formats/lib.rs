@@ -7,12 +7,14 @@
 //! read        which reader takes it
 //! clouds  cameras  packages  poses  photos  tables      the readers
 //! missions    of drones, each told by what is in it
+//! areas       polygons on the Earth, as maps keep them
 //! text        numbers, lines, JSON and XML with their places
 //! ```
 //!
 //! A reader knows no path: it returns a [`Fault`](crate::fault::Fault), and what calls it puts the
 //! file's name in front.
 
+pub mod areas;
 pub mod cameras;
 mod candidates;
 pub mod clouds;
@@ -30,6 +32,7 @@ use fragscale_core::{
 };
 use fragscale_fragmentation as fragmentation;
 
+pub use areas::{areas, holds_areas, read_areas};
 pub use candidates::{Candidate, candidates};
 pub use clouds::CloudFile;
 pub use detect::{CloudFormat, Kind, UNFINISHED, detect};

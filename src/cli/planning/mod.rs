@@ -1,5 +1,6 @@
 //! The commands about flights that are to be flown.
 
+mod areas;
 pub(super) mod flown;
 pub(super) mod mission;
 pub(super) mod plan;

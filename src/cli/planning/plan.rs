@@ -11,8 +11,9 @@ use crate::camera::Camera;
 use crate::cli::Answer;
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::of_photos::length::Length;
-use crate::cli::on_surface::places::{place, places};
+use crate::cli::on_surface::places::place;
 use crate::cli::outputs::NamedAnswerArguments;
+use crate::cli::planning::areas::Areas;
 use crate::cli::planning::sheet::SheetArguments;
 use crate::exports::{self, FlightSheet, MissionFormat, PlanReport};
 use crate::fault::Fault;
@@ -23,7 +24,6 @@ use crate::geometry::extent;
 use crate::jobs::Progress;
 use crate::opening::Opened;
 use crate::plan::{self, Drone, Pace, Pattern, Plan, Positioning, Size, Told, Way, Wish};
-use crate::survey::Polygon;
 use crate::units::LengthUnit;
 
 #[derive(Debug, Args)]
@@ -52,8 +52,8 @@ pub(in crate::cli) struct PlanArguments {
     /// square in their strips share less with their neighbours.
     #[arg(long, value_name = "DEGREES", value_parser = positive, default_value_t = plan::USUAL_OFF_NORMAL)]
     off_normal: f64,
-    /// The corners of what is to be photographed, in the world, or a file with one a line; without it the pile
-    /// that stands out of its floor.
+    /// The corners of what is to be photographed, in the world, or a file with one a line; or a polygon of a map, as
+    /// GeoJSON or KML; without it the pile that stands out of its floor.
     #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
     area: Option<String>,
     /// The unit of the surface's coordinates, where nobody says it: m, ft, ...
@@ -75,7 +75,7 @@ pub(in crate::cli) struct PlanArguments {
     #[arg(long, value_name = "LENGTH")]
     clearance: Option<Length>,
     /// The corners of ground that the drone does not fly over, at any height (misfires, people), or a file with one a
-    /// line. May be given several times.
+    /// line; or the polygons of a map, as GeoJSON or KML. May be given several times.
     #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
     keep_out: Vec<String>,
     /// By what the drone knows its place: how far a photo's scale may be off by that.
@@ -197,8 +197,8 @@ pub(in crate::cli) fn plan(
         outputs = outputs.and(path, Kind::Result)?;
     }
     outputs = arguments.sheet.among(outputs)?;
-    let area = arguments.area.as_deref().map(places).transpose()?;
-    let keep_out = arguments.keep_out.iter().map(|text| places(text));
+    let area = arguments.area.as_deref().map(Areas::read).transpose()?;
+    let keep_out = arguments.keep_out.iter().map(|text| Areas::read(text));
     let keep_out: Vec<_> = keep_out.collect::<Result<_, String>>()?;
     let opened = arguments.flight.open_to_measure(progress)?;
     outputs.read(&opened.read)?;
@@ -216,6 +216,15 @@ pub(in crate::cli) fn plan(
         let remedy = "say it: --unit m; or world.unit in flight.toml";
         return Err(in_flight(Fault::new(what, remedy)));
     };
+    let stated_crs = arguments.crs.as_deref().or(opened.crs.as_deref());
+    let crs = || {
+        let stated = stated_crs.ok_or_else(|| {
+            let what = "nobody says in which coordinate system its places are";
+            let remedy = "say it: --crs EPSG:n; or world.crs in flight.toml";
+            in_flight(Fault::new(what, remedy))
+        });
+        Crs::understand(stated?).map_err(in_flight)
+    };
     let camera = camera(arguments, &opened)?;
     let mut warnings = Vec::new();
     if arguments.camera.is_none() && arguments.drone.is_some() {
@@ -224,9 +233,10 @@ pub(in crate::cli) fn plan(
         );
     }
     let area = match area {
-        Some((corners, said)) => {
+        Some(area) => {
+            let (area, said) = area.one_in_world("area", crs)?;
             warnings.extend(said);
-            Polygon::new(&corners).map_err(|error| format!("area: {error}"))?
+            area
         }
         None => {
             progress.stage("looking for the pile");
@@ -241,10 +251,10 @@ pub(in crate::cli) fn plan(
         }
     };
     let mut wish = wish(arguments, unit);
-    for (corners, said) in keep_out {
+    for areas in keep_out {
+        let (areas, said) = areas.in_world("keep-out", crs)?;
         warnings.extend(said);
-        let area = Polygon::new(&corners).map_err(|error| format!("keep-out: {error}"))?;
-        wish.keep_out.push(area);
+        wish.keep_out.extend(areas);
     }
     let plan = Plan::new(&parts.surface, &camera, area, wish, progress).map_err(in_flight)?;
     let pace = Pace::of(
@@ -277,18 +287,7 @@ pub(in crate::cli) fn plan(
     )?;
     warnings.extend(exports::plan_warnings(&report));
     if !arguments.mission.is_empty() && !ways.is_empty() {
-        let crs = arguments
-            .crs
-            .as_deref()
-            .or(opened.crs.as_deref())
-            .ok_or_else(|| {
-                let what = "nobody says in which coordinate system its places are";
-                in_flight(Fault::new(
-                    what,
-                    "say it: --crs EPSG:n; or world.crs in flight.toml",
-                ))
-            })?;
-        let crs = Crs::understand(crs).map_err(in_flight)?;
+        let crs = crs()?;
         let told = Told {
             name: parts.name.clone(),
             drone: arguments.drone().and_then(|drone| drone.codes),
@@ -310,7 +309,7 @@ pub(in crate::cli) fn plan(
         camera: &camera,
         drone: arguments.drone().map(|drone| drone.title),
         settle: arguments.settle,
-        crs: arguments.crs.as_deref().or(opened.crs.as_deref()),
+        crs: stated_crs,
         warnings: &warnings,
     };
     arguments.sheet.write(&outputs, &sheet, progress)?;

@@ -10,136 +10,105 @@ use crate::numbers::{four_digits, significant_digits};
 use fragscale_core::plan::{Pattern, Size, Way};
 
 /// Names and what is said of them, in the order of the page.
-pub(super) fn numbers(sheet: &FlightSheet<'_>) -> Vec<(&'static str, String)> {
+#[derive(Default)]
+struct Said(Vec<(String, String)>);
+
+impl Said {
+    fn say(&mut self, name: impl Into<String>, words: impl Into<String>) {
+        self.0.push((name.into(), words.into()));
+    }
+}
+
+/// All of them.
+pub(super) fn numbers(sheet: &FlightSheet<'_>) -> Vec<(String, String)> {
     let report = sheet.report;
     let (plan, unit) = (report.plan, report.world);
     let number = |number: f64| significant_digits(number, 3);
-    let mut said = vec![("Photos", plan.photos.len().to_string())];
+    let mut said = Said::default();
+    said.say("Photos", plan.photos.len().to_string());
     if !plan.refused.is_empty() {
-        said.push(("Not possible", format!("{} photos", plan.refused.len())));
+        said.say("Not possible", format!("{} photos", plan.refused.len()));
     }
-    said.push(("Pattern", plan.wish.pattern.as_str().to_owned()));
-    said.push(("Wished", wished(report)));
+    said.say("Pattern", plan.wish.pattern.as_str());
+    said.say("Wished", wished(report));
     if plan.wish.overlap > 0.0 {
-        said.push(("Overlap", percent(plan.wish.overlap)));
+        said.say("Overlap", percent(plan.wish.overlap));
     }
     let camera = sheet.camera;
     let pixels = format!("{} x {} px", camera.width, camera.height);
-    said.push((
-        "Camera",
-        match sheet.drone {
-            Some(drone) => format!("{drone}, {pixels}"),
-            None => pixels,
-        },
-    ));
-    let tilts = plan.photos.iter().map(|photo| photo.tilt);
-    let least = tilts.clone().fold(f64::MAX, f64::min);
-    let greatest = tilts.fold(f64::MIN, f64::max);
-    said.push((
+    let camera = match sheet.drone {
+        Some(drone) => format!("{drone}, {pixels}"),
+        None => pixels,
+    };
+    said.say("Camera", camera);
+    let pitches = plan.photos.iter().map(|photo| -photo.tilt);
+    said.say(
         "Gimbal pitch",
-        between(-greatest, -least, |pitch| format!("{pitch:.0}°")),
-    ));
-    said.push((
+        range(pitches, |pitch| format!("{pitch:.0}°")),
+    );
+    let (area, photographed) = (number(plan.area.area()), percent(plan.cover.covered));
+    said.say(
         "Area",
-        format!(
-            "{} {unit}², {} photographed",
-            number(plan.area.area()),
-            percent(plan.cover.covered)
-        ),
-    ));
+        format!("{area} {unit}², {photographed} photographed"),
+    );
     if plan.cover.widest_gap > 0.0 {
-        said.push((
-            "Widest gap",
-            format!("{} {unit}", number(plan.cover.widest_gap)),
-        ));
+        let gap = number(plan.cover.widest_gap);
+        said.say("Widest gap", format!("{gap} {unit}"));
     }
-    said.push((
+    let clearance = plain(plan.wish.clearance);
+    said.say(
         "Clearance",
-        format!(
-            "{} {unit} from the ground and walls",
-            plain(plan.wish.clearance)
-        ),
-    ));
-    let metres = report.pace.speed * unit.metres();
+        format!("{clearance} {unit} from the ground and walls"),
+    );
     let keep_out = plan.wish.keep_out.len();
     if keep_out > 0 {
-        let words = format!("{keep_out} on the map, the clearance beside them at any height");
-        said.push(("Keep out", words));
+        said.say("Keep out", format!("{keep_out} on the map, at any height"));
     }
-    said.push((
-        "Speed",
-        format!(
-            "{} m/s, waits {} s at a photo",
-            plain(metres),
-            plain(sheet.settle)
-        ),
-    ));
+    let speed = plain(report.pace.speed * unit.metres());
+    let settle = plain(sheet.settle);
+    said.say("Speed", format!("{speed} m/s, waits {settle} s at a photo"));
     if let Some(first) = report.ways.first() {
-        said.extend(of_ways(report, first));
-        said.push(("Take-off", place(sheet, first.take_off)));
+        say_ways(report, first, &mut said);
+        say_place(sheet, first.take_off, &mut said);
     }
-    said
+    said.0
 }
 
 /// What the ways say, where the take-off is known.
-fn of_ways(report: &PlanReport<'_>, first: &Way) -> Vec<(&'static str, String)> {
+fn say_ways(report: &PlanReport<'_>, first: &Way, said: &mut Said) {
     let unit = report.world;
-    let number = |number: f64| significant_digits(number, 3);
     let minutes = |seconds: f64| significant_digits(seconds / 60.0, 2);
     let above = |z: f64| z - first.take_off.z;
-    let heights = report
-        .plan
-        .photos
-        .iter()
-        .map(|photo| above(photo.pose.center.z));
-    let lowest = heights.clone().fold(f64::MAX, f64::min);
-    let highest = heights.fold(f64::MIN, f64::max);
-    let safe = report.ways.iter().map(|way| way.safe_height);
+    let length = significant_digits(report.way_length(), 3);
+    let in_air = minutes(report.seconds());
+    said.say(
+        "Way",
+        format!("{length} {unit}, about {in_air} min in the air"),
+    );
+    let photos = report.plan.photos.iter();
+    let heights = photos.map(|photo| above(photo.pose.center.z));
+    let heights = range(heights, |height| format!("{height:.1}"));
+    said.say("Photos from", format!("{heights} {unit} above take-off"));
+    let safe = report.ways.iter().map(|way| above(way.safe_height));
     let safe = safe.fold(f64::MIN, f64::max);
-    let mut said = vec![
-        (
-            "Way",
-            format!(
-                "{} {unit}, about {} min in the air",
-                number(report.way_length()),
-                minutes(report.seconds())
-            ),
-        ),
-        (
-            "Safe height",
-            format!("{:.1} {unit} above take-off", safe - first.take_off.z),
-        ),
-        (
-            "Return home",
-            format!(
-                "at least {} above take-off",
-                return_height_in_words(report).unwrap_or_default()
-            ),
-        ),
-        (
-            "Photos from",
-            format!(
-                "{} {unit} above take-off",
-                between(lowest, highest, |height| format!("{height:.1}"))
-            ),
-        ),
-    ];
-    if report.ways.len() > 1 {
-        for (way, battery) in report.ways.iter().zip(1..) {
-            let photos: Vec<usize> = way.points.iter().filter_map(|point| point.photo).collect();
-            let name = |photo: Option<&usize>| {
-                let photo = photo.and_then(|photo| report.plan.photos.get(*photo));
-                photo.map_or("", |photo| photo.name.as_str())
-            };
-            let (from, to) = (name(photos.first()), name(photos.last()));
-            let minutes = minutes(way.seconds(&report.pace));
-            said.push((
-                "Battery",
-                format!("{battery}: {from} to {to}, about {minutes} min"),
-            ));
-        }
+    said.say("Safe height", format!("{safe:.1} {unit} above take-off"));
+    if let Some(height) = return_height_in_words(report) {
+        said.say("Return home", format!("at least {height} above take-off"));
     }
-    said
+    if report.ways.len() == 1 {
+        return;
+    }
+    for (way, battery) in report.ways.iter().zip(1..) {
+        let mut photos = way.points.iter().filter_map(|point| {
+            let photo = report.plan.photos.get(point.photo?)?;
+            Some(photo.name.as_str())
+        });
+        let first = photos.next().unwrap_or_default();
+        let last = photos.next_back().unwrap_or(first);
+        let in_air = minutes(way.seconds(&report.pace));
+        let words = format!("{first} to {last}, about {in_air} min");
+        said.say(format!("Battery {battery}"), words);
+    }
 }
 
 /// The height above the take-off from which the drone comes straight home from every photo, and keeps the clearance:
@@ -195,25 +164,23 @@ fn wished(report: &PlanReport<'_>) -> String {
     }
 }
 
-/// A place in the world, and on the Earth where its coordinate system is known.
-fn place(sheet: &FlightSheet<'_>, place: DVec3) -> String {
+/// Where the take-off is in the world, and on the Earth where its coordinate system is known.
+fn say_place(sheet: &FlightSheet<'_>, place: DVec3, said: &mut Said) {
+    let DVec3 { x, y, z } = place;
+    let unit = sheet.report.world;
+    said.say("Take-off", format!("x {x:.2}, y {y:.2}, z {z:.2} {unit}"));
     let crs = sheet.crs.and_then(|crs| Crs::understand(crs).ok());
-    let mut words = format!(
-        "x {:.2}, y {:.2}, z {:.2} {}",
-        place.x, place.y, place.z, sheet.report.world
-    );
     if let Some(on_earth) = crs.and_then(|crs| crs.to_geographic(place)) {
-        words += &format!(
-            "; latitude {:.7}, longitude {:.7}",
-            on_earth.latitude, on_earth.longitude
-        );
+        let (latitude, longitude) = (on_earth.latitude, on_earth.longitude);
+        let words = format!("latitude {latitude:.7}, longitude {longitude:.7}");
+        said.say("Take-off, GPS", words);
     }
-    words
 }
 
-/// "a", or "a to b" where they differ for people.
-fn between(low: f64, high: f64, words: impl Fn(f64) -> String) -> String {
-    let (low, high) = (words(low), words(high));
+/// The least and the greatest number; once where they are alike for people.
+fn range(numbers: impl Iterator<Item = f64> + Clone, words: impl Fn(f64) -> String) -> String {
+    let low = words(numbers.clone().fold(f64::MAX, f64::min));
+    let high = words(numbers.fold(f64::MIN, f64::max));
     match low == high {
         true => low,
         false => format!("{low} to {high}"),

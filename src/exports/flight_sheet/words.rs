@@ -62,15 +62,7 @@ pub(super) fn columns_in_words(report: &PlanReport<'_>) -> String {
 /// The photos, a row each.
 pub(super) fn photos(report: &PlanReport<'_>) -> String {
     let head = names(&[
-        "Photo",
-        "Tilt, °",
-        "Pan, °",
-        "Distance",
-        "Top",
-        "Bottom",
-        "Off line, %",
-        "95 %, ±",
-        "Shared, %",
+        "Photo", "Tilt", "Pan", "Distance", "Top", "Bottom", "Off line", "95 %", "Shared",
         "Troubles",
     ]);
     let digits = |number: f64| significant_digits(number, 4);
@@ -79,20 +71,20 @@ pub(super) fn photos(report: &PlanReport<'_>) -> String {
         let [_, _, top, bottom] = row.scales;
         let interval = row
             .interval
-            .map_or(NONE.to_owned(), |interval| format!("{interval:.1} %"));
+            .map_or(NONE.to_owned(), |interval| format!("±{interval:.1} %"));
         let off_line = row
             .off_line
-            .map_or(NONE.to_owned(), |off| format!("{off:.1}"));
+            .map_or(NONE.to_owned(), |off| format!("{off:.1} %"));
         vec![
             Cell::from(row.name),
-            format!("{:.1}", row.tilt).into(),
-            format!("{:.1}", row.pan).into(),
+            format!("{:.1}°", row.tilt).into(),
+            format!("{:.1}°", row.pan).into(),
             maybe(row.distance).into(),
             maybe(top).into(),
             maybe(bottom).into(),
             off_line.into(),
             interval.into(),
-            format!("{:.0}", row.shared * 100.0).into(),
+            format!("{:.0} %", row.shared * 100.0).into(),
             row.troubles.into(),
         ]
     });

@@ -65,7 +65,7 @@ pub(crate) fn notes<'a>(notes: impl IntoIterator<Item = &'a String>) -> String {
 }
 
 /// Names and what is said of them, in two columns of the page.
-pub(crate) fn pairs(pairs: &[(&str, String)]) -> String {
+pub(crate) fn pairs(pairs: &[(String, String)]) -> String {
     let rows = pairs.iter().map(|(name, said)| {
         let (name, said) = (escaped(name), escaped(said));
         format!("<div><dt>{name}</dt><dd>{said}</dd></div>\n")

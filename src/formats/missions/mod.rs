@@ -28,13 +28,12 @@ mod wpml;
 mod tests;
 
 use std::fs;
-use std::io::Read;
 use std::path::Path;
 
 use fragscale_core::plan::{Mission, heading};
 
 use crate::fault::Fault;
-use crate::files::{FileError, open_file, text_from_bytes};
+use crate::files::{FileError, text_from_bytes};
 
 /// How large a file may be, in bytes: a mission of 65 536 waypoints in DJI's XML has about 100 MB, but
 /// nobody flies a tenth of them.
@@ -105,17 +104,7 @@ fn read_bytes(bytes: &[u8]) -> Result<MissionFile, Fault> {
 
 /// The bytes of a file that is not larger than a mission can be.
 fn read_small(path: &Path) -> Result<Vec<u8>, FileError> {
-    let mut bytes = Vec::new();
-    let read = open_file(path)?.take(LARGEST + 1).read_to_end(&mut bytes);
-    read.map_err(|error| {
-        let what = format!("it cannot be read to its end ({error})");
-        FileError::new(path, Fault::new(what, "check the disk"))
-    })?;
-    if bytes.len() as u64 > LARGEST {
-        let what = format!("it is larger than {} MB, no mission", LARGEST >> 20);
-        return Err(FileError::new(path, Fault::new(what, KNOWN)));
-    }
-    Ok(bytes)
+    crate::files::read_small(path, LARGEST, "mission", KNOWN)
 }
 
 /// The text of a file in a folder, if it is there.

@@ -1,0 +1,89 @@
+//! Areas of plans: corners that are typed or in a file, in the world, or polygons of a map, in degrees.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec2;
+
+use crate::cli::on_surface::places::places;
+use crate::fault::Fault;
+use crate::formats::{FileError, holds_areas, read_areas};
+use crate::geodesy::{Crs, Geographic};
+use crate::survey::Polygon;
+
+/// Outlines as somebody gave them.
+pub(super) enum Areas {
+    /// One, in the world, and what was mended of it.
+    InWorld(Vec<DVec2>, Vec<String>),
+    /// Of a file of a map: one or more.
+    OnEarth(PathBuf, Vec<Vec<Geographic>>),
+}
+
+impl Areas {
+    /// `x,y;x,y;…`, a file with a place a line, or one of GeoJSON or KML.
+    ///
+    /// # Errors
+    /// Where it is none of these, in a line.
+    pub(super) fn read(text: &str) -> Result<Self, String> {
+        let path = Path::new(text);
+        if holds_areas(path) {
+            let areas = read_areas(path).map_err(|error| error.to_string())?;
+            return Ok(Self::OnEarth(path.to_owned(), areas));
+        }
+        let (corners, said) = places(text)?;
+        Ok(Self::InWorld(corners, said))
+    }
+
+    /// As polygons in the world, with what was mended. `what` they are is in front of what is wrong ("area"); `crs` is
+    /// asked for where they are on the Earth.
+    ///
+    /// # Errors
+    /// Where one is no polygon, or lies where the coordinate system does not hold; where that is not known.
+    pub(super) fn in_world(
+        self,
+        what: &str,
+        crs: impl FnOnce() -> Result<Crs, String>,
+    ) -> Result<(Vec<Polygon>, Vec<String>), String> {
+        let (path, areas) = match self {
+            Self::InWorld(corners, said) => {
+                let polygon = Polygon::new(&corners).map_err(|error| format!("{what}: {error}"))?;
+                return Ok((vec![polygon], said));
+            }
+            Self::OnEarth(path, areas) => (path, areas),
+        };
+        let crs = crs()?;
+        let polygons = areas.iter().zip(1..).map(|(corners, number)| {
+            let corners: Option<Vec<DVec2>> = (corners.iter())
+                .map(|place| Some(crs.from_geographic(*place)?.truncate()))
+                .collect();
+            let corners = corners.ok_or_else(|| {
+                let what = format!("polygon {number} lies where {} does not hold", crs.name());
+                let remedy = "check that it is of this place, and that longitudes come first";
+                FileError::new(&path, Fault::new(what, remedy)).to_string()
+            })?;
+            Polygon::new(&corners)
+                .map_err(|error| format!("{}: polygon {number}: {error}", path.display()))
+        });
+        Ok((polygons.collect::<Result<_, String>>()?, Vec::new()))
+    }
+
+    /// The same of what is to be one polygon.
+    ///
+    /// # Errors
+    /// As [`Areas::in_world`], and where they are several.
+    pub(super) fn one_in_world(
+        self,
+        what: &str,
+        crs: impl FnOnce() -> Result<Crs, String>,
+    ) -> Result<(Polygon, Vec<String>), String> {
+        if let Self::OnEarth(path, areas) = &self
+            && areas.len() > 1
+        {
+            let several = format!("it holds {} polygons, where one is needed", areas.len());
+            let remedy = "save the one alone, and make a plan of each";
+            return Err(FileError::new(path, Fault::new(several, remedy)).to_string());
+        }
+        let (mut polygons, said) = self.in_world(what, crs)?;
+        let polygon = polygons.pop().ok_or_else(|| format!("{what}: none"))?;
+        Ok((polygon, said))
+    }
+}

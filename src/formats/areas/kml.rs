@@ -1,0 +1,83 @@
+//! KML 2.2 (OGC 07-147r2): every `Polygon`, wherever it stands; its `coordinates` are tuples of longitude, latitude and
+//! perhaps height, with white space between tuples and none in them.
+
+use roxmltree::Node;
+
+use super::no_polygon;
+use super::ring::ring;
+use crate::fault::Fault;
+use crate::geodesy::Geographic;
+use crate::text::fields::shown;
+use crate::text::xml_document::{child, children, line_of, parse, text};
+
+const EXPORT: &str = "save it again as KML";
+
+/// The polygons of a text.
+///
+/// # Errors
+/// As [`super::read_areas`].
+pub(super) fn read(xml: &str) -> Result<Vec<Vec<Geographic>>, Fault> {
+    let document = parse(xml)?;
+    let root = document.root_element();
+    if !root.has_tag_name("kml") {
+        let what = format!(
+            "XML that begins with <{}> is no KML",
+            shown(root.tag_name().name())
+        );
+        return Err(Fault::new(what, super::KNOWN));
+    }
+    let named = |name: &'static str| {
+        root.descendants()
+            .filter(move |node| node.has_tag_name(name))
+    };
+    let polygons: Vec<Node<'_, '_>> = named("Polygon").collect();
+    if polygons.is_empty() {
+        return Err(no_polygon(
+            named("Point").count(),
+            named("LineString").count(),
+        ));
+    }
+    polygons
+        .into_iter()
+        .zip(1..)
+        .map(|(node, number)| polygon(node, number))
+        .collect()
+}
+
+fn polygon(node: Node<'_, '_>, number: usize) -> Result<Vec<Geographic>, Fault> {
+    // As its owner called it.
+    let placemark = node.ancestors().find(|node| node.has_tag_name("Placemark"));
+    let name = placemark
+        .and_then(|placemark| child(placemark, "name"))
+        .map(text);
+    let at = match name.filter(|name| !name.is_empty()) {
+        Some(name) => format!("polygon {number} ('{}')", shown(name)),
+        None => format!("polygon {number}"),
+    };
+    let line = line_of(node);
+    if children(node, "innerBoundaryIs").next().is_some() {
+        let what = format!("{at} has a hole");
+        return Err(Fault::at(line, what, "draw it without, or as two polygons"));
+    }
+    let outline = child(node, "outerBoundaryIs").and_then(|outer| child(outer, "LinearRing"));
+    let coordinates = outline.and_then(|ring| child(ring, "coordinates"));
+    let coordinates = coordinates.ok_or_else(|| {
+        let what = format!("{at} has no coordinates");
+        Fault::at(line, what, EXPORT)
+    })?;
+    let mut positions = Vec::new();
+    for (tuple, number) in text(coordinates).split_whitespace().zip(1..) {
+        let mut numbers = tuple.split(',').map(|word| word.parse::<f64>().ok());
+        let mut next = || numbers.next().flatten().filter(|number| number.is_finite());
+        let (Some(longitude), Some(latitude)) = (next(), next()) else {
+            let what = format!(
+                "{at}, corner {number}: '{}' is no longitude,latitude",
+                shown(tuple)
+            );
+            let remedy = "write both with a comma and no space between them";
+            return Err(Fault::at(line_of(coordinates), what, remedy));
+        };
+        positions.push([longitude, latitude]);
+    }
+    ring(&positions, &at, Some(line_of(coordinates)))
+}
