@@ -54,6 +54,12 @@ pub fn flown_table(report: &FlownReport<'_>) -> String {
             plan.name, residual.tilt, residual.pan
         );
     }
+    text + "\n" + &rows_of_text(&summary(report))
+}
+
+/// What is to be said of the whole: names and numbers.
+pub(crate) fn summary(report: &FlownReport<'_>) -> Vec<(&'static str, String)> {
+    let unit = report.unit;
     let found: Vec<&Residual> = report.flown.residuals.iter().flatten().collect();
     let rms = |of: &dyn Fn(&Residual) -> f64| {
         let sum: f64 = found.iter().map(|residual| of(residual).powi(2)).sum();
@@ -74,7 +80,7 @@ pub fn flown_table(report: &FlownReport<'_>) -> String {
             ("turn, rms", format!("{}°", rms(&|r| r.turn))),
         ]);
     }
-    text + "\n" + &rows_of_text(&said)
+    said
 }
 
 /// What is to be said beside the numbers, one sentence each.

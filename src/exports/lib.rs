@@ -5,6 +5,7 @@ mod drawing;
 mod flight_files;
 mod flight_plan;
 mod flight_sheet;
+mod flown_figure;
 mod flown_report;
 mod html_page;
 mod markup;
@@ -31,9 +32,11 @@ use fragscale_core::{
 };
 use fragscale_fragmentation as fragmentation;
 
+pub use drawing::DrawingFormat;
 pub use flight_files::{Orientation, PoseRow, StatedDeviations, laz, ply, poses_csv};
 pub use flight_plan::{PlanReport, plan_csv, plan_json, plan_table, plan_warnings};
 pub use flight_sheet::{FlightSheet, flight_sheet};
+pub use flown_figure::FlownFigure;
 pub use flown_report::{FlownReport, flown_csv, flown_json, flown_table, flown_warnings};
 pub use measured::{
     MeasuredUnit, PointsReport, ProfileReport, VolumeReport, percent, points_csv, points_table,

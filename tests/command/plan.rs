@@ -253,6 +253,26 @@ fn what_was_flown_is_compared_with_its_mission() {
         );
         assert!(flown["shared"].as_f64().unwrap() > 0.9, "{flown}");
     }
+    let figures = ["flown.svg", "flown.pdf", "flown.png"].map(path);
+    let place = ["--mission", &mission, "--take-off", "450020,5400020"];
+    let mut more = vec!["flown", &flight];
+    more.extend(place);
+    more.extend(figures.iter().flat_map(|figure| ["--figure", figure]));
+    // The second time over its own.
+    for _ in 0..2 {
+        let output = fragscale(&more);
+        let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{notes}");
+    }
+    let svg = fs::read_to_string(&figures[0]).unwrap();
+    assert!(svg.contains(">not taken: 1<"), "{svg}");
+    more.extend(["--figure", "flown.gif"]);
+    let refused = fragscale(&more);
+    let error = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(
+        error.contains("flown.gif: a drawing is written as SVG, PDF or PNG"),
+        "{error}"
+    );
 }
 
 /// Ground to keep out of is a fence of the mission, and no stop lies over it; how far the drone's errors move a scale is

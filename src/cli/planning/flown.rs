@@ -3,16 +3,17 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use crate::cli::Answer;
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::on_surface::places::place;
 use crate::cli::outputs::NamedAnswerArguments;
-use crate::exports::{self, FlownReport};
+use crate::exports::{self, DrawingFormat, FlownFigure, FlownReport};
 use crate::fault::Fault;
+use crate::files::Kind;
 use crate::formats::{FileError, read_mission};
-use crate::geodesy::Crs;
+use crate::geodesy::{Crs, CrsKind};
 use crate::jobs::Progress;
 use crate::plan::{Flown, Taken, ground_at, planned_poses};
 
@@ -26,6 +27,9 @@ pub(in crate::cli) struct FlownArguments {
     /// Where the drone took off, in the world and on the surface, if that is not where the mission says.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     take_off: Option<DVec2>,
+    /// Draw what was planned and flown into this file, .svg, .pdf or .png; may be given more than once.
+    #[arg(long, value_name = "FILE")]
+    figure: Vec<PathBuf>,
     #[command(flatten)]
     answer: NamedAnswerArguments,
 }
@@ -36,6 +40,13 @@ pub(in crate::cli) fn flown(
 ) -> Result<Answer, String> {
     let inputs = arguments.flight.files().chain([&arguments.mission]);
     let mut outputs = arguments.answer.output.outputs(inputs)?;
+    let mut formats = Vec::new();
+    for path in &arguments.figure {
+        let format = DrawingFormat::of(path);
+        let format = format.map_err(|fault| FileError::new(path, fault).to_string())?;
+        formats.push((path, format));
+        outputs = outputs.and(path, Kind::Result)?;
+    }
     let mission = read_mission(&arguments.mission).map_err(|error| error.to_string())?;
     let opened = arguments.flight.open(progress)?;
     outputs.read(&opened.read)?;
@@ -82,6 +93,17 @@ pub(in crate::cli) fn flown(
         exports::flown_csv,
         exports::flown_json,
     )?;
+    let places: Vec<DVec3> = taken.iter().map(|taken| taken.pose.center).collect();
+    let figure = FlownFigure {
+        report: &report,
+        places: &places,
+        is_on_map: crs.kind() == CrsKind::Projected,
+    };
+    for (path, format) in formats {
+        let bytes = figure.bytes(format);
+        let bytes = bytes.map_err(|fault| FileError::new(path, fault).to_string())?;
+        outputs.write(path, &bytes, Kind::Result)?;
+    }
     let mut warnings = exports::flown_warnings(&report);
     warnings.extend(mission.notes);
     warnings.extend(opened.all_warnings());

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::outputs::Outputs;
+use crate::cli::written_beside::check_report_name;
 use crate::exports::{FlightSheet, flight_sheet};
 use crate::fault::Fault;
 use crate::files::Kind;
@@ -13,7 +14,7 @@ use crate::jobs::Progress;
 
 #[derive(Debug, Args)]
 pub(super) struct SheetArguments {
-    /// Write a page to print for the pilot to this file, FILE.html: map, numbers, checklist, photos.
+    /// Write a page to print for the pilot to this file, .html: map, numbers, checklist, photos.
     #[arg(long, value_name = "FILE")]
     sheet: Option<PathBuf>,
 }
@@ -27,7 +28,7 @@ impl SheetArguments {
         let Some(path) = &self.sheet else {
             return Ok(outputs);
         };
-        FlightSheet::check_name(path).map_err(|fault| FileError::new(path, fault).to_string())?;
+        check_report_name(path)?;
         outputs.and(path, Kind::Result)
     }
 

@@ -8,13 +8,13 @@ use glam::DVec2;
 use image::{Rgba, RgbaImage};
 
 use super::FlightSheet;
+use super::legend::legend;
 use crate::drawing::{Anchor, Colour, Dash, Marker, Pen, png, svg};
 use crate::fault::Fault;
 use crate::flight::Verdict;
 use crate::jobs::Progress;
-use crate::plan::furniture::{self, A_MILLIMETRE, LABEL, TEXT};
-use crate::plan::inks::dash;
-use crate::plan::photos::{NAME, camera_mark, draw, middle_mark, sample};
+use crate::plan::furniture::{self, A_MILLIMETRE, LABEL};
+use crate::plan::photos::{NAME, draw};
 use crate::plan::{Grid, MapFrame, Plan, PlanGround, PlanInks, PlanPhoto, RoomForNames, clip};
 use crate::scale::{Footprint, FootprintDetail, Ground, GroundFinder, ImageKind};
 use crate::surface::{Light, MapRaster, hillshade};
@@ -45,7 +45,7 @@ const MOST: u32 = 1_000_000;
 const DARKEST: f64 = 140.0;
 const LIGHT: f64 = 110.0;
 
-const WAY: Colour = [25, 70, 160];
+pub(super) const WAY: Colour = [25, 70, 160];
 const AREA: Colour = [90, 20, 110];
 const KEEP_OUT: Colour = [190, 15, 40];
 /// From the middle of a leg to the tip of its arrow.
@@ -53,10 +53,10 @@ const ARROW: f64 = 5.0;
 /// A leg that is shorter has none.
 const SHORTEST_WITH_ARROW: f64 = 26.0;
 /// Half the width of the mark of the take-off.
-const TAKE_OFF: f64 = 6.0;
+pub(super) const TAKE_OFF: f64 = 6.0;
 
 /// The ways of batteries are told apart by these, in turn.
-const DASHES: [Dash; 4] = [Dash::Solid, Dash::Long, Dash::Short, Dash::DashDot];
+pub(super) const DASHES: [Dash; 4] = [Dash::Solid, Dash::Long, Dash::Short, Dash::DashDot];
 
 /// The map as a document of SVG.
 ///
@@ -185,7 +185,7 @@ fn level(way: &Way) -> Vec<DVec2> {
     places
 }
 
-fn way_line(places: &[[f64; 2]], dash: Dash, pen: &mut Pen) {
+pub(super) fn way_line(places: &[[f64; 2]], dash: Dash, pen: &mut Pen) {
     pen.line(places, [255; 3], 3.4, Dash::Solid);
     pen.line(places, WAY, 1.4, dash);
     for leg in places.windows(2) {
@@ -205,12 +205,12 @@ fn way_line(places: &[[f64; 2]], dash: Dash, pen: &mut Pen) {
     }
 }
 
-fn area_line(points: &[[f64; 2]], pen: &mut Pen) {
+pub(super) fn area_line(points: &[[f64; 2]], pen: &mut Pen) {
     pen.line(points, AREA, 1.8, Dash::DashDot);
 }
 
 /// An area that is not flown over.
-fn keep_out_area(corners: &[[f64; 2]], pen: &mut Pen) {
+pub(super) fn keep_out_area(corners: &[[f64; 2]], pen: &mut Pen) {
     pen.area(corners, KEEP_OUT, 0.25);
     let around: Vec<[f64; 2]> = corners.iter().chain(corners.first()).copied().collect();
     pen.line(&around, KEEP_OUT, 2.4, Dash::Solid);
@@ -327,89 +327,4 @@ fn ground(terrain: &Terrain, frame: &MapFrame) -> (MapRaster, RgbaImage) {
         }
     });
     (part, picture)
-}
-
-/// What a line of the legend shows, and its words.
-struct Row {
-    sign: Sign,
-    words: String,
-}
-
-enum Sign {
-    Footprint(Verdict),
-    Camera,
-    Middle,
-    Refused,
-    Way(Dash),
-    TakeOff,
-    Area,
-    KeepOut,
-}
-
-fn legend(sheet: &FlightSheet<'_>) -> Vec<Row> {
-    let report = sheet.report;
-    let plan = report.plan;
-    let count = plan.photos.len();
-    let troubled = (0..count).filter(|n| !plan.troubles(*n).is_empty()).count();
-    let row = |sign, words: String| Row { sign, words };
-    let mut rows = Vec::new();
-    if troubled < count {
-        let words = format!("photo as wished: {}", count - troubled);
-        rows.push(row(Sign::Footprint(Verdict::Trust), words));
-    }
-    if troubled > 0 {
-        let words = format!("photo with a trouble: {troubled}");
-        rows.push(row(Sign::Footprint(Verdict::Check), words));
-    }
-    rows.push(row(Sign::Camera, "drone at a photo".to_owned()));
-    rows.push(row(Sign::Middle, "middle of a photo".to_owned()));
-    rows.push(row(Sign::Area, "area".to_owned()));
-    if !plan.wish.keep_out.is_empty() {
-        rows.push(row(Sign::KeepOut, "keep out, at any height".to_owned()));
-    }
-    if !plan.refused.is_empty() {
-        let words = format!("no photo possible: {}", plan.refused.len());
-        rows.push(row(Sign::Refused, words));
-    }
-    for (number, dash) in (1..=report.ways.len()).zip(DASHES) {
-        let again = (number..=report.ways.len()).step_by(DASHES.len());
-        let numbers: Vec<String> = again.map(|number| number.to_string()).collect();
-        let words = match report.ways.len() {
-            1 => "way of the drone".to_owned(),
-            _ => format!("way, battery {}", numbers.join(", ")),
-        };
-        rows.push(row(Sign::Way(dash), words));
-    }
-    if !report.ways.is_empty() {
-        rows.push(row(Sign::TakeOff, "take-off and landing".to_owned()));
-    }
-    rows
-}
-
-impl Row {
-    fn draw(&self, [left, y]: [f64; 2], pen: &mut Pen) {
-        let inks = &PlanInks::PAPER;
-        let middle = [left + 13.0, y];
-        let ends = [[left, y], [left + 26.0, y]];
-        match self.sign {
-            Sign::Footprint(verdict) => {
-                let (from, to) = ([left, y - 5.0], [left + 26.0, y + 5.0]);
-                let verdict = Some(verdict);
-                sample(from, to, inks.of(verdict), dash(verdict), pen);
-            }
-            Sign::Camera => camera_mark(middle, inks, pen),
-            Sign::Middle => middle_mark(middle, inks.of(Some(Verdict::Trust)), pen),
-            Sign::Refused => middle_mark(middle, inks.of(Some(Verdict::NoScale)), pen),
-            Sign::Way(dash) => way_line(&ends, dash, pen),
-            Sign::TakeOff => pen.marker(middle, Marker::Diamond, TAKE_OFF, WAY),
-            Sign::Area => area_line(&ends, pen),
-            Sign::KeepOut => {
-                let [right, top, bottom] = [left + 26.0, y - 5.0, y + 5.0];
-                let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
-                keep_out_area(&corners, pen);
-            }
-        }
-        let at = [left + 34.0, y];
-        pen.text(at, TEXT, &self.words, Anchor::Left, inks.ink);
-    }
 }

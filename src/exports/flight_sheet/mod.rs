@@ -7,18 +7,18 @@
 //! the crew are lines to write on.
 //!
 //! ```text
-//! map      the map: ground, footprints, way, take-off, scale bar, legend
+//! map      the map: ground, footprints, way, take-off, scale bar
+//! legend   what its signs mean
 //! numbers  what is to be known before take-off
 //! words    checklist, photos, what was not planned
 //! ```
 
+mod legend;
 mod map;
 mod numbers;
 #[cfg(test)]
 mod tests;
 mod words;
-
-use std::path::Path;
 
 use crate::camera::Camera;
 use crate::fault::Fault;
@@ -44,23 +44,6 @@ pub struct FlightSheet<'a> {
     pub crs: Option<&'a str>,
     /// What is to be said beside the plan, one sentence each.
     pub warnings: &'a [String],
-}
-
-impl FlightSheet<'_> {
-    /// Whether a sheet can be written to a file of this name.
-    ///
-    /// # Errors
-    /// Another ending than HTML's.
-    pub fn check_name(path: &Path) -> Result<(), Fault> {
-        let ending = path.extension().unwrap_or_default().to_string_lossy();
-        match ending.to_lowercase().as_str() {
-            "html" | "htm" => Ok(()),
-            _ => Err(Fault::new(
-                "a sheet for the pilot is an HTML page",
-                "let its name end in .html: a browser prints it on A4, or saves it as PDF",
-            )),
-        }
-    }
 }
 
 /// The sheet as HTML.

@@ -282,14 +282,3 @@ fn what_is_not_known_is_said() {
     let in_feet = sheet(LengthUnit::Foot, true);
     assert!(in_feet.page.contains("at least 20 ft (7 m) above take-off"));
 }
-
-#[test]
-fn a_sheet_is_a_page() {
-    for name in ["a.html", "B.HTM"] {
-        assert_eq!(FlightSheet::check_name(Path::new(name)), Ok(()));
-    }
-    for name in ["a.pdf", "a", "html"] {
-        let fault = FlightSheet::check_name(Path::new(name)).unwrap_err();
-        assert!(fault.remedy.contains(".html"), "{fault}");
-    }
-}

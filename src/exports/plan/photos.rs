@@ -189,7 +189,8 @@ fn outline(photo: &PlanPhoto, frame: &MapFrame) -> Vec<[f64; 2]> {
     points.map(|point| frame.place(*point)).collect()
 }
 
-fn overlap(a: &clip::Box2, b: &clip::Box2) -> bool {
+/// Whether two rectangles have a part in common.
+pub(crate) fn overlap(a: &clip::Box2, b: &clip::Box2) -> bool {
     (0..2).all(|i| a[0][i] < b[1][i] && b[0][i] < a[1][i])
 }
 
