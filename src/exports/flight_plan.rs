@@ -90,6 +90,11 @@ pub(crate) fn rows<'a>(report: &'a PlanReport<'a>) -> impl Iterator<Item = Row> 
     photos.map(|(number, photo)| row(report, number, photo))
 }
 
+/// A direction to a tenth of a degree: what rounds to 360 is 0.
+pub(crate) fn pan_in_words(pan: f64) -> String {
+    format!("{:.1}°", (pan * 10.0).round() / 10.0 % 360.0)
+}
+
 /// The photos and what is to be said of all of them, as text.
 pub fn plan_table(report: &PlanReport<'_>) -> String {
     let PlanReport {
@@ -125,10 +130,10 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
             .interval
             .map_or("-".to_owned(), |interval| format!("±{interval:.1} %"));
         text += &format!(
-            "{:<6} {:>5.1}° {:>5.1}° {:>9} {least:>8} {top:>8} {bottom:>8} {greatest:>8} {off_line:>8} {interval:>7} {:>5.0} %  {}\n",
+            "{:<6} {:>5.1}° {:>6} {:>9} {least:>8} {top:>8} {bottom:>8} {greatest:>8} {off_line:>8} {interval:>7} {:>5.0} %  {}\n",
             row.name,
             row.tilt,
-            row.pan,
+            pan_in_words(row.pan),
             maybe(row.distance),
             row.shared * 100.0,
             row.troubles
@@ -305,4 +310,15 @@ pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
         "refused": refused,
     });
     serde_json::to_string_pretty(&value).map(|text| text + "\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_are_below_360() {
+        let said = [0.0, 0.04, 90.25, 359.94, 359.96].map(pan_in_words);
+        assert_eq!(said, ["0.0°", "0.0°", "90.3°", "359.9°", "0.0°"]);
+    }
 }

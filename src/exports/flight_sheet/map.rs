@@ -14,7 +14,7 @@ use crate::fault::Fault;
 use crate::flight::Verdict;
 use crate::jobs::Progress;
 use crate::plan::furniture::{self, A_MILLIMETRE, LABEL};
-use crate::plan::photos::{NAME, draw};
+use crate::plan::photos::{FootprintStyle, NAME, footprints, marks_and_names};
 use crate::plan::{Grid, MapFrame, Plan, PlanGround, PlanInks, PlanPhoto, RoomForNames, clip};
 use crate::scale::{Footprint, FootprintDetail, Ground, GroundFinder, ImageKind};
 use crate::surface::{Light, MapRaster, hillshade};
@@ -40,6 +40,9 @@ const BAR: f64 = 170.0;
 const ROOM: f64 = 0.03;
 /// The most pixels of the ground.
 const MOST: u32 = 1_000_000;
+
+/// Photos that share more than this, in the mean, lie in layers.
+const LAYERS: f64 = 0.5;
 
 /// Paler than the relief of a map: the lines over it are what the pilot looks at.
 const DARKEST: f64 = 140.0;
@@ -131,6 +134,7 @@ fn on_the_ground(sheet: &FlightSheet<'_>, plan: &Plan, frame: &MapFrame, pen: &m
     pen.shapes.push(crate::plan::ground_shape(plan, frame));
     let grid = Grid::of(frame);
     furniture::grid_lines(frame, &grid, inks, pen);
+    footprints(plan, frame, style(sheet), inks, pen);
     let place = |corner: &DVec2| frame.place(*corner);
     let plan_of_photos = sheet.report.plan;
     for keep_out in &plan_of_photos.wish.keep_out {
@@ -161,13 +165,26 @@ fn on_the_ground(sheet: &FlightSheet<'_>, plan: &Plan, frame: &MapFrame, pen: &m
         ]
     });
     room.covered.extend(beside);
-    draw(plan, frame, &room, inks, pen);
+    marks_and_names(plan, frame, &room, inks, pen);
     if let (Some(at), Some([[x0, y0], [x1, y1]])) = (take_off, beside) {
         pen.marker(at, Marker::Diamond, TAKE_OFF, WAY);
         pen.area(&[[x0, y0], [x1, y0], [x1, y1], [x0, y1]], inks.paper, 0.72);
         pen.text([x0 + 2.0, at[1]], NAME, words, Anchor::Left, inks.ink);
     }
     furniture::border(frame, &grid, inks, pen);
+}
+
+/// Footprints that lie over each other in layers are lines alone: ground and way are seen through them.
+fn style(sheet: &FlightSheet<'_>) -> FootprintStyle {
+    let shared = &sheet.report.plan.cover.shared;
+    let mean = shared.iter().sum::<f64>() / shared.len().max(1) as f64;
+    match mean > LAYERS {
+        true => FootprintStyle {
+            outline: 0.6,
+            shade: 0.0,
+        },
+        false => FootprintStyle::default(),
+    }
 }
 
 /// Where the ways begin and end.

@@ -166,14 +166,20 @@ fn wished(report: &PlanReport<'_>) -> String {
 
 /// Where the take-off is in the world, and on the Earth where its coordinate system is known.
 fn say_place(sheet: &FlightSheet<'_>, place: DVec3, said: &mut Said) {
-    let DVec3 { x, y, z } = place;
     let unit = sheet.report.world;
-    said.say("Take-off", format!("x {x:.2}, y {y:.2}, z {z:.2} {unit}"));
+    said.say(
+        "Take-off",
+        format!("x {:.2}, y {:.2} {unit}", place.x, place.y),
+    );
     let crs = sheet.crs.and_then(|crs| Crs::understand(crs).ok());
     if let Some(on_earth) = crs.and_then(|crs| crs.to_geographic(place)) {
-        let (latitude, longitude) = (on_earth.latitude, on_earth.longitude);
-        let words = format!("latitude {latitude:.7}, longitude {longitude:.7}");
-        said.say("Take-off, GPS", words);
+        let degrees = |degrees: f64, [positive, negative]: [char; 2]| {
+            let side = if degrees < 0.0 { negative } else { positive };
+            format!("{side} {:.7}°", degrees.abs())
+        };
+        let latitude = degrees(on_earth.latitude, ['N', 'S']);
+        let longitude = degrees(on_earth.longitude, ['E', 'W']);
+        said.say("Take-off, GPS", format!("{latitude}, {longitude}"));
     }
 }
 

@@ -257,9 +257,8 @@ fn everything_is_said_and_nothing_becomes_markup() {
     assert!((sheet.ways[0].safe_height - 120.0).abs() < 1e-6);
     assert!(has("20.0 m above take-off") && has("at least 20 m above take-off"));
     // EPSG:32632 has its middle meridian at 9 degrees, 500 000 m: 50 m to the west of it.
-    assert!(has("x 499950.00, y 4999950.00, z 100.00 m"));
-    let on_earth =
-        |text: &&str| text.starts_with("latitude 45.1") && text.contains("longitude 8.999");
+    assert!(has("x 499950.00, y 4999950.00 m"));
+    let on_earth = |text: &&str| text.starts_with("N 45.1") && text.contains("°, E 8.999");
     assert!(texts.iter().any(on_earth));
     let ticks = page
         .descendants()

@@ -2,7 +2,7 @@
 
 use super::FlightSheet;
 use super::numbers::return_height_in_words;
-use crate::flight_plan::{PlanReport, rows};
+use crate::flight_plan::{PlanReport, pan_in_words, rows};
 use crate::html_page::{Cell, NONE, names, table};
 use crate::numbers::significant_digits;
 
@@ -78,7 +78,7 @@ pub(super) fn photos(report: &PlanReport<'_>) -> String {
         vec![
             Cell::from(row.name),
             format!("{:.1}°", row.tilt).into(),
-            format!("{:.1}°", row.pan).into(),
+            pan_in_words(row.pan).into(),
             maybe(row.distance).into(),
             maybe(top).into(),
             maybe(bottom).into(),

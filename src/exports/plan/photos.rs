@@ -75,15 +75,58 @@ fn around([x, y]: [f64; 2], half: f64) -> clip::Box2 {
     [[x - half, y - half], [x + half, y + half]]
 }
 
-pub(crate) fn draw(
+/// Everything about photos, and what was measured.
+pub(super) fn draw(
     plan: &Plan,
     frame: &MapFrame,
     room: &RoomForNames,
     inks: &PlanInks,
     pen: &mut Pen,
 ) {
+    footprints(plan, frame, FootprintStyle::default(), inks, pen);
+    for outline in &plan.measured {
+        let first = outline.points.first().filter(|_| outline.is_polygon);
+        let points = outline.points.iter().chain(first);
+        let points: Vec<[f64; 2]> = points.map(|point| frame.place(*point)).collect();
+        for part in clip::line(&points, bounds(frame)) {
+            measured_line(&part, inks, pen);
+        }
+    }
+    marks_and_names(plan, frame, room, inks, pen);
+}
+
+/// How strong footprints are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FootprintStyle {
+    /// Width of an outline.
+    pub(crate) outline: f64,
+    /// Opacity of what is inside; 0 to 1.
+    pub(crate) shade: f64,
+}
+
+impl Default for FootprintStyle {
+    fn default() -> Self {
+        Self {
+            outline: OUTLINE,
+            shade: SHADE,
+        }
+    }
+}
+
+fn bounds(frame: &MapFrame) -> clip::Box2 {
     let ([left, top], [width, height]) = (frame.at, frame.size);
-    let bounds = [[left, top], [left + width, top + height]];
+    [[left, top], [left + width, top + height]]
+}
+
+/// What each photo shows, within a frame.
+pub(crate) fn footprints(
+    plan: &Plan,
+    frame: &MapFrame,
+    style: FootprintStyle,
+    inks: &PlanInks,
+    pen: &mut Pen,
+) {
+    let bounds = bounds(frame);
     let outlines: Vec<Vec<[f64; 2]>> = plan
         .photos
         .iter()
@@ -94,26 +137,31 @@ pub(crate) fn draw(
         let open = outline
             .get(..outline.len().saturating_sub(1))
             .unwrap_or_default();
-        pen.area(&clip::area(open, bounds), colour, SHADE);
+        if style.shade > 0.0 {
+            pen.area(&clip::area(open, bounds), colour, style.shade);
+        }
     }
     // Outlines over all the shades.
     for (photo, outline) in plan.photos.iter().zip(&outlines) {
         let colour = inks.of(photo.verdict);
         for part in clip::line(outline, bounds) {
-            pen.line(&part, colour, OUTLINE, dash(photo.verdict));
+            pen.line(&part, colour, style.outline, dash(photo.verdict));
         }
     }
+}
+
+/// Where each photo was taken from, the middle of what it shows, and its name where that has room.
+pub(crate) fn marks_and_names(
+    plan: &Plan,
+    frame: &MapFrame,
+    room: &RoomForNames,
+    inks: &PlanInks,
+    pen: &mut Pen,
+) {
+    let [[left, top], [right, bottom]] = bounds(frame);
     let inside = |[x, y]: [f64; 2], room: f64| {
-        x >= left + room && x <= left + width - room && y >= top + room && y <= top + height - room
+        x >= left + room && x <= right - room && y >= top + room && y <= bottom - room
     };
-    for outline in &plan.measured {
-        let first = outline.points.first().filter(|_| outline.is_polygon);
-        let points = outline.points.iter().chain(first);
-        let points: Vec<[f64; 2]> = points.map(|point| frame.place(*point)).collect();
-        for part in clip::line(&points, bounds) {
-            measured_line(&part, inks, pen);
-        }
-    }
     let mut marks: Vec<(usize, clip::Box2)> = Vec::new();
     for (index, photo) in plan.photos.iter().enumerate() {
         let camera = frame.place(photo.camera);
