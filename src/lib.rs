@@ -22,7 +22,7 @@
 //!     reconstruct/               photos alone -> a flight: engines behind a trait
 //!     dense/                     photos with known poses -> depth maps -> a cloud with standard errors
 //!     sample/                    the paper's lab, simulated
-//! F4  formats/                   bytes -> types: clouds cameras packages poses photos tables missions text
+//! F4  formats/                   bytes -> types: clouds cameras packages poses photos tables missions areas text
 //!     exports/                   what goes out: table, CSV, JSON, sheet, Split-Desktop, figures, maps, missions
 //!     --- the core (core.rs) and fragmentation/ ---
 //! F3  flight/                    Flight, validated when made; review: doubts, verdicts; flight.toml

@@ -305,14 +305,13 @@ pub(in crate::cli) fn plan(
     }
     let sheet = FlightSheet {
         report: &report,
-        surface: &parts.surface,
         camera: &camera,
         drone: arguments.drone().map(|drone| drone.title),
         settle: arguments.settle,
         crs: stated_crs,
         warnings: &warnings,
     };
-    arguments.sheet.write(&outputs, &sheet, progress)?;
+    arguments.sheet.write(&outputs, &sheet)?;
     warnings.extend(opened.all_warnings());
     Ok(Answer::new(text, warnings))
 }

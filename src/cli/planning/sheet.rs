@@ -10,7 +10,6 @@ use crate::exports::{FlightSheet, flight_sheet};
 use crate::fault::Fault;
 use crate::files::Kind;
 use crate::formats::FileError;
-use crate::jobs::Progress;
 
 #[derive(Debug, Args)]
 pub(super) struct SheetArguments {
@@ -40,13 +39,12 @@ impl SheetArguments {
         &self,
         outputs: &Outputs<'_>,
         sheet: &FlightSheet<'_>,
-        progress: &Progress,
     ) -> Result<(), String> {
         let Some(path) = &self.sheet else {
             return Ok(());
         };
         let in_sheet = |fault: Fault| FileError::new(path, fault).to_string();
-        let page = flight_sheet(sheet, progress).map_err(in_sheet)?;
+        let page = flight_sheet(sheet).map_err(in_sheet)?;
         outputs.write(path, page.as_bytes(), Kind::Result)
     }
 }

@@ -12,13 +12,11 @@ use super::legend::legend;
 use crate::drawing::{Anchor, Colour, Dash, Marker, Pen, png, svg};
 use crate::fault::Fault;
 use crate::flight::Verdict;
-use crate::jobs::Progress;
 use crate::plan::furniture::{self, A_MILLIMETRE, LABEL};
 use crate::plan::photos::{FootprintStyle, NAME, footprints, marks_and_names};
 use crate::plan::{Grid, MapFrame, Plan, PlanGround, PlanInks, PlanPhoto, RoomForNames, clip};
-use crate::scale::{Footprint, FootprintDetail, Ground, GroundFinder, ImageKind};
 use crate::surface::{Light, MapRaster, hillshade};
-use fragscale_core::plan::{Terrain, Way};
+use fragscale_core::plan::{Plan as FlightPlan, Terrain, Way};
 
 /// What a browser leaves of A4 between the page's margins and those of a figure.
 const WIDE: f64 = 180.0 * A_MILLIMETRE;
@@ -55,6 +53,10 @@ const KEEP_OUT: Colour = [190, 15, 40];
 const ARROW: f64 = 5.0;
 /// A leg that is shorter has none.
 const SHORTEST_WITH_ARROW: f64 = 26.0;
+/// From the middle of a photo's mark to a name.
+const MARK: f64 = 5.0;
+/// Fonts of viewers are wider than ours by no more.
+const WIDER: f64 = 1.06;
 /// Half the width of the mark of the take-off.
 pub(super) const TAKE_OFF: f64 = 6.0;
 
@@ -64,9 +66,9 @@ pub(super) const DASHES: [Dash; 4] = [Dash::Solid, Dash::Long, Dash::Short, Dash
 /// The map as a document of SVG.
 ///
 /// # Errors
-/// Where the surface cannot be triangulated, the ground cannot be encoded, or the work was cancelled.
-pub(super) fn map(sheet: &FlightSheet<'_>, progress: &Progress) -> Result<String, Fault> {
-    let photos = photos(sheet, progress)?;
+/// Where the plan has no size, or the ground cannot be encoded.
+pub(super) fn map(sheet: &FlightSheet<'_>) -> Result<String, Fault> {
+    let photos = photos(sheet.report.plan);
     let extent = extent(sheet, &photos);
     let whole = extent[1] - extent[0];
     let legend = legend(sheet);
@@ -153,25 +155,51 @@ fn on_the_ground(sheet: &FlightSheet<'_>, plan: &Plan, frame: &MapFrame, pen: &m
     let mut room = RoomForNames::all_of(frame);
     let take_off = take_off(sheet).map(|place| frame.place(place));
     let words = "take-off";
-    let long = png::text_width(NAME, words) * 1.06;
-    let beside = take_off.map(|[x, y]| {
-        let left = match x + TAKE_OFF + 6.0 + long < bounds[1][0] {
-            true => x + TAKE_OFF + 4.0,
-            false => x - TAKE_OFF - 4.0 - long,
-        };
-        [
-            [left - 2.0, y - NAME / 2.0],
-            [left + long + 2.0, y + NAME / 2.0],
-        ]
-    });
+    let beside = take_off.map(|at| beside(at, png::text_width(NAME, words) * WIDER, plan, frame));
     room.covered.extend(beside);
     marks_and_names(plan, frame, &room, inks, pen);
     if let (Some(at), Some([[x0, y0], [x1, y1]])) = (take_off, beside) {
         pen.marker(at, Marker::Diamond, TAKE_OFF, WAY);
         pen.area(&[[x0, y0], [x1, y0], [x1, y1], [x0, y1]], inks.paper, 0.72);
-        pen.text([x0 + 2.0, at[1]], NAME, words, Anchor::Left, inks.ink);
+        pen.text(
+            [x0 + 2.0, (y0 + y1) / 2.0],
+            NAME,
+            words,
+            Anchor::Left,
+            inks.ink,
+        );
     }
     furniture::border(frame, &grid, inks, pen);
+}
+
+/// Where the words of the take-off stand, of this length: right of its mark, left, above or below, off the marks of
+/// photos and inside the frame where one of these is; else right.
+fn beside([x, y]: [f64; 2], long: f64, plan: &Plan, frame: &MapFrame) -> clip::Box2 {
+    let (off, half) = (TAKE_OFF + 4.0, NAME / 2.0);
+    let around = |left: f64, y: f64| [[left - 2.0, y - half], [left + long + 2.0, y + half]];
+    let places = [
+        around(x + off, y),
+        around(x - off - long, y),
+        around(x - long / 2.0, y - off - half),
+        around(x - long / 2.0, y + off + half),
+    ];
+    let marks = plan
+        .photos
+        .iter()
+        .flat_map(|photo| photo.middle.into_iter().chain([photo.camera]));
+    let marks: Vec<[f64; 2]> = marks.map(|mark| frame.place(mark)).collect();
+    let is_in = |[x, y]: &[f64; 2], [low, high]: &clip::Box2, room: f64| {
+        let [left, right] = [low[0] - room, high[0] + room];
+        let [top, bottom] = [low[1] - room, high[1] + room];
+        (left..=right).contains(x) && (top..=bottom).contains(y)
+    };
+    let ([left, top], [width, height]) = (frame.at, frame.size);
+    let all = [[left, top], [left + width, top + height]];
+    let free = places.iter().find(|place| {
+        let inside = place.iter().all(|corner| is_in(corner, &all, 0.0));
+        inside && !marks.iter().any(|mark| is_in(mark, place, MARK))
+    });
+    free.copied().unwrap_or(places[0])
 }
 
 /// Footprints that lie over each other in layers are lines alone: ground and way are seen through them.
@@ -234,52 +262,31 @@ pub(super) fn keep_out_area(corners: &[[f64; 2]], pen: &mut Pen) {
 }
 
 /// The photos with what they show on the surface, and the refused ones as places without footprint or camera.
-fn photos(sheet: &FlightSheet<'_>, progress: &Progress) -> Result<Vec<PlanPhoto>, Fault> {
-    let plan = sheet.report.plan;
-    let detail = FootprintDetail {
-        per_edge: 8,
-        columns: 2,
-        rows: 2,
-    };
-    let broken =
-        |error: &dyn std::fmt::Display| Fault::new(error.to_string(), "check the surface file");
-    let mut caster = (sheet.surface.caster()).map_err(|error| broken(&error))?;
-    let mut ground = GroundFinder::new(Ground::Auto, sheet.surface);
-    let mut drawn = Vec::with_capacity(plan.photos.len() + plan.refused.len());
-    for (number, photo) in plan.photos.iter().enumerate() {
-        let image = ImageKind::Undistorted;
-        let (camera, pose) = (sheet.camera, &photo.pose);
-        let footprint = Footprint::compute(
-            camera,
-            pose,
-            image,
-            detail,
-            &mut ground,
-            &mut caster,
-            progress,
-        );
-        let (footprint, _) = footprint.map_err(|error| broken(&error))?;
+fn photos(plan: &FlightPlan) -> Vec<PlanPhoto> {
+    let planned = plan.photos.iter().enumerate().map(|(number, photo)| {
         let verdict = match plan.troubles(number).is_empty() {
             true => Verdict::Trust,
             false => Verdict::Check,
         };
-        let camera = pose.center.truncate();
-        drawn.push(PlanPhoto::new(
-            &photo.name,
-            Some(verdict),
-            Some(&footprint),
-            camera,
-        ));
-    }
-    for (refused, number) in plan.refused.iter().zip(1..) {
-        let nowhere = DVec2::NAN;
-        let name = super::words::refused_name(number);
-        drawn.push(PlanPhoto {
-            middle: Some(refused.place),
-            ..PlanPhoto::new(&name, Some(Verdict::NoScale), None, nowhere)
-        });
-    }
-    Ok(drawn)
+        let outline = photo.outline.iter().map(|point| point.truncate());
+        PlanPhoto {
+            name: photo.name.clone(),
+            verdict: Some(verdict),
+            outline: outline.collect(),
+            middle: Some(photo.target.truncate()),
+            camera: photo.pose.center.truncate(),
+        }
+    });
+    let refused = plan.refused.iter().zip(1..);
+    let refused = refused.map(|(refused, number)| PlanPhoto {
+        name: super::words::refused_name(number),
+        verdict: Some(Verdict::NoScale),
+        outline: Vec::new(),
+        middle: Some(refused.place),
+        // Nowhere.
+        camera: DVec2::NAN,
+    });
+    planned.chain(refused).collect()
 }
 
 /// Least and greatest coordinates of what the map holds, with room around. What a photo shows far beside the area

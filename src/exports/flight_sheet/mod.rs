@@ -24,16 +24,12 @@ use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight_plan::{PlanReport, refused_in_words};
 use crate::html_page::{self, blanks, heading, notes, paragraph};
-use crate::jobs::Progress;
-use crate::surface::Surface;
 
 /// A plan with what its sheet says besides.
 #[derive(Clone, Copy)]
 pub struct FlightSheet<'a> {
     /// The plan and how it is to be said.
     pub report: &'a PlanReport<'a>,
-    /// What it is planned over.
-    pub surface: &'a Surface,
     /// The camera that is to fly.
     pub camera: &'a Camera,
     /// The drone, as its maker writes it, where it is known.
@@ -49,10 +45,9 @@ pub struct FlightSheet<'a> {
 /// The sheet as HTML.
 ///
 /// # Errors
-/// Where the surface cannot be triangulated, the map cannot be encoded, or the work was cancelled.
-pub fn flight_sheet(sheet: &FlightSheet<'_>, progress: &Progress) -> Result<String, Fault> {
-    progress.stage("drawing the sheet");
-    let map = map::map(sheet, progress)?;
+/// Only where the map cannot be encoded.
+pub fn flight_sheet(sheet: &FlightSheet<'_>) -> Result<String, Fault> {
+    let map = map::map(sheet)?;
     let title = format!("Flight plan: {}", sheet.report.flight);
     let mut body = vec![
         blanks(&["Date", "Pilot", "Observer", "Drone", "Wind"]),

@@ -7,7 +7,8 @@ use roxmltree::{Document, Node};
 
 use super::*;
 use crate::camera::Distortion;
-use crate::surface::Cloud;
+use crate::jobs::Progress;
+use crate::surface::{Cloud, Surface};
 use crate::survey::Polygon;
 use crate::units::LengthUnit;
 use fragscale_core::plan::{Pace, Pattern, Plan, Refused, Size, Way, Wish};
@@ -97,7 +98,6 @@ fn sheet(world: LengthUnit, with_take_off: bool) -> Sheet {
     };
     let sheet = FlightSheet {
         report: &report,
-        surface: &surface,
         camera: &camera(),
         drone: Some("DJI Mavic 3 Enterprise, wide camera"),
         settle: 2.0,
@@ -107,7 +107,7 @@ fn sheet(world: LengthUnit, with_take_off: bool) -> Sheet {
             "no photo at (500035.0, 5000000.0): it lies > 3 below".to_owned(),
         ],
     };
-    let page = flight_sheet(&sheet, &Progress::default()).unwrap();
+    let page = flight_sheet(&sheet).unwrap();
     let from = page.find("<svg").unwrap();
     let to = page.find("</svg>").unwrap() + 6;
     let map = page[from..to].to_owned();
@@ -138,7 +138,7 @@ fn points(node: Node<'_, '_>) -> Vec<DVec2> {
 }
 
 /// 25.4 mm are an inch, an inch 96 CSS pixels: from the coordinates at the grid and the scale that the page says, the
-/// corners of each footprint follow, 12 m and 8 m from what its middle shows.
+/// edges of each footprint follow, 12 m and 8 m from what its middle shows.
 #[test]
 fn places_on_paper_are_those_of_the_scale() {
     let sheet = sheet(LengthUnit::Metre, true);
@@ -184,13 +184,21 @@ fn places_on_paper_are_those_of_the_scale() {
         drawn.iter().any(|outline| near(&outline))
     };
     for photo in &sheet.plan.photos {
-        let turn = DVec2::from_angle(FRAC_PI_2 - photo.pan.to_radians());
-        let corners = [(8.0, 12.0), (8.0, -12.0), (-8.0, -12.0), (-8.0, 12.0)];
-        let corners = corners.map(|corner| {
-            let off = turn.rotate(DVec2::from(corner));
-            place(photo.pose.center.truncate() + off)
-        });
-        assert!(has(&corners), "{} {corners:?}", photo.name);
+        let turn = DVec2::from_angle(photo.pan.to_radians() - FRAC_PI_2);
+        let middle = place(photo.pose.center.truncate());
+        // Along the photo's top edge and up in it, from its middle, in metres.
+        let is_it = |outline: &&Vec<DVec2>| {
+            let offs = outline.iter().map(|at| {
+                let off = (*at - middle) / scale;
+                turn.rotate(DVec2::new(off.x, -off.y))
+            });
+            let (low, high) = offs.fold((DVec2::MAX, DVec2::MIN), |(low, high), off| {
+                (low.min(off), high.max(off))
+            });
+            let half = DVec2::new(8.0, 12.0);
+            low.distance(-half) < 0.01 && high.distance(half) < 0.01
+        };
+        assert_eq!(drawn.iter().filter(is_it).count(), 1, "{}", photo.name);
     }
     let misfire = [(60.0, 30.0), (75.0, 30.0), (75.0, 45.0)];
     assert!(has(

@@ -50,7 +50,6 @@ use crate::flight::{Date, Review, Verdict};
 use crate::geodesy::{Crs, CrsKind, is_stated};
 use crate::jobs::Progress;
 use crate::numbers::{round_down, round_near};
-use crate::scale::Footprint;
 use crate::surface::{Light, MapRaster};
 use crate::units::{LengthUnit, in_words, round_length_in_words};
 
@@ -162,31 +161,6 @@ pub struct PlanPhoto {
     pub camera: DVec2,
 }
 
-impl PlanPhoto {
-    /// With what of its footprint is known, from this camera.
-    pub(crate) fn new(
-        name: &str,
-        verdict: Option<Verdict>,
-        footprint: Option<&Footprint>,
-        camera: DVec2,
-    ) -> Self {
-        let points = footprint.iter().flat_map(|footprint| &footprint.outline);
-        let points = points.filter_map(|point| Some(point.point()?.truncate()));
-        let middle = footprint.and_then(|footprint| {
-            let (columns, rows) = (footprint.columns, footprint.rows);
-            let index = rows / 2 * (columns + 1) + columns / 2;
-            Some(footprint.grid.get(index as usize)?.point()?.truncate())
-        });
-        Self {
-            name: name.to_owned(),
-            verdict,
-            outline: points.filter(|point| point.is_finite()).collect(),
-            middle: middle.filter(|point| point.is_finite()),
-            camera,
-        }
-    }
-}
-
 impl Plan {
     /// The plan of a reviewed flight; footprints are on it once the review has looked at them. `photos` reads the
     /// photos' pixels, for a ground of photos.
@@ -255,8 +229,20 @@ impl Plan {
         let photos = review.photos().enumerate().map(|(index, photo)| {
             let view = views.and_then(|views| views.get(index)?.as_ref());
             let footprint = view.map(|view| &view.footprint);
-            let camera = photo.photo.pose.center.truncate();
-            PlanPhoto::new(photo.name(), photo.settled(), footprint, camera)
+            let points = footprint.iter().flat_map(|footprint| &footprint.outline);
+            let points = points.filter_map(|point| Some(point.point()?.truncate()));
+            let middle = footprint.and_then(|footprint| {
+                let (columns, rows) = (footprint.columns, footprint.rows);
+                let index = rows / 2 * (columns + 1) + columns / 2;
+                Some(footprint.grid.get(index as usize)?.point()?.truncate())
+            });
+            PlanPhoto {
+                name: photo.name().to_owned(),
+                verdict: photo.settled(),
+                outline: points.filter(|point| point.is_finite()).collect(),
+                middle: middle.filter(|point| point.is_finite()),
+                camera: photo.photo.pose.center.truncate(),
+            }
         });
         photos.collect()
     }
