@@ -34,6 +34,7 @@ mod mission;
 mod on_surface;
 mod overwriting;
 mod plan;
+mod plan_areas;
 mod psd_compare;
 mod real_data;
 mod reconstruct;
