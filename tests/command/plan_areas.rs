@@ -106,6 +106,13 @@ fn areas_are_read_from_maps() {
         error.contains("it holds 2 polygons, where one is needed"),
         "{error}"
     );
+    // What is read is not written over.
+    let error = refused(&[&flight, "--area", &area, "-o", &area, "--force"]);
+    assert!(
+        error.starts_with("error: ") && error.contains("area.geojson"),
+        "{error}"
+    );
+    assert!(fs::read_to_string(&area).unwrap().starts_with("{\"type\""));
     let cloud = folder.path().join("plane.xyz").display().to_string();
     let error = refused(&[&cloud, "--unit", "m", "--area", &area]);
     assert!(

@@ -190,8 +190,11 @@ pub(in crate::cli) fn plan(
     arguments: &PlanArguments,
     progress: &Progress,
 ) -> Result<Answer, String> {
+    // Of areas that are typed there is no file.
+    let areas = arguments.area.iter().chain(&arguments.keep_out);
+    let areas = areas.map(PathBuf::from).collect::<Vec<_>>();
     let inputs = arguments.flight.files().chain(&arguments.camera);
-    let mut outputs = arguments.answer.output.outputs(inputs)?;
+    let mut outputs = arguments.answer.output.outputs(inputs.chain(&areas))?;
     for path in &arguments.mission {
         MissionFormat::of(path).map_err(|fault| FileError::new(path, fault).to_string())?;
         outputs = outputs.and(path, Kind::Result)?;
