@@ -7,7 +7,7 @@ use crate::measured::{csv_of, percent, rows_of_text};
 use crate::numbers::significant_digits;
 use crate::survey::Polygon;
 use crate::units::LengthUnit;
-use fragscale_core::plan::{Pace, Plan, PlannedPhoto, Refused, Way};
+use fragscale_core::plan::{Pace, Plan, PlannedPhoto, Refused, Shadows, Sun, Way};
 
 /// A plan, and how it is to be said.
 #[derive(Debug, Clone, Copy)]
@@ -24,6 +24,8 @@ pub struct PlanReport<'a> {
     pub ways: &'a [Way],
     /// How fast they are flown.
     pub pace: Pace,
+    /// Where the sun stands then, and what lies in shadow, where the time is known.
+    pub sun: Option<(&'a Sun, &'a Shadows)>,
 }
 
 impl PlanReport<'_> {
@@ -56,6 +58,8 @@ pub(crate) struct Row {
     pub(crate) interval: Option<f64>,
     shows: f64,
     pub(crate) shared: f64,
+    /// Of what it shows, in shadow.
+    pub(crate) shadow: Option<f64>,
     pub(crate) troubles: String,
 }
 
@@ -81,6 +85,9 @@ fn row(report: &PlanReport<'_>, number: usize, photo: &PlannedPhoto) -> Row {
             .get(number)
             .copied()
             .unwrap_or(0.0),
+        shadow: report
+            .sun
+            .and_then(|(_, shadows)| shadows.photos.get(number).copied()),
         troubles: report.plan.troubles(number).join("; "),
     }
 }
@@ -160,7 +167,24 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
         }
         said.push(("way", way));
     }
+    if let Some(words) = sun_in_words(report) {
+        said.push(("sun", words));
+    }
     text + "\n" + &rows_of_text(&said)
+}
+
+/// Where the sun stands and how much lies in shadow; `None` where the time is not known.
+pub(crate) fn sun_in_words(report: &PlanReport<'_>) -> Option<String> {
+    let (sun, shadows) = report.sun?;
+    if sun.elevation <= 0.0 {
+        return Some("below the horizon: it is night".to_owned());
+    }
+    Some(format!(
+        "{:.1}° high, from {:.0}° (north 0°, east 90°); {} of the area in shadow",
+        sun.elevation,
+        sun.azimuth,
+        percent(shadows.area)
+    ))
 }
 
 /// What is to be said of a plan beside its numbers, one sentence each.
@@ -222,6 +246,7 @@ pub fn plan_csv(report: &PlanReport<'_>) -> Result<String, csv::Error> {
         "shows_percent".to_owned(),
         "shared_percent".to_owned(),
         "off_normal_degrees".to_owned(),
+        "shadow_percent".to_owned(),
         "troubles".to_owned(),
     ];
     let maybe = |number: Option<f64>| number.map_or(String::new(), |number| number.to_string());
@@ -237,6 +262,7 @@ pub fn plan_csv(report: &PlanReport<'_>) -> Result<String, csv::Error> {
             [100.0 * row.shows, 100.0 * row.shared, photo.off_normal]
                 .map(|number| number.to_string()),
         );
+        line.push(maybe(row.shadow.map(|share| 100.0 * share)));
         line.push(row.troubles);
         line
     });
@@ -269,6 +295,7 @@ pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
                 "shows": row.shows,
                 "shared": row.shared,
                 "off_normal": photo.off_normal,
+                "shadow": row.shadow,
                 "troubles": plan.troubles(number),
             })
         })
@@ -282,7 +309,15 @@ pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
             .map(|corner| corner.to_array())
             .collect()
     };
+    let sun = report.sun.map(|(sun, shadows)| {
+        json!({
+            "elevation": sun.elevation,
+            "azimuth": sun.azimuth,
+            "shadow": shadows.area,
+        })
+    });
     let value = json!({
+        "sun": sun,
         "flight": report.flight,
         "unit": report.world.symbol(),
         "scale_unit": report.scales.symbol(),

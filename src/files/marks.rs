@@ -138,7 +138,7 @@ fn is_csv(first: &str) -> bool {
         || first.starts_with("flight,base,fill_")
         || first.starts_with("point,x_") && first.contains(",y_") && first.contains(",z_")
         // A plan of photos, and what was flown of it.
-        || first.starts_with("photo,x_") && first.ends_with(",off_normal_degrees,troubles")
+        || first.starts_with("photo,x_") && first.ends_with(",troubles")
         || first.starts_with("planned,photo,x_")
         // Of the window's frames.
         || first.starts_with("start_s,logic,panels,upload,draw,commands,")

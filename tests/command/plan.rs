@@ -400,3 +400,41 @@ fn a_plan_is_printed() {
         Some(1)
     );
 }
+
+/// On a plane that falls to the east by 1 in 2 the morning sun throws no shadow, and the evening's, which stands lower than
+/// the plane rises, leaves all of it dark.
+#[test]
+fn the_sun_throws_shadows() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    for (when, expected, azimuth) in [
+        ("2026-06-21T06:00Z", 0.0, 0.0..180.0),
+        ("2026-06-21T20:30+02:00", 1.0, 180.0..360.0),
+    ] {
+        let output = planned(&flight, &["--sun", when, "--format", "json"]);
+        let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{notes}");
+        let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let sun = |name: &str| told["sun"][name].as_f64().unwrap();
+        assert!(
+            (5.0..35.0).contains(&sun("elevation")) && azimuth.contains(&sun("azimuth")),
+            "{when}"
+        );
+        // Along the surface's edge nothing stands behind it.
+        assert!(
+            (sun("shadow") - expected).abs() < 0.02,
+            "{when}: {}",
+            sun("shadow")
+        );
+        assert!(
+            (told["photos"][0]["shadow"].as_f64().unwrap() - expected).abs() < 0.1,
+            "{when}"
+        );
+    }
+    let wrong = planned(&flight, &["--sun", "noon"]);
+    let error = String::from_utf8_lossy(&wrong.stderr).into_owned();
+    assert!(
+        error.contains("sun: the time is none") && wrong.status.code() == Some(1),
+        "{error}"
+    );
+}

@@ -94,6 +94,9 @@ fn window_and_command_plan_the_same() {
     let mission = folder.path().join("window.plan");
     desk.type_path(&mission);
     desk.click(Role::Button, "Write mission");
+    desk.click(Role::Button, "Save page…");
+    desk.type_path(&folder.path().join("window.html"));
+    desk.click(Role::Button, "Write page");
     let command = Program::new(env!("CARGO_BIN_EXE_fragscale"))
         .args([
             "plan",
@@ -107,6 +110,8 @@ fn window_and_command_plan_the_same() {
         .arg(format!("--take-off={},{}", place.x, place.y))
         .arg("--mission")
         .arg(folder.path().join("command.plan"))
+        .arg("--sheet")
+        .arg(folder.path().join("command.html"))
         .arg(&flight)
         .output()
         .expect("the command");
@@ -118,6 +123,9 @@ fn window_and_command_plan_the_same() {
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect(name);
     assert_eq!(read("window.csv"), read("command.csv"));
     assert_eq!(read("window.plan"), read("command.plan"));
+    // The command says besides which area was found.
+    let page = read("window.html");
+    assert!(page.contains("P001") && page.len() > read("command.html").len() / 2);
     let read = read_mission(&mission).expect("a mission").mission;
     let photos = read
         .stops

@@ -30,6 +30,8 @@ pub enum Asking {
     Mission,
     /// Where the table of the plan goes.
     PlanTable,
+    /// Where the page to print of the plan goes.
+    PlanSheet,
     /// Which files of size distributions to add.
     AddDistributions,
     /// A table of size distributions.

@@ -39,6 +39,8 @@ pub struct AskedPlan {
     pub settle: f64,
     /// Minutes that a battery lasts.
     pub battery: Option<f64>,
+    /// When it is flown: a time with its difference from UTC.
+    pub when: Option<String>,
     /// What was changed of single photos by hand, in order.
     pub edits: Vec<Edit>,
 }
@@ -85,6 +87,7 @@ impl AskedPlan {
             speed: USUAL_SPEED,
             settle: USUAL_SETTLE,
             battery: None,
+            when: None,
             edits: Vec::new(),
         }
     }
@@ -96,6 +99,7 @@ impl AskedPlan {
             speed: USUAL_SPEED,
             settle: USUAL_SETTLE,
             battery: None,
+            when: None,
             ..self.clone()
         }
     }

@@ -32,7 +32,7 @@ pub enum PlanStep {
     Leave,
     /// Writes the missions, for the ground station that the name's ending says.
     SaveMission(Destination),
-    /// Writes the table: CSV or JSON, by the name's ending.
+    /// Writes the table (CSV or JSON) or the page to print (HTML), by the name's ending.
     SaveTable(Destination),
 }
 

@@ -4,12 +4,14 @@ use std::sync::Arc;
 
 use super::asked::{AskedPlan, Edit};
 use super::lines;
+use super::made::MadePlan;
 use crate::camera::Camera;
 use crate::exports::{PlanReport, plan_warnings};
 use crate::fault::Fault;
+use crate::geodesy::Crs;
+use crate::geometry::extent;
 use crate::jobs::Progress;
-use crate::plan::{self, Pace, Plan, Way};
-use crate::render::PlannedLine;
+use crate::plan::{self, Pace, Plan, Sun, Way};
 use crate::state::State;
 use crate::surface::Surface;
 use crate::survey::Polygon;
@@ -21,47 +23,6 @@ impl Task {
     pub const PLAN: Self = Self::new("Flight plan").of_flight();
 }
 
-/// A plan with what was asked for, and what the window needs of it.
-pub struct MadePlan {
-    /// What it is of.
-    pub asked: AskedPlan,
-    /// Without what was changed by hand.
-    base: Arc<Plan>,
-    /// The plan.
-    pub plan: Arc<Plan>,
-    /// The ways through it, one a battery; empty without a take-off.
-    pub ways: Vec<Way>,
-    /// Why there is none although there is a take-off.
-    pub no_way: Option<String>,
-    /// How fast they are flown.
-    pub pace: Pace,
-    /// What is to be said beside the numbers.
-    pub warnings: Vec<String>,
-    /// Areas and way as lines of the picture.
-    lines: Vec<PlannedLine>,
-}
-
-impl MadePlan {
-    /// All of it as lines of the picture.
-    pub fn lines(&self, selected: Option<usize>) -> Vec<PlannedLine> {
-        let mut lines = self.lines.clone();
-        lines.extend(lines::photos(&self.plan, selected));
-        lines
-    }
-}
-
-impl MadePlan {
-    /// How many minutes a photo is taken after the take-off of its battery, and which share of the battery that is, where
-    /// one was stated. `None` without a way.
-    pub fn flown_at(&self, photo: usize) -> Option<(f64, Option<f64>)> {
-        let has = |way: &&Way| way.points.iter().any(|point| point.photo == Some(photo));
-        let way = self.ways.iter().find(has)?;
-        let seconds = way.seconds_to(photo, &self.pace)?;
-        let share = self.pace.battery.map(|battery| seconds / battery);
-        Some((seconds / 60.0, share))
-    }
-}
-
 /// What a plan is made over.
 struct Over {
     name: String,
@@ -69,6 +30,7 @@ struct Over {
     /// The flight's first camera, where it has one.
     camera: Option<Camera>,
     unit: LengthUnit,
+    crs: Option<String>,
 }
 
 impl State {
@@ -86,6 +48,7 @@ impl State {
             surface: parts.surface.clone(),
             camera: parts.cameras.first().cloned(),
             unit: parts.unit,
+            crs: open.files.crs.clone(),
         };
         let before = open.planning.made.clone();
         let wish = asked.clone();
@@ -175,7 +138,26 @@ fn made(
         plan: &plan,
         ways: &ways,
         pace,
+        sun: None,
     });
+    let sun = asked.when.as_deref().map(|when| {
+        progress.stage("where the sun stands");
+        let crs = over.crs.as_deref().ok_or_else(|| {
+            let what = "nobody says in which coordinate system the flight's places are";
+            Fault::new(what, "set it under Flight")
+        });
+        let [min, max] = extent(plan.area.corners());
+        let sun = Sun::at(
+            when,
+            ((min + max) / 2.0).extend(0.0),
+            &Crs::understand(crs?)?,
+        )?;
+        Ok((sun, plan.shadows(&sun)))
+    });
+    let (sun, no_sun) = match sun.transpose() {
+        Ok(sun) => (sun, None),
+        Err::<_, Fault>(fault) => (None, Some(fault.to_string())),
+    };
     let mut lines = lines::areas(&plan);
     lines.extend(ways.iter().flat_map(|way| lines::way(way, &plan)));
     Ok(MadePlan {
@@ -185,6 +167,8 @@ fn made(
         ways,
         no_way,
         pace,
+        sun,
+        no_sun,
         warnings,
         lines,
     })

@@ -5,6 +5,7 @@
 //! asked     what the engineer asks for, with what she moved by hand: undo goes over it
 //! command   what she does on the page
 //! applying  does that
+//! made      the plan that came of it
 //! making    the plan, as a job, whenever something else is asked for
 //! lines     the plan as lines of the picture
 //! saving    mission and table as files
@@ -16,6 +17,7 @@ pub mod applying;
 mod asked;
 mod command;
 mod lines;
+mod made;
 mod making;
 mod saving;
 
@@ -25,7 +27,7 @@ use glam::DVec2;
 
 pub use asked::{AskedPlan, Edit, Handle};
 pub use command::{PlanStep, PlanTool};
-pub use making::MadePlan;
+pub use made::MadePlan;
 
 use crate::state::history::History;
 

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::{MadePlan, PlanStep};
 use crate::command::{Command, Destination};
-use crate::exports::{MissionFormat, PlanReport, plan_csv, plan_json, write_missions};
+use crate::exports::{
+    FlightSheet, MissionFormat, PlanReport, flight_sheet, plan_csv, plan_json, write_missions,
+};
 use crate::fault::Fault;
 use crate::files::{self, Kind};
 use crate::formats::FileError;
@@ -48,6 +50,7 @@ impl State {
         let told = Told {
             name,
             drone: asked.drone.and_then(|drone| drone.codes),
+            unit: open.flight().parts().unit,
             speed: asked.speed,
             settle: asked.settle,
         };
@@ -98,7 +101,7 @@ impl State {
         });
     }
 
-    /// Writes the plan's table; asks before a file is replaced.
+    /// Writes the plan's table, or the page to print; asks before a file is replaced.
     pub(super) fn save_plan_table(&mut self, to: Destination) {
         let Some(made) = self.plan_to_save() else {
             return;
@@ -114,14 +117,24 @@ impl State {
             plan: &made.plan,
             ways: &made.ways,
             pace: made.pace,
+            sun: made.sun.as_ref().map(|(sun, shadows)| (sun, shadows)),
         };
-        let is_json = to
-            .path
-            .extension()
-            .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
-        let text = match is_json {
-            true => plan_json(&report).map_err(|error| error.to_string()),
-            false => plan_csv(&report).map_err(|error| error.to_string()),
+        let ending = |wanted: &str| {
+            let ending = to.path.extension();
+            ending.is_some_and(|ending| ending.eq_ignore_ascii_case(wanted))
+        };
+        let sheet = FlightSheet {
+            report: &report,
+            camera: &made.plan.camera,
+            drone: made.asked.drone.map(|drone| drone.title),
+            settle: made.asked.settle,
+            crs: open.files.crs.as_deref(),
+            warnings: &made.warnings,
+        };
+        let text = match () {
+            () if ending("html") => flight_sheet(&sheet).map_err(|fault| fault.to_string()),
+            () if ending("json") => plan_json(&report).map_err(|error| error.to_string()),
+            () => plan_csv(&report).map_err(|error| error.to_string()),
         };
         let text = match text {
             Ok(text) => text,

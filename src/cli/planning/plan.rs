@@ -16,14 +16,14 @@ use crate::cli::outputs::NamedAnswerArguments;
 use crate::cli::planning::areas::Areas;
 use crate::cli::planning::sheet::SheetArguments;
 use crate::exports::{self, FlightSheet, MissionFormat, PlanReport};
-use crate::fault::Fault;
+use crate::fault::{Fault, one_line};
 use crate::files::Kind;
 use crate::formats::{FileError, read_camera};
 use crate::geodesy::Crs;
 use crate::geometry::extent;
 use crate::jobs::Progress;
 use crate::opening::Opened;
-use crate::plan::{self, Drone, Pace, Pattern, Plan, Positioning, Size, Told, Way, Wish};
+use crate::plan::{self, Drone, Pace, Pattern, Plan, Positioning, Size, Sun, Told, Way, Wish};
 use crate::units::LengthUnit;
 
 #[derive(Debug, Args)]
@@ -93,6 +93,9 @@ pub(in crate::cli) struct PlanArguments {
     /// Minutes in the air that a battery lasts: a longer way becomes several missions, NAME-battery-1 and so on.
     #[arg(long, value_name = "MINUTES", value_parser = positive, requires = "take_off")]
     battery: Option<f64>,
+    /// When it is flown, as 2026-06-01T10:00+02:00: where the sun stands then, and what lies in shadow.
+    #[arg(long, value_name = "TIME")]
+    sun: Option<String>,
     /// Write the mission to this file, for the ground station that its ending names: .kmz (DJI), .plan
     /// (QGroundControl), .waypoints (Mission Planner), .csv (Litchi), .kml or .geojson. May be given several times.
     #[arg(long, value_name = "FILE", requires = "take_off")]
@@ -230,6 +233,14 @@ pub(in crate::cli) fn plan(
     };
     let camera = camera(arguments, &opened)?;
     let mut warnings = Vec::new();
+    if let (Some(said), Some(own)) = (&arguments.crs, &opened.crs)
+        && said != own
+    {
+        let own = one_line(own);
+        warnings.push(format!(
+            "--crs {said} is taken; the flight itself says {own}"
+        ));
+    }
     if arguments.camera.is_none() && arguments.drone.is_some() {
         warnings.push(
             "the focal length is the maker's nominal one: scales may be off by 2 %; --camera takes a calibration".to_owned(),
@@ -273,6 +284,16 @@ pub(in crate::cli) fn plan(
             Way::through(&plan, &parts.surface, place, &pace).map_err(in_flight)?
         }
     };
+    let sun = match &arguments.sun {
+        None => None,
+        Some(when) => {
+            progress.stage("where the sun stands");
+            let [min, max] = extent(plan.area.corners());
+            let sun = Sun::at(when, ((min + max) / 2.0).extend(0.0), &crs()?);
+            let sun = sun.map_err(|fault| format!("sun: {fault}"))?;
+            Some((sun, plan.shadows(&sun)))
+        }
+    };
     let report = PlanReport {
         flight: &parts.name,
         world: unit,
@@ -280,6 +301,7 @@ pub(in crate::cli) fn plan(
         plan: &plan,
         ways: &ways,
         pace,
+        sun: sun.as_ref().map(|(sun, shadows)| (sun, shadows)),
     };
     let text = arguments.answer.deliver(
         &outputs,
@@ -294,6 +316,7 @@ pub(in crate::cli) fn plan(
         let told = Told {
             name: parts.name.clone(),
             drone: arguments.drone().and_then(|drone| drone.codes),
+            unit,
             speed: arguments.speed,
             settle: arguments.settle,
         };

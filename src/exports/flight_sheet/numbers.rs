@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::FlightSheet;
-use crate::flight_plan::PlanReport;
+use crate::flight_plan::{PlanReport, sun_in_words};
 use crate::geodesy::Crs;
 use crate::measured::percent;
 use crate::numbers::{four_digits, significant_digits};
@@ -54,6 +54,9 @@ pub(super) fn numbers(sheet: &FlightSheet<'_>) -> Vec<(String, String)> {
     if plan.cover.widest_gap > 0.0 {
         let gap = number(plan.cover.widest_gap);
         said.say("Widest gap", format!("{gap} {unit}"));
+    }
+    if let Some(words) = sun_in_words(report) {
+        said.say("Sun", words);
     }
     let clearance = plain(plan.wish.clearance);
     said.say(

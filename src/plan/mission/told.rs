@@ -9,6 +9,10 @@ use super::{DroneCodes, Fence, Finish, Height, Mission, PhotoOf, Stop, TakeOff, 
 use crate::fault::Fault;
 use crate::geodesy::{Crs, Geographic};
 use crate::plan::{Plan, Way};
+use crate::units::LengthUnit;
+
+/// Units that differ by less are one: feet and US survey feet differ by 2e-6, metres at UTM's coordinates.
+const SAME_UNIT: f64 = 1e-9;
 
 /// What the mission is told beside the way.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +21,8 @@ pub struct Told {
     pub name: String,
     /// DJI's numbers of the drone, where they are known.
     pub drone: Option<DroneCodes>,
+    /// The unit of the surface's coordinates.
+    pub unit: LengthUnit,
     /// Metres a second between stops.
     pub speed: f64,
     /// Seconds between the gimbal's arrival and the shot.
@@ -27,13 +33,23 @@ pub struct Told {
 /// that of the plan: nothing, or the number of the battery.
 ///
 /// # Errors
-/// Where a place of a way lies where the coordinate system does not hold.
+/// Where the coordinate system counts in another unit than the surface, or a place of a way lies where it does not hold.
 pub fn missions(
     plan: &Plan,
     ways: &[Way],
     crs: &Crs,
     told: &Told,
 ) -> Result<Vec<(String, Mission)>, Fault> {
+    let counted = crs.unit_metres();
+    if (told.unit.metres() / counted - 1.0).abs() > SAME_UNIT {
+        let what = format!(
+            "the surface's coordinates are in {}, and {} counts in units of {counted} m",
+            told.unit,
+            crs.name()
+        );
+        let remedy = "state the unit and the system that the surface is in";
+        return Err(Fault::new(what, remedy));
+    }
     let numbered = ways.iter().zip(1..).map(|(way, number)| {
         let battery = match ways.len() {
             0 | 1 => String::new(),

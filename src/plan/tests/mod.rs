@@ -6,6 +6,7 @@ use super::*;
 use crate::camera::Distortion;
 use crate::geodesy::{Crs, Geographic};
 use crate::surface::Cloud;
+use crate::units::LengthUnit;
 
 fn camera() -> Camera {
     Camera {
@@ -319,10 +320,11 @@ fn a_mission_is_told_in_degrees() {
     let told = Told {
         name: "pile".to_owned(),
         drone: None,
+        unit: LengthUnit::Metre,
         speed: 4.0,
         settle: 1.0,
     };
-    let (_, mission) = missions(&plan, &[way.clone()], &crs, &told)
+    let (_, mission) = missions(&plan, std::slice::from_ref(&way), &crs, &told)
         .unwrap()
         .remove(0);
     assert_eq!(mission.stops.len(), way.points.len());
@@ -365,12 +367,17 @@ fn a_mission_over_feet_is_told_in_metres() {
     let told = Told {
         name: String::new(),
         drone: None,
+        unit: LengthUnit::UsSurveyFoot,
         speed: 4.0,
         settle: 1.0,
     };
-    let (_, mission) = missions(&plan, &[way.clone()], &crs, &told)
+    let (_, mission) = missions(&plan, std::slice::from_ref(&way), &crs, &told)
         .unwrap()
         .remove(0);
+    // A system in metres is not that of the surface.
+    let metres = Crs::understand("EPSG:32632").unwrap();
+    let refused = missions(&plan, std::slice::from_ref(&way), &metres, &told).unwrap_err();
+    assert!(refused.what.contains("us-ft"), "{refused}");
     let foot = 1200.0 / 3937.0;
     for (stop, point) in mission.stops.iter().zip(&way.points) {
         let expected = (point.place.z - 100.0) * foot;
@@ -438,6 +445,7 @@ fn what_is_kept_out_of_is_flown_around() {
     let told = Told {
         name: String::new(),
         drone: None,
+        unit: LengthUnit::Metre,
         speed: 4.0,
         settle: 1.0,
     };

@@ -27,7 +27,7 @@ fn ground(random: &mut Random) -> Cloud {
         .map(|_| {
             let length = random.number(20.0, 90.0);
             let angle = random.number(0.0, 6.3);
-            let way = DVec2::from_angle(angle) * 6.283 / length;
+            let way = DVec2::from_angle(angle) * std::f64::consts::TAU / length;
             [
                 way.x,
                 way.y,

@@ -30,7 +30,7 @@ use cloud_use::cloud_use;
 use control_list::control_list;
 use from_photos::from_photos;
 use georeference::{georeference, save_georeferenced};
-use planning::{mission, plan_table};
+use planning::{PlanFile, mission, plan_table};
 use save_measured::{add_layer, save_measured, volume_base};
 
 /// Draws the small window that is open, and the question before losing changes.
@@ -49,6 +49,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::Map => "Export map",
             Asking::Mission => "Save mission",
             Asking::PlanTable => "Save table of the plan",
+            Asking::PlanSheet => "Save page for the pilot",
             Asking::AddDistributions => "Add size distributions",
             Asking::PasteTable => "Paste table",
             Asking::AddEffort => "Add times of steps",
@@ -86,7 +87,8 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::Picture => picture(state, ui, commands),
                     Asking::Map => map(state, ui, commands),
                     Asking::Mission => mission(state, ui, commands),
-                    Asking::PlanTable => plan_table(state, ui, commands),
+                    Asking::PlanTable => plan_table(PlanFile::Table, state, ui, commands),
+                    Asking::PlanSheet => plan_table(PlanFile::Sheet, state, ui, commands),
                     Asking::AddDistributions => add_distributions(state, ui, commands),
                     Asking::PasteTable => paste(state, ui, commands),
                     Asking::AddEffort => add_effort(state, ui, commands),

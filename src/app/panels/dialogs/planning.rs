@@ -32,17 +32,45 @@ pub(super) fn mission(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
     }
 }
 
-pub(super) fn plan_table(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+/// What is written of a plan beside its mission.
+#[derive(Clone, Copy)]
+pub(super) enum PlanFile {
+    /// Every photo, as CSV or JSON.
+    Table,
+    /// A page to print.
+    Sheet,
+}
+
+pub(super) fn plan_table(
+    file: PlanFile,
+    state: &State,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
     let Some(open) = &state.open else {
         return;
     };
-    ui.label("Every photo with what it will show, as 'fragscale plan' writes it: .csv, or .json.");
-    let start = proposed(open, Some("plan.csv"));
-    let browse = [("Browse…", Dialog::new_file("Save table", "plan.csv"))];
+    let (what, dialog, name, write) = match file {
+        PlanFile::Table => (
+            "Every photo with what it will show, as 'fragscale plan' writes it: .csv, or .json.",
+            Dialog::new_file("Save table", "plan.csv"),
+            "plan.csv",
+            "Write table",
+        ),
+        PlanFile::Sheet => (
+            "Map, numbers, checklist and photos, to print from a browser: .html.",
+            Dialog::new_file("Save page", "plan.html"),
+            "plan.html",
+            "Write page",
+        ),
+    };
+    ui.label(what);
+    let start = proposed(open, Some(name));
+    let browse = [("Browse…", dialog)];
     let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
     ui.separator();
     let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new("Write table"));
+    let button = ui.add_enabled(path.is_some(), egui::Button::new(write));
     if let Some(path) = path
         && (button.clicked() || entered)
     {

@@ -5,7 +5,7 @@ use egui::{ComboBox, Ui};
 use super::found::found;
 use crate::command::{Asking, Command};
 use crate::open_flight::OpenFlight;
-use crate::panels::field::{combo_box, number_field};
+use crate::panels::field::{combo_box, hinted_field, number_field};
 use crate::plan::{Drone, Pattern, Positioning, Size};
 use crate::planning::{AskedPlan, PlanStep, PlanTool};
 use crate::state::State;
@@ -58,6 +58,11 @@ pub fn asked_of_plan(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
                         "Save table…",
                         Asking::PlanTable,
                         "Every photo with what it will show, as CSV or JSON",
+                    ),
+                    (
+                        "Save page…",
+                        Asking::PlanSheet,
+                        "For the pilot, to print: map, numbers, checklist, photos",
                     ),
                 ] {
                     let button = ui.add_enabled(is_there, egui::Button::new(name));
@@ -155,6 +160,16 @@ fn fields(state: &State, open: &OpenFlight, asked: &mut AskedPlan, ui: &mut Ui) 
         if let Some(minutes) = number("Battery", hover, battery, "min", ui) {
             asked.battery = (minutes > 0.0).then_some(minutes);
         }
+        ui.label("Flown at");
+        let hover = "Where the sun stands then, and what lies in shadow: a time with its difference from UTC, as \
+                     2026-06-01T10:00+02:00";
+        let when = asked.when.clone().unwrap_or_default();
+        let hint = "a time, for the sun";
+        let width = ui.available_width().clamp(80.0, 220.0);
+        if let Some(typed) = hinted_field(ui, "Flown at", hover, &when, hint, width) {
+            asked.when = Some(typed.trim().to_owned()).filter(|typed| !typed.is_empty());
+        }
+        ui.end_row();
     });
 }
 

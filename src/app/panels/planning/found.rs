@@ -60,6 +60,11 @@ pub(super) fn found(state: &State, open: &OpenFlight, ui: &mut Ui, commands: &mu
             rows.push(("Batteries", made.ways.len().to_string()));
         }
     }
+    if let Some((sun, shadows)) = &made.sun {
+        let [high, from] = [sun.elevation, sun.azimuth];
+        rows.push(("Sun", format!("{high:.0}° high, from {from:.0}°")));
+        rows.push(("In shadow", crate::exports::percent(shadows.area)));
+    }
     let rows = rows
         .into_iter()
         .map(|(name, said)| vec![name.to_owned(), said]);
@@ -75,6 +80,9 @@ pub(super) fn found(state: &State, open: &OpenFlight, ui: &mut Ui, commands: &mu
         ui.colored_label(ui.visuals().error_fg_color, why);
     } else if made.ways.is_empty() {
         ui.weak("Set the take-off to see the way, its time, and to write a mission.");
+    }
+    if let Some(why) = &made.no_sun {
+        ui.colored_label(ui.visuals().error_fg_color, why);
     }
     for warning in &made.warnings {
         ui.colored_label(ui.visuals().warn_fg_color, warning);

@@ -64,6 +64,11 @@ pub fn planned_photos(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
         if let Some(shared) = made.plan.cover.shared.get(place) {
             rows.push(("Shared with others", crate::exports::percent(*shared)));
         }
+        if let Some((_, shadows)) = &made.sun
+            && let Some(share) = shadows.photos.get(place)
+        {
+            rows.push(("In shadow", crate::exports::percent(*share)));
+        }
         let rows = rows
             .into_iter()
             .map(|(name, said)| vec![name.to_owned(), said]);

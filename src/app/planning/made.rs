@@ -1,0 +1,53 @@
+//! A plan that was made, with what the window needs of it.
+
+use std::sync::Arc;
+
+use super::asked::AskedPlan;
+use super::lines;
+use crate::plan::{Pace, Plan, Shadows, Sun, Way};
+use crate::render::PlannedLine;
+
+/// A plan with what was asked for, and what the window needs of it.
+pub struct MadePlan {
+    /// What it is of.
+    pub asked: AskedPlan,
+    /// Without what was changed by hand.
+    pub(super) base: Arc<Plan>,
+    /// The plan.
+    pub plan: Arc<Plan>,
+    /// The ways through it, one a battery; empty without a take-off.
+    pub ways: Vec<Way>,
+    /// Why there is none although there is a take-off.
+    pub no_way: Option<String>,
+    /// How fast they are flown.
+    pub pace: Pace,
+    /// Where the sun stands then, and what lies in shadow, where a time was stated.
+    pub sun: Option<(Sun, Shadows)>,
+    /// Why that is not known although a time was stated.
+    pub no_sun: Option<String>,
+    /// What is to be said beside the numbers.
+    pub warnings: Vec<String>,
+    /// Areas and way as lines of the picture.
+    pub(super) lines: Vec<PlannedLine>,
+}
+
+impl MadePlan {
+    /// All of it as lines of the picture.
+    pub fn lines(&self, selected: Option<usize>) -> Vec<PlannedLine> {
+        let mut lines = self.lines.clone();
+        lines.extend(lines::photos(&self.plan, selected));
+        lines
+    }
+}
+
+impl MadePlan {
+    /// How many minutes a photo is taken after the take-off of its battery, and which share of the battery that is, where
+    /// one was stated. `None` without a way.
+    pub fn flown_at(&self, photo: usize) -> Option<(f64, Option<f64>)> {
+        let has = |way: &&Way| way.points.iter().any(|point| point.photo == Some(photo));
+        let way = self.ways.iter().find(has)?;
+        let seconds = way.seconds_to(photo, &self.pace)?;
+        let share = self.pace.battery.map(|battery| seconds / battery);
+        Some((seconds / 60.0, share))
+    }
+}
