@@ -217,7 +217,7 @@ fn photos_are_changed_by_hand() {
         (
             photo.name.clone(),
             photo.target,
-            photo.forecast.clone().expect("a forecast"),
+            photo.forecast.expect("a forecast"),
         )
     };
     let (name, target, _) = of(&desk);
