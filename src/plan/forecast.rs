@@ -8,6 +8,9 @@ use crate::jobs::Progress;
 use crate::scale::{FieldGrid, FittedScale, ImageKind, ScaleField};
 use crate::surface::Surface;
 
+/// The outline has a point at every so many cells along the edges: 16 and some to a side are enough to see it by.
+const EVERY: usize = 4;
+
 /// What a photo will show (contract, section 7), of the undistorted image. Scales are in pixels per world unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Forecast {
@@ -76,12 +79,11 @@ fn outline(field: &ScaleField) -> Vec<DVec3> {
         Some(pose.center + pose.rotation * camera.direction_undistorted(pixel) * depth)
     };
     let (last_column, last_row) = (grid.columns - 1, grid.rows - 1);
-    let top = (0..=last_column).map(|column| ([column, 0], DVec2::NEG_Y));
-    let right = (0..=last_row).map(|row| ([last_column, row], DVec2::X));
-    let bottom = (0..=last_column)
-        .rev()
-        .map(|column| ([column, last_row], DVec2::Y));
-    let left = (0..=last_row).rev().map(|row| ([0, row], DVec2::NEG_X));
+    let every = |last: u32| (0..=last).step_by(EVERY);
+    let top = every(last_column).map(|column| ([column, 0], DVec2::NEG_Y));
+    let right = every(last_row).map(|row| ([last_column, row], DVec2::X));
+    let bottom = every(last_column).map(|from| ([last_column - from, last_row], DVec2::Y));
+    let left = every(last_row).map(|from| ([0, last_row - from], DVec2::NEG_X));
     let around = top.chain(right).chain(bottom).chain(left);
     around
         .filter_map(|(cell, onto)| point(cell, onto))

@@ -211,7 +211,7 @@ fn photos_are_changed_by_hand() {
     let before = count(&desk);
     desk.press(Modifiers::NONE, Key::ArrowDown);
     desk.press(Modifiers::NONE, Key::ArrowDown);
-    assert_eq!(desk.open().planning.selected, Some(1));
+    assert_eq!(desk.open().planning.selected(), Some(1));
     let of = |desk: &Desk| {
         let (_, photo) = desk.open().planning.photo().expect("a photo");
         (

@@ -114,7 +114,7 @@ actions! {
                     PlanTool::Select if planning.through => {
                         Some(Command::Plan(PlanStep::ToggleThrough))
                     }
-                    PlanTool::Select => planning.selected.map(|_| Command::Plan(PlanStep::Select(None))),
+                    PlanTool::Select => planning.selected().map(|_| Command::Plan(PlanStep::Select(None))),
                     tool => Some(Command::Plan(PlanStep::Tool(tool))),
                 };
             }

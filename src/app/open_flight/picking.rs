@@ -51,14 +51,12 @@ impl OpenFlight {
             }
             Purpose::Plan if self.planning.tool == PlanTool::Select => {
                 let made = self.planning.made.clone();
-                self.planning.selected = made.and_then(|made| {
+                let photo = made.and_then(|made| {
                     let photos = made.plan.photos.iter();
-                    photo_at(
-                        &picked,
-                        photos.map(|photo| (&photo.pose, &made.plan.camera)),
-                    )
+                    let photos = photos.map(|photo| (&photo.pose, &made.plan.camera));
+                    photo_at(&picked, photos)
                 });
-                self.planning.through &= self.planning.selected.is_some();
+                self.planning.select(photo);
             }
             Purpose::Plan => {
                 if let Some(point) = point {

@@ -149,17 +149,14 @@ impl Planning {
                 self.drawing.pop();
             }
             PlanStep::Finish => self.finish(),
-            PlanStep::Select(photo) => {
-                self.selected = photo;
-                self.through &= photo.is_some();
-            }
+            PlanStep::Select(photo) => self.select(photo),
             PlanStep::SelectBy(by) => {
                 let count = self.made.as_ref().map_or(0, |made| made.plan.photos.len());
                 let next = match self.selected {
                     None => 0,
                     Some(place) => place.saturating_add_signed(by as isize),
                 };
-                self.selected = count.checked_sub(1).map(|last| next.min(last));
+                self.select(count.checked_sub(1).map(|last| next.min(last)));
             }
             PlanStep::ToggleThrough => self.through = !self.through && self.selected.is_some(),
             PlanStep::Drag(handle, to) => {

@@ -65,12 +65,7 @@ impl State {
             };
             let planning = &mut open.planning;
             match made {
-                Ok(made) => {
-                    let count = made.plan.photos.len();
-                    planning.selected = planning.selected.filter(|place| *place < count);
-                    planning.refused = None;
-                    planning.made = Some(Arc::new(made));
-                }
+                Ok(made) => planning.take(made),
                 Err(fault) => planning.refused = Some((asked, fault.to_string())),
             }
         });

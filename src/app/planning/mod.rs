@@ -29,6 +29,7 @@ pub use asked::{AskedPlan, Edit, Handle};
 pub use command::{PlanStep, PlanTool};
 pub use made::MadePlan;
 
+use crate::render::PlannedLine;
 use crate::state::history::History;
 
 /// The flight plan over a flight's surface.
@@ -47,7 +48,10 @@ pub struct Planning {
     /// The corners that were clicked so far, of an area that is being drawn.
     pub drawing: Vec<DVec2>,
     /// The photo that is looked at, by its place in the plan.
-    pub selected: Option<usize>,
+    selected: Option<usize>,
+    /// The plan as lines of the picture, with that photo above the others: made anew when one of both changes, and not in
+    /// each frame.
+    lines: Arc<Vec<PlannedLine>>,
     /// Whether the viewport shows what that photo will.
     pub through: bool,
 }
@@ -68,6 +72,32 @@ impl Planning {
     pub fn refused(&self) -> Option<&str> {
         let (asked, why) = self.refused.as_ref()?;
         (Some(asked) == self.now()).then_some(why.as_str())
+    }
+
+    /// The place in the plan of the photo that is looked at.
+    pub fn selected(&self) -> Option<usize> {
+        self.selected
+    }
+
+    /// The plan as lines of the picture.
+    pub fn lines(&self) -> Arc<Vec<PlannedLine>> {
+        self.lines.clone()
+    }
+
+    /// Looks at another photo, or at none.
+    pub(crate) fn select(&mut self, photo: Option<usize>) {
+        let count = self.made.as_ref().map_or(0, |made| made.plan.photos.len());
+        self.selected = photo.filter(|place| *place < count);
+        self.through &= self.selected.is_some();
+        let lines = self.made.as_ref().map(|made| made.lines(self.selected));
+        self.lines = Arc::new(lines.unwrap_or_default());
+    }
+
+    /// Takes what was made; the same photo is looked at.
+    fn take(&mut self, made: MadePlan) {
+        self.made = Some(Arc::new(made));
+        self.refused = None;
+        self.select(self.selected);
     }
 
     /// The photo that is looked at.

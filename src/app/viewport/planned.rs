@@ -1,7 +1,5 @@
 //! The flight plan over the surface: its lines in the picture, and handles for what is dragged over the ground.
 
-use std::sync::Arc;
-
 use egui::{Color32, CursorIcon, Rect, Sense, Stroke, vec2};
 use glam::{DVec2, DVec3};
 
@@ -46,7 +44,7 @@ pub(super) fn show_planned(open: &OpenFlight, show: &mut Show) {
         return;
     };
     if !planning.through {
-        show.planned_lines = Arc::new(made.lines(planning.selected));
+        show.planned_lines = planning.lines();
     }
     let terrain = &made.plan.terrain;
     let mut corners = planning.drawing.clone();

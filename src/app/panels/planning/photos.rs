@@ -92,7 +92,7 @@ pub fn planned_photos(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
 fn walk(open: &OpenFlight, made: &MadePlan, ui: &mut Ui, commands: &mut Vec<Command>) {
     let planning = &open.planning;
     let count = made.plan.photos.len();
-    let mut place = planning.selected.map_or(0, |place| place + 1);
+    let mut place = planning.selected().map_or(0, |place| place + 1);
     let before = place;
     ui.horizontal(|ui| {
         ui.spacing_mut().slider_width = (ui.available_width() - 70.0).clamp(60.0, 400.0);
@@ -143,7 +143,7 @@ fn table(
     ui: &mut Ui,
     commands: &mut Vec<Command>,
 ) {
-    let selected = open.planning.selected;
+    let selected = open.planning.selected();
     let id = ui.scope_id().with("planned row");
     let before: Option<Option<usize>> = ui.data(|data| data.get_temp(id));
     let mut table = TableBuilder::new(ui)
