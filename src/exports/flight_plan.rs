@@ -210,7 +210,7 @@ pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
     if let (Some(at), true) = (plan.cover.gap_at, plan.has_wide_gap()) {
         let gap = significant_digits(plan.cover.widest_gap, 2);
         said.push(format!(
-            "photos leave a gap {gap} {world} across at ({:.1}, {:.1}): give more overlap, or fly it by hand",
+            "photos leave a gap {gap} {world} across at ({:.1}, {:.1}): give more overlap, fill gaps, or fly it by hand",
             at.x, at.y
         ));
     }

@@ -71,6 +71,8 @@ use patterns::{Ground, MOST};
 
 /// Pixels of the terrain along the shorter side of a footprint.
 const FINENESS: f64 = 24.0;
+/// So many photos more than there are fill gaps at most.
+const FILLING: u64 = 10;
 /// Of a photo that shows so much of the surface nobody asks for the rest.
 const NEARLY_ALL: f64 = 0.99;
 
@@ -221,6 +223,32 @@ impl Plan {
         let mut plan = self.clone();
         plan.photos.insert(at, photo);
         plan.cover = Cover::of(&plan.photos, &plan.camera, &plan.area, &plan.terrain);
+        Ok(plan)
+    }
+
+    /// The same plan with a photo more in the middle of the widest gap, again and again, as long as gaps are wider than was
+    /// wished and each such photo shows more of the area. These photos share more with others than was wished; photos are
+    /// named anew, in the order in which they are flown. A gap that cannot be photographed stays, and ends it.
+    ///
+    /// # Errors
+    /// Where the work was cancelled.
+    pub fn with_gaps_filled(&self, surface: &Surface, progress: &Progress) -> Result<Self, Fault> {
+        progress.stage("filling gaps");
+        let mut plan = self.clone();
+        let most = self.photos.len() as u64 + FILLING;
+        for done in 0..most {
+            progress.advance(done, most)?;
+            let Some(gap) = plan.cover.gap_at.filter(|_| plan.has_wide_gap()) else {
+                break;
+            };
+            match plan.with_photo(gap, surface, &Progress::default()) {
+                Ok(next) if next.cover.covered > plan.cover.covered => plan = next,
+                _ => break,
+            }
+        }
+        for (photo, number) in plan.photos.iter_mut().zip(1..) {
+            photo.name = name(number);
+        }
         Ok(plan)
     }
 

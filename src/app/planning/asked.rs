@@ -17,6 +17,8 @@ pub struct AskedPlan {
     pub size: Size,
     /// 0 to under 1; `None` is the pattern's usual one.
     pub overlap: Option<f64>,
+    /// Whether gaps are filled with photos more.
+    pub fill_gaps: bool,
     /// Degrees below the horizon, of the paper's pattern.
     pub tilt: f64,
     /// Degrees off the normal of the ground, of the slope pattern.
@@ -76,6 +78,7 @@ impl AskedPlan {
             pattern: Pattern::default(),
             size,
             overlap: None,
+            fill_gaps: false,
             tilt: USUAL_TILT,
             off_normal: USUAL_OFF_NORMAL,
             drone,

@@ -102,7 +102,11 @@ fn made(
                 }
             };
             let wish = asked.wish(metres).map_err(no_area)?;
-            Arc::new(Plan::new(&over.surface, &camera, area, wish, progress)?)
+            let plan = Plan::new(&over.surface, &camera, area, wish, progress)?;
+            Arc::new(match asked.fill_gaps {
+                true => plan.with_gaps_filled(&over.surface, progress)?,
+                false => plan,
+            })
         }
     };
     // What was done by hand is not done again where it is more of the same.

@@ -45,6 +45,9 @@ pub(in crate::cli) struct PlanArguments {
     /// How much a photo shares with the next, in percent of its width and height; else 0, of a survey 70.
     #[arg(long, value_name = "PERCENT")]
     overlap: Option<f64>,
+    /// Fill gaps between photos with photos more, which share more with others than --overlap says.
+    #[arg(long)]
+    fill_gaps: bool,
     /// The camera's axis below the horizon, of the paper's pattern, degrees.
     #[arg(long, value_name = "DEGREES", default_value_t = plan::USUAL_TILT)]
     tilt: f64,
@@ -270,7 +273,11 @@ pub(in crate::cli) fn plan(
         warnings.extend(said);
         wish.keep_out.extend(areas);
     }
-    let plan = Plan::new(&parts.surface, &camera, area, wish, progress).map_err(in_flight)?;
+    let mut plan = Plan::new(&parts.surface, &camera, area, wish, progress).map_err(in_flight)?;
+    if arguments.fill_gaps {
+        let filled = plan.with_gaps_filled(&parts.surface, progress);
+        plan = filled.map_err(in_flight)?;
+    }
     let pace = Pace::of(
         arguments.speed,
         arguments.settle,

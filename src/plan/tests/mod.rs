@@ -553,3 +553,32 @@ fn a_wall_throws_its_shadow() {
     });
     assert!(min < 0.01 && max > 0.2, "{min} {max}");
 }
+
+/// Waves leave gaps between photos that lie edge to edge; filled, none is wider than was wished, but for the photos that are
+/// refused, and names are in the order of the flight.
+#[test]
+fn gaps_are_filled() {
+    let surface = surface(|place| 4.0 * (place.x / 9.0).sin() * (place.y / 7.0).cos());
+    let before = plan(&surface, 50.0, wish(Pattern::Slope));
+    assert!(before.has_wide_gap(), "{}", before.cover.widest_gap);
+    let after = before
+        .with_gaps_filled(&surface, &Progress::default())
+        .unwrap();
+    assert!(!after.has_wide_gap(), "{}", after.cover.widest_gap);
+    assert!(after.photos.len() > before.photos.len());
+    assert!(after.cover.covered > before.cover.covered);
+    let names: Vec<&str> = after
+        .photos
+        .iter()
+        .map(|photo| photo.name.as_str())
+        .collect();
+    assert!(names.is_sorted(), "{names:?}");
+    // The photos that were there stay as they are.
+    let stays = |photo: &PlannedPhoto| after.photos.iter().any(|other| other.pose == photo.pose);
+    assert!(before.photos.iter().all(stays));
+    // None is wide: nothing is done.
+    let again = after
+        .with_gaps_filled(&surface, &Progress::default())
+        .unwrap();
+    assert_eq!(again.photos, after.photos);
+}

@@ -119,6 +119,10 @@ fn fields(state: &State, open: &OpenFlight, asked: &mut AskedPlan, ui: &mut Ui) 
         if let Some(percent) = number("Overlap", hover, overlap, "%", ui) {
             asked.overlap = Some(percent.clamp(0.0, 95.0) / 100.0);
         }
+        ui.label("");
+let fill = ui.checkbox(&mut asked.fill_gaps, "Fill gaps");
+fill.on_hover_text("With photos more, which share more with others than the overlap says");
+ui.end_row();
         match asked.pattern {
             Pattern::Paper => {
                 let hover = "The camera's axis below the horizon: 90 looks straight down";
