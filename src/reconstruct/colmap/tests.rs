@@ -2,8 +2,11 @@
 //! through the real program: `crate::tests`, and the README's table of engines.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
+use std::process::Command;
+use std::thread;
 use std::time::{Duration, Instant};
 
 use super::*;
@@ -52,6 +55,14 @@ fn colmap(folder: &Path) -> Colmap {
     let path = folder.join("colmap");
     fs::write(&path, SCRIPT).unwrap();
     fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    // A child that another test starts in this moment has the file open for writing, until it runs something else.
+    let is_busy = || {
+        let started = Command::new(&path).arg("help").output();
+        started.is_err_and(|error| error.kind() == ErrorKind::ExecutableFileBusy)
+    };
+    while is_busy() {
+        thread::sleep(Duration::from_millis(5));
+    }
     Colmap {
         program: Program::at(&path).unwrap(),
     }
