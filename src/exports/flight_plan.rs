@@ -24,6 +24,8 @@ pub struct PlanReport<'a> {
     pub ways: &'a [Way],
     /// How fast they are flown.
     pub pace: Pace,
+    /// Whether the camera is only known by its maker's field of view.
+    pub is_nominal: bool,
     /// Where the sun stands then, and what lies in shadow, where the time is known.
     pub sun: Option<(&'a Sun, &'a Shadows)>,
 }
@@ -191,12 +193,16 @@ pub(crate) fn sun_in_words(report: &PlanReport<'_>) -> Option<String> {
 pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
     let PlanReport { plan, world, .. } = report;
     let mut said = Vec::new();
+    if report.is_nominal {
+        let text = "the focal length is the maker's nominal one: scales may be off by 2 %; a calibrated camera is surer";
+        said.push(text.to_owned());
+    }
     let count =
         |wrong: &dyn Fn(usize) -> bool| (0..plan.photos.len()).filter(|n| wrong(*n)).count();
     let troubled = count(&|number| !plan.troubles(number).is_empty());
     if troubled > 0 {
         said.push(format!(
-            "{troubled} of {} photos do not hold what was asked for; the table says why",
+            "{troubled} of {} photos do not hold what was asked for; each says why",
             plan.photos.len()
         ));
     }

@@ -98,6 +98,12 @@ pub fn flown_warnings(report: &FlownReport<'_>) -> Vec<String> {
             missing.len()
         ));
     }
+    if 2 * missing.len() > report.planned.len() {
+        said.push(
+            "most planned photos were not taken: look whether this flight is of that mission"
+                .to_owned(),
+        );
+    }
     let unplanned = report.flown.unplanned.iter();
     let unplanned: Vec<String> = unplanned
         .filter_map(|photo| report.photos.get(*photo))

@@ -36,7 +36,7 @@ pub fn pile(surface: &Surface, progress: &Progress) -> Result<Polygon, Fault> {
     let terrain = Terrain::of(surface, over, size / ACROSS, progress)?;
     let none = || {
         let what = "no pile stands out of the floor around it";
-        Fault::new(what, "draw the area: --area with the corners of a polygon")
+        Fault::new(what, "draw the area (--area on the command line)")
     };
     let floor = floor(&terrain).ok_or_else(none)?;
     let raster = terrain.raster();

@@ -57,7 +57,7 @@ pub use photo::{PlannedPhoto, Refused};
 pub use steadiness::{PoseErrors, Positioning};
 pub use sun::{Shadows, Sun};
 pub use terrain::{GroundPlane, Terrain, ground_at};
-pub use way::{Pace, USUAL_SETTLE, USUAL_SPEED, Way, WayPoint};
+pub use way::{MOST_SPEED, Pace, USUAL_SETTLE, USUAL_SPEED, Way, WayPoint};
 pub use wish::{Size, USUAL_CLEARANCE, USUAL_OFF_NORMAL, USUAL_TILT, Wish};
 
 use crate::camera::Camera;
@@ -111,6 +111,7 @@ impl Plan {
         progress: &Progress,
     ) -> Result<Self, Fault> {
         let distance = distance(camera, &wish)?;
+        are_near(&wish.keep_out, surface, distance)?;
         is_not_too_many(camera, &area, &wish, distance)?;
         progress.stage("looking at the ground");
         let terrain = terrain_of(surface, camera, &area, (&wish, distance), progress)?;
@@ -142,7 +143,7 @@ impl Plan {
             .map(|photo| photos[photo].clone())
             .collect();
         for (photo, number) in photos.iter_mut().zip(1..) {
-            photo.name = name(number);
+            photo.name = photo_name(number);
         }
         progress.stage("what each photo will show");
         let count = photos.len() as u64;
@@ -211,7 +212,7 @@ impl Plan {
             .iter()
             .filter_map(|photo| photo.name.get(1..)?.parse().ok());
         let number: usize = numbers.max().unwrap_or(0) + 1;
-        photo.name = name(number);
+        photo.name = photo_name(number);
         let at = way::cheapest(
             &self
                 .photos
@@ -247,7 +248,7 @@ impl Plan {
             }
         }
         for (photo, number) in plan.photos.iter_mut().zip(1..) {
-            photo.name = name(number);
+            photo.name = photo_name(number);
         }
         Ok(plan)
     }
@@ -314,7 +315,7 @@ impl Plan {
                 if off > within {
                     let percent = off / pixels * 100.0;
                     troubles.push(format!(
-                        "scales are up to {percent:.0} % off the wished one"
+                        "98 % of its scales are only within {percent:.0} % of the wished one"
                     ));
                 }
             }
@@ -335,7 +336,7 @@ impl Plan {
 }
 
 /// What a photo of this number is called.
-fn name(number: usize) -> String {
+fn photo_name(number: usize) -> String {
     format!("P{number:03}")
 }
 
@@ -373,6 +374,27 @@ fn none(refused: &[Refused]) -> Fault {
         Some(first) => format!("no photo of the area can be taken: {}", first.why),
     };
     Fault::new(what, "try another scale, another area, or another drone")
+}
+
+/// An area to keep out of that lies elsewhere protects nobody: its coordinates are wrong.
+fn are_near(keep_out: &[Polygon], surface: &Surface, distance: f64) -> Result<(), Fault> {
+    let bounds = surface.bounds();
+    let around = bounds.size().truncate().max_element() + distance;
+    for (area, number) in keep_out.iter().zip(1..) {
+        let [min, max] = extent(area.corners());
+        let is_near = max.cmpge(bounds.min.truncate() - around).all()
+            && min.cmple(bounds.max.truncate() + around).all();
+        if !is_near {
+            let middle = (min + max) / 2.0;
+            let what = format!(
+                "area {number} to keep out of is nowhere near the surface: it lies around ({:.1}, {:.1})",
+                middle.x, middle.y
+            );
+            let remedy = "check its coordinates, and in a file of a map that longitudes come first";
+            return Err(Fault::new(what, remedy));
+        }
+    }
+    Ok(())
 }
 
 fn too_many() -> Fault {

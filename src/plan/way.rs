@@ -50,6 +50,8 @@ const SHOT: f64 = 2.0;
 const PULL: f64 = 2.0;
 /// Metres a second between photos.
 pub const USUAL_SPEED: f64 = 4.0;
+/// No drone for photos flies faster, metres a second.
+pub const MOST_SPEED: f64 = 25.0;
 /// Seconds that a drone waits at a photo, for the gimbal to settle.
 pub const USUAL_SETTLE: f64 = 2.0;
 

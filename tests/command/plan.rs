@@ -313,6 +313,16 @@ fn what_is_kept_out_of_is_a_fence() {
     let fence = &written["geoFence"]["polygons"][0];
     assert_eq!(fence["inclusion"], false);
     assert_eq!(fence["polygon"].as_array().unwrap().len(), 4);
+    // Latitude and longitude swapped, or another zone: nobody would be kept out.
+    let far = planned(
+        &flight,
+        &["--keep-out", "5400090,450090;5400110,450090;5400110,450110"],
+    );
+    let error = String::from_utf8_lossy(&far.stderr).into_owned();
+    assert_eq!(far.status.code(), Some(1));
+    assert!(error.contains("nowhere near the surface"), "{error}");
+    let fast = planned(&flight, &["--speed", "1e308"]);
+    assert!(String::from_utf8_lossy(&fast.stderr).contains("at most 25 m/s"));
     let inside = planned(
         &flight,
         &["--keep-out", "450010,5400010;450030,5400010;450020,5400040"],

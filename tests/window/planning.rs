@@ -248,6 +248,13 @@ fn photos_are_changed_by_hand() {
     assert!(desk.open().planning.through);
     desk.press(Modifiers::NONE, Key::Escape);
     assert!(!desk.open().planning.through);
+    // Planned anew, photos have other names: what was done by hand cannot stay, and that is said.
+    assert!(!desk.logged("by hand is gone"));
+    desk.fill("Clearance", "6");
+    assert!(desk.logged("by hand is gone"));
+    assert_eq!(count(&desk), before);
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(count(&desk), before + 1);
     desk.click(Role::Button, "As planned");
     assert_eq!(count(&desk), before);
 }
@@ -279,6 +286,8 @@ fn what_cannot_be_is_said_and_taken_back() {
         desk.open().planning.refused()
     );
     assert!(desk.shows(Role::Button, "Plan again"));
+    // Nothing of the plan before.
+    assert!(!desk.says("Photographed") && !desk.says("P001"));
     desk.press(Modifiers::COMMAND, Key::Z);
     assert!(desk.open().planning.is_of_now());
     // A mission needs a take-off.

@@ -7,8 +7,8 @@ use super::{PlanStep, PlanTool, Planning};
 use crate::open_flight::OpenFlight;
 use crate::plan::{Drone, Size};
 use crate::size_distributions::Page;
-use crate::state::State;
 use crate::state::history::History;
+use crate::state::{Severity, State};
 use crate::survey::Polygon;
 use crate::tasks::Task;
 
@@ -40,8 +40,15 @@ impl State {
                 open.planning.step(step);
                 // Nobody wants the other one any more; of what is dragged each is made to its end.
                 let now = open.planning.asked.as_ref().map(|asked| asked.now());
-                if now != before.as_ref() && before.is_some() {
+                if let (Some(before), Some(now)) = (before, now)
+                    && before != *now
+                {
+                    let lost = !before.edits.is_empty() && now.is_other_ground(&before);
                     self.work.cancel(Task::PLAN);
+                    if lost {
+                        let text = "planned anew: what was changed of single photos by hand is gone; undo brings it back";
+                        self.say(Severity::Warning, text);
+                    }
                 }
             }
         }

@@ -137,6 +137,7 @@ fn made(
         plan: &plan,
         ways: &ways,
         pace,
+        is_nominal: asked.drone.is_some(),
         sun: None,
     });
     let sun = asked.when.as_deref().map(|when| {

@@ -117,6 +117,7 @@ impl State {
             plan: &made.plan,
             ways: &made.ways,
             pace: made.pace,
+            is_nominal: made.asked.drone.is_some(),
             sun: made.sun.as_ref().map(|(sun, shadows)| (sun, shadows)),
         };
         let ending = |wanted: &str| {

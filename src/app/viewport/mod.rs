@@ -130,7 +130,10 @@ impl Viewport {
             }
         }
         match state.page {
-            Page::Plan => planned::handles(open, &scene, ui, commands),
+            Page::Plan => {
+                planned::frame(open, &scene, ui);
+                planned::handles(open, &scene, ui, commands);
+            }
             _ => clip_handles(open, &scene, ui, commands),
         }
         point(state, open, &scene, ui, &response, commands);

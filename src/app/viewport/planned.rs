@@ -43,7 +43,7 @@ pub(super) fn show_planned(open: &OpenFlight, show: &mut Show) {
     let Some(made) = &planning.made else {
         return;
     };
-    if !planning.through {
+    if !planning.through && planning.refused().is_none() {
         show.planned_lines = planning.lines();
     }
     let terrain = &made.plan.terrain;
@@ -82,6 +82,46 @@ fn on_ground(ray: &Ray, from: DVec3, terrain: &Terrain) -> Option<DVec2> {
         }
     }
     place
+}
+
+/// Darkens what a photo that is looked through does not show.
+pub(super) fn frame(open: &OpenFlight, scene: &Scene, ui: &egui::Ui) {
+    let planning = &open.planning;
+    let (Some((_, photo)), Some(made), true) = (planning.photo(), &planning.made, planning.through)
+    else {
+        return;
+    };
+    let camera = &made.plan.camera;
+    let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+    let corner = |pixel: DVec2| {
+        let direction = photo.pose.rotation * camera.direction_undistorted(pixel);
+        let point = photo.pose.center + direction * photo.distance;
+        Some(scene.screen(scene.view.project(point, scene.size())?))
+    };
+    let (Some(first), Some(last)) = (corner(DVec2::ZERO), corner(size)) else {
+        return;
+    };
+    let (whole, inside) = (scene.place, Rect::from_two_pos(first, last));
+    let painter = ui.painter().with_clip_rect(whole);
+    let dark = Color32::from_black_alpha(150);
+    let middle = |left: f32, right: f32| {
+        Rect::from_min_max(
+            egui::pos2(left, inside.top()),
+            egui::pos2(right, inside.bottom()),
+        )
+    };
+    for beside in [
+        Rect::from_min_max(whole.min, egui::pos2(whole.right(), inside.top())),
+        Rect::from_min_max(egui::pos2(whole.left(), inside.bottom()), whole.max),
+        middle(whole.left(), inside.left()),
+        middle(inside.right(), whole.right()),
+    ] {
+        if beside.is_positive() {
+            painter.rect_filled(beside, 0.0, dark);
+        }
+    }
+    let stroke = Stroke::new(1.0, Color32::WHITE);
+    painter.rect_stroke(inside, 0.0, stroke, egui::StrokeKind::Inside);
 }
 
 /// Draws the handles, and drags them.
@@ -149,7 +189,7 @@ pub(super) fn handles(
                 egui::Align2::CENTER_TOP,
                 "take-off",
                 13.0,
-                color,
+                ui.visuals().strong_text_color(),
                 ui,
             );
         }

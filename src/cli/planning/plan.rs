@@ -31,7 +31,12 @@ pub(in crate::cli) struct PlanArguments {
     #[command(flatten)]
     flight: FlightArguments,
     /// The scale that each photo is to have, as '20 px/cm'.
-    #[arg(long, value_name = "N px/UNIT", required_unless_present = "height")]
+    #[arg(
+        long,
+        value_name = "N px/UNIT",
+        required_unless_present = "height",
+        allow_hyphen_values = true
+    )]
     scale: Option<PixelScale>,
     /// How far it may be off anywhere in a photo, as '2 px/cm'; else a tenth of it.
     #[arg(long, value_name = "N px/UNIT", requires = "scale")]
@@ -88,13 +93,13 @@ pub(in crate::cli) struct PlanArguments {
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     take_off: Option<DVec2>,
     /// Metres a second between photos.
-    #[arg(long, value_name = "M/S", value_parser = positive, default_value_t = plan::USUAL_SPEED)]
+    #[arg(long, value_name = "M/S", value_parser = speed, allow_hyphen_values = true, default_value_t = plan::USUAL_SPEED)]
     speed: f64,
     /// Seconds that the drone waits at a photo, for the gimbal to settle.
-    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = plan::USUAL_SETTLE)]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true, default_value_t = plan::USUAL_SETTLE)]
     settle: f64,
     /// Minutes in the air that a battery lasts: a longer way becomes several missions, NAME-battery-1 and so on.
-    #[arg(long, value_name = "MINUTES", value_parser = positive, requires = "take_off")]
+    #[arg(long, value_name = "MINUTES", value_parser = positive, allow_hyphen_values = true, requires = "take_off")]
     battery: Option<f64>,
     /// When it is flown, as 2026-06-01T10:00+02:00: where the sun stands then, and what lies in shadow.
     #[arg(long, value_name = "TIME")]
@@ -120,6 +125,15 @@ fn positive(text: &str) -> Result<f64, String> {
     let number: Option<f64> = text.trim().parse().ok();
     let number = number.filter(|number| *number > 0.0 && number.is_finite());
     number.ok_or_else(|| "give a number above zero".to_owned())
+}
+
+/// Metres a second that a drone flies.
+fn speed(text: &str) -> Result<f64, String> {
+    let number = positive(text)?;
+    let flies = number <= plan::MOST_SPEED;
+    flies
+        .then_some(number)
+        .ok_or_else(|| format!("give at most {} m/s", plan::MOST_SPEED))
 }
 
 pub(super) fn drone_values() -> PossibleValuesParser {
@@ -244,11 +258,6 @@ pub(in crate::cli) fn plan(
             "--crs {said} is taken; the flight itself says {own}"
         ));
     }
-    if arguments.camera.is_none() && arguments.drone.is_some() {
-        warnings.push(
-            "the focal length is the maker's nominal one: scales may be off by 2 %; --camera takes a calibration".to_owned(),
-        );
-    }
     let area = match area {
         Some(area) => {
             let (area, said) = area.one_in_world("area", crs)?;
@@ -308,6 +317,7 @@ pub(in crate::cli) fn plan(
         plan: &plan,
         ways: &ways,
         pace,
+        is_nominal: arguments.camera.is_none() && arguments.drone.is_some(),
         sun: sun.as_ref().map(|(sun, shadows)| (sun, shadows)),
     };
     let text = arguments.answer.deliver(

@@ -95,6 +95,7 @@ fn sheet(world: LengthUnit, with_take_off: bool) -> Sheet {
         plan: &plan,
         ways: &ways,
         pace,
+        is_nominal: false,
         sun: None,
     };
     let sheet = FlightSheet {

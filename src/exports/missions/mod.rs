@@ -155,6 +155,15 @@ pub fn write_missions(
             }
         }
     }
+    if let Some(place) = missions
+        .iter()
+        .find_map(|(_, mission)| mission.take_off.as_ref())
+    {
+        said.push(format!(
+            "the drone takes off at {:.6}, {:.6} (latitude, longitude): look whether that is the place",
+            place.latitude, place.longitude
+        ));
+    }
     // None of them is written where one may not be.
     for (path, _) in &named {
         files::has_folder(path)

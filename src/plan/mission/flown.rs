@@ -18,7 +18,7 @@ use crate::surface::Surface;
 /// A photo as it was planned.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedPose {
-    /// Its name in the mission; where it has none, its number, from 1.
+    /// Its name in the mission; where it has none, that of its number as a plan has it.
     pub name: String,
     /// In the world.
     pub pose: Pose,
@@ -120,7 +120,9 @@ pub fn planned_poses(
             };
         let center = point.truncate().extend(below + stop.height.metres / unit);
         planned.push(PlannedPose {
-            name: photo.name.clone().unwrap_or_else(|| number.to_string()),
+            // As plans call them, for climbs are stops without a photo.
+            name: (photo.name.clone())
+                .unwrap_or_else(|| crate::plan::photo_name(planned.len() + 1)),
             pose: pose(stop, pitch, center, crs, place).ok_or_else(|| {
                 let what = format!("stop {number} does not say where the camera looks");
                 Fault::new(what, "give a mission with headings and gimbal pitches")

@@ -6,7 +6,7 @@ use super::found::found;
 use crate::command::{Asking, Command};
 use crate::open_flight::OpenFlight;
 use crate::panels::field::{combo_box, hinted_field, number_field};
-use crate::plan::{Drone, Pattern, Positioning, Size};
+use crate::plan::{Drone, MOST_SPEED, Pattern, Positioning, Size};
 use crate::planning::{AskedPlan, PlanStep, PlanTool};
 use crate::state::State;
 use crate::tasks::Task;
@@ -153,7 +153,7 @@ ui.end_row();
         }
         let hover = "Between photos";
         if let Some(speed) = number("Speed", hover, asked.speed, "m/s", ui) {
-            asked.speed = speed.clamp(0.1, 25.0);
+            asked.speed = speed.clamp(0.1, MOST_SPEED);
         }
         let hover = "How long the drone waits at a photo, for the gimbal to settle";
         if let Some(settle) = number("Wait", hover, asked.settle, "s", ui) {
@@ -161,7 +161,7 @@ ui.end_row();
         }
         let hover = "Minutes in the air: a longer way becomes several missions. 0 does not ask";
         let battery = asked.battery.unwrap_or(0.0);
-        if let Some(minutes) = number("Battery", hover, battery, "min", ui) {
+        if let Some(minutes) = number("Battery", hover, battery, "min (0: any)", ui) {
             asked.battery = (minutes > 0.0).then_some(minutes);
         }
         ui.label("Flown at");
@@ -235,7 +235,7 @@ fn places(open: &OpenFlight, asked: &mut AskedPlan, ui: &mut Ui, commands: &mut 
     let planning = &open.planning;
     let mut tool = |tool: PlanTool, text: &str, hover: &str, ui: &mut Ui| {
         let is_taken = planning.tool == tool;
-        let button = ui.add(egui::Button::selectable(is_taken, text));
+        let button = ui.add(egui::Button::new(text).selected(is_taken));
         button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_taken, text));
         if button.on_hover_text(hover).clicked() {
             commands.push(Command::Plan(PlanStep::Tool(tool)));

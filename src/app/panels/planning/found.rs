@@ -21,6 +21,8 @@ pub(super) fn found(state: &State, open: &OpenFlight, ui: &mut Ui, commands: &mu
         {
             commands.push(Command::Plan(PlanStep::Make));
         }
+        // The numbers of another plan would be taken for those of this one.
+        return;
     } else if state.work.is_running(Task::PLAN) {
         ui.horizontal(|ui| {
             ui.spinner();

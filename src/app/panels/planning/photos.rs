@@ -20,8 +20,13 @@ pub fn planned_photos(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
     let Some(open) = &state.open else {
         return;
     };
-    let Some(made) = &open.planning.made else {
-        ui.weak("No photos are planned yet.");
+    let Some(made) = open
+        .planning
+        .made
+        .as_ref()
+        .filter(|_| open.planning.refused().is_none())
+    else {
+        ui.weak("No photos are planned.");
         return;
     };
     let unit = state.preferences.unit();
@@ -95,7 +100,7 @@ fn walk(open: &OpenFlight, made: &MadePlan, ui: &mut Ui, commands: &mut Vec<Comm
     let mut place = planning.selected().map_or(0, |place| place + 1);
     let before = place;
     ui.horizontal(|ui| {
-        ui.spacing_mut().slider_width = (ui.available_width() - 70.0).clamp(60.0, 400.0);
+        ui.spacing_mut().slider_width = (ui.available_width() - 70.0).clamp(30.0, 400.0);
         let slider =
             ui.add(egui::Slider::new(&mut place, 0..=count).clamping(egui::SliderClamping::Always));
         slider.widget_info(|| egui::WidgetInfo::slider(true, place as f64, "Through the flight"));
@@ -150,9 +155,9 @@ fn table(
         .id_salt("planned photos")
         .striped(true)
         .sense(egui::Sense::click())
-        .column(Column::auto().at_least(54.0))
-        .columns(Column::auto().at_least(48.0), 3)
-        .column(Column::remainder().at_least(24.0));
+        .column(Column::auto().at_least(40.0))
+        .columns(Column::auto().at_least(38.0), 3)
+        .column(Column::remainder().at_least(18.0));
     if before != Some(selected)
         && let Some(row) = selected
     {
@@ -164,7 +169,10 @@ fn table(
                 ("Photo", "In the order in which they are flown"),
                 ("Top", "The fitted scale at the top edge"),
                 ("Bottom", "The fitted scale at the bottom edge"),
-                ("±", "How far it may be off by the drone's errors, percent"),
+                (
+                    "± %",
+                    "How far it may be off by the drone's errors, percent",
+                ),
                 ("", "Whether it holds what was asked for"),
             ] {
                 header.col(|ui| {
