@@ -212,6 +212,10 @@ fn photos_are_changed_by_hand() {
     desk.press(Modifiers::NONE, Key::ArrowDown);
     desk.press(Modifiers::NONE, Key::ArrowDown);
     assert_eq!(desk.open().planning.selected(), Some(1));
+    // A click on its name in the table does the same.
+    desk.click(Role::Label, "P001");
+    assert_eq!(desk.open().planning.selected(), Some(0));
+    desk.press(Modifiers::NONE, Key::ArrowDown);
     let of = |desk: &Desk| {
         let (_, photo) = desk.open().planning.photo().expect("a photo");
         (

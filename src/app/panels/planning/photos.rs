@@ -151,6 +151,8 @@ fn table(
     let selected = open.planning.selected();
     let id = ui.scope_id().with("planned row");
     let before: Option<Option<usize>> = ui.data(|data| data.get_temp(id));
+    // A click on a number is one on its row.
+    ui.style_mut().interaction.selectable_labels = false;
     let mut table = TableBuilder::new(ui)
         .id_salt("planned photos")
         .striped(true)
