@@ -9,7 +9,6 @@ use rayon::prelude::*;
 use super::PlannedPhoto;
 use super::terrain::Terrain;
 use crate::camera::Camera;
-use crate::geometry::surrounds;
 use crate::survey::Polygon;
 
 /// How photos cover an area.
@@ -45,14 +44,7 @@ impl Cover {
             others as f64 / seen.len().max(1) as f64
         });
         let shared = shared.collect();
-        let inside: Vec<bool> = (0..columns * rows)
-            .into_par_iter()
-            .map(|place| {
-                let middle = DVec2::new((place % columns) as f64, (place / columns) as f64) + 0.5;
-                let is_ground = !terrain.heights()[place].is_nan();
-                is_ground && surrounds(area.corners(), raster.world_from_pixel(middle))
-            })
-            .collect();
+        let inside = terrain.is_in(area);
         let in_area = inside.iter().filter(|inside| **inside).count();
         let is_gap: Vec<bool> = (inside.iter().zip(&counts))
             .map(|(inside, count)| *inside && *count == 0)

@@ -183,7 +183,7 @@ impl Plan {
         };
         let mut plan = self.clone();
         plan.photos[photo] = self.photo_of(place, before, surface, progress)?;
-        plan.cover = Cover::of(&plan.photos, &plan.camera, &plan.area, &plan.terrain);
+        plan.cover_again();
         Ok(plan)
     }
 
@@ -223,7 +223,7 @@ impl Plan {
         );
         let mut plan = self.clone();
         plan.photos.insert(at, photo);
-        plan.cover = Cover::of(&plan.photos, &plan.camera, &plan.area, &plan.terrain);
+        plan.cover_again();
         Ok(plan)
     }
 
@@ -259,9 +259,14 @@ impl Plan {
         let mut plan = self.clone();
         if photo < plan.photos.len() && plan.photos.len() > 1 {
             plan.photos.remove(photo);
-            plan.cover = Cover::of(&plan.photos, &plan.camera, &plan.area, &plan.terrain);
+            plan.cover_again();
         }
         plan
+    }
+
+    /// Behind a change of its photos.
+    fn cover_again(&mut self) {
+        self.cover = Cover::of(&self.photos, &self.camera, &self.area, &self.terrain);
     }
 
     /// A photo of a place that looks as another one of the plan, and is called like it.

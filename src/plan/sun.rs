@@ -11,7 +11,7 @@ use super::Plan;
 use super::cover::seen_by;
 use crate::fault::Fault;
 use crate::geodesy::Crs;
-use crate::geometry::surrounds;
+use crate::geometry::extent;
 
 /// How long terrestrial time is before that of the Earth's turning, seconds: 69 in 2020 to 2030; a second more turns the
 /// sun by nothing that is seen here.
@@ -100,10 +100,20 @@ fn utc(text: &str) -> Option<DateTime<Utc>> {
 }
 
 impl Plan {
+    /// Where the sun stands over the middle of the area at a time ([`Sun::at`]), and what then lies in shadow.
+    ///
+    /// # Errors
+    /// As [`Sun::at`].
+    pub fn sun_at(&self, when: &str, crs: &Crs) -> Result<(Sun, Shadows), Fault> {
+        let [min, max] = extent(self.area.corners());
+        let sun = Sun::at(when, ((min + max) / 2.0).extend(0.0), crs)?;
+        Ok((sun, self.shadows(&sun)))
+    }
+
     /// What lies in shadow of other ground while the sun stands there, by the pixels of the terrain; at night all of it.
     pub fn shadows(&self, sun: &Sun) -> Shadows {
-        let (terrain, raster) = (&self.terrain, self.terrain.raster());
-        let columns = raster.columns as usize;
+        let terrain = &self.terrain;
+        let columns = terrain.raster().columns as usize;
         let known = terrain
             .heights()
             .iter()
@@ -126,17 +136,13 @@ impl Plan {
             }
             dark as f64 / all.max(1) as f64
         };
-        let in_area = |place: &usize| {
-            let middle = DVec2::new((place % columns) as f64, (place / columns) as f64) + 0.5;
-            let is_ground = !terrain.heights()[*place].is_nan();
-            is_ground && surrounds(self.area.corners(), raster.world_from_pixel(middle))
-        };
+        let in_area = terrain.is_in(&self.area);
         let photos = self.photos.par_iter().map(|photo| {
             let seen = seen_by(photo, &self.camera, terrain);
             share(&mut seen.into_iter())
         });
         Shadows {
-            area: share(&mut (0..is_dark.len()).filter(in_area)),
+            area: share(&mut (0..is_dark.len()).filter(|place| in_area[*place])),
             photos: photos.collect(),
         }
     }

@@ -4,11 +4,13 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::{DMat3, DVec2, DVec3};
+use rayon::prelude::*;
 
 use crate::fault::Fault;
-use crate::geometry::Ray;
+use crate::geometry::{Ray, surrounds};
 use crate::jobs::Progress;
 use crate::surface::{MapRaster, Surface};
+use crate::survey::Polygon;
 
 /// The most pixels of the raster: 32 MB.
 const MOST: f64 = 4e6;
@@ -115,6 +117,17 @@ impl Terrain {
         let columns = self.raster.columns;
         let places = (0..self.raster.rows).flat_map(move |row| (0..columns).map(move |c| (c, row)));
         places.filter_map(|(column, row)| self.point(column, row))
+    }
+
+    /// Of each pixel, row by row, whether it has a height and its middle lies in an area.
+    pub(super) fn is_in(&self, area: &Polygon) -> Vec<bool> {
+        let columns = self.raster.columns as usize;
+        let is_in = |place: usize| {
+            let middle = DVec2::new((place % columns) as f64, (place / columns) as f64) + 0.5;
+            let is_ground = !self.heights[place].is_nan();
+            is_ground && surrounds(area.corners(), self.raster.world_from_pixel(middle))
+        };
+        (0..self.heights.len()).into_par_iter().map(is_in).collect()
     }
 
     /// The pixels with heights whose middles lie at most `reach` from a place along both axes.

@@ -72,6 +72,20 @@ impl Rows<'_> {
     }
 }
 
+/// Rows of a name and what is said of it.
+pub(super) fn pairs(id: &str, rows: Vec<(&str, String)>, ui: &mut Ui) {
+    let rows = rows.into_iter();
+    let rows = rows.map(|(name, said)| vec![name.to_owned(), said]);
+    let rows = Rows {
+        id,
+        heads: None,
+        rows: rows.collect(),
+    };
+    rows.show(ui, |ui, _, name| {
+        ui.label(name);
+    });
+}
+
 /// A text that is not broken, and can be copied.
 fn whole(ui: &mut Ui, text: &str) {
     ui.add(Label::new(text).selectable(true).extend());

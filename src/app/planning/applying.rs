@@ -119,7 +119,6 @@ impl OpenFlight {
             PlanTool::TakeOff => {
                 planning.ask(AskedPlan {
                     take_off: Some(place),
-                    edits: Vec::new(),
                     ..now
                 });
                 planning.tool = PlanTool::Select;
@@ -137,6 +136,7 @@ impl Planning {
     fn ask(&mut self, asked: AskedPlan) {
         self.dragged = None;
         if let Some(history) = &mut self.asked {
+            let asked = asked.instead_of(history.now());
             history.set(asked);
         }
     }
@@ -206,7 +206,6 @@ impl Planning {
             PlanTool::KeepOut => asked.keep_out.push(corners),
             _ => return,
         }
-        asked.edits.clear();
         self.ask(asked);
         self.tool = PlanTool::Select;
     }

@@ -108,8 +108,18 @@ impl AskedPlan {
     }
 
     /// Whether photos are planned anew for it: it is not only flown otherwise.
-    pub fn is_other_ground(&self, other: &Self) -> bool {
+    pub(super) fn is_other_ground(&self, other: &Self) -> bool {
         self.base() != other.base()
+    }
+
+    /// The same in place of another one: where photos are planned anew they have other names, and what was changed of
+    /// them by hand cannot stay.
+    #[must_use]
+    pub(super) fn instead_of(mut self, before: &Self) -> Self {
+        if self.is_other_ground(before) {
+            self.edits.clear();
+        }
+        self
     }
 
     /// As the plan takes it.
@@ -162,10 +172,6 @@ impl AskedPlan {
                 }
             }
         }
-        // Photos of other places have other names.
-        if !matches!(handle, Handle::Photo(_)) {
-            asked.edits.clear();
-        }
-        asked
+        asked.instead_of(self)
     }
 }

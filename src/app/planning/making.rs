@@ -9,9 +9,8 @@ use crate::camera::Camera;
 use crate::exports::{PlanReport, plan_warnings};
 use crate::fault::Fault;
 use crate::geodesy::Crs;
-use crate::geometry::extent;
 use crate::jobs::Progress;
-use crate::plan::{self, Pace, Plan, Sun, Way};
+use crate::plan::{self, Pace, Plan, Way};
 use crate::state::State;
 use crate::surface::Surface;
 use crate::survey::Polygon;
@@ -146,13 +145,7 @@ fn made(
             let what = "nobody says in which coordinate system the flight's places are";
             Fault::new(what, "set it under Flight")
         });
-        let [min, max] = extent(plan.area.corners());
-        let sun = Sun::at(
-            when,
-            ((min + max) / 2.0).extend(0.0),
-            &Crs::understand(crs?)?,
-        )?;
-        Ok((sun, plan.shadows(&sun)))
+        plan.sun_at(when, &Crs::understand(crs?)?)
     });
     let (sun, no_sun) = match sun.transpose() {
         Ok(sun) => (sun, None),

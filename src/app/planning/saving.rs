@@ -126,7 +126,6 @@ impl State {
         };
         let sheet = FlightSheet {
             report: &report,
-            camera: &made.plan.camera,
             drone: made.asked.drone.map(|drone| drone.title),
             settle: made.asked.settle,
             crs: open.files.crs.as_deref(),

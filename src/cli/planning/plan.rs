@@ -23,7 +23,7 @@ use crate::geodesy::Crs;
 use crate::geometry::extent;
 use crate::jobs::Progress;
 use crate::opening::Opened;
-use crate::plan::{self, Drone, Pace, Pattern, Plan, Positioning, Size, Sun, Told, Way, Wish};
+use crate::plan::{self, Drone, Pace, Pattern, Plan, Positioning, Size, Told, Way, Wish};
 use crate::units::LengthUnit;
 
 #[derive(Debug, Args)]
@@ -304,10 +304,8 @@ pub(in crate::cli) fn plan(
         None => None,
         Some(when) => {
             progress.stage("where the sun stands");
-            let [min, max] = extent(plan.area.corners());
-            let sun = Sun::at(when, ((min + max) / 2.0).extend(0.0), &crs()?);
-            let sun = sun.map_err(|fault| format!("sun: {fault}"))?;
-            Some((sun, plan.shadows(&sun)))
+            let sun = plan.sun_at(when, &crs()?);
+            Some(sun.map_err(|fault| format!("sun: {fault}"))?)
         }
     };
     let report = PlanReport {
@@ -348,7 +346,6 @@ pub(in crate::cli) fn plan(
     }
     let sheet = FlightSheet {
         report: &report,
-        camera: &camera,
         drone: arguments.drone().map(|drone| drone.title),
         settle: arguments.settle,
         crs: stated_crs,

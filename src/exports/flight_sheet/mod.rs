@@ -20,7 +20,6 @@ mod numbers;
 mod tests;
 mod words;
 
-use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::flight_plan::{PlanReport, refused_in_words};
 use crate::html_page::{self, blanks, heading, notes, paragraph};
@@ -30,8 +29,6 @@ use crate::html_page::{self, blanks, heading, notes, paragraph};
 pub struct FlightSheet<'a> {
     /// The plan and how it is to be said.
     pub report: &'a PlanReport<'a>,
-    /// The camera that is to fly.
-    pub camera: &'a Camera,
     /// The drone, as its maker writes it, where it is known.
     pub drone: Option<&'a str>,
     /// Seconds that the drone waits at a photo for its gimbal.

@@ -34,7 +34,7 @@ pub(super) fn numbers(sheet: &FlightSheet<'_>) -> Vec<(String, String)> {
     if plan.wish.overlap > 0.0 {
         said.say("Overlap", percent(plan.wish.overlap));
     }
-    let camera = sheet.camera;
+    let camera = &plan.camera;
     let pixels = format!("{} x {} px", camera.width, camera.height);
     let camera = match sheet.drone {
         Some(drone) => format!("{drone}, {pixels}"),

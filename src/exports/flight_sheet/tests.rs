@@ -6,7 +6,7 @@ use glam::DVec2;
 use roxmltree::{Document, Node};
 
 use super::*;
-use crate::camera::Distortion;
+use crate::camera::{Camera, Distortion};
 use crate::jobs::Progress;
 use crate::surface::{Cloud, Surface};
 use crate::survey::Polygon;
@@ -100,7 +100,6 @@ fn sheet(world: LengthUnit, with_take_off: bool) -> Sheet {
     };
     let sheet = FlightSheet {
         report: &report,
-        camera: &camera(),
         drone: Some("DJI Mavic 3 Enterprise, wide camera"),
         settle: 2.0,
         crs: Some("EPSG:32632"),

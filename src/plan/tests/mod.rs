@@ -97,6 +97,23 @@ fn a_way_is_cut_where_the_battery_ends() {
     assert_eq!(photos(&cut), photos(&whole));
     for way in &cut {
         assert!(way.seconds(&pace) <= 120.0);
+        // Until the last photo, and home: over it up, level to the take-off, and down. 4 m/s.
+        let last = way
+            .points
+            .iter()
+            .rev()
+            .find_map(|point| Some((point.photo?, point.place)));
+        let (photo, place) = last.unwrap();
+        let home = (way.safe_height - place.z)
+            + place.truncate().distance(take_off)
+            + (way.safe_height - way.take_off.z);
+        let seconds = way.seconds_to(photo, &pace).unwrap() + home / 4.0;
+        assert!((seconds - way.seconds(&pace)).abs() < 1e-9, "{seconds}");
+        let reached = way
+            .points
+            .iter()
+            .filter_map(|point| way.seconds_to(point.photo?, &pace));
+        assert!(reached.is_sorted());
         // The level parts, the climb and the photos, by hand.
         let level: Vec<DVec2> = [take_off]
             .into_iter()

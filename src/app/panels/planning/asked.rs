@@ -37,10 +37,6 @@ pub fn asked_of_plan(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
             fields(state, open, &mut asked, ui);
             places(open, &mut asked, ui, commands);
             if &asked != now {
-                // Photos of another plan have other names.
-                if asked.edits == now.edits && asked.is_other_ground(now) {
-                    asked.edits.clear();
-                }
                 commands.push(Command::Plan(PlanStep::Ask(Box::new(asked))));
             }
             ui.separator();

@@ -5,7 +5,7 @@ use egui::Ui;
 use crate::command::Command;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
-use crate::panels::rows::Rows;
+use crate::panels::rows::pairs;
 use crate::planning::PlanStep;
 use crate::state::State;
 use crate::tasks::Task;
@@ -67,17 +67,7 @@ pub(super) fn found(state: &State, open: &OpenFlight, ui: &mut Ui, commands: &mu
         rows.push(("Sun", format!("{high:.0}° high, from {from:.0}°")));
         rows.push(("In shadow", crate::exports::percent(shadows.area)));
     }
-    let rows = rows
-        .into_iter()
-        .map(|(name, said)| vec![name.to_owned(), said]);
-    let rows = Rows {
-        id: "numbers of the plan",
-        heads: None,
-        rows: rows.collect(),
-    };
-    rows.show(ui, |ui, _, name| {
-        ui.label(name);
-    });
+    pairs("numbers of the plan", rows, ui);
     if let Some(why) = &made.no_way {
         ui.colored_label(ui.visuals().error_fg_color, why);
     } else if made.ways.is_empty() {

@@ -7,7 +7,7 @@ use crate::command::Command;
 use crate::flight::Verdict;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
-use crate::panels::rows::Rows;
+use crate::panels::rows::pairs;
 use crate::panels::verdict::{verdict_color, verdict_sign};
 use crate::planning::{MadePlan, PlanStep};
 use crate::state::State;
@@ -74,17 +74,7 @@ pub fn planned_photos(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
         {
             rows.push(("In shadow", crate::exports::percent(*share)));
         }
-        let rows = rows
-            .into_iter()
-            .map(|(name, said)| vec![name.to_owned(), said]);
-        let rows = Rows {
-            id: "planned photo",
-            heads: None,
-            rows: rows.collect(),
-        };
-        rows.show(ui, |ui, _, name| {
-            ui.label(name);
-        });
+        pairs("planned photo", rows, ui);
         for trouble in made.plan.troubles(place) {
             ui.colored_label(ui.visuals().warn_fg_color, trouble);
         }
