@@ -79,6 +79,7 @@ pub use fragscale_core::{
     camera, control, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, picture,
     plan, raster, scale, split_mix, surface, survey, units,
 };
+pub use fragscale_delineation as delineation;
 pub use fragscale_exports as exports;
 pub use fragscale_formats as formats;
 pub use fragscale_fragmentation as fragmentation;

@@ -39,7 +39,7 @@ use serde_json::Value;
 
 use flight_arguments::FlightArguments;
 use models::{georeference, reconstruct};
-use of_photos::{map, rectify, scale_map};
+use of_photos::{delineate, map, rectify, scale_map};
 use on_surface::{profile, volume};
 use outputs::OutputArguments;
 use planning::{flown, mission, plan};
@@ -82,6 +82,9 @@ enum Command {
     ScaleMap(scale_map::ScaleMapArguments),
     /// Show a photo squarely, with one scale everywhere: onto a plane or from straight above.
     Rectify(rectify::RectifyArguments),
+    /// Outline the fragments of photos and measure each where it lies: label images, a table, the size
+    /// distribution.
+    Delineate(delineate::DelineateArguments),
     /// Draw the flight as a plan: hillshade, footprints, grid, scale bar; GeoTIFF, SVG, PDF or PNG.
     Map(map::MapArguments),
     /// Look for what makes a flight's scales wrong: places, cameras, colours that do not match.
@@ -238,6 +241,9 @@ pub fn run() -> ExitCode {
         }
         Command::ScaleMap(arguments) => {
             Box::new(move |progress| scale_map::scale_map(&arguments, progress))
+        }
+        Command::Delineate(arguments) => {
+            Box::new(move |progress| delineate::delineate(&arguments, progress))
         }
         Command::Rectify(arguments) => {
             Box::new(move |progress| rectify::rectify(&arguments, progress))

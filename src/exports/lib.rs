@@ -7,6 +7,7 @@ mod flight_plan;
 mod flight_sheet;
 mod flown_figure;
 mod flown_report;
+mod fragments;
 mod html_page;
 mod markup;
 mod measured;
@@ -30,6 +31,7 @@ use fragscale_core::{
     camera, fault, files, flight, geodesy, geometry, jobs, numbers, picture, scale, surface,
     survey, units,
 };
+use fragscale_delineation as delineation;
 use fragscale_fragmentation as fragmentation;
 
 pub use drawing::DrawingFormat;
@@ -38,6 +40,9 @@ pub use flight_plan::{PlanReport, plan_csv, plan_json, plan_table, plan_warnings
 pub use flight_sheet::{FlightSheet, flight_sheet};
 pub use flown_figure::FlownFigure;
 pub use flown_report::{FlownReport, flown_csv, flown_json, flown_table, flown_warnings};
+pub use fragments::{
+    PhotoOfFragments, curves_csv, fragments_csv, label_png, labels_png, outlines_png,
+};
 pub use measured::{
     MeasuredUnit, PointsReport, ProfileReport, VolumeReport, percent, points_csv, points_table,
     profile_csv, profile_json, profile_table, volume_csv, volume_json, volume_table,

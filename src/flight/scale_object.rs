@@ -5,8 +5,13 @@ use serde::{Deserialize, Serialize};
 
 use super::computing::unusable;
 use super::{Flight, Outcome};
+use crate::camera::Camera;
 use crate::fault::Fault;
-use crate::scale::{PlaceScale, ScaleObjectKind, Traced};
+use crate::scale::{ImageKind, PlaceScale, ScaleObjectKind, Traced};
+
+/// How far a mask reaches beyond its object, pixels: clicks and lenses are not exact, and a rim that
+/// is left would be taken for an edge of rock.
+const MASK_MARGIN_PX: f64 = 4.0;
 
 /// An object of known size that somebody traced on a photo.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +26,18 @@ pub struct ScaleObject {
     pub outline: Vec<DVec2>,
     /// Whether it is painted over in the exported photo, so that it is not taken for rock.
     pub mask: bool,
+}
+
+impl ScaleObject {
+    /// What is left out of a photo for it, pixels of that image; empty where it is not to be masked or nobody can
+    /// tell where it is.
+    pub fn left_out(&self, camera: &Camera, image: ImageKind) -> Vec<DVec2> {
+        let traced = Traced::new(camera, self.kind, self.size, &self.outline);
+        match traced {
+            Ok(traced) if self.mask => traced.region(camera, image, MASK_MARGIN_PX),
+            _ => Vec::new(),
+        }
+    }
 }
 
 /// A scale object beside what the point cloud says where it is. Scales are in pixels per world unit.

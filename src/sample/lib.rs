@@ -20,6 +20,7 @@ mod scene;
 mod sensor;
 mod sfm_cloud;
 mod sieve;
+mod training;
 mod truth;
 mod written;
 
@@ -45,6 +46,7 @@ pub use preset::{Lens, Preset, Recipe};
 pub use scene::pile::{Fragment, Pile, PilePlan};
 pub use scene::{Meeting, Scene, SceneCaster, Sphere, Thing};
 pub use sfm_cloud::CloudPlan;
+pub use training::training_photos;
 pub use written::{DrawnErrors, PoseNoise};
 
 use crate::camera::Camera;
@@ -504,7 +506,7 @@ fn take_photos(
         let jpeg = files::photo::jpeg(&photo.image, 82, &metadata).map_err(report)?;
         write(&photos.join(&shot.name), &jpeg)?;
         if options.labels {
-            let label = files::label::label_png(camera.width, camera.height, &photo.labels);
+            let label = exports::label_png(camera.width, camera.height, &photo.labels);
             let name = shot.name.replace(".jpg", ".png");
             write(&labels.join(name), &label.map_err(report)?)?;
         }

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::flight_plan::FlightPlan;
+use super::scene::fragment::BROKEN;
 use super::scene::pile::PilePlan;
 use super::scene::terrain::Terrain;
 use super::sfm_cloud::CloudPlan;
@@ -116,6 +117,8 @@ impl Preset {
                 smallest: 0.004 * k,
                 half_extent,
                 thickness: 0.0075 * k,
+                corners: BROKEN,
+                bodies: 300,
             },
             reach: half_extent * 1.6,
             flight: FlightPlan {

@@ -262,7 +262,7 @@ fn extend_chain(chain: &mut Vec<DVec2>, start: usize, point: DVec2) {
 mod tests {
     use super::*;
     use crate::random::Random;
-    use crate::scene::fragment::Body;
+    use crate::scene::fragment::{BROKEN, Body};
 
     fn cuboid(size: DVec3) -> Vec<DVec3> {
         let signs = [-0.5, 0.5];
@@ -372,7 +372,7 @@ mod tests {
         };
         let gaps: Vec<f64> = (0..25)
             .map(|seed| {
-                let body = Body::random(&mut Random::new(seed));
+                let body = Body::random(BROKEN, &mut Random::new(seed));
                 1.0 - search(body.vertices(), &hard)
             })
             .collect();
@@ -388,7 +388,7 @@ mod tests {
         let mut gaps = Vec::new();
         for seed in 0..100 {
             let mut random = Random::new(seed);
-            let body = Body::random(&mut random);
+            let body = Body::random(BROKEN, &mut random);
             let rotation = random.rotation();
             let turned: Vec<_> = body.vertices().iter().map(|v| rotation * *v).collect();
             let side = sieve_size(&turned);

@@ -50,6 +50,12 @@ pub(super) struct Doing {
 }
 
 impl ChosenPhotos {
+    /// That photo, or all of them.
+    pub(super) fn one_or_all(photo: Option<String>) -> Self {
+        let all = photo.is_none();
+        Self { photo, all }
+    }
+
     /// The places of the photos in the flight, whose lengths mean something.
     ///
     /// # Errors

@@ -12,10 +12,9 @@ use crate::cli::{Answer, OutputUnit};
 use crate::exports::{self, RectifiedFormat, RectifiedPhoto};
 use crate::fault::Fault;
 use crate::files::Kind;
-use crate::formats::{self, FileError};
+use crate::formats::FileError;
 use crate::jobs::Progress;
 use crate::opening::Opened;
-use crate::picture;
 use crate::scale::{Onto, PixelSize};
 use crate::units::LengthUnit;
 
@@ -150,14 +149,6 @@ impl Maker<'_> {
         let (arguments, flight) = (self.arguments, &self.opened.flight);
         let parts = flight.parts();
         let photo = &parts.photos[index];
-        let file = self.opened.photo_files.get(index);
-        let Some(path) = file.and_then(|file| file.path.as_deref()) else {
-            let what = "its image file was not found";
-            return Err(Fault::new(
-                what,
-                "name the folder of the photos (--photo-folder)",
-            ));
-        };
         let onto = match (arguments.ortho, arguments.plane) {
             (true, _) => Onto::Surface,
             (_, Plane::Fit) => Onto::FittedPlane,
@@ -180,9 +171,7 @@ impl Maker<'_> {
             crs: self.opened.crs.as_deref(),
         };
         // Read late: whatever is refused is refused without it.
-        let bytes = formats::read_bytes(path).map_err(|error| error.fault)?;
-        let image = picture::decode(&bytes)?;
-        drop(bytes);
+        let image = self.opened.pixels_of(index)?;
         Ok(Made {
             picture: rectified.bytes(&image, self.format)?,
             world_file: rectified.world_file(),

@@ -11,10 +11,6 @@ use crate::numbers::significant_digits;
 use crate::scale::{ImageKind, Traced};
 use crate::units::LengthUnit;
 
-/// How far a mask reaches beyond its object, pixels: clicks and lenses are not exact, and a rim that
-/// is left would be taken for an edge of rock.
-const MASK_MARGIN_PX: f64 = 4.0;
-
 /// A scale object on one of the photos.
 pub(super) struct PhotoObject<'a> {
     object: &'a ScaleObject,
@@ -43,11 +39,8 @@ pub(super) fn of_photos<'a>(
             continue;
         };
         let camera = flight.camera(&photos[place]);
-        let region = |image: ImageKind| match &compared.traced {
-            Ok(traced) if object.mask => traced.region(camera, image, MASK_MARGIN_PX),
-            _ => Vec::new(),
-        };
-        let (region, region_as_shot) = (region(flight.parts().image), region(ImageKind::AsShot));
+        let region = object.left_out(camera, flight.parts().image);
+        let region_as_shot = object.left_out(camera, ImageKind::AsShot);
         of_photos[place].push(PhotoObject {
             object,
             compared,

@@ -21,13 +21,17 @@ mod surface;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use image::RgbImage;
+
 use crate::evidence::compare_all_colours;
 use crate::fault::Fault;
 use crate::files::{FileError, Inputs, Recording};
 use crate::flight::{Flight, FlightFile, FlightSettings, Limits, LookedUp, Review};
+use crate::formats;
 use crate::jobs::Progress;
 use crate::origin::FlightOrigin;
 use crate::photo_files::PhotoFile;
+use crate::picture;
 use crate::surface::{Cloud, UpAxis};
 
 /// What the user says beside the flight itself.
@@ -101,6 +105,23 @@ impl Opened {
         let mut warnings = self.warnings.clone();
         warnings.extend(self.looked_up.warnings_of(self.origin.path.display()));
         warnings
+    }
+
+    /// The pixels of a photo, read now.
+    ///
+    /// # Errors
+    /// Where its file was not found or cannot be read.
+    pub fn pixels_of(&self, photo: usize) -> Result<RgbImage, Fault> {
+        let file = self.photo_files.get(photo);
+        let Some(path) = file.and_then(|file| file.path.as_deref()) else {
+            let what = "its image file was not found";
+            return Err(Fault::new(
+                what,
+                "name the folder of the photos (--photo-folder)",
+            ));
+        };
+        let bytes = formats::read_bytes(path).map_err(|error| error.fault)?;
+        picture::decode(&bytes)
     }
 
     /// Reviews the flight: with its footprints, its scale fields, and with the colours of its photos, which takes

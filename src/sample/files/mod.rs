@@ -5,7 +5,6 @@
 pub mod calibration;
 mod exif;
 pub mod flight;
-pub mod label;
 pub mod photo;
 pub mod photo_metadata;
 pub mod reference;

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::{Appearance, Spot, between, bumped, mix, octaves, visible};
 use crate::noise::{cells, fbm, hash, ridged, smoothstep, unit};
+use crate::random::Random;
 
 /// A kind of floor. Lengths that grow with the stones are given over [`Spot::size`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +56,19 @@ pub(super) const QUARRY: Ground = Ground {
 const PEBBLES: [(f64, f64); 3] = [(0.34, 0.45), (0.14, 0.8), (0.06, 1.0)];
 
 impl Ground {
+    /// Any fines: sand, mud, dust, from a dark to a pale colour.
+    pub(super) fn random([dark, light]: [[f64; 3]; 2], random: &mut Random) -> Self {
+        Self {
+            salt: random.bits() & 0xffff,
+            dark,
+            light,
+            rough: random.range(0.05, 0.8),
+            speckle: random.range(0.05, 0.8),
+            pebbles: random.range(0.0, 0.9),
+            cracked: 0.0,
+        }
+    }
+
     pub(super) fn surface(&self, spot: &Spot) -> Appearance {
         let seed = hash(spot.fragment ^ (self.salt << 48));
         let size = spot.size.max(1e-6);

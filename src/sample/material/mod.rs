@@ -6,6 +6,7 @@ mod rock;
 use glam::{DQuat, DVec3};
 
 use crate::noise::{fbm, unit};
+use crate::random::Random;
 use ground::Ground;
 use rock::Rock;
 
@@ -116,6 +117,21 @@ impl Material {
         Self(Kind::Paint([0.52, 0.045, 0.035]))
     }
 
+    /// Any rock, of stones as large as `size`, metres, and fines: mostly those of the same rock, now and then others.
+    #[must_use]
+    pub(super) fn any(size: f64, random: &mut Random) -> [Self; 2] {
+        let tints = any_tint(random);
+        let rock = Rock::random(size, tints, random);
+        let tints = if random.uniform() < 0.6 {
+            let bright = random.range(-0.5, 0.6).exp();
+            tints.map(|tint| tint.map(|part| part * bright))
+        } else {
+            any_tint(random)
+        };
+        let fines = Ground::random(tints, random);
+        [Self(Kind::Rock(rock)), Self(Kind::Ground(fines))]
+    }
+
     /// What the material looks like at `spot`. A function of its arguments and nothing else.
     #[must_use]
     pub(super) fn surface(&self, spot: &Spot) -> Appearance {
@@ -176,6 +192,28 @@ fn mix(a: [f64; 3], b: [f64; 3], part: f64) -> [f64; 3] {
         a1 + (b1 - a1) * part,
         a2 + (b2 - a2) * part,
     ]
+}
+
+/// A dark and a pale colour of one hue that rock has: from grey over brown, yellow and red to green and blue grey.
+fn any_tint(random: &mut Random) -> [[f64; 3]; 2] {
+    const HUES: [[f64; 3]; 7] = [
+        [1.0, 1.0, 1.0],
+        [1.0, 0.95, 0.87],
+        [1.0, 0.82, 0.60],
+        [1.0, 0.66, 0.42],
+        [1.0, 0.86, 0.45],
+        [0.86, 1.0, 0.88],
+        [0.84, 0.92, 1.0],
+    ];
+    let [one, other] = [(); 2].map(|()| {
+        let draw = (random.uniform() * HUES.len() as f64) as usize;
+        HUES[draw.min(HUES.len() - 1)]
+    });
+    let hue = mix(one, other, random.uniform());
+    let bright = 10f64.powf(random.range(-1.25, -0.35));
+    let dark = hue.map(|part| part * bright);
+    let paler = random.range(1.2, 2.6);
+    [dark, dark.map(|part| (part * paler).min(0.85))]
 }
 
 /// A draw between two numbers.

@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-use super::{Appearance, Spot, between, bumped, mix, octaves, visible};
+use super::{Appearance, Spot, any_tint, between, bumped, mix, octaves, visible};
 use crate::noise::{cells, direction, fbm, gradient_noise, hash, jitter, smoothstep, unit};
+use crate::random::Random;
 
 /// A kind of rock.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +30,8 @@ pub(super) struct Rock {
     dust_tint: [f64; 3],
     /// Radius of a worn edge over the stone's diameter.
     worn: f64,
+    /// How wet it is, 0..=1: darker, and it shines.
+    wet: f64,
 }
 
 pub(super) const GRAVEL: Rock = Rock {
@@ -50,6 +53,7 @@ pub(super) const GRAVEL: Rock = Rock {
     dust: 0.18,
     dust_tint: [0.43, 0.41, 0.37],
     worn: 0.030,
+    wet: 0.0,
 };
 
 pub(super) const BLASTED: Rock = Rock {
@@ -71,6 +75,7 @@ pub(super) const BLASTED: Rock = Rock {
     dust: 0.50,
     dust_tint: [0.355, 0.325, 0.285],
     worn: 0.018,
+    wet: 0.0,
 };
 
 pub(super) const STOCKPILE: Rock = Rock {
@@ -92,11 +97,40 @@ pub(super) const STOCKPILE: Rock = Rock {
     dust: 0.36,
     dust_tint: [0.39, 0.37, 0.33],
     worn: 0.035,
+    wet: 0.0,
 };
 
 const IRON: [f64; 3] = [0.245, 0.128, 0.058];
 
 impl Rock {
+    /// Any rock, from pale to nearly black, grey to red, fresh to dusty, dry to wet, angular to worn, with stones as
+    /// large as `size`, of a dark and a pale colour.
+    pub(super) fn random(size: f64, [hue, pale]: [[f64; 3]; 2], random: &mut Random) -> Self {
+        let other = any_tint(random);
+        // Of one quarry, or of a river that brings many.
+        let variety = random.uniform().powi(2);
+        let tint = |random: &mut Random| {
+            let own = mix(hue, other[0], variety * random.uniform());
+            let bright = random.range(-0.35, 0.35).exp();
+            own.map(|part| part * bright * random.range(0.93, 1.07))
+        };
+        let grain = size * 10f64.powf(random.range(-2.3, -1.2));
+        Self {
+            salt: random.bits() & 0xffff,
+            tints: std::array::from_fn(|_| tint(random)),
+            spread: random.range(0.05, 0.6),
+            rough: random.range(0.05, 0.75),
+            grain: [grain * 0.4, grain],
+            speckle: random.range(0.05, 0.9),
+            veined: random.range(0.0, 0.5),
+            stain: random.uniform().powi(2),
+            dust: random.range(0.0, 0.9),
+            dust_tint: mix(pale, other[1], 0.3 * random.uniform()),
+            worn: 10f64.powf(random.range(-2.0, -0.8)),
+            wet: (random.range(-1.5, 1.0)).max(0.0),
+        }
+    }
+
     pub(super) fn surface(&self, spot: &Spot) -> Appearance {
         let seed = hash(spot.fragment ^ (self.salt << 48));
         let size = spot.size.max(1e-6);
@@ -164,10 +198,12 @@ impl Rock {
         colour = mix(colour, self.dust_tint, dust * between(0.6, 1.0, seed, 9));
 
         let pits = smoothstep(-0.10, -0.55, height - 0.2 * (1.0 - border));
+        // Water fills the pores: less comes back (Twomey et al. 1986), and the film itself is a mirror.
+        colour = colour.map(|part| part * (1.0 - 0.45 * self.wet));
         Appearance {
             albedo: colour,
             normal,
-            sheen: sheen * (1.0 - dust) * (1.0 - rust),
+            sheen: sheen * (1.0 - dust) * (1.0 - rust) + 7.0 * self.wet,
             openness: 1.0 - 0.45 * pits,
         }
     }

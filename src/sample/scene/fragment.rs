@@ -19,8 +19,8 @@ use crate::sieve::sieve_size;
 
 /// No fragment has S/L below this (Kadono et al. 2015 on Fujiwara et al. 1978).
 const LEAST_RATIO: f64 = 0.2;
-/// The corners of a random body, from and to (with both).
-const CORNERS: (u32, u32) = (12, 30);
+/// The corners of a random body of broken rock, from and to (with both). More make it rounder: a hundred are a pebble.
+pub(crate) const BROKEN: (u32, u32) = (12, 30);
 /// Corners are at least this over the root of their number apart, in radians before stretching:
 /// caps around them cover a quarter of the sphere, so that there are no needles among the faces.
 const SPACING: f64 = 2.0;
@@ -69,13 +69,13 @@ pub enum BodyError {
 
 impl Body {
     /// A random fragment: L along x, I along y, S along z (its extents are the axes of the
-    /// statistics in the head of this file), 12 to 30 corners, sieve size 1. Equal states of
+    /// statistics in the head of this file), so many corners (from and to), sieve size 1. Equal states of
     /// `random` give equal bodies.
-    pub fn random(random: &mut Random) -> Self {
+    pub fn random(corners: (u32, u32), random: &mut Random) -> Self {
         // Ends with the first try: corners so far apart make a hull (a test holds it). The loop
         // stands for what cannot be proven.
         loop {
-            if let Ok(body) = Self::from_points(&random_corners(random)) {
+            if let Ok(body) = Self::from_points(&random_corners(corners, random)) {
                 return body;
             }
         }
@@ -270,14 +270,13 @@ impl Body {
 }
 
 /// Corners on an ellipsoid whose extents along x, y and z are in the ratios L : I : S.
-fn random_corners(random: &mut Random) -> Vec<DVec3> {
+fn random_corners((least, most): (u32, u32), random: &mut Random) -> Vec<DVec3> {
     // Two uniform numbers in order are uniform over the triangle.
     let (one, other) = (
         random.range(LEAST_RATIO, 1.0),
         random.range(LEAST_RATIO, 1.0),
     );
     let size = DVec3::new(1.0, one.max(other), one.min(other));
-    let (least, most) = CORNERS;
     let wanted = random
         .range(f64::from(least), f64::from(most + 1))
         .floor()
@@ -433,7 +432,7 @@ mod tests {
         let seed = Random::new(2015);
         let (mut middle, mut short, mut tries) = (0.0, 0.0, 0);
         for id in 0..BODIES {
-            let corners = random_corners(&mut seed.fork(id));
+            let corners = random_corners(BROKEN, &mut seed.fork(id));
             tries += usize::from(Body::hull(&corners).is_err());
             let body = Body::hull(&corners).expect("a body");
             assert_eq!(body.vertices().len(), corners.len());
@@ -454,8 +453,8 @@ mod tests {
 
         #[test]
         fn random_bodies_are_whole(seed: u64) {
-            let body = Body::random(&mut Random::new(seed));
-            prop_assert_eq!(&body, &Body::random(&mut Random::new(seed)));
+            let body = Body::random(BROKEN, &mut Random::new(seed));
+            prop_assert_eq!(&body, &Body::random(BROKEN, &mut Random::new(seed)));
             prop_assert!((sieve_size(body.vertices()) - 1.0).abs() < 1e-9);
             for plane in body.planes() {
                 prop_assert!(plane.normal.is_normalized() && plane.offset > 0.0);

@@ -16,9 +16,6 @@ use crate::fragmentation::Swebrec;
 use crate::jobs::Progress;
 use crate::random::Random;
 
-/// How many different bodies there are; fragments are turned and scaled copies.
-const BODIES: usize = 300;
-
 /// How many places a fragment tries.
 const PLACES: usize = 5;
 
@@ -38,6 +35,10 @@ pub struct PilePlan {
     pub half_extent: DVec2,
     /// The volume of the fragments' bodies over the area that they are strewn over.
     pub thickness: f64,
+    /// How many corners a fragment has, from and to: few are broken rock, many pebbles.
+    pub corners: (u32, u32),
+    /// How many different bodies there are; fragments are turned and scaled copies.
+    pub bodies: u64,
 }
 
 /// A fragment of the pile: a copy of a body.
@@ -70,9 +71,9 @@ impl Pile {
     pub fn strew(plan: &PilePlan, random: &mut Random, progress: &Progress) -> Result<Self, Fault> {
         progress.stage("breaking rock");
         let shapes = random.fork(1);
-        let bodies: Vec<Body> = (0..BODIES as u64)
+        let bodies: Vec<Body> = (0..plan.bodies)
             .into_par_iter()
-            .map(|index| Body::random(&mut shapes.fork(index)))
+            .map(|index| Body::random(plan.corners, &mut shapes.fork(index)))
             .collect();
         let mut fragments = draw_sizes(plan, &bodies, &mut random.fork(2))?;
         let mut floor = Heights::over(plan);
@@ -88,6 +89,13 @@ impl Pile {
             floor.drop(body, fragment, plan.half_extent, &mut drops);
         }
         Ok(Self { bodies, fragments })
+    }
+
+    /// Lets every fragment down by what is drawn for its place: it lies in fines.
+    pub(crate) fn sink(&mut self, depth: impl Fn(DVec2) -> f64) {
+        for fragment in &mut self.fragments {
+            fragment.center.z -= depth(fragment.center.truncate());
+        }
     }
 
     /// A fragment's volume in cubic metres.

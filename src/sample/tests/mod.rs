@@ -167,7 +167,7 @@ fn the_pile_follows_its_distribution() {
     };
     let random = Random::new(3);
     let bodies: Vec<_> = (0..40)
-        .map(|i| scene::fragment::Body::random(&mut random.fork(i)))
+        .map(|i| scene::fragment::Body::random(scene::fragment::BROKEN, &mut random.fork(i)))
         .collect();
     let fragments = scene::pile::draw_sizes(&plan, &bodies, &mut random.fork(99)).unwrap();
     assert!(fragments.len() > 10_000, "{}", fragments.len());

@@ -4,6 +4,10 @@ use std::io::Cursor;
 
 use image::{ImageBuffer, ImageFormat, Luma};
 
+use crate::delineation::LabelImage;
+use crate::fault::Fault;
+use crate::files::marked_png;
+
 /// A gray PNG of 16 bits a pixel; the labels row by row from the top left.
 ///
 /// # Errors
@@ -22,6 +26,27 @@ pub fn label_png(width: u32, height: u32, labels: &[u16]) -> Result<Vec<u8>, Str
         .write_to(&mut bytes, ImageFormat::Png)
         .map_err(|error| format!("{} ({error})", failed()))?;
     Ok(bytes.into_inner())
+}
+
+/// A label image as a file: 0 is fines, 65 535 what is no rock, else the fragment's number.
+///
+/// # Errors
+/// More than 65 534 fragments.
+pub fn labels_png(labels: &LabelImage) -> Result<Vec<u8>, Fault> {
+    let fragments = labels.fragments();
+    if fragments >= usize::from(u16::MAX) {
+        let what = format!("{fragments} fragments, and a label image holds 65534");
+        return Err(Fault::new(what, "take a part of the photo"));
+    }
+    // Those that are no fragments' are beyond them.
+    let numbers = labels.labels.iter();
+    let numbers: Vec<u16> = numbers
+        .map(|label| u16::try_from(*label).unwrap_or(u16::MAX))
+        .collect();
+    let (width, height) = (labels.width as u32, labels.height as u32);
+    let bytes = label_png(width, height, &numbers);
+    let bytes = bytes.map_err(|error| Fault::new(error, "report this"))?;
+    Ok(marked_png(bytes))
 }
 
 #[cfg(test)]

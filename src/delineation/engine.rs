@@ -1,0 +1,42 @@
+//! What finds the borders of fragments in a photo.
+
+use fragscale_core::fault::Fault;
+use fragscale_core::jobs::Progress;
+use image::RgbImage;
+
+use crate::choice::Scorer;
+
+/// Finds the borders of fragments in a photo, offline.
+pub trait Engine: Send + Sync {
+    /// As it is named on the command line and in files.
+    fn name(&self) -> &'static str;
+
+    /// What it sees in an undistorted photo.
+    ///
+    /// # Errors
+    /// Where the photo is none that it can take, or on cancel.
+    fn look(&self, photo: &RgbImage, progress: &Progress) -> Result<Evidence, Fault>;
+
+    /// What tells fragments from other regions by its evidence.
+    ///
+    /// # Errors
+    /// Where its numbers cannot be read.
+    fn scorer(&self) -> Result<&Scorer, Fault>;
+}
+
+/// What an engine says of every pixel of a photo, row by row from the top left, each 0 to 255.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Evidence {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// How sure it is a border: of two fragments, or of a fragment and what is none.
+    pub border: Vec<u8>,
+    /// How sure it is a fragment rather than fines or anything else; 255 where the engine cannot tell.
+    pub rock: Vec<u8>,
+    /// How far within a fragment: 0 at its border, 255 in its middle; 0 where the engine cannot tell.
+    pub middle: Vec<u8>,
+    /// How bright the photo is.
+    pub gray: Vec<u8>,
+}

@@ -1,0 +1,156 @@
+//! What the engines are measured and the score is trained with:
+//!
+//! `develop features ENGINE FOLDER OUT` writes the features of nodes of labelled photos (`FOLDER/photos`,
+//! `FOLDER/labels`) and how far each is a true fragment, for `train_score.py`.
+//!
+//! `develop score ENGINE DATA [PICTURES]` gives the agreement with outlines that people drew (`DATA/index.csv`,
+//! see shared/data/fragments), set by set, and what the best choice of nodes could reach; and the outlines
+//! as pictures.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use fragscale_core::jobs::Progress;
+use fragscale_delineation::choice::{self, Scorer, features};
+use fragscale_delineation::overlap::{self, Agreement};
+use fragscale_delineation::{Classical, Engine, LabelImage, tree};
+use image::{Rgb, RgbImage};
+
+type Failed = Box<dyn std::error::Error>;
+
+fn main() -> Result<(), Failed> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match words.as_slice() {
+        ["features", engine, folder, out] => write_features(&*engine_named(engine)?, folder, out),
+        ["score", engine, scorer, data, rest @ ..] => {
+            score(&*engine_named(engine)?, scorer, Path::new(data), rest.first().copied())
+        }
+        _ => Err("develop features ENGINE FOLDER OUT | develop score ENGINE SCORER DATA [PICTURES]".into()),
+    }
+}
+
+fn engine_named(name: &str) -> Result<Box<dyn Engine>, Failed> {
+    match name {
+        "classical" => Ok(Box::new(Classical)),
+        _ => Err("classical".into()),
+    }
+}
+
+fn labels(path: &Path) -> Result<LabelImage, Failed> {
+    let image = image::open(path)?.into_luma16();
+    let mut numbers = BTreeMap::new();
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    let labels = image.into_raw().into_iter().map(|label| {
+        let next = numbers.len() as u32 + 1;
+        if label == 0 { 0 } else { *numbers.entry(label).or_insert(next) }
+    });
+    let labels = labels.collect();
+    Ok(LabelImage { width, height, labels })
+}
+
+fn write_features(engine: &dyn Engine, folder: &str, out: &str) -> Result<(), Failed> {
+    let folder = Path::new(folder);
+    let mut photos: Vec<PathBuf> = fs::read_dir(folder.join("photos"))?
+        .map(|entry| Ok(entry?.path()))
+        .collect::<Result<_, std::io::Error>>()?;
+    photos.sort();
+    let mut out = std::io::BufWriter::new(fs::File::create(out)?);
+    let progress = Progress::default();
+    for (number, path) in photos.iter().enumerate() {
+        let name = path.file_name().ok_or("a name")?;
+        let truth = labels(&folder.join("labels").join(name))?;
+        let evidence = engine.look(&image::open(path)?.into_rgb8(), &progress)?;
+        let tree = tree::tree(&evidence, &[], &progress)?;
+        let shared = overlap::of_nodes(&tree, &truth);
+        for (place, shared) in shared.iter().enumerate() {
+            // Photo, node, parent, pixels, what it shares; then the features; as numbers of 32 bits.
+            let node = &tree.nodes[place];
+            let head = [number as f32, node.parent.map_or(-1.0, |parent| parent as f32), node.sums.area as f32, *shared as f32];
+            for value in head.into_iter().chain(features::features(&tree, place).map(|value| value as f32)) {
+                out.write_all(&value.to_le_bytes())?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn score(engine: &dyn Engine, scorer: &str, data: &Path, pictures: Option<&str>) -> Result<(), Failed> {
+    let scorer = match scorer {
+        "-" => None,
+        path => Some(Scorer::read(&fs::read_to_string(path)?).ok_or("not the numbers of a scorer")?),
+    };
+    let least_score: f64 = std::env::var("LEAST").map_or(Ok(0.3), |text| text.parse())?;
+    let mut sets: BTreeMap<String, (Agreement, Agreement, f64, usize)> = BTreeMap::new();
+    let progress = Progress::default();
+    for row in csv::Reader::from_path(data.join("index.csv"))?.records() {
+        let row = row?;
+        let (set, file) = (&row[1], &row[2]);
+        let path = data.join(set).join(file);
+        let truth = path.with_extension("labels.png");
+        if !truth.exists() && pictures.is_none() {
+            continue;
+        }
+        let photo = image::open(&path)?.into_rgb8();
+        let start = Instant::now();
+        let evidence = engine.look(&photo, &progress)?;
+        let looked = start.elapsed().as_secs_f64();
+        let tree = tree::tree(&evidence, &[], &progress)?;
+        let grown = start.elapsed().as_secs_f64();
+        let best = scorer.as_ref().map(|scorer| {
+            let scores = choice::scores(&tree, scorer);
+            choice::labelled(&tree, &choice::chosen(&tree, &scores, least_score))
+        });
+        let all = start.elapsed().as_secs_f64();
+        if !truth.exists() {
+            println!("{file}: {looked:.2} s look, {grown:.2} s tree, {all:.2} s");
+        } else {
+            let truth = labels(&truth)?;
+            // Below them the truth is not complete.
+            let least = match set { "gravel_fh" => 28, "tbm_muck" => 177, _ => 12 };
+            let complete = !matches!(set, "belt" | "muckpile_gray");
+            let shared = overlap::of_nodes(&tree, &truth);
+            let ideal = choice::labelled(&tree, &choice::chosen(&tree, &shared, 0.5));
+            let of = sets.entry(set.to_owned()).or_default();
+            of.0 = of.0.and(Agreement::of(&ideal, &truth, least, complete));
+            if let Some(best) = &best {
+                of.1 = of.1.and(Agreement::of(best, &truth, least, complete));
+            }
+            of.2 += all;
+            of.3 += tree.leaves;
+        }
+        if let Some(folder) = pictures {
+            fs::create_dir_all(folder)?;
+            let name = format!("{set}_{}", file.replace(".jpg", ".png"));
+            let mut picture = photo.clone();
+            if let Some(best) = &best {
+                outline(&mut picture, best);
+            }
+            picture.save(Path::new(folder).join(&name))?;
+            let mut seen = RgbImage::new(photo.width(), photo.height());
+            let parts = evidence.border.iter().zip(&evidence.rock).zip(&evidence.middle);
+            for (pixel, ((border, rock), middle)) in seen.pixels_mut().zip(parts) {
+                *pixel = Rgb([*border, *rock, *middle]);
+            }
+            seen.save(Path::new(folder).join(format!("seen_{name}")))?;
+        }
+    }
+    for (set, (ideal, best, seconds, leaves)) in sets {
+        println!("{set}: F1 {:.3} ({} right, {} wrong, {} missed), of the tree {:.3}; {leaves} leaves, {seconds:.1} s", best.f1(), best.right, best.wrong, best.missed, ideal.f1());
+    }
+    Ok(())
+}
+
+fn outline(picture: &mut RgbImage, labels: &LabelImage) {
+    let at = |x: usize, y: usize| labels.labels[y * labels.width + x];
+    for y in 0..labels.height - 1 {
+        for x in 0..labels.width - 1 {
+            if at(x, y) != at(x + 1, y) || at(x, y) != at(x, y + 1) {
+                picture.put_pixel(x as u32, y as u32, Rgb([255, 230, 0]));
+            }
+        }
+    }
+}

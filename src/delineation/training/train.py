@@ -1,0 +1,330 @@
+"""Trains the network that finds the borders of fragments, on simulated photos alone.
+
+    cargo run --release -p fragscale-sample --example training_photos -- TRAIN 1 160 512
+    cargo run --release -p fragscale-sample --example training_photos -- VALID 2 8 512
+    python3 train.py TRAIN VALID --to OUT [--steps 2000]
+    python3 train.py TRAIN VALID --to PATCHES --patches 500      # for train_score.py
+
+Needs torch, numpy, pillow and onnx; two cores and an hour. No photo of the world is used: the labels of
+simulated photos are exact, and their licence is ours. What lens, sensor and file do to a photo is drawn
+anew for every step: zoom, turn, light, fog, cast shadows, colour or grey, blur, motion, sharpening, noise,
+JPEG. Everything follows from the seed; on another machine the weights differ in their last digits.
+
+The network is a U-Net of five levels. In: RGB, less the photo's mean, over its standard deviation
+(both over all pixels and channels). Out, each between 0 and 1: border (a pixel beside another fragment or
+what is none), rock (a fragment rather than fines, floor, anything else), middle (0 at a fragment's border,
+1 where its largest inscribed circle has its centre).
+"""
+import argparse
+import io
+import pathlib
+import time
+
+import numpy as np
+import torch
+import torch.nn as nn
+import torch.nn.functional as F
+from PIL import Image
+
+SIDE = 256
+BATCH = 6
+# Smaller fragments are fines to a photo.
+LEAST_PIXELS = 16
+CHANNELS = [12, 24, 36, 48, 64]
+
+
+class Block(nn.Module):
+    def __init__(self, before, after):
+        super().__init__()
+        layers = []
+        for channels in (before, after):
+            layers += [nn.Conv2d(channels, after, 3, padding=1, bias=False), nn.BatchNorm2d(after), nn.ReLU()]
+        self.layers = nn.Sequential(*layers)
+
+    def forward(self, x):
+        return self.layers(x)
+
+
+class Net(nn.Module):
+    def __init__(self):
+        super().__init__()
+        c = CHANNELS
+        self.down = nn.ModuleList([Block(before, after) for before, after in zip([3] + c, c)])
+        self.up = nn.ModuleList([Block(c[i] + c[i + 1], c[i]) for i in reversed(range(len(c) - 1))])
+        self.head = nn.Conv2d(c[0], 3, 1)
+
+    def forward(self, x):
+        seen = []
+        for level, block in enumerate(self.down):
+            x = block(F.max_pool2d(x, 2) if level else x)
+            seen.append(x)
+        for block, beside in zip(self.up, reversed(seen[:-1])):
+            x = F.interpolate(x, scale_factor=2.0, mode="nearest")
+            x = block(torch.cat([beside, x], 1))
+        return self.head(x)
+
+
+def load(folder):
+    folder = pathlib.Path(folder)
+    pairs = []
+    for photo in sorted((folder / "photos").glob("*.png")):
+        label = np.array(Image.open(folder / "labels" / photo.name)).astype(np.int32)
+        pairs.append((np.array(Image.open(photo).convert("RGB")), label))
+    return pairs
+
+
+def blurred(image, kernel):
+    """Along both axes by a kernel of an odd length, or by one of two dimensions."""
+    t = torch.from_numpy(np.ascontiguousarray(image.transpose(2, 0, 1), dtype=np.float32))[:, None]
+    if kernel.ndim == 1:
+        k = torch.from_numpy(kernel.astype(np.float32))
+        r = len(kernel) // 2
+        t = F.conv2d(F.pad(t, (r, r, 0, 0), mode="reflect"), k[None, None, None, :])
+        t = F.conv2d(F.pad(t, (0, 0, r, r), mode="reflect"), k[None, None, :, None])
+    else:
+        r = kernel.shape[0] // 2
+        t = F.conv2d(F.pad(t, (r, r, r, r), mode="reflect"), torch.from_numpy(kernel.astype(np.float32))[None, None])
+    return t[:, 0].numpy().transpose(1, 2, 0)
+
+
+def gauss(sigma):
+    r = max(1, int(np.ceil(3 * sigma)))
+    k = np.exp(-0.5 * (np.arange(-r, r + 1) / max(sigma, 1e-3)) ** 2)
+    return k / k.sum()
+
+
+def slow_noise(rng, cells):
+    """Between -1 and 1, over the patch."""
+    coarse = rng.uniform(-1, 1, (cells, cells)).astype(np.float32)
+    t = torch.from_numpy(coarse)[None, None]
+    return F.interpolate(t, size=(SIDE, SIDE), mode="bicubic", align_corners=False)[0, 0].numpy()[..., None]
+
+
+def patch(pairs, rng):
+    """A random part of a random photo as a camera might have taken it, and its labels."""
+    photo, label = pairs[rng.integers(len(pairs))]
+    zoom = 2 ** rng.uniform(-1.0, 0.6)
+    side = min(int(round(SIDE / zoom)), photo.shape[0])
+    y, x = (rng.integers(0, photo.shape[0] - side + 1) for _ in range(2))
+    box = (x, y, x + side, y + side)
+    how = Image.BOX if zoom < 1 else Image.BICUBIC
+    image = np.asarray(Image.fromarray(photo).resize((SIDE, SIDE), how, box)).astype(np.float32) / 255
+    at = (np.arange(SIDE) + 0.5) * side / SIDE
+    at = at.astype(int)
+    label = label[y:y + side, x:x + side][at[:, None], at[None, :]]
+    turn, flip = rng.integers(4), rng.integers(2)
+    image, label = np.rot90(image, turn), np.rot90(label, turn)
+    if flip:
+        image, label = image[:, ::-1], label[:, ::-1]
+    image = np.ascontiguousarray(image)
+    # Light.
+    linear = image ** 2.2
+    linear = linear * np.exp(rng.uniform(0, 0.5) * slow_noise(rng, 4))
+    if rng.random() < 0.25:
+        # Something casts a shadow that is none of the pile's.
+        edge = slow_noise(rng, int(rng.integers(3, 6))) * 3 + rng.uniform(-1, 1)
+        linear = linear * (1 - rng.uniform(0.3, 0.8) / (1 + np.exp(-edge * rng.uniform(4, 40))))
+    if rng.random() < 0.3:
+        # Dust or mist.
+        veil = rng.uniform(0, 0.35) * (1 + 0.5 * slow_noise(rng, 3))
+        linear = linear * (1 - veil) + veil * rng.uniform(0.2, 0.7)
+    gains = np.exp(rng.normal(0, 0.12, 3)).astype(np.float32) * np.exp(rng.uniform(-0.6, 0.6))
+    image = np.clip(linear * gains, 0, 1) ** (1 / rng.uniform(1.6, 3.0))
+    if rng.random() < 0.25:
+        image = np.repeat(image.mean(2, keepdims=True), 3, 2)
+    elif rng.random() < 0.5:
+        gray = image.mean(2, keepdims=True)
+        image = gray + (image - gray) * rng.uniform(0.3, 2.2)
+    # Lens, motion, sensor.
+    if rng.random() < 0.6:
+        image = blurred(image, gauss(rng.uniform(0.3, 1.5)))
+    if rng.random() < 0.12:
+        r = int(rng.integers(1, 4))
+        kernel = np.zeros((2 * r + 1, 2 * r + 1))
+        angle = rng.uniform(0, np.pi)
+        for s in np.linspace(-r, r, 4 * r + 1):
+            kernel[int(round(r + s * np.sin(angle))), int(round(r + s * np.cos(angle)))] += 1
+        image = blurred(image, kernel / kernel.sum())
+    if rng.random() < 0.3:
+        image = image + rng.uniform(0.3, 1.8) * (image - blurred(image, gauss(rng.uniform(0.7, 2.0))))
+    noise = rng.normal(0, rng.uniform(0, 0.06), image.shape[:2] + ((3,) if rng.random() < 0.5 else (1,)))
+    image = np.clip(image + noise, 0, 1)
+    if rng.random() < 0.6:
+        file = io.BytesIO()
+        Image.fromarray((image * 255).astype(np.uint8)).save(file, "JPEG", quality=int(rng.integers(35, 95)))
+        image = np.asarray(Image.open(file)).astype(np.float32) / 255
+    return image.astype(np.float32), label
+
+
+def normalised(image):
+    return ((image - image.mean()) / (image.std() + 1e-3)).transpose(2, 0, 1).astype(np.float32)
+
+
+def targets(label):
+    """Border, rock and middle of a label image."""
+    label = np.ascontiguousarray(label)
+    counts = np.bincount(label.ravel())
+    label = np.where(counts[label] < LEAST_PIXELS, 0, label)
+    border = np.zeros(label.shape, bool)
+    for axis in (0, 1):
+        differs = np.diff(label, axis=axis) != 0
+        a, b = [slice(None)] * 2, [slice(None)] * 2
+        a[axis], b[axis] = slice(0, -1), slice(1, None)
+        border[tuple(a)] |= differs
+        border[tuple(b)] |= differs
+    rock = label > 0
+    # How far each pixel lies from the border, a ring at a time, over the most of its fragment.
+    far = np.zeros(label.shape, np.float32)
+    left = torch.from_numpy((rock & ~border).astype(np.float32))[None, None]
+    ring = 0
+    while left.any() and ring < 80:
+        far += left[0, 0].numpy()
+        # A square and a diamond by turns: nearly a circle.
+        if ring % 2:
+            left = -F.max_pool2d(-F.pad(left, (1, 1, 1, 1)), 3, 1)
+        else:
+            out = F.pad(left, (1, 1, 1, 1))
+            left = torch.stack([out[..., 1:-1, 1:-1], out[..., :-2, 1:-1], out[..., 2:, 1:-1], out[..., 1:-1, :-2], out[..., 1:-1, 2:]]).amin(0)
+        ring += 1
+    most = np.zeros(counts.size, np.float32)
+    np.maximum.at(most, label.ravel(), far.ravel())
+    middle = np.where(rock, far / np.maximum(most[label], 1), 0).astype(np.float32)
+    return border.astype(np.float32), rock.astype(np.float32), middle
+
+
+class Patches(torch.utils.data.IterableDataset):
+    def __init__(self, pairs, seed, steps):
+        self.pairs, self.seed, self.steps = pairs, seed, steps
+
+    def __iter__(self):
+        for step in range(self.steps):
+            rng = np.random.default_rng([self.seed, step])
+            many = [patch(self.pairs, rng) for _ in range(BATCH)]
+            many = [(normalised(image), *targets(label)) for image, label in many]
+            image, border, rock, middle = (torch.from_numpy(np.stack(part)) for part in zip(*many))
+            yield image, torch.stack([border, rock, middle], 1)
+
+
+def write_patches(pairs, seed, count, folder):
+    """Patches as photos with labels, for the training of the score."""
+    for kind in ("photos", "labels"):
+        (folder / kind).mkdir(parents=True, exist_ok=True)
+    for number in range(count):
+        image, label = patch(pairs, np.random.default_rng([seed, number]))
+        counts = np.bincount(label.ravel())
+        label = np.where(counts[label] < LEAST_PIXELS, 0, label).astype(np.uint16)
+        Image.fromarray((image * 255).round().astype(np.uint8)).save(folder / "photos" / f"{number:05}.png")
+        Image.fromarray(label).save(folder / "labels" / f"{number:05}.png")
+
+
+def loss_of(found, wanted):
+    weight = torch.ones_like(wanted)
+    # Borders are few.
+    weight[:, 0] += 2.0 * wanted[:, 0]
+    return F.binary_cross_entropy_with_logits(found, wanted, weight)
+
+
+def folded(net):
+    """Weights and biases of every convolution in order, its batch normalisation within."""
+    convolutions = []
+    for block in list(net.down) + list(net.up):
+        layers = list(block.layers)
+        for conv, norm in zip(layers[0::3], layers[1::3]):
+            gain = norm.weight / torch.sqrt(norm.running_var + norm.eps)
+            convolutions.append((conv.weight * gain[:, None, None, None], norm.bias - norm.running_mean * gain))
+    convolutions.append((net.head.weight, net.head.bias))
+    return [(w.detach().numpy().astype(np.float32), b.detach().numpy().astype(np.float32)) for w, b in convolutions]
+
+
+def write_onnx(net, path):
+    """The network as ONNX, opset 13: any runtime reads it."""
+    import onnx
+    from onnx import TensorProto, helper, numpy_helper
+
+    nodes, weights = [], []
+    convolutions = iter(folded(net))
+
+    def conv(x, relu=True):
+        w, b = next(convolutions)
+        n = len(weights) // 2
+        weights.append(numpy_helper.from_array(w, f"w{n}"))
+        weights.append(numpy_helper.from_array(b, f"b{n}"))
+        pad = w.shape[2] // 2
+        nodes.append(helper.make_node("Conv", [x, f"w{n}", f"b{n}"], [f"c{n}"], pads=[pad] * 4, kernel_shape=list(w.shape[2:])))
+        if not relu:
+            return f"c{n}"
+        nodes.append(helper.make_node("Relu", [f"c{n}"], [f"r{n}"]))
+        return f"r{n}"
+
+    x, seen = "photo", []
+    for level in range(len(CHANNELS)):
+        if level:
+            nodes.append(helper.make_node("MaxPool", [x], [f"p{level}"], kernel_shape=[2, 2], strides=[2, 2]))
+            x = f"p{level}"
+        x = conv(conv(x))
+        seen.append(x)
+    weights.append(numpy_helper.from_array(np.array([1, 1, 2, 2], np.float32), "twice"))
+    for level in reversed(range(len(CHANNELS) - 1)):
+        nodes.append(helper.make_node("Resize", [x, "", "twice"], [f"u{level}"], mode="nearest", coordinate_transformation_mode="asymmetric", nearest_mode="floor"))
+        nodes.append(helper.make_node("Concat", [seen[level], f"u{level}"], [f"j{level}"], axis=1))
+        x = conv(conv(f"j{level}"))
+    x = conv(x, relu=False)
+    nodes.append(helper.make_node("Sigmoid", [x], ["found"]))
+    graph = helper.make_graph(
+        nodes, "fragments",
+        [helper.make_tensor_value_info("photo", TensorProto.FLOAT, [1, 3, "height", "width"])],
+        [helper.make_tensor_value_info("found", TensorProto.FLOAT, [1, 3, "height", "width"])],
+        weights)
+    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 13)], producer_name="fragscale")
+    model.ir_version = 8
+    onnx.checker.check_model(model)
+    onnx.save(model, path)
+
+
+def main():
+    ask = argparse.ArgumentParser()
+    ask.add_argument("train")
+    ask.add_argument("valid")
+    ask.add_argument("--to", default=".")
+    ask.add_argument("--steps", type=int, default=2600)
+    ask.add_argument("--seed", type=int, default=1)
+    ask.add_argument("--patches", type=int, help="no training: write so many patches of TRAIN to the folder")
+    ask = ask.parse_args()
+    if ask.patches:
+        return write_patches(load(ask.train), ask.seed + 7, ask.patches, pathlib.Path(ask.to))
+    torch.manual_seed(ask.seed)
+    train, valid = load(ask.train), load(ask.valid)
+    net = Net()
+    count = sum(p.numel() for p in net.parameters())
+    to = pathlib.Path(ask.to)
+    to.mkdir(parents=True, exist_ok=True)
+    log = open(to / "training.log", "w")
+
+    def say(text):
+        print(text, flush=True)
+        print(text, file=log, flush=True)
+
+    say(f"{len(train)} photos, {len(valid)} to look at; {count} weights; seed {ask.seed}, {ask.steps} steps of {BATCH} patches of {SIDE} pixels")
+    optimiser = torch.optim.AdamW(net.parameters(), lr=4e-3, weight_decay=1e-4)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, 4e-3, total_steps=ask.steps, pct_start=0.15)
+    held = list(Patches(valid, ask.seed + 1000, 8))
+    start, mean = time.time(), None
+    for step, (image, wanted) in enumerate(Patches(train, ask.seed, ask.steps)):
+        net.train()
+        optimiser.zero_grad()
+        loss = loss_of(net(image), wanted)
+        loss.backward()
+        optimiser.step()
+        schedule.step()
+        mean = loss.item() if mean is None else 0.98 * mean + 0.02 * loss.item()
+        if step % 100 == 99:
+            net.eval()
+            with torch.no_grad():
+                unseen = sum(loss_of(net(i), w).item() for i, w in held) / len(held)
+            say(f"step {step + 1}: loss {mean:.4f}, on other piles {unseen:.4f}, {(time.time() - start) / 60:.1f} min")
+            write_onnx(net, to / "fragments.onnx")
+    write_onnx(net.eval(), to / "fragments.onnx")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,107 @@
+//! The watershed of a relief: Meyer's flooding (1991) from its minima, with a queue for each of 256 levels.
+
+/// The basin of pixels that are left out.
+pub(crate) const NOWHERE: u32 = u32::MAX;
+
+/// The basin of each pixel, from 0, and how many there are. `left_out` pixels belong to none.
+///
+/// Every regional minimum is a basin (pixels of one level that share sides, none beside them lower); water
+/// rises from all of them at once, and a pixel belongs to the basin that reaches it first, the lowest way.
+/// Of pixels that are reached at one level the nearer is first, so that plateaus are halved.
+pub(crate) fn basins(
+    width: usize,
+    height: usize,
+    relief: &[u8],
+    left_out: &[bool],
+) -> (Vec<u32>, usize) {
+    let pixels = width * height;
+    assert!(relief.len() == pixels && left_out.len() == pixels);
+    let mut basin = vec![NOWHERE; pixels];
+    let mut count = 0;
+    let mut queues: Vec<Vec<u32>> = vec![Vec::new(); 256];
+    minima(width, height, relief, left_out, |members| {
+        for &pixel in members {
+            basin[pixel as usize] = count;
+        }
+        for &pixel in members {
+            if around(width, height, pixel as usize).any(|beside| relief[beside] > relief[pixel as usize]) {
+                queues[relief[pixel as usize] as usize].push(pixel);
+            }
+        }
+        count += 1;
+    });
+    for level in 0..256 {
+        // What is pushed while a level is worked on comes behind it: first in, first out.
+        let mut next = 0;
+        let mut queue = std::mem::take(&mut queues[level]);
+        while let Some(&pixel) = queue.get(next) {
+            next += 1;
+            let here = basin[pixel as usize];
+            for beside in around(width, height, pixel as usize) {
+                if basin[beside] == NOWHERE && !left_out[beside] {
+                    basin[beside] = here;
+                    let its = relief[beside] as usize;
+                    if its <= level {
+                        queue.push(beside as u32);
+                    } else {
+                        queues[its].push(beside as u32);
+                    }
+                }
+            }
+        }
+    }
+    (basin, count as usize)
+}
+
+/// Calls `found` for each regional minimum with its pixels.
+fn minima(
+    width: usize,
+    height: usize,
+    relief: &[u8],
+    left_out: &[bool],
+    mut found: impl FnMut(&[u32]),
+) {
+    let mut seen = left_out.to_vec();
+    let mut members = Vec::new();
+    for start in 0..relief.len() {
+        if seen[start] {
+            continue;
+        }
+        let level = relief[start];
+        // Mostly something beside it is lower, and that is the end of it.
+        if around(width, height, start).any(|beside| !left_out[beside] && relief[beside] < level) {
+            continue;
+        }
+        members.clear();
+        members.push(start as u32);
+        seen[start] = true;
+        let (mut next, mut is_minimum) = (0, true);
+        while let Some(&pixel) = members.get(next) {
+            next += 1;
+            for beside in around(width, height, pixel as usize) {
+                if left_out[beside] {
+                    continue;
+                }
+                if relief[beside] < level {
+                    is_minimum = false;
+                } else if relief[beside] == level && !seen[beside] {
+                    seen[beside] = true;
+                    members.push(beside as u32);
+                }
+            }
+        }
+        if is_minimum {
+            found(&members);
+        }
+    }
+}
+
+/// The pixels that share a side with one.
+pub(super) fn around(width: usize, height: usize, pixel: usize) -> impl Iterator<Item = usize> {
+    let (x, y) = (pixel % width, pixel / width);
+    let left = (x > 0).then(|| pixel - 1);
+    let right = (x + 1 < width).then_some(pixel + 1);
+    let above = (y > 0).then(|| pixel - width);
+    let below = (y + 1 < height).then_some(pixel + width);
+    [above, left, right, below].into_iter().flatten()
+}

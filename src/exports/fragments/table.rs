@@ -1,0 +1,121 @@
+//! Fragments and their curves as CSV.
+
+use crate::delineation::mass::ByMass;
+use crate::delineation::measures::Fragment;
+use crate::units::LengthUnit;
+
+/// The fragments of a photo.
+#[derive(Debug, Clone, Copy)]
+pub struct PhotoOfFragments<'a> {
+    /// As the flight names it.
+    pub photo: &'a str,
+    /// Of its label image.
+    pub fragments: &'a [Fragment],
+}
+
+/// A line a fragment: places in pixels of the undistorted photo and in the world, lengths in `unit` and areas in
+/// its square, which are empty where too little of it lies on the surface. Numbers read back to the same f64.
+///
+/// # Errors
+/// Where memory runs out.
+pub fn fragments_csv(
+    photos: &[PhotoOfFragments<'_>],
+    world: LengthUnit,
+    unit: LengthUnit,
+) -> Result<String, csv::Error> {
+    let (u, w) = (unit.symbol(), world.symbol());
+    let factor = world.in_units_of(unit);
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let heads = [
+        "photo".to_owned(),
+        "fragment".to_owned(),
+        "column_px".to_owned(),
+        "row_px".to_owned(),
+        "pixels".to_owned(),
+        "cut".to_owned(),
+        format!("x_{w}"),
+        format!("y_{w}"),
+        format!("z_{w}"),
+        format!("scale_px_per_{u}"),
+        format!("area_{u}2"),
+        format!("surface_area_{u}2"),
+        format!("diameter_{u}"),
+        format!("length_{u}"),
+        format!("breadth_{u}"),
+        format!("feret_max_{u}"),
+        format!("feret_min_{u}"),
+        format!("inscribed_{u}"),
+        "roundness".to_owned(),
+        format!("height_{u}"),
+        format!("sieve_size_{u}"),
+    ];
+    writer.write_record(&heads)?;
+    for photo in photos {
+        for fragment in photo.fragments {
+            let cut = if fragment.is_cut { "yes" } else { "no" };
+            let mut row = vec![
+                photo.photo.to_owned(),
+                fragment.number.to_string(),
+                fragment.middle.x.to_string(),
+                fragment.middle.y.to_string(),
+                fragment.pixels.to_string(),
+                cut.to_owned(),
+            ];
+            match &fragment.world {
+                None => row.resize(heads.len(), String::new()),
+                Some(world) => {
+                    let numbers = [
+                        world.place.x,
+                        world.place.y,
+                        world.place.z,
+                        world.scale / factor,
+                        world.area * factor * factor,
+                        world.surface_area * factor * factor,
+                        world.diameter * factor,
+                        world.rectangle[0] * factor,
+                        world.rectangle[1] * factor,
+                        world.widths[1] * factor,
+                        world.widths[0] * factor,
+                        world.inscribed * factor,
+                        world.roundness,
+                        world.height * factor,
+                        world.sieve_size * factor,
+                    ];
+                    row.extend(numbers.map(|number| number.to_string()));
+                }
+            }
+            writer.write_record(&row)?;
+        }
+    }
+    text(writer)
+}
+
+/// Curves in the form that `fragscale psd` and the window's size distributions read: one of each photo, named, and
+/// its area.
+///
+/// # Errors
+/// Where memory runs out.
+pub fn curves_csv(
+    method: &str,
+    curves: &[(&str, &ByMass)],
+    world: LengthUnit,
+    unit: LengthUnit,
+) -> Result<String, csv::Error> {
+    let factor = world.in_units_of(unit);
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(["method", "photo", &format!("size_{}", unit.symbol()), "percent_passing", "area"])?;
+    for (photo, curve) in curves {
+        for [size, percent] in curve.curve.points() {
+            let numbers = [size * factor, *percent, curve.area * factor * factor];
+            let [size, percent, area] = numbers.map(|number| number.to_string());
+            writer.write_record([method, photo, &size, &percent, &area])?;
+        }
+    }
+    text(writer)
+}
+
+fn text(writer: csv::Writer<Vec<u8>>) -> Result<String, csv::Error> {
+    let bytes = writer.into_inner().map_err(|e| e.into_error())?;
+    // All that went in was UTF-8.
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
