@@ -9,7 +9,8 @@
 //! # The house
 //!
 //! A workspace whose members lie inside `src/`, so that a changed reader or panel compiles alone: the
-//! core, `fragmentation/`, `formats/`, `opening/`, `exports/`, `render/`, `dense/`, `reconstruct/`, `sample/`, `app/`,
+//! core, `fragmentation/`, `delineation/`, `formats/`, `opening/`, `exports/`, `render/`, `dense/`, `reconstruct/`,
+//! `sample/`, `app/`,
 //! and here `cli/`. This crate re-exports all of them. The compiler holds who may use whom
 //! between members, `tests/floors.rs` the floors within the core, that no circle of imports is longer
 //! than two files, and that no folder has more than 15 files lying flat.
@@ -24,6 +25,7 @@
 //!     sample/                    the paper's lab, simulated
 //! F4  formats/                   bytes -> types: clouds cameras packages poses photos tables missions areas text
 //!     exports/                   what goes out: table, CSV, JSON, sheet, Split-Desktop, figures, maps, missions
+//!     delineation/               the fragments of a photo outlined, measured, as a size distribution
 //!     --- the core (core.rs) and fragmentation/ ---
 //! F3  flight/                    Flight, validated when made; review: doubts, verdicts; flight.toml
 //!     plan/                      where to fly over a surface: photos, their scales beforehand, missions
@@ -61,6 +63,7 @@
 //! | a drone | `src/plan/drones.rs` | one row: camera, gimbal, DJI's numbers, each with its source |
 //! | a ground station's missions | `src/formats/missions/mod.rs`, `src/exports/missions/format.rs` | what reads and what writes it, a file each beside them; `exports/missions/tests/round_trip.rs` holds that all say the same |
 //! | a reconstruction engine | `src/reconstruct/engine.rs` | the trait; the engine is a folder beside it, and leaves COLMAP's text files |
+//! | an engine that outlines fragments | `src/delineation/engine.rs` | the trait; the engine is a folder beside it, its score is learned by `delineation/training/train_score.py`; `src/cli/of_photos/delineate.rs` offers it |
 //! | a job with a panel | `src/app/tasks/mod.rs` | the job with its task and its ending is a file beside it, the panel one in `panels/`; `command/mod.rs` and `apply.rs` start it |
 //!
 //! # Conventions (everywhere)

@@ -9,12 +9,9 @@ use crate::engine::Engine;
 use crate::labels::{FINES, LabelImage, NOT_ROCK};
 use crate::tree::tree;
 
-/// What a score must exceed for its node to be a fragment. Lower finds more of them and more that are none.
-pub const LEAST_SCORE: f64 = 0.2;
-
-/// Fragments narrower than this are fines: the diameter of the circle of as many pixels. A fragment's outline
-/// is known to about a pixel, so that of ten is measured to a fifth.
-pub const LEAST_PIXELS_ACROSS: f64 = 10.0;
+/// Fragments narrower than this are fines: the diameter of the circle of as many pixels that the engine sees. An
+/// outline is known to about a pixel, so that of ten is measured to a fifth.
+const LEAST_PIXELS_ACROSS: f64 = 10.0;
 
 /// Outlines the fragments of an undistorted photo. `left_out` says of each pixel whether it is no rock; empty
 /// where nothing is left out.
@@ -30,14 +27,23 @@ pub fn delineate(
     let evidence = engine.look(photo, progress)?;
     let tree = tree(&evidence, left_out, progress)?;
     let scores = scores(&tree, engine.scorer()?);
-    let mut labels = labelled(&tree, &chosen(&tree, &scores, LEAST_SCORE));
-    without_small(&mut labels);
+    let mut labels = labelled(&tree, &chosen(&tree, &scores, engine.least_score()));
+    without_small(
+        &mut labels,
+        least_across(engine, photo.width(), photo.height()),
+    );
     Ok(labels)
 }
 
+/// The narrowest fragment that an engine outlines in a photo of that size: the diameter of the circle of as many
+/// pixels.
+pub fn least_across(engine: &dyn Engine, width: u32, height: u32) -> f64 {
+    LEAST_PIXELS_ACROSS * f64::from(engine.sees_every(width, height))
+}
+
 /// Small fragments become fines; the others are numbered anew.
-fn without_small(labels: &mut LabelImage) {
-    let least = std::f64::consts::PI / 4.0 * LEAST_PIXELS_ACROSS * LEAST_PIXELS_ACROSS;
+fn without_small(labels: &mut LabelImage, across: f64) {
+    let least = std::f64::consts::PI / 4.0 * across * across;
     let mut numbers = vec![FINES; labels.fragments() + 1];
     let mut next = 1;
     for (number, area) in numbers.iter_mut().zip(labels.areas()).skip(1) {

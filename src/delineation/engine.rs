@@ -17,6 +17,19 @@ pub trait Engine: Send + Sync {
     /// Where the photo is none that it can take, or on cancel.
     fn look(&self, photo: &RgbImage, progress: &Progress) -> Result<Evidence, Fault>;
 
+    /// How many pixels of a photo of that size, along a side, are one to the engine: of a large photo it may look
+    /// at a smaller one.
+    fn sees_every(&self, _width: u32, _height: u32) -> u32 {
+        1
+    }
+
+    /// What a score must exceed for its node to be a fragment. Lower finds more of them and more that are none.
+    fn least_score(&self) -> f64;
+
+    /// How much of the area that it leaves without an outline is fines and not fragments that it did not find, as
+    /// measured on simulated piles.
+    fn fines_of_unfound(&self) -> f64;
+
     /// What tells fragments from other regions by its evidence.
     ///
     /// # Errors

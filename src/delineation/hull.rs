@@ -45,3 +45,27 @@ pub(crate) fn area(hull: &[[f32; 2]]) -> f64 {
         .sum::<f64>()
         .abs()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square with points within it, on its sides and twice.
+    #[test]
+    fn of_a_square() {
+        let mut points = vec![
+            [0.0, 0.0],
+            [4.0, 0.0],
+            [4.0, 4.0],
+            [0.0, 4.0],
+            [2.0, 2.0],
+            [2.0, 0.0],
+            [4.0, 4.0],
+            [1.0, 3.0],
+        ];
+        let hull = hull(&mut points);
+        assert_eq!(hull.len(), 4, "{hull:?}");
+        assert!((area(&hull) - 16.0).abs() < 1e-12);
+        assert_eq!(area(&[[1.0, 1.0], [2.0, 5.0]]), 0.0);
+    }
+}

@@ -4,7 +4,7 @@
 //! fines, or to what is no rock. It comes about in three steps:
 //!
 //! 1. An [`Engine`] says of every pixel how much it looks like a border between fragments
-//!    ([`Evidence`]): [`Classical`] from edges and shadows.
+//!    ([`Evidence`]): [`Classical`] from edges and shadows, [`Learned`] by a small network.
 //! 2. [`tree`]: a watershed cuts the photo into many small regions, which are joined one seam after
 //!    another, the weakest first. All regions that ever were make a tree, and nearly every fragment is
 //!    one of its nodes; which one, no single strength of seams tells.
@@ -17,6 +17,7 @@ mod delineating;
 mod engine;
 mod hull;
 mod labels;
+mod learned;
 pub mod mass;
 pub mod measures;
 pub mod overlap;
@@ -24,6 +25,7 @@ mod smoothing;
 pub mod tree;
 
 pub use classical::Classical;
-pub use delineating::{LEAST_PIXELS_ACROSS, LEAST_SCORE, delineate};
+pub use delineating::{delineate, least_across};
 pub use engine::{Engine, Evidence};
 pub use labels::{FINES, LabelImage, NOT_ROCK};
+pub use learned::Learned;

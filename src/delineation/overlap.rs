@@ -101,3 +101,50 @@ impl Agreement {
         right / (right + 0.5 * (self.wrong + self.missed) as f64).max(1e-9)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of two true fragments one is found half too large, one is missed; one find lies on fines.
+    #[test]
+    fn by_hand() {
+        let row = |labels: [u32; 10]| LabelImage {
+            width: 10,
+            height: 1,
+            labels: labels.to_vec(),
+        };
+        let truth = row([1, 1, 1, 1, 0, 0, 0, 0, 2, 2]);
+        let found = row([1, 1, 1, 1, 1, 1, 2, 2, 0, 0]);
+        let complete = Agreement::of(&found, &truth, 1, true);
+        assert_eq!(
+            complete,
+            Agreement {
+                right: 1,
+                wrong: 1,
+                missed: 1
+            }
+        );
+        assert!((complete.f1() - 0.5).abs() < 1e-12);
+        // Where not all is outlined, a find on nothing is no error.
+        let partly = Agreement::of(&found, &truth, 1, false);
+        assert_eq!(
+            partly,
+            Agreement {
+                right: 1,
+                wrong: 0,
+                missed: 1
+            }
+        );
+        // Small ones do not count.
+        let large = Agreement::of(&found, &truth, 3, true);
+        assert_eq!(
+            large,
+            Agreement {
+                right: 1,
+                wrong: 0,
+                missed: 0
+            }
+        );
+    }
+}

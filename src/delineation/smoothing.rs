@@ -7,7 +7,10 @@ use rayon::prelude::*;
 pub(crate) fn smoothed(values: &[u8], width: usize, height: usize, radius: usize) -> Vec<u8> {
     let floats: Vec<f32> = values.iter().map(|value| f32::from(*value)).collect();
     let smooth = smoothed_floats(floats, width, height, radius);
-    smooth.into_iter().map(|value| value.round() as u8).collect()
+    smooth
+        .into_iter()
+        .map(|value| value.round() as u8)
+        .collect()
 }
 
 /// The same of floats.

@@ -140,6 +140,9 @@ fn is_csv(first: &str) -> bool {
         // A plan of photos, and what was flown of it.
         || first.starts_with("photo,x_") && first.ends_with(",troubles")
         || first.starts_with("planned,photo,x_")
+        // Outlined fragments, and their size distributions.
+        || first.starts_with("photo,fragment,column_px,row_px,pixels,cut,x_")
+        || first.starts_with("method,photo,size_") && first.ends_with(",percent_passing,area")
         // Of the window's frames.
         || first.starts_with("start_s,logic,panels,upload,draw,commands,")
 }

@@ -186,7 +186,9 @@ impl Place {
         let room = (self.plan.half_extent.x - distance * 0.5 / focal * f64::from(side)).max(0.0);
         let at = DVec2::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0)) * room * 0.8;
         let aim = at.extend(scene.ground_height(at));
-        let looks = Pose::from_tilt_pan(DVec3::ZERO, [tilt, pan]).rotation.z_axis;
+        let looks = Pose::from_tilt_pan(DVec3::ZERO, [tilt, pan])
+            .rotation
+            .z_axis;
         let pose = Pose::from_tilt_pan(aim - looks * distance, [tilt, pan]);
         let mut look = self.look.clone();
         look.average = metered(&look, scene, &camera, &pose)? * random.range(-0.5, 0.5).exp();

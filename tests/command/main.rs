@@ -24,6 +24,7 @@ mod clipboard;
 mod contract;
 mod coordinate_systems;
 mod decisions;
+mod delineate;
 mod effort;
 mod georeference;
 mod geotiff;

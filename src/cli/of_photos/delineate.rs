@@ -6,16 +6,16 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use glam::DVec2;
 
-use super::chosen_photos::Doing;
 use super::chosen_photos::ChosenPhotos;
+use super::chosen_photos::Doing;
+use crate::camera::Camera;
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::outputs::{Force, Outputs};
-use crate::camera::Camera;
 use crate::cli::{Answer, OutputUnit};
 use crate::delineation::mass::{ByMass, PhotoFragments, Steps, by_mass};
 use crate::delineation::measures::{Fragment, SieveShape, measured};
 use crate::delineation::{
-    Classical, Engine, FINES, LEAST_PIXELS_ACROSS, LabelImage, delineate as outline,
+    Classical, Engine, FINES, LabelImage, Learned, delineate as outline, least_across,
 };
 use crate::exports::{self, PhotoOfFragments};
 use crate::fault::Fault;
@@ -40,7 +40,7 @@ pub(in crate::cli) struct DelineateArguments {
     #[arg(long, value_name = "DIR")]
     to: PathBuf,
     /// What finds the borders of fragments.
-    #[arg(long, value_enum, default_value = "classical")]
+    #[arg(long, value_enum, default_value = "learned")]
     engine: EngineName,
     /// How the sieve size of a fragment follows from its outline.
     #[arg(long, value_enum, default_value = "calibrated")]
@@ -54,6 +54,8 @@ pub(in crate::cli) struct DelineateArguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum EngineName {
+    /// A small network that was trained on simulated piles.
+    Learned,
     /// Edges and shadows at several scales; no weights.
     Classical,
 }
@@ -62,6 +64,7 @@ impl EngineName {
     fn engine(self) -> &'static dyn Engine {
         match self {
             Self::Classical => &Classical,
+            Self::Learned => &Learned,
         }
     }
 }
@@ -133,7 +136,8 @@ pub(in crate::cli) fn delineate(
     warnings.extend(failed);
     let world = flight.parts().unit;
     let unit: LengthUnit = arguments.unit.into();
-    let report = |error: Box<dyn std::error::Error>| in_flight(Fault::new(error.to_string(), "report this"));
+    let report =
+        |error: Box<dyn std::error::Error>| in_flight(Fault::new(error.to_string(), "report this"));
     let mut text = String::new();
     if !done.is_empty() {
         let rows: Vec<PhotoOfFragments<'_>> = done
@@ -143,21 +147,30 @@ pub(in crate::cli) fn delineate(
                 fragments: &of.fragments,
             })
             .collect();
-        let bytes = exports::fragments_csv(&rows, world, unit).map_err(|error| report(error.into()))?;
+        let bytes =
+            exports::fragments_csv(&rows, world, unit).map_err(|error| report(error.into()))?;
         outputs.write(&tables[0], bytes.as_bytes(), Kind::Result)?;
+        let steps = Steps {
+            fines: arguments.engine.engine().fines_of_unfound(),
+            ..Steps::default()
+        };
         let mut curves: Vec<(&str, ByMass)> = Vec::new();
         for (photo, of) in &done {
-            match by_mass(std::slice::from_ref(of), Steps::default()) {
+            match by_mass(std::slice::from_ref(of), steps) {
                 Ok(curve) => curves.push((photo, curve)),
                 Err(fault) => warnings.push(format!("{photo}: no size distribution: {fault}")),
             }
         }
         let method = format!("fragscale ({})", arguments.engine.engine().name());
-        let borrowed: Vec<(&str, &ByMass)> = curves.iter().map(|(photo, curve)| (*photo, curve)).collect();
-        let bytes = exports::curves_csv(&method, &borrowed, world, unit).map_err(|error| report(error.into()))?;
+        let borrowed: Vec<(&str, &ByMass)> = curves
+            .iter()
+            .map(|(photo, curve)| (*photo, curve))
+            .collect();
+        let bytes = exports::curves_csv(&method, &borrowed, world, unit)
+            .map_err(|error| report(error.into()))?;
         outputs.write(&tables[1], bytes.as_bytes(), Kind::Result)?;
         let all: Vec<PhotoFragments> = done.iter().map(|(_, of)| of.clone()).collect();
-        let all = by_mass(&all, Steps::default());
+        let all = by_mass(&all, steps);
         text = words(&borrowed, all.as_ref().ok(), world, unit);
     }
     let failed = (failures > 0).then(|| {
@@ -183,7 +196,7 @@ fn words(
     let widest = widest.unwrap_or(0).max("all photos".len());
     let symbol = unit.symbol();
     let mut text = format!(
-        "{:widest$}  fragments   cut  fines %  {:>9} {:>9} {:>9}  nothing below\n",
+        "{:widest$}  fragments   cut  not outlined %  {:>9} {:>9} {:>9}  nothing below\n",
         "photo",
         format!("P20 {symbol}"),
         format!("P50 {symbol}"),
@@ -193,13 +206,16 @@ fn words(
     for (photo, curve) in curves.iter().copied().chain(all) {
         let size = |percent: f64| {
             let size = curve.curve.size_at(percent);
-            size.map_or_else(|| "-".to_owned(), |size| significant_digits(size * factor, 3))
+            size.map_or_else(
+                || "-".to_owned(),
+                |size| significant_digits(size * factor, 3),
+            )
         };
         text += &format!(
-            "{photo:widest$}  {:9} {:5}  {:7.1}  {:>9} {:>9} {:>9}  {} {symbol}\n",
+            "{photo:widest$}  {:9} {:5}  {:14.1}  {:>9} {:>9} {:>9}  {} {symbol}\n",
             curve.whole,
             curve.cut,
-            100.0 * curve.fines,
+            100.0 * curve.unfound,
             size(20.0),
             size(50.0),
             size(80.0),
@@ -231,7 +247,10 @@ impl Maker<'_> {
         if image.dimensions() != (camera.width, camera.height) {
             let (width, height) = image.dimensions();
             return Err(Fault::new(
-                format!("the photo is {width} x {height}, its camera {} x {}", camera.width, camera.height),
+                format!(
+                    "the photo is {width} x {height}, its camera {} x {}",
+                    camera.width, camera.height
+                ),
                 "give the photo that the camera was calibrated for",
             ));
         }
@@ -248,7 +267,12 @@ impl Maker<'_> {
                 exports::labels_png(&labels)?,
                 exports::outlines_png(&image, &labels, &is_cut)?,
             ],
-            fragments: of_photo(&labels, &field, fragments),
+            fragments: of_photo(
+                &labels,
+                &field,
+                fragments,
+                least_across(engine, camera.width, camera.height),
+            ),
         })
     }
 }
@@ -271,7 +295,12 @@ impl Maker<'_> {
 }
 
 /// What a photo contributes to the distribution.
-fn of_photo(labels: &LabelImage, field: &ScaleField, fragments: Vec<Fragment>) -> PhotoFragments {
+fn of_photo(
+    labels: &LabelImage,
+    field: &ScaleField,
+    fragments: Vec<Fragment>,
+    least_across: f64,
+) -> PhotoFragments {
     let (mut fines, mut area, mut pixels) = (0.0, 0.0, 0.0);
     for (place, label) in labels.labels.iter().enumerate() {
         let (column, row) = (place % labels.width, place / labels.width);
@@ -290,6 +319,6 @@ fn of_photo(labels: &LabelImage, field: &ScaleField, fragments: Vec<Fragment>) -
         fragments,
         frame: DVec2::new(labels.width as f64, labels.height as f64),
         fines,
-        limit: LEAST_PIXELS_ACROSS / scale,
+        limit: least_across / scale,
     }
 }

@@ -36,8 +36,12 @@ pub fn features(tree: &Tree, place: usize) -> [f64; COUNT] {
     let sums = &node.sums;
     let area = sums.area.max(1.0);
     let inner = (sums.outline - sums.at_edge).max(1.0);
-    let parent = node.parent.and_then(|parent| tree.nodes.get(parent as usize));
-    let children = node.children.map(|[a, b]| [&tree.nodes[a as usize], &tree.nodes[b as usize]]);
+    let parent = node
+        .parent
+        .and_then(|parent| tree.nodes.get(parent as usize));
+    let children = node
+        .children
+        .map(|[a, b]| [&tree.nodes[a as usize], &tree.nodes[b as usize]]);
     let lesser = children.map(|[a, b]| if a.sums.area < b.sums.area { a } else { b });
     let gray = sums.gray / area;
     let [elongation, ellipse] = shape(node);

@@ -28,7 +28,8 @@ pub fn chosen(tree: &Tree, scores: &[f64], least: f64) -> Vec<u32> {
         best[place] = if takes[place] { own } else { below };
     }
     let mut taken = Vec::new();
-    let roots = (0..tree.nodes.len() as u32).filter(|node| tree.nodes[*node as usize].parent.is_none());
+    let roots =
+        (0..tree.nodes.len() as u32).filter(|node| tree.nodes[*node as usize].parent.is_none());
     let mut open: Vec<u32> = roots.collect();
     while let Some(node) = open.pop() {
         if takes[node as usize] {
@@ -65,3 +66,6 @@ pub fn labelled(tree: &Tree, taken: &[u32]) -> LabelImage {
         labels: tree.leaf_of.iter().map(label).collect(),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -30,7 +30,9 @@ impl Scorer {
         let (hidden, last) = numbers.split_at_checked(HIDDEN * (COUNT + 1))?;
         let hidden = hidden.chunks_exact(COUNT + 1);
         Some(Self {
-            hidden: hidden.map(|row| row.try_into().ok()).collect::<Option<_>>()?,
+            hidden: hidden
+                .map(|row| row.try_into().ok())
+                .collect::<Option<_>>()?,
             last: last.try_into().ok()?,
         })
     }

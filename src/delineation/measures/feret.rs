@@ -34,7 +34,10 @@ fn sides(hull: &[[f32; 2]]) -> impl Iterator<Item = [f64; 2]> {
 }
 
 fn between(one: [f32; 2], other: [f32; 2]) -> [f64; 2] {
-    [f64::from(other[0]) - f64::from(one[0]), f64::from(other[1]) - f64::from(one[1])]
+    [
+        f64::from(other[0]) - f64::from(one[0]),
+        f64::from(other[1]) - f64::from(one[1]),
+    ]
 }
 
 fn length([x, y]: [f64; 2]) -> f64 {
@@ -43,8 +46,12 @@ fn length([x, y]: [f64; 2]) -> f64 {
 
 /// How far the hull reaches along a direction.
 fn extent(hull: &[[f32; 2]], direction: [f64; 2]) -> f64 {
-    let along = hull.iter().map(|[x, y]| f64::from(*x) * direction[0] + f64::from(*y) * direction[1]);
-    let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+    let along = hull
+        .iter()
+        .map(|[x, y]| f64::from(*x) * direction[0] + f64::from(*y) * direction[1]);
+    let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
+        (low.min(at), high.max(at))
+    });
     (high - low).max(0.0)
 }
 
@@ -57,9 +64,24 @@ mod tests {
     fn of_a_turned_rectangle() {
         let (sin, cos) = 30f64.to_radians().sin_cos();
         let corner = |x: f64, y: f64| [(x * cos - y * sin) as f32, (x * sin + y * cos) as f32];
-        let hull = [corner(0.0, 0.0), corner(8.0, 0.0), corner(8.0, 3.0), corner(0.0, 3.0)];
-        let close = |found: [f64; 2], wanted: [f64; 2]| found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5);
-        assert!(close(widths(&hull), [3.0, 73f64.sqrt()]), "{:?}", widths(&hull));
-        assert!(close(rectangle(&hull), [8.0, 3.0]), "{:?}", rectangle(&hull));
+        let hull = [
+            corner(0.0, 0.0),
+            corner(8.0, 0.0),
+            corner(8.0, 3.0),
+            corner(0.0, 3.0),
+        ];
+        let close = |found: [f64; 2], wanted: [f64; 2]| {
+            found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5)
+        };
+        assert!(
+            close(widths(&hull), [3.0, 73f64.sqrt()]),
+            "{:?}",
+            widths(&hull)
+        );
+        assert!(
+            close(rectangle(&hull), [8.0, 3.0]),
+            "{:?}",
+            rectangle(&hull)
+        );
     }
 }

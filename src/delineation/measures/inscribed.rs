@@ -11,21 +11,36 @@ pub(super) fn distances(labels: &LabelImage) -> Vec<f64> {
     // Squared distances to the nearest pixel that has another one beside it.
     let far = ((width + height) * (width + height)) as f64;
     let mut squares: Vec<f64> = vec![far; width * height];
-    squares.par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
-        for (x, square) in row.iter_mut().enumerate() {
-            let here = at(x, y);
-            let edge = x == 0 || y == 0 || x + 1 == width || y + 1 == height;
-            if edge || at(x - 1, y) != here || at(x + 1, y) != here || at(x, y - 1) != here || at(x, y + 1) != here {
-                *square = 0.0;
+    squares
+        .par_chunks_mut(width.max(1))
+        .enumerate()
+        .for_each(|(y, row)| {
+            for (x, square) in row.iter_mut().enumerate() {
+                let here = at(x, y);
+                let edge = x == 0 || y == 0 || x + 1 == width || y + 1 == height;
+                if edge
+                    || at(x - 1, y) != here
+                    || at(x + 1, y) != here
+                    || at(x, y - 1) != here
+                    || at(x, y + 1) != here
+                {
+                    *square = 0.0;
+                }
             }
-        }
-    });
-    squares.par_chunks_mut(width.max(1)).for_each(lower_envelope);
+        });
+    squares
+        .par_chunks_mut(width.max(1))
+        .for_each(lower_envelope);
     let mut turned = transposed(&squares, width, height);
-    turned.par_chunks_mut(height.max(1)).for_each(lower_envelope);
+    turned
+        .par_chunks_mut(height.max(1))
+        .for_each(lower_envelope);
     let squares = transposed(&turned, height, width);
     // That pixel's middle is half a pixel within.
-    squares.into_par_iter().map(|square| square.sqrt() + 0.5).collect()
+    squares
+        .into_par_iter()
+        .map(|square| square.sqrt() + 0.5)
+        .collect()
 }
 
 /// Of each place the least of value + distance squared, by the lower envelope of parabolas.
@@ -55,7 +70,10 @@ fn lower_envelope(values: &mut [f64]) {
     let own = values.to_vec();
     let mut with = 0;
     for (place, value) in values.iter_mut().enumerate() {
-        while starts.get(with + 1).is_some_and(|start| *start < place as f64) {
+        while starts
+            .get(with + 1)
+            .is_some_and(|start| *start < place as f64)
+        {
             with += 1;
         }
         let from = places[with];
@@ -66,11 +84,14 @@ fn lower_envelope(values: &mut [f64]) {
 
 fn transposed(values: &[f64], width: usize, height: usize) -> Vec<f64> {
     let mut turned = vec![0.0; values.len()];
-    turned.par_chunks_mut(height.max(1)).enumerate().for_each(|(x, column)| {
-        for (y, value) in column.iter_mut().enumerate() {
-            *value = values[y * width + x];
-        }
-    });
+    turned
+        .par_chunks_mut(height.max(1))
+        .enumerate()
+        .for_each(|(x, column)| {
+            for (y, value) in column.iter_mut().enumerate() {
+                *value = values[y * width + x];
+            }
+        });
     turned
 }
 
@@ -82,13 +103,23 @@ mod tests {
     #[test]
     fn as_by_all_pixels() {
         let (width, height) = (37, 29);
-        let of = |x: usize, y: usize| u32::from((x as f64 - 17.3).hypot(y as f64 - 12.8) < 9.0) + 2 * u32::from(x > 30);
-        let labels = (0..width * height).map(|place| of(place % width, place / width)).collect();
-        let labels = LabelImage { width, height, labels };
+        let of = |x: usize, y: usize| {
+            u32::from((x as f64 - 17.3).hypot(y as f64 - 12.8) < 9.0) + 2 * u32::from(x > 30)
+        };
+        let labels = (0..width * height)
+            .map(|place| of(place % width, place / width))
+            .collect();
+        let labels = LabelImage {
+            width,
+            height,
+            labels,
+        };
         let found = distances(&labels);
         let is_outline = |x: usize, y: usize| {
             let edge = x == 0 || y == 0 || x + 1 == width || y + 1 == height;
-            edge || [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)].iter().any(|(a, b)| of(*a, *b) != of(x, y))
+            edge || [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)]
+                .iter()
+                .any(|(a, b)| of(*a, *b) != of(x, y))
         };
         for y in 0..height {
             for x in 0..width {

@@ -85,7 +85,9 @@ pub fn measured(labels: &LabelImage, field: &ScaleField, shape: SieveShape) -> V
             let beside = [before, behind, above, below];
             of.pixels += 1;
             of.places += DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
-            of.is_cut |= beside.iter().any(|other| matches!(other, None | Some(NOT_ROCK)));
+            of.is_cut |= beside
+                .iter()
+                .any(|other| matches!(other, None | Some(NOT_ROCK)));
             of.deepest = of.deepest.max(inside[y * width + x]);
             for (differs, x) in [(before != Some(label), x), (behind != Some(label), x + 1)] {
                 if differs {
@@ -99,7 +101,8 @@ pub fn measured(labels: &LabelImage, field: &ScaleField, shape: SieveShape) -> V
             of.on_surface += 1;
             of.points += met.point;
             of.area += 1.0 / (met.scale * met.scale);
-            of.surface_area += on_surface(field, x as u32, y as u32).unwrap_or_else(|| 1.0 / (met.scale * met.scale));
+            of.surface_area += on_surface(field, x as u32, y as u32)
+                .unwrap_or_else(|| 1.0 / (met.scale * met.scale));
             let is_outline = beside.iter().any(|other| *other != Some(label));
             if is_outline {
                 of.outline.push(met.point);
@@ -108,7 +111,10 @@ pub fn measured(labels: &LabelImage, field: &ScaleField, shape: SieveShape) -> V
     }
     // How high each stands needs its outline first.
     let towards = -field.pose().rotation.z_axis;
-    let planes: Vec<Option<Plane>> = sums.iter().map(|of| Plane::through(&of.outline, towards)).collect();
+    let planes: Vec<Option<Plane>> = sums
+        .iter()
+        .map(|of| Plane::through(&of.outline, towards))
+        .collect();
     let mut heights = vec![f64::NEG_INFINITY; sums.len()];
     for y in 0..height {
         for x in 0..width {
@@ -123,7 +129,8 @@ pub fn measured(labels: &LabelImage, field: &ScaleField, shape: SieveShape) -> V
         }
     }
     let all = (1..).zip(sums.iter_mut().zip(heights));
-    all.map(|(number, (of, height))| of.fragment(number, height, shape)).collect()
+    all.map(|(number, (of, height))| of.fragment(number, height, shape))
+        .collect()
 }
 
 /// The area on the surface that a pixel shows, from where its neighbours' rays meet; `None` where they do not,
@@ -137,8 +144,14 @@ fn on_surface(field: &ScaleField, x: u32, y: u32) -> Option<f64> {
         Some((other.point - here.point) * sign)
     };
     let (columns, rows) = (field.grid.columns, field.grid.rows);
-    let across = beside((x + 1 < columns).then_some((x + 1, y)), x.checked_sub(1).map(|x| (x, y)))?;
-    let along = beside((y + 1 < rows).then_some((x, y + 1)), y.checked_sub(1).map(|y| (x, y)))?;
+    let across = beside(
+        (x + 1 < columns).then_some((x + 1, y)),
+        x.checked_sub(1).map(|x| (x, y)),
+    )?;
+    let along = beside(
+        (y + 1 < rows).then_some((x, y + 1)),
+        y.checked_sub(1).map(|y| (x, y)),
+    )?;
     let flat = 1.0 / (here.scale * here.scale);
     let area = across.cross(along).length();
     // Steeper than 80 degrees is a step from one fragment to one behind it.
@@ -163,10 +176,13 @@ struct Sums {
 impl Sums {
     fn fragment(&mut self, number: u32, height: f64, shape: SieveShape) -> Fragment {
         let hull = hull(&mut self.corners);
-        let [low, high] = hull.iter().fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], [x, y]| {
-            let corner = DVec2::new(f64::from(*x), f64::from(*y));
-            [low.min(corner), high.max(corner)]
-        });
+        let [low, high] = hull.iter().fold(
+            [DVec2::INFINITY, DVec2::NEG_INFINITY],
+            |[low, high], [x, y]| {
+                let corner = DVec2::new(f64::from(*x), f64::from(*y));
+                [low.min(corner), high.max(corner)]
+            },
+        );
         let pixels = self.pixels.max(1) as f64;
         let known = self.on_surface as f64 / pixels;
         let world = (known >= LEAST_ON_SURFACE && self.area > 0.0).then(|| {
@@ -230,7 +246,10 @@ impl Plane {
         if determinant <= 1e-12 * uu * vv {
             return None;
         }
-        let (a, b) = ((uh * vv - vh * uv) / determinant, (vh * uu - uh * uv) / determinant);
+        let (a, b) = (
+            (uh * vv - vh * uv) / determinant,
+            (vh * uu - uh * uv) / determinant,
+        );
         let normal = (towards - u * a - v * b).normalize();
         Some(Self { middle, normal })
     }
@@ -239,3 +258,6 @@ impl Plane {
         (point - self.middle).dot(self.normal)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -23,10 +23,12 @@ def main():
     ask.add_argument("--to", required=True)
     ask.add_argument("--seed", type=int, default=1)
     ask.add_argument("--epochs", type=int, default=12)
+    ask.add_argument("--without", type=int, nargs="*", default=[], help="features that are not to be used")
     ask = ask.parse_args()
     torch.manual_seed(ask.seed)
     rows = np.fromfile(ask.features, np.float32).reshape(-1, 4 + FEATURES)
-    photo, shared, x = rows[:, 0].astype(int), rows[:, 3], rows[:, 4:]
+    photo, shared, x = rows[:, 0].astype(int), rows[:, 3], rows[:, 4:].copy()
+    x[:, ask.without] = 0
     wanted = np.where(shared > 0.5, 2 * shared - 1, 0).astype(np.float32)
     held = photo % 8 == 0
     mean, deviation = x.mean(0), x.std(0) + 1e-6
@@ -54,6 +56,7 @@ def main():
     first, last = net[0], net[2]
     # The normalisation goes into the weights.
     weight = first.weight.detach().numpy() / deviation
+    weight[:, ask.without] = 0
     offset = first.bias.detach().numpy() - weight @ mean
     with open(ask.to, "w") as out:
         print("# The score of a node: weights and offset of each neuron, then of the last. Made by train_score.py:", file=out)

@@ -124,3 +124,5 @@ impl Seam {
     }
 }
 
+#[cfg(test)]
+mod tests;

@@ -24,7 +24,9 @@ pub(crate) fn basins(
             basin[pixel as usize] = count;
         }
         for &pixel in members {
-            if around(width, height, pixel as usize).any(|beside| relief[beside] > relief[pixel as usize]) {
+            if around(width, height, pixel as usize)
+                .any(|beside| relief[beside] > relief[pixel as usize])
+            {
                 queues[relief[pixel as usize] as usize].push(pixel);
             }
         }
@@ -104,4 +106,57 @@ pub(super) fn around(width: usize, height: usize, pixel: usize) -> impl Iterator
     let above = (y > 0).then(|| pixel - width);
     let below = (y + 1 < height).then_some(pixel + width);
     [above, left, right, below].into_iter().flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two valleys: the ridge between them belongs to the one that reaches it first, a plateau is halved.
+    #[test]
+    fn valleys_by_hand() {
+        let relief = [1, 0, 2, 9, 3, 1, 1, 5];
+        let (basin, count) = basins(8, 1, &relief, &[false; 8]);
+        assert_eq!(count, 2);
+        assert_eq!(basin[..3], [0, 0, 0]);
+        assert_eq!(basin[4..], [1, 1, 1, 1]);
+        let flat = [0, 5, 5, 5, 5, 0];
+        let (basin, _) = basins(6, 1, &flat, &[false; 6]);
+        assert_eq!(basin, [0, 0, 0, 1, 1, 1]);
+        let left_out = [false, false, true, false, false, false];
+        let (basin, _) = basins(6, 1, &flat, &left_out);
+        assert_eq!(basin, [0, 0, NOWHERE, 1, 1, 1]);
+    }
+
+    /// Every basin hangs together, and has a minimum of its own that nothing lower of it surrounds.
+    #[test]
+    fn basins_of_noise() {
+        let (width, height) = (61, 47);
+        let mut random = fragscale_core::split_mix::SplitMix(5);
+        let relief: Vec<u8> = (0..width * height)
+            .map(|_| (random.next() % 7) as u8)
+            .collect();
+        let (basin, count) = basins(width, height, &relief, &vec![false; width * height]);
+        assert!(count > 50);
+        let mut seen = vec![false; width * height];
+        let mut pieces = 0;
+        for start in 0..width * height {
+            assert!(basin[start] < count as u32);
+            if seen[start] {
+                continue;
+            }
+            pieces += 1;
+            let mut open = vec![start];
+            seen[start] = true;
+            while let Some(pixel) = open.pop() {
+                for beside in around(width, height, pixel) {
+                    if !seen[beside] && basin[beside] == basin[start] {
+                        seen[beside] = true;
+                        open.push(beside);
+                    }
+                }
+            }
+        }
+        assert_eq!(pieces, count);
+    }
 }

@@ -16,9 +16,19 @@ const CUT: [u8; 3] = [255, 120, 0];
 ///
 /// # Errors
 /// Where the picture cannot be encoded.
-pub fn outlines_png(photo: &RgbImage, labels: &LabelImage, is_cut: &[bool]) -> Result<Vec<u8>, Fault> {
+pub fn outlines_png(
+    photo: &RgbImage,
+    labels: &LabelImage,
+    is_cut: &[bool],
+) -> Result<Vec<u8>, Fault> {
     let mut picture = photo.clone();
-    let at = |x: usize, y: usize| labels.labels.get(y * labels.width + x).copied().unwrap_or(NOT_ROCK);
+    let at = |x: usize, y: usize| {
+        labels
+            .labels
+            .get(y * labels.width + x)
+            .copied()
+            .unwrap_or(NOT_ROCK)
+    };
     for (x, y, pixel) in picture.enumerate_pixels_mut() {
         let (x, y) = (x as usize, y as usize);
         let here = at(x, y);
@@ -29,12 +39,25 @@ pub fn outlines_png(photo: &RgbImage, labels: &LabelImage, is_cut: &[bool]) -> R
         if here == FINES {
             continue;
         }
-        let beside = [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)];
-        let differs = beside.iter().any(|(x, y)| *x >= labels.width || *y >= labels.height || at(*x, *y) != here);
+        let beside = [
+            (x.wrapping_sub(1), y),
+            (x + 1, y),
+            (x, y.wrapping_sub(1)),
+            (x, y + 1),
+        ];
+        let differs = beside
+            .iter()
+            .any(|(x, y)| *x >= labels.width || *y >= labels.height || at(*x, *y) != here);
         if differs {
             let is_cut = is_cut.get(here as usize - 1).copied().unwrap_or(false);
             *pixel = Rgb(if is_cut { CUT } else { WHOLE });
         }
     }
-    Ok(marked_png(encode(&picture, PhotoFormat::Png, 100, None, None)?))
+    Ok(marked_png(encode(
+        &picture,
+        PhotoFormat::Png,
+        100,
+        None,
+        None,
+    )?))
 }

@@ -103,7 +103,13 @@ pub fn curves_csv(
 ) -> Result<String, csv::Error> {
     let factor = world.in_units_of(unit);
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(["method", "photo", &format!("size_{}", unit.symbol()), "percent_passing", "area"])?;
+    writer.write_record([
+        "method",
+        "photo",
+        &format!("size_{}", unit.symbol()),
+        "percent_passing",
+        "area",
+    ])?;
     for (photo, curve) in curves {
         for [size, percent] in curve.curve.points() {
             let numbers = [size * factor, *percent, curve.area * factor * factor];

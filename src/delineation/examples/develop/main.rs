@@ -16,8 +16,12 @@ use std::time::Instant;
 use fragscale_core::jobs::Progress;
 use fragscale_delineation::choice::{self, Scorer, features};
 use fragscale_delineation::overlap::{self, Agreement};
-use fragscale_delineation::{Classical, Engine, LabelImage, tree};
+use fragscale_delineation::{Classical, Engine, Evidence, LabelImage, Learned, tree};
 use image::{Rgb, RgbImage};
+
+// For the form of the measures against what passes a sieve: `develop masses ENGINE|truth FLIGHT...` of simulated
+// flights without a lens (`fragscale sample DIR --lens none`): what their photos give against their sieves.
+mod masses;
 
 type Failed = Box<dyn std::error::Error>;
 
@@ -29,14 +33,19 @@ fn main() -> Result<(), Failed> {
         ["score", engine, scorer, data, rest @ ..] => {
             score(&*engine_named(engine)?, scorer, Path::new(data), rest.first().copied())
         }
-        _ => Err("develop features ENGINE FOLDER OUT | develop score ENGINE SCORER DATA [PICTURES]".into()),
+        ["masses", engine, flights @ ..] => {
+            let engine = (*engine != "truth").then(|| engine_named(engine)).transpose()?;
+            masses::masses(engine.as_deref(), flights)
+        }
+        _ => Err("develop masses ENGINE|truth FLIGHT... | develop features ENGINE FOLDER OUT | develop score ENGINE SCORER DATA [PICTURES]".into()),
     }
 }
 
 fn engine_named(name: &str) -> Result<Box<dyn Engine>, Failed> {
     match name {
         "classical" => Ok(Box::new(Classical)),
-        _ => Err("classical".into()),
+        "learned" => Ok(Box::new(Learned)),
+        _ => Err("classical | learned".into()),
     }
 }
 
@@ -46,10 +55,18 @@ fn labels(path: &Path) -> Result<LabelImage, Failed> {
     let (width, height) = (image.width() as usize, image.height() as usize);
     let labels = image.into_raw().into_iter().map(|label| {
         let next = numbers.len() as u32 + 1;
-        if label == 0 { 0 } else { *numbers.entry(label).or_insert(next) }
+        if label == 0 {
+            0
+        } else {
+            *numbers.entry(label).or_insert(next)
+        }
     });
     let labels = labels.collect();
-    Ok(LabelImage { width, height, labels })
+    Ok(LabelImage {
+        width,
+        height,
+        labels,
+    })
 }
 
 fn write_features(engine: &dyn Engine, folder: &str, out: &str) -> Result<(), Failed> {
@@ -69,8 +86,16 @@ fn write_features(engine: &dyn Engine, folder: &str, out: &str) -> Result<(), Fa
         for (place, shared) in shared.iter().enumerate() {
             // Photo, node, parent, pixels, what it shares; then the features; as numbers of 32 bits.
             let node = &tree.nodes[place];
-            let head = [number as f32, node.parent.map_or(-1.0, |parent| parent as f32), node.sums.area as f32, *shared as f32];
-            for value in head.into_iter().chain(features::features(&tree, place).map(|value| value as f32)) {
+            let head = [
+                number as f32,
+                node.parent.map_or(-1.0, |parent| parent as f32),
+                node.sums.area as f32,
+                *shared as f32,
+            ];
+            for value in head
+                .into_iter()
+                .chain(features::features(&tree, place).map(|value| value as f32))
+            {
                 out.write_all(&value.to_le_bytes())?;
             }
         }
@@ -78,12 +103,20 @@ fn write_features(engine: &dyn Engine, folder: &str, out: &str) -> Result<(), Fa
     Ok(())
 }
 
-fn score(engine: &dyn Engine, scorer: &str, data: &Path, pictures: Option<&str>) -> Result<(), Failed> {
+fn score(
+    engine: &dyn Engine,
+    scorer: &str,
+    data: &Path,
+    pictures: Option<&str>,
+) -> Result<(), Failed> {
     let scorer = match scorer {
         "-" => None,
-        path => Some(Scorer::read(&fs::read_to_string(path)?).ok_or("not the numbers of a scorer")?),
+        path => {
+            Some(Scorer::read(&fs::read_to_string(path)?).ok_or("not the numbers of a scorer")?)
+        }
     };
-    let least_score: f64 = std::env::var("LEAST").map_or(Ok(0.3), |text| text.parse())?;
+    let least_score: f64 =
+        std::env::var("LEAST").map_or(Ok(engine.least_score()), |text| text.parse())?;
     let mut sets: BTreeMap<String, (Agreement, Agreement, f64, usize)> = BTreeMap::new();
     let progress = Progress::default();
     for row in csv::Reader::from_path(data.join("index.csv"))?.records() {
@@ -96,7 +129,7 @@ fn score(engine: &dyn Engine, scorer: &str, data: &Path, pictures: Option<&str>)
         }
         let photo = image::open(&path)?.into_rgb8();
         let start = Instant::now();
-        let evidence = engine.look(&photo, &progress)?;
+        let evidence = looked_at(engine, &photo, &format!("{set}_{file}"))?;
         let looked = start.elapsed().as_secs_f64();
         let tree = tree::tree(&evidence, &[], &progress)?;
         let grown = start.elapsed().as_secs_f64();
@@ -110,7 +143,11 @@ fn score(engine: &dyn Engine, scorer: &str, data: &Path, pictures: Option<&str>)
         } else {
             let truth = labels(&truth)?;
             // Below them the truth is not complete.
-            let least = match set { "gravel_fh" => 28, "tbm_muck" => 177, _ => 12 };
+            let least = match set {
+                "gravel_fh" => 28,
+                "tbm_muck" => 177,
+                _ => 12,
+            };
             let complete = !matches!(set, "belt" | "muckpile_gray");
             let shared = overlap::of_nodes(&tree, &truth);
             let ideal = choice::labelled(&tree, &choice::chosen(&tree, &shared, 0.5));
@@ -131,7 +168,11 @@ fn score(engine: &dyn Engine, scorer: &str, data: &Path, pictures: Option<&str>)
             }
             picture.save(Path::new(folder).join(&name))?;
             let mut seen = RgbImage::new(photo.width(), photo.height());
-            let parts = evidence.border.iter().zip(&evidence.rock).zip(&evidence.middle);
+            let parts = evidence
+                .border
+                .iter()
+                .zip(&evidence.rock)
+                .zip(&evidence.middle);
             for (pixel, ((border, rock), middle)) in seen.pixels_mut().zip(parts) {
                 *pixel = Rgb([*border, *rock, *middle]);
             }
@@ -139,9 +180,49 @@ fn score(engine: &dyn Engine, scorer: &str, data: &Path, pictures: Option<&str>)
         }
     }
     for (set, (ideal, best, seconds, leaves)) in sets {
-        println!("{set}: F1 {:.3} ({} right, {} wrong, {} missed), of the tree {:.3}; {leaves} leaves, {seconds:.1} s", best.f1(), best.right, best.wrong, best.missed, ideal.f1());
+        println!(
+            "{set}: F1 {:.3} ({} right, {} wrong, {} missed), of the tree {:.3}; {leaves} leaves, {seconds:.1} s",
+            best.f1(),
+            best.right,
+            best.wrong,
+            best.missed,
+            ideal.f1()
+        );
     }
     Ok(())
+}
+
+/// What the engine sees, kept in the folder CACHE where that is set, so that another score takes seconds.
+fn looked_at(engine: &dyn Engine, photo: &RgbImage, name: &str) -> Result<Evidence, Failed> {
+    let progress = Progress::default();
+    let Some(folder) = std::env::var_os("CACHE") else {
+        return Ok(engine.look(photo, &progress)?);
+    };
+    let file = Path::new(&folder).join(format!("{}_{name}.raw", engine.name()));
+    let (width, height) = (photo.width() as usize, photo.height() as usize);
+    if let Ok(bytes) = fs::read(&file) {
+        let mut planes = bytes.chunks_exact(width * height).map(<[u8]>::to_vec);
+        let mut next = || planes.next().unwrap_or_default();
+        let [border, rock, middle, gray] = [next(), next(), next(), next()];
+        return Ok(Evidence {
+            width,
+            height,
+            border,
+            rock,
+            middle,
+            gray,
+        });
+    }
+    let evidence = engine.look(photo, &progress)?;
+    let planes = [
+        &evidence.border,
+        &evidence.rock,
+        &evidence.middle,
+        &evidence.gray,
+    ];
+    fs::create_dir_all(&folder)?;
+    fs::write(&file, planes.map(Vec::as_slice).concat())?;
+    Ok(evidence)
 }
 
 fn outline(picture: &mut RgbImage, labels: &LabelImage) {

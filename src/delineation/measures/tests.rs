@@ -1,0 +1,109 @@
+//! Measures on planes, where all is known.
+
+use std::f64::consts::PI;
+
+use fragscale_core::camera::{Camera, Distortion, Pose};
+use fragscale_core::jobs::Progress;
+use fragscale_core::scale::{FieldGrid, ImageKind};
+use fragscale_core::surface::{Cloud, Surface};
+
+use super::*;
+
+const SIDE: u32 = 400;
+
+/// A photo from 4 above the plane z = slope * x, straight down, 500 pixels of focal length: 125 pixels per unit on
+/// the level plane.
+fn field(slope: f64) -> ScaleField {
+    let points = [[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]];
+    let cloud = Cloud {
+        points: points.map(|[x, y]| DVec3::new(x, y, slope * x)).to_vec(),
+        ..Cloud::default()
+    };
+    let camera = Camera {
+        name: String::new(),
+        width: SIDE,
+        height: SIDE,
+        fx: 500.0,
+        fy: 500.0,
+        cx: 200.0,
+        cy: 200.0,
+        skew: 0.0,
+        distortion: Distortion::None,
+    };
+    let pose = Pose::from_tilt_pan(DVec3::new(0.0, 0.0, 4.0), [90.0, 0.0]);
+    let surface = Surface::new(cloud).unwrap();
+    let grid = FieldGrid::of_pixels(&camera);
+    ScaleField::compute(
+        &camera,
+        &pose,
+        ImageKind::Undistorted,
+        grid,
+        &surface,
+        &Progress::default(),
+    )
+    .unwrap()
+}
+
+fn drawn(is_in: impl Fn(f64, f64) -> u32) -> LabelImage {
+    let side = SIDE as usize;
+    let label = |place: usize| is_in((place % side) as f64 + 0.5, (place / side) as f64 + 0.5);
+    LabelImage {
+        width: side,
+        height: side,
+        labels: (0..side * side).map(label).collect(),
+    }
+}
+
+fn close(found: f64, wanted: f64, share: f64) {
+    assert!(
+        (found / wanted - 1.0).abs() < share,
+        "{found}, not {wanted}"
+    );
+}
+
+/// A disc of 50 pixels radius and a rectangle of 80 by 30 that the edge cuts, on a level plane.
+#[test]
+fn a_disc_and_a_rectangle() {
+    let labels = drawn(|x, y| {
+        let disc = (x - 220.0).hypot(y - 210.0) < 50.0;
+        let rectangle = x < 80.0 && (300.0..330.0).contains(&y);
+        u32::from(disc) + 2 * u32::from(rectangle)
+    });
+    let found = measured(&labels, &field(0.0), SieveShape::Circle);
+    let [disc, rectangle] = found.as_slice() else {
+        panic!("two fragments");
+    };
+    assert!(!disc.is_cut && rectangle.is_cut);
+    assert!((disc.middle - DVec2::new(220.0, 210.0)).length() < 0.05);
+    let of = disc.world.unwrap();
+    close(of.scale, 125.0, 1e-9);
+    close(of.diameter, 0.8, 2e-3);
+    close(of.area, PI * 0.16, 4e-3);
+    close(of.surface_area, of.area, 1e-6);
+    close(of.widths[0], 0.8, 0.02);
+    close(of.widths[1], 0.8, 0.02);
+    close(of.inscribed, 0.8, 0.025);
+    close(of.roundness, 1.0, 0.03);
+    assert_eq!(of.sieve_size, of.diameter);
+    assert!(of.height.abs() < 1e-9);
+    // 20 pixels right of the axis and 10 below it, seen from above with y up: x 0.16, y -0.08.
+    assert!(
+        (of.place - DVec3::new(0.16, -0.08, 0.0)).length() < 1e-3,
+        "{}",
+        of.place
+    );
+    let of = rectangle.world.unwrap();
+    close(of.rectangle[0], 80.0 / 125.0, 1e-6);
+    close(of.rectangle[1], 30.0 / 125.0, 1e-6);
+    close(of.widths[1], 80f64.hypot(30.0) / 125.0, 1e-6);
+}
+
+/// On a plane that rises by 1 in 1 the surface is sqrt(2) times what lies level below it.
+#[test]
+fn a_slope_has_more_surface() {
+    let labels = drawn(|x, y| u32::from((x - 200.0).abs() < 10.0 && (y - 200.0).abs() < 10.0));
+    let found = measured(&labels, &field(1.0), SieveShape::Breadth);
+    let of = found[0].world.unwrap();
+    close(of.surface_area / of.area, 2f64.sqrt(), 0.01);
+    assert!(of.height.abs() < 1e-6, "{}", of.height);
+}
