@@ -5,6 +5,7 @@ use fragscale_core::jobs::Progress;
 use image::RgbImage;
 
 use crate::choice::Scorer;
+use crate::evidence::Evidence;
 
 /// Finds the borders of fragments in a photo, offline.
 pub trait Engine: Send + Sync {
@@ -35,21 +36,4 @@ pub trait Engine: Send + Sync {
     /// # Errors
     /// Where its numbers cannot be read.
     fn scorer(&self) -> Result<&Scorer, Fault>;
-}
-
-/// What an engine says of every pixel of a photo, row by row from the top left, each 0 to 255.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Evidence {
-    /// Pixels in a row.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// How sure it is a border: of two fragments, or of a fragment and what is none.
-    pub border: Vec<u8>,
-    /// How sure it is a fragment rather than fines or anything else; 255 where the engine cannot tell.
-    pub rock: Vec<u8>,
-    /// How far within a fragment: 0 at its border, 255 in its middle; 0 where the engine cannot tell.
-    pub middle: Vec<u8>,
-    /// How bright the photo is.
-    pub gray: Vec<u8>,
 }

@@ -15,6 +15,7 @@ pub mod choice;
 mod classical;
 mod delineating;
 mod engine;
+mod evidence;
 mod hull;
 mod labels;
 mod learned;
@@ -26,6 +27,7 @@ pub mod tree;
 
 pub use classical::Classical;
 pub use delineating::{delineate, least_across};
-pub use engine::{Engine, Evidence};
+pub use engine::Engine;
+pub use evidence::Evidence;
 pub use labels::{FINES, LabelImage, NOT_ROCK};
 pub use learned::Learned;

@@ -48,14 +48,15 @@ pub(crate) fn smoothed_floats(
 
 fn box_mean(row: &[f32], out: &mut [f32], radius: usize) {
     let last = row.len() - 1;
-    let at = |place: isize| f64::from(row[place.clamp(0, last as isize) as usize]);
-    let reach = radius as isize;
-    let mut sum: f64 = (-reach..=reach).map(at).sum();
+    // Beyond both ends it goes on as the last.
+    let at = |place: usize| f64::from(row[place.min(last)]);
+    let mut sum: f64 = (0..=2 * radius)
+        .map(|place| at(place.saturating_sub(radius)))
+        .sum();
     let share = 1.0 / (2 * radius + 1) as f64;
     for (place, mean) in out.iter_mut().enumerate() {
         *mean = (sum * share) as f32;
-        let place = place as isize;
-        sum += at(place + reach + 1) - at(place - reach);
+        sum += at(place + radius + 1) - at(place.saturating_sub(radius));
     }
 }
 
@@ -72,4 +73,29 @@ fn transposed(values: &[f32], width: usize, height: usize) -> Vec<f32> {
             }
         });
     turned
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point becomes a bell of the stated deviation whose sum is the point; what is even stays so.
+    #[test]
+    fn a_point_becomes_a_bell() {
+        let (width, height, radius) = (41, 35, 2);
+        let mut values = vec![0.0; width * height];
+        values[17 * width + 20] = 1000.0;
+        let bell = smoothed_floats(values, width, height, radius);
+        let (mut sum, mut across) = (0.0, 0.0);
+        for (place, value) in bell.iter().enumerate() {
+            let off = (place % width) as f32 - 20.0;
+            sum += value;
+            across += value * off * off;
+        }
+        assert!((sum - 1000.0).abs() < 0.01, "{sum}");
+        let wanted = (radius * (radius + 1)) as f32;
+        assert!((across / sum - wanted).abs() < 0.01, "{}", across / sum);
+        let even = smoothed(&[7; 12], 4, 3, 3);
+        assert_eq!(even, [7; 12]);
+    }
 }

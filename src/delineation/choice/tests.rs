@@ -4,7 +4,7 @@ use fragscale_core::jobs::Progress;
 use fragscale_core::split_mix::SplitMix;
 
 use super::*;
-use crate::engine::Evidence;
+use crate::evidence::Evidence;
 use crate::tree::tree;
 
 fn small_tree(seed: u64) -> Tree {

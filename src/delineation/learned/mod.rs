@@ -19,7 +19,8 @@ use rten_tensor::{NdTensor, NdTensorView};
 
 use crate::choice::Scorer;
 use crate::classical::gray;
-use crate::engine::{Engine, Evidence};
+use crate::engine::Engine;
+use crate::evidence::Evidence;
 
 /// Side of the part that the network sees at once, pixels, and how much of it is thrown away where the photo goes
 /// on, because the network knows nothing of that.
@@ -83,7 +84,7 @@ impl Engine for Learned {
     }
 
     fn look(&self, photo: &RgbImage, progress: &Progress) -> Result<Evidence, Fault> {
-        let model = MODEL.as_ref().map_err(|error| broken(error))?;
+        let model = MODEL.as_ref().map_err(broken)?;
         let (width, height) = photo.dimensions();
         let first = self.sees_every(width, height);
         let sizes = SIZES

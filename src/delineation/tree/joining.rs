@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 
 use super::watershed::{NOWHERE, around, basins};
 use super::{Node, Seam, Sums, Tree};
-use crate::engine::Evidence;
+use crate::evidence::Evidence;
 use crate::hull::hull;
 use crate::smoothing::smoothed;
 

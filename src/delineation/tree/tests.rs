@@ -4,7 +4,7 @@ use fragscale_core::jobs::Progress;
 use fragscale_core::split_mix::SplitMix;
 
 use super::*;
-use crate::engine::Evidence;
+use crate::evidence::Evidence;
 
 fn noise(width: usize, height: usize, seed: u64) -> Evidence {
     let mut random = SplitMix(seed);
@@ -27,6 +27,7 @@ fn noise(width: usize, height: usize, seed: u64) -> Evidence {
 #[test]
 fn sums_are_those_of_the_pixels() {
     let (width, height) = (40, 31);
+    let (columns, rows) = (40isize, 31isize);
     let evidence = noise(width, height, 3);
     let mut left_out = vec![false; width * height];
     left_out[7 * width..7 * width + 12].fill(true);
@@ -43,14 +44,14 @@ fn sums_are_those_of_the_pixels() {
             }
         }
         let is_in = |x: isize, y: isize| {
-            let on = (0..width as isize).contains(&x) && (0..height as isize).contains(&y);
+            let on = (0..columns).contains(&x) && (0..rows).contains(&y);
             let leaf = on.then(|| tree.leaf_of[y as usize * width + x as usize]);
             leaf.is_some_and(|leaf| leaf != NOWHERE && leaves[leaf as usize])
         };
         let (mut area, mut outline, mut at_edge, mut strength, mut border) =
             (0.0, 0.0, 0.0, 0.0, 0.0);
-        for y in 0..height as isize {
-            for x in 0..width as isize {
+        for y in 0..rows {
+            for x in 0..columns {
                 if !is_in(x, y) {
                     continue;
                 }
@@ -62,7 +63,7 @@ fn sums_are_those_of_the_pixels() {
                         continue;
                     }
                     outline += 1.0;
-                    if !(0..width as isize).contains(&a) || !(0..height as isize).contains(&b) {
+                    if !(0..columns).contains(&a) || !(0..rows).contains(&b) {
                         at_edge += 1.0;
                         continue;
                     }

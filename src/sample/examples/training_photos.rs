@@ -1,6 +1,8 @@
 //! Photos of random piles with labels, for `training/train.py`:
 //! `cargo run --release -p fragscale-sample --example training_photos -- FOLDER SEED PILES SIDE`
 
+#![allow(clippy::print_stderr, reason = "a tool for developers, in a terminal")]
+
 use std::path::Path;
 use std::process::ExitCode;
 

@@ -7,6 +7,14 @@
 //! see shared/data/fragments), set by set, and what the best choice of nodes could reach; and the outlines
 //! as pictures.
 
+#![allow(
+    clippy::print_stdout,
+    clippy::indexing_slicing,
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a tool for developers, in a terminal: a panic is the report"
+)]
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write as _;
