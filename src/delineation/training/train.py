@@ -3,7 +3,7 @@
     cargo run --release -p fragscale-sample --example training_photos -- TRAIN 1 160 512
     cargo run --release -p fragscale-sample --example training_photos -- VALID 2 8 512
     python3 train.py TRAIN VALID --to OUT [--steps 1500]
-    python3 train.py TRAIN VALID --to PATCHES --patches 500      # for train_score.py
+    python3 train.py TRAIN VALID --to PATCHES --patches 300      # for train_score.py
 
 Needs torch, numpy, pillow and onnx; two cores and an hour. No photo of the world is used: the labels of
 simulated photos are exact, and their licence is ours. What lens, sensor and file do to a photo is drawn

@@ -11,8 +11,8 @@ use crate::picture::{PhotoFormat, encode};
 const WHOLE: [u8; 3] = [255, 220, 0];
 const CUT: [u8; 3] = [255, 120, 0];
 
-/// A PNG of the undistorted photo: outlines a pixel wide, yellow, orange where an edge cuts the fragment;
-/// what is no rock is darkened.
+/// A PNG of the undistorted photo: yellow outlines, a pixel wide and wider on large photos, orange where an edge
+/// cuts the fragment; what is no rock is darkened.
 ///
 /// # Errors
 /// Where the picture cannot be encoded.
@@ -22,6 +22,8 @@ pub fn outlines_png(
     is_cut: &[bool],
 ) -> Result<Vec<u8>, Fault> {
     let mut picture = photo.clone();
+    // Of a large photo seen on a screen a line of one pixel would not be seen.
+    let line = 1 + labels.width.max(labels.height) / 2000;
     let at = |x: usize, y: usize| {
         labels
             .labels
@@ -39,15 +41,17 @@ pub fn outlines_png(
         if here == FINES {
             continue;
         }
-        let beside = [
-            (x.wrapping_sub(1), y),
-            (x + 1, y),
-            (x, y.wrapping_sub(1)),
-            (x, y + 1),
-        ];
-        let differs = beside
-            .iter()
-            .any(|(x, y)| *x >= labels.width || *y >= labels.height || at(*x, *y) != here);
+        let differs = (1..=line).any(|by| {
+            let beside = [
+                (x.wrapping_sub(by), y),
+                (x + by, y),
+                (x, y.wrapping_sub(by)),
+                (x, y + by),
+            ];
+            beside
+                .iter()
+                .any(|(x, y)| *x >= labels.width || *y >= labels.height || at(*x, *y) != here)
+        });
         if differs {
             let is_cut = is_cut.get(here as usize - 1).copied().unwrap_or(false);
             *pixel = Rgb(if is_cut { CUT } else { WHOLE });
