@@ -1,7 +1,7 @@
 //! Which nodes of the tree are fragments.
 //!
 //! Every node gets a score, the chance that it is one whole fragment, from what is measured of it
-//! ([`features`]) by weights that were learned on simulated photos ([`score`]). Of all sets of nodes that do
+//! ([`features`]) by weights that were learned on simulated photos (`score.rs`). Of all sets of nodes that do
 //! not overlap the one with the most in sum is found from the leaves up: a node is taken if its own score
 //! beats the sum of the best below it.
 

@@ -1,6 +1,6 @@
 //! All regions that may be a fragment, as a tree: small ones joined, the weakest seam first.
 //!
-//! The small ones are those of a watershed ([`watershed`]). What lies between two of them is a seam; its
+//! The small ones are those of a watershed (`watershed.rs`). What lies between two of them is a seam; its
 //! strength is the mean of the borders along it. Joining the two regions of the weakest seam, again and
 //! again, makes a binary tree (a "binary partition tree": Salembier & Garrido 2000): its leaves are the
 //! small regions, every other node is the two that were joined. Measures of a node add up from its
