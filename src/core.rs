@@ -12,6 +12,7 @@ pub mod geodesy;
 pub mod geometry;
 pub mod georeference;
 pub mod jobs;
+pub mod labels;
 pub mod numbers;
 pub mod picture;
 pub mod plan;

@@ -65,6 +65,12 @@ pub fn marked_png(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
+/// Whether fragscale wrote a file as a result, told by its first bytes.
+pub fn is_own_result(bytes: &[u8]) -> bool {
+    let beginning = bytes.get(..LOOKED_AT as usize).unwrap_or(bytes);
+    Kind::of(beginning) == Some(Kind::Result)
+}
+
 fn is_png(beginning: &[u8]) -> bool {
     beginning.starts_with(b"\x89PNG")
         && (beginning.get(PNG_HEAD..)).is_some_and(|rest| rest.starts_with(PNG_MARK))
@@ -107,14 +113,21 @@ fn is_text(beginning: &[u8]) -> bool {
         || begins("{\"unit\":\"") && has("\"model\":\"") && has("\"envelope_percent\":")
         // An analysis of variance.
         || begins("{\"between\":{\"df\":")
+        // What outlines of fragments are of.
+        || begins("{\"outlines\":\"") && has("\"lens\":[[")
         // Times.
         || begins("{\"unit\":\"min\",\"columns\":[")
         // A plan of photos, and what was flown of it.
         || begins("{\n  \"area\": [\n    [\n")
         || begins("{\n  \"flight\": \"") && has("\n  \"photos\": [\n    {\n      \"center\": [")
-        // Missions: QGroundControl's, GeoJSON, KML.
+        // Missions: QGroundControl's, GeoJSON.
         || begins("{\n  \"fileType\": \"Plan\",\n  \"groundStation\": \"fragscale\",")
         || begins("{\"type\":\"FeatureCollection\",\"fragscale\":\"mission")
+        // Outlines of fragments: COCO, LabelMe, GeoJSON in pixels.
+        || begins("{\"info\":{\"description\":\"Fragments outlined by fragscale")
+        || begins("{\"version\":\"5.5.0\",\"fragscale\":\"fragments")
+        || begins("{\"type\":\"FeatureCollection\",\"fragscale\":\"fragments")
+        // KML, and outlines of fragments for CVAT.
         || begins("<?xml ") && text.lines().nth(1) == Some(svg)
 }
 
@@ -141,6 +154,7 @@ fn is_csv(first: &str) -> bool {
         || first.starts_with("photo,x_") && first.ends_with(",troubles")
         || first.starts_with("planned,photo,x_")
         // Outlined fragments, and their size distributions.
+        || first.starts_with("photo,percent_passing,size_")
         || first.starts_with("photo,fragment,column_px,row_px,pixels,cut,x_")
         || first.starts_with("method,photo,size_") && first.ends_with(",percent_passing,area")
         // Of the window's frames.

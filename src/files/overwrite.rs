@@ -7,7 +7,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use super::atomic::write_whole;
-use super::input::cannot_be;
+use super::input::{FileError, cannot_be};
 use super::inputs::Inputs;
 use super::marks::{Kind, LOOKED_AT};
 use crate::fault::Fault;
@@ -141,6 +141,20 @@ pub fn write(
     has_folder(path)?;
     may_write(path, kind, inputs, force)?;
     write_whole(path, contents).map_err(|error| cannot_be("written", &error))
+}
+
+/// Makes a folder, with those that it lies in.
+///
+/// # Errors
+/// Where a file has its name, or what the system says.
+pub fn make_folder(folder: &Path) -> Result<(), FileError> {
+    fs::create_dir_all(folder).map_err(|error| {
+        let fault = match folder.exists() {
+            true => Fault::new("it is no folder", "name a folder"),
+            false => cannot_be("made", &error),
+        };
+        FileError::new(folder, fault)
+    })
 }
 
 #[cfg(test)]

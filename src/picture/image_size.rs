@@ -1,5 +1,8 @@
 //! How large a photo may claim to be.
 
+use image::RgbImage;
+
+use crate::camera::Camera;
 use crate::fault::Fault;
 
 /// The most pixels that a photo may have: twice the largest aerial sensors of today.
@@ -11,6 +14,24 @@ const MOST_PIXELS_A_BYTE: u64 = 1000;
 
 /// Below this many pixels a lying header does no harm.
 const HARMLESS_PIXELS: u64 = 16_000_000;
+
+/// Refuses a photo of another size than its camera's.
+///
+/// # Errors
+/// Where it is.
+pub fn check_size_of(photo: &RgbImage, camera: &Camera) -> Result<(), Fault> {
+    let (width, height) = photo.dimensions();
+    if (width, height) == (camera.width, camera.height) {
+        return Ok(());
+    }
+    Err(Fault::new(
+        format!(
+            "the photo is {width} x {height}, its camera {} x {}",
+            camera.width, camera.height
+        ),
+        "give the photo that the camera was calibrated for",
+    ))
+}
 
 /// Refuses sizes that no photo in a file of so many bytes has, before memory is taken for them.
 pub(super) fn check_size(width: u32, height: u32, bytes: u64) -> Result<(), Fault> {

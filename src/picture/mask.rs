@@ -3,6 +3,8 @@
 use glam::DVec2;
 use image::{Rgb, RgbImage};
 
+use crate::labels::spans_within;
+
 /// What left-out regions are painted with: pure blue. No rock and no shadow has it, so that everyone
 /// sees what was done; and its grey value, by which programs find fragments, is that of a shadow.
 pub const LEFT_OUT: [u8; 3] = [0, 0, 255];
@@ -23,33 +25,12 @@ pub fn mask_of_regions(width: u32, height: u32, regions: &[Vec<DVec2>]) -> RgbIm
 fn fill(image: &mut RgbImage, regions: &[Vec<DVec2>], color: Rgb<u8>) {
     let (width, height) = image.dimensions();
     for region in regions {
-        let rows = region.iter().map(|corner| corner.y);
-        let first = rows.clone().fold(f64::INFINITY, f64::min);
-        let last = rows.fold(f64::NEG_INFINITY, f64::max);
-        // Casts of floats end at the limits of their type; NaN is 0.
-        for row in (first.max(0.0) as u32)..(last.max(0.0).ceil() as u32).min(height) {
-            let mut crossings = crossings(region, f64::from(row) + 0.5);
-            crossings.sort_by(f64::total_cmp);
-            for span in crossings.chunks_exact(2) {
-                // The centres between the two.
-                let from = (span[0] - 0.5).ceil().max(0.0) as u32;
-                let to = (span[1] - 0.5).ceil().max(0.0) as u32;
-                for column in from..to.min(width) {
-                    image.put_pixel(column, row, color);
-                }
+        spans_within(region, width, height, |row, columns| {
+            for column in columns {
+                image.put_pixel(column, row, color);
             }
-        }
+        });
     }
-}
-
-/// Where a region's outline crosses a row.
-fn crossings(region: &[DVec2], row: f64) -> Vec<f64> {
-    let next = region.iter().cycle().skip(1);
-    let crossing = |(from, to): (&DVec2, &DVec2)| {
-        let crosses = (from.y <= row) != (to.y <= row);
-        crosses.then(|| from.x + (to.x - from.x) * ((row - from.y) / (to.y - from.y)))
-    };
-    region.iter().zip(next).filter_map(crossing).collect()
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use super::reduce::{reduced_size, reduced_to};
 use super::resample::cubic;
 use super::warp::{CELL, Cell, bilinear};
 use crate::camera::{Camera, Distortion};
+use crate::labels::{LabelImage, NOT_ROCK};
 
 /// The undistorted image of `photo`, at its camera's size or reduced so that no side is longer than
 /// `max_side` (`u32::MAX` for the full size). Pixels that the photo does not show are black: beyond
@@ -55,22 +56,69 @@ pub fn undistorted_part(photo: &RgbImage, camera: &Camera, part: Part) -> RgbIma
 
 /// A part of the image that a mapping leads to.
 fn filled(photo: &RgbImage, mapping: &Mapping<'_>, part: Part) -> RgbImage {
-    let Part { width, height, .. } = part;
-    let mut out = RgbImage::new(width, height);
+    let mut out = RgbImage::new(part.width, part.height);
     if photo.is_empty() || out.is_empty() {
         return out;
     }
-    let bytes_a_band = (width * CELL) as usize * 3;
-    out.par_chunks_mut(bytes_a_band)
+    looked_up(&mut out, 3, mapping, part, |pixel, source| {
+        if let Some(source) = source {
+            pixel.copy_from_slice(&cubic(photo, source.x, source.y));
+        }
+    });
+    out
+}
+
+/// The label image of the undistorted photo from that of the photo as it was shot: each pixel has the label of the pixel
+/// that it comes from, and is no rock where the photo shows nothing.
+pub fn undistorted_labels(labels: &LabelImage, camera: &Camera) -> LabelImage {
+    let size = (labels.width as u32, labels.height as u32);
+    if camera.distortion == Distortion::None || size != (camera.width, camera.height) {
+        return labels.clone();
+    }
+    let whole = Part {
+        x: 0,
+        y: 0,
+        width: camera.width,
+        height: camera.height,
+    };
+    let mut out = vec![NOT_ROCK; labels.labels.len()];
+    let mapping = Mapping::of_size(size, camera, camera.width, camera.height);
+    looked_up(&mut out, 1, &mapping, whole, |label, source| {
+        let Some(source) = source else {
+            return;
+        };
+        // Places within the image, whose far sides belong to its last pixels.
+        let column = (source.x as usize).min(labels.width - 1);
+        let row = (source.y as usize).min(labels.height - 1);
+        label.fill(labels.labels[row * labels.width + column]);
+    });
+    LabelImage {
+        width: labels.width,
+        height: labels.height,
+        labels: out,
+    }
+}
+
+/// Gives each pixel of a part, which is so many entries of `out`, the place in the photo that it comes from, where the
+/// photo shows it.
+fn looked_up<T: Send>(
+    out: &mut [T],
+    entries: usize,
+    mapping: &Mapping<'_>,
+    part: Part,
+    each: impl Fn(&mut [T], Option<DVec2>) + Sync,
+) {
+    let width = part.width;
+    out.par_chunks_mut((width * CELL) as usize * entries)
         .enumerate()
         .for_each(|(band, pixels)| {
             let row = band as u32 * CELL;
             for column in (0..width).step_by(CELL as usize) {
                 let cell = mapping.cell(part.x + column, part.y + row);
-                let columns = CELL.min(width - column);
-                for (y, line) in pixels.chunks_mut(width as usize * 3).enumerate() {
-                    let line = &mut line[column as usize * 3..][..columns as usize * 3];
-                    for (x, pixel) in line.chunks_exact_mut(3).enumerate() {
+                let columns = CELL.min(width - column) as usize;
+                for (y, line) in pixels.chunks_mut(width as usize * entries).enumerate() {
+                    let line = &mut line[column as usize * entries..][..columns * entries];
+                    for (x, pixel) in line.chunks_exact_mut(entries).enumerate() {
                         // The centre of the pixel.
                         let centre = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
                         let source = match &cell {
@@ -79,14 +127,11 @@ fn filled(photo: &RgbImage, mapping: &Mapping<'_>, part: Part) -> RgbImage {
                             }
                             Cell::Exact(origin) => mapping.source(*origin + centre),
                         };
-                        if let Some(source) = source.filter(|source| mapping.shows(*source)) {
-                            pixel.copy_from_slice(&cubic(photo, source.x, source.y));
-                        }
+                        each(pixel, source.filter(|source| mapping.shows(*source)));
                     }
                 }
             }
         });
-    out
 }
 
 /// From pixels of the undistorted image to pixels of the photo.
@@ -102,9 +147,14 @@ struct Mapping<'a> {
 
 impl<'a> Mapping<'a> {
     fn new(photo: &RgbImage, camera: &'a Camera, width: u32, height: u32) -> Self {
+        Self::of_size(photo.dimensions(), camera, width, height)
+    }
+
+    /// The same of a photo of a size.
+    fn of_size(photo: (u32, u32), camera: &'a Camera, width: u32, height: u32) -> Self {
         let size = |width: u32, height: u32| DVec2::new(f64::from(width), f64::from(height));
         let of_camera = size(camera.width, camera.height);
-        let of_photo = size(photo.width(), photo.height());
+        let of_photo = size(photo.0, photo.1);
         Self {
             camera,
             camera_from_target: of_camera / size(width, height),
@@ -214,6 +264,55 @@ mod tests {
             }
             assert!(seen > 20_000 && furthest > 5.0, "{seen}, {furthest}");
             assert!(black == 0, "these lenses pull the image inwards: {black}");
+        }
+    }
+
+    /// Labels come from where the lens puts their pixels: the label of each pixel tells which it was.
+    #[test]
+    fn labels_come_from_where_the_lens_puts_them() {
+        let labels = LabelImage {
+            width: 240,
+            height: 160,
+            labels: (1..=240 * 160).collect(),
+        };
+        assert_eq!(
+            undistorted_labels(&labels, &camera(Distortion::None)),
+            labels
+        );
+        let outwards = camera(Distortion::Brown(Brown::new([
+            0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+        ])));
+        for camera in lenses().into_iter().chain([outwards]) {
+            let out = undistorted_labels(&labels, &camera);
+            let mut nothing = 0;
+            for (place, label) in out.labels.iter().enumerate() {
+                let centre = DVec2::new((place % 240) as f64 + 0.5, (place / 240) as f64 + 0.5);
+                let source = camera.pixel_as_shot(camera.direction_undistorted(centre));
+                match source.filter(|source| camera.contains(*source)) {
+                    Some(source) if *label != NOT_ROCK => {
+                        let told = DVec2::new(
+                            f64::from((label - 1) % 240) + 0.5,
+                            f64::from((label - 1) / 240) + 0.5,
+                        );
+                        // Half a pixel, plus the mapping's 0.05 px.
+                        assert!(
+                            (told - source).abs().max_element() <= 0.55,
+                            "{centre}: {told}, {source}"
+                        );
+                    }
+                    Some(source) => assert!(
+                        source.x.min(source.y) < 0.1 || source.x > 239.9 || source.y > 159.9
+                    ),
+                    None => nothing += usize::from(*label == NOT_ROCK),
+                }
+            }
+            assert!(
+                out.labels
+                    .iter()
+                    .filter(|label| **label == NOT_ROCK)
+                    .count()
+                    <= nothing + 20
+            );
         }
     }
 

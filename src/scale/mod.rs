@@ -36,7 +36,7 @@ pub use scale_object::{Bar, PlaceScale, ScaleObjectKind, Traced};
 pub use sighting::{Sighting, sighting};
 pub use sphere::Sphere;
 pub use stated_errors::{PoseErrors, ScalePair, StatedErrors};
-pub use uncertainty::{ErrorSource, Interval, PixelErrors, UncertainPhoto, Uncertainty};
+pub use uncertainty::{Draws, ErrorSource, Interval, PixelErrors, UncertainPhoto, Uncertainty};
 pub use view::ViewFacts;
 
 use crate::camera::{Camera, NotInvertible, Pose};

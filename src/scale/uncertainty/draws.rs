@@ -7,14 +7,16 @@ use super::Interval;
 use crate::split_mix::SplitMix;
 
 /// Normal and uniform numbers from a seed.
-pub(super) struct Draws {
+#[derive(Debug, Clone)]
+pub struct Draws {
     bits: SplitMix,
     /// The second of two normal numbers.
     spare: Option<f64>,
 }
 
 impl Draws {
-    pub(super) fn new(seed: u64) -> Self {
+    /// The same numbers for the same seed.
+    pub fn new(seed: u64) -> Self {
         Self {
             bits: SplitMix(seed),
             spare: None,
@@ -27,13 +29,13 @@ impl Draws {
     }
 
     /// One of `count` places, each as likely.
-    pub(super) fn place(&mut self, count: usize) -> usize {
+    pub fn place(&mut self, count: usize) -> usize {
         // `as` cuts; the product is under `count`.
         (self.uniform() * count as f64) as usize
     }
 
     /// Normal, of the standard deviation 1: Box and Muller's pairs.
-    pub(super) fn normal(&mut self) -> f64 {
+    pub fn normal(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;
         }
@@ -44,7 +46,7 @@ impl Draws {
     }
 
     /// Three of them.
-    pub(super) fn normals(&mut self) -> DVec3 {
+    pub fn normals(&mut self) -> DVec3 {
         DVec3::new(self.normal(), self.normal(), self.normal())
     }
 }

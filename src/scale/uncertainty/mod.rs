@@ -18,6 +18,7 @@ mod pixels;
 mod surface_error;
 
 use self::corners::CornerDraws;
+pub use self::draws::Draws;
 use self::line::LineErrors;
 pub use self::pixels::PixelErrors;
 use self::surface_error::{depth_errors, plane_of};

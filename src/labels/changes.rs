@@ -1,0 +1,135 @@
+//! What an edit changes: pixels from one label to another, so that it can be undone to the bit.
+
+use std::collections::BTreeSet;
+
+use super::{LabelImage, Outlines};
+
+/// Pixels next to each other in the order of rows, all of one label before and all of one after.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Run {
+    first: usize,
+    length: usize,
+    before: u32,
+    after: u32,
+}
+
+/// How sure a fragment is: `None` where a person looked at it.
+pub(super) type Sure = Option<f64>;
+
+/// An edit, made but not yet done.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    runs: Vec<Run>,
+    /// Numbers of fragments with how sure they were and are.
+    pub(super) sure: Vec<(u32, Sure, Sure)>,
+}
+
+impl Change {
+    /// Whether it changes nothing.
+    pub fn is_nothing(&self) -> bool {
+        self.runs.is_empty() && self.sure.iter().all(|(_, before, after)| before == after)
+    }
+
+    /// Whether only how sure fragments are changes, and no pixel.
+    pub fn is_only_looked(&self) -> bool {
+        self.runs.is_empty()
+    }
+
+    /// What makes outlines others of as many pixels.
+    pub(super) fn between(before: &Outlines, after: &Outlines) -> Self {
+        let mut runs = Runs::default();
+        let labels = before.labels().labels.iter().zip(&after.labels().labels);
+        for (place, (before, after)) in labels.enumerate() {
+            runs.add(place, *before, *after);
+        }
+        let numbers = before.all_sure().keys().chain(after.all_sure().keys());
+        let numbers: BTreeSet<u32> = numbers.copied().collect();
+        let sure = numbers.into_iter();
+        Self {
+            runs: runs.0,
+            sure: sure
+                .map(|number| (number, before.sure(number), after.sure(number)))
+                .collect(),
+        }
+    }
+
+    /// Does it, or undoes it.
+    pub(super) fn onto(&self, labels: &mut LabelImage, undo: bool) {
+        for run in &self.runs {
+            let label = if undo { run.before } else { run.after };
+            labels.labels[run.first..run.first + run.length].fill(label);
+        }
+    }
+}
+
+/// Runs that are being made, in the order of places.
+#[derive(Debug, Default)]
+struct Runs(Vec<Run>);
+
+impl Runs {
+    fn add(&mut self, place: usize, before: u32, after: u32) {
+        if before == after {
+            return;
+        }
+        match self.0.last_mut() {
+            Some(run)
+                if run.first + run.length == place
+                    && run.before == before
+                    && run.after == after =>
+            {
+                run.length += 1;
+            }
+            _ => self.0.push(Run {
+                first: place,
+                length: 1,
+                before,
+                after,
+            }),
+        }
+    }
+}
+
+/// A change that is being made: pixels are painted, the last paint stays.
+#[derive(Debug)]
+pub struct Painting<'a> {
+    labels: &'a LabelImage,
+    /// Places in the order of rows, with their new labels.
+    painted: Vec<(usize, u32)>,
+}
+
+impl<'a> Painting<'a> {
+    /// Nothing painted yet.
+    pub fn on(labels: &'a LabelImage) -> Self {
+        Self {
+            labels,
+            painted: Vec::new(),
+        }
+    }
+
+    /// Paints a pixel, by its place in the order of rows.
+    pub fn paint(&mut self, place: usize, label: u32) {
+        self.painted.push((place, label));
+    }
+
+    /// What came of it. `looked_at` are the fragments that a person shaped; `sure` says how sure each was.
+    pub fn done(mut self, looked_at: &[u32], sure: impl Fn(u32) -> Option<f64>) -> Change {
+        // Stable: of one place the last paint comes last.
+        self.painted.sort_by_key(|(place, _)| *place);
+        let mut runs = Runs::default();
+        for (at, (place, after)) in self.painted.iter().enumerate() {
+            let is_last = self.painted.get(at + 1).is_none_or(|next| next.0 != *place);
+            if let Some(before) = self.labels.labels.get(*place).filter(|_| is_last) {
+                runs.add(*place, *before, *after);
+            }
+        }
+        let looked_at = looked_at
+            .iter()
+            .map(|number| (*number, sure(*number), None));
+        Change {
+            runs: runs.0,
+            sure: looked_at
+                .filter(|(_, before, _)| before.is_some())
+                .collect(),
+        }
+    }
+}
