@@ -31,6 +31,10 @@ pub trait Engine: Send + Sync {
     /// measured on simulated piles.
     fn fines_of_unfound(&self) -> f64;
 
+    /// The standard errors of all its sizes together, relative, and of [`Engine::fines_of_unfound`], as measured on
+    /// simulated piles.
+    fn doubts(&self) -> [f64; 2];
+
     /// What tells fragments from other regions by its evidence.
     ///
     /// # Errors

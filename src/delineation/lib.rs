@@ -10,6 +10,9 @@
 //!    one of its nodes; which one, no single strength of seams tells.
 //! 3. [`choice`]: every node gets a score, how likely it is a whole fragment (its seams against those
 //!    within it, its shape), and the best nodes that do not overlap are taken.
+//!
+//! [`Regions`] keeps the tree for who looks for another node by hand; `photo` leads from a flight's photo here and
+//! on to its fragments, [`measures`] and [`mass`].
 
 pub mod choice;
 mod classical;
@@ -17,17 +20,31 @@ mod delineating;
 mod engine;
 mod evidence;
 mod hull;
-mod labels;
+pub mod intervals;
 mod learned;
 pub mod mass;
 pub mod measures;
 pub mod overlap;
+pub mod photo;
+mod regions;
+pub mod saved;
 mod smoothing;
+mod transposed;
 pub mod tree;
 
 pub use classical::Classical;
-pub use delineating::{delineate, least_across};
+pub use delineating::{Delineated, delineate, delineated, least_across};
 pub use engine::Engine;
 pub use evidence::Evidence;
-pub use labels::{FINES, LabelImage, NOT_ROCK};
+pub use fragscale_core::labels;
+pub use fragscale_core::labels::{FINES, LabelImage, NOT_ROCK};
 pub use learned::Learned;
+pub use regions::Regions;
+
+/// All engines that the program brings along; the first is the one that measured best.
+pub static ENGINES: [&dyn Engine; 2] = [&Learned, &Classical];
+
+/// The engine that is called so in files; `None` for outlines of other tools.
+pub fn engine_called(name: &str) -> Option<&'static dyn Engine> {
+    ENGINES.into_iter().find(|engine| engine.name() == name)
+}

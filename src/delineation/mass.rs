@@ -12,9 +12,11 @@
 //!    is the fines' share of the mass.
 
 use fragscale_core::fault::Fault;
+use fragscale_core::scale::ScaleField;
 use fragscale_fragmentation::SizeDistribution;
 use glam::DVec2;
 
+use crate::labels::{FINES, LabelImage};
 use crate::measures::Fragment;
 
 /// What a photo contributes. Lengths in one unit.
@@ -28,6 +30,48 @@ pub struct PhotoFragments {
     pub fines: f64,
     /// The size of the smallest fragment that the photo can show.
     pub limit: f64,
+}
+
+impl PhotoFragments {
+    /// From a photo's label image, the scale field of all its pixels and the measures of its fragments; the narrowest
+    /// that its engine outlines is `least_across` pixels.
+    pub fn new(
+        labels: &LabelImage,
+        field: &ScaleField,
+        fragments: Vec<Fragment>,
+        least_across: f64,
+    ) -> Self {
+        let (mut fines, mut area, mut pixels) = (0.0, 0.0, 0.0);
+        for (place, label) in labels.labels.iter().enumerate() {
+            let (column, row) = (place % labels.width, place / labels.width);
+            let Some(scale) = field.scale_at(column as u32, row as u32) else {
+                continue;
+            };
+            let own = 1.0 / (scale * scale);
+            pixels += 1.0;
+            area += own;
+            if *label == FINES {
+                fines += own;
+            }
+        }
+        let scale: f64 = (pixels / area).sqrt();
+        Self {
+            fragments,
+            frame: DVec2::new(labels.width as f64, labels.height as f64),
+            fines,
+            limit: least_across / scale,
+        }
+    }
+}
+
+impl PhotoFragments {
+    /// The same without any fragment.
+    pub(crate) fn without_fragments(&self) -> Self {
+        Self {
+            fragments: Vec::new(),
+            ..*self
+        }
+    }
 }
 
 /// Which steps are taken.
@@ -74,7 +118,10 @@ const PER_DECADE: f64 = 10.0;
 ///
 /// # Errors
 /// Where no photo shows a whole fragment.
-pub fn by_mass(photos: &[PhotoFragments], steps: Steps) -> Result<ByMass, Fault> {
+pub fn by_mass<'a>(
+    photos: impl IntoIterator<Item = &'a PhotoFragments>,
+    steps: Steps,
+) -> Result<ByMass, Fault> {
     let (mut whole, mut cut, mut fines, mut rock) = (Vec::new(), 0, 0.0, 0.0);
     let mut limit: f64 = 0.0;
     for photo in photos {
@@ -136,14 +183,14 @@ pub fn by_mass(photos: &[PhotoFragments], steps: Steps) -> Result<ByMass, Fault>
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use fragscale_core::split_mix::SplitMix;
     use glam::DVec3;
 
     use super::*;
     use crate::measures::Measures;
 
-    fn fragment(size: f64, extent: f64, is_cut: bool) -> Fragment {
+    pub(crate) fn fragment(size: f64, extent: f64, is_cut: bool) -> Fragment {
         let area = std::f64::consts::PI / 4.0 * size * size;
         Fragment {
             number: 1,

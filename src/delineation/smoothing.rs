@@ -2,6 +2,8 @@
 
 use rayon::prelude::*;
 
+use crate::transposed::transposed;
+
 /// Three box means of `2 * radius + 1` pixels along both axes; beyond the edge the photo goes on as its
 /// last pixel. Deviation: sqrt(radius (radius + 1)).
 pub(crate) fn smoothed(values: &[u8], width: usize, height: usize, radius: usize) -> Vec<u8> {
@@ -23,27 +25,24 @@ pub(crate) fn smoothed_floats(
     if radius == 0 || width == 0 || height == 0 {
         return values;
     }
-    for _ in 0..3 {
-        values.par_chunks_mut(width).for_each_init(
-            || vec![0.0; width],
-            |line, row| {
-                box_mean(row, line, radius);
-                row.copy_from_slice(line);
-            },
-        );
-    }
+    box_means(&mut values, width, radius);
     // Columns as rows.
     let mut turned = transposed(&values, width, height);
-    for _ in 0..3 {
-        turned.par_chunks_mut(height).for_each_init(
-            || vec![0.0; height],
-            |line, row| {
+    box_means(&mut turned, height, radius);
+    transposed(&turned, height, width)
+}
+
+/// Three box means along each row.
+fn box_means(values: &mut [f32], width: usize, radius: usize) {
+    values.par_chunks_mut(width).for_each_init(
+        || vec![0.0; width],
+        |line, row| {
+            for _ in 0..3 {
                 box_mean(row, line, radius);
                 row.copy_from_slice(line);
-            },
-        );
-    }
-    transposed(&turned, height, width)
+            }
+        },
+    );
 }
 
 fn box_mean(row: &[f32], out: &mut [f32], radius: usize) {
@@ -58,21 +57,6 @@ fn box_mean(row: &[f32], out: &mut [f32], radius: usize) {
         *mean = (sum * share) as f32;
         sum += at(place + radius + 1) - at(place.saturating_sub(radius));
     }
-}
-
-fn transposed(values: &[f32], width: usize, height: usize) -> Vec<f32> {
-    let mut turned = vec![0.0; values.len()];
-    turned
-        .par_chunks_mut(height * 16)
-        .enumerate()
-        .for_each(|(band, columns)| {
-            for row in 0..height {
-                for (column, part) in columns.chunks_mut(height).enumerate() {
-                    part[row] = values[row * width + band * 16 + column];
-                }
-            }
-        });
-    turned
 }
 
 #[cfg(test)]

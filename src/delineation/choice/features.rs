@@ -8,29 +8,7 @@ use crate::tree::{Node, Tree};
 /// How many there are.
 pub const COUNT: usize = 18;
 
-/// Their names, for the log of the training.
-pub const NAMES: [&str; COUNT] = [
-    "outline: mean strength",
-    "outline: weak share",
-    "joined at",
-    "joined into its parent at",
-    "border within",
-    "rock",
-    "middle: mean",
-    "middle: most",
-    "most middle of the lesser child",
-    "solidity",
-    "circularity",
-    "ellipse",
-    "elongation",
-    "log area",
-    "share of the outline at the photo's edge",
-    "deviation of the gray",
-    "lesser child's share of the area",
-    "share of its parent's area",
-];
-
-/// Each about 0 to 1.
+/// Each about 0 to 1. Their numbers, from 0, are what `train_score.py` can leave out.
 pub fn features(tree: &Tree, place: usize) -> [f64; COUNT] {
     let node = &tree.nodes[place];
     let sums = &node.sums;
@@ -60,8 +38,10 @@ pub fn features(tree: &Tree, place: usize) -> [f64; COUNT] {
         (4.0 * PI * area / (sums.outline * PI / 4.0).powi(2).max(1.0)).min(1.5),
         ellipse,
         elongation,
+        // 13.
         area.log10() / 5.0,
         sums.at_edge / sums.outline.max(1.0),
+        // 15.
         (sums.gray_squared / area - gray * gray).max(0.0).sqrt() / 64.0,
         lesser.map_or(0.0, |lesser| lesser.sums.area / area),
         parent.map_or(1.0, |parent| area / parent.sums.area.max(1.0)),

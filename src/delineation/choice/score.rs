@@ -1,5 +1,6 @@
 //! The score of a node: the chance that it is a whole fragment.
 
+use fragscale_core::fault::Fault;
 use rayon::prelude::*;
 
 use super::features::{COUNT, features};
@@ -35,6 +36,14 @@ impl Scorer {
                 .collect::<Option<_>>()?,
             last: last.try_into().ok()?,
         })
+    }
+
+    /// One that the program brings along, where its numbers could be read.
+    ///
+    /// # Errors
+    /// Where they could not.
+    pub(crate) fn brought_along(read: Option<&Self>) -> Result<&Self, Fault> {
+        read.ok_or_else(|| Fault::new("the numbers of the score are broken", "report this"))
     }
 
     /// From 0 to 1.

@@ -70,9 +70,13 @@ impl Engine for Learned {
         0.62
     }
 
+    fn doubts(&self) -> [f64; 2] {
+        // P50 of simulated piles is 4 to 7 % too large with a share of fines that was measured on one of them.
+        [0.07, 0.15]
+    }
+
     fn scorer(&self) -> Result<&Scorer, Fault> {
-        let broken = || Fault::new("the numbers of the score are broken", "report this");
-        SCORER.as_ref().ok_or_else(broken)
+        Scorer::brought_along(SCORER.as_ref())
     }
 
     fn sees_every(&self, width: u32, height: u32) -> u32 {

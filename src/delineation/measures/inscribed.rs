@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::labels::LabelImage;
+use crate::transposed::transposed;
 
 /// From the middle of each pixel to the outline of what it belongs to, pixels; the photo's edge is an outline.
 pub(super) fn distances(labels: &LabelImage) -> Vec<f64> {
@@ -80,19 +81,6 @@ fn lower_envelope(values: &mut [f64]) {
         let away = place as f64 - from as f64;
         *value = own[from] + away * away;
     }
-}
-
-fn transposed(values: &[f64], width: usize, height: usize) -> Vec<f64> {
-    let mut turned = vec![0.0; values.len()];
-    turned
-        .par_chunks_mut(height.max(1))
-        .enumerate()
-        .for_each(|(x, column)| {
-            for (y, value) in column.iter_mut().enumerate() {
-                *value = values[y * width + x];
-            }
-        });
-    turned
 }
 
 #[cfg(test)]

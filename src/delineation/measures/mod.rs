@@ -64,7 +64,7 @@ pub struct Measures {
     pub sieve_size: f64,
 }
 
-/// The measures of all fragments, in the order of their numbers. `field` is that of all pixels of the same
+/// The measures of all fragments, in the order of their numbers; numbers that no pixel has are left out. `field` is that of all pixels of the same
 /// undistorted photo.
 pub fn measured(labels: &LabelImage, field: &ScaleField, shape: SieveShape) -> Vec<Fragment> {
     let mut sums = vec![Sums::default(); labels.fragments()];
@@ -129,7 +129,8 @@ pub fn measured(labels: &LabelImage, field: &ScaleField, shape: SieveShape) -> V
         }
     }
     let all = (1..).zip(sums.iter_mut().zip(heights));
-    all.map(|(number, (of, height))| of.fragment(number, height, shape))
+    all.filter(|(_, (of, _))| of.pixels > 0)
+        .map(|(number, (of, height))| of.fragment(number, height, shape))
         .collect()
 }
 

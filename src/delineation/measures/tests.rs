@@ -15,8 +15,12 @@ const SIDE: u32 = 400;
 /// the level plane.
 fn field(slope: f64) -> ScaleField {
     let points = [[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]];
+    field_of(points.map(|[x, y]| DVec3::new(x, y, slope * x)).to_vec())
+}
+
+fn field_of(points: Vec<DVec3>) -> ScaleField {
     let cloud = Cloud {
-        points: points.map(|[x, y]| DVec3::new(x, y, slope * x)).to_vec(),
+        points,
         ..Cloud::default()
     };
     let camera = Camera {
@@ -106,4 +110,17 @@ fn a_slope_has_more_surface() {
     let of = found[0].world.unwrap();
     close(of.surface_area / of.area, 2f64.sqrt(), 0.01);
     assert!(of.height.abs() < 1e-6, "{}", of.height);
+}
+
+/// A ridge z = -|x| / 5 over a square from -a to a: its outline lies at -a / 5 on two sides and at -a / 10 in the mean on
+/// the others, so its plane is level at -3 a / 20, and the ridge stands that high above it.
+#[test]
+fn a_ridge_stands_out_of_its_outline() {
+    let points =
+        [-9.0, 0.0, 9.0].map(|x: f64| [-9.0, 9.0].map(|y| DVec3::new(x, y, -x.abs() / 5.0)));
+    let labels = drawn(|x, y| u32::from((x - 200.0).abs() < 100.0 && (y - 200.0).abs() < 100.0));
+    let found = measured(&labels, &field_of(points.concat()), SieveShape::Circle);
+    let height = found[0].world.unwrap().height;
+    // 100 pixels are 0.8 at the ridge and a little more at the lower sides.
+    close(height, 3.0 / 20.0 * 0.82, 0.03);
 }

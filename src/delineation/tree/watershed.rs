@@ -16,18 +16,19 @@ pub(crate) fn basins(
 ) -> (Vec<u32>, usize) {
     let pixels = width * height;
     assert!(relief.len() == pixels && left_out.len() == pixels);
-    let mut basin = vec![NOWHERE; pixels];
+    let frame = Frame::new(width, height, relief, left_out);
+    let mut basin = frame.basin.clone();
     let mut count = 0;
     let mut queues: Vec<Vec<u32>> = vec![Vec::new(); 256];
-    minima(width, height, relief, left_out, |members| {
+    frame.minima(|members| {
         for &pixel in members {
             basin[pixel as usize] = count;
         }
         for &pixel in members {
-            if around(width, height, pixel as usize)
-                .any(|beside| relief[beside] > relief[pixel as usize])
-            {
-                queues[relief[pixel as usize] as usize].push(pixel);
+            let level = frame.relief[pixel as usize];
+            let is_rim = |beside: usize| frame.relief[beside] > level;
+            if frame.around(pixel).into_iter().any(is_rim) {
+                queues[level as usize].push(pixel);
             }
         }
         count += 1;
@@ -39,10 +40,10 @@ pub(crate) fn basins(
         while let Some(&pixel) = queue.get(next) {
             next += 1;
             let here = basin[pixel as usize];
-            for beside in around(width, height, pixel as usize) {
-                if basin[beside] == NOWHERE && !left_out[beside] {
+            for beside in frame.around(pixel) {
+                if basin[beside] == NOWHERE {
                     basin[beside] = here;
-                    let its = relief[beside] as usize;
+                    let its = frame.relief[beside] as usize;
                     if its <= level {
                         queue.push(beside as u32);
                     } else {
@@ -52,48 +53,89 @@ pub(crate) fn basins(
             }
         }
     }
-    (basin, count as usize)
+    let rows = basin.chunks_exact(frame.stride).skip(1).take(height);
+    let of = |basin: &u32| match *basin {
+        OUTSIDE => NOWHERE,
+        basin => basin,
+    };
+    let all = rows.flat_map(|row| row[1..=width].iter().map(of));
+    (all.collect(), count as usize)
 }
 
-/// Calls `found` for each regional minimum with its pixels.
-fn minima(
-    width: usize,
-    height: usize,
-    relief: &[u8],
-    left_out: &[bool],
-    mut found: impl FnMut(&[u32]),
-) {
-    let mut seen = left_out.to_vec();
-    let mut members = Vec::new();
-    for start in 0..relief.len() {
-        if seen[start] {
-            continue;
-        }
-        let level = relief[start];
-        // Mostly something beside it is lower, and that is the end of it.
-        if around(width, height, start).any(|beside| !left_out[beside] && relief[beside] < level) {
-            continue;
-        }
-        members.clear();
-        members.push(start as u32);
-        seen[start] = true;
-        let (mut next, mut is_minimum) = (0, true);
-        while let Some(&pixel) = members.get(next) {
-            next += 1;
-            for beside in around(width, height, pixel as usize) {
-                if left_out[beside] {
-                    continue;
-                }
-                if relief[beside] < level {
-                    is_minimum = false;
-                } else if relief[beside] == level && !seen[beside] {
-                    seen[beside] = true;
-                    members.push(beside as u32);
-                }
+/// The basin of pixels that no water reaches: left out, or beyond the image.
+const OUTSIDE: u32 = u32::MAX - 1;
+
+/// The relief with a pixel more at each side, so that every pixel of the image has four neighbours.
+struct Frame {
+    stride: usize,
+    /// As high as can be outside of the image and where pixels are left out.
+    relief: Vec<u8>,
+    /// [`OUTSIDE`] there, else [`NOWHERE`] so far.
+    basin: Vec<u32>,
+}
+
+impl Frame {
+    fn new(width: usize, height: usize, relief: &[u8], left_out: &[bool]) -> Self {
+        let stride = width + 2;
+        let size = stride * (height + 2);
+        let mut frame = Self {
+            stride,
+            relief: vec![u8::MAX; size],
+            basin: vec![OUTSIDE; size],
+        };
+        for (pixel, (level, is_out)) in relief.iter().zip(left_out).enumerate() {
+            if !is_out {
+                let place = (pixel / width + 1) * stride + pixel % width + 1;
+                frame.relief[place] = *level;
+                frame.basin[place] = NOWHERE;
             }
         }
-        if is_minimum {
-            found(&members);
+        frame
+    }
+
+    /// The four places that share a side with one.
+    fn around(&self, place: u32) -> [usize; 4] {
+        let place = place as usize;
+        [
+            place - self.stride,
+            place - 1,
+            place + 1,
+            place + self.stride,
+        ]
+    }
+
+    /// Calls `found` for each regional minimum with its places.
+    fn minima(&self, mut found: impl FnMut(&[u32])) {
+        let mut seen: Vec<bool> = self.basin.iter().map(|basin| *basin == OUTSIDE).collect();
+        let mut members: Vec<u32> = Vec::new();
+        for start in 0..seen.len() as u32 {
+            if seen[start as usize] {
+                continue;
+            }
+            let level = self.relief[start as usize];
+            let is_lower = |beside: usize| self.relief[beside] < level;
+            // Mostly something beside it is lower, and that is the end of it.
+            if self.around(start).into_iter().any(is_lower) {
+                continue;
+            }
+            members.clear();
+            members.push(start);
+            seen[start as usize] = true;
+            let (mut next, mut is_minimum) = (0, true);
+            while let Some(&place) = members.get(next) {
+                next += 1;
+                for beside in self.around(place) {
+                    if self.relief[beside] < level {
+                        is_minimum = false;
+                    } else if self.relief[beside] == level && !seen[beside] {
+                        seen[beside] = true;
+                        members.push(beside as u32);
+                    }
+                }
+            }
+            if is_minimum {
+                found(&members);
+            }
         }
     }
 }

@@ -57,24 +57,26 @@ fn engine_named(name: &str) -> Result<Box<dyn Engine>, Failed> {
     }
 }
 
-fn labels(path: &Path) -> Result<LabelImage, Failed> {
+/// A label image with numbers without gaps, and which each was in the file.
+fn labels(path: &Path) -> Result<(LabelImage, Vec<u16>), Failed> {
     let image = image::open(path)?.into_luma16();
     let mut numbers = BTreeMap::new();
+    let mut names = Vec::new();
     let (width, height) = (image.width() as usize, image.height() as usize);
-    let labels = image.into_raw().into_iter().map(|label| {
-        let next = numbers.len() as u32 + 1;
-        if label == 0 {
-            0
-        } else {
-            *numbers.entry(label).or_insert(next)
-        }
+    let labels = image.into_raw().into_iter().map(|label| match label {
+        0 => 0,
+        label => *numbers.entry(label).or_insert_with(|| {
+            names.push(label);
+            names.len() as u32
+        }),
     });
     let labels = labels.collect();
-    Ok(LabelImage {
+    let labels = LabelImage {
         width,
         height,
         labels,
-    })
+    };
+    Ok((labels, names))
 }
 
 fn write_features(engine: &dyn Engine, folder: &str, out: &str) -> Result<(), Failed> {
@@ -87,7 +89,7 @@ fn write_features(engine: &dyn Engine, folder: &str, out: &str) -> Result<(), Fa
     let progress = Progress::default();
     for (number, path) in photos.iter().enumerate() {
         let name = path.file_name().ok_or("a name")?;
-        let truth = labels(&folder.join("labels").join(name))?;
+        let (truth, _) = labels(&folder.join("labels").join(name))?;
         let evidence = engine.look(&image::open(path)?.into_rgb8(), &progress)?;
         let tree = tree::tree(&evidence, &[], &progress)?;
         let shared = overlap::of_nodes(&tree, &truth);
@@ -149,7 +151,7 @@ fn score(
         if !truth.exists() {
             println!("{file}: {looked:.2} s look, {grown:.2} s tree, {all:.2} s");
         } else {
-            let truth = labels(&truth)?;
+            let (truth, _) = labels(&truth)?;
             // Below them the truth is not complete.
             let least = match set {
                 "gravel_fh" => 28,

@@ -1,6 +1,5 @@
 //! Size distributions from simulated photos against their sieves, and what a sieve size is of an outline.
 
-use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
@@ -9,7 +8,7 @@ use fragscale_core::picture;
 use fragscale_core::scale::{FieldGrid, ImageKind};
 use fragscale_delineation::mass::{self, PhotoFragments, Steps};
 use fragscale_delineation::measures::{SieveShape, measured};
-use fragscale_delineation::{Engine, LabelImage, NOT_ROCK, delineate, least_across};
+use fragscale_delineation::{Engine, delineate, least_across};
 use fragscale_opening::{OpenOptions, open_flight};
 
 use super::Failed;
@@ -34,7 +33,7 @@ pub(super) fn masses(engine: Option<&dyn Engine>, flights: &[&str]) -> Result<()
                 .flight
                 .field(photo, ImageKind::Undistorted, grid, &progress)?;
             let name = photo.name.replace(".jpg", ".png");
-            let (labels, numbers) = of_sample(&folder.join("labels").join(name))?;
+            let (labels, numbers) = super::labels(&folder.join("labels").join(name))?;
             let (labels, across) = match engine {
                 None => (labels, 1.0),
                 Some(engine) => {
@@ -66,24 +65,7 @@ pub(super) fn masses(engine: Option<&dyn Engine>, flights: &[&str]) -> Result<()
                     ]);
                 }
             }
-            let (mut fines, mut area) = (0.0, 0.0);
-            for (place, label) in labels.labels.iter().enumerate() {
-                let scale =
-                    field.scale_at((place % labels.width) as u32, (place / labels.width) as u32);
-                let own = scale.map_or(0.0, |scale| 1.0 / (scale * scale));
-                area += own;
-                if *label == 0 {
-                    fines += own;
-                }
-            }
-            let scale = (labels.labels.len() as f64 / area).sqrt();
-            let frame = glam::DVec2::new(labels.width as f64, labels.height as f64);
-            photos.push(PhotoFragments {
-                fragments,
-                frame,
-                fines,
-                limit: across / scale,
-            });
+            photos.push(PhotoFragments::new(&labels, &field, fragments, across));
         }
         let fines = engine.map_or(1.0, Engine::fines_of_unfound);
         let all = mass::by_mass(
@@ -145,33 +127,6 @@ fn sizes(path: &Path) -> Result<Vec<f64>, Failed> {
     let truth: serde_json::Value = serde_json::from_str(&fs::read_to_string(path)?)?;
     let fragments = truth["fragments"].as_array().ok_or("no fragments")?;
     Ok(fragments.iter().filter_map(|of| of[0].as_f64()).collect())
-}
-
-/// Numbers without gaps, and which they were.
-fn of_sample(path: &Path) -> Result<(LabelImage, Vec<u16>), Failed> {
-    let image = image::open(path)?.into_luma16();
-    let (width, height) = (image.width() as usize, image.height() as usize);
-    let mut numbers = HashMap::new();
-    let mut names = Vec::new();
-    let labels = image.into_raw().into_iter().map(|label| {
-        if label == 0 {
-            return 0;
-        }
-        *numbers.entry(label).or_insert_with(|| {
-            names.push(label);
-            names.len() as u32
-        })
-    });
-    let labels: Vec<u32> = labels.collect();
-    assert!(!labels.contains(&NOT_ROCK));
-    Ok((
-        LabelImage {
-            width,
-            height,
-            labels,
-        },
-        names,
-    ))
 }
 
 fn reference(path: &Path) -> Result<Vec<[f64; 2]>, Failed> {

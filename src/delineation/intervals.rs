@@ -1,0 +1,214 @@
+//! How sure the sizes of a distribution by mass are: 95 % intervals from draws.
+//!
+//! Of each draw photos and fragments are drawn anew with replacement (the bootstrap: Efron 1979), which says how
+//! far chance has chosen them; the share of fines and the sizes as a whole are drawn about what was measured of the engine
+//! on simulated piles, which says how far its outlines and the model are off; and the scale about its standard
+//! error. Photos are drawn where there are three or more: of fewer nobody knows how they differ.
+
+use fragscale_core::fault::Fault;
+use fragscale_core::scale::Draws;
+
+use crate::engine::Engine;
+use crate::mass::{PhotoFragments, Steps, by_mass};
+
+/// Of outlines that are as right as they can be: P50 of simulated piles is 13 % too small by them, with all that is not
+/// outlined taken for fines.
+const OF_OTHERS: [f64; 2] = [0.13, 0.2];
+
+/// How many draws: the ends of an interval are known to about a tenth of its width.
+const DRAWS: usize = 300;
+
+/// Photos from which on they are drawn, too.
+const FEW: usize = 3;
+
+/// The part of the draws beyond each end.
+const TAIL: f64 = 0.025;
+
+/// What is not known but for chance. Standard errors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Doubts {
+    /// Of all sizes together, relative: outlines, and what a sieve makes of them.
+    pub sizes: f64,
+    /// Of the share of what is not outlined that is fines, 0 to 1.
+    pub fines: f64,
+    /// Of the scale, relative.
+    pub scale: f64,
+}
+
+impl Doubts {
+    /// Of what an engine outlined, `None` for other tools and people, in photos whose scale has this relative
+    /// standard error.
+    pub fn of(engine: Option<&dyn Engine>, scale: Option<f64>) -> Self {
+        let [sizes, fines] = engine.map_or(OF_OTHERS, Engine::doubts);
+        Self {
+            sizes,
+            fines,
+            scale: scale.unwrap_or(0.0),
+        }
+    }
+}
+
+impl Doubts {
+    /// The greater of both, each by itself.
+    #[must_use]
+    pub fn or_greater(self, other: Self) -> Self {
+        Self {
+            sizes: self.sizes.max(other.sizes),
+            fines: self.fines.max(other.fines),
+            scale: self.scale.max(other.scale),
+        }
+    }
+}
+
+/// The 95 % interval of the size that a percent of the mass passes; an end is `None` where it lies outside of
+/// what was measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SizeInterval {
+    /// The percent.
+    pub percent: f64,
+    /// The lower end, in the fragments' unit.
+    pub low: Option<f64>,
+    /// The upper end.
+    pub high: Option<f64>,
+}
+
+impl SizeInterval {
+    /// The percents that engineers speak of.
+    pub const PERCENTS: [f64; 3] = [20.0, 50.0, 80.0];
+}
+
+/// The intervals of these percents. The same on every run.
+///
+/// # Errors
+/// Where no photo shows a whole fragment.
+pub fn intervals(
+    photos: &[&PhotoFragments],
+    steps: Steps,
+    doubts: Doubts,
+    percents: &[f64],
+) -> Result<Vec<SizeInterval>, Fault> {
+    // Whether there is a curve at all.
+    by_mass(photos.iter().copied(), steps)?;
+    let mut draws = Draws::new(0x5eed);
+    let mut found: Vec<Vec<Option<f64>>> = vec![Vec::new(); percents.len()];
+    for _ in 0..DRAWS {
+        let drawn: Vec<PhotoFragments> = (0..photos.len())
+            .map(|place| {
+                let place = match photos.len() < FEW {
+                    true => place,
+                    false => draws.place(photos.len()),
+                };
+                drawn(photos[place], &mut draws)
+            })
+            .collect();
+        let steps = Steps {
+            fines: (steps.fines + doubts.fines * draws.normal()).clamp(0.0, 1.0),
+            ..steps
+        };
+        let off = doubts.sizes * draws.normal() + doubts.scale * draws.normal();
+        // A draw may hold none but cut ones.
+        let Ok(all) = by_mass(&drawn, steps) else {
+            continue;
+        };
+        for (percent, found) in percents.iter().zip(&mut found) {
+            let size = all.curve.size_at(*percent);
+            found.push(size.map(|size| size * off.exp()));
+        }
+    }
+    let percents = percents.iter().zip(found);
+    Ok(percents
+        .map(|(percent, found)| of_draws(*percent, found))
+        .collect())
+}
+
+/// As many of its fragments, drawn with replacement; whole and cut ones apart, which are counted apart.
+fn drawn(photo: &PhotoFragments, draws: &mut Draws) -> PhotoFragments {
+    let count = photo.fragments.len();
+    let fragments = (0..count).map(|_| photo.fragments[draws.place(count)]);
+    PhotoFragments {
+        fragments: fragments.collect(),
+        ..photo.without_fragments()
+    }
+}
+
+/// The interval of draws. What is below the limit of what is seen is less than all that is above it.
+fn of_draws(percent: f64, mut found: Vec<Option<f64>>) -> SizeInterval {
+    found.sort_by(|a, b| {
+        let of = |size: &Option<f64>| size.unwrap_or(0.0);
+        of(a).total_cmp(&of(b))
+    });
+    let last = found.len().saturating_sub(1) as f64;
+    let at = |share: f64| {
+        found
+            .get((share * last).round() as usize)
+            .copied()
+            .flatten()
+    };
+    SizeInterval {
+        percent,
+        low: at(TAIL),
+        high: at(1.0 - TAIL),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mass::tests::fragment;
+
+    const NONE: Doubts = Doubts {
+        sizes: 0.0,
+        fines: 0.0,
+        scale: 0.0,
+    };
+
+    /// Sizes of 1 to 10, their logarithms as likely: by area (s^2 - 1) / 99 of them are smaller than s, and half
+    /// below the root of 50.5.
+    fn photo(count: usize, draws: &mut Draws) -> PhotoFragments {
+        let size = |draws: &mut Draws| 10f64.powf(draws.place(1 << 20) as f64 / (1 << 20) as f64);
+        let fragments = (0..count).map(|_| fragment(size(draws), 0.0, false));
+        PhotoFragments {
+            fragments: fragments.collect(),
+            frame: glam::DVec2::splat(100.0),
+            fines: 0.0,
+            limit: 0.9,
+        }
+    }
+
+    #[test]
+    fn chance_is_within_the_interval_as_often_as_it_says() {
+        let truth = 50.5f64.sqrt();
+        let mut draws = Draws::new(3);
+        let holds = (0..100).filter(|_| {
+            let photo = photo(250, &mut draws);
+            let found = intervals(&[&photo], Steps::default(), NONE, &[50.0]).unwrap()[0];
+            (found.low.unwrap()..=found.high.unwrap()).contains(&truth)
+        });
+        let holds = holds.count();
+        assert!((88..=100).contains(&holds), "{holds}");
+    }
+
+    /// Of very many fragments chance says nothing: what is left is what was put in, 1.96 standard errors each way.
+    #[test]
+    fn doubts_are_as_wide_as_they_are() {
+        let photo = photo(6000, &mut Draws::new(4));
+        let doubts = Doubts {
+            sizes: 0.08,
+            scale: 0.06,
+            ..NONE
+        };
+        let found = intervals(&[&photo], Steps::default(), doubts, &[50.0]).unwrap()[0];
+        let width = (found.high.unwrap() / found.low.unwrap()).ln();
+        assert!((width / (2.0 * 1.96 * 0.1) - 1.0).abs() < 0.12, "{width}");
+        // Below the limit of what is seen nothing is said.
+        let mut dusty = photo;
+        dusty.fines = dusty
+            .fragments
+            .iter()
+            .filter_map(|of| Some(of.world?.area))
+            .sum();
+        let found = intervals(&[&dusty], Steps::default(), doubts, &[20.0, 80.0]).unwrap();
+        assert_eq!((found[0].low, found[0].high), (None, None));
+        assert!(found[1].low.is_some());
+    }
+}

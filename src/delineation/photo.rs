@@ -1,0 +1,71 @@
+//! A flight's photo on its way to fragments: the same for the command and the window.
+
+use fragscale_core::camera::Camera;
+use fragscale_core::fault::Fault;
+use fragscale_core::flight::{Flight, FlightSettings, Photo, PhotoReview};
+use fragscale_core::jobs::Progress;
+use fragscale_core::labels::LabelImage;
+use fragscale_core::picture;
+use fragscale_core::scale::{FieldGrid, ImageKind, Interval, ScaleField};
+use fragscale_core::units::LengthUnit;
+use image::RgbImage;
+
+use crate::mass::PhotoFragments;
+use crate::measures::{SieveShape, measured};
+
+/// The photo as fragments are outlined in it: undistorted, at its full size.
+///
+/// # Errors
+/// Where the pixels are not as many as its camera's.
+pub fn undistorted(pixels: &RgbImage, camera: &Camera) -> Result<RgbImage, Fault> {
+    picture::check_size_of(pixels, camera)?;
+    Ok(picture::undistorted(pixels, camera, u32::MAX))
+}
+
+/// Of each pixel of the undistorted photo whether it is no rock: a scale object that the flight masks. Empty where
+/// there is none.
+pub fn left_out(settings: &FlightSettings, photo: &Photo, camera: &Camera) -> Vec<bool> {
+    let objects = settings.scale_objects.iter();
+    let regions: Vec<_> = objects
+        .filter(|object| object.photo == photo.name)
+        .map(|object| object.left_out(camera, ImageKind::Undistorted))
+        .filter(|region| !region.is_empty())
+        .collect();
+    if regions.is_empty() {
+        return Vec::new();
+    }
+    let mask = picture::mask_of_regions(camera.width, camera.height, &regions);
+    mask.pixels().map(|pixel| pixel.0 == [0; 3]).collect()
+}
+
+/// The relative standard error of a photo's scale, the mean of both edges' best line; `None` where it is not known.
+pub fn scale_error(photo: &PhotoReview<'_>) -> Option<f64> {
+    // Of a ratio the unit does not matter.
+    let uncertainty = photo.uncertainty(LengthUnit::Metre)?;
+    let relative = |edge: Option<Interval>| {
+        let edge = edge?;
+        Some(2.0 * edge.standard_error / (edge.low + edge.high))
+    };
+    let [top, bottom] = [uncertainty.fitted_top, uncertainty.fitted_bottom].map(relative);
+    Some((top? + bottom?) / 2.0)
+}
+
+/// The scale of every pixel of the undistorted photo, by which fragments are measured.
+///
+/// # Errors
+/// Where it has none, or on cancel.
+pub fn field(flight: &Flight, photo: &Photo, progress: &Progress) -> Result<ScaleField, Fault> {
+    let grid = FieldGrid::of_pixels(flight.camera(photo));
+    flight.field(photo, ImageKind::Undistorted, grid, progress)
+}
+
+/// What a photo's fragments are; none is narrower than `least_across` pixels.
+pub fn fragments(
+    labels: &LabelImage,
+    field: &ScaleField,
+    shape: SieveShape,
+    least_across: f64,
+) -> PhotoFragments {
+    let fragments = measured(labels, field, shape);
+    PhotoFragments::new(labels, field, fragments, least_across)
+}
