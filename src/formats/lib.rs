@@ -7,6 +7,7 @@
 //! read        which reader takes it
 //! clouds  cameras  packages  poses  photos  tables      the readers
 //! missions    of drones, each told by what is in it
+//! masks       fragments that other tools outlined, as label images
 //! areas       polygons on the Earth, as maps keep them
 //! text        numbers, lines, JSON and XML with their places
 //! ```
@@ -19,6 +20,7 @@ pub mod cameras;
 mod candidates;
 pub mod clouds;
 mod detect;
+pub mod masks;
 pub mod missions;
 pub mod packages;
 pub mod photos;
@@ -28,7 +30,7 @@ pub mod tables;
 pub mod text;
 
 use fragscale_core::{
-    camera, control, fault, files, geodesy, geometry, jobs, raster, scale, surface, units,
+    camera, control, fault, files, geodesy, geometry, jobs, labels, raster, scale, surface, units,
 };
 use fragscale_fragmentation as fragmentation;
 
@@ -37,6 +39,7 @@ pub use candidates::{Candidate, candidates};
 pub use clouds::CloudFile;
 pub use detect::{CloudFormat, Kind, UNFINISHED, detect};
 pub use files::{FileError, open_file, read_bytes, read_text, text_from_bytes};
+pub use masks::{MaskFile, Masks, OutlinedPhoto, read_masks};
 pub use missions::{MissionFile, read_mission};
 pub use packages::Package;
 pub use packages::drone_photos::{Cameras as PhotoCameras, expected_deviation, photos_in};

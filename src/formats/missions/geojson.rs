@@ -9,10 +9,10 @@ use fragscale_core::plan::{
 };
 
 use super::MissionFile;
-use super::notes::Notes;
 use crate::fault::Fault;
 use crate::text::fields::shown;
 use crate::text::json;
+use crate::text::notes::Notes;
 
 const WRITE: &str = "write the mission again";
 

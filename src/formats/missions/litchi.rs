@@ -10,10 +10,10 @@
 use fragscale_core::plan::{Above, Finish, Height, Mission};
 
 use super::MissionFile;
-use super::notes::Notes;
 use super::route::Route;
 use crate::fault::Fault;
 use crate::tables::table::{NumberRepairs, Row, Table, key};
+use crate::text::notes::Notes;
 
 /// Without and with actions.
 const COLUMNS: [usize; 2] = [16, 46];

@@ -11,9 +11,9 @@
 use fragscale_core::plan::{Above, Finish, Height, Stop, TakeOff};
 
 use super::heading;
-use super::notes::Notes;
 use super::route::Route;
 use crate::fault::Fault;
+use crate::text::notes::Notes;
 
 const WAYPOINT: u32 = 16;
 const LOITER: u32 = 17;

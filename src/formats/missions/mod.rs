@@ -2,7 +2,6 @@
 //!
 //! ```text
 //! route      places, turns, gimbal, waits and shots, one after the other, become stops
-//! notes      what a file says and a mission does not, counted
 //! wpml       DJI: .kmz, its folder, waylines.wpml, template.kml
 //! mavlink    the commands that the next two have in common
 //! plan       QGroundControl's .plan
@@ -18,7 +17,6 @@
 mod geojson;
 mod litchi;
 mod mavlink;
-mod notes;
 mod plan;
 mod route;
 mod waypoints;

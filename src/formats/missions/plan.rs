@@ -9,10 +9,10 @@ use fragscale_core::plan::{Fence, Mission, TakeOff};
 
 use super::MissionFile;
 use super::mavlink::{Autopilot, Item, Place, home, told};
-use super::notes::Notes;
 use crate::fault::Fault;
 use crate::text::fields::shown;
 use crate::text::json;
+use crate::text::notes::Notes;
 
 const EXPORT: &str = "open it in QGroundControl and save it again";
 

@@ -7,9 +7,9 @@ use fragscale_core::plan::{Above, Mission, TakeOff};
 
 use super::MissionFile;
 use super::mavlink::{Autopilot, Item, Place, above, home, told};
-use super::notes::Notes;
 use crate::fault::Fault;
 use crate::text::fields::{Fields, shown};
+use crate::text::notes::Notes;
 
 const EXPORT: &str = "save the mission again";
 

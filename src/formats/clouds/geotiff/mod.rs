@@ -28,7 +28,7 @@ use crate::jobs::Progress;
 use crate::raster::{Compression, Layout, TiffFile};
 use crate::text::xml_document;
 use georeference::Georeference;
-use number::Number;
+pub(crate) use number::Number;
 
 /// The most cells that become points.
 const MOST_CELLS: u64 = 25_000_000;

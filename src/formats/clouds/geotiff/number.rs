@@ -5,7 +5,7 @@ use crate::raster::{Layout, NumberKind};
 
 /// The numbers of a raster.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Number {
+pub(crate) enum Number {
     U8,
     U16,
     U32,
@@ -23,7 +23,7 @@ impl Number {
     ///
     /// # Errors
     /// Where its numbers are of none of these kinds.
-    pub(super) fn of(layout: &Layout) -> Result<Self, Fault> {
+    pub(crate) fn of(layout: &Layout) -> Result<Self, Fault> {
         let (kind, bits) = (layout.kind, layout.bits);
         let name = match (kind, bits) {
             // Undefined is what old writers say of whole numbers.
@@ -51,7 +51,7 @@ impl Number {
     }
 
     /// Bytes of a number.
-    pub(super) fn bytes(self) -> usize {
+    pub(crate) fn bytes(self) -> usize {
         match self {
             Self::U8 | Self::I8 => 1,
             Self::U16 | Self::I16 => 2,
@@ -62,7 +62,7 @@ impl Number {
 
     /// The number at the begin of little-endian bytes; `None` where they are too few. Of 64-bit whole
     /// numbers beyond 2^53 the nearest f64.
-    pub(super) fn read(self, bytes: &[u8]) -> Option<f64> {
+    pub(crate) fn read(self, bytes: &[u8]) -> Option<f64> {
         Some(match self {
             Self::U8 => f64::from(*bytes.first()?),
             Self::I8 => f64::from(i8::from_le_bytes(*bytes.first_chunk()?)),

@@ -4,9 +4,9 @@ use roxmltree::Node;
 
 use super::{is_on, number};
 use crate::fault::Fault;
-use crate::missions::notes::Notes;
 use crate::missions::route::Route;
 use crate::text::fields::shown;
+use crate::text::notes::Notes;
 use crate::text::xml_document::{child, children, text};
 
 /// Adds what a group of actions does where it begins.

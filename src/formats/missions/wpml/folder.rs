@@ -9,9 +9,9 @@ use fragscale_core::plan::{Above, Height};
 use super::actions::{act, act_at_start};
 use super::{fault, is_on, number, numbers_of, whole};
 use crate::fault::Fault;
-use crate::missions::notes::Notes;
 use crate::missions::route::Route;
 use crate::text::fields::shown;
+use crate::text::notes::Notes;
 use crate::text::xml_document::{child, children, text};
 
 /// What waypoints of a template have in common unless they say otherwise.

@@ -19,12 +19,12 @@ use zip::ZipArchive;
 use fragscale_core::plan::{Above, DroneCodes, Finish, Height, Mission, PayloadCodes, TakeOff};
 
 use self::folder::add_folder;
-use super::notes::Notes;
 use super::route::Route;
 use super::{LARGEST, MissionFile, text_in};
 use crate::fault::Fault;
 use crate::files::{FileError, last_segment, text_from_bytes};
 use crate::text::fields::shown;
+use crate::text::notes::Notes;
 use crate::text::xml_document::{Writer, child, line_of, parse_of, text};
 
 const EXPORT: &str = "export the mission from DJI's app again";

@@ -1,4 +1,4 @@
-//! What a file says and a mission does not: one sentence for each kind, with how often and where first.
+//! What a file says and what is made of it does not: one sentence for each kind, with how often and where first.
 
 use std::fmt::Display;
 
@@ -6,13 +6,13 @@ use std::fmt::Display;
 const MOST_KINDS: usize = 20;
 
 /// Sentences with their counts, in the order in which they were first said.
-#[derive(Debug, Default)]
-pub(super) struct Notes {
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Notes {
     kinds: Vec<Kind>,
     more: usize,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Kind {
     text: String,
     count: usize,
@@ -21,12 +21,12 @@ struct Kind {
 
 impl Notes {
     /// Something about the whole file, said once.
-    pub(super) fn say(&mut self, text: impl Into<String>) {
+    pub(crate) fn say(&mut self, text: impl Into<String>) {
         self.count(text.into(), None);
     }
 
     /// Something at a place ("item 3", "line 7", "waypoint 2").
-    pub(super) fn at(&mut self, text: impl Into<String>, place: impl Display) {
+    pub(crate) fn at(&mut self, text: impl Into<String>, place: impl Display) {
         self.count(text.into(), Some(place.to_string()));
     }
 
@@ -42,7 +42,7 @@ impl Notes {
     }
 
     /// All sentences.
-    pub(super) fn sentences(self) -> Vec<String> {
+    pub(crate) fn sentences(self) -> Vec<String> {
         let mut sentences: Vec<String> = (self.kinds.into_iter())
             .map(|Kind { text, count, first }| match (first, count) {
                 (None, _) => text,

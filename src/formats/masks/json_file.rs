@@ -1,0 +1,62 @@
+//! JSON of outlines, told by its keys: COCO has `images` and `annotations`, LabelMe `shapes`, GeoJSON `features`.
+
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::outline::OutlinedImage;
+use super::{KNOWN, coco, geojson, labelme};
+use crate::fault::Fault;
+use crate::text::json;
+
+/// The keys of all three.
+#[derive(Deserialize)]
+struct Document {
+    images: Option<Vec<coco::Image>>,
+    annotations: Option<Vec<coco::Annotation>>,
+    #[serde(default)]
+    categories: Vec<coco::Category>,
+    shapes: Option<Vec<labelme::Shape>>,
+    #[serde(rename = "imagePath")]
+    image_path: Option<String>,
+    #[serde(rename = "imageWidth")]
+    image_width: Option<u32>,
+    #[serde(rename = "imageHeight")]
+    image_height: Option<u32>,
+    features: Option<Vec<geojson::Object>>,
+    #[serde(default)]
+    crs: Value,
+    /// The photo of a GeoJSON of ours.
+    photo: Option<String>,
+}
+
+/// The images of a text; whether it is of one image, which need not be named.
+///
+/// # Errors
+/// Where it is no JSON, or none of these.
+pub(super) fn read(text: &[u8], is_own: bool) -> Result<(Vec<OutlinedImage>, bool), Fault> {
+    let document: Document = json::parse(text)?;
+    if let Some(shapes) = document.shapes {
+        let size = document.image_width.zip(document.image_height);
+        let image = labelme::image(shapes, document.image_path, size, is_own);
+        return Ok((vec![image], true));
+    }
+    if let Some(features) = document.features {
+        let image = geojson::image(features, &document.crs, document.photo, is_own)?;
+        return Ok((vec![image], true));
+    }
+    match (document.images, document.annotations) {
+        (Some(images), Some(annotations)) => {
+            let images = coco::images(images, document.categories, annotations)?;
+            Ok((images, false))
+        }
+        (None, None) => Err(Fault::new("it is JSON without outlines", KNOWN)),
+        (None, Some(_)) => Err(Fault::new(
+            "it is COCO without \"images\"",
+            "export it with its images",
+        )),
+        (Some(_), None) => Err(Fault::new(
+            "it is COCO without \"annotations\"",
+            "export it with its annotations",
+        )),
+    }
+}

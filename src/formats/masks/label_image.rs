@@ -1,0 +1,237 @@
+//! Label images: each pixel holds the number of its fragment, 0 where there is none. PNG (ISO/IEC 15948)
+//! of gray, and TIFF of one number a pixel, as tifffile and scikit-image write it (ImageGrains'
+//! `NAME_pred.tif`, Cellpose's `NAME_cp_masks.tif`, ours).
+//!
+//! - What is no rock: 65 535 where numbers have 16 bits, 4 294 967 295 where they have 32 or more, and
+//!   negative numbers. In 8 bits every number is a fragment's.
+//! - A picture of another program with one number alone is a mask: each of its regions that touch by sides is
+//!   a fragment. So says a note.
+//! - A picture of colours whose three parts are the same is one of gray. Others are refused: colours are no
+//!   numbers.
+
+use std::io::Cursor;
+
+use image::codecs::png::PngDecoder;
+use image::{ColorType, DynamicImage, ExtendedColorType, ImageDecoder};
+
+use super::{Masks, OutlinedPhoto, check_size, renumbered};
+use crate::clouds::geotiff::Number;
+use crate::fault::Fault;
+use crate::labels::{FINES, LabelImage, NOT_ROCK};
+use crate::raster::{Compression, TiffFile};
+use crate::text::notes::Notes;
+
+const REMEDY: &str = "export it again, as a label image of 16 bits";
+
+/// Whether a file begins like PNG or TIFF.
+pub(super) fn is_picture(bytes: &[u8]) -> bool {
+    is_png(bytes)
+        || [&b"II*\0"[..], b"MM\0*", b"II+\0", b"MM\0+"].contains(&&bytes[..bytes.len().min(4)])
+}
+
+fn is_png(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"\x89PNG")
+}
+
+/// The label image in a PNG or TIFF. `is_own` says whether fragscale wrote it.
+///
+/// # Errors
+/// Where it is damaged, of another size than the photo, or holds no numbers.
+pub(super) fn read(bytes: &[u8], photo: &OutlinedPhoto<'_>, is_own: bool) -> Result<Masks, Fault> {
+    let mut notes = Notes::default();
+    let mut labels = match is_png(bytes) {
+        true => png(bytes, photo)?,
+        false => tiff(bytes, photo, &mut notes)?,
+    };
+    if !is_own && let Some(number) = only_number(&labels) {
+        let parts = separated(&mut labels);
+        if parts > 1 {
+            notes.say(format!(
+                "it has one number alone ({number}): each of its {parts} regions that touch no other is taken for a fragment"
+            ));
+        }
+    }
+    if labels.fragments() == 0 {
+        notes.say("no fragment is outlined in it");
+    }
+    Ok(Masks {
+        labels: renumbered(labels, &mut notes),
+        notes: notes.sentences(),
+    })
+}
+
+fn labels_of(photo: &OutlinedPhoto<'_>, labels: Vec<u32>) -> LabelImage {
+    LabelImage {
+        width: photo.width as usize,
+        height: photo.height as usize,
+        labels,
+    }
+}
+
+/// That of a PNG.
+fn png(bytes: &[u8], photo: &OutlinedPhoto<'_>) -> Result<LabelImage, Fault> {
+    let broken = |error: image::ImageError| {
+        let what = format!("it cannot be read as PNG ({error})");
+        Fault::new(what, "the file is cut off or damaged: export it again")
+    };
+    let decoder = PngDecoder::new(Cursor::new(bytes)).map_err(broken)?;
+    let (width, height) = decoder.dimensions();
+    // What the header claims takes no memory before it is the photo's size.
+    check_size(width, height, photo)?;
+    let stored = decoder.original_color_type();
+    let image = DynamicImage::from_decoder(decoder).map_err(broken)?;
+    // Numbers of less than 8 bits are decoded as shades from 0 to 255.
+    let step = match stored {
+        ExtendedColorType::L1 => 255,
+        ExtendedColorType::L2 => 85,
+        ExtendedColorType::L4 => 17,
+        _ => 1,
+    };
+    let labels = match &image {
+        DynamicImage::ImageLuma8(image) => image
+            .pixels()
+            .map(|pixel| u32::from(pixel[0]) / step)
+            .collect(),
+        DynamicImage::ImageLumaA8(image) => image.pixels().map(|pixel| pixel[0].into()).collect(),
+        DynamicImage::ImageLuma16(image) => {
+            image.pixels().map(|pixel| of_16_bits(pixel[0])).collect()
+        }
+        DynamicImage::ImageLumaA16(image) => {
+            image.pixels().map(|pixel| of_16_bits(pixel[0])).collect()
+        }
+        image if matches!(image.color(), ColorType::Rgb16 | ColorType::Rgba16) => {
+            let image = image.to_rgb16();
+            let pixels: Option<Vec<u32>> = image
+                .pixels()
+                .map(|pixel| same(pixel.0).map(of_16_bits))
+                .collect();
+            pixels.ok_or_else(colored)?
+        }
+        image => {
+            let image = image.to_rgb8();
+            let pixels: Option<Vec<u32>> = image
+                .pixels()
+                .map(|pixel| same(pixel.0).map(u32::from))
+                .collect();
+            pixels.ok_or_else(colored)?
+        }
+    };
+    Ok(labels_of(photo, labels))
+}
+
+/// The part that red, green and blue have in common.
+fn same<T: Copy + PartialEq>([red, green, blue]: [T; 3]) -> Option<T> {
+    (red == green && green == blue).then_some(red)
+}
+
+fn colored() -> Fault {
+    Fault::new("it is a picture in colours, no label image", REMEDY)
+}
+
+fn of_16_bits(number: u16) -> u32 {
+    match number {
+        u16::MAX => NOT_ROCK,
+        number => number.into(),
+    }
+}
+
+/// That of a TIFF: of several samples a pixel, or of several images, the first.
+fn tiff(bytes: &[u8], photo: &OutlinedPhoto<'_>, notes: &mut Notes) -> Result<LabelImage, Fault> {
+    let mut file = TiffFile::open(Cursor::new(bytes), bytes.len() as u64)?;
+    let layout = file.layout()?;
+    check_size(layout.width, layout.height, photo)?;
+    if layout.compression == Compression::Jpeg {
+        let what = "its numbers are compressed as JPEG, which changes them";
+        return Err(Fault::new(what, REMEDY));
+    }
+    let numbers = Number::of(&layout)?;
+    let samples = layout.samples_a_chunk();
+    if layout.samples > 1 {
+        if matches!(layout.photometric, 2 | 6) {
+            return Err(colored());
+        }
+        notes.say(format!(
+            "of its {} numbers a pixel the first is taken",
+            layout.samples
+        ));
+    }
+    let (width, height) = (layout.width as usize, layout.height as usize);
+    let mut labels = vec![FINES; width * height];
+    for index in 0..layout.across() * layout.down() {
+        // A tile that is not stored is nothing but zeros.
+        let Some(chunk) = file.chunk(&layout, index)? else {
+            continue;
+        };
+        let ((left, top), (across, _)) = layout.extent(index);
+        let row_bytes = layout.chunk.0 as usize * samples * numbers.bytes();
+        let rows = chunk.chunks_exact(row_bytes.max(1));
+        for (row, line) in labels.chunks_exact_mut(width).skip(top as usize).zip(rows) {
+            let pixels = row.iter_mut().skip(left as usize).take(across as usize);
+            for (label, stored) in pixels.zip(line.chunks_exact(samples * numbers.bytes())) {
+                let value = numbers.read(stored).unwrap_or(0.0);
+                *label = of_number(value, layout.bits).ok_or_else(|| {
+                    Fault::new(format!("{value} is no number of a fragment"), REMEDY)
+                })?;
+            }
+        }
+    }
+    Ok(labels_of(photo, labels))
+}
+
+/// The label that a number of so many bits is.
+fn of_number(value: f64, bits: u16) -> Option<u32> {
+    let numbers = 0.0..=f64::from(u32::MAX);
+    match bits {
+        _ if value < 0.0 => Some(NOT_ROCK),
+        _ if value.fract() != 0.0 || !numbers.contains(&value) => None,
+        16 if value == f64::from(u16::MAX) => Some(NOT_ROCK),
+        // Whole, and not beyond u32::MAX.
+        _ => Some(value as u32),
+    }
+}
+
+/// The number of a picture that knows one alone.
+fn only_number(labels: &LabelImage) -> Option<u32> {
+    let is_fragment = |label: &&u32| **label != FINES && **label != NOT_ROCK;
+    let mut fragments = labels.labels.iter().filter(is_fragment);
+    let first = *fragments.next()?;
+    fragments.all(|label| *label == first).then_some(first)
+}
+
+/// Numbers the regions of fragments anew, each whose pixels touch by their sides; returns how many they are.
+fn separated(labels: &mut LabelImage) -> u32 {
+    // Numbers that are still to be given are marked by one that none has.
+    const WAITS: u32 = NOT_ROCK - 1;
+    let (width, height) = (labels.width, labels.height);
+    for label in &mut labels.labels {
+        if *label != FINES && *label != NOT_ROCK {
+            *label = WAITS;
+        }
+    }
+    let mut count = 0;
+    let mut edge = Vec::new();
+    for start in 0..labels.labels.len() {
+        if labels.labels[start] != WAITS {
+            continue;
+        }
+        count += 1;
+        labels.labels[start] = count;
+        edge.push(start);
+        while let Some(at) = edge.pop() {
+            let (x, y) = (at % width, at / width);
+            let beside = [
+                (x > 0).then(|| at - 1),
+                (x + 1 < width).then_some(at + 1),
+                (y > 0).then(|| at - width),
+                (y + 1 < height).then_some(at + width),
+            ];
+            for next in beside.into_iter().flatten() {
+                if labels.labels[next] == WAITS {
+                    labels.labels[next] = count;
+                    edge.push(next);
+                }
+            }
+        }
+    }
+    count
+}
