@@ -10,6 +10,7 @@ mod flown_report;
 mod fragments;
 mod html_page;
 mod markup;
+mod masks;
 mod measured;
 mod missions;
 mod photo_columns;
@@ -41,8 +42,10 @@ pub use flight_sheet::{FlightSheet, flight_sheet};
 pub use flown_figure::FlownFigure;
 pub use flown_report::{FlownReport, flown_csv, flown_json, flown_table, flown_warnings};
 pub use fragments::{
-    PhotoOfFragments, curves_csv, fragments_csv, label_png, labels_png, outlines_png,
+    PhotoOfFragments, PhotoOfSizes, curves_csv, fragments_csv, label_png, labels_png, outlines_png,
+    sizes_csv,
 };
+pub use masks::{CocoFile, CvatFile, fragments_geojson, labelme_json, labels_tiff};
 pub use measured::{
     MeasuredUnit, PointsReport, ProfileReport, VolumeReport, percent, points_csv, points_table,
     profile_csv, profile_json, profile_table, volume_csv, volume_json, volume_table,

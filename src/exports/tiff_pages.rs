@@ -1,6 +1,6 @@
 //! TIFF files of one or several pages, with the tags that say what the pixels mean. Plain enough for
-//! every program that reads TIFF: strips, no tiles, no predictor, no BigTIFF. Colours are deflated, on
-//! all cores; numbers are not, because deflated without a predictor those of a real pile grow by 5 %, and
+//! every program that reads TIFF: strips, no tiles, no predictor, no BigTIFF. Colours and labels are deflated, on
+//! all cores; values are not, because deflated without a predictor those of a real pile grow by 5 %, and
 //! the predictor for floats is one that ImageJ does not know.
 
 use std::borrow::Cow;
@@ -28,6 +28,8 @@ pub(crate) const PROGRAM: &str = concat!("fragscale ", env!("CARGO_PKG_VERSION")
 pub(crate) enum Pixels<'a> {
     /// One number each; NaN where there is none.
     Values(Cow<'a, [f32]>),
+    /// A whole number each.
+    Numbers(Cow<'a, [u32]>),
     /// Red, green, blue, opacity (not premultiplied).
     Colors(Cow<'a, [u8]>),
 }
@@ -111,6 +113,15 @@ fn write<W: Write + io::Seek>(
             directory.write_tag(Tag::GdalNodata, "nan")?;
             page.width as usize
         }
+        Pixels::Numbers(_) => {
+            directory.write_tag(Tag::Compression, CompressionMethod::Deflate)?;
+            directory.write_tag(Tag::BitsPerSample, 32_u16)?;
+            directory.write_tag(Tag::SamplesPerPixel, 1_u16)?;
+            directory.write_tag(Tag::SampleFormat, &[SampleFormat::Uint][..])?;
+            let grey = PhotometricInterpretation::BlackIsZero;
+            directory.write_tag(Tag::PhotometricInterpretation, grey)?;
+            page.width as usize
+        }
         Pixels::Colors(_) => {
             directory.write_tag(Tag::Compression, CompressionMethod::Deflate)?;
             directory.write_tag(Tag::BitsPerSample, &[8_u16; 4][..])?;
@@ -132,6 +143,21 @@ fn write<W: Write + io::Seek>(
             for strip in values.chunks((row * rows).max(1)) {
                 offsets.push(u32::try_from(directory.write_data(strip)?)?);
                 counts.push(u32::try_from(strip.len() * 4)?);
+            }
+        }
+        Pixels::Numbers(numbers) => {
+            rows = (STRIP / 4 / row.max(1)).max(1);
+            let strips = numbers.par_chunks((row * rows).max(1)).map(|strip| {
+                // In the byte order of the encoder, which is the machine's.
+                let bytes: Vec<u8> = strip
+                    .iter()
+                    .flat_map(|number| number.to_ne_bytes())
+                    .collect();
+                deflated(&bytes)
+            });
+            for strip in strips.collect::<io::Result<Vec<_>>>()? {
+                offsets.push(u32::try_from(directory.write_data(&strip[..])?)?);
+                counts.push(u32::try_from(strip.len())?);
             }
         }
         Pixels::Colors(colors) => {

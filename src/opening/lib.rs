@@ -7,6 +7,7 @@
 //! meant        which flight is meant by a folder above it
 //! health       a flight's unit, coordinates, colours, ... at a glance
 //! info         what a file holds, for `fragscale info`
+//! outlines     outlines of fragments that were saved beside a flight
 //! origin       from which files a flight came, and the flight.toml that says so
 //! second_surface  another surface brought to the world of a flight
 //! world        the coordinate system that surface and photos share
@@ -21,15 +22,17 @@ mod info;
 mod meant;
 mod open;
 mod origin;
+mod outlines;
 mod photo_checks;
 mod photo_files;
 mod second_surface;
 mod world;
 
 use fragscale_core::{
-    camera, control, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, picture,
-    scale, surface, units,
+    camera, control, fault, files, flight, geodesy, geometry, georeference, jobs, labels, numbers,
+    picture, scale, surface, units,
 };
+use fragscale_delineation as delineation;
 use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
 
@@ -48,6 +51,7 @@ pub use open::{
     open_flight_sampled,
 };
 pub use origin::{FlightOrigin, path_from};
+pub use outlines::{OutlinesRead, outline_files, read_outlines};
 pub use photo_files::PhotoFile;
 pub use second_surface::{SecondSurface, StatedWorld, second_surface};
 

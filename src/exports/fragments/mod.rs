@@ -6,4 +6,4 @@ mod table;
 
 pub use label_image::{label_png, labels_png};
 pub use outlines::outlines_png;
-pub use table::{PhotoOfFragments, curves_csv, fragments_csv};
+pub use table::{PhotoOfFragments, PhotoOfSizes, curves_csv, fragments_csv, sizes_csv};

@@ -1,7 +1,9 @@
 //! Fragments and their curves as CSV.
 
+use crate::delineation::intervals::SizeInterval;
 use crate::delineation::mass::ByMass;
 use crate::delineation::measures::Fragment;
+use crate::measured::csv_of;
 use crate::units::LengthUnit;
 
 /// The fragments of a photo.
@@ -25,7 +27,6 @@ pub fn fragments_csv(
 ) -> Result<String, csv::Error> {
     let (u, w) = (unit.symbol(), world.symbol());
     let factor = world.in_units_of(unit);
-    let mut writer = csv::Writer::from_writer(Vec::new());
     let heads = [
         "photo".to_owned(),
         "fragment".to_owned(),
@@ -49,7 +50,8 @@ pub fn fragments_csv(
         format!("height_{u}"),
         format!("sieve_size_{u}"),
     ];
-    writer.write_record(&heads)?;
+    let columns = heads.len();
+    let mut rows = vec![heads.to_vec()];
     for photo in photos {
         for fragment in photo.fragments {
             let cut = if fragment.is_cut { "yes" } else { "no" };
@@ -62,7 +64,7 @@ pub fn fragments_csv(
                 cut.to_owned(),
             ];
             match &fragment.world {
-                None => row.resize(heads.len(), String::new()),
+                None => row.resize(columns, String::new()),
                 Some(world) => {
                     let numbers = [
                         world.place.x,
@@ -84,10 +86,10 @@ pub fn fragments_csv(
                     row.extend(numbers.map(|number| number.to_string()));
                 }
             }
-            writer.write_record(&row)?;
+            rows.push(row);
         }
     }
-    text(writer)
+    csv_of(rows)
 }
 
 /// Curves in the form that `fragscale psd` and the window's size distributions read: one of each photo, named, and
@@ -102,26 +104,59 @@ pub fn curves_csv(
     unit: LengthUnit,
 ) -> Result<String, csv::Error> {
     let factor = world.in_units_of(unit);
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record([
-        "method",
-        "photo",
-        &format!("size_{}", unit.symbol()),
-        "percent_passing",
-        "area",
-    ])?;
+    let size = format!("size_{}", unit.symbol());
+    let heads = ["method", "photo", &size, "percent_passing", "area"];
+    let mut rows = vec![heads.map(str::to_owned).to_vec()];
     for (photo, curve) in curves {
         for [size, percent] in curve.curve.points() {
             let numbers = [size * factor, *percent, curve.area * factor * factor];
-            let [size, percent, area] = numbers.map(|number| number.to_string());
-            writer.write_record([method, photo, &size, &percent, &area])?;
+            let mut row = vec![method.to_owned(), (*photo).to_owned()];
+            row.extend(numbers.map(|number| number.to_string()));
+            rows.push(row);
         }
     }
-    text(writer)
+    csv_of(rows)
 }
 
-fn text(writer: csv::Writer<Vec<u8>>) -> Result<String, csv::Error> {
-    let bytes = writer.into_inner().map_err(|e| e.into_error())?;
-    // All that went in was UTF-8.
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+/// A photo's sizes with their intervals, or those of all photos together.
+#[derive(Debug, Clone, Copy)]
+pub struct PhotoOfSizes<'a> {
+    /// As the flight names it, or "all photos".
+    pub photo: &'a str,
+    /// Its distribution.
+    pub by_mass: &'a ByMass,
+    /// How sure its sizes are.
+    pub intervals: &'a [SizeInterval],
+}
+
+/// A line a percent: the size that it passes, and its 95 % interval; empty where it is below what the photo shows.
+///
+/// # Errors
+/// Where memory runs out.
+pub fn sizes_csv(
+    photos: &[PhotoOfSizes<'_>],
+    world: LengthUnit,
+    unit: LengthUnit,
+) -> Result<String, csv::Error> {
+    let (u, factor) = (unit.symbol(), world.in_units_of(unit));
+    let heads = [
+        "photo".to_owned(),
+        "percent_passing".to_owned(),
+        format!("size_{u}"),
+        format!("low_{u}"),
+        format!("high_{u}"),
+    ];
+    let mut rows = vec![heads.to_vec()];
+    for of in photos {
+        for interval in of.intervals {
+            let size = of.by_mass.curve.size_at(interval.percent);
+            let sizes = [size, interval.low, interval.high];
+            let mut row = vec![of.photo.to_owned(), interval.percent.to_string()];
+            row.extend(
+                sizes.map(|size| size.map_or_else(String::new, |size| (size * factor).to_string())),
+            );
+            rows.push(row);
+        }
+    }
+    csv_of(rows)
 }

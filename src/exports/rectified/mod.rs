@@ -75,16 +75,7 @@ impl RectifiedPhoto<'_> {
     /// Where the photo is of another size than its camera, or the picture cannot be encoded.
     pub fn bytes(&self, photo: &RgbImage, format: RectifiedFormat) -> Result<Vec<u8>, Fault> {
         let camera = self.rectification.camera();
-        if photo.dimensions() != (camera.width, camera.height) {
-            let (width, height) = photo.dimensions();
-            return Err(Fault::new(
-                format!(
-                    "the photo is {width} x {height}, its camera {} x {}",
-                    camera.width, camera.height
-                ),
-                "give the photo that the camera was calibrated for",
-            ));
-        }
+        crate::picture::check_size_of(photo, camera)?;
         let raster = &self.rectification.raster;
         let (size, smooth) = (
             [raster.columns, raster.rows],

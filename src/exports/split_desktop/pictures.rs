@@ -98,15 +98,7 @@ impl PictureSource<'_> {
     ) -> Result<Vec<(String, Vec<u8>)>, Fault> {
         let (width, height) = photo.image.dimensions();
         let camera = self.camera;
-        if (width, height) != (camera.width, camera.height) {
-            return Err(Fault::new(
-                format!(
-                    "the photo is {width} x {height}, its camera {} x {}",
-                    camera.width, camera.height
-                ),
-                "give the photo that the camera was calibrated for",
-            ));
-        }
+        picture::check_size_of(&photo.image, camera)?;
         let (image, file) = match self.image {
             ImageKind::AsShot if self.left_out.is_empty() => (photo.image, bytes),
             _ => {

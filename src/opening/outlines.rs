@@ -1,0 +1,66 @@
+//! Outlines of fragments that were saved beside a flight.toml to go on with: `fragments/NAME.png`, a label image, with
+//! `fragments/NAME_outlines.json`, which says what it is of.
+
+use std::path::{Path, PathBuf};
+
+use crate::camera::Camera;
+use crate::delineation::saved::SavedOutlines;
+use crate::fault::Fault;
+use crate::formats::{FileError, OutlinedPhoto, read_bytes, read_masks};
+use crate::labels::Outlines;
+
+/// The folder beside flight.toml.
+const FOLDER: &str = "fragments";
+
+/// What of a photo was saved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutlinesRead {
+    /// The fragments.
+    pub outlines: Outlines,
+    /// What outlined them first.
+    pub engine: String,
+    /// What was mended.
+    pub notes: Vec<String>,
+}
+
+/// A photo's two files beside a flight.toml: the label image, and what it is of. `stem` is what the photo's files are
+/// called.
+pub fn outline_files(flight_file: &Path, stem: &str) -> [PathBuf; 2] {
+    let folder = flight_file.with_file_name(FOLDER);
+    [
+        folder.join(format!("{stem}.png")),
+        folder.join(format!("{stem}_outlines.json")),
+    ]
+}
+
+/// Reads them. `photo` is what the flight calls it.
+///
+/// # Errors
+/// Where a file is missing or broken, or of the photo of another size or lens.
+pub fn read_outlines(
+    files: &[PathBuf; 2],
+    photo: &str,
+    camera: &Camera,
+) -> Result<OutlinesRead, FileError> {
+    let [picture, json] = files;
+    let text = read_bytes(json)?;
+    let at = |fault| FileError::new(json, fault);
+    let saved = SavedOutlines::from_json(&String::from_utf8_lossy(&text)).map_err(at)?;
+    if !saved.is_of(camera) {
+        let what = "these outlines are of the photo with another lens";
+        let remedy =
+            "outline the photo anew, or take the calibration back that it was outlined with";
+        return Err(at(Fault::new(what, remedy)));
+    }
+    let of = OutlinedPhoto {
+        name: photo,
+        width: camera.width,
+        height: camera.height,
+    };
+    let masks = read_masks(picture, &of)?;
+    Ok(OutlinesRead {
+        outlines: Outlines::new(masks.labels, saved.sure),
+        engine: saved.engine,
+        notes: masks.notes,
+    })
+}
