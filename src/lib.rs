@@ -34,6 +34,7 @@
 //!     survey/                    profiles, areas and volumes on the surface
 //!     control/                   control points: marks in photos, their places, epipolar lines
 //! F1  camera/   surface/         intrinsics, distortion, pose | triangulation, ray casting
+//!     labels/                    what pixels belong to, and edits of that by hand
 //!     fragmentation/             size distributions: functions, fits, analysis
 //!     geodesy/  georeference/    coordinate systems | a frame of its own brought to the world
 //! F0  geometry/ raster/ files/   units.rs numbers.rs jobs.rs fault.rs split_mix.rs
@@ -64,6 +65,7 @@
 //! | a ground station's missions | `src/formats/missions/mod.rs`, `src/exports/missions/format.rs` | what reads and what writes it, a file each beside them; `exports/missions/tests/round_trip.rs` holds that all say the same |
 //! | a reconstruction engine | `src/reconstruct/engine.rs` | the trait; the engine is a folder beside it, and leaves COLMAP's text files |
 //! | an engine that outlines fragments | `src/delineation/engine.rs` | the trait; the engine is a folder beside it, its score is learned by `delineation/training/train_score.py`; `src/cli/of_photos/delineate.rs` offers it |
+//! | a format of outlines | `src/formats/masks/mod.rs`, `src/exports/masks/mod.rs` | what reads and what writes it, a file each beside them; `exports/masks/tests.rs` holds that all read back to the pixel; `src/cli/of_photos/written_outlines.rs` offers it |
 //! | a job with a panel | `src/app/tasks/mod.rs` | the job with its task and its ending is a file beside it, the panel one in `panels/`; `command/mod.rs` and `apply.rs` start it |
 //!
 //! # Conventions (everywhere)
@@ -79,8 +81,8 @@ pub mod cli;
 #[cfg(feature = "app")]
 pub use fragscale_app as app;
 pub use fragscale_core::{
-    camera, control, fault, files, flight, geodesy, geometry, georeference, jobs, numbers, picture,
-    plan, raster, scale, split_mix, surface, survey, units,
+    camera, control, fault, files, flight, geodesy, geometry, georeference, jobs, labels, numbers,
+    picture, plan, raster, scale, split_mix, surface, survey, units,
 };
 pub use fragscale_delineation as delineation;
 pub use fragscale_exports as exports;

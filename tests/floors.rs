@@ -21,13 +21,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The core's modules and their floors. `fault` is the cellar: a sentence that every floor can say.
-const FLOORS: [(&str, i32); 18] = [
+const FLOORS: [(&str, i32); 19] = [
     ("fault", -1),
     ("files", 0),
     ("geometry", 0),
     ("jobs", 0),
     ("numbers", 0),
     ("raster", 0),
+    ("labels", 1),
     ("split_mix", 0),
     ("units", 0),
     ("camera", 1),
@@ -48,7 +49,10 @@ const MEMBERS: [(&str, &[&str]); 11] = [
     ("core", &[]),
     ("fragmentation", &["core"]),
     ("formats", &["core", "fragmentation"]),
-    ("opening", &["core", "formats", "fragmentation"]),
+    (
+        "opening",
+        &["core", "delineation", "formats", "fragmentation"],
+    ),
     ("exports", &["core", "delineation", "fragmentation"]),
     ("delineation", &["core", "fragmentation"]),
     ("render", &["core"]),
@@ -62,6 +66,7 @@ const MEMBERS: [(&str, &[&str]); 11] = [
         "app",
         &[
             "core",
+            "delineation",
             "exports",
             "formats",
             "fragmentation",
@@ -219,7 +224,8 @@ fn nobody_writes_past_the_rule() {
             let apart = word == "fs::write(" && name == "sample/lib.rs"
                 || word == "fs::rename(" && name == "reconstruct/embedded/features.rs"
                 || word == "File::create(" && name == "app/frame_times.rs"
-                || name.starts_with("delineation/examples/");
+                || (word == "File::create(" || word == "fs::write(")
+                    && name == "delineation/examples/develop/main.rs";
             assert!(
                 own || is_test || apart || !code.contains(word),
                 "{name} has {word}): files::write keeps what was read"

@@ -2,7 +2,6 @@
 //! (`files::overwrite`), looked at before the work begins and again when it is written.
 
 use std::fmt::Display;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -176,13 +175,7 @@ impl<'a> Outputs<'a> {
 
     /// The folder that results go into; made where it is not there.
     pub(super) fn make_folder(&self, folder: &Path) -> Result<(), String> {
-        fs::create_dir_all(folder).map_err(|error| {
-            let fault = match folder.exists() {
-                true => Fault::new("it is no folder", "name a folder"),
-                false => files::cannot_be("made", &error),
-            };
-            FileError::new(folder, fault).to_string()
-        })
+        files::make_folder(folder).map_err(|error| error.to_string())
     }
 
     fn check(&self, path: &Path, kind: Kind) -> Result<(), String> {

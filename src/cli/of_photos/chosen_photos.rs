@@ -49,6 +49,14 @@ pub(super) struct Doing {
     pub not_done: &'static str,
 }
 
+impl Doing {
+    /// That it was not done with so many of the photos, where there are any.
+    pub(super) fn not_all(&self, failed: usize, of: usize) -> Option<Fault> {
+        let what = || format!("{failed} of {of} photos are {}", self.not_done);
+        (failed > 0).then(|| Fault::new(what(), "see the warnings above"))
+    }
+}
+
 impl ChosenPhotos {
     /// That photo, or all of them.
     pub(super) fn one_or_all(photo: Option<String>) -> Self {

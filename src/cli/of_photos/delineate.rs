@@ -4,28 +4,26 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use glam::DVec2;
+use image::RgbImage;
 
-use super::chosen_photos::ChosenPhotos;
-use super::chosen_photos::Doing;
-use crate::camera::Camera;
+use super::chosen_photos::{ChosenPhotos, Doing};
+use super::outlines_of_others::{MasksArguments, OutlinesOfOthers};
+use super::sizes::{Done, OutlinedBy, Sizes};
+use super::written_outlines::{OtherForm, WrittenOutlines};
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::outputs::{Force, Outputs};
 use crate::cli::{Answer, OutputUnit};
-use crate::delineation::mass::{ByMass, PhotoFragments, Steps, by_mass};
-use crate::delineation::measures::{Fragment, SieveShape, measured};
+use crate::delineation::mass::PhotoFragments;
+use crate::delineation::measures::SieveShape;
 use crate::delineation::{
-    Classical, Engine, FINES, LabelImage, Learned, delineate as outline, least_across,
+    Classical, Engine, LabelImage, Learned, NOT_ROCK, delineate as outline, engine_called, photo,
 };
 use crate::exports::{self, PhotoOfFragments};
 use crate::fault::Fault;
 use crate::files::Kind;
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::numbers::significant_digits;
-use crate::opening::Opened;
-use crate::picture;
-use crate::scale::{FieldGrid, ImageKind, ScaleField};
+use crate::opening::{Opened, outline_files, read_outlines};
 use crate::units::LengthUnit;
 
 #[derive(Debug, Args)]
@@ -35,13 +33,19 @@ pub(in crate::cli) struct DelineateArguments {
     /// One photo, as the flight names it; without it all photos.
     #[arg(long, value_name = "NAME")]
     photo: Option<String>,
-    /// The folder to write to: of each photo its label image and its outlines, then fragments.csv and
-    /// distribution.csv.
+    /// The folder to write to: of each photo its label image and its outlines, then fragments.csv, distribution.csv and
+    /// sizes.csv (P20, P50 and P80 with their 95 % intervals).
     #[arg(long, value_name = "DIR")]
     to: PathBuf,
-    /// What finds the borders of fragments.
-    #[arg(long, value_enum, default_value = "learned")]
-    engine: EngineName,
+    /// What finds the borders of fragments. Without it, outlines that were saved in the window are taken where there are
+    /// any (fragments/NAME.png beside flight.toml), and else the learned engine.
+    #[arg(long, value_enum)]
+    engine: Option<EngineName>,
+    #[command(flatten)]
+    masks: MasksArguments,
+    /// Outlines for other tools, too, beside the label images, all of the undistorted photos; several with commas.
+    #[arg(long, value_enum, value_name = "FORMS", value_delimiter = ',')]
+    also: Vec<OtherForm>,
     /// How the sieve size of a fragment follows from its outline.
     #[arg(long, value_enum, default_value = "calibrated")]
     shape: Shape,
@@ -93,7 +97,9 @@ pub(in crate::cli) fn delineate(
     arguments: &DelineateArguments,
     progress: &Progress,
 ) -> Result<Answer, String> {
-    let mut outputs = Outputs::new(arguments.force, arguments.flight.files());
+    let inputs = arguments.flight.files().cloned();
+    let mut outputs = Outputs::new(arguments.force, inputs.chain(arguments.masks.masks.clone()));
+    let others = OutlinesOfOthers::open(&arguments.masks)?;
     let opened = arguments.flight.open(progress)?;
     outputs.read(&opened.read)?;
     let path = &arguments.flight.flight;
@@ -107,12 +113,17 @@ pub(in crate::cli) fn delineate(
         ["labels", "outlines"].map(|kind| to.join(format!("{}_{kind}.png", stems[index])))
     };
     let planned: Vec<[PathBuf; 2]> = chosen.iter().map(|index| pictures(*index)).collect();
-    let tables = ["fragments.csv", "distribution.csv"].map(|name| to.join(name));
-    let files = planned.iter().flatten().chain(&tables);
+    let tables = ["fragments.csv", "distribution.csv", "sizes.csv"].map(|name| to.join(name));
+    let mut written = WrittenOutlines::new(to, &arguments.also);
+    let for_others = written.paths(chosen.iter().map(|index| stems[*index].as_str()));
+    let files = planned.iter().flatten().chain(&tables).chain(&for_others);
     outputs.check_all(files.map(PathBuf::as_path))?;
     let maker = Maker {
         arguments,
         opened: &opened,
+        others: others.as_ref(),
+        is_only: chosen.len() == 1,
+        stems: &stems,
         progress,
     };
     let mut warnings = opened.all_warnings();
@@ -121,18 +132,33 @@ pub(in crate::cli) fn delineate(
         not_done: "not delineated",
     };
     let name = |index: &usize| flight.parts().photos[*index].name.as_str();
-    let mut done: Vec<(&str, PhotoFragments)> = Vec::new();
+    let mut done: Vec<Done<'_>> = Vec::new();
+    let mut said: Vec<String> = Vec::new();
     let names = chosen.iter().map(name);
     let failed = photos.make_each(names, &doing, path, progress, |place| {
-        let made = maker.make(chosen[place])?;
+        let index = chosen[place];
+        let made = maker.make(index)?;
+        let files = written.add(name(&index), &stems[index], &made.labels)?;
         outputs.make_folder(to)?;
-        for (path, bytes) in planned[place].iter().zip(&made.pictures) {
-            outputs.write(path, bytes, Kind::Result)?;
+        let pictures = planned[place].iter().cloned().zip(made.pictures);
+        for (path, bytes) in pictures.chain(files) {
+            outputs.write(&path, &bytes, Kind::Result)?;
         }
-        done.push((name(&chosen[place]), made.fragments));
+        said.extend(
+            made.notes
+                .iter()
+                .map(|note| format!("{}: {note}", name(&index))),
+        );
+        done.push(Done {
+            index,
+            photo: name(&chosen[place]),
+            fragments: made.fragments,
+            outlined: made.outlined,
+        });
         Ok(())
     })?;
-    let failures = failed.len();
+    let not_all = doing.not_all(failed.len(), chosen.len()).map(in_flight);
+    warnings.extend(said);
     warnings.extend(failed);
     let world = flight.parts().unit;
     let unit: LengthUnit = arguments.unit.into();
@@ -142,100 +168,74 @@ pub(in crate::cli) fn delineate(
     if !done.is_empty() {
         let rows: Vec<PhotoOfFragments<'_>> = done
             .iter()
-            .map(|(photo, of)| PhotoOfFragments {
-                photo,
-                fragments: &of.fragments,
+            .map(|of| PhotoOfFragments {
+                photo: of.photo,
+                fragments: &of.fragments.fragments,
             })
             .collect();
         let bytes =
             exports::fragments_csv(&rows, world, unit).map_err(|error| report(error.into()))?;
         outputs.write(&tables[0], bytes.as_bytes(), Kind::Result)?;
-        let steps = Steps {
-            fines: arguments.engine.engine().fines_of_unfound(),
-            ..Steps::default()
-        };
-        let mut curves: Vec<(&str, ByMass)> = Vec::new();
-        for (photo, of) in &done {
-            match by_mass(std::slice::from_ref(of), steps) {
-                Ok(curve) => curves.push((photo, curve)),
-                Err(fault) => warnings.push(format!("{photo}: no size distribution: {fault}")),
-            }
-        }
-        let method = format!("fragscale ({})", arguments.engine.engine().name());
-        let borrowed: Vec<(&str, &ByMass)> = curves
-            .iter()
-            .map(|(photo, curve)| (*photo, curve))
-            .collect();
-        let bytes = exports::curves_csv(&method, &borrowed, world, unit)
+        written.finish(&outputs)?;
+        let sizes = Sizes::of(&done, &opened, progress).map_err(in_flight)?;
+        let method = format!("fragscale ({})", method_of(&done));
+        let curves = sizes.curves();
+        let bytes = exports::curves_csv(&method, &curves, world, unit)
             .map_err(|error| report(error.into()))?;
         outputs.write(&tables[1], bytes.as_bytes(), Kind::Result)?;
-        let all: Vec<PhotoFragments> = done.iter().map(|(_, of)| of.clone()).collect();
-        let all = by_mass(&all, steps);
-        text = words(&borrowed, all.as_ref().ok(), world, unit);
+        let bytes =
+            exports::sizes_csv(&sizes.rows(), world, unit).map_err(|error| report(error.into()))?;
+        outputs.write(&tables[2], bytes.as_bytes(), Kind::Result)?;
+        text = sizes.words(world, unit);
+        warnings.extend(sizes.without);
     }
-    let failed = (failures > 0).then(|| {
-        let what = format!("{failures} of {} photos are not delineated", chosen.len());
-        in_flight(Fault::new(what, "see the warnings above"))
-    });
     Ok(Answer {
         text,
         warnings,
-        failed,
+        failed: not_all,
     })
 }
 
-/// A line of each photo, and one of all.
-fn words(
-    curves: &[(&str, &ByMass)],
-    all: Option<&ByMass>,
-    world: LengthUnit,
-    unit: LengthUnit,
-) -> String {
-    let factor = world.in_units_of(unit);
-    let widest = curves.iter().map(|(photo, _)| photo.chars().count()).max();
-    let widest = widest.unwrap_or(0).max("all photos".len());
-    let symbol = unit.symbol();
-    let mut text = format!(
-        "{:widest$}  fragments   cut  not outlined %  {:>9} {:>9} {:>9}  nothing below\n",
-        "photo",
-        format!("P20 {symbol}"),
-        format!("P50 {symbol}"),
-        format!("P80 {symbol}"),
-    );
-    let all = all.map(|all| ("all photos", all));
-    for (photo, curve) in curves.iter().copied().chain(all) {
-        let size = |percent: f64| {
-            let size = curve.curve.size_at(percent);
-            size.map_or_else(
-                || "-".to_owned(),
-                |size| significant_digits(size * factor, 3),
-            )
-        };
-        text += &format!(
-            "{photo:widest$}  {:9} {:5}  {:14.1}  {:>9} {:>9} {:>9}  {} {symbol}\n",
-            curve.whole,
-            curve.cut,
-            100.0 * curve.unfound,
-            size(20.0),
-            size(50.0),
-            size(80.0),
-            significant_digits(curve.limit * factor, 2),
-        );
+/// What outlined them, in a word or two.
+fn method_of(done: &[Done<'_>]) -> &'static str {
+    let mut found = done.iter().map(|of| of.outlined.method());
+    let first = found.next().unwrap_or_default();
+    match found.all(|other| other == first) {
+        true => first,
+        false => "saved and learned",
     }
-    text
 }
 
 /// What all photos of a flight are outlined by.
 struct Maker<'a> {
     arguments: &'a DelineateArguments,
     opened: &'a Opened,
+    /// Outlines in place of an engine's.
+    others: Option<&'a OutlinesOfOthers>,
+    /// Whether one photo alone is asked for.
+    is_only: bool,
+    /// What the files of each photo are called.
+    stems: &'a [String],
     progress: &'a Progress,
 }
 
 /// A photo's files and fragments.
 struct Made {
     pictures: [Vec<u8>; 2],
+    labels: LabelImage,
     fragments: PhotoFragments,
+    outlined: OutlinedBy,
+    /// What was mended or left out.
+    notes: Vec<String>,
+}
+
+/// A photo's outlines, before they are measured.
+struct Outlined {
+    labels: LabelImage,
+    by: OutlinedBy,
+    /// Nothing narrower is claimed, pixels.
+    least_across: f64,
+    notes: Vec<String>,
 }
 
 impl Maker<'_> {
@@ -243,82 +243,106 @@ impl Maker<'_> {
         let flight = &self.opened.flight;
         let photo = &flight.parts().photos[index];
         let camera = flight.camera(photo);
-        let image = self.opened.pixels_of(index)?;
-        if image.dimensions() != (camera.width, camera.height) {
-            let (width, height) = image.dimensions();
-            return Err(Fault::new(
-                format!(
-                    "the photo is {width} x {height}, its camera {} x {}",
-                    camera.width, camera.height
-                ),
-                "give the photo that the camera was calibrated for",
-            ));
+        let image = photo::undistorted(&self.opened.pixels_of(index)?, camera)?;
+        let left_out = photo::left_out(&self.opened.settings, photo, camera);
+        let Outlined {
+            labels,
+            by,
+            least_across,
+            notes,
+        } = self.outlined(index, &image, &left_out)?;
+        let field = photo::field(flight, photo, self.progress)?;
+        let shape = self.arguments.shape.into();
+        let fragments = photo::fragments(&labels, &field, shape, least_across);
+        // By number, of which other tools leave some out.
+        let mut is_cut = vec![false; labels.fragments()];
+        for fragment in fragments
+            .fragments
+            .iter()
+            .filter(|fragment| fragment.is_cut)
+        {
+            if let Some(is_cut) = is_cut.get_mut(fragment.number as usize - 1) {
+                *is_cut = true;
+            }
         }
-        let left_out = self.left_out(&photo.name, camera);
-        let image = picture::undistorted(&image, camera, u32::MAX);
-        let engine = self.arguments.engine.engine();
-        let labels = outline(engine, &image, &left_out, self.progress)?;
-        let grid = FieldGrid::of_pixels(camera);
-        let field = flight.field(photo, ImageKind::Undistorted, grid, self.progress)?;
-        let fragments = measured(&labels, &field, self.arguments.shape.into());
-        let is_cut: Vec<bool> = fragments.iter().map(|fragment| fragment.is_cut).collect();
         Ok(Made {
             pictures: [
                 exports::labels_png(&labels)?,
                 exports::outlines_png(&image, &labels, &is_cut)?,
             ],
-            fragments: of_photo(
-                &labels,
-                &field,
-                fragments,
-                least_across(engine, camera.width, camera.height),
-            ),
+            fragments,
+            labels,
+            outlined: by,
+            notes,
         })
     }
+
+    fn outlined(
+        &self,
+        index: usize,
+        image: &RgbImage,
+        left_out: &[bool],
+    ) -> Result<Outlined, Fault> {
+        let flight = &self.opened.flight;
+        let photo = &flight.parts().photos[index];
+        let camera = flight.camera(photo);
+        if let Some(others) = self.others {
+            let mut masks = others.of_photo(&photo.name, camera, self.is_only)?;
+            let labels = masks.labels.labels.iter_mut().zip(left_out);
+            for (label, _) in labels.filter(|(_, is_left_out)| **is_left_out) {
+                *label = NOT_ROCK;
+            }
+            return Ok(Outlined {
+                least_across: narrowest(&masks.labels),
+                labels: masks.labels,
+                by: OutlinedBy::Masks,
+                notes: masks.notes,
+            });
+        }
+        let saved = self
+            .saved_of(index)
+            .filter(|[picture, _]| picture.is_file());
+        if let Some(files) = saved {
+            let read = read_outlines(&files, &photo.name, camera);
+            let read =
+                read.map_err(|error| Fault::new(error.to_string(), "or say --engine learned"))?;
+            let by = OutlinedBy::Saved(engine_called(&read.engine));
+            return Ok(Outlined {
+                least_across: by.least_across(camera),
+                labels: read.outlines.into_labels(),
+                by,
+                notes: read.notes,
+            });
+        }
+        let engine = self
+            .arguments
+            .engine
+            .unwrap_or(EngineName::Learned)
+            .engine();
+        let by = OutlinedBy::Engine(engine);
+        Ok(Outlined {
+            labels: outline(engine, image, left_out, self.progress)?,
+            least_across: by.least_across(camera),
+            by,
+            notes: Vec::new(),
+        })
+    }
+
+    /// The files of a photo's saved outlines, where those are to be taken.
+    fn saved_of(&self, index: usize) -> Option<[PathBuf; 2]> {
+        if self.arguments.engine.is_some() {
+            return None;
+        }
+        let (flight_file, _) = self.opened.file.as_ref()?;
+        Some(outline_files(flight_file, self.stems.get(index)?))
+    }
 }
 
-impl Maker<'_> {
-    /// Of each pixel of the undistorted photo whether it is no rock: a scale object that the flight masks.
-    fn left_out(&self, photo: &str, camera: &Camera) -> Vec<bool> {
-        let objects = self.opened.settings.scale_objects.iter();
-        let regions: Vec<_> = objects
-            .filter(|object| object.photo == photo)
-            .map(|object| object.left_out(camera, ImageKind::Undistorted))
-            .filter(|region| !region.is_empty())
-            .collect();
-        if regions.is_empty() {
-            return Vec::new();
-        }
-        let mask = picture::mask_of_regions(camera.width, camera.height, &regions);
-        mask.pixels().map(|pixel| pixel.0 == [0; 3]).collect()
-    }
-}
-
-/// What a photo contributes to the distribution.
-fn of_photo(
-    labels: &LabelImage,
-    field: &ScaleField,
-    fragments: Vec<Fragment>,
-    least_across: f64,
-) -> PhotoFragments {
-    let (mut fines, mut area, mut pixels) = (0.0, 0.0, 0.0);
-    for (place, label) in labels.labels.iter().enumerate() {
-        let (column, row) = (place % labels.width, place / labels.width);
-        let Some(scale) = field.scale_at(column as u32, row as u32) else {
-            continue;
-        };
-        let own = 1.0 / (scale * scale);
-        pixels += 1.0;
-        area += own;
-        if *label == FINES {
-            fines += own;
-        }
-    }
-    let scale = (pixels / area).sqrt();
-    PhotoFragments {
-        fragments,
-        frame: DVec2::new(labels.width as f64, labels.height as f64),
-        fines,
-        limit: least_across / scale,
-    }
+/// The diameter of the circle of as many pixels as the smallest fragment has: nothing is claimed of what is smaller.
+fn narrowest(labels: &LabelImage) -> f64 {
+    let areas = labels.areas();
+    let least = areas.iter().skip(1).filter(|area| **area > 0).min();
+    least.map_or(0.0, |pixels| {
+        (4.0 / std::f64::consts::PI * *pixels as f64).sqrt()
+    })
 }

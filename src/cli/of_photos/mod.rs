@@ -4,5 +4,8 @@ mod chosen_photos;
 pub(super) mod delineate;
 pub(super) mod length;
 pub(super) mod map;
+mod outlines_of_others;
 pub(super) mod rectify;
 pub(super) mod scale_map;
+mod sizes;
+mod written_outlines;

@@ -115,16 +115,12 @@ pub(in crate::cli) fn rectify(
         warnings.extend(made.warning.map(|warning| format!("{name}: {warning}")));
         Ok(())
     })?;
-    let failures = failed.len();
+    let not_all = doing.not_all(failed.len(), chosen.len()).map(in_flight);
     warnings.extend(failed);
-    let failed = (failures > 0).then(|| {
-        let what = format!("{failures} of {} photos are not rectified", chosen.len());
-        in_flight(Fault::new(what, "see the warnings above"))
-    });
     Ok(Answer {
         text,
         warnings,
-        failed,
+        failed: not_all,
     })
 }
 
