@@ -95,9 +95,14 @@ impl State {
                 self.apply_theme();
             }
             Command::Zoom(factor) => self.context.set_zoom_factor(factor.clamp(0.5, 3.0)),
-            Command::Page(page) => self.page = page,
+            Command::Page(page) => {
+                self.page = page;
+                self.load_full_photo();
+                self.begin_fragments();
+            }
             Command::Map(command) => self.apply_to_map(command),
             Command::Plan(step) => self.plan_step(step),
+            Command::Fragments(step) => self.fragment_step(step),
             Command::Distributions(command) => self.apply_to_distributions(command),
             Command::Tab(tab) => self.show_tab(tab),
             Command::ToggleLog => self.preferences.log_open ^= true,
@@ -121,6 +126,8 @@ impl State {
             }
             Command::Undo if self.page == Page::Plan => self.undo_plan(History::undo),
             Command::Redo if self.page == Page::Plan => self.undo_plan(History::redo),
+            Command::Undo if self.page == Page::Fragments => self.undo_fragments(false),
+            Command::Redo if self.page == Page::Fragments => self.undo_fragments(true),
             Command::Undo => {
                 self.undo_picks_or_settings(History::undo, History::undo, History::undo);
                 // Else the last word at the foot of the window may be "saved".
@@ -248,7 +255,11 @@ impl State {
                 if let Some(open) = self.open.as_mut().filter(|_| reviews) {
                     open.show_reason();
                 }
+                if let Some(open) = &mut self.open {
+                    open.leave_fragments();
+                }
                 self.load_preview();
+                self.begin_fragments();
             }
         }
     }

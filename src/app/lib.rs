@@ -14,6 +14,7 @@
 //! control_points/     points that are marked in photos, and what follows from them
 //! map/                the page of the map
 //! planning/           the page of the flight plan
+//! fragments/          the page of the fragments
 //! from_photos         what the small window for a new flight from photos holds
 //! size_distributions/ the page of size distributions
 //! ```
@@ -28,6 +29,7 @@ pub mod control_points;
 pub mod corner_loupe;
 mod deciding;
 mod fonts;
+pub mod fragments;
 pub mod frame_times;
 pub mod from_photos;
 pub mod linked;
@@ -48,9 +50,10 @@ pub mod viewport;
 mod writing;
 
 use fragscale_core::{
-    camera, control, fault, files, flight, geodesy, geometry, jobs, numbers, picture, plan, scale,
-    surface, survey, units,
+    camera, control, fault, files, flight, geodesy, geometry, jobs, labels, numbers, picture, plan,
+    scale, surface, survey, units,
 };
+use fragscale_delineation as delineation;
 use fragscale_exports as exports;
 use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
@@ -247,6 +250,7 @@ impl eframe::App for App {
                     .max_size((width * 0.4).max(220.0))
                     .show(ui, |ui| match state.page {
                         Page::Plan => panels::planned_photos(state, ui, out),
+                        Page::Fragments => panels::fragments(state, ui, out),
                         _ => panels::right_panel(state, inspector, ui, out),
                     });
             }
@@ -270,6 +274,11 @@ impl eframe::App for App {
                 let place = ui.available_rect_before_wrap();
                 if state.page == Page::Map {
                     panels::map(state, ui, out);
+                } else if state.page == Page::Fragments && state.opening_preview().is_none() {
+                    let fill = ui.visuals().panel_fill;
+                    ui.painter().rect_filled(place, 0.0, fill);
+                    panels::notice(state, ui, out);
+                    photo_panel.show(state, ui, out);
                 } else if let Some(preview) = state.opening_preview() {
                     viewport.show_preview(state, preview, ui, out, times);
                 } else if state.middle.has_pile() || state.page == Page::Plan {
@@ -372,7 +381,9 @@ fn drop_hint(state: &State, context: &egui::Context) {
             place.center(),
             egui::Align2::CENTER_CENTER,
             match state.page {
-                Page::Pile | Page::Map | Page::Plan => "Let go to open this flight",
+                Page::Pile | Page::Map | Page::Plan | Page::Fragments => {
+                    "Let go to open this flight"
+                }
                 Page::SizeDistributions if state.distributions.tab == ResultTab::Effort => {
                     "Let go to add these times of steps"
                 }

@@ -10,8 +10,9 @@ use std::f64::consts::{PI, TAU};
 use std::fs;
 use std::path::Path;
 
+use fragscale_core::picture::{PhotoFormat, encode};
 use glam::{DVec2, DVec3};
-use image::{ImageFormat, RgbImage};
+use image::RgbImage;
 
 use super::scene::fragment::BROKEN;
 use super::scene::light::{Lamp, Light};
@@ -61,7 +62,7 @@ pub fn training_photos(
         for photo in 0..PHOTOS {
             let mut random = random.fork(100 + photo);
             let (image, found) = place.photo(&scene, side, &mut random)?;
-            let bytes = png(&image)?;
+            let bytes = encode(&image, PhotoFormat::Png, 0, None, None)?;
             write(&photos.join(name(photo)), &bytes)?;
             let bytes = exports::label_png(side, side, &found);
             let bytes = bytes.map_err(|error| Fault::new(error, "report this"))?;
@@ -69,13 +70,6 @@ pub fn training_photos(
         }
     }
     Ok(())
-}
-
-fn png(image: &RgbImage) -> Result<Vec<u8>, Fault> {
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    let written = image.write_to(&mut bytes, ImageFormat::Png);
-    written.map_err(|error| Fault::new(error.to_string(), "report this"))?;
-    Ok(bytes.into_inner())
 }
 
 /// A random pile with its light.

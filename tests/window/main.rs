@@ -33,6 +33,7 @@ mod dropping;
 mod everyday;
 mod export;
 mod fields;
+mod fragments;
 mod from_photos;
 mod georeference;
 mod health;

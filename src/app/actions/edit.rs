@@ -23,6 +23,9 @@ actions! {
                 return can.then_some(Command::Undo);
             }
             let open = state.open.as_ref()?;
+            if state.page == Page::Fragments {
+                return open.can_undo_fragments()[0].then_some(Command::Undo);
+            }
             let picked = &open.pointer.picked;
             let can = open.history.can_undo()
                 || picked.is_on && picked.history.can_undo()
@@ -44,6 +47,9 @@ actions! {
                 return can.then_some(Command::Redo);
             }
             let open = state.open.as_ref()?;
+            if state.page == Page::Fragments {
+                return open.can_undo_fragments()[1].then_some(Command::Redo);
+            }
             let picked = &open.pointer.picked;
             let can = open.history.can_redo()
                 || picked.is_on && picked.history.can_redo()

@@ -34,6 +34,7 @@ pub mod view;
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::command::{Asking, Command};
+use crate::fragments::{FragmentStep, Fragments};
 use crate::planning::Planning;
 use crate::size_distributions::Page;
 use crate::state::State;
@@ -104,9 +105,21 @@ fn on_plan(state: &State) -> Option<&Planning> {
     Some(&open.planning)
 }
 
+/// What is done with a photo's fragments, while their page is shown.
+fn on_fragments(
+    state: &State,
+    step: impl FnOnce(&Fragments) -> Option<FragmentStep>,
+) -> Option<Option<Command>> {
+    let open = state
+        .open
+        .as_ref()
+        .filter(|_| state.page == Page::Fragments)?;
+    Some(step(&open.fragments).map(Command::Fragments))
+}
+
 /// What is done with the table of photos beside it, or beside the map.
 fn beside_photos(state: &State, command: Command) -> Option<Command> {
-    let in_sight = matches!(state.page, Page::Pile | Page::Map);
+    let in_sight = matches!(state.page, Page::Pile | Page::Map | Page::Fragments);
     in_sight.then(|| with_flight(state, command)).flatten()
 }
 

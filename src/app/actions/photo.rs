@@ -2,8 +2,9 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, beside_photos, keys, on_pile, on_plan, survey, with_photo};
+use super::{Action, beside_photos, keys, on_fragments, on_pile, on_plan, survey, with_photo};
 use crate::command::{Command, ReviewStep, ViewChange};
+use crate::fragments::{FragmentStep, FragmentTool};
 use crate::open_flight::Measure;
 use crate::open_flight::survey::SurveyStep;
 use crate::open_flight::survey::picked::PickStep;
@@ -71,6 +72,14 @@ actions! {
                 let has_corners = !planning.drawing.is_empty();
                 return has_corners.then_some(Command::Plan(PlanStep::Finish));
             }
+            let fragments = on_fragments(state, |of| match (of.drawing.is_empty(), of.selected) {
+                (false, _) => Some(FragmentStep::Finish),
+                (true, Some(_)) => Some(FragmentStep::IsRight),
+                (true, None) => None,
+            });
+            if let Some(command) = fragments {
+                return command;
+            }
             let open = state.open.as_ref()?;
             let Some(tracing) = &open.objects.tracing else {
                 let drawn = open.pointer.drawn.as_ref().filter(|drawn| !drawn.finished);
@@ -91,6 +100,11 @@ actions! {
             if let Some(planning) = on_plan(state) {
                 let has_corners = !planning.drawing.is_empty();
                 return has_corners.then_some(Command::Plan(PlanStep::RemoveLast));
+            }
+            let fragments =
+                on_fragments(state, |of| (!of.drawing.is_empty()).then_some(FragmentStep::RemoveCorner));
+            if let Some(command) = fragments {
+                return command;
             }
             let open = state.open.as_ref()?;
             let Some(tracing) = &open.objects.tracing else {
@@ -117,6 +131,14 @@ actions! {
                     PlanTool::Select => planning.selected().map(|_| Command::Plan(PlanStep::Select(None))),
                     tool => Some(Command::Plan(PlanStep::Tool(tool))),
                 };
+            }
+            let fragments = on_fragments(state, |of| {
+                let draws = of.tool != FragmentTool::Select || !of.drawing.is_empty();
+                let selects = of.selected.map(|_| FragmentStep::Select(None));
+                if draws { Some(FragmentStep::Tool(FragmentTool::Select)) } else { selects }
+            });
+            if let Some(command) = fragments {
+                return command;
             }
             if open.objects.tracing.is_some() {
                 return Some(Command::Trace(Trace::GiveUp));

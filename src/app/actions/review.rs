@@ -2,8 +2,9 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, keys, on_plan};
+use super::{Action, keys, on_fragments, on_plan};
 use crate::command::{Command, ReviewStep};
+use crate::fragments::FragmentStep;
 use crate::planning::PlanStep;
 use crate::state::State;
 
@@ -25,6 +26,9 @@ actions! {
         hover: "Review the next photo that something speaks against and nobody has decided about",
         shortcut: keys(Modifiers::NONE, Key::N),
         command: |state| {
+            if let Some(command) = on_fragments(state, |_| Some(FragmentStep::NextDoubtful)) {
+                return command;
+            }
             let doubtful = !state.open.as_ref()?.table.doubtful.is_empty();
             doubtful.then_some(Command::Review(ReviewStep::Next))
         },
@@ -48,6 +52,10 @@ actions! {
         command: |state| {
             if let Some(planning) = on_plan(state) {
                 return planning.photo().map(|_| Command::Plan(PlanStep::Leave));
+            }
+            let fragments = on_fragments(state, |of| of.selected.map(|_| FragmentStep::Delete));
+            if let Some(command) = fragments {
+                return command;
             }
             let (_, photo) = state.reviewed_flight()?.selected_review()?;
             photo.is_doubtful().then(|| reviewed(state, ReviewStep::LeaveOut)).flatten()

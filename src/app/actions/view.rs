@@ -19,12 +19,16 @@ fn middle(state: &State, middle: Middle) -> Option<Command> {
 }
 
 fn in_photo(state: &State, command: PhotoCommand) -> Option<Command> {
+    if state.page == Page::Fragments {
+        let open = state.open.as_ref()?;
+        return open.selected.map(|_| Command::Photo(command));
+    }
     with_photo(state, Command::Photo(command)).filter(|_| state.middle.has_photo())
 }
 
 fn has_panels(state: &State, command: Command) -> Option<Command> {
     let has = match state.page {
-        Page::Pile | Page::Map | Page::Plan => state.open.is_some(),
+        Page::Pile | Page::Map | Page::Plan | Page::Fragments => state.open.is_some(),
         Page::SizeDistributions => !state.distributions.sources().is_empty(),
     };
     has.then_some(command)
@@ -48,6 +52,12 @@ actions! {
         hover: "Plan photos of this surface: where from, what each will show, and the mission for the drone",
         shortcut: keys(Modifiers::COMMAND, Key::Num4),
         command: |state| with_flight(state, Command::Page(Page::Plan)),
+    }
+    FRAGMENTS {
+        label: "Fragments",
+        hover: "Outline the fragments of the selected photo, correct them, and measure them where they lie",
+        shortcut: keys(Modifiers::COMMAND, Key::Num5),
+        command: |state| with_flight(state, Command::Page(Page::Fragments)),
     }
     SIZE_DISTRIBUTIONS {
         label: "Size distributions",
@@ -159,6 +169,7 @@ pub const MENU: &[Option<Action>] = &[
     Some(PILE),
     Some(MAP),
     Some(PLAN),
+    Some(FRAGMENTS),
     Some(SIZE_DISTRIBUTIONS),
     None,
     Some(TOP),

@@ -17,6 +17,7 @@ pub use view_change::ViewChange;
 
 use crate::control_points::ControlStep;
 use crate::flight::{DecisionKind, FlightSettings, Limits, Verdict};
+use crate::fragments::FragmentStep;
 use crate::from_photos::FromPhotosStep;
 use crate::geometry::Ray;
 use crate::linked::PointFrom;
@@ -182,6 +183,8 @@ pub enum Command {
     Map(MapCommand),
     /// Does something with the flight plan.
     Plan(PlanStep),
+    /// Does something with the fragments of the selected photo.
+    Fragments(FragmentStep),
     /// Does something with the size distributions.
     Distributions(DistributionCommand),
     /// Shows a tab of the right panel.

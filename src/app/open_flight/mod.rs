@@ -27,6 +27,7 @@ use crate::exports::PhotoLine;
 use crate::flight::{
     Along, ColoursFound, Flight, FlightSettings, Limits, LookedUp, Outcome, Review,
 };
+use crate::fragments::Fragments;
 use crate::geometry::{Bounds, LevelBox, LocalFrame};
 use crate::linked::{LinkedPoint, PointFrom};
 use crate::map::FlightMap;
@@ -170,6 +171,8 @@ pub struct OpenFlight {
     pub map: FlightMap,
     /// The flight that is planned over its surface.
     pub planning: Planning,
+    /// The fragments of its photos.
+    pub fragments: Fragments,
     /// What the selected photo's corners lie on, where that is looked at.
     pub corners: Option<CornerFacts>,
     /// The scale field of the selected photo, where it is to be tinted.
@@ -246,6 +249,7 @@ impl OpenFlight {
             photo_view: PhotoView::default(),
             map: FlightMap::default(),
             planning: Planning::default(),
+            fragments: Fragments::default(),
             corners: None,
             tint: None,
             tints: 0,
@@ -306,7 +310,10 @@ impl OpenFlight {
     /// Whether something would be lost if it were closed.
     pub fn is_changed(&self) -> bool {
         let is_flight = !self.files.origin.is_surface_alone();
-        is_flight && (self.settings() != self.files.saved || self.files.origin.has_other_files())
+        let is_changed = self.settings() != self.files.saved
+            || self.files.origin.has_other_files()
+            || self.fragments.is_changed();
+        is_flight && is_changed
     }
 
     /// Takes a change of the settings back that will not be computed: what is on the screen must be

@@ -118,6 +118,7 @@ fn pages(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         (Page::Pile, "Pile", actions::view::PILE),
         (Page::Map, "Map", actions::view::MAP),
         (Page::Plan, "Plan", actions::view::PLAN),
+        (Page::Fragments, "Fragments", actions::view::FRAGMENTS),
         (
             Page::SizeDistributions,
             "Size distributions",
@@ -125,7 +126,7 @@ fn pages(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         ),
     ] {
         // Without a flight there is no map and nothing to plan over.
-        if matches!(page, Page::Map | Page::Plan) && state.open.is_none() {
+        if matches!(page, Page::Map | Page::Plan | Page::Fragments) && state.open.is_none() {
             continue;
         }
         let chosen = state.page == page;

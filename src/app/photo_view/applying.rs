@@ -5,12 +5,13 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::placing::Placing;
-use super::{FullPhoto, Middle, PhotoCommand};
+use super::{FullPhoto, PhotoCommand};
 use crate::camera::Camera;
 use crate::jobs::Progress;
 use crate::open_flight::OpenFlight;
 use crate::picture::PhotoPyramid;
 use crate::scale::ImageKind;
+use crate::size_distributions::Page;
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 use crate::tasks::photos::read_photo;
@@ -74,12 +75,13 @@ impl State {
             return;
         };
         let there = open.photo_view.full.as_ref().map(|full| full.photo);
-        if there != open.selected || self.middle == Middle::Pile {
+        let is_seen = self.middle.has_photo() || self.page == Page::Fragments;
+        if there != open.selected || !is_seen {
             // A large photo is hundreds of megabytes: no longer than it is looked at.
             open.photo_view.full = None;
             open.photo_view.tiles = Default::default();
         }
-        let wanted = open.selected.filter(|_| self.middle.has_photo());
+        let wanted = open.selected.filter(|_| is_seen);
         let Some(photo) = wanted.filter(|_| open.photo_view.full.is_none()) else {
             return;
         };

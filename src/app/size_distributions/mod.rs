@@ -44,6 +44,8 @@ pub enum Page {
     Map,
     /// A flight that is planned over the surface of this one, or the start page.
     Plan,
+    /// The fragments of the selected photo, or the start page.
+    Fragments,
     /// The size distributions.
     SizeDistributions,
 }

@@ -181,10 +181,20 @@ impl State {
         }
     }
 
+    /// Adds a curve that the window made itself.
+    pub(crate) fn take_distribution(&mut self, source: Source) {
+        self.add_source(source);
+    }
+
     /// Adds curves; false where their labels are there already.
     fn add_source(&mut self, mut source: Source) -> bool {
         let mut edit = self.distributions.history.now().clone();
         let name = source.name.clone();
+        if source.path.is_none() {
+            // The fragments of a photo, measured anew.
+            edit.sources
+                .retain(|other| other.path.is_some() || other.name != name);
+        }
         if let Err(fault) = source.set_apart(&edit.sources) {
             self.say(Severity::Error, &format!("{name}: {fault}"));
             return false;

@@ -248,6 +248,7 @@ impl OpenFlight {
             self.looking.size = before.looking.size;
         }
         std::mem::swap(&mut self.control, &mut before.control);
+        self.fragments = std::mem::take(&mut before.fragments).of_another_surface();
         self.photo_view.placing = before.photo_view.placing;
         self.photo_view.image = before.photo_view.image;
         std::mem::swap(&mut self.beside, &mut before.beside);

@@ -62,7 +62,16 @@ impl State {
         let (settings, origin) = (open.settings(), open.files.origin.clone());
         let flight = origin.clone();
         let list = open.control_to_save(&path);
+        let (outlines, copied) = open.outlines_to_save(&path);
         let work = move |_: &Progress| {
+            let beside = || -> Result<Vec<(usize, u64)>, FileError> {
+                copied.iter().try_for_each(|copied| copied.write(&read))?;
+                outlines
+                    .iter()
+                    .try_for_each(|outlines| outlines.write(&read))?;
+                let saved = outlines.iter();
+                Ok(saved.map(|of| (of.photo, of.revision)).collect())
+            };
             let text = origin.text_at(&path, &settings);
             let with_list = text.and_then(|text| {
                 list.iter().try_for_each(|list| list.write(&read))?;
@@ -73,17 +82,31 @@ impl State {
                     .map_err(|fault| FileError::new(&path, fault))
             });
             match saved {
-                Ok(()) => Ok((origin.saved_at(&path), settings)),
+                Ok(()) => match beside() {
+                    Ok(outlines) => Ok((origin.saved_at(&path), settings, outlines)),
+                    Err(error) => Err(error.to_string()),
+                },
                 Err(error) => Err(error.to_string()),
             }
         };
         self.start(Task::SAVE, work, move |state, saved| match saved {
-            Ok((origin, settings)) => state.take_saved(&flight, origin, settings),
+            Ok((origin, settings, outlines)) => {
+                // Before it is asked whether anything is left to save.
+                if state.is_on_screen(&flight) {
+                    state.take_saved_outlines(&outlines);
+                }
+                state.take_saved(&flight, origin, settings);
+            }
             Err(message) => {
                 state.after_saving = None;
                 state.say(Severity::Error, &message);
             }
         });
+    }
+
+    fn is_on_screen(&self, flight: &FlightOrigin) -> bool {
+        let open = self.open.as_ref();
+        open.is_some_and(|open| open.files.origin == *flight)
     }
 
     /// Takes that the flight of this origin was saved: where, with these settings.

@@ -6,6 +6,7 @@ use crate::names;
 use crate::open_flight::OpenFlight;
 use crate::photo_view::{Middle, PhotoCommand};
 use crate::scale::ImageKind;
+use crate::size_distributions::Page;
 use crate::state::State;
 
 /// Draws it.
@@ -30,7 +31,7 @@ pub(super) fn head(
                 commands.extend(command);
             }
         };
-        if state.middle == Middle::Photo {
+        if state.middle == Middle::Photo && state.page == Page::Pile {
             button(actions::view::PHOTO_ALONE, "Pile", false, ui);
             button(actions::view::PHOTO_BESIDE, "Both", false, ui);
             ui.separator();
@@ -44,6 +45,12 @@ pub(super) fn head(
         let is_one = open.photo_view.placing.zoom == Some(1.0);
         button(actions::view::PHOTO_ONE_TO_ONE, "1:1", is_one, ui);
         ui.separator();
+        if state.page == Page::Fragments {
+            if let Some(photo) = open.selected {
+                names::name(ui, open.name(photo));
+            }
+            return;
+        }
         let shown = open.photo_view.image_for(open.flight().parts().image);
         for (image, name, hover) in [
             (

@@ -8,6 +8,7 @@ use egui::{Color32, Key, Modifiers, Pos2, Rect, Sense, Vec2, pos2, vec2};
 use glam::DVec2;
 
 use super::corner_loupe;
+use super::fragments::OnPhoto;
 use super::inspector::tint::{self, Tint};
 use super::inspector::traced_photo::{self, Dragged, PhotoPlace};
 use super::inspector::{draw_bar, draw_corner, message, waiting};
@@ -19,6 +20,7 @@ use crate::open_flight::OpenFlight;
 use crate::photo_view::PhotoCommand;
 use crate::photo_view::tiles::MOST_TILES;
 use crate::picture::{PhotoPyramid, TileKey};
+use crate::size_distributions::Page;
 use crate::state::State;
 use crate::tasks::Task;
 
@@ -28,6 +30,7 @@ pub struct PhotoPanel {
     tint: Tint,
     dragged: Option<Dragged>,
     mark: Option<control_marks::DraggedMark>,
+    fragments: OnPhoto,
 }
 
 impl PhotoPanel {
@@ -56,11 +59,15 @@ impl PhotoPanel {
             egui::WidgetInfo::labeled(egui::Role::Image, true, label)
         });
         keys(ui, commands);
-        control_marks::keys(open, photo, ui, commands);
+        let is_fragments = state.page == Page::Fragments;
+        if !is_fragments {
+            control_marks::keys(open, photo, ui, commands);
+        }
         let screen = Screen::new(open, reviewed, frame, ui);
         let place = screen.place(open, reviewed);
         let dragged = &mut self.dragged;
         let taken = match open.control.is_on {
+            _ if is_fragments => self.fragments.mouse(open, &place, ui, &response, commands),
             true => {
                 let mark = &mut self.mark;
                 control_marks::mouse(open, photo, &place, mark, ui, &response, commands)
@@ -88,6 +95,10 @@ impl PhotoPanel {
                     waiting(&painter, frame, "Reading the photo at full resolution…", ui);
                 }
             }
+        }
+        if is_fragments {
+            self.fragments.draw(open, photo, &place, frame, ui);
+            return;
         }
         // What is marked may lie under them, and a click on a corner is a mark then.
         let is_pointed_at = open.objects.tracing.is_some() || open.control.is_on;

@@ -1,0 +1,74 @@
+//! What she does on the page of the fragments, as data. Places are in pixels of the undistorted photo.
+
+use glam::DVec2;
+
+/// One thing to do on the page of the fragments.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FragmentStep {
+    /// Outlines the fragments of the selected photo, whatever is outlined there.
+    Outline,
+    /// The engine that does, by its place in `ENGINES`.
+    Engine(usize),
+    /// What the mouse does from now on; what was drawn halfway is forgotten.
+    Tool(FragmentTool),
+    /// Half the width of the brush, pixels.
+    Brush(f64),
+    /// The mouse was drawn along here with the tool.
+    Stroke(Vec<DVec2>),
+    /// A click with the tool.
+    Click(DVec2),
+    /// Ends the outline whose corners are clicked.
+    Finish,
+    /// Takes the last corner of it back.
+    RemoveCorner,
+    /// Looks at this fragment, or at none.
+    Select(Option<u32>),
+    /// Looks at this fragment, brought into the middle.
+    Show(u32),
+    /// The selected fragment is none.
+    Delete,
+    /// The selected fragment is right as it is; on to the next doubtful one.
+    IsRight,
+    /// On to the most doubtful fragment behind the selected one.
+    NextDoubtful,
+    /// A larger region under the cursor.
+    Coarser(DVec2),
+    /// A smaller one.
+    Finer(DVec2),
+    /// Takes the photo's size distribution over to its page.
+    TakeDistribution,
+}
+
+/// What the mouse does in the photo.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FragmentTool {
+    /// Selects a fragment; dragging moves the photo.
+    #[default]
+    Select,
+    /// A stroke through a fragment parts it.
+    Split,
+    /// A stroke joins what it touches.
+    Merge,
+    /// An outline is a new fragment.
+    Outline,
+    /// An outline is the selected fragment's new one.
+    Redraw,
+    /// A click lets a fragment grow where none is.
+    Grow,
+    /// What is brushed over is fines.
+    Brush,
+    /// What is outlined is no rock.
+    Exclude,
+    /// What is outlined and was no rock may be rock again.
+    Include,
+}
+
+impl FragmentTool {
+    /// Whether its outlines can be clicked corner by corner.
+    pub fn outlines(self) -> bool {
+        matches!(
+            self,
+            Self::Outline | Self::Redraw | Self::Exclude | Self::Include
+        )
+    }
+}

@@ -1,0 +1,179 @@
+//! Outlines saved beside flight.toml, `fragments/NAME.png` with `fragments/NAME_outlines.json`, and read from there.
+
+use std::path::{Path, PathBuf};
+
+use super::PhotoOutlines;
+use crate::delineation::saved::{SavedOutlines, lens_of};
+use crate::exports;
+use crate::files::{self, FileError, Inputs, Kind};
+use crate::formats;
+use crate::jobs::Progress;
+use crate::labels::LabelImage;
+use crate::open_flight::OpenFlight;
+use crate::opening::{OutlinesRead, outline_files, read_outlines};
+use crate::state::{Severity, State};
+use crate::tasks::Task;
+
+impl Task {
+    /// Reading saved outlines.
+    pub const READ_OUTLINES: Self = Self::new("Reading outlines").of_flight();
+}
+
+/// Outlines that are to be written.
+pub(crate) struct OutlinesToSave {
+    /// Whose.
+    pub photo: usize,
+    /// Which of its revisions.
+    pub revision: u64,
+    files: [PathBuf; 2],
+    labels: LabelImage,
+    saved: SavedOutlines,
+}
+
+/// What of a photo's outlines is saved where another flight.toml is written: the files as they are.
+pub(crate) struct OutlinesToCopy {
+    from: [PathBuf; 2],
+    to: [PathBuf; 2],
+}
+
+impl OpenFlight {
+    /// The outlines that go along where the flight is saved at `path`.
+    pub(crate) fn outlines_to_save(
+        &self,
+        path: &Path,
+    ) -> (Vec<OutlinesToSave>, Vec<OutlinesToCopy>) {
+        let own = self.files.origin.flight_file();
+        let is_own = own.is_some_and(|own| files::is_same_file(own, path));
+        let stems = exports::photo_file_stems(self.flight());
+        let to_save = self.fragments.photos.iter();
+        let to_save = to_save.filter(|(_, of)| !is_own || of.is_changed());
+        let to_save = to_save.filter_map(|(photo, of)| {
+            let camera = self.review.photo(*photo)?.camera;
+            Some(OutlinesToSave {
+                photo: *photo,
+                revision: of.revision,
+                files: outline_files(path, stems.get(*photo)?),
+                labels: of.now().labels().clone(),
+                saved: SavedOutlines {
+                    photo: self.name(*photo).to_owned(),
+                    engine: of.engine.clone(),
+                    lens: lens_of(camera),
+                    sure: of.now().all_sure().clone(),
+                },
+            })
+        });
+        let others = stems.iter().enumerate();
+        let others = others.filter(|(photo, _)| self.fragments.of(*photo).is_none());
+        let to_copy = others.filter_map(|(_, stem)| {
+            let from = outline_files(own.filter(|_| !is_own)?, stem);
+            let to = outline_files(path, stem);
+            from[0].is_file().then_some(OutlinesToCopy { from, to })
+        });
+        (to_save.collect(), to_copy.collect())
+    }
+}
+
+impl OutlinesToSave {
+    /// Writes both files.
+    ///
+    /// # Errors
+    /// Why they may not be written, or what the system says.
+    pub(crate) fn write(&self, read: &Inputs) -> Result<(), FileError> {
+        let [picture, json] = &self.files;
+        let bytes =
+            exports::labels_png(&self.labels).map_err(|fault| FileError::new(picture, fault))?;
+        write_both(
+            [picture, json],
+            [&bytes, self.saved.to_json().as_bytes()],
+            read,
+        )
+    }
+}
+
+impl OutlinesToCopy {
+    /// Copies both files.
+    ///
+    /// # Errors
+    /// As above, and where they cannot be read.
+    pub(crate) fn write(&self, read: &Inputs) -> Result<(), FileError> {
+        let [picture, json] = &self.from;
+        let picture = formats::read_bytes(picture)?;
+        let json = formats::read_bytes(json)?;
+        let [to_picture, to_json] = &self.to;
+        write_both([to_picture, to_json], [&picture, &json], read)
+    }
+}
+
+/// Writes a picture and what it is of, over their own earlier ones at most.
+fn write_both(paths: [&PathBuf; 2], bytes: [&[u8]; 2], read: &Inputs) -> Result<(), FileError> {
+    if let Some(folder) = paths[0].parent() {
+        files::make_folder(folder)?;
+    }
+    for (path, bytes) in paths.into_iter().zip(bytes) {
+        let read = read.clone().without(path);
+        let at = |fault| FileError::new(path, fault);
+        let is_ours = files::standing(path, Kind::Result, &read) == files::Standing::Ours;
+        files::write(path, bytes, Kind::Result, &read, is_ours).map_err(at)?;
+    }
+    Ok(())
+}
+
+impl State {
+    /// Reads the selected photo's outlines, where files beside the flight have them and none are there.
+    pub(crate) fn read_outlines(&mut self) {
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        let Some(photo) = open.selected else {
+            return;
+        };
+        let fragments = &mut open.fragments;
+        if fragments.sought.contains(&photo) || fragments.of(photo).is_some() {
+            return;
+        }
+        fragments.sought.push(photo);
+        let Some(own) = open.files.origin.flight_file() else {
+            return;
+        };
+        let stems = exports::photo_file_stems(open.flight());
+        let files = stems.get(photo).map(|stem| outline_files(own, stem));
+        let Some(files) = files.filter(|[picture, _]| picture.is_file()) else {
+            return;
+        };
+        let (flight, number) = (open.flight().clone(), open.number);
+        let work = move |_: &Progress| {
+            let posed = &flight.parts().photos[photo];
+            read_outlines(&files, &posed.name, flight.camera(posed))
+        };
+        self.start(Task::READ_OUTLINES, work, move |state, read| match read {
+            Ok(read) => state.take_read_outlines(number, photo, read),
+            Err(error) => state.say(Severity::Error, &error.to_string()),
+        });
+    }
+
+    fn take_read_outlines(&mut self, number: u64, photo: usize, read: OutlinesRead) {
+        for note in &read.notes {
+            self.say(Severity::Warning, note);
+        }
+        if let Some(open) = &mut self.open
+            && open.number == number
+        {
+            let of = PhotoOutlines::new(read.outlines, read.engine, true);
+            // What was outlined meanwhile stays.
+            open.fragments.photos.entry(photo).or_insert(of);
+        }
+        self.measure_fragments();
+    }
+
+    /// These revisions are in files now.
+    pub(crate) fn take_saved_outlines(&mut self, saved: &[(usize, u64)]) {
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        for (photo, revision) in saved {
+            if let Some(of) = open.fragments.photos.get_mut(photo) {
+                of.saved = Some(*revision);
+            }
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! What the outlines of the selected photo come to, measured anew whenever they change.
+
+use std::sync::Arc;
+
+use super::MeasuredFragments;
+use crate::delineation::intervals::{Doubts, SizeInterval, intervals};
+use crate::delineation::mass::{Steps, by_mass};
+use crate::delineation::measures::SieveShape;
+use crate::delineation::{self, engine_called, least_across};
+use crate::exports;
+use crate::fault::Fault;
+use crate::formats::{self, DistributionColumns};
+use crate::jobs::Progress;
+use crate::scale::ScaleField;
+use crate::size_distributions::{Page, Source};
+use crate::state::{Severity, State};
+use crate::tasks::Task;
+
+impl Task {
+    /// Measuring a photo's fragments.
+    pub const MEASURE_FRAGMENTS: Self = Self::new("Measuring fragments").of_flight();
+}
+
+impl State {
+    /// Measures the selected photo's outlines where that is not done, or a change came after it.
+    pub(crate) fn measure_fragments(&mut self) {
+        let Some(open) = self.open.as_ref().filter(|_| self.page == Page::Fragments) else {
+            return;
+        };
+        let Some(photo) = open.selected else {
+            return;
+        };
+        let Some(of) = open
+            .fragments
+            .of(photo)
+            .filter(|of| of.measured().is_none())
+        else {
+            return;
+        };
+        // As it is when the job begins; while she edits on, the next one is begun when this one ends.
+        let wish = (open.number, photo, of.revision);
+        if !self.work.may_start(Task::MEASURE_FRAGMENTS, &wish) {
+            return;
+        }
+        let (number, revision) = (open.number, of.revision);
+        let labels = of.now().labels().clone();
+        let engine = engine_called(&of.engine);
+        let field = open.fragments.field.as_ref().filter(|(of, _)| *of == photo);
+        let field = field.map(|(_, field)| field.clone());
+        let flight = open.flight().clone();
+        let reviewed = open.review.photo(photo);
+        let scale = reviewed.and_then(|photo| delineation::photo::scale_error(&photo));
+        let doubts = Doubts::of(engine, scale);
+        let work = move |progress: &Progress| {
+            progress.stage("measuring");
+            let posed = &flight.parts().photos[photo];
+            let camera = flight.camera(posed);
+            let field: Arc<ScaleField> = match field {
+                Some(field) => field,
+                None => Arc::new(delineation::photo::field(&flight, posed, progress)?),
+            };
+            let least = engine.map_or(0.0, |engine| {
+                least_across(engine, camera.width, camera.height)
+            });
+            let shape = SieveShape::Calibrated;
+            let measured = delineation::photo::fragments(&labels, &field, shape, least);
+            let fines = engine.map_or(1.0, |engine| engine.fines_of_unfound());
+            let steps = Steps {
+                fines,
+                ..Steps::default()
+            };
+            let by_mass = by_mass([&measured], steps);
+            let percents = SizeInterval::PERCENTS;
+            let intervals = intervals(&[&measured], steps, doubts, &percents).unwrap_or_default();
+            let measured = MeasuredFragments {
+                photo: measured,
+                by_mass,
+                intervals,
+            };
+            Ok((field, measured))
+        };
+        self.start_wished(
+            Task::MEASURE_FRAGMENTS,
+            wish,
+            work,
+            move |state, (field, measured)| {
+                if let Some(open) = &mut state.open
+                    && open.number == number
+                {
+                    open.fragments.field = Some((photo, field));
+                    if let Some(of) = open.fragments.photos.get_mut(&photo) {
+                        of.measured = Some((revision, Arc::new(measured)));
+                    }
+                }
+                // Changed meanwhile, or another photo: that one is next.
+                state.measure_fragments();
+            },
+        );
+    }
+
+    /// Takes the size distribution of the selected photo over to its page.
+    pub(super) fn take_fragments_distribution(&mut self) {
+        match self.fragments_source() {
+            Ok(source) => {
+                self.take_distribution(source);
+                self.page = Page::SizeDistributions;
+            }
+            Err(fault) => self.say(Severity::Error, &fault.to_string()),
+        }
+    }
+
+    /// The curve as the table that the command writes, read as any other.
+    fn fragments_source(&self) -> Result<Source, Fault> {
+        let nothing = || Fault::new("nothing is measured yet", "wait until it is");
+        let open = self.open.as_ref().ok_or_else(nothing)?;
+        let photo = open.selected.ok_or_else(nothing)?;
+        let of = open.fragments.of(photo).ok_or_else(nothing)?;
+        let measured = of.measured().ok_or_else(nothing)?;
+        let by_mass = measured.by_mass.as_ref().map_err(Clone::clone)?;
+        let method = format!("fragscale ({})", of.engine);
+        let (world, unit) = (open.flight().parts().unit, self.preferences.unit());
+        let name = open.name(photo);
+        let table = exports::curves_csv(&method, &[(name, by_mass)], world, unit);
+        let table = table.map_err(|error| Fault::new(error.to_string(), "report this"))?;
+        let (set, warnings) = formats::size_distributions(&table, &DistributionColumns::default())?;
+        Ok(Source {
+            name: format!("Fragments of {name}"),
+            path: None,
+            set,
+            warnings,
+        })
+    }
+}

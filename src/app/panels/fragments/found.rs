@@ -1,0 +1,223 @@
+//! The fragment that is looked at, the doubtful ones, and what all of them come to.
+
+use egui::{Role, Ui, WidgetInfo};
+
+use crate::command::Command;
+use crate::delineation::measures::Fragment;
+use crate::fragments::{FragmentStep, MeasuredFragments, PhotoOutlines};
+use crate::numbers::{significant_digits, with_interval};
+use crate::open_flight::OpenFlight;
+use crate::panels::rows::pairs;
+use crate::state::State;
+use crate::tasks::Task;
+
+/// The height of a row of the doubtful ones.
+const ROW: f32 = 20.0;
+
+/// How much of the panel they take.
+const ROWS: f32 = 160.0;
+
+/// Draws all of it.
+pub(super) fn found(
+    state: &State,
+    open: &OpenFlight,
+    photo: usize,
+    ui: &mut Ui,
+    commands: &mut Vec<Command>,
+) {
+    let Some(of) = open.fragments.of(photo) else {
+        if state.work.is_running(Task::READ_OUTLINES) {
+            ui.weak("Reading the saved outlines…");
+            return;
+        }
+        ui.label("Nothing is outlined in this photo yet.");
+        ui.weak(
+            "Press 'Outline this photo'. Then correct what is wrong: every change can be undone, and the numbers follow. \
+             Saving the flight saves the outlines beside it.",
+        );
+        return;
+    };
+    let measured = of.measured();
+    if let Some(number) = open.fragments.selected {
+        selected(state, open, of, measured, number, ui, commands);
+        ui.separator();
+    }
+    doubtful(of, open.fragments.selected, ui, commands);
+    ui.separator();
+    match measured {
+        Some(measured) => all(state, open, measured, ui, commands),
+        None if state.work.is_running(Task::MEASURE_FRAGMENTS) => {
+            ui.weak("Measuring…");
+        }
+        None => {
+            ui.weak("Not measured: see the log.");
+        }
+    }
+}
+
+/// The fragment that is looked at.
+fn selected(
+    state: &State,
+    open: &OpenFlight,
+    of: &PhotoOutlines,
+    measured: Option<&MeasuredFragments>,
+    number: u32,
+    ui: &mut Ui,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal_wrapped(|ui| {
+        ui.strong(format!("Fragment {number}"));
+        ui.label(match of.now().sure(number) {
+            Some(sure) => format!("sure to {:.0} %", 100.0 * sure),
+            None => "looked at".to_owned(),
+        });
+    });
+    ui.horizontal_wrapped(|ui| {
+        for (name, step, hover) in [
+            (
+                "Right",
+                FragmentStep::IsRight,
+                "It is right as it is: on to the next doubtful one (Enter)",
+            ),
+            (
+                "Delete",
+                FragmentStep::Delete,
+                "It is no fragment: its pixels are fines (Delete)",
+            ),
+        ] {
+            let button = ui.button(name).on_hover_text(hover);
+            let label = format!("{name}: this fragment");
+            button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+            if button.clicked() {
+                commands.push(Command::Fragments(step));
+            }
+        }
+    });
+    match measured.and_then(|measured| measured.fragment(number)) {
+        Some(fragment) => measures(state, open, fragment, ui),
+        None => {
+            ui.weak("Being measured…");
+        }
+    }
+}
+
+fn measures(state: &State, open: &OpenFlight, fragment: &Fragment, ui: &mut Ui) {
+    let Some(world) = &fragment.world else {
+        ui.weak("Too little of it lies on the surface to be measured.");
+        return;
+    };
+    let unit = state.preferences.unit();
+    let factor = open.flight().parts().unit.in_units_of(unit);
+    let length = |length: f64| format!("{} {unit}", significant_digits(length * factor, 3));
+    let area = |area: f64| format!("{} {unit}²", significant_digits(area * factor * factor, 3));
+    let mut rows = vec![
+        ("Sieve size", length(world.sieve_size)),
+        (
+            "Length × breadth",
+            format!(
+                "{} × {}",
+                length(world.rectangle[0]),
+                length(world.rectangle[1])
+            ),
+        ),
+        ("Widest", length(world.widths[1])),
+        ("Circle of its area", length(world.diameter)),
+        ("Inscribed circle", length(world.inscribed)),
+        ("Area", area(world.area)),
+        ("On the surface", area(world.surface_area)),
+        ("Stands out", length(world.height)),
+        ("Roundness", significant_digits(world.roundness, 2)),
+    ];
+    if fragment.is_cut {
+        rows.push(("Cut by the edge", "its size does not count".to_owned()));
+    }
+    pairs("fragment measures", rows, ui);
+}
+
+/// Those that nobody looked at, the most doubtful first.
+fn doubtful(of: &PhotoOutlines, selected: Option<u32>, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let doubtful = &of.doubtful;
+    ui.horizontal_wrapped(|ui| {
+        ui.label(format!(
+            "{} fragments that nobody looked at",
+            doubtful.len()
+        ));
+        let next = ui.add_enabled(!doubtful.is_empty(), egui::Button::new("Next"));
+        let hover = "Show the most doubtful one behind this (N)";
+        next.widget_info(|| {
+            WidgetInfo::labeled(Role::Button, !doubtful.is_empty(), "Next doubtful fragment")
+        });
+        if next.on_hover_text(hover).clicked() {
+            commands.push(Command::Fragments(FragmentStep::NextDoubtful));
+        }
+    });
+    if doubtful.is_empty() {
+        return;
+    }
+    egui::ScrollArea::vertical()
+        .id_salt("doubtful fragments")
+        .max_height(ROWS)
+        .auto_shrink([false, true])
+        .show_rows(ui, ROW, doubtful.len(), |ui, rows| {
+            for (number, sure) in &doubtful[rows] {
+                let on = selected == Some(*number);
+                let text = format!("{number}: sure to {:.0} %", 100.0 * sure);
+                if ui.selectable_label(on, text).clicked() {
+                    commands.push(Command::Fragments(FragmentStep::Show(*number)));
+                }
+            }
+        });
+}
+
+/// What all of them come to.
+fn all(
+    state: &State,
+    open: &OpenFlight,
+    measured: &MeasuredFragments,
+    ui: &mut Ui,
+    commands: &mut Vec<Command>,
+) {
+    let by_mass = match &measured.by_mass {
+        Ok(by_mass) => by_mass,
+        Err(fault) => {
+            ui.colored_label(ui.visuals().warn_fg_color, fault.to_string());
+            return;
+        }
+    };
+    let unit = state.preferences.unit();
+    let factor = open.flight().parts().unit.in_units_of(unit);
+    let size = |percent: f64| {
+        let Some(size) = by_mass.curve.size_at(percent) else {
+            return "below what is seen".to_owned();
+        };
+        let interval = measured.intervals.iter().find(|of| of.percent == percent);
+        let ends = interval.and_then(|of| Some((of.low? * factor, of.high? * factor)));
+        match ends {
+            Some((low, high)) => format!("{} {unit}", with_interval(size * factor, low, high)),
+            None => format!(
+                "{} {unit}, may be less",
+                significant_digits(size * factor, 2)
+            ),
+        }
+    };
+    let rows = vec![
+        ("P20", size(20.0)),
+        ("P50", size(50.0)),
+        ("P80", size(80.0)),
+        ("Whole fragments", by_mass.whole.to_string()),
+        ("Cut by an edge", by_mass.cut.to_string()),
+        ("Not outlined", crate::exports::percent(by_mass.unfound)),
+        ("Of the mass, fines", crate::exports::percent(by_mass.fines)),
+        (
+            "Nothing said below",
+            format!("{} {unit}", significant_digits(by_mass.limit * factor, 2)),
+        ),
+    ];
+    ui.strong("This photo, by mass");
+    pairs("fragments by mass", rows, ui);
+    let button = ui.button("To size distributions");
+    let hover = "Take this photo's curve over to the page of size distributions, beside sieves and other methods";
+    if button.on_hover_text(hover).clicked() {
+        commands.push(Command::Fragments(FragmentStep::TakeDistribution));
+    }
+}

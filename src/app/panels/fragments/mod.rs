@@ -1,0 +1,36 @@
+//! The page of the fragments: tools and numbers at the right, outlines and strokes on the photo.
+//!
+//! ```text
+//! tools     the engine, and what the mouse does
+//! found     the fragment that is looked at, the doubtful ones, what all come to
+//! on_photo  strokes and clicks on the photo, and what lies over it
+//! picture   the outlines as pixels of the screen
+//! ```
+
+mod found;
+mod on_photo;
+mod picture;
+mod tools;
+
+pub(in crate::panels) use on_photo::OnPhoto;
+
+use egui::Ui;
+
+use crate::command::Command;
+use crate::state::State;
+
+/// Draws the panel at the right.
+pub fn fragments(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    let Some(photo) = open.selected else {
+        ui.weak("Select a photo in the table.");
+        return;
+    };
+    tools::tools(state, open, photo, ui, commands);
+    ui.separator();
+    egui::ScrollArea::vertical()
+        .auto_shrink(false)
+        .show(ui, |ui| found::found(state, open, photo, ui, commands));
+}

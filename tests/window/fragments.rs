@@ -1,0 +1,233 @@
+//! The page of the fragments: outlined, corrected by mouse and keys, measured, saved and read again.
+
+use std::fs;
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Pos2, vec2};
+use fragscale::app::fragments::{FragmentStep, PhotoOutlines};
+use fragscale::app::size_distributions::Page;
+use fragscale::app::{Command, photo_view::PhotoCommand};
+use fragscale::labels::{NOT_ROCK, Outlines};
+use glam::DVec2;
+
+use crate::desk::{Desk, Screen, copy, copy_files, flight};
+
+fn outlines(desk: &Desk) -> &PhotoOutlines {
+    let open = desk.open();
+    open.fragments.of(open.selected.unwrap()).expect("outlines")
+}
+
+fn fragments(outlines: &Outlines) -> usize {
+    let areas = outlines.labels().areas();
+    areas.iter().skip(1).filter(|area| **area > 0).count()
+}
+
+/// Where a pixel of the photo is on the screen, one pixel a point.
+fn on_screen(desk: &Desk, pixel: DVec2) -> Pos2 {
+    let name = format!("Photo view {}", desk.selected());
+    let frame = desk.node(Role::Image, &name).rect();
+    let size = DVec2::new(f64::from(frame.width()), f64::from(frame.height()));
+    let open = desk.open();
+    let photo = &open.flight().parts().photos[open.selected.unwrap()];
+    let camera = open.flight().camera(photo);
+    let image = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+    let placing = open.photo_view.placing;
+    let at = placing.corner(image, size) + pixel * placing.scale(image, size);
+    frame.min + vec2(at.x as f32, at.y as f32)
+}
+
+fn drag(desk: &mut Desk, places: &[DVec2]) {
+    let places: Vec<Pos2> = places.iter().map(|place| on_screen(desk, *place)).collect();
+    desk.harness.hover_at(places[0]);
+    desk.harness.drag_at(places[0]);
+    for place in &places[1..] {
+        desk.harness.hover_at(*place);
+        desk.harness.step();
+    }
+    desk.harness.drop_at(places[places.len() - 1]);
+    desk.settle();
+}
+
+fn click(desk: &mut Desk, pixel: DVec2) {
+    let at = on_screen(desk, pixel);
+    desk.click_at(at);
+}
+
+/// A copy of the bundled flight, with its photos.
+fn sample() -> tempfile::TempDir {
+    let folder = copy("assets/sample");
+    copy_files("assets/sample/photos", &folder.path().join("photos"));
+    folder
+}
+
+/// With the first photo of a copy of the bundled flight outlined.
+fn outlined(path: &std::path::Path) -> Desk {
+    let mut desk = Desk::new(Some(path));
+    desk.click(Role::Tab, "Fragments");
+    assert!(desk.says("Nothing is outlined in this photo yet."));
+    desk.click(Role::Button, "Outline this photo");
+    desk
+}
+
+/// The middle of the red ball in the first photo of the bundled flight: by eye, it has a radius of 70 pixels.
+const BALL: DVec2 = DVec2::new(760.0, 279.0);
+
+#[test]
+fn outlined_corrected_saved_and_read_again() {
+    let folder = sample();
+    let file = folder.path().join("flight.toml");
+    let mut desk = outlined(&file);
+    let first = outlines(&desk).now().clone();
+    assert!(fragments(&first) > 500, "{}", fragments(&first));
+    let measured = outlines(&desk).measured().expect("measured");
+    let by_mass = measured.by_mass.as_ref().unwrap();
+    assert_eq!(by_mass.whole + by_mass.cut, fragments(&first));
+    assert!(desk.says("This photo, by mass"));
+
+    // The ball is one, until a stroke goes through it.
+    click(&mut desk, BALL);
+    let ball = desk.open().fragments.selected.expect("the ball");
+    assert_eq!(first.fragment_at(BALL), Some(ball));
+    let across = [-100.0, 0.0, 100.0].map(|x| BALL + DVec2::new(x, 3.0));
+    desk.press(Modifiers::NONE, Key::S);
+    drag(&mut desk, &across);
+    assert_eq!(outlines(&desk).editing.changes(), 1);
+    let [above, below] = [-30.0, 30.0].map(|y| BALL + DVec2::new(0.0, y));
+    let now = outlines(&desk).now();
+    assert_ne!(now.fragment_at(above), now.fragment_at(below));
+    // And one again by a stroke over both.
+    desk.press(Modifiers::NONE, Key::M);
+    drag(&mut desk, &[above, below]);
+    let now = outlines(&desk).now();
+    assert_eq!(now.fragment_at(above), now.fragment_at(below));
+    // Looked at: it is not among the doubtful ones any more.
+    assert_eq!(now.sure(now.fragment_at(BALL).unwrap()), None);
+
+    // It is no rock: drawn about by clicks, ended by Enter.
+    desk.press(Modifiers::NONE, Key::X);
+    for (x, y) in [(-80.0, -80.0), (80.0, -80.0), (80.0, 80.0), (-80.0, 80.0)] {
+        click(&mut desk, BALL + DVec2::new(x, y));
+    }
+    assert_eq!(desk.open().fragments.drawing.len(), 4);
+    desk.press(Modifiers::NONE, Key::Backspace);
+    click(&mut desk, BALL + DVec2::new(-80.0, 80.0));
+    desk.press(Modifiers::NONE, Key::Enter);
+    let excluded = outlines(&desk).now().labels().labels.iter();
+    let excluded = excluded.filter(|label| **label == NOT_ROCK).count();
+    assert!(
+        (excluded as f64 / 25_600.0 - 1.0).abs() < 0.05,
+        "{excluded}"
+    );
+
+    // All of it undone is what was, and done again.
+    let last = outlines(&desk).now().clone();
+    for _ in 0..3 {
+        desk.press(Modifiers::COMMAND, Key::Z);
+    }
+    assert_eq!(*outlines(&desk).now(), first);
+    for _ in 0..3 {
+        desk.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    }
+    assert_eq!(*outlines(&desk).now(), last);
+
+    // Saved beside the flight, and there again when it is opened.
+    assert!(desk.harness.state().state().is_changed());
+    desk.press(Modifiers::COMMAND, Key::S);
+    assert!(!desk.harness.state().state().is_changed());
+    let saved = folder.path().join("fragments/IMG_0001.png");
+    assert!(saved.is_file());
+    let mut again = Desk::new(Some(&file));
+    again.click(Role::Tab, "Fragments");
+    assert_eq!(*outlines(&again).now(), last);
+    assert!(!again.harness.state().state().is_changed());
+    assert!(outlines(&again).measured().is_some());
+
+    // A picture of another size is said, and not shown.
+    image::GrayImage::new(20, 20).save(&saved).unwrap();
+    let mut broken = Desk::new(Some(&file));
+    broken.click(Role::Tab, "Fragments");
+    assert!(broken.open().fragments.of(0).is_none());
+    assert!(broken.logged("20 x 20"));
+    // It is not ours any more: nothing is written over it.
+    broken.click(Role::Button, "Outline this photo");
+    broken.press(Modifiers::COMMAND, Key::S);
+    assert!(broken.harness.state().state().is_changed());
+    assert_eq!(image::open(&saved).unwrap().width(), 20);
+    fs::remove_file(&saved).unwrap();
+    broken.press(Modifiers::COMMAND, Key::S);
+    assert!(!broken.harness.state().state().is_changed());
+}
+
+#[test]
+fn the_doubtful_ones_are_gone_through_with_keys() {
+    let folder = sample();
+    let mut desk = outlined(&folder.path().join("flight.toml"));
+    let doubtful = outlines(&desk).doubtful.clone();
+    desk.press(Modifiers::NONE, Key::N);
+    assert_eq!(desk.open().fragments.selected, Some(doubtful[0].0));
+    // It is in the middle, one to one.
+    assert_eq!(desk.open().photo_view.placing.zoom, Some(1.0));
+    desk.press(Modifiers::NONE, Key::Enter);
+    assert_eq!(desk.open().fragments.selected, Some(doubtful[1].0));
+    desk.press(Modifiers::NONE, Key::Delete);
+    let left = &outlines(&desk).doubtful;
+    assert_eq!(left[..], doubtful[2..]);
+    assert!(desk.says(&format!("{} fragments that nobody looked at", left.len())));
+    // Coarser under the cursor, and finer.
+    desk.harness
+        .state_mut()
+        .apply(Command::Photo(PhotoCommand::Fit));
+    let before = outlines(&desk).now().clone();
+    let at = DVec2::new(620.0, 500.0);
+    let place = on_screen(&desk, at);
+    desk.harness.hover_at(place);
+    desk.settle();
+    desk.press(Modifiers::NONE, Key::Plus);
+    let coarser = outlines(&desk).now().clone();
+    assert!(fragments(&coarser) <= fragments(&before) && coarser != before);
+    desk.press(Modifiers::NONE, Key::Minus);
+    assert!(fragments(outlines(&desk).now()) >= fragments(&coarser));
+    // Another photo has none yet; this one still has.
+    desk.press(Modifiers::NONE, Key::ArrowDown);
+    assert!(desk.says("Nothing is outlined in this photo yet."));
+    desk.press(Modifiers::NONE, Key::ArrowUp);
+    assert!(outlines(&desk).editing.changes() >= 3);
+}
+
+#[test]
+fn its_curve_stands_beside_the_sieves() {
+    let mut desk = outlined(&flight("assets/sample"));
+    for _ in 0..2 {
+        desk.harness
+            .state_mut()
+            .apply(Command::Page(Page::Fragments));
+        desk.harness
+            .state_mut()
+            .apply(Command::Fragments(FragmentStep::TakeDistribution));
+    }
+    let state = desk.harness.state().state();
+    assert_eq!(state.page, Page::SizeDistributions);
+    // Once, however often it is taken over.
+    let sources = state.distributions.sources();
+    assert_eq!(sources.len(), 1);
+    assert_eq!(sources[0].name, "Fragments of IMG_0001.jpg");
+    assert_eq!(
+        sources[0].set.curves[0].labels.method,
+        "fragscale (learned)"
+    );
+}
+
+#[test]
+fn the_page_as_it_looks() {
+    let screen = Screen {
+        size: [1200.0, 760.0],
+        pixels_per_point: 1.0,
+        theme: egui::Theme::Dark,
+    };
+    let folder = sample();
+    let mut desk = Desk::drawn(Some(&folder.path().join("flight.toml")), &screen);
+    desk.click(Role::Tab, "Fragments");
+    desk.click(Role::Button, "Outline this photo");
+    click(&mut desk, BALL);
+    desk.harness.snapshot("fragments");
+}
