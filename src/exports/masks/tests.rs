@@ -1,5 +1,5 @@
 //! What is written reads back as the very same label image, for random ones with holes, parts, pinches and gaps in their
-//! numbers. That pycocotools, tifffile and scikit-image see the same pixels was tried with files of this test.
+//! numbers.
 
 use fragscale_formats::{MaskFile, OutlinedPhoto};
 

@@ -31,12 +31,13 @@ pub(super) fn picture(
 ) -> ColorImage {
     let labels = outlines.labels();
     let places = |from: f64, to: f64, count: usize, most: usize| -> Vec<usize> {
-        let at = |step: i64| {
-            let place = from + (to - from) * (step as f64 + 0.5) / count as f64;
+        // One more at each side, so that the first is half a step before: an outline is where the neighbour is
+        // another.
+        let at = |step: usize| {
+            let place = from + (to - from) * (step as f64 - 0.5) / count as f64;
             (place.max(0.0) as usize).min(most.saturating_sub(1))
         };
-        // One more at each side: an outline is where the neighbour is another.
-        (-1..=count as i64).map(at).collect()
+        (0..count + 2).map(at).collect()
     };
     let columns = places(from.x, to.x, width, labels.width);
     let rows = places(from.y, to.y, height, labels.height);

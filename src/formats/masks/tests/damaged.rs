@@ -30,7 +30,7 @@ fn changed_bytes_never_panic() {
                     _ => random.next() as u8,
                 };
             }
-            if random.next() % 8 == 0 {
+            if random.next().is_multiple_of(8) {
                 bytes.truncate((random.next() % bytes.len() as u64) as usize);
             }
             if let Ok(masks) = of_bytes(&bytes) {
