@@ -1,14 +1,16 @@
 //! What a cloud of many points costs: makes one of the bundled sample, tiled, and opens it.
 //!
 //! ```text
-//! cargo bench -p fragscale-sample --bench many_points -- write FOLDER MILLIONS [laz|las]
+//! cargo bench -p fragscale-sample --bench many_points -- write FOLDER MILLIONS [laz|las|copc]
 //! cargo bench -p fragscale-sample --bench many_points -- open FLIGHT
+//! cargo bench -p fragscale-sample --bench many_points -- scales FLIGHT [whole|part]
 //! ```
 //!
 //! `write` makes a flight of the sample's pile laid side by side, with the sample's nine photos in the middle
 //! (`flight.toml`) and with the same nine high enough to see everything (`flight_all.toml`). `open` opens one
 //! as the window does and prints, after each step, the seconds that it took and the memory that the process has
-//! ever held.
+//! ever held. `scales` computes all that the command of that name does, of the whole cloud or of the part that the
+//! photos see, and prints a checksum of every digit of it: both have the same.
 
 #![allow(
     clippy::expect_used,
@@ -25,9 +27,14 @@ use std::time::Instant;
 
 use fragscale_core::geometry::Bounds;
 use fragscale_core::jobs::Progress;
+use fragscale_core::split_mix::SplitMix;
 use fragscale_core::surface::Levels;
 use fragscale_formats::read_cloud;
-use fragscale_opening::{OpenOptions, open_flight_sampled};
+use fragscale_opening::{
+    Memory, OpenOptions, Opened, open_flight, open_flight_sampled, with_flight,
+};
+
+mod tiled_copc;
 
 fn main() {
     let arguments: Vec<String> = std::env::args()
@@ -39,8 +46,11 @@ fn main() {
         ["write", folder, millions] => write(Path::new(folder), millions, "laz"),
         ["write", folder, millions, format] => write(Path::new(folder), millions, format),
         ["open", flight] => open(Path::new(flight)),
+        ["scales", flight, way] => scales(Path::new(flight), way == "part"),
         // All benches are run at once with other arguments.
-        _ => println!("write FOLDER MILLIONS [laz|las], or open FLIGHT"),
+        _ => println!(
+            "write FOLDER MILLIONS [laz|las|copc], open FLIGHT, or scales FLIGHT [whole|part]"
+        ),
     }
 }
 
@@ -53,6 +63,13 @@ fn write(folder: &Path, millions: &str, format: &str) {
     fs::create_dir_all(folder).expect("a folder");
     let pile = read_cloud(&sample().join("pile.ply"), &Progress::default()).expect("the sample");
     let cloud = pile.cloud;
+    if format == "copc" {
+        let path = folder.join("pile.copc.laz");
+        let count = tiled_copc::write(&path, &cloud.points, millions * 1e6);
+        write_flights(folder, "pile.copc.laz", 1.0);
+        println!("{count} points");
+        return;
+    }
     let bounds = Bounds::of(&cloud.points).expect("points");
     let size = bounds.size();
     let tiles = millions * 1e6 / cloud.points.len() as f64;
@@ -96,6 +113,12 @@ fn write(folder: &Path, millions: &str, format: &str) {
         tile += 1.0;
     }
     writer.close().expect("closed");
+    write_flights(folder, &file, side);
+    println!("{count} points");
+}
+
+/// With the sample's photos, and with the same from `side` times as far.
+fn write_flights(folder: &Path, file: &str, side: f64) {
     fs::copy(sample().join("ost.yaml"), folder.join("ost.yaml")).expect("copied");
     let poses = fs::read_to_string(sample().join("poses.csv")).expect("poses");
     fs::write(folder.join("poses.csv"), &poses).expect("written");
@@ -110,7 +133,6 @@ fn write(folder: &Path, millions: &str, format: &str) {
         );
         fs::write(folder.join(name), text).expect("written");
     }
-    println!("{count} points");
 }
 
 /// The same photos from so many times as far.
@@ -193,4 +215,40 @@ fn open(path: &Path) {
     say("footprints");
     opened.flight.fields(&outcomes, &progress).expect("fields");
     say("scale fields");
+}
+
+/// Everything that `fragscale scales` computes, once or as often as a part has to grow.
+fn scales(path: &Path, in_part: bool) {
+    let (options, progress) = (OpenOptions::default(), Progress::default());
+    let begun = Instant::now();
+    let say = |what: &str| {
+        let (most, _) = memory();
+        let seconds = begun.elapsed().as_secs_f64();
+        println!("{what:<44} {seconds:7.1} s in all; at most {most:5.2} GB");
+    };
+    let compute = |opened: &Opened| {
+        say("opened");
+        let flight = &opened.flight;
+        let outcomes = flight.scales(&progress).expect("scales");
+        let views = flight.views(&outcomes, &progress).expect("views");
+        let fields = flight.fields(&outcomes, &progress).expect("fields");
+        let all = format!("{outcomes:?} {views:?} {fields:?}");
+        let checksum = all.bytes().fold(SplitMix(0), |sum, byte| {
+            SplitMix(SplitMix(sum.0 ^ u64::from(byte)).next())
+        });
+        say("scales, footprints, fields, uncertainties");
+        println!("checksum {:016x} of {} letters", checksum.0, all.len());
+        Ok(())
+    };
+    if in_part {
+        let memory = Memory {
+            most: 1 << 40,
+            always_in_part: true,
+        };
+        with_flight(path, &options, memory, &progress, compute).expect("a part");
+    } else {
+        let opened = open_flight(path, &options, &progress).expect("a flight");
+        let _: Result<(), String> = compute(&opened);
+    }
+    say("done");
 }

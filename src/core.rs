@@ -21,4 +21,5 @@ pub mod scale;
 pub mod split_mix;
 pub mod surface;
 pub mod survey;
+pub mod toml_text;
 pub mod units;

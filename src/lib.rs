@@ -10,7 +10,7 @@
 //!
 //! A workspace whose members lie inside `src/`, so that a changed reader or panel compiles alone: the
 //! core, `fragmentation/`, `delineation/`, `formats/`, `opening/`, `exports/`, `render/`, `dense/`, `reconstruct/`,
-//! `sample/`, `app/`,
+//! `node_odm/`, `batch/`, `sample/`, `app/`,
 //! and here `cli/`. This crate re-exports all of them. The compiler holds who may use whom
 //! between members, `tests/floors.rs` the floors within the core, that no circle of imports is longer
 //! than two files, and that no folder has more than 15 files lying flat.
@@ -21,7 +21,9 @@
 //! F5  opening/                   files -> a flight in one world; what is looked up of its photos
 //!     render/                    wgpu: scene -> picture; knows no egui, reads no file
 //!     reconstruct/               photos alone -> a flight: engines behind a trait
+//!     node_odm/                  the same on a NodeODM or ClusterODM: sent, watched, fetched; nothing trusted
 //!     dense/                     photos with known poses -> depth maps -> a cloud with standard errors
+//!     batch/                     many flights: which, in what order, within what memory, what is done again
 //!     sample/                    the paper's lab, simulated
 //! F4  formats/                   bytes -> types: clouds cameras packages poses photos tables missions areas text
 //!     exports/                   what goes out: table, CSV, JSON, sheet, Split-Desktop, figures, maps, missions
@@ -37,7 +39,7 @@
 //!     labels/                    what pixels belong to, and edits of that by hand
 //!     fragmentation/             size distributions: functions, fits, analysis
 //!     geodesy/  georeference/    coordinate systems | a frame of its own brought to the world
-//! F0  geometry/ raster/ files/   units.rs numbers.rs jobs.rs fault.rs split_mix.rs
+//! F0  geometry/ raster/ files/   units.rs numbers.rs jobs.rs fault.rs split_mix.rs toml_text.rs
 //!     test_data/                 for tests alone: where data lie, fixtures that two members write
 //! ```
 //!
@@ -45,7 +47,8 @@
 //! typed errors. `picture/` alone counts in f32, because colours and strokes are no measurements.
 //!
 //! The features: `render` brings wgpu, `app` the window on top of it, `ros` the libraries in C that
-//! compressed recordings need; without them the command line needs no GPU library and no C compiler.
+//! compressed recordings need, `tls` the cryptography for nodes with https, in C as well; without them the command line
+//! needs no GPU library and no C compiler.
 //!
 //! # To add ... touch ...
 //!
@@ -65,6 +68,7 @@
 //! | a ground station's missions | `src/formats/missions/mod.rs`, `src/exports/missions/format.rs` | what reads and what writes it, a file each beside them; `exports/missions/tests/round_trip.rs` holds that all say the same |
 //! | a reconstruction engine | `src/reconstruct/engine.rs` | the trait; the engine is a folder beside it, and leaves COLMAP's text files |
 //! | an engine that outlines fragments | `src/delineation/engine.rs` | the trait; the engine is a folder beside it, its score is learned by `delineation/training/train_score.py`; `src/cli/of_photos/delineate.rs` offers it |
+//! | a step or option of a batch | `src/batch/asked.rs` | its words; `src/cli/batch/steps.rs` does it by the single command's function, `src/batch/season/file.rs` has its keys |
 //! | a format of outlines | `src/formats/masks/mod.rs`, `src/exports/masks/mod.rs` | what reads and what writes it, a file each beside them; `exports/masks/tests.rs` holds that all read back to the pixel; `src/cli/of_photos/written_outlines.rs` offers it |
 //! | a job with a panel | `src/app/tasks/mod.rs` | the job with its task and its ending is a file beside it, the panel one in `panels/`; `command/mod.rs` and `apply.rs` start it |
 //!
@@ -80,14 +84,16 @@ pub mod cli;
 
 #[cfg(feature = "app")]
 pub use fragscale_app as app;
+pub use fragscale_batch as batch;
 pub use fragscale_core::{
     camera, control, fault, files, flight, geodesy, geometry, georeference, jobs, labels, numbers,
-    picture, plan, raster, scale, split_mix, surface, survey, units,
+    picture, plan, raster, scale, split_mix, surface, survey, toml_text, units,
 };
 pub use fragscale_delineation as delineation;
 pub use fragscale_exports as exports;
 pub use fragscale_formats as formats;
 pub use fragscale_fragmentation as fragmentation;
+pub use fragscale_node_odm as node_odm;
 pub use fragscale_opening as opening;
 pub use fragscale_reconstruct as reconstruct;
 #[cfg(feature = "render")]

@@ -2,6 +2,7 @@
 
 use crate::command::{Asking, Command, ReviewStep, Tab};
 use crate::flight::FlightSettings;
+use crate::fragments::FragmentStep;
 use crate::from_photos::Ended;
 use crate::geometry::LevelBox;
 use crate::open_flight::OpenFlight;
@@ -19,8 +20,20 @@ impl State {
     /// Does what a command says.
     pub fn apply(&mut self, command: Command) {
         match command {
-            Command::Drop(paths) if self.may_be_distributions(&paths) => self.read_dropped(paths),
-            Command::Drop(paths) => self.apply(Command::DropFlight(paths)),
+            Command::Drop(mut paths) if self.may_be_masks(&paths) => {
+                if let Some(path) = paths.pop() {
+                    self.fragment_step(FragmentStep::Masks(path));
+                }
+            }
+            Command::Drop(paths) => {
+                if self.drop_on_flight(&paths) {
+                    return;
+                }
+                match self.may_be_distributions(&paths) {
+                    true => self.read_dropped(paths),
+                    false => self.apply(Command::DropFlight(paths)),
+                }
+            }
             Command::Open(path) => self.open_or_ask(vec![path]),
             Command::DropFlight(paths) => self.open_or_ask(paths),
             Command::Add(path) => self.leave(Leaving::Read {
@@ -59,6 +72,7 @@ impl State {
                 self.save_georeferenced(to, keep_surface);
             }
             Command::FromPhotos(step) => self.step_from_photos(step),
+            Command::Season(step) => self.step_season(step),
             Command::Ask(asking) => self.ask(asking),
             Command::Browse(dialog) => self.browse(dialog),
             Command::Cancel(task) => {
@@ -71,6 +85,9 @@ impl State {
                     }
                     if task == Task::PLAN {
                         self.plan_cancelled();
+                    }
+                    if task == Task::SEASON {
+                        self.season_cancelled();
                     }
                     if task == Task::RECONSTRUCT {
                         self.from_photos.ended = Some(Ended::Cancelled);

@@ -1,8 +1,12 @@
 //! A new flight from photos: what its small window holds.
 
+use std::collections::VecDeque;
+use std::fmt;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
+use crate::fault::Fault;
+use crate::node_odm::Address;
 use crate::opening_preview::OpeningPreview;
 use crate::reconstruct::{EngineName, Growth, PhotoSet, Quality, Reconstructed};
 
@@ -51,6 +55,71 @@ pub struct FromPhotosForm {
     pub engine: EngineName,
     /// Whether the processor is to do all, also where there is a graphics card.
     pub processor_only: bool,
+    /// A node that reconstructs in the computer's stead.
+    pub node: NodeForm,
+}
+
+/// What is typed of a node.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct NodeForm {
+    /// Whether it is to reconstruct.
+    pub chosen: bool,
+    /// Where it answers.
+    pub address: String,
+    /// What opens it; it is sent, and neither kept nor written.
+    pub token: Secret,
+    /// What OpenDroneMap is asked for, "name=value" apart by blanks.
+    pub options: String,
+    /// Whether photos and token may cross the network unencrypted.
+    pub insecure: bool,
+}
+
+impl NodeForm {
+    /// The address; an error is one line.
+    ///
+    /// # Errors
+    /// Where it is none.
+    pub fn typed(&self) -> Result<Address, Fault> {
+        Address::parse(&self.address)
+    }
+
+    /// Whether the address is one that is only reached where somebody says that it may be unencrypted.
+    pub fn is_open_to_all(&self) -> bool {
+        self.typed()
+            .is_ok_and(|address| !address.is_encrypted() && !address.is_here())
+    }
+}
+
+/// A text that is not shown.
+#[derive(Clone, PartialEq, Eq, Default)]
+pub struct Secret(pub String);
+
+impl fmt::Debug for Secret {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("***")
+    }
+}
+
+/// What a run on a node tells while it works, and after it was cancelled.
+#[derive(Debug, Default)]
+pub(crate) struct FromNode {
+    /// The node's last messages.
+    pub(crate) messages: VecDeque<String>,
+    /// What came of calling the task off, once that is known.
+    pub(crate) called_off: Option<String>,
+}
+
+/// So many messages of a node are kept to look at.
+const MESSAGES: usize = 200;
+
+impl FromNode {
+    /// Takes a message.
+    pub(crate) fn hear(&mut self, message: &str) {
+        if self.messages.len() >= MESSAGES {
+            self.messages.pop_front();
+        }
+        self.messages.push_back(message.to_owned());
+    }
 }
 
 /// Its name and version ("COLMAP 3.8"), or why it cannot be taken: one line.
@@ -95,6 +164,8 @@ pub struct FromPhotos {
     pub growing: Option<OpeningPreview>,
     /// Where the run puts the model as it is now, if nobody is about to take the one before.
     pub(crate) grown: Arc<Mutex<Option<Growth>>>,
+    /// What the last run on a node tells; `None` where it was none.
+    pub(crate) node: Option<Arc<Mutex<FromNode>>>,
     /// Held by the run that writes: a cancelled one stops at its next look, and the next one waits for that.
     pub(crate) writing: Arc<Mutex<()>>,
 }

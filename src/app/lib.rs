@@ -16,6 +16,7 @@
 //! planning/           the page of the flight plan
 //! fragments/          the page of the fragments
 //! from_photos         what the small window for a new flight from photos holds
+//! season/             what the small window of a season of blasts holds, and what it does
 //! size_distributions/ the page of size distributions
 //! ```
 //!
@@ -42,6 +43,7 @@ pub mod photo_view;
 pub mod planning;
 pub mod poll;
 mod reviewing;
+pub mod season;
 pub mod size_distributions;
 pub mod state;
 pub mod tasks;
@@ -49,6 +51,7 @@ mod typed;
 pub mod viewport;
 mod writing;
 
+use fragscale_batch as batch;
 use fragscale_core::{
     camera, control, fault, files, flight, geodesy, geometry, jobs, labels, numbers, picture, plan,
     scale, surface, survey, units,
@@ -57,6 +60,7 @@ use fragscale_delineation as delineation;
 use fragscale_exports as exports;
 use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
+use fragscale_node_odm as node_odm;
 use fragscale_opening as opening;
 use fragscale_reconstruct as reconstruct;
 use fragscale_render as render;

@@ -25,6 +25,7 @@ impl State {
             self.preview = None;
         }
         self.take_growth();
+        self.take_season();
         if let Some(open) = &mut self.open {
             if !open.photo_view.tiles.take(&self.context) {
                 self.context.request_repaint();

@@ -5,32 +5,97 @@ use std::fmt::Write as _;
 use clap::Args;
 
 use super::Answer;
-use super::flight_arguments::FlightArguments;
-use crate::fault::Fault;
+use super::flight_arguments::{FlightArguments, MemoryArguments};
+use super::outputs::{OutputArguments, Outputs};
+use crate::fault::{Fault, one_line};
+use crate::files::CHECK_MARK;
 use crate::flight::{Doubt, Limits, Review};
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::{self, Colours};
+use crate::opening::{self, Colours, Opened};
 use crate::picture::Agreement;
 
 #[derive(Debug, Args)]
 pub(super) struct CheckArguments {
     #[command(flatten)]
     flight: FlightArguments,
+    #[command(flatten)]
+    memory: MemoryArguments,
+    #[command(flatten)]
+    pub(super) output: OutputArguments,
 }
 
 /// Opens the flight, which looks at coordinate systems, places, sizes and metadata, and compares the
 /// colours of the photos with those of the surface.
 pub(super) fn check(arguments: &CheckArguments, progress: &Progress) -> Result<Answer, String> {
-    let opened = arguments.flight.open(progress)?;
-    let mut warnings = opened.all_warnings();
-    let mut text = String::from("colours of photo and surface (r is 1 where they match)\n");
-    if opened.flight.parts().surface.colors().is_empty() {
-        text.push_str("the surface has no colours\n");
-        return Ok(Answer::new(text, warnings));
+    let mut outputs = arguments.outputs()?;
+    let (flight, memory) = (&arguments.flight, &arguments.memory);
+    let (_, looked) = memory.with_flight(flight, false, progress, |opened| {
+        outputs.read(&opened.read)?;
+        look_at(flight, opened, progress)
+    })?;
+    deliver(&outputs, looked.text, looked.warnings)
+}
+
+impl CheckArguments {
+    /// What is written.
+    pub(super) fn outputs(&self) -> Result<Outputs<'_>, String> {
+        self.output.outputs(self.flight.files())
     }
+}
+
+/// The same of a flight that is open, with its whole review where colours were compared.
+pub(super) fn check_of(
+    arguments: &CheckArguments,
+    mut outputs: Outputs<'_>,
+    opened: &Opened,
+    progress: &Progress,
+) -> Result<(Answer, Option<Review>), String> {
+    outputs.read(&opened.read)?;
+    let mut looked = look_at(&arguments.flight, opened, progress)?;
     let at = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
-    let (flight, looked_up) = (opened.flight.clone(), opened.looked_up);
+    if let Some(review) = &mut looked.review {
+        review.take_decisions(&opened.settings.decisions);
+        review.look(progress).map_err(at)?;
+        review.compute_fields(progress).map_err(at)?;
+    }
+    Ok((
+        deliver(&outputs, looked.text, looked.warnings)?,
+        looked.review,
+    ))
+}
+
+/// What there is to say of a flight.
+struct Looked {
+    text: String,
+    warnings: Vec<String>,
+    /// Where colours were compared.
+    review: Option<Review>,
+}
+
+fn look_at(
+    arguments: &FlightArguments,
+    opened: &Opened,
+    progress: &Progress,
+) -> Result<Looked, String> {
+    let mut warnings = opened.all_warnings();
+    let mut text = format!("{CHECK_MARK}\n");
+    let surface = &opened.flight.parts().surface;
+    let why_not = match (surface.is_part(), surface.colors().is_empty()) {
+        (true, _) => Some("not looked at: only a part of the surface was read (--memory)\n"),
+        (false, true) => Some("the surface has no colours\n"),
+        (false, false) => None,
+    };
+    if let Some(why_not) = why_not {
+        text.push_str(why_not);
+        return Ok(Looked {
+            text,
+            warnings,
+            review: None,
+        });
+    }
+    let at = |fault: Fault| FileError::new(&arguments.flight, fault).to_string();
+    let (flight, looked_up) = (opened.flight.clone(), opened.looked_up.clone());
     let limits = Limits::default();
     let mut review = Review::of_scales(flight, looked_up, &limits, progress).map_err(at)?;
     let evidence = &review.looked_up().evidence;
@@ -57,5 +122,23 @@ pub(super) fn check(arguments: &CheckArguments, progress: &Progress) -> Result<A
         // Writing into a text does not fail.
         let _ = writeln!(text, "{name}  {said}");
     }
-    Ok(Answer::new(text, warnings))
+    Ok(Looked {
+        text,
+        warnings,
+        review: Some(review),
+    })
+}
+
+/// Into a file go the warnings, too: they are what one looks for.
+fn deliver(
+    outputs: &Outputs<'_>,
+    mut text: String,
+    warnings: Vec<String>,
+) -> Result<Answer, String> {
+    if outputs.has_file() {
+        for warning in &warnings {
+            let _ = writeln!(text, "warning: {}", one_line(warning));
+        }
+    }
+    Ok(Answer::new(outputs.deliver(text)?, warnings))
 }

@@ -9,9 +9,10 @@ use super::outputs::Force;
 use super::{Answer, OutputUnit};
 use crate::exports::{self, ExportRequest, Provenance, Replace, ScaleReport};
 use crate::fault::Fault;
-use crate::flight::{Along, Limits};
+use crate::flight::{Along, Limits, Review};
 use crate::formats::FileError;
 use crate::jobs::Progress;
+use crate::opening::Opened;
 use crate::scale::Onto;
 
 #[derive(Debug, Args)]
@@ -53,6 +54,16 @@ enum Selection {
 /// their files are damaged; the others are.
 pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result<Answer, String> {
     let opened = arguments.flight.open(progress)?;
+    let (answer, _) = export_of(arguments, &opened, progress)?;
+    Ok(answer)
+}
+
+/// The same of a flight that is open, with its review.
+pub(super) fn export_of(
+    arguments: &ExportArguments,
+    opened: &Opened,
+    progress: &Progress,
+) -> Result<(Answer, Review), String> {
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let review = opened.review(&Limits::default(), progress);
@@ -123,9 +134,10 @@ pub(super) fn export(arguments: &ExportArguments, progress: &Progress) -> Result
     let mut warnings = opened.all_warnings();
     warnings.extend(summary.warnings.iter().cloned());
     warnings.extend(super::notes_of(&report));
-    Ok(Answer {
+    let answer = Answer {
         text: format!("{}: {summary}\n", arguments.to.display()),
         warnings,
         failed,
-    })
+    };
+    Ok((answer, review))
 }

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::jobs::Progress;
-use crate::opening::{self, OpenOptions, Opened};
+use crate::opening::{self, Memory, OpenOptions, Opened, half_of_the_machines, memory_size};
+use crate::surface::UpAxis;
 
 #[derive(Debug, Args)]
 pub(super) struct FlightArguments {
@@ -18,12 +19,30 @@ pub(super) struct FlightArguments {
     /// The folder of the image files, where the flight does not name it.
     #[arg(long, value_name = "DIR")]
     photo_folder: Option<PathBuf>,
+    /// The axis of the surface's file that points up, where it is not z and no flight.toml says it: x or y.
+    #[arg(long, value_name = "AXIS", value_parser = up_axis)]
+    up: Option<UpAxis>,
     /// Of a ROS recording, take the poses of this topic; else the densest that lead to the camera.
     #[arg(long, value_name = "NAME")]
     topic: Option<String>,
 }
 
 impl FlightArguments {
+    /// A flight with its surface and its photos, where they are named.
+    pub(super) fn new(
+        flight: PathBuf,
+        surface: Option<PathBuf>,
+        photo_folder: Option<PathBuf>,
+    ) -> Self {
+        Self {
+            flight,
+            surface,
+            photo_folder,
+            up: None,
+            topic: None,
+        }
+    }
+
     /// The files that are named. What a folder is, and what of it is read, is known when it is open.
     pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
         let named = std::iter::once(&self.flight).chain(&self.surface);
@@ -42,13 +61,53 @@ impl FlightArguments {
     }
 
     fn open_with(&self, may_lack_photos: bool, progress: &Progress) -> Result<Opened, String> {
-        let options = OpenOptions {
+        let options = self.options(may_lack_photos);
+        opening::open_flight(&self.flight, &options, progress).map_err(|error| error.to_string())
+    }
+
+    fn options(&self, may_lack_photos: bool) -> OpenOptions {
+        OpenOptions {
             surface: self.surface.clone(),
             photos: self.photo_folder.clone(),
             topic: self.topic.clone(),
             settings: None,
+            surface_up: self.up,
             may_lack_photos,
+        }
+    }
+}
+
+fn up_axis(text: &str) -> Result<UpAxis, String> {
+    text.parse()
+        .map_err(|what| format!("{what}; give x, y or z"))
+}
+
+/// How much memory the flight's cloud may take.
+#[derive(Debug, Args)]
+pub(super) struct MemoryArguments {
+    /// The most memory that the points of a cloud may take, as 8GB or 500MB; half of the machine's without it. Of a
+    /// larger LAS, LAZ, COPC or EPT only what is needed is read, with the same numbers.
+    #[arg(long, value_name = "SIZE", value_parser = memory_size)]
+    memory: Option<u64>,
+    /// Read a cloud in part that would fit, too. For tests.
+    #[arg(long, hide = true)]
+    in_part: bool,
+}
+
+impl MemoryArguments {
+    /// Opens a flight within the memory, and does something that reads its surface: see [`opening::with_flight`].
+    pub(super) fn with_flight<T>(
+        &self,
+        flight: &FlightArguments,
+        may_lack_photos: bool,
+        progress: &Progress,
+        work: impl FnMut(&Opened) -> Result<T, String>,
+    ) -> Result<(Opened, T), String> {
+        let memory = Memory {
+            most: self.memory.unwrap_or_else(half_of_the_machines),
+            always_in_part: self.in_part,
         };
-        opening::open_flight(&self.flight, &options, progress).map_err(|error| error.to_string())
+        let options = flight.options(may_lack_photos);
+        opening::with_flight(&flight.flight, &options, memory, progress, work)
     }
 }

@@ -11,6 +11,8 @@ use crate::jobs::Progress;
 
 /// How long the work has to stop by itself. Cancelling takes at most a second by what it promises.
 const GRACE: Duration = Duration::from_secs(2);
+/// The same where another computer has to be told.
+const LONG_GRACE: Duration = Duration::from_secs(15);
 
 /// The exit status of a command that the user interrupted.
 const INTERRUPTED: u8 = 130;
@@ -18,20 +20,38 @@ const INTERRUPTED: u8 = 130;
 /// The work under way, and what stays of it.
 static UNDER_WAY: Mutex<(Option<Progress>, Option<String>)> = Mutex::new((None, None));
 
-/// From now on Ctrl+C is answered here. `kept` says what stays of interrupted work, where something does.
-pub(super) fn listen(kept: Option<String>) {
+/// From now on Ctrl+C is answered here; a second one ends the program at once. `kept` says what stays of interrupted
+/// work, where something does; `takes_long` whether another computer has to be told that it is.
+pub(super) fn listen(kept: Option<String>, takes_long: bool) {
     under_way(|(_, stays)| *stays = kept);
+    let grace = if takes_long { LONG_GRACE } else { GRACE };
     // Without the handler, which only fails where another one is set, an interrupt could leave a temporary file.
-    let _ = ctrlc::set_handler(|| {
+    let _ = ctrlc::set_handler(move || {
         let work = under_way(|(work, _)| work.clone());
-        if let Some(work) = work.filter(|work| !work.is_cancelled()) {
-            work.cancel();
-            std::thread::sleep(GRACE);
+        let Some(work) = work.filter(|work| !work.is_cancelled()) else {
+            end();
+        };
+        work.cancel();
+        // Elsewhere, so that a second interrupt is heard.
+        let waits = move || {
+            std::thread::sleep(grace);
+            end();
+        };
+        if std::thread::Builder::new().spawn(waits).is_err() {
+            end();
         }
-        files::remove_unfinished();
-        say_so();
-        std::process::exit(INTERRUPTED.into());
     });
+}
+
+fn end() -> ! {
+    files::remove_unfinished();
+    say_so();
+    std::process::exit(INTERRUPTED.into());
+}
+
+/// What stays of the work, now that it has ended by itself.
+pub(super) fn keeps(said: &str) {
+    under_way(|(_, kept)| *kept = Some(said.to_owned()));
 }
 
 /// The work that Ctrl+C is to stop.

@@ -8,6 +8,7 @@
 //! With the environment variable FRAGSCALE_BACKTRACE set, a panic prints its place as usual.
 
 mod anova;
+mod batch;
 mod check;
 mod distribution_arguments;
 mod effort;
@@ -37,19 +38,20 @@ use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
-use flight_arguments::FlightArguments;
+use flight_arguments::{FlightArguments, MemoryArguments};
 use models::{georeference, reconstruct};
 use of_photos::{delineate, map, rectify, scale_map};
 use on_surface::{profile, volume};
-use outputs::OutputArguments;
+use outputs::{OutputArguments, Outputs};
 use planning::{flown, mission, plan};
 
+use crate::batch::FLIGHT_COMMAND;
 use crate::exports;
 use crate::fault::one_line;
 use crate::flight::{Limits, Review};
 use crate::formats::FileError;
 use crate::jobs::{Job, Progress};
-use crate::opening;
+use crate::opening::{self, Opened};
 use crate::units::LengthUnit;
 
 /// Work that is over sooner shows no progress bar.
@@ -108,10 +110,15 @@ enum Command {
     Mission(mission::MissionArguments),
     /// Compare a mission with the flight that came of it: how far off each photo is, which are missing.
     Flown(flown::FlownArguments),
+    /// Do scales, check, export, scale maps and delineation with many flights: a season of blasts.
+    Batch(batch::BatchArguments),
+    /// One flight of a batch, in a process of its own; what to do comes on standard input.
+    #[command(hide = true, name = FLIGHT_COMMAND)]
+    BatchFlight,
     /// Say what a file or folder holds.
     Info(InfoArguments),
     /// Reconstruct a flight from its photos alone: poses, lenses, a cloud.
-    Reconstruct(reconstruct::ReconstructArguments),
+    Reconstruct(Box<reconstruct::ReconstructArguments>),
     /// Make a simulated flight whose every answer is known.
     Sample(sample::SampleArguments),
     /// Draw a picture of a flight: the surface, cameras, corner rays and footprints.
@@ -123,6 +130,8 @@ enum Command {
 struct ScalesArguments {
     #[command(flatten)]
     flight: FlightArguments,
+    #[command(flatten)]
+    memory: MemoryArguments,
     /// Scales are in pixels per this unit.
     #[arg(long, value_enum, default_value = "cm")]
     unit: OutputUnit,
@@ -215,10 +224,16 @@ pub fn run() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    interrupt::listen(match &arguments.command {
-        Some(Command::Reconstruct(arguments)) => Some(arguments.kept()),
-        _ => None,
-    });
+    match &arguments.command {
+        Some(Command::Reconstruct(arguments)) => {
+            interrupt::listen(Some(arguments.kept()), arguments.takes_long_to_end());
+        }
+        Some(Command::Delineate(arguments)) => {
+            interrupt::listen(Some(arguments.kept()), false);
+        }
+        Some(Command::Batch(_)) => interrupt::listen(Some(batch::kept()), false),
+        _ => interrupt::listen(None, false),
+    }
     let Some(command) = arguments.command else {
         #[cfg(feature = "app")]
         return window(arguments.flight);
@@ -235,6 +250,9 @@ pub fn run() -> ExitCode {
         std::panic::set_hook(Box::new(|_| {}));
     }
     let work: Work = match command {
+        // These have standard output for themselves, and exit statuses of their own.
+        Command::Batch(arguments) => return batch::batch(arguments),
+        Command::BatchFlight => return batch::flight(),
         Command::Scales(arguments) => Box::new(move |progress| scales(&arguments, progress)),
         Command::Export(arguments) => {
             Box::new(move |progress| export::export(&arguments, progress))
@@ -309,17 +327,51 @@ fn window(flight: Vec<PathBuf>) -> ExitCode {
 
 fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, String> {
     let mut outputs = arguments.output.outputs(arguments.flight.files())?;
-    let opened = arguments.flight.open(progress)?;
-    outputs.read(&opened.read)?;
-    let path = &arguments.flight.flight;
-    let in_flight = |fault| FileError::new(path, fault).to_string();
+    let (flight, memory) = (&arguments.flight, &arguments.memory);
+    let (opened, (text, notes)) = memory.with_flight(flight, false, progress, |opened| {
+        outputs.read(&opened.read)?;
+        let review = review_of_scales(flight, opened, progress)?;
+        scales_text(arguments, opened, &review)
+    })?;
+    answer_of_scales(&outputs, text, &opened, notes)
+}
+
+/// The review of a flight that is open, for its scales: no photo's colours are read.
+fn review_of_scales(
+    flight: &FlightArguments,
+    opened: &Opened,
+    progress: &Progress,
+) -> Result<Review, String> {
+    let in_flight = |fault| FileError::new(&flight.flight, fault).to_string();
     let (flight, looked_up) = (opened.flight.clone(), opened.looked_up.clone());
     let review = Review::of_scales(flight, looked_up, &Limits::default(), progress);
     let mut review = review.map_err(in_flight)?;
     review.take_decisions(&opened.settings.decisions);
     review.look(progress).map_err(in_flight)?;
     review.compute_fields(progress).map_err(in_flight)?;
-    let report = exports::ScaleReport::new(&review, arguments.unit.into())
+    Ok(review)
+}
+
+/// The scales of a flight that was reviewed.
+fn deliver_scales(
+    arguments: &ScalesArguments,
+    mut outputs: Outputs<'_>,
+    opened: &Opened,
+    review: &Review,
+) -> Result<Answer, String> {
+    outputs.read(&opened.read)?;
+    let (text, notes) = scales_text(arguments, opened, review)?;
+    answer_of_scales(&outputs, text, opened, notes)
+}
+
+/// The scales of a reviewed flight as they are written, and what fell back or failed.
+fn scales_text(
+    arguments: &ScalesArguments,
+    opened: &Opened,
+    review: &Review,
+) -> Result<(String, Vec<String>), String> {
+    let in_flight = |fault| FileError::new(&arguments.flight.flight, fault).to_string();
+    let report = exports::ScaleReport::new(review, arguments.unit.into())
         .with_scale_objects(&opened.settings.scale_objects)
         .map_err(in_flight)?;
     let text = match arguments.format {
@@ -327,9 +379,19 @@ fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, St
         ScalesFormat::Csv => exports::scales_csv(&report).map_err(|e| e.to_string())?,
         ScalesFormat::Json => exports::scales_json(&report).map_err(|e| e.to_string())?,
     };
+    Ok((text, notes_of(&report).collect()))
+}
+
+/// Delivers the text, with all warnings.
+fn answer_of_scales(
+    outputs: &Outputs<'_>,
+    text: String,
+    opened: &Opened,
+    notes: Vec<String>,
+) -> Result<Answer, String> {
     let text = outputs.deliver(text)?;
     let mut warnings = opened.all_warnings();
-    warnings.extend(notes_of(&report));
+    warnings.extend(notes);
     Ok(Answer::new(text, warnings))
 }
 
@@ -376,18 +438,27 @@ fn info_text(value: &Value) -> String {
                 continue;
             }
             Value::Array(list) => list.len().to_string(),
-            Value::Object(bounds) => {
-                let ends: Vec<String> = bounds
-                    .iter()
-                    .map(|(end, at)| format!("{end} {at}"))
-                    .collect();
-                ends.join(", ")
-            }
-            other => other.to_string(),
+            other => in_words(other),
         };
         text += &format!("{}: {shown}\n", key.replace('_', " "));
     }
     text
+}
+
+/// A value with what is in it, in a line.
+fn in_words(value: &Value) -> String {
+    match value {
+        Value::Null => "not stated".to_owned(),
+        Value::String(text) => text.clone(),
+        Value::Object(parts) => {
+            let parts = parts.iter().map(|(name, part)| match part {
+                Value::Object(_) => format!("{name} ({})", in_words(part)),
+                part => format!("{name} {}", in_words(part)),
+            });
+            parts.collect::<Vec<_>>().join(", ")
+        }
+        other => other.to_string(),
+    }
 }
 
 /// Runs the work on a thread of its own, with a progress bar on a terminal where it takes long.

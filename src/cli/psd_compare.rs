@@ -8,7 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use super::Answer;
 use super::distribution_arguments::{DistributionArguments, FittingArguments};
 use super::written_beside::{check_report_name, drawn_figures, figure_formats, write_all};
-use crate::exports::{self, ComparisonReport};
+use crate::exports::{self, ComparisonReport, SizeShift};
 use crate::files::Kind;
 use crate::fragmentation::{Analysis, AnalysisOptions, SIGNIFICANCE, SieveSeries, Weighting};
 use crate::jobs::Progress;
@@ -71,6 +71,14 @@ fn series() -> impl TypedValueParser<Value = SieveSeries> {
 
 /// Reads, analyses, draws; writes when all of it went well.
 pub(super) fn compare(arguments: &CompareArguments, progress: &Progress) -> Result<Answer, String> {
+    compare_shifts(arguments, progress).map(|(answer, _)| answer)
+}
+
+/// The same, with the shifts of the first method that is held against the reference.
+pub(super) fn compare_shifts(
+    arguments: &CompareArguments,
+    progress: &Progress,
+) -> Result<(Answer, Vec<SizeShift>), String> {
     let fitting = &arguments.fitting;
     let formats = figure_formats(&fitting.figure)?;
     if let Some(report) = &arguments.report {
@@ -118,5 +126,14 @@ pub(super) fn compare(arguments: &CompareArguments, progress: &Progress) -> Resu
     )?;
     write_all(pending, &outputs)?;
     let text = outputs.deliver(text)?;
-    Ok(Answer::new(text, warnings))
+    let shifts = comparison.methods.first().map(|method| {
+        let shifts = method.shift.percentiles.iter();
+        shifts
+            .map(|shift| SizeShift {
+                percent: shift.percent,
+                off_percent: shift.shift_percent,
+            })
+            .collect()
+    });
+    Ok((Answer::new(text, warnings), shifts.unwrap_or_default()))
 }

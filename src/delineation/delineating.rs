@@ -5,10 +5,12 @@ use std::collections::BTreeMap;
 use fragscale_core::fault::Fault;
 use fragscale_core::jobs::Progress;
 use fragscale_core::labels::Outlines;
+use fragscale_core::picture::{edge_spread, full_width};
 use image::RgbImage;
 
 use crate::choice::{chosen, labelled, scores};
 use crate::engine::Engine;
+use crate::evidence::Evidence;
 use crate::labels::{FINES, LabelImage, NOT_ROCK};
 use crate::regions::Regions;
 use crate::tree::tree;
@@ -24,6 +26,8 @@ pub struct Delineated {
     pub outlines: Outlines,
     /// All regions that might have been one.
     pub regions: Regions,
+    /// How far the photo's edges are spread: see [`least_across`].
+    pub spread: Option<f64>,
 }
 
 /// Outlines the fragments of an undistorted photo. `left_out` says of each pixel whether it is no rock; empty
@@ -37,22 +41,36 @@ pub fn delineated(
     left_out: &[bool],
     progress: &Progress,
 ) -> Result<Delineated, Fault> {
-    let evidence = engine.look(photo, progress)?;
+    let outlined = engine.outline(photo, progress)?;
+    let evidence = match &outlined {
+        Some(outlined) => Evidence::of_outlines(&outlined.labels, photo),
+        None => engine.look(photo, progress)?,
+    };
     let tree = tree(&evidence, left_out, progress)?;
     let scores = scores(&tree, engine.scorer()?);
-    let taken = chosen(&tree, &scores, engine.least_score());
-    let mut labels = labelled(&tree, &taken);
-    let across = least_across(engine, photo.width(), photo.height());
+    let (mut labels, sure) = match outlined {
+        Some(mut outlined) => {
+            leave_out(&mut outlined.labels, left_out);
+            (outlined.labels, outlined.sure)
+        }
+        None => {
+            let taken = chosen(&tree, &scores, engine.least_score());
+            let sure = taken.iter().map(|node| scores[*node as usize]);
+            (labelled(&tree, &taken), sure.collect())
+        }
+    };
+    let spread = edge_spread(photo);
+    let across = least_across(engine, photo.width(), photo.height(), spread);
     let least_area = std::f64::consts::PI / 4.0 * across * across;
     let numbers = without_small(&mut labels, least_area);
-    let sure = taken.iter().zip(&numbers).filter_map(|(node, number)| {
-        let score = scores.get(*node as usize)?;
-        Some(((*number)?, *score))
-    });
-    let sure: BTreeMap<u32, f64> = sure.collect();
+    let sure = numbers.iter().zip(sure);
+    let sure: BTreeMap<u32, f64> = sure
+        .filter_map(|(number, sure)| Some(((*number)?, sure)))
+        .collect();
     Ok(Delineated {
         outlines: Outlines::new(labels, sure),
         regions: Regions::new(tree, scores, least_area),
+        spread,
     })
 }
 
@@ -70,10 +88,23 @@ pub fn delineate(
     Ok(found.outlines.into_labels())
 }
 
-/// The narrowest fragment that an engine outlines in a photo of that size: the diameter of the circle of as many
-/// pixels.
-pub fn least_across(engine: &dyn Engine, width: u32, height: u32) -> f64 {
-    LEAST_PIXELS_ACROSS * f64::from(engine.sees_every(width, height))
+/// The narrowest fragment that an engine outlines in a photo of that size whose edges are spread by a bell of deviation
+/// `spread` (pixels; `picture::edge_spread`): the diameter of the circle of as many pixels.
+///
+/// Pixels show detail of two pixels and no finer (Nyquist). Where edges are spread further than that, the bell's full width
+/// at half of its maximum stands for those two pixels.
+pub fn least_across(engine: &dyn Engine, width: u32, height: u32, spread: Option<f64>) -> f64 {
+    let seen = f64::from(engine.sees_every(width, height));
+    let shown = spread.map_or(0.0, |spread| full_width(spread) / 2.0);
+    LEAST_PIXELS_ACROSS * seen.max(shown)
+}
+
+/// What is left out is no rock.
+pub fn leave_out(labels: &mut LabelImage, left_out: &[bool]) {
+    let places = labels.labels.iter_mut().zip(left_out);
+    for (label, _) in places.filter(|(_, is_left_out)| **is_left_out) {
+        *label = NOT_ROCK;
+    }
 }
 
 /// Small fragments become fines; the others are numbered anew. What number each has now, in the order of those

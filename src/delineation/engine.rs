@@ -6,17 +6,35 @@ use image::RgbImage;
 
 use crate::choice::Scorer;
 use crate::evidence::Evidence;
+use crate::labels::LabelImage;
+
+/// Fragments as an engine outlines them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outlined {
+    /// Numbered without gaps.
+    pub labels: LabelImage,
+    /// How sure each is, 0 to 1, in the order of their numbers.
+    pub sure: Vec<f64>,
+}
 
 /// Finds the borders of fragments in a photo, offline.
 pub trait Engine: Send + Sync {
     /// As it is named on the command line and in files.
-    fn name(&self) -> &'static str;
+    fn name(&self) -> &str;
 
     /// What it sees in an undistorted photo.
     ///
     /// # Errors
     /// Where the photo is none that it can take, or on cancel.
     fn look(&self, photo: &RgbImage, progress: &Progress) -> Result<Evidence, Fault>;
+
+    /// The fragments themselves, of an engine that gives them one by one and not borders; `None` of all others.
+    ///
+    /// # Errors
+    /// As [`Engine::look`].
+    fn outline(&self, _photo: &RgbImage, _progress: &Progress) -> Result<Option<Outlined>, Fault> {
+        Ok(None)
+    }
 
     /// How many pixels of a photo of that size, along a side, are one to the engine: of a large photo it may look
     /// at a smaller one.

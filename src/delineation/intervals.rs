@@ -11,9 +11,9 @@ use fragscale_core::scale::Draws;
 use crate::engine::Engine;
 use crate::mass::{PhotoFragments, Steps, by_mass};
 
-/// Of outlines that are as right as they can be: P50 of simulated piles is 13 % too small by them, with all that is not
-/// outlined taken for fines.
-const OF_OTHERS: [f64; 2] = [0.13, 0.2];
+/// Of outlines that are as right as they can be. Nobody knows a pile's porosity: by outlines of simulated piles a P50 is as it
+/// is by the sieves with the usual one, 11 % too small with none, 3 % too large with 0.5.
+pub(crate) const OF_OTHERS: [f64; 2] = [0.07, 0.2];
 
 /// How many draws: the ends of an interval are known to about a tenth of its width.
 const DRAWS: usize = 300;

@@ -4,7 +4,8 @@
 //! fines, or to what is no rock. It comes about in three steps:
 //!
 //! 1. An [`Engine`] says of every pixel how much it looks like a border between fragments
-//!    ([`Evidence`]): [`Classical`] from edges and shadows, [`Learned`] by a small network.
+//!    ([`Evidence`]): [`Classical`] from edges and shadows, [`Learned`] by a small network, [`NamedModel`] by a network
+//!    that the user names, which may give fragments one by one instead.
 //! 2. [`tree`]: a watershed cuts the photo into many small regions, which are joined one seam after
 //!    another, the weakest first. All regions that ever were make a tree, and nearly every fragment is
 //!    one of its nodes; which one, no single strength of seams tells.
@@ -21,24 +22,29 @@ mod engine;
 mod evidence;
 mod hull;
 pub mod intervals;
+mod kept;
 mod learned;
 pub mod mass;
 pub mod measures;
+mod named;
+mod network;
 pub mod overlap;
 pub mod photo;
 mod regions;
 pub mod saved;
 mod smoothing;
+pub mod tail;
 mod transposed;
 pub mod tree;
 
 pub use classical::Classical;
-pub use delineating::{Delineated, delineate, delineated, least_across};
-pub use engine::Engine;
+pub use delineating::{Delineated, delineate, delineated, least_across, leave_out};
+pub use engine::{Engine, Outlined};
 pub use evidence::Evidence;
 pub use fragscale_core::labels;
 pub use fragscale_core::labels::{FINES, LabelImage, NOT_ROCK};
 pub use learned::Learned;
+pub use named::{Description, NamedModel};
 pub use regions::Regions;
 
 /// All engines that the program brings along; the first is the one that measured best.

@@ -10,6 +10,8 @@ use fragscale_core::scale::{FieldGrid, ImageKind, Interval, ScaleField};
 use fragscale_core::units::LengthUnit;
 use image::RgbImage;
 
+use crate::delineating::least_across;
+use crate::engine::Engine;
 use crate::mass::PhotoFragments;
 use crate::measures::{SieveShape, measured};
 
@@ -57,6 +59,23 @@ pub fn scale_error(photo: &PhotoReview<'_>) -> Option<f64> {
 pub fn field(flight: &Flight, photo: &Photo, progress: &Progress) -> Result<ScaleField, Fault> {
     let grid = FieldGrid::of_pixels(flight.camera(photo));
     flight.field(photo, ImageKind::Undistorted, grid, progress)
+}
+
+/// Nothing narrower is claimed of a photo whose edges are spread so far, pixels: what its engine outlines at least, and of what
+/// other tools and people outlined (`None`) the diameter of the circle of as many pixels as their smallest fragment has.
+pub fn least_across_of(
+    engine: Option<&dyn Engine>,
+    labels: &LabelImage,
+    spread: Option<f64>,
+) -> f64 {
+    if let Some(engine) = engine {
+        return least_across(engine, labels.width as u32, labels.height as u32, spread);
+    }
+    let areas = labels.areas();
+    let least = areas.iter().skip(1).filter(|area| **area > 0).min();
+    least.map_or(0.0, |pixels| {
+        (4.0 / std::f64::consts::PI * *pixels as f64).sqrt()
+    })
 }
 
 /// What a photo's fragments are; none is narrower than `least_across` pixels.

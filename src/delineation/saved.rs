@@ -1,8 +1,9 @@
 //! What stands beside a label image that was saved to go on with: how sure its fragments are, and what it is of.
 //!
-//! A line of JSON: `{"outlines": photo, "engine": name, "lens": [[x, y] ...], "sure": {number: 0 to 1 ...}}`.
+//! A line of JSON: `{"outlines": photo, "engine": name, "lens": [[x, y] ...], "spread": pixels, "sure": {number: 0 to 1 ...}}`.
 //! `lens` says where nine places of the undistorted photo lie in the photo as shot: outlines are of the undistorted
-//! one, and with another lens that is another picture.
+//! one, and with another lens that is another picture. `spread` is how far the photo's edges are spread, null where that is
+//! not known.
 
 use std::collections::BTreeMap;
 
@@ -23,6 +24,8 @@ pub struct SavedOutlines {
     pub engine: String,
     /// Where places of the undistorted photo lie in the photo as shot; NaN where nowhere.
     pub lens: Vec<DVec2>,
+    /// The deviation of the bell that spreads the photo's edges, pixels.
+    pub spread: Option<f64>,
     /// How sure the fragments are that nobody looked at, by number.
     pub sure: BTreeMap<u32, f64>,
 }
@@ -34,15 +37,17 @@ impl SavedOutlines {
             photo,
             engine,
             lens,
+            spread,
             sure,
         } = self;
         let lens: Vec<Value> = lens.iter().map(|place| json!([place.x, place.y])).collect();
         // The order is that of the documentation, whatever the map of the library keeps.
         format!(
-            "{{\"outlines\":{},\"engine\":{},\"lens\":{},\"sure\":{}}}\n",
+            "{{\"outlines\":{},\"engine\":{},\"lens\":{},\"spread\":{},\"sure\":{}}}\n",
             json!(photo),
             json!(engine),
             json!(lens),
+            json!(spread),
             json!(sure)
         )
     }
@@ -65,6 +70,7 @@ impl SavedOutlines {
         let lens = value.get("lens").and_then(Value::as_array);
         let lens = lens.ok_or_else(none)?.iter();
         let lens = lens.map(|place| DVec2::new(number(place.get(0)), number(place.get(1))));
+        let spread = value.get("spread").and_then(Value::as_f64);
         let sure = value.get("sure").and_then(Value::as_object);
         let sure = sure.ok_or_else(none)?.iter().map(|(number, sure)| {
             let sure = sure.as_f64().filter(|sure| (0.0..=1.0).contains(sure));
@@ -74,6 +80,7 @@ impl SavedOutlines {
             photo: word("outlines").ok_or_else(none)?,
             engine: word("engine").ok_or_else(none)?,
             lens: lens.collect(),
+            spread: spread.filter(|spread| *spread >= 0.0),
             sure: sure.collect::<Option<_>>().ok_or_else(none)?,
         })
     }
@@ -129,6 +136,7 @@ mod tests {
             photo: "a \"b\"\\c.jpg".to_owned(),
             engine: "learned".to_owned(),
             lens: lens_of(&pinhole),
+            spread: Some(0.75),
             sure: BTreeMap::from([(1, 0.25), (70_000, 1.0)]),
         };
         assert_eq!(SavedOutlines::from_json(&saved.to_json()).unwrap(), saved);
@@ -143,6 +151,9 @@ mod tests {
         // k1 of 0.1 at (1000, 0) of f 3000: 1000 * 0.1 / 9, eleven pixels.
         let brown = Brown::new([0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         assert!(!saved.is_of(&camera(Distortion::Brown(brown))));
+        // Earlier versions did not say it.
+        let earlier = saved.to_json().replace("\"spread\":0.75,", "");
+        assert_eq!(SavedOutlines::from_json(&earlier).unwrap().spread, None);
         for broken in ["", "{}", "{\"outlines\":1}", "[]"] {
             assert!(SavedOutlines::from_json(broken).is_err());
         }

@@ -1,13 +1,17 @@
 //! A plan of photos, going out: a table for people, CSV, JSON. Lengths are in the world's unit, scales in pixels per a
 //! unit that the reader chose; both are said.
 
+use glam::DVec2;
 use serde_json::{Value, json};
 
 use crate::measured::{csv_of, percent, rows_of_text};
 use crate::numbers::significant_digits;
 use crate::survey::Polygon;
 use crate::units::LengthUnit;
-use fragscale_core::plan::{Pace, Plan, PlannedPhoto, Refused, Shadows, Sun, Way};
+use fragscale_core::plan::{Pace, Plan, PlannedPhoto, Purpose, Refused, Shadows, Sun, Way};
+
+/// Of a survey that shows less of the area three times it is said.
+const SURVEYED: f64 = 0.97;
 
 /// A plan, and how it is to be said.
 #[derive(Debug, Clone, Copy)]
@@ -49,6 +53,8 @@ impl PlanReport<'_> {
 /// What stands in a row of a photo; scales in pixels per the reader's unit, angles in degrees, shares 0 to 1.
 pub(crate) struct Row {
     pub(crate) name: String,
+    /// What it is taken for, in a word.
+    purpose: &'static str,
     pub(crate) tilt: f64,
     pub(crate) pan: f64,
     /// Along the axis, to the surface.
@@ -71,6 +77,7 @@ fn row(report: &PlanReport<'_>, number: usize, photo: &PlannedPhoto) -> Row {
     let scale = |pixels: Option<f64>| pixels.map(|pixels| report.scale(pixels));
     Row {
         name: photo.name.clone(),
+        purpose: photo.purpose.as_str(),
         tilt: photo.tilt,
         pan: photo.pan,
         distance: forecast.and_then(|forecast| forecast.depth),
@@ -99,9 +106,17 @@ pub(crate) fn rows<'a>(report: &'a PlanReport<'a>) -> impl Iterator<Item = Row> 
     photos.map(|(number, photo)| row(report, number, photo))
 }
 
-/// A direction to a tenth of a degree: what rounds to 360 is 0.
+/// A direction to a tenth of a degree: what rounds to 360, or to -0, is 0.
 pub(crate) fn pan_in_words(pan: f64) -> String {
-    format!("{:.1}°", (pan * 10.0).round() / 10.0 % 360.0)
+    format!("{:.1}°", (pan * 10.0).round() / 10.0 % 360.0 + 0.0)
+}
+
+/// A place of the surface to a hundredth, for a laboratory's pile is a metre wide; what rounds to -0 is 0.
+fn place_in_words(place: DVec2) -> String {
+    let [x, y] = place
+        .to_array()
+        .map(|number| (number * 100.0).round() / 100.0 + 0.0);
+    format!("({x:.2}, {y:.2})")
 }
 
 /// The photos and what is to be said of all of them, as text.
@@ -149,8 +164,11 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
         );
     }
     let gap = plan.cover.widest_gap;
-    let mut said = vec![
-        ("area", format!("{} {world}²", number(plan.area.area()))),
+    let mut said = vec![("area", format!("{} {world}²", number(plan.area.area())))];
+    if let Some(kinds) = kinds_in_words(plan) {
+        said.push(("photos", kinds));
+    }
+    said.extend([
         ("photographed", percent(plan.cover.covered)),
         (
             "widest gap",
@@ -159,7 +177,10 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
                 false => "none".to_owned(),
             },
         ),
-    ];
+    ]);
+    if let Some(share) = plan.cover.surveyed {
+        said.push(("in 3 of the survey", percent(share)));
+    }
     if !report.ways.is_empty() {
         let length = format!("{} {world}", number(report.way_length()));
         let minutes = significant_digits(report.seconds() / 60.0, 2);
@@ -173,6 +194,17 @@ pub fn plan_table(report: &PlanReport<'_>) -> String {
         said.push(("sun", words));
     }
     text + "\n" + &rows_of_text(&said)
+}
+
+/// How many photos are taken for what; `None` where all are for one.
+pub fn kinds_in_words(plan: &Plan) -> Option<String> {
+    let count = |purpose: Purpose| {
+        let own = plan.photos.iter();
+        own.filter(|photo| photo.purpose == purpose).count()
+    };
+    let [scales, survey] = [Purpose::Scale, Purpose::Survey].map(count);
+    (scales > 0 && survey > 0)
+        .then(|| format!("{scales} for scales (P), {survey} of the survey (S)"))
 }
 
 /// Where the sun stands and how much lies in shadow; `None` where the time is not known.
@@ -212,12 +244,18 @@ pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
             "{off} of the area lies beside the surface or in holes of it: no photo is planned there"
         ));
     }
+    if let Some(share) = plan.cover.surveyed.filter(|share| *share < SURVEYED) {
+        let less = percent(1.0 - share);
+        said.push(format!(
+            "{less} of the area is in fewer than three photos of the survey: it may be missing in a reconstruction; give the survey more overlap"
+        ));
+    }
     said.extend(plan.refused.iter().map(refused_in_words));
     if let (Some(at), true) = (plan.cover.gap_at, plan.has_wide_gap()) {
         let gap = significant_digits(plan.cover.widest_gap, 2);
         said.push(format!(
-            "photos leave a gap {gap} {world} across at ({:.1}, {:.1}): give more overlap, fill gaps, or fly it by hand",
-            at.x, at.y
+            "photos leave a gap {gap} {world} across at {}: give more overlap, fill gaps, or fly it by hand",
+            place_in_words(at)
         ));
     }
     said
@@ -225,8 +263,8 @@ pub fn plan_warnings(report: &PlanReport<'_>) -> Vec<String> {
 
 /// A photo that cannot be taken, in a sentence.
 pub(crate) fn refused_in_words(refused: &Refused) -> String {
-    let [x, y] = refused.place.to_array();
-    format!("no photo at ({x:.1}, {y:.1}): {}", refused.why)
+    let place = place_in_words(refused.place);
+    format!("no photo at {place}: {}", refused.why)
 }
 
 /// A line a photo. Numbers read back to the same f64.
@@ -253,6 +291,7 @@ pub fn plan_csv(report: &PlanReport<'_>) -> Result<String, csv::Error> {
         "shared_percent".to_owned(),
         "off_normal_degrees".to_owned(),
         "shadow_percent".to_owned(),
+        "purpose".to_owned(),
         "troubles".to_owned(),
     ];
     let maybe = |number: Option<f64>| number.map_or(String::new(), |number| number.to_string());
@@ -269,6 +308,7 @@ pub fn plan_csv(report: &PlanReport<'_>) -> Result<String, csv::Error> {
                 .map(|number| number.to_string()),
         );
         line.push(maybe(row.shadow.map(|share| 100.0 * share)));
+        line.push(row.purpose.to_owned());
         line.push(row.troubles);
         line
     });
@@ -287,6 +327,7 @@ pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
             let [least, greatest, top, bottom] = row.scales;
             json!({
                 "photo": row.name,
+                "purpose": row.purpose,
                 "center": photo.pose.center.to_array(),
                 "tilt": row.tilt,
                 "pan": row.pan,
@@ -327,7 +368,13 @@ pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
         "flight": report.flight,
         "unit": report.world.symbol(),
         "scale_unit": report.scales.symbol(),
-        "overlap": plan.wish.overlap,
+        "overlap": plan.wish.overlap_of(plan.wish.pattern.main()),
+        "survey": plan.wish.pattern.has(Purpose::Survey).then(|| json!({
+            "overlap": plan.wish.survey.overlap,
+            "cross": plan.wish.survey.cross,
+            "ring": plan.wish.survey.ring,
+        })),
+        "steepest": report.pace.steepest,
         "clearance": plan.wish.clearance,
         "keep_out": plan.wish.keep_out.iter().map(corners).collect::<Vec<_>>(),
         "drone_errors": {
@@ -340,6 +387,7 @@ pub fn plan_json(report: &PlanReport<'_>) -> Result<String, serde_json::Error> {
         "pattern": plan.wish.pattern.as_str(),
         "area": corners(&plan.area),
         "photographed": plan.cover.covered,
+        "surveyed": plan.cover.surveyed,
         "widest_gap": plan.cover.widest_gap,
         "ways": report.ways.iter().map(|way| json!({
             "length": way.length,
@@ -359,7 +407,13 @@ mod tests {
 
     #[test]
     fn directions_are_below_360() {
-        let said = [0.0, 0.04, 90.25, 359.94, 359.96].map(pan_in_words);
-        assert_eq!(said, ["0.0°", "0.0°", "90.3°", "359.9°", "0.0°"]);
+        let said = [0.0, 0.04, 90.25, 359.94, 359.96, -0.04].map(pan_in_words);
+        assert_eq!(said, ["0.0°", "0.0°", "90.3°", "359.9°", "0.0°", "0.0°"]);
+    }
+
+    #[test]
+    fn places_have_no_negative_zero() {
+        let said = [DVec2::new(-0.004, 500_035.126), DVec2::new(-0.71, 0.0)].map(place_in_words);
+        assert_eq!(said, ["(0.00, 500035.13)", "(-0.71, 0.00)"]);
     }
 }

@@ -17,17 +17,17 @@ pub struct FlownReport<'a> {
     /// As planned.
     pub planned: &'a [PlannedPose],
     /// The names of the photos that were taken.
-    pub photos: &'a [&'a str],
+    pub photos: &'a [String],
     /// How far they are from each other.
     pub flown: &'a Flown,
 }
 
 impl FlownReport<'_> {
     /// Each planned photo with the name of its photo, and how far that is from the plan.
-    fn rows(&self) -> impl Iterator<Item = (&PlannedPose, Option<(&str, &Residual)>)> {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (&PlannedPose, Option<(&str, &Residual)>)> {
         let residuals = self.flown.residuals.iter().map(|residual| {
             let residual = residual.as_ref()?;
-            Some((*self.photos.get(residual.photo)?, residual))
+            Some((self.photos.get(residual.photo)?.as_str(), residual))
         });
         self.planned.iter().zip(residuals)
     }
@@ -54,11 +54,11 @@ pub fn flown_table(report: &FlownReport<'_>) -> String {
             plan.name, residual.tilt, residual.pan
         );
     }
-    text + "\n" + &rows_of_text(&summary(report))
+    text + "\n" + &rows_of_text(&flown_summary(report))
 }
 
 /// What is to be said of the whole: names and numbers.
-pub(crate) fn summary(report: &FlownReport<'_>) -> Vec<(&'static str, String)> {
+pub fn flown_summary(report: &FlownReport<'_>) -> Vec<(&'static str, String)> {
     let unit = report.unit;
     let found: Vec<&Residual> = report.flown.residuals.iter().flatten().collect();
     let rms = |of: &dyn Fn(&Residual) -> f64| {
@@ -106,8 +106,7 @@ pub fn flown_warnings(report: &FlownReport<'_>) -> Vec<String> {
     }
     let unplanned = report.flown.unplanned.iter();
     let unplanned: Vec<String> = unplanned
-        .filter_map(|photo| report.photos.get(*photo))
-        .map(|name| (*name).to_owned())
+        .filter_map(|photo| report.photos.get(*photo).cloned())
         .collect();
     if !unplanned.is_empty() {
         let names = crate::fault::first_names(&unplanned);
@@ -179,7 +178,7 @@ pub fn flown_json(report: &FlownReport<'_>) -> Result<String, serde_json::Error>
     let photos: Vec<Value> = photos.collect();
     let unplanned = report.flown.unplanned.iter();
     let unplanned: Vec<&str> = unplanned
-        .filter_map(|photo| report.photos.get(*photo).copied())
+        .filter_map(|photo| report.photos.get(*photo).map(String::as_str))
         .collect();
     let value = json!({
         "flight": report.flight,

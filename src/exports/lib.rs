@@ -9,6 +9,7 @@ mod flown_figure;
 mod flown_report;
 mod fragments;
 mod html_page;
+mod map_places;
 mod markup;
 mod masks;
 mod measured;
@@ -24,6 +25,7 @@ mod scale_report;
 mod scales_csv;
 mod scales_json;
 mod scales_table;
+mod season;
 mod size_distributions;
 mod split_desktop;
 mod tiff_pages;
@@ -37,14 +39,18 @@ use fragscale_fragmentation as fragmentation;
 
 pub use drawing::DrawingFormat;
 pub use flight_files::{Orientation, PoseRow, StatedDeviations, laz, ply, poses_csv};
-pub use flight_plan::{PlanReport, plan_csv, plan_json, plan_table, plan_warnings};
+pub use flight_plan::{PlanReport, kinds_in_words, plan_csv, plan_json, plan_table, plan_warnings};
 pub use flight_sheet::{FlightSheet, flight_sheet};
 pub use flown_figure::FlownFigure;
-pub use flown_report::{FlownReport, flown_csv, flown_json, flown_table, flown_warnings};
-pub use fragments::{
-    PhotoOfFragments, PhotoOfSizes, curves_csv, fragments_csv, label_png, labels_png, outlines_png,
-    sizes_csv,
+pub use flown_report::{
+    FlownReport, flown_csv, flown_json, flown_summary, flown_table, flown_warnings,
 };
+pub use fragments::{
+    FragmentsReport, PhotoOfFragments, PhotoOfSizes, ReportPhoto, ReportSizes, WorldOutlines,
+    curves_csv, fragments_csv, fragments_report, label_png, labels_png, outlines_png,
+    report_pictures, sizes_csv, world_geojson,
+};
+pub use map_places::MapPlaces;
 pub use masks::{CocoFile, CvatFile, fragments_geojson, labelme_json, labels_tiff};
 pub use measured::{
     MeasuredUnit, PointsReport, ProfileReport, VolumeReport, percent, points_csv, points_table,
@@ -69,6 +75,10 @@ pub use scale_report::{PhotoLine, ScaleReport};
 pub use scales_csv::scales_csv;
 pub use scales_json::scales_json;
 pub use scales_table::scales_table;
+pub use season::{
+    FlightFindings, FoundSize, SeasonReport, SeasonRow, SizeShift, VerdictCounts, season_csv,
+    season_json_line, season_json_lines, season_page, season_table, size_text,
+};
 pub use size_distributions::{
     AnovaReport, Band, ComparisonReport, Dash, FigureContents, FigureFormat, FigureStyle,
     FitReport, FittedCurve, FittedDistribution, Marker, Panel, Series, SizeAxis, SizeTick,
@@ -76,6 +86,7 @@ pub use size_distributions::{
     comparison_text, effort_csv, effort_json, effort_text, figure_of_comparison, figure_of_fits,
     figure_png, figure_svg, fit_csv, fit_json, fit_table,
 };
+pub use split_desktop::checksum::{of_bytes as sha256_of_bytes, of_file as sha256_of_file};
 pub use split_desktop::{
     ExportRequest, ExportSummary, Provenance, Replace, export_for_split_desktop, other_flight_in,
 };

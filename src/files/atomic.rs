@@ -5,6 +5,8 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use super::recording::note_written;
+
 /// How the name of a file or folder that is not finished begins and ends.
 const UNFINISHED_NAME: (&str, &str) = (".fragscale-", ".part");
 
@@ -17,6 +19,7 @@ static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
 /// # Errors
 /// What the system says, for instance that the folder is missing or the disk is full.
 pub fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
+    note_written(path);
     // A device or a pipe cannot be replaced by a file.
     if fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir()) {
         return fs::OpenOptions::new()

@@ -17,11 +17,25 @@ pub const HTML_MARK: &str = "<meta name=\"generator\" content=\"fragscale\"/>\n"
 /// Who wrote DJI's template of a mission, as its author says: the first file in its zip, not deflated.
 pub const KMZ_MARK: &str = "fragscale";
 
+/// The first line of what `fragscale check` says.
+pub const CHECK_MARK: &str = "colours of photo and surface (r is 1 where they match)";
+
 /// How the line begins that stands below the six of a world file.
 pub const WORLD_FILE_MARK: &str = "fragscale: ";
 
+/// How the second line of a mission for Mission Planner begins: of home nothing but its place counts, so that its last
+/// parameter may be written as no other program does. The format has no comments that all ground stations skip.
+pub const WAYPOINTS_MARK: &str = "0\t1\t0\t16\t0\t0\t0\t-0\t";
+
+/// How a line of a mission for Litchi ends, likewise: no point of interest is at 0, 0 (others' readers take a minus sign there,
+/// and in none of the columns behind).
+pub const LITCHI_MARK: &str = ",0,-0,0,0,-1,-1";
+
 /// A `tEXt` chunk of PNG (its specification, section 11.3.3.2): length, type, keyword and text, CRC.
 const PNG_MARK: &[u8] = b"\0\0\0\x12tEXtSoftware\0fragscale\xf4\x7d\x57\xef";
+
+/// The first line of the word that a flight of a season failed.
+pub const FAILED_MARK: &str = "This flight failed the last time that fragscale batch looked at it:";
 
 /// Where a TIFF's own data begin: behind its header, which says the byte order and where the first
 /// directory is. The texts of that directory are put there, the program's name first.
@@ -94,7 +108,8 @@ fn is_kmz(beginning: &[u8]) -> bool {
 
 fn is_text(beginning: &[u8]) -> bool {
     let text = String::from_utf8_lossy(beginning);
-    let first = text.lines().next().unwrap_or_default();
+    let mut lines = text.lines();
+    let [first, second] = [(); 2].map(|()| lines.next().unwrap_or_default());
     let begins = |start: &str| text.starts_with(start);
     let has = |part: &str| text.contains(part);
     let (svg, html) = (SVG_MARK.trim_end(), HTML_MARK.trim_end());
@@ -113,22 +128,30 @@ fn is_text(beginning: &[u8]) -> bool {
         || begins("{\"unit\":\"") && has("\"model\":\"") && has("\"envelope_percent\":")
         // An analysis of variance.
         || begins("{\"between\":{\"df\":")
+        // What is kept of a photo while others are outlined.
+        || begins("{\"delineated\":\"") && has("\"files\":[")
         // What outlines of fragments are of.
         || begins("{\"outlines\":\"") && has("\"lens\":[[")
+        // A season of flights, and what of one of them was read and written.
+        || begins("{\"blast\":\"") && has(",\"verdicts\":")
+        || begins("{\n  \"fragscale_batch\": ")
         // Times.
         || begins("{\"unit\":\"min\",\"columns\":[")
         // A plan of photos, and what was flown of it.
         || begins("{\n  \"area\": [\n    [\n")
         || begins("{\n  \"flight\": \"") && has("\n  \"photos\": [\n    {\n      \"center\": [")
-        // Missions: QGroundControl's, GeoJSON.
+        // Missions: QGroundControl's, GeoJSON's.
         || begins("{\n  \"fileType\": \"Plan\",\n  \"groundStation\": \"fragscale\",")
         || begins("{\"type\":\"FeatureCollection\",\"fragscale\":\"mission")
+        // Mission Planner's, Litchi's.
+        || begins("QGC WPL 110\n") && second.starts_with(WAYPOINTS_MARK)
+        || begins("latitude,longitude,altitude(m),") && second.ends_with(LITCHI_MARK)
         // Outlines of fragments: COCO, LabelMe, GeoJSON in pixels.
         || begins("{\"info\":{\"description\":\"Fragments outlined by fragscale")
         || begins("{\"version\":\"5.5.0\",\"fragscale\":\"fragments")
         || begins("{\"type\":\"FeatureCollection\",\"fragscale\":\"fragments")
         // KML, and outlines of fragments for CVAT.
-        || begins("<?xml ") && text.lines().nth(1) == Some(svg)
+        || begins("<?xml ") && second == svg
 }
 
 /// The heads of our CSV files.
@@ -157,6 +180,8 @@ fn is_csv(first: &str) -> bool {
         || first.starts_with("photo,percent_passing,size_")
         || first.starts_with("photo,fragment,column_px,row_px,pixels,cut,x_")
         || first.starts_with("method,photo,size_") && first.ends_with(",percent_passing,area")
+        // A season of flights.
+        || first.starts_with("blast,date,state,photos,") && first.ends_with(",flight,results")
         // Of the window's frames.
         || first.starts_with("start_s,logic,panels,upload,draw,commands,")
 }
@@ -169,6 +194,9 @@ fn is_table(first: &str) -> bool {
         || has(": flown less planned, lengths in ")
         // Scales.
         || has(": scales of the ") && has(" in pixels per ")
+        // What was looked at.
+        || first == CHECK_MARK
+        || first == FAILED_MARK
         // Fitted functions.
         || has(" fitted to ") && has(" points") && has("; sizes in ")
         // A comparison.

@@ -29,8 +29,8 @@ pub use input::{
 pub use inputs::{Inputs, is_same_file};
 pub use last_segment::last_segment;
 pub use marks::{
-    FLIGHT_MARK, HTML_MARK, KMZ_MARK, Kind, PDF_MARK, SVG_MARK, WORLD_FILE_MARK, is_own_result,
-    marked_png,
+    CHECK_MARK, FAILED_MARK, FLIGHT_MARK, HTML_MARK, KMZ_MARK, Kind, LITCHI_MARK, PDF_MARK,
+    SVG_MARK, WAYPOINTS_MARK, WORLD_FILE_MARK, is_own_result, marked_png,
 };
 pub use overwrite::{Standing, has_folder, make_folder, may_write, standing, write};
-pub use recording::{Recording, note_opened};
+pub use recording::{Recording, note_kept, note_opened};

@@ -1,4 +1,4 @@
-//! Which files are opened on the way.
+//! Which files are opened on the way, and which are written.
 //!
 //! A package's project leads to files that nobody named: lists of photos, parts, calibrations. None of
 //! them may be written over, and no reader should have to remember to say so: the one door through
@@ -8,13 +8,35 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// Who records, each with a number and what was opened since it began.
-static RECORDINGS: Mutex<Vec<(u64, BTreeSet<PathBuf>)>> = Mutex::new(Vec::new());
+/// Who records, each with a number and what was opened and written since it began.
+static RECORDINGS: Mutex<Vec<(u64, Recorded)>> = Mutex::new(Vec::new());
+
+/// What somebody has recorded.
+#[derive(Debug, Default)]
+struct Recorded {
+    opened: BTreeSet<PathBuf>,
+    written: BTreeSet<PathBuf>,
+}
 
 /// Says that a file was opened for reading.
 pub fn note_opened(path: &Path) {
+    note(path, |recorded| &mut recorded.opened);
+}
+
+/// Says that a file was written.
+pub(super) fn note_written(path: &Path) {
+    note(path, |recorded| &mut recorded.written);
+}
+
+/// Says that a file that an earlier run wrote is what would be written now: it counts as written.
+pub fn note_kept(path: &Path) {
+    note_written(path);
+}
+
+fn note(path: &Path, list: fn(&mut Recorded) -> &mut BTreeSet<PathBuf>) {
     let mut recordings = RECORDINGS.lock().unwrap_or_else(PoisonError::into_inner);
-    for (_, files) in recordings.iter_mut() {
+    for (_, recorded) in recordings.iter_mut() {
+        let files = list(recorded);
         if !files.contains(path) {
             files.insert(path.to_owned());
         }
@@ -34,17 +56,27 @@ impl Recording {
         let mut recordings = RECORDINGS.lock().unwrap_or_else(PoisonError::into_inner);
         let highest = recordings.iter().map(|(number, _)| *number).max();
         let number = highest.map_or(0, |highest| highest + 1);
-        recordings.push((number, BTreeSet::new()));
+        recordings.push((number, Recorded::default()));
         Self { number }
     }
 
     /// What was opened until now, as it was named.
     pub fn files(&self) -> Vec<PathBuf> {
+        self.list(|recorded| &recorded.opened)
+    }
+
+    /// What was written until now, as it was named.
+    pub fn written(&self) -> Vec<PathBuf> {
+        self.list(|recorded| &recorded.written)
+    }
+
+    fn list(&self, list: fn(&Recorded) -> &BTreeSet<PathBuf>) -> Vec<PathBuf> {
         let recordings = RECORDINGS.lock().unwrap_or_else(PoisonError::into_inner);
         let own = recordings
             .iter()
             .filter(|(number, _)| *number == self.number);
-        own.flat_map(|(_, files)| files.iter().cloned()).collect()
+        own.flat_map(|(_, recorded)| list(recorded).iter().cloned())
+            .collect()
     }
 }
 
@@ -75,5 +107,11 @@ mod tests {
         assert!(!has(&inner, first) && has(&inner, both));
         drop(inner);
         assert!(has(&outer, both));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        crate::files::write_whole(&path, b"x").unwrap();
+        assert!(outer.written().contains(&path) && !outer.files().contains(&path));
+        note_kept(Path::new(before));
+        assert!(outer.written().contains(&PathBuf::from(before)));
     }
 }

@@ -9,6 +9,7 @@ use crate::candidates::{Contents, only_below, several};
 use crate::clouds::ept;
 use crate::fault::Fault;
 use crate::files::{FileError, open_file, unreadable_folder};
+use crate::missions;
 use crate::packages::{self, Package, colmap, metashape, open3d};
 use crate::poses::trajectory::{self, TrajectoryFormat};
 use crate::poses::{poses_csv, poses_opk};
@@ -29,6 +30,8 @@ pub enum Kind {
     Trajectory(TrajectoryFormat),
     /// A table of size distributions; see [`read_size_distributions`](crate::read_size_distributions).
     SizeDistributions,
+    /// What a drone is told: see [`read_mission`](crate::read_mission).
+    Mission,
     /// Cameras and posed photos as this package wrote them, in this file or folder.
     Reconstruction(Package, PathBuf),
 }
@@ -72,13 +75,14 @@ impl Kind {
             Self::Poses => "poses",
             Self::Trajectory(_) => "a trajectory",
             Self::SizeDistributions => "size distributions",
+            Self::Mission => "a drone's mission",
             Self::Reconstruction(package, _) => package.in_words(),
         }
     }
 }
 
 /// Everything that can be opened, for messages.
-const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, EPT (ept.json), XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos; a CSV of size distributions";
+const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, STL, glTF, GeoTIFF, EPT (ept.json), XYZ/TXT/CSV; what photogrammetry packages write (README lists them); ROS recordings and trajectories; poses.csv; a camera's YAML or XML; a folder of photos; size distributions; missions";
 
 /// What a folder of a reconstruction holds that is not finished yet: what it is of.
 pub const UNFINISHED: &str = "unfinished/photos.txt";
@@ -113,6 +117,9 @@ pub fn detect(path: &Path) -> Result<Kind, FileError> {
     }
     if let Some((package, path)) = packages::of_file(path, &start) {
         return Ok(Kind::Reconstruction(package, path));
+    }
+    if missions::is_mission(path, &start) {
+        return Ok(Kind::Mission);
     }
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&start);
     for (magic, kind) in [
@@ -208,6 +215,9 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
             return Err(several(path, meant));
         }
         (None, _) => {}
+    }
+    if missions::is_mission_folder(path) {
+        return Ok(Kind::Mission);
     }
     if let Some(fault) = colmap::incomplete(path) {
         return Err(FileError::new(path, fault));

@@ -275,9 +275,14 @@ impl Crs {
         );
         let off = (scale - 1.0).abs();
         if off > WRONG_GRID {
+            // Coordinates of another system lie anywhere in this one.
+            let what = format!(
+                "{sentence}, which is latitude {:.2}, longitude {:.2}",
+                place.latitude, place.longitude
+            );
             return Err(Fault::new(
-                sentence,
-                "give a coordinate system that keeps lengths there, such as its zone of UTM",
+                what,
+                "give the coordinate system that its coordinates are in, one that keeps lengths there, such as its zone of UTM",
             ));
         }
         Ok((off > POOR_GRID).then_some(sentence))

@@ -36,6 +36,7 @@ impl Dropped {
                 Kind::SizeDistributions => {
                     return Err(FileError::new(path, no_flight_but_sizes()));
                 }
+                Kind::Mission => return Err(FileError::new(path, no_flight_but_mission())),
                 kind @ (Kind::Camera | Kind::Poses | Kind::Trajectory(_)) => {
                     return Err(no_part(path, &kind));
                 }
@@ -60,6 +61,14 @@ impl Dropped {
         dropped.options.photos = photos;
         Ok(dropped)
     }
+}
+
+/// A mission where a flight is needed.
+pub(crate) fn no_flight_but_mission() -> Fault {
+    Fault::new(
+        "it holds a drone's mission, not a flight",
+        "say what it says with 'fragscale mission FILE'; with the flight that came of it 'fragscale flown FLIGHT --mission FILE', or drop it on the window where that flight is open",
+    )
 }
 
 fn no_part(path: &Path, kind: &Kind) -> FileError {

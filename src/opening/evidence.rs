@@ -162,7 +162,12 @@ pub fn compare_colours(
     progress: &Progress,
 ) -> Result<Vec<(usize, Colours)>, Fault> {
     let photos = &flight.parts().photos;
-    let without_colours = flight.parts().surface.colors().is_empty();
+    let surface = &flight.parts().surface;
+    let why_not = match (surface.is_part(), surface.colors().is_empty()) {
+        (true, _) => Some("not looked at: only a part of the surface was read"),
+        (false, true) => Some("the surface has no colours"),
+        (false, false) => None,
+    };
     progress.stage("comparing colours");
     let mut compared = Vec::new();
     for (index, (file, evidence)) in files.iter().zip(evidence).enumerate() {
@@ -170,9 +175,9 @@ pub fn compare_colours(
         if evidence.colours != ColoursFound::NotCompared {
             continue;
         }
-        let colours = match without_colours {
-            true => Colours::Not("the surface has no colours".to_owned()),
-            false => match file.pixels() {
+        let colours = match why_not {
+            Some(why) => Colours::Not(why.to_owned()),
+            None => match file.pixels() {
                 None => Colours::Not("no image file".to_owned()),
                 Some(Ok(pixels)) => Colours::of_photo(flight, index, &pixels),
                 Some(Err(error)) => Colours::Unreadable(error.fault.to_string()),

@@ -10,15 +10,16 @@ use crate::formats::packages::ros;
 use crate::formats::packages::ros::Recording;
 use crate::formats::poses::trajectory::Trajectory;
 use crate::formats::{
-    CloudFile, DistributionColumns, FileError, ImageUnit, Kind, Origin, Package, PosesFile,
-    Reconstruction, Sizes, detect, read_camera, read_cloud, read_poses, read_project,
-    read_size_distributions, read_trajectory,
+    CloudFile, DistributionColumns, FileError, ImageUnit, Kind, MissionFile, Origin, Package,
+    PosesFile, Reconstruction, Sizes, detect, read_camera, read_cloud, read_mission, read_poses,
+    read_project, read_size_distributions, read_trajectory,
 };
 use crate::fragmentation::DistributionSet;
 use crate::geometry::Bounds;
 use crate::jobs::Progress;
 use crate::scale::ImageKind;
 use crate::{OpenOptions, open_flight};
+use fragscale_core::plan::Height;
 
 /// Reads any supported file or folder and says what it holds.
 ///
@@ -35,6 +36,7 @@ pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
             let (set, warnings) = read_size_distributions(path, &DistributionColumns::default())?;
             distributions_info(&set, &warnings)
         }
+        Kind::Mission => mission_info(&read_mission(path)?),
         Kind::Reconstruction(Package::Ros, path) => recording_info(&ros::read(&path, progress)?),
         Kind::Reconstruction(..) => {
             reconstruction_info(&read_project(path, progress)?.reconstruction)
@@ -58,6 +60,50 @@ fn cloud_info(file: &CloudFile) -> Value {
         "bounds": bounds,
         "crs": file.crs,
         "warnings": file.warnings,
+    })
+}
+
+/// A drone's mission: degrees of WGS 84, metres, metres a second; headings clockwise from true north.
+fn mission_info(file: &MissionFile) -> Value {
+    let mission = &file.mission;
+    let height =
+        |height: Height| json!({"metres": height.metres, "above": height.above.in_words()});
+    let stops = mission.stops.iter().zip(mission.gimbal_pitches());
+    let stops = stops.map(|(stop, pitch)| {
+        json!({
+            "latitude": stop.latitude,
+            "longitude": stop.longitude,
+            "height": height(stop.height),
+            "heading": stop.heading,
+            "gimbal_pitch": pitch,
+            "waits": stop.settle,
+            "photo": stop.photo.is_some(),
+            "name": stop.photo.as_ref().and_then(|photo| photo.name.as_deref()),
+        })
+    });
+    let fences = mission.fences.iter();
+    let fences = fences.map(|fence| json!({"keep_in": fence.keep_in, "corners": fence.corners}));
+    json!({
+        "kind": "mission",
+        "format": file.format,
+        "name": mission.name,
+        "drone": mission.drone.map(|codes| json!({
+            "drone": codes.drone,
+            "drone_sub": codes.drone_sub,
+            "payload": codes.payload.map(|payload| payload.payload),
+        })),
+        "take_off": mission.take_off.map(|at| json!({
+            "latitude": at.latitude,
+            "longitude": at.longitude,
+            "elevation": at.elevation.map(height),
+        })),
+        "speed": mission.speed,
+        "safe_height": mission.safe_height,
+        "finish": mission.finish.in_words(),
+        "photos": mission.stops.iter().filter(|stop| stop.photo.is_some()).count(),
+        "stops": stops.collect::<Vec<_>>(),
+        "fences": fences.collect::<Vec<_>>(),
+        "warnings": file.notes,
     })
 }
 
@@ -258,6 +304,32 @@ mod tests {
 
     use super::*;
     use crate::Dropped;
+
+    /// Home and one photo, in Mission Planner's lines; whatever the file is called.
+    #[test]
+    fn a_mission_is_known_by_what_is_in_it() {
+        let text = "QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t50\t7\t160\t1\n\
+            1\t0\t3\t16\t0\t0\t0\t0\t50.0001\t7.0001\t12.5\t1\n\
+            2\t0\t3\t2000\t0\t0\t1\t0\t0\t0\t0\t1\n";
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["bench.waypoints", "bench.txt"] {
+            let path = folder.path().join(name);
+            fs::write(&path, text).unwrap();
+            assert_eq!(detect(&path), Ok(Kind::Mission));
+            let said = info(&path, &Progress::default()).unwrap();
+            assert_eq!(
+                (&said["kind"], &said["photos"]),
+                (&json!("mission"), &json!(1))
+            );
+            assert_eq!(said["take_off"]["latitude"], json!(50.0));
+            let stop = &said["stops"][0];
+            assert_eq!(stop["height"]["metres"], json!(12.5));
+            assert_eq!(stop["height"]["above"], json!("the place of take-off"));
+            // It is no flight, and what to do with it is said.
+            let error = Dropped::sort(&[path]).unwrap_err().to_string();
+            assert!(error.contains("fragscale flown"), "{error}");
+        }
+    }
 
     #[test]
     fn size_distributions_are_told_from_lists_of_points_and_poses() {

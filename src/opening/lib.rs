@@ -3,23 +3,31 @@
 //!
 //! ```text
 //! open         the flight of a flight.toml, a package's folder, or loose files
+//! areas        outlines and places, typed or in a file
 //! dropped      which of several files is what
 //! meant        which flight is meant by a folder above it
+//! flown        a mission against the flight that came of it
 //! health       a flight's unit, coordinates, colours, ... at a glance
+//! in_part      flights whose cloud is larger than the memory
 //! info         what a file holds, for `fragscale info`
-//! outlines     outlines of fragments that were saved beside a flight
+//! outlines     outlines of fragments that were saved beside a flight; of_others: those that other tools made
+//! named_engine a network that the user names, to outline fragments
 //! origin       from which files a flight came, and the flight.toml that says so
 //! second_surface  another surface brought to the world of a flight
 //! world        the coordinate system that surface and photos share
 //! ```
 
+mod areas;
 mod dropped;
 mod evidence;
 mod flight_poses;
+mod flown;
 mod georeferencing;
 mod health;
+mod in_part;
 mod info;
 mod meant;
+mod named_engine;
 mod open;
 mod origin;
 mod outlines;
@@ -36,22 +44,27 @@ use fragscale_delineation as delineation;
 use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
 
+pub use areas::{Areas, places};
 pub use dropped::Dropped;
 pub use evidence::{Colours, compare_all_colours, compare_colours, look_up};
+pub use flown::{ComparedFlight, FlightOfMission, compare_flown};
 pub use georeferencing::{
     GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind, LengthResidual,
     PositionResidual, control_file, control_text, flight_text_of, georeference,
     georeference_flight, georeference_model, read_control,
 };
 pub use health::{Health, HealthFinding, HealthItem, Remedy, StatedOfFlight, flight_health};
+pub use in_part::{Memory, half_of_the_machines, memory_in_words, memory_size};
 pub use info::info;
 pub use meant::meant_by;
+pub use named_engine::read_named_engine;
 pub use open::{
     FlightReconstruction, OnSample, OpenOptions, Opened, SurfaceSample, open_flight,
-    open_flight_sampled,
+    open_flight_sampled, with_flight,
 };
 pub use origin::{FlightOrigin, path_from};
-pub use outlines::{OutlinesRead, outline_files, read_outlines};
+pub use outlines::{OutlinesOfOthers, OutlinesRead, outline_files, read_outlines};
+
 pub use photo_files::PhotoFile;
 pub use second_surface::{SecondSurface, StatedWorld, second_surface};
 

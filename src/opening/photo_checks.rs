@@ -26,9 +26,6 @@ const MOST_PHOTOS: usize = 200;
 /// The deviation from which a sentence is due.
 const WORTH_SAYING: f64 = 0.05;
 
-/// How many of the surface's vertices are looked at for its levels.
-const MOST_VERTICES: usize = 10_000;
-
 /// The lowest flight, in metres, whose heights are compared: below it the barometer's own error is
 /// beyond 5 %.
 const LOWEST: f64 = 10.0;
@@ -180,18 +177,13 @@ fn check_distances(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding>
     findings
 }
 
-/// Whether the surface has the median of these levels, give or take `slack`; all in world units. The
-/// lowest and the highest hundredth of the surface are most often noise.
+/// Whether the surface has the median of these levels, give or take `slack`; all in world units.
 fn has_level(flight: &Flight, levels: &[f64], slack: f64) -> bool {
-    let vertices = flight.parts().surface.vertices();
-    let step = vertices.len().div_ceil(MOST_VERTICES).max(1);
-    let mut heights: Vec<f64> = vertices.step_by(step).map(|vertex| vertex.z).collect();
-    heights.sort_by(f64::total_cmp);
-    let hundredth = heights.len() / 100;
-    let low = heights.get(hundredth);
-    let high = heights.get(heights.len().saturating_sub(hundredth + 1));
-    match (median(&mut levels.to_vec()), low, high) {
-        (Some(level), Some(low), Some(high)) => (low - slack..=high + slack).contains(&level),
+    match (
+        median(&mut levels.to_vec()),
+        flight.parts().surface.usual_heights(),
+    ) {
+        (Some(level), Some([low, high])) => (low - slack..=high + slack).contains(&level),
         _ => false,
     }
 }

@@ -5,7 +5,8 @@ use glam::{DVec2, DVec3};
 use super::terrain::{Terrain, plane_through};
 use crate::fault::Fault;
 use crate::jobs::Progress;
-use crate::surface::{Surface, convex_hull};
+use crate::numbers::significant_digits;
+use crate::surface::{Surface, UpAxis, convex_hull};
 use crate::survey::Polygon;
 
 /// Pixels along the longer side of the raster that the pile is looked for on.
@@ -21,6 +22,8 @@ const LEAST: f64 = 0.005;
 /// What stands above the floor by so much of the pile's height is pile; 98 of 100 of the pixels that stand out are
 /// lower than that.
 const PILE: f64 = 0.1;
+/// The share of its height that ground is not thinner than along x or y.
+const LYING: f64 = 0.5;
 /// How often what stands out of the floor is taken away from it.
 const ROUNDS: usize = 6;
 
@@ -33,10 +36,16 @@ pub fn pile(surface: &Surface, progress: &Progress) -> Result<Polygon, Fault> {
     let bounds = surface.bulk_bounds();
     let size = bounds.size().truncate().max_element();
     let over = [bounds.min.truncate(), bounds.max.truncate()];
-    let terrain = Terrain::of(surface, over, size / ACROSS, progress)?;
+    let terrain = Terrain::of(surface, over, size / ACROSS, None, progress)?;
     let none = || {
         let what = "no pile stands out of the floor around it";
-        Fault::new(what, "draw the area (--area on the command line)")
+        match lying(surface) {
+            Some(words) => Fault::new(
+                format!("{what}; {words}"),
+                "turn it, or draw the area (--area on the command line)",
+            ),
+            None => Fault::new(what, "draw the area (--area on the command line)"),
+        }
     };
     let floor = floor(&terrain).ok_or_else(none)?;
     let raster = terrain.raster();
@@ -64,6 +73,9 @@ pub fn pile(surface: &Surface, progress: &Progress) -> Result<Polygon, Fault> {
         .map(|z| *z > (PILE * highest).max(stands_out))
         .collect();
     let piece = largest_piece(&where_most_are(&is_pile, columns), columns);
+    if (piece.len() as f64) < LEAST * known as f64 {
+        return Err(none());
+    }
     let middles: Vec<DVec3> = piece
         .iter()
         .map(|place| {
@@ -75,6 +87,23 @@ pub fn pile(surface: &Surface, progress: &Progress) -> Result<Polygon, Fault> {
     let hull = convex_hull(&middles);
     let corners: Vec<DVec2> = hull.iter().map(|corner| corner.truncate()).collect();
     Polygon::new(&corners).map_err(|_| none())
+}
+
+/// Ground is wider than high. What is said of a surface that is much thinner along another axis than along z: a file whose
+/// up is that axis, or a wall. `None` of ground.
+pub fn lying(surface: &Surface) -> Option<String> {
+    let size = surface.bulk_bounds().size();
+    let (axis, thinnest) = match size.x < size.y {
+        true => (UpAxis::X, size.x),
+        false => (UpAxis::Y, size.y),
+    };
+    (thinnest < LYING * size.z).then(|| {
+        let (axis, high) = (axis.name(), significant_digits(size.z, 2));
+        let thin = significant_digits(thinnest, 2);
+        format!(
+            "the surface is {high} high and {thin} along {axis}: where {axis} is up in its file, write up = \"{axis}\" below [surface] in a flight.toml, or --up {axis} behind the command (a wall looks the same)"
+        )
+    })
 }
 
 /// A plane that is nearly level.
@@ -216,6 +245,29 @@ mod tests {
         }
         let area = std::f64::consts::PI * 81.0;
         assert!((found.area() / area - 1.0).abs() < 0.08, "{}", found.area());
+    }
+
+    /// A pile whose file has y up lies on its side: that is said, and what to write; of the pile itself nothing is.
+    #[test]
+    fn what_lies_on_its_side_is_said() {
+        let cone = |turned: bool| {
+            let points = (0..61 * 61).map(|i| {
+                let place = DVec2::new(f64::from(i % 61), f64::from(i / 61)) - 30.0;
+                let z = (6.0 - 0.5 * place.length()).max(0.0);
+                match turned {
+                    true => DVec3::new(place.x, z, -place.y),
+                    false => place.extend(z),
+                }
+            });
+            let cloud = Cloud {
+                points: points.collect(),
+                ..Cloud::default()
+            };
+            Surface::new(cloud).unwrap()
+        };
+        assert_eq!(lying(&cone(false)), None);
+        let said = lying(&cone(true)).unwrap();
+        assert!(said.contains("up = \"y\""), "{said}");
     }
 
     #[test]

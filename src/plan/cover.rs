@@ -1,28 +1,36 @@
 //! How well photos cover an area: how much they share, and the widest gap that they leave.
 //!
+//! Photos of a survey lie over those for scales without filling their gaps: each kind is counted by itself.
+//!
 //! Counted on the terrain's pixels: a pixel is in a photo where its point lies inside the image. What hides behind
 //! other ground counts as seen, for photos look down on it; the forecasts say what they really show.
 
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::PlannedPhoto;
 use super::terrain::Terrain;
+use super::{PlannedPhoto, Purpose};
 use crate::camera::Camera;
 use crate::survey::Polygon;
+
+/// In so many photos a place has to be to be found surely by a reconstruction: two see it, a third holds them to it.
+const TO_RECONSTRUCT: u32 = 3;
 
 /// How photos cover an area.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cover {
-    /// The share of the area that some photo shows; what lies beside the surface nobody shows.
+    /// The share of the area that some photo shows, of photos for scales, where there are some; what lies beside the
+    /// surface nobody shows.
     pub covered: f64,
+    /// The share of the area that at least three photos of the survey show; `None` without a survey.
+    pub surveyed: Option<f64>,
     /// The share of the area that lies beside the surface or in holes of it.
     pub off_surface: f64,
-    /// The diameter of the largest circle inside the area that no photo shows, world units.
+    /// The diameter of the largest circle inside the area that none of these shows, world units.
     pub widest_gap: f64,
     /// Where its middle lies.
     pub gap_at: Option<DVec2>,
-    /// Of each photo: the share of what it shows that other photos show, too.
+    /// Of each photo: the share of what it shows that others with its purpose show, too.
     pub shared: Vec<f64>,
 }
 
@@ -35,29 +43,58 @@ impl Cover {
             .par_iter()
             .map(|photo| seen_by(photo, camera, terrain))
             .collect();
-        let mut counts = vec![0_u32; columns * rows];
-        for place in seen.iter().flatten() {
-            counts[*place] += 1;
-        }
-        let shared = seen.iter().map(|seen| {
+        let counted = |purpose: Purpose| {
+            let mut counts = vec![0_u32; columns * rows];
+            let own = photos.iter().zip(&seen);
+            let own = own.filter(|(photo, _)| photo.purpose == purpose);
+            for place in own.flat_map(|(_, seen)| seen) {
+                counts[*place] += 1;
+            }
+            counts
+        };
+        let has = |purpose: Purpose| photos.iter().any(|photo| photo.purpose == purpose);
+        let [for_scales, of_survey] = [Purpose::Scale, Purpose::Survey].map(counted);
+        let shared = photos.iter().zip(&seen).map(|(photo, seen)| {
+            let counts = match photo.purpose {
+                Purpose::Scale => &for_scales,
+                Purpose::Survey => &of_survey,
+            };
             let others = seen.iter().filter(|place| counts[**place] > 1).count();
             others as f64 / seen.len().max(1) as f64
         });
         let shared = shared.collect();
-        let inside = terrain.is_in(area);
+        let pixels = terrain.is_in(area);
+        let inside: Vec<bool> = pixels.iter().map(|pixel| *pixel == (true, true)).collect();
         let in_area = inside.iter().filter(|inside| **inside).count();
-        let is_gap: Vec<bool> = (inside.iter().zip(&counts))
+        // Of middles against middles: the pixels of a small area may have more than its own area together. The raster
+        // ends with the surface, the area need not.
+        let on_raster = (area.area_inside(raster.bounds()) / area.area()).min(1.0);
+        let of_area = pixels.iter().filter(|(is_inside, _)| *is_inside).count();
+        let share = |pixels: usize| on_raster * pixels as f64 / of_area.max(1) as f64;
+        let surveyed = has(Purpose::Survey).then(|| {
+            let often = inside.iter().zip(&of_survey);
+            share(
+                often
+                    .filter(|(inside, count)| **inside && **count >= TO_RECONSTRUCT)
+                    .count(),
+            )
+        });
+        let counts = match has(Purpose::Scale) {
+            true => &for_scales,
+            false => &of_survey,
+        };
+        let is_gap: Vec<bool> = (inside.iter().zip(counts))
             .map(|(inside, count)| *inside && *count == 0)
             .collect();
         let in_gaps = is_gap.iter().filter(|gap| **gap).count();
-        let pixel_area = raster.pixel * raster.pixel;
         let depths = squared_distances_to_edge(&is_gap, columns);
         let deepest = (depths.iter().zip(0..)).max_by(|a, b| a.0.total_cmp(b.0));
         let (deepest, place) = deepest.map_or((0.0, 0_usize), |(depth, place)| (*depth, place));
         let middle = DVec2::new((place % columns) as f64, (place / columns) as f64) + 0.5;
         Self {
-            covered: ((in_area - in_gaps) as f64 * pixel_area / area.area()).min(1.0),
-            off_surface: (1.0 - in_area as f64 * pixel_area / area.area()).max(0.0),
+            covered: share(in_area - in_gaps),
+            surveyed,
+            off_surface: (1.0 - share(in_area)).max(0.0),
             widest_gap: 2.0 * deepest.sqrt() * raster.pixel,
             gap_at: (deepest > 0.0).then(|| raster.world_from_pixel(middle)),
             shared,

@@ -3,17 +3,20 @@
 //!
 //! ```text
 //! wish        what is asked for: scale, pattern, gaps, gimbal, clearance; and what is usual
+//! tiles       heights in tiles, which are kept
 //! terrain     heights on a raster, planes of the ground, how near a point in the air is to it
 //! drones      cameras and gimbals that are often flown
 //! area        the ground to be photographed: the pile found by itself
 //! keep_out    the ground that is not flown over, and the way around it
+//! known       which ground a plan needs, and what a plan before it knows
 //! photo       a planned photo
-//! patterns    where photos are taken from: slope, paper, survey
+//! patterns    where photos are taken from: slope, paper, survey, or two of them in one flight
 //! forecast    what a photo will show: its field of scales
 //! steadiness  how well a drone holds its pose, and what that makes of the scale
 //! sun         where the sun stands, and what lies in shadow
 //! cover       how much photos share, and the widest gap that they leave
-//! way         in which order, with which climbs
+//! way         the legs between photos, with which climbs; how long they take
+//! order       in which order photos are taken
 //! mission/    what a drone is told, and what came of it
 //! ```
 //!
@@ -28,7 +31,9 @@ mod cover;
 mod drones;
 mod forecast;
 mod keep_out;
+mod known;
 mod mission;
+mod order;
 mod patterns;
 mod photo;
 mod steadiness;
@@ -36,43 +41,49 @@ mod sun;
 mod terrain;
 #[cfg(test)]
 mod tests;
+mod tiles;
 mod way;
 mod wish;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use rayon::prelude::*;
 
-pub use area::pile;
+pub use area::{lying, pile};
 pub use cover::Cover;
 pub use drones::Drone;
 pub use forecast::Forecast;
 pub use mission::{
     Above, DroneCodes, Fence, Finish, Flown, Height, Mission, PayloadCodes, PhotoOf, PlannedPose,
-    Residual, Stop, TakeOff, Taken, Told, heading, missions, planned_poses,
+    Residual, Stop, TakeOff, Taken, Told, heading, missions, planned_poses, same_unit,
 };
 pub use patterns::Pattern;
-pub use photo::{PlannedPhoto, Refused};
+pub use photo::{PlannedPhoto, Purpose, Refused};
 pub use steadiness::{PoseErrors, Positioning};
 pub use sun::{Shadows, Sun};
 pub use terrain::{GroundPlane, Terrain, ground_at};
-pub use way::{MOST_SPEED, Pace, USUAL_SETTLE, USUAL_SPEED, Way, WayPoint};
-pub use wish::{Size, USUAL_CLEARANCE, USUAL_OFF_NORMAL, USUAL_TILT, Wish};
+pub use way::{
+    Flying, MOST_SPEED, Pace, USUAL_CLIMB, USUAL_DESCENT, USUAL_SETTLE, USUAL_SPEED, Way, WayPoint,
+};
+pub use wish::{
+    Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL, USUAL_SURVEY_OVERLAP, USUAL_TILT, Wish,
+};
 
 use crate::camera::Camera;
 use crate::fault::Fault;
-use crate::geometry::extent;
+use crate::geometry::{Bounds, extent};
 use crate::jobs::Progress;
 use crate::surface::Surface;
 use crate::survey::Polygon;
 use keep_out::KeepOut;
+use known::{Known, Need};
 use patterns::{Ground, MOST};
 
-/// Pixels of the terrain along the shorter side of a footprint.
-const FINENESS: f64 = 24.0;
 /// So many photos more than there are fill gaps at most.
 const FILLING: u64 = 10;
+/// What is wrong with a photo of nothing.
+const NOTHING: &str = "it shows nothing of the surface";
 /// Of a photo that shows so much of the surface nobody asks for the rest.
 const NEARLY_ALL: f64 = 0.99;
 
@@ -87,13 +98,15 @@ pub struct Plan {
     pub area: Polygon,
     /// How well the photos cover it.
     pub cover: Cover,
-    /// The surface as it was looked at.
+    /// The surface as the plan needs it.
     pub terrain: Terrain,
+
     /// What was asked for.
     pub wish: Wish,
     /// What is to fly.
     pub camera: Camera,
-    /// A photo's width and height on a plane across its axis, from the distance that was asked for.
+    /// A photo's width and height on a plane across its axis, from the distance that was asked for: of photos for scales,
+    /// where there are some.
     pub footprint: DVec2,
 }
 
@@ -110,55 +123,91 @@ impl Plan {
         wish: Wish,
         progress: &Progress,
     ) -> Result<Self, Fault> {
-        let distance = distance(camera, &wish)?;
-        are_near(&wish.keep_out, surface, distance)?;
-        is_not_too_many(camera, &area, &wish, distance)?;
+        Self::after(None, (surface, camera), area, wish, progress)
+    }
+
+    /// The same behind another plan over the same surface: what that knows of the ground, and of photos that stay where they
+    /// were, is not looked at again. The answer is the same.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn after(
+        before: Option<&Self>,
+        (surface, camera): (&Surface, &Camera),
+        area: Polygon,
+        wish: Wish,
+        progress: &Progress,
+    ) -> Result<Self, Fault> {
+        check(&wish)?;
+        let mut distances = Vec::new();
+        for purpose in wish.pattern.purposes() {
+            distances.push(distance(camera, wish.size_of(*purpose))?);
+        }
+        let farthest = distances.iter().copied().fold(0.0, f64::max);
+        let nearest = distances.iter().copied().fold(f64::MAX, f64::min);
+        are_near(&wish.keep_out, surface, farthest)?;
+        is_not_too_many(camera, &area, &wish)?;
         progress.stage("looking at the ground");
-        let terrain = terrain_of(surface, camera, &area, (&wish, distance), progress)?;
-        let ground = Ground::new((surface, &terrain), camera, &area, &wish, distance);
-        let (mut photos, mut refused) = ground.photos();
-        if photos.len() + refused.len() >= MOST {
-            return Err(too_many());
-        }
-        (photos.par_iter_mut()).for_each(|photo| ground.set_distance(photo));
+        let distances = [nearest, farthest];
+        let need = Need::of(surface, camera, &area, (&wish, distances))?;
+        let terrain = need.terrain(surface, before, progress)?;
         let keep_out = KeepOut::new(&wish.keep_out, wish.clearance)?;
-        photos.retain(|photo| match ground.not_flown(photo, &keep_out) {
-            None => true,
-            Some(why) => {
-                let place = photo.target.truncate();
-                refused.push(Refused { place, why });
-                false
+        let over = (surface, &terrain);
+        let mut grounds = Vec::new();
+        for purpose in wish.pattern.purposes() {
+            grounds.push(Ground::new(over, camera, &area, (&wish, *purpose))?);
+        }
+        let (mut photos, mut refused) = (Vec::new(), Vec::new());
+        for ground in &grounds {
+            let before = refused.len();
+            let (mut own, not) = ground.photos();
+            refused.extend(not);
+            (own.par_iter_mut()).for_each(|photo| ground.set_distance(photo));
+            own.retain(|photo| match ground.not_flown(photo, &keep_out) {
+                None => true,
+                Some(why) => {
+                    let place = photo.target.truncate();
+                    refused.push(Refused { place, why });
+                    false
+                }
+            });
+            // Half of what was asked for is another plan.
+            if own.is_empty() {
+                return Err(none(ground.what(), &refused[before..], surface));
             }
-        });
-        if photos.is_empty() {
-            return Err(none(&refused));
+            photos.extend(own);
+            if photos.len() + refused.len() >= MOST {
+                return Err(too_many());
+            }
         }
+        let footprint = footprint(camera, distance(camera, wish.size_of(wish.pattern.main()))?);
         // In the order in which they are flown, so that a table is read beside the drone.
-        let places: Vec<DVec3> = photos.iter().map(|photo| photo.pose.center).collect();
-        let begin = match wish.take_off {
-            Some(place) => place.extend(places[0].z),
-            None => places[0],
-        };
-        let mut photos: Vec<PlannedPhoto> = (way::order(begin, &places).into_iter())
-            .map(|photo| photos[photo].clone())
-            .collect();
-        for (photo, number) in photos.iter_mut().zip(1..) {
-            photo.name = photo_name(number);
-        }
+        let mut photos: Vec<PlannedPhoto> =
+            (order::order(wish.take_off, &photos, footprint.max_element()).into_iter())
+                .map(|photo| photos[photo].clone())
+                .collect();
+        name_in_order(&mut photos);
         progress.stage("what each photo will show");
         let count = photos.len() as u64;
         let done = AtomicU64::new(0);
+        let known_photos = Known::of(before, camera, &wish, &terrain);
         (photos.par_iter_mut()).try_for_each(|photo| {
+            if known_photos.say(photo) {
+                return Ok(());
+            }
             progress.advance(done.fetch_add(1, Ordering::Relaxed), count)?;
+            let own = grounds.iter().find(|ground| ground.is_for(photo));
             // Its own stages would come between.
-            ground.foresee(photo, surface, &Progress::default())
+            own.map_or(Ok(()), |own| {
+                own.foresee(photo, surface, &Progress::default())
+            })
         })?;
         let cover = Cover::of(&photos, camera, &area, &terrain);
         Ok(Self {
             photos,
             refused,
             cover,
-            footprint: footprint(camera, distance),
+            footprint,
             camera: camera.clone(),
             area,
             terrain,
@@ -188,7 +237,7 @@ impl Plan {
     }
 
     /// The same plan with one photo more, where the way to it is shortest; of a pattern of one tilt it looks as the one
-    /// next to it.
+    /// next to it. Of a pattern with photos for scales it is one of these.
     ///
     /// # Errors
     /// Where no photo can be taken of that place, there are too many, or the work was cancelled.
@@ -202,7 +251,10 @@ impl Plan {
             return Err(too_many());
         }
         let away = |photo: &PlannedPhoto| photo.target.truncate().distance(place);
-        let nearest = (self.photos.iter()).min_by(|a, b| away(a).total_cmp(&away(b)));
+        let main = self.wish.pattern.main();
+        let nearest = (self.photos.iter())
+            .filter(|photo| photo.purpose == main)
+            .min_by(|a, b| away(a).total_cmp(&away(b)));
         let Some(nearest) = nearest else {
             return Ok(self.clone());
         };
@@ -212,8 +264,8 @@ impl Plan {
             .iter()
             .filter_map(|photo| photo.name.get(1..)?.parse().ok());
         let number: usize = numbers.max().unwrap_or(0) + 1;
-        photo.name = photo_name(number);
-        let at = way::cheapest(
+        photo.name = photo.purpose.photo_name(number);
+        let at = order::cheapest(
             &self
                 .photos
                 .iter()
@@ -247,9 +299,7 @@ impl Plan {
                 _ => break,
             }
         }
-        for (photo, number) in plan.photos.iter_mut().zip(1..) {
-            photo.name = photo_name(number);
-        }
+        name_in_order(&mut plan.photos);
         Ok(plan)
     }
 
@@ -281,9 +331,9 @@ impl Plan {
             let what = format!("no photo at ({:.1}, {:.1}): {why}", place.x, place.y);
             Fault::new(what, "take one of another place")
         };
-        let distance = distance(&self.camera, &self.wish)?;
         let terrain = (surface, &self.terrain);
-        let ground = Ground::new(terrain, &self.camera, &self.area, &self.wish, distance);
+        let wish = (&self.wish, like.purpose);
+        let ground = Ground::new(terrain, &self.camera, &self.area, wish)?;
         let mut photo = ground.photo_of(place, like).map_err(refuse)?;
         ground.set_distance(&mut photo);
         let keep_out = KeepOut::new(&self.wish.keep_out, self.wish.clearance)?;
@@ -300,14 +350,21 @@ impl Plan {
         self.cover.widest_gap > self.wish.gap * self.footprint.min_element()
     }
 
-    /// What of the wish a photo does not hold, one clause each.
+    /// What of the wish a photo does not hold, one clause each. Photos of a survey are held to what they share, all
+    /// together ([`Cover::surveyed`]).
     pub fn troubles(&self, photo: usize) -> Vec<String> {
         let Some(photo) = self.photos.get(photo) else {
             return Vec::new();
         };
         let mut troubles = Vec::new();
+        if photo.purpose == Purpose::Survey {
+            if photo.forecast.is_none() {
+                troubles.push(NOTHING.to_owned());
+            }
+            return troubles;
+        }
         match (&photo.forecast, self.wish.size) {
-            (None, _) => troubles.push("it shows nothing of the surface".to_owned()),
+            (None, _) => troubles.push(NOTHING.to_owned()),
             (
                 Some(forecast),
                 Size::Scale {
@@ -332,7 +389,7 @@ impl Plan {
             let share = (1.0 - forecast.covered) * 100.0;
             troubles.push(format!("{share:.0} % of it looks beyond the surface"));
         }
-        if self.wish.pattern == Pattern::Slope && photo.off_normal > self.wish.off_normal {
+        if self.wish.pattern.is_square() && photo.off_normal > self.wish.off_normal {
             let off = photo.off_normal;
             troubles.push(format!("its axis is {off:.0} degrees off the normal"));
         }
@@ -340,45 +397,59 @@ impl Plan {
     }
 }
 
-/// What a photo of this number is called.
-fn photo_name(number: usize) -> String {
-    format!("P{number:03}")
+/// Names photos by their places in the flight.
+fn name_in_order(photos: &mut [PlannedPhoto]) {
+    for (photo, number) in photos.iter_mut().zip(1..) {
+        photo.name = photo.purpose.photo_name(number);
+    }
 }
 
-/// How far along the axis the wish asks for.
-fn distance(camera: &Camera, wish: &Wish) -> Result<f64, Fault> {
-    let refuse = |what: &str, remedy: &str| Err(Fault::new(what, remedy));
-    if !(0.0..0.98).contains(&wish.overlap) {
-        return refuse(
-            "the overlap is not from 0 to 98 %",
-            "give one, as --overlap 70",
-        );
+/// What no photo can be planned by.
+fn check(wish: &Wish) -> Result<(), Fault> {
+    for purpose in wish.pattern.purposes() {
+        if !(0.0..0.98).contains(&wish.overlap_of(*purpose)) {
+            let (what, remedy) = match purpose {
+                Purpose::Scale => (
+                    "the overlap is not from 0 to 98 %",
+                    "give one, as --overlap 20",
+                ),
+                Purpose::Survey => (
+                    "the survey's overlap is not from 0 to 98 %",
+                    "give one, as --survey-overlap 70",
+                ),
+            };
+            return Err(Fault::new(what, remedy));
+        }
     }
     if !(5.0..=90.0).contains(&wish.tilt) {
-        return refuse(
-            "the tilt is not from 5 to 90 degrees",
-            "90 looks straight down",
-        );
+        let what = "the tilt is not from 5 to 90 degrees";
+        return Err(Fault::new(what, "90 looks straight down"));
     }
-    let distance = match wish.size {
+    Ok(())
+}
+
+/// How far along the axis the rock is as large as is wished.
+fn distance(camera: &Camera, size: Size) -> Result<f64, Fault> {
+    let distance = match size {
         Size::Scale { pixels, .. } => (camera.fx * camera.fy).sqrt() / pixels,
         Size::Distance(distance) => distance,
     };
-    if !(distance > 0.0 && distance.is_finite()) {
-        return refuse(
-            "the scale or height is no positive number",
-            "give one, as --scale '20 px/cm'",
-        );
+    if distance > 0.0 && distance.is_finite() {
+        return Ok(distance);
     }
-    Ok(distance)
+    let what = "the scale or height is no positive number";
+    Err(Fault::new(what, "give one, as --scale '20 px/cm'"))
 }
 
-fn none(refused: &[Refused]) -> Fault {
-    let what = match refused.first() {
-        None => "no photo of the area can be planned".to_owned(),
-        Some(first) => format!("no photo of the area can be taken: {}", first.why),
+fn none(what: &str, refused: &[Refused], surface: &Surface) -> Fault {
+    let mut what = match refused.first() {
+        None => format!("no photo of {what} can be planned"),
+        Some(first) => format!("no photo of {what} can be taken: {}", first.why),
     };
-    Fault::new(what, "try another scale, another area, or another drone")
+    if let Some(words) = lying(surface) {
+        what += &format!("; {words}");
+    }
+    Fault::new(what, "try another scale, area, drone or clearance")
 }
 
 /// An area to keep out of that lies elsewhere protects nobody: its coordinates are wrong.
@@ -390,16 +461,22 @@ fn are_near(keep_out: &[Polygon], surface: &Surface, distance: f64) -> Result<()
         let is_near = max.cmpge(bounds.min.truncate() - around).all()
             && min.cmple(bounds.max.truncate() + around).all();
         if !is_near {
-            let middle = (min + max) / 2.0;
-            let what = format!(
-                "area {number} to keep out of is nowhere near the surface: it lies around ({:.1}, {:.1})",
-                middle.x, middle.y
-            );
-            let remedy = "check its coordinates, and in a file of a map that longitudes come first";
-            return Err(Fault::new(what, remedy));
+            let what = format!("area {number} to keep out of is nowhere near the surface");
+            return Err(elsewhere(&what, (min + max) / 2.0, surface));
         }
     }
     Ok(())
+}
+
+/// What does not lie on a surface, or near it: its own coordinates are wrong, and the surface's tell how.
+fn elsewhere(what: &str, place: DVec2, surface: &Surface) -> Fault {
+    let Bounds { min, max } = surface.bounds();
+    let what = format!(
+        "{what}: it lies around ({:.1}, {:.1}), the surface at x {:.1} to {:.1}, y {:.1} to {:.1}",
+        place.x, place.y, min.x, max.x, min.y, max.y
+    );
+    let remedy = "give its coordinates in the surface's system, x before y; in a file of a map longitudes come first";
+    Fault::new(what, remedy)
 }
 
 fn too_many() -> Fault {
@@ -408,14 +485,13 @@ fn too_many() -> Fault {
 }
 
 /// Before the ground is looked at in their fineness.
-fn is_not_too_many(
-    camera: &Camera,
-    area: &Polygon,
-    wish: &Wish,
-    distance: f64,
-) -> Result<(), Fault> {
-    let step = footprint(camera, distance) * (1.0 - wish.overlap);
-    let count = area.area() / (step.x * step.y);
+fn is_not_too_many(camera: &Camera, area: &Polygon, wish: &Wish) -> Result<(), Fault> {
+    let mut count = 0.0;
+    for purpose in wish.pattern.purposes() {
+        let distance = distance(camera, wish.size_of(*purpose))?;
+        let step = footprint(camera, distance) * (1.0 - wish.overlap_of(*purpose));
+        count += area.area() / (step.x * step.y);
+    }
     if count < MOST as f64 {
         Ok(())
     } else {
@@ -427,36 +503,4 @@ fn is_not_too_many(
 fn footprint(camera: &Camera, distance: f64) -> DVec2 {
     let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
     size / DVec2::new(camera.fx, camera.fy) * distance
-}
-
-/// The terrain under an area and around it, as far as photos of it may look, and as far as the take-off.
-fn terrain_of(
-    surface: &Surface,
-    camera: &Camera,
-    area: &Polygon,
-    (wish, distance): (&Wish, f64),
-    progress: &Progress,
-) -> Result<Terrain, Fault> {
-    let footprint = footprint(camera, distance);
-    let [min, max] = extent(area.corners());
-    let around = footprint.max_element() + distance;
-    let (mut min, mut max) = (min - around, max + around);
-    if let Some(place) = wish.take_off {
-        min = min.min(place - wish.clearance);
-        max = max.max(place + wish.clearance);
-    }
-    let bounds = surface.bounds();
-    let (min, max) = (
-        min.max(bounds.min.truncate()),
-        max.min(bounds.max.truncate()),
-    );
-    if !min.cmplt(max).all() {
-        let what = "the area lies off the surface";
-        return Err(Fault::new(
-            what,
-            "give its corners in the surface's coordinates",
-        ));
-    }
-    let pixel = footprint.min_element() / FINENESS;
-    Terrain::of(surface, [min, max], pixel, progress)
 }

@@ -6,11 +6,41 @@ use super::forecast::Forecast;
 use super::terrain::Terrain;
 use crate::camera::{Camera, Pose};
 
+/// What photos are taken for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Purpose {
+    /// To be measured: each is held to the wished scale.
+    Scale,
+    /// To be reconstructed: they are held to what they share.
+    Survey,
+}
+
+impl Purpose {
+    /// In a word.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Scale => "scale",
+            Self::Survey => "survey",
+        }
+    }
+
+    /// What the photo of this number in the flight is called.
+    pub(super) fn photo_name(self, number: usize) -> String {
+        let letter = match self {
+            Self::Scale => 'P',
+            Self::Survey => 'S',
+        };
+        format!("{letter}{number:03}")
+    }
+}
+
 /// A photo that is to be taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedPhoto {
-    /// Its place in the plan: P001, P002, …
+    /// Its place in the plan: P001, P002, …; S003 of a survey.
     pub name: String,
+    /// What it is taken for.
+    pub purpose: Purpose,
     /// Where from, in the world.
     pub pose: Pose,
     /// The axis below the horizon, degrees: 90 straight down.
@@ -58,4 +88,16 @@ pub struct Refused {
     pub place: DVec2,
     /// Why, one clause.
     pub why: String,
+}
+
+/// Why there is no plane of the ground.
+pub(super) const NO_GROUND: &str =
+    "most of the photo would look beyond the surface, or into a hole of it";
+
+impl Refused {
+    /// Of a place that has no ground to look at.
+    pub(super) fn without_ground(place: DVec2) -> Self {
+        let why = NO_GROUND.to_owned();
+        Self { place, why }
+    }
 }

@@ -142,7 +142,7 @@ impl Plan {
             share(&mut seen.into_iter())
         });
         Shadows {
-            area: share(&mut (0..is_dark.len()).filter(|place| in_area[*place])),
+            area: share(&mut (0..is_dark.len()).filter(|place| in_area[*place] == (true, true))),
             photos: photos.collect(),
         }
     }

@@ -2,10 +2,12 @@
 //! near a point in the air is to it.
 
 use std::f64::consts::FRAC_1_SQRT_2;
+use std::sync::Arc;
 
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
+use super::tiles::Tiles;
 use crate::fault::Fault;
 use crate::geometry::{Ray, surrounds};
 use crate::jobs::Progress;
@@ -22,9 +24,11 @@ const LEAST_COVERED: f64 = 0.3;
 pub struct Terrain {
     raster: MapRaster,
     /// World z, row by row; NaN where there is no surface.
-    heights: Vec<f64>,
+    heights: Arc<[f64]>,
     /// A height near all others, so that sums of differences lose nothing.
     base: f64,
+    /// What was looked at for it.
+    tiles: Arc<Tiles>,
 }
 
 /// The plane that lies best through the surface around a place.
@@ -70,7 +74,8 @@ pub fn ground_at(surface: &Surface, place: DVec2) -> Option<f64> {
 
 impl Terrain {
     /// The surface inside a box of the map (least and greatest x and y). Its pixels are of side `pixel`, or larger
-    /// where they would be more than four million.
+    /// where they would be more than four million. What `known` knows of it is not looked at again; the answer is the same
+    /// to the last digit.
     ///
     /// # Errors
     /// Where the surface cannot be triangulated, or the work was cancelled.
@@ -78,18 +83,20 @@ impl Terrain {
         surface: &Surface,
         [min, max]: [DVec2; 2],
         pixel: f64,
+        known: Option<&Self>,
         progress: &Progress,
     ) -> Result<Self, Fault> {
         let size = max - min;
         let pixel = pixel.max((size.x * size.y / MOST).sqrt() * 1.01);
         let raster = MapRaster::over([min, max], pixel, MOST as u64 * 2)?;
-        let heights = surface.heights_from_above(&raster, progress)?;
-        let known = heights.iter().copied().find(|height| !height.is_nan());
-        let base = known.unwrap_or(0.0);
+        let tiles = Tiles::over(&raster, surface, known.map(|known| &*known.tiles), progress)?;
+        let heights = tiles.heights(&raster);
+        let first = heights.iter().copied().find(|height| !height.is_nan());
         Ok(Self {
+            base: first.unwrap_or(0.0),
+            heights: heights.into(),
+            tiles: Arc::new(tiles),
             raster,
-            heights,
-            base,
         })
     }
 
@@ -119,13 +126,14 @@ impl Terrain {
         places.filter_map(|(column, row)| self.point(column, row))
     }
 
-    /// Of each pixel, row by row, whether it has a height and its middle lies in an area.
-    pub(super) fn is_in(&self, area: &Polygon) -> Vec<bool> {
+    /// Of each pixel, row by row, whether its middle lies in an area, and whether it has a height.
+    pub(super) fn is_in(&self, area: &Polygon) -> Vec<(bool, bool)> {
         let columns = self.raster.columns as usize;
         let is_in = |place: usize| {
             let middle = DVec2::new((place % columns) as f64, (place / columns) as f64) + 0.5;
+            let middle = self.raster.world_from_pixel(middle);
             let is_ground = !self.heights[place].is_nan();
-            is_ground && surrounds(area.corners(), self.raster.world_from_pixel(middle))
+            (surrounds(area.corners(), middle), is_ground)
         };
         (0..self.heights.len()).into_par_iter().map(is_in).collect()
     }

@@ -1,20 +1,20 @@
-//! In which order photos are taken, and which climbs keep the drone off the ground between them.
+//! The way through photos in their order, and which climbs keep the drone off the ground between them.
 //!
 //! The way begins and ends at the take-off, and goes up to a safe height before the first photo and behind the last: as
-//! stops of their own, for some ground stations know no such height, and fly straight. Photos are put in a short order
-//! when they are planned: as they were laid out, made shorter by 2-opt (Croes 1958) until no two legs are better
-//! swapped; deterministic, and a lawn-mower's rows stay rows, for they are short already. Where one battery does not
+//! stops of their own, for some ground stations know no such height, and fly straight. Where one battery does not
 //! last, the way is cut: each piece goes out from the take-off and back to it. A leg that comes too near to the ground
 //! goes up first, over, and down: straight up and down is free, for the ground has one height at each place. A leg that
-//! would lead over an area to keep out of goes around it.
+//! would lead over an area to keep out of goes around it. A leg that climbs or falls more steeply than is wished
+//! ([`Pace::steepest`]) is flown in two, one straight up or down and one level, on the higher side: multirotors may climb
+//! upright, and no slanted leg passes along a face.
 
 use std::ops::Range;
 
 use glam::{DVec2, DVec3};
 
-use super::Plan;
 use super::keep_out::KeepOut;
 use super::terrain::ground_at;
+use super::{Plan, elsewhere};
 use crate::fault::Fault;
 use crate::surface::Surface;
 
@@ -40,10 +40,6 @@ pub struct Way {
     pub length: f64,
 }
 
-/// A gain of less is rounding.
-const GAIN: f64 = 1e-9;
-/// Rounds of 2-opt; each goes over all pairs.
-const ROUNDS: usize = 40;
 /// Seconds for turning, the gimbal's way and the shot, beside the wait.
 const SHOT: f64 = 2.0;
 /// How hard a drone brakes and starts, metres a second squared.
@@ -54,8 +50,45 @@ pub const USUAL_SPEED: f64 = 4.0;
 pub const MOST_SPEED: f64 = 25.0;
 /// Seconds that a drone waits at a photo, for the gimbal to settle.
 pub const USUAL_SETTLE: f64 = 2.0;
+/// Metres a second upwards: what DJI's page "Specs" of the Phantom 4 RTK has, the slowest of the drones that are known.
+pub const USUAL_CLIMB: f64 = 5.0;
+/// Metres a second downwards, of the same.
+pub const USUAL_DESCENT: f64 = 3.0;
+/// A leg that rises by less than this part of its length is level, and one that is so near to upright is that.
+const LEVEL: f64 = 1e-6;
 
-/// What a battery has to last for.
+/// How a drone is flown from photo to photo.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flying {
+    /// Metres a second between photos.
+    pub speed: f64,
+    /// Seconds that it waits at a photo, for the gimbal to settle.
+    pub settle: f64,
+    /// Minutes in the air that a battery lasts; `None` where nobody asks.
+    pub battery: Option<f64>,
+    /// Metres a second upwards, at most.
+    pub climb: f64,
+    /// Metres a second downwards, at most.
+    pub descent: f64,
+    /// How steeply a slanted leg may climb or fall, degrees; `None` is as it comes.
+    pub steepest: Option<f64>,
+}
+
+impl Default for Flying {
+    /// What is usual.
+    fn default() -> Self {
+        Self {
+            speed: USUAL_SPEED,
+            settle: USUAL_SETTLE,
+            battery: None,
+            climb: USUAL_CLIMB,
+            descent: USUAL_DESCENT,
+            steepest: None,
+        }
+    }
+}
+
+/// What a battery has to last for, and how legs are flown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pace {
     /// World units a second.
@@ -64,18 +97,49 @@ pub struct Pace {
     pub stop: f64,
     /// Seconds in the air that a battery lasts; `None` where nobody asks.
     pub battery: Option<f64>,
+    /// World units a second upwards, at most.
+    pub climb: f64,
+    /// World units a second downwards, at most.
+    pub descent: f64,
+    /// How steeply a slanted leg may climb or fall, degrees; `None` is as it comes.
+    pub steepest: Option<f64>,
 }
 
 impl Pace {
-    /// Of a drone that flies so many metres a second between photos and waits so many seconds at each, in a world whose
-    /// unit has so many metres; a battery lasts so many minutes.
-    pub fn of(speed: f64, settle: f64, battery: Option<f64>, unit_metres: f64) -> Self {
+    /// Of a drone that is flown so, in a world whose unit has so many metres.
+    pub fn of(flying: &Flying, unit_metres: f64) -> Self {
         Self {
-            speed: speed / unit_metres,
+            speed: flying.speed / unit_metres,
             // Braking and starting again take as long as the speed at an even pull.
-            stop: settle + SHOT + speed / PULL,
-            battery: battery.map(|minutes| minutes * 60.0),
+            stop: flying.settle + SHOT + flying.speed / PULL,
+            battery: flying.battery.map(|minutes| minutes * 60.0),
+            climb: flying.climb / unit_metres,
+            descent: flying.descent / unit_metres,
+            steepest: flying.steepest,
         }
+    }
+
+    /// Seconds for a straight leg.
+    pub fn seconds(&self, from: DVec3, to: DVec3) -> f64 {
+        let rise = to.z - from.z;
+        let upright = match rise > 0.0 {
+            true => rise / self.climb,
+            false => -rise / self.descent,
+        };
+        (from.distance(to) / self.speed).max(upright)
+    }
+
+    /// Whether a leg is slanted, and more steeply than is wished.
+    pub fn is_too_steep(&self, from: DVec3, to: DVec3) -> bool {
+        let (level, rise) = (
+            from.truncate().distance(to.truncate()),
+            (to.z - from.z).abs(),
+        );
+        let is_slanted = level > LEVEL * rise && rise > LEVEL * level;
+        is_slanted
+            && self
+                .steepest
+                .is_some_and(|steepest| rise.atan2(level).to_degrees() > steepest)
     }
 }
 
@@ -93,7 +157,7 @@ impl Way {
     ) -> Result<Vec<Self>, Fault> {
         let ground = ground_at(surface, take_off).ok_or_else(|| {
             let what = "the take-off does not lie on the surface";
-            Fault::new(what, "give a place on it, in its coordinates")
+            elsewhere(what, take_off, surface)
         })?;
         let pilot = Pilot {
             plan,
@@ -122,23 +186,37 @@ impl Way {
 
     /// Seconds in the air.
     pub fn seconds(&self, pace: &Pace) -> f64 {
-        self.length / pace.speed + pace.stop * self.photos() as f64
+        let legs = self.corners();
+        let legs = legs.windows(2).map(|leg| pace.seconds(leg[0], leg[1]));
+        legs.sum::<f64>() + pace.stop * self.photos() as f64
     }
 
     /// Seconds in the air until a photo of the plan is taken; `None` where this way does not lead there.
     pub fn seconds_to(&self, photo: usize, pace: &Pace) -> Option<f64> {
-        let up = self.take_off.truncate().extend(self.safe_height);
-        let mut length = self.take_off.distance(up);
-        let (mut last, mut photos) = (up, 0_u32);
+        let mut last = self.above_take_off();
+        let mut seconds = pace.seconds(self.take_off, last);
         for point in &self.points {
-            length += last.distance(point.place);
+            seconds += pace.seconds(last, point.place);
             last = point.place;
-            photos += u32::from(point.photo.is_some());
+            seconds += point.photo.map_or(0.0, |_| pace.stop);
             if point.photo == Some(photo) {
-                return Some(length / pace.speed + pace.stop * f64::from(photos));
+                return Some(seconds);
             }
         }
         None
+    }
+
+    /// All of it from the ground to the ground, corner by corner.
+    pub fn corners(&self) -> Vec<DVec3> {
+        let up = self.above_take_off();
+        let points = self.points.iter().map(|point| point.place);
+        let out = [self.take_off, up].into_iter().chain(points);
+        out.chain([up, self.take_off]).collect()
+    }
+
+    /// Over the take-off, at the safe height.
+    fn above_take_off(&self) -> DVec3 {
+        self.take_off.truncate().extend(self.safe_height)
     }
 
     /// How many photos are taken.
@@ -231,8 +309,21 @@ impl Pilot<'_> {
                 && last.photo.is_some()
             {
                 let course = self.course(last.place, to)?;
-                let is_near = plan.terrain.is_leg_near(last.place, to, clearance);
-                if is_near || course.len() > 2 {
+                let is_near = |leg: &[DVec3]| plan.terrain.is_leg_near(leg[0], leg[1], clearance);
+                let bend = self.pace.is_too_steep(last.place, to).then(|| {
+                    // On the higher side, for there it is farther from the ground.
+                    match to.z > last.place.z {
+                        true => last.place.truncate().extend(to.z),
+                        false => to.truncate().extend(last.place.z),
+                    }
+                });
+                let direct: Vec<DVec3> = [Some(last.place), bend, Some(to)]
+                    .into_iter()
+                    .flatten()
+                    .collect();
+                if course.len() == 2 && !direct.windows(2).any(is_near) {
+                    points.extend(bend.map(by));
+                } else {
                     let height = self.height_over(&course).max(last.place.z).max(to.z);
                     let over = course.iter().map(at_height(height));
                     points.extend(over.filter(|over| over.place != last.place && over.place != to));
@@ -245,92 +336,14 @@ impl Pilot<'_> {
         }
         let back = home[..home.len() - 1].iter().map(at_height(safe_height));
         points.extend(back.filter(|above| above.place != ends[1]));
-        let up = take_off.truncate().extend(safe_height);
-        let all: Vec<DVec3> = [take_off, up]
-            .into_iter()
-            .chain(points.iter().map(|point| point.place))
-            .chain([up, take_off])
-            .collect();
-        Ok(Way {
+        let mut way = Way {
             take_off,
             safe_height,
             points,
-            length: all.windows(2).map(|leg| leg[0].distance(leg[1])).sum(),
-        })
-    }
-}
-
-/// The order of places on a short way that begins and ends at `from`.
-pub(super) fn order(from: DVec3, places: &[DVec3]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..places.len()).collect();
-    let at = |order: &[usize], place: usize| {
-        let before_all = place == 0 || place > order.len();
-        if before_all {
-            from
-        } else {
-            places[order[place - 1]]
-        }
-    };
-    for _ in 0..ROUNDS {
-        let mut is_better = false;
-        // Legs from `first` to `first + 1` and from `last` to `last + 1`, take-off being 0 and behind the last.
-        for first in 0..order.len() {
-            for last in first + 1..=order.len() {
-                let (a, b) = (at(&order, first), at(&order, first + 1));
-                let (c, d) = (at(&order, last), at(&order, last + 1));
-                let gain = a.distance(b) + c.distance(d) - a.distance(c) - b.distance(d);
-                if gain > GAIN * (1.0 + a.distance(b)) {
-                    order[first..last].reverse();
-                    is_better = true;
-                }
-            }
-        }
-        if !is_better {
-            break;
-        }
-    }
-    order
-}
-
-/// Where on a way from place to place another one is reached with the least detour.
-pub(super) fn cheapest(places: &[DVec3], place: DVec3) -> usize {
-    let detour = |at: usize| match (
-        at.checked_sub(1).map(|before| places[before]),
-        places.get(at),
-    ) {
-        (Some(before), Some(behind)) => {
-            before.distance(place) + place.distance(*behind) - before.distance(*behind)
-        }
-        (Some(end), None) => end.distance(place),
-        (None, end) => end.map_or(0.0, |end| end.distance(place)),
-    };
-    let all = 0..=places.len();
-    all.min_by(|a, b| detour(*a).total_cmp(&detour(*b)))
-        .unwrap_or(0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A circle in a shuffled order is flown around, whichever way.
-    #[test]
-    fn a_ring_is_flown_around() {
-        let at = |i: usize| {
-            let angle = (i * 7 % 24) as f64 / 24.0 * std::f64::consts::TAU;
-            DVec3::new(angle.cos(), angle.sin(), 1.0)
+            length: 0.0,
         };
-        let places: Vec<DVec3> = (0..24).map(at).collect();
-        let order = order(DVec3::new(1.2, 0.0, 1.0), &places);
-        let way: f64 = order
-            .windows(2)
-            .map(|leg| places[leg[0]].distance(places[leg[1]]))
-            .sum();
-        // 23 of the 24 sides of the polygon.
-        let side = 2.0 * (std::f64::consts::PI / 24.0).sin();
-        assert!((way / (23.0 * side) - 1.0).abs() < 1e-9, "{way}");
-        let mut sorted = order.clone();
-        sorted.sort_unstable();
-        assert_eq!(sorted, (0..24).collect::<Vec<_>>());
+        let legs = way.corners();
+        way.length = legs.windows(2).map(|leg| leg[0].distance(leg[1])).sum();
+        Ok(way)
     }
 }

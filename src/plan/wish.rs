@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Drone, Pattern, PoseErrors, Positioning};
+use super::{Drone, Pattern, PoseErrors, Positioning, Purpose};
 use crate::survey::Polygon;
 
 /// How far scales may be off where nobody says it: a tenth of the wished one, as a scale of 20 ± 2.
@@ -13,6 +13,8 @@ const GIMBAL: [f64; 2] = [-90.0, 0.0];
 pub const USUAL_TILT: f64 = 83.0;
 /// Degrees off the normal of the ground that the slope pattern allows.
 pub const USUAL_OFF_NORMAL: f64 = 10.0;
+/// How much photos of a survey share with the next one, 0 to under 1.
+pub const USUAL_SURVEY_OVERLAP: f64 = 0.7;
 /// Metres between drone and surface.
 pub const USUAL_CLEARANCE: f64 = 5.0;
 
@@ -23,8 +25,10 @@ pub struct Wish {
     pub pattern: Pattern,
     /// How large the rock is to be in the photos.
     pub size: Size,
-    /// How much of its width and of its height a photo shares with the next one, 0 to under 1.
+    /// How much of its width and of its height a photo for scales shares with the next one, 0 to under 1.
     pub overlap: f64,
+    /// How the survey's photos lie, of a pattern that has some.
+    pub survey: SurveyWish,
     /// The widest gap between photos, in parts of the shorter side of a photo's footprint: the diameter of the
     /// largest circle that no photo shows.
     pub gap: f64,
@@ -50,7 +54,8 @@ impl Wish {
         Self {
             pattern,
             size,
-            overlap: pattern.usual_overlap(),
+            overlap: 0.0,
+            survey: SurveyWish::default(),
             gap: 0.1,
             tilt: USUAL_TILT,
             off_normal: USUAL_OFF_NORMAL,
@@ -59,6 +64,57 @@ impl Wish {
             keep_out: Vec::new(),
             errors: Positioning::default().errors(unit_metres),
             take_off: None,
+        }
+    }
+}
+
+impl Wish {
+    /// Wishes for another overlap of the photos that the pattern is named for: those for scales, where it has some.
+    pub fn set_overlap(&mut self, overlap: f64) {
+        match self.pattern.main() {
+            Purpose::Scale => self.overlap = overlap,
+            Purpose::Survey => self.survey.overlap = overlap,
+        }
+    }
+
+    /// The overlap of photos with this purpose.
+    pub fn overlap_of(&self, purpose: Purpose) -> f64 {
+        match purpose {
+            Purpose::Scale => self.overlap,
+            Purpose::Survey => self.survey.overlap,
+        }
+    }
+
+    /// How large the rock is to be in photos with this purpose.
+    pub fn size_of(&self, purpose: Purpose) -> Size {
+        match purpose {
+            Purpose::Scale => self.size,
+            Purpose::Survey => self.survey.size.unwrap_or(self.size),
+        }
+    }
+}
+
+/// How the photos of a survey lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurveyWish {
+    /// How much of its width and of its height a photo shares with the next one, 0 to under 1.
+    pub overlap: f64,
+    /// Rows straight down across the others, too.
+    pub cross: bool,
+    /// Photos around the area that look aslant into it.
+    pub ring: bool,
+    /// How large the rock is to be in them; `None` is as in the others.
+    pub size: Option<Size>,
+}
+
+impl Default for SurveyWish {
+    /// What reconstructions ask for.
+    fn default() -> Self {
+        Self {
+            overlap: USUAL_SURVEY_OVERLAP,
+            cross: false,
+            ring: true,
+            size: None,
         }
     }
 }

@@ -67,7 +67,7 @@ pub use self::estimate::{about, processor_seconds};
 pub use self::photo_set::{LeftOut, PhotoSet, SurveyPhoto};
 pub use self::quality::Quality;
 pub use self::said::{found, left_out, summary};
-pub use self::written::{may_be_made, proposed_folder};
+pub use self::written::{check_new_folder, may_be_made, name_of, proposed_folder};
 
 use self::files::FileError;
 use self::formats::read_camera;

@@ -63,24 +63,22 @@ impl<'a> GroundFinder<'a> {
     /// The median elevation of the vertices that the photo shows.
     fn median_seen(&self, camera: &Camera, pose: &Pose) -> Option<f64> {
         let view = Pyramid::of_image(camera, pose.center, pose.rotation);
-        let mut seen = Vec::new();
-        for block in self.surface.vertex_blocks() {
-            if view.misses(&block.bounds) {
-                continue;
-            }
-            let vertices = self.surface.vertices_in(block.range.clone());
-            let inside = vertices.filter(|&vertex| {
-                camera
-                    .pixel_undistorted(pose.camera_from_world(vertex))
-                    .is_some_and(|pixel| camera.contains(pixel))
-            });
-            seen.extend(inside.map(|vertex| vertex.z));
-        }
+        let vertices = self.surface.vertices_seen(|bounds| view.misses(bounds));
+        let inside = vertices.filter(|&vertex| {
+            camera
+                .pixel_undistorted(pose.camera_from_world(vertex))
+                .is_some_and(|pixel| camera.contains(pixel))
+        });
+        let mut seen: Vec<f64> = inside.map(|vertex| vertex.z).collect();
         median(&mut seen)
     }
 
     fn median_of_all(&mut self) -> Result<f64, SurfaceError> {
         if self.of_all.is_none() {
+            // Of a part that lacks what the photo may show nobody knows whether it shows none of the cloud.
+            if !self.surface.wanted().blocks.is_empty() {
+                return Err(SurfaceError::OnlyAPart);
+            }
             let mut all: Vec<f64> = self.surface.vertices().map(|vertex| vertex.z).collect();
             self.of_all = median(&mut all);
         }

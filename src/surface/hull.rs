@@ -3,6 +3,8 @@
 use glam::{DVec2, DVec3};
 use robust::{Coord, orient2d};
 
+use super::sites::site_place;
+
 /// The corners of the convex hull in (x, y), counter-clockwise, without points inside its edges.
 /// Fewer than three where all points lie on one line. Exact: decided by adaptive predicates.
 pub fn convex_hull(points: &[DVec3]) -> Vec<DVec3> {
@@ -28,6 +30,19 @@ pub fn convex_hull(points: &[DVec3]) -> Vec<DVec3> {
         }
     }
     hull
+}
+
+/// The same of points of which several may have the same (x, y): each corner is the highest of those there.
+pub(super) fn hull_of_points(points: &[DVec3]) -> Vec<DVec3> {
+    let candidates = outside_of_extremes(points).into_iter();
+    let mut candidates: Vec<DVec3> = candidates.map(site_place).collect();
+    candidates.sort_unstable_by(|a, b| {
+        (a.x.total_cmp(&b.x))
+            .then(a.y.total_cmp(&b.y))
+            .then(b.z.total_cmp(&a.z))
+    });
+    candidates.dedup_by(|b, a| a.truncate() == b.truncate());
+    convex_hull(&candidates)
 }
 
 /// Whether points with this hull lie on one line, but for rounding: a hull that is a billion times

@@ -15,6 +15,7 @@ mod left_out;
 mod levels;
 mod made_once;
 mod mesh;
+mod part;
 mod patches;
 mod sites;
 mod thinning;
@@ -34,13 +35,15 @@ pub use from_above::{Light, MapRaster, hillshade};
 pub use hull::convex_hull;
 pub use left_out::LeftOut;
 pub use levels::{Chosen, LevelNode, Levels};
+pub use part::{CloudFacts, HullOfMany, PartPlan};
 pub use patches::{Patch, Patches};
+pub use sites::Wanted;
 pub use up_axis::{UpAxis, doubtful_up};
 
 use crate::geometry::{Bounds, LocalFrame, Ray};
 use mesh::Mesh;
 use patches::Run;
-use sites::Sites;
+use sites::{Sites, sample_stride};
 use tiles::Tiles;
 use walk::Walk;
 
@@ -75,6 +78,9 @@ pub enum SurfaceError {
     /// Beyond the reach of exact predicates.
     #[error("a coordinate is larger than 1e60")]
     TooFarOut,
+    /// Something needs all triangles of a cloud of which only a part is in memory.
+    #[error("only a part of the cloud is in memory, and this needs all of it")]
+    OnlyAPart,
     /// A length of [`SurfaceOptions`] that is none.
     #[error("{name} is {value}; it must be a positive length")]
     Option {
@@ -135,6 +141,8 @@ struct Whole {
     /// The largest absolute world coordinate: what the input was rounded at.
     magnitude: f64,
     shape: Shape,
+    /// Heights of vertices or points from all over it, in the world: see [`Surface::usual_heights`].
+    heights: Vec<f64>,
     /// Of the vertices, once somebody asked.
     blocks: OnceLock<Vec<VertexBlock>>,
     /// Of a cloud: its triangles, once somebody asked.
@@ -145,6 +153,34 @@ struct Whole {
     mesh: OnceLock<Arc<Whole>>,
     /// Held while it is made: threads that ask at the same time wait for the one that makes it.
     making: Mutex<()>,
+}
+
+impl Whole {
+    fn new(frame: LocalFrame, magnitude: f64, shape: Shape, sample: &[DVec3]) -> Self {
+        Self {
+            frame,
+            magnitude,
+            shape,
+            heights: sample.iter().map(|point| point.z).collect(),
+            blocks: OnceLock::new(),
+            tiles: OnceLock::new(),
+            runs: OnceLock::new(),
+            mesh: OnceLock::new(),
+            making: Mutex::default(),
+        }
+    }
+}
+
+/// The largest absolute coordinate.
+///
+/// # Errors
+/// Where it is beyond the reach of exact predicates.
+fn magnitude_of(bounds: &Bounds) -> Result<f64, SurfaceError> {
+    let magnitude = bounds.min.abs().max(bounds.max.abs()).max_element();
+    match magnitude > 1e60 {
+        true => Err(SurfaceError::TooFarOut),
+        false => Ok(magnitude),
+    }
 }
 
 #[derive(Debug)]
@@ -195,6 +231,20 @@ impl Surface {
     /// # Errors
     /// Where the points, or those that are left, make no surface, and where an option is no length.
     pub fn with_options(cloud: Cloud, options: &SurfaceOptions) -> Result<Self, SurfaceError> {
+        Self::with_facts(cloud, options, None)
+    }
+
+    /// The same of a cloud of which its file says where it lies: the surface is then that which a part of it would
+    /// belong to, to the last bit. What is said is not used where a point lies outside, of a mesh, and where points
+    /// are left out.
+    ///
+    /// # Errors
+    /// As [`Self::with_options`].
+    pub fn with_facts(
+        cloud: Cloud,
+        options: &SurfaceOptions,
+        facts: Option<&CloudFacts>,
+    ) -> Result<Self, SurfaceError> {
         options.validate()?;
         let Cloud {
             mut points,
@@ -205,10 +255,15 @@ impl Surface {
             return Err(SurfaceError::NotFinite(index));
         }
         let bounds = Bounds::of(&points).ok_or(SurfaceError::TooFewPoints(0))?;
-        let magnitude = bounds.min.abs().max(bounds.max.abs()).max_element();
-        if magnitude > 1e60 {
-            return Err(SurfaceError::TooFarOut);
-        }
+        let facts = facts.filter(|facts| {
+            triangles.is_empty()
+                && options.thinning.is_none()
+                && facts.count == points.len() as u64
+                && facts.bounds.contains(bounds.min)
+                && facts.bounds.contains(bounds.max)
+        });
+        let bounds = facts.map_or(bounds, |facts| facts.bounds);
+        let magnitude = magnitude_of(&bounds)?;
         for (face, triangle) in triangles.iter().enumerate() {
             if let Some(&point) = triangle.iter().find(|&&i| i as usize >= points.len()) {
                 let count = points.len();
@@ -225,28 +280,43 @@ impl Surface {
             thinning::thin(&mut points, &mut colors, size)?;
         }
         let frame = LocalFrame::near(&bounds);
+        let sample = match facts {
+            Some(facts) => facts.sample.clone(),
+            None => {
+                let stride = sample_stride(points.len());
+                points.iter().step_by(stride).copied().collect()
+            }
+        };
         for point in &mut points {
             *point = frame.local_from_world(*point);
         }
-        let shape = if triangles.is_empty() {
-            Shape::Cloud(Sites::new(points, &colors)?)
-        } else {
-            Shape::Mesh(Mesh::new(points, colors, triangles)?)
+        let shape = match (triangles.is_empty(), facts) {
+            (true, None) => Shape::Cloud(Sites::new(points, &colors)?),
+            (true, Some(facts)) => {
+                let (bounds, grid) = part::local_grid(facts, &frame);
+                Shape::Cloud(Sites::over(points, &colors, bounds, grid)?)
+            }
+            (false, _) => Shape::Mesh(Mesh::new(points, colors, triangles)?),
         };
-        let whole = Whole {
-            frame,
-            magnitude,
-            shape,
-            blocks: OnceLock::new(),
-            tiles: OnceLock::new(),
-            runs: OnceLock::new(),
-            mesh: OnceLock::new(),
-            making: Mutex::default(),
-        };
+        let whole = Whole::new(frame, magnitude, shape, &sample);
         Ok(Self {
             whole: Arc::new(whole),
             max_edge: options.max_edge.unwrap_or(f64::INFINITY),
         })
+    }
+
+    /// Whether only a part of its cloud is in memory: see [`Self::wanted`].
+    pub fn is_part(&self) -> bool {
+        matches!(&self.whole.shape, Shape::Cloud(sites) if sites.is_part())
+    }
+
+    /// What was asked of a part of a cloud and is not in memory. Only if it is nothing is what was computed with
+    /// this surface (and its clones) that of the whole; else compute it anew with a larger part.
+    pub fn wanted(&self) -> Wanted {
+        match &self.whole.shape {
+            Shape::Cloud(sites) => sites.wanted(),
+            Shape::Mesh(_) => Wanted::default(),
+        }
     }
 
     /// The same surface with another [`SurfaceOptions::max_edge`]; shares the points with this one.
@@ -290,7 +360,9 @@ impl Surface {
     /// Whether so many rays are worth a mesh of the whole surface.
     fn pays_whole(&self, rays: usize) -> bool {
         match &self.whole.shape {
-            Shape::Cloud(sites) => sites.points().len() <= rays.saturating_mul(SITES_PER_RAY),
+            Shape::Cloud(sites) => {
+                !sites.is_part() && sites.points().len() <= rays.saturating_mul(SITES_PER_RAY)
+            }
             Shape::Mesh(_) => true,
         }
     }
@@ -327,6 +399,10 @@ impl Surface {
     fn mesh(&self) -> Result<&Mesh, SurfaceError> {
         let sites = match &self.whole.shape {
             Shape::Mesh(mesh) => return Ok(mesh),
+            Shape::Cloud(sites) if sites.is_part() => {
+                sites.want_all("a mesh of it");
+                return Err(SurfaceError::OnlyAPart);
+            }
             Shape::Cloud(sites) => sites,
         };
         if self.whole.mesh.get().is_none() {
@@ -346,16 +422,9 @@ impl Surface {
             let _making = making.unwrap_or_else(PoisonError::into_inner);
             if self.whole.mesh.get().is_none() {
                 let (points, colors) = (sites.points().to_vec(), sites.colors().to_vec());
-                let whole = Whole {
-                    frame: self.whole.frame,
-                    magnitude: self.whole.magnitude,
-                    shape: Shape::Mesh(Mesh::new(points, colors, triangles)?),
-                    blocks: OnceLock::new(),
-                    tiles: OnceLock::new(),
-                    runs: OnceLock::new(),
-                    mesh: OnceLock::new(),
-                    making: Mutex::default(),
-                };
+                let shape = Shape::Mesh(Mesh::new(points, colors, triangles)?);
+                let mut whole = Whole::new(self.whole.frame, self.whole.magnitude, shape, &[]);
+                whole.heights.clone_from(&self.whole.heights);
                 // It is empty: whoever sets it holds the lock.
                 let _ = self.whole.mesh.set(Arc::new(whole));
             }
@@ -384,8 +453,21 @@ impl Surface {
     /// The vertices in the world: of a cloud one for each (x, y), of a mesh all of the file. Those
     /// that only long triangles use are among them.
     pub fn vertices(&self) -> impl ExactSizeIterator<Item = DVec3> {
+        self.want_all("a look at all of its points");
+        self.vertices_here()
+    }
+
+    /// The same of what is in memory.
+    fn vertices_here(&self) -> impl ExactSizeIterator<Item = DVec3> {
         let frame = &self.whole.frame;
         self.points().iter().map(|&p| frame.world_from_local(p))
+    }
+
+    /// Says that all of a cloud is needed of which a part is in memory, and for what.
+    fn want_all(&self, why: &'static str) {
+        if let Shape::Cloud(sites) = &self.whole.shape {
+            sites.want_all(why);
+        }
     }
 
     /// Some of [`Self::vertices`], by their indices; none where there are no such indices.
@@ -396,13 +478,43 @@ impl Surface {
     }
 
     /// All vertices in blocks of neighbours. The first call makes them.
-    pub fn vertex_blocks(&self) -> &[VertexBlock] {
+    fn vertex_blocks(&self) -> &[VertexBlock] {
         let blocks = &self.whole.blocks;
-        blocks.get_or_init(|| blocks::blocks(self.vertices()))
+        blocks.get_or_init(|| blocks::blocks(self.vertices_here()))
     }
 
-    /// The box around all vertices, in the world. The first call makes the blocks.
+    /// The vertices that lie in boxes (world) which `misses` does not miss: boxes only shrink the answer. Their
+    /// order says nothing. The first call makes the blocks.
+    pub fn vertices_seen(&self, misses: impl Fn(&Bounds) -> bool) -> impl Iterator<Item = DVec3> {
+        if let Shape::Cloud(sites) = &self.whole.shape
+            && sites.is_part()
+        {
+            part::want_seen(sites, &self.whole.frame, &misses);
+        }
+        let blocks = self.vertex_blocks().iter();
+        let seen = blocks.filter(move |block| !misses(&block.bounds));
+        seen.flat_map(|block| self.vertices_in(block.range.clone()))
+    }
+
+    /// The heights (world) below and above which the lowest and the highest hundredth of it lie, by a sample of some
+    /// thousand points from all over it: beyond them is most often noise. `None` without points.
+    pub fn usual_heights(&self) -> Option<[f64; 2]> {
+        let mut heights = self.whole.heights.clone();
+        heights.sort_by(f64::total_cmp);
+        let hundredth = heights.len() / 100;
+        let high = heights.len().checked_sub(hundredth + 1)?;
+        Some([*heights.get(hundredth)?, *heights.get(high)?])
+    }
+
+    /// The box around all points of it, in the world.
     pub fn bounds(&self) -> Bounds {
+        if let Shape::Cloud(sites) = &self.whole.shape {
+            let (frame, bounds) = (&self.whole.frame, sites.bounds());
+            return Bounds {
+                min: frame.world_from_local(bounds.min),
+                max: frame.world_from_local(bounds.max),
+            };
+        }
         // A surface has vertices, so the box that nothing is in does not stay.
         let nothing = Bounds {
             min: DVec3::INFINITY,
@@ -418,7 +530,8 @@ impl Surface {
     /// The box around its bulk: [`Self::bounds`] without the few vertices far away that sparse clouds
     /// have. Without such it is [`Self::bounds`].
     pub fn bulk_bounds(&self) -> Bounds {
-        bulk::bulk(self.vertices(), self.bounds())
+        self.want_all("finding out where its bulk lies");
+        bulk::bulk(self.vertices_here(), self.bounds())
     }
 
     /// The colour of each vertex (red, green, blue), in the order of [`Self::vertices`]; empty where

@@ -14,11 +14,17 @@
 //! linear function, and where it changes its sign the ray meets the surface. So no ray can slip
 //! through an edge or a vertex.
 //!
+//! What a ray meets does not depend on which rays were cast before: a triangle is read from its first corner in the
+//! order of (x, y), and where four or more sites share the circle of a triangle that was passed (a lattice is made of
+//! such), so that there are several triangulations, the ray meets the fan that the tiles have there (`tiles`), triangle
+//! by triangle. Of a part of the sites (`sites::held`) only the last look into a circle needs all that it could
+//! find: it asks for what is not here.
+//!
 //! Where long triangles do not count, the walk passes them like all others and meets nothing there,
 //! unless a short one at the rim of the hole is near enough to be met.
 
 use glam::{DVec2, DVec3};
-use robust::{Coord, incircle};
+use robust::{Coord, incircle, orient2d};
 use spade::handles::{DirectedEdgeHandle, FaceHandle, InnerTag};
 use spade::{
     DelaunayTriangulation, Intersection, LineIntersectionIterator, Point2, PositionInTriangulation,
@@ -30,6 +36,7 @@ use super::mesh::Sheared;
 use super::sites::Sites;
 use super::{Met, SurfaceError, longest_edge};
 use crate::geometry::Ray;
+use std::collections::HashSet;
 
 /// How many of the sites found in a circle join at once: the nearest ones settle most circles.
 const SITES_AT_ONCE: usize = 64;
@@ -49,8 +56,8 @@ pub(super) struct Walk<'a> {
     max_edge: f64,
     /// Delaunay, of some of the sites, their whole hull among them.
     built: DelaunayTriangulation<Site>,
-    /// Which cells' sites are all in `built`.
-    joined: Vec<bool>,
+    /// The cells whose sites are all in `built`.
+    joined: HashSet<usize>,
     /// Whether all sites are in `built`: then no circle needs a look.
     complete: bool,
     /// Where the next insertion begins its search.
@@ -64,6 +71,25 @@ struct Stop {
     t: f64,
     /// Height of the ray above the surface there.
     above: f64,
+}
+
+/// What became of the sites in circles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Joined {
+    /// Some joined.
+    Some,
+    /// There were none.
+    None,
+    /// There were none inside, but others than the corners on them: there are several triangulations.
+    NoneButOnCircles,
+}
+
+/// What lies in the circle of a triangle.
+struct InCircle {
+    /// Sites inside it.
+    inside: Vec<DVec3>,
+    /// Others than its corners on it.
+    on: Vec<DVec3>,
 }
 
 /// The way between two neighbouring stops, inside one triangle or along an edge.
@@ -81,7 +107,7 @@ impl<'a> Walk<'a> {
     /// # Errors
     /// Where a coordinate is too large for exact predicates.
     pub(super) fn new(sites: &'a Sites, max_edge: f64) -> Result<Self, SurfaceError> {
-        let complete = sites.points().len() <= FEW_SITES;
+        let complete = !sites.is_part() && sites.points().len() <= FEW_SITES;
         Ok(Self {
             sites,
             max_edge,
@@ -90,7 +116,7 @@ impl<'a> Walk<'a> {
             } else {
                 sites.hull()
             })?,
-            joined: vec![complete; sites.cell_count()],
+            joined: HashSet::new(),
             complete,
             hint: None,
         })
@@ -123,15 +149,28 @@ impl<'a> Walk<'a> {
         };
         let (from, to) = (ray.at(start).truncate(), ray.at(end).truncate());
         let trace = to - from;
-        let places = LineIntersectionIterator::new(&self.built, spade_point(from), spade_point(to))
-            .map(|event| match event {
-                Intersection::EdgeIntersection(edge) => crossing(edge, from, trace).0,
-                Intersection::VertexIntersection(vertex) => vertex.data().point().truncate(),
-                Intersection::EdgeOverlap(edge) => edge.from().data().point().truncate(),
-            });
-        let (first, last) = places.fold((None, None), |(first, _), place| {
-            (first.or(Some(place)), Some(place))
-        });
+        let hull = self.sites.hull();
+        let mut places: Vec<(f64, DVec2)> = Vec::new();
+        for (&a, &b) in hull.iter().zip(hull.iter().cycle().skip(1)) {
+            let [at_a, at_b] = [a, b].map(|corner| trace.perp_dot(corner.truncate() - from));
+            if (at_a > 0.0 && at_b > 0.0) || (at_a < 0.0 && at_b < 0.0) {
+                continue;
+            }
+            let ends = match at_a == at_b {
+                true => vec![a, b],
+                false => vec![a.lerp(b, (at_a / (at_a - at_b)).clamp(0.0, 1.0))],
+            };
+            for place in ends {
+                let place = place.truncate();
+                let share = (place - from).dot(trace) / trace.length_squared();
+                if (0.0..=1.0).contains(&share) {
+                    places.push((share, place));
+                }
+            }
+        }
+        places.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (first, last) = (places.first(), places.last());
+        let (first, last) = (first.map(|first| first.1), last.map(|last| last.1));
         match (first, last) {
             (Some(first), Some(last)) => vec![first, last],
             _ => {
@@ -149,22 +188,103 @@ impl<'a> Walk<'a> {
     fn cast_once(&mut self, ray: &Ray, slack: f64) -> Option<Met> {
         let (start, end) = self.span(ray)?;
         let (from, to) = (ray.at(start).truncate(), ray.at(end).truncate());
+        if !self.sites.want_along(from, to) {
+            return None;
+        }
         if !self.complete {
             self.join_cells(from, to);
         }
         // Steeper than this, places along the trace say too little about places along the ray.
         let drop = (ray.at(end).z - ray.at(start).z).abs();
         let plumb = from.distance(to) <= 1e-7 * drop;
+        let mut by_fans = false;
         loop {
-            let (met, passed) = if plumb {
-                self.drop_down(ray, from, slack)
-            } else {
-                self.walk_along(ray, start, end, slack)
+            let (met, passed) = match (plumb, by_fans) {
+                (true, false) => self.drop_down(ray, from, slack),
+                (false, false) => self.walk_along(ray, start, end, slack),
+                (true, true) => self.drop_on_fans(ray, from, slack),
+                (false, true) => self.walk_on_fans(ray, start, end, slack),
             };
-            if self.complete || !self.join_sites_inside(&passed) {
-                return met;
+            match self.join_sites_inside(&passed) {
+                Joined::Some => {}
+                Joined::NoneButOnCircles if !by_fans => by_fans = true,
+                Joined::NoneButOnCircles | Joined::None => return met,
             }
         }
+    }
+
+    /// As [`Self::drop_down`], on the fans.
+    fn drop_on_fans(&self, ray: &Ray, at: DVec2, slack: f64) -> (Option<Met>, Vec<Triangle>) {
+        // The ray may lean by 1e-7 of the heights that it passes: the place where it meets is near.
+        let (_, mut passed) = self.drop_down(ray, at, slack);
+        passed.extend(self.triangles_at(at));
+        let met = self.meet_fans(&Sheared::new(ray), &passed, slack);
+        (met, passed)
+    }
+
+    /// As [`Self::walk_along`], on the fans.
+    fn walk_on_fans(
+        &self,
+        ray: &Ray,
+        start: f64,
+        end: f64,
+        slack: f64,
+    ) -> (Option<Met>, Vec<Triangle>) {
+        let sheared = Sheared::new(ray);
+        let (mut met, mut passed): (Option<Met>, Vec<Triangle>) = (None, Vec::new());
+        for piece in self.pieces(ray, start, end) {
+            let mut there: Vec<Triangle> = piece.triangles.into_iter().flatten().collect();
+            if !self.counts(&there) {
+                // A short one at the rim of a hole may be near enough.
+                self.add_around(&mut there);
+            }
+            met = nearer(met, self.meet_fans(&sheared, &there, slack));
+            passed.extend(there);
+            if met.is_some_and(|met| met.t <= piece.to.t) {
+                break;
+            }
+        }
+        (met, passed)
+    }
+
+    /// Where a ray meets the fans of these triangles.
+    fn meet_fans(&self, ray: &Sheared, triangles: &[Triangle], slack: f64) -> Option<Met> {
+        let fans = triangles.iter().flat_map(|triangle| self.fan(triangle));
+        let met = fans.filter_map(|corners| {
+            let longest_edge = longest_edge(corners);
+            let t = (longest_edge <= self.max_edge).then(|| ray.meet(corners, slack));
+            Some(Met {
+                t: t??,
+                longest_edge,
+            })
+        });
+        met.min_by(first)
+    }
+
+    /// The fan of all sites on the circle of a triangle, as the tiles have it: around the first of them. Of three
+    /// sites it is the triangle.
+    fn fan(&self, triangle: &Triangle) -> Vec<[DVec3; 3]> {
+        let corners = triangle.map(|site| site.point());
+        let mut on_circle = corners.to_vec();
+        on_circle.extend(self.in_circle(triangle).on);
+        let order = |a: &DVec3, b: &DVec3| {
+            let [cell_a, cell_b] = [a, b].map(|site| self.sites.cell_at(site.truncate()));
+            let places = a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
+            cell_a.cmp(&cell_b).then(places)
+        };
+        on_circle.sort_by(order);
+        let Some((apex, rest)) = on_circle.split_first_mut() else {
+            return Vec::new();
+        };
+        let apex = *apex;
+        let coord = |p: DVec3| Coord { x: p.x, y: p.y };
+        // Seen from one of them, the others of a circle lie within half a turn.
+        rest.sort_by(|a, b| {
+            let turn = orient2d(coord(apex), coord(*a), coord(*b));
+            0.0_f64.total_cmp(&turn)
+        });
+        let edges = rest.windows(2);
+        edges.map(|edge| [apex, edge[0], edge[1]]).collect()
     }
 
     /// The part of the ray (t >= 0) in the box around the sites, which is widened a little.
@@ -278,14 +398,7 @@ impl<'a> Walk<'a> {
     /// Where the ray meets a triangle that counts and shares a corner with one of those in the hole
     /// around it, which the other ones are added to.
     fn meet_rim(&self, ray: &Ray, slack: f64, hole: &mut Vec<Triangle>) -> Option<Met> {
-        let corners: Vec<DVec2> = hole
-            .iter()
-            .flatten()
-            .map(|site| site.point().truncate())
-            .collect();
-        for corner in corners {
-            hole.extend(self.triangles_at(corner));
-        }
+        self.add_around(hole);
         let sheared = Sheared::new(ray);
         hole.iter()
             .filter(|triangle| size_of(triangle) <= self.max_edge)
@@ -293,7 +406,16 @@ impl<'a> Walk<'a> {
                 let t = sheared.meet(triangle.map(|site| site.point()), slack)?;
                 Some(met(t, std::slice::from_ref(triangle)))
             })
-            .min_by(|a, b| a.t.total_cmp(&b.t))
+            .min_by(first)
+    }
+
+    /// Adds the triangles at the corners of these.
+    fn add_around(&self, triangles: &mut Vec<Triangle>) {
+        let sites = triangles.iter().flatten();
+        let corners: Vec<DVec2> = sites.map(|site| site.point().truncate()).collect();
+        for corner in corners {
+            triangles.extend(self.triangles_at(corner));
+        }
     }
 
     /// The pieces of the trace that lie on the surface built so far, in order.
@@ -392,6 +514,10 @@ impl<'a> Walk<'a> {
             PositionInTriangulation::OnEdge(edge) => {
                 let edge = self.built.directed_edge(edge);
                 let (a, b) = (edge.from().data().point(), edge.to().data().point());
+                let (a, b) = match is_before(b, a) {
+                    true => (b, a),
+                    false => (a, b),
+                };
                 let way = (b - a).truncate();
                 let share = (place - a.truncate()).dot(way) / way.length_squared();
                 Some(a.z + (b.z - a.z) * share)
@@ -405,21 +531,16 @@ impl<'a> Walk<'a> {
     fn triangles_at(&self, place: DVec2) -> Vec<Triangle> {
         match self.built.locate(spade_point(place)) {
             PositionInTriangulation::OnFace(face) => {
-                vec![self.built.face(face).vertices().map(|v| *v.data())]
+                let corners = self.built.face(face).vertices();
+                vec![first_first(corners.map(|vertex| *vertex.data()))]
             }
             PositionInTriangulation::OnEdge(edge) => {
                 let edge = self.built.directed_edge(edge);
-                [triangle(edge), triangle(edge.rev())]
-                    .into_iter()
-                    .flatten()
-                    .collect()
+                in_order([triangle(edge), triangle(edge.rev())].into_iter().flatten())
             }
-            PositionInTriangulation::OnVertex(vertex) => self
-                .built
-                .vertex(vertex)
-                .out_edges()
-                .filter_map(triangle)
-                .collect(),
+            PositionInTriangulation::OnVertex(vertex) => {
+                in_order(self.built.vertex(vertex).out_edges().filter_map(triangle))
+            }
             _ => Vec::new(),
         }
     }
@@ -427,7 +548,7 @@ impl<'a> Walk<'a> {
     /// Adds the sites of the cells along a segment.
     fn join_cells(&mut self, from: DVec2, to: DVec2) {
         for cell in self.sites.cells_along(from, to) {
-            if !std::mem::replace(&mut self.joined[cell], true) {
+            if self.joined.insert(cell) {
                 for &point in self.sites.in_cell(cell) {
                     self.join(point);
                 }
@@ -435,56 +556,76 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Adds sites that lie inside the circumcircles of these triangles; false where there are none.
-    fn join_sites_inside(&mut self, triangles: &[Triangle]) -> bool {
-        let mut inside = Vec::new();
+    /// Adds sites that lie inside the circumcircles of these triangles.
+    fn join_sites_inside(&mut self, triangles: &[Triangle]) -> Joined {
+        if self.complete && self.sites.points().len() <= FEW_SITES {
+            // One triangulation of all of them, made of nothing else.
+            return Joined::None;
+        }
+        let (mut inside, mut on_circles) = (Vec::new(), false);
         for triangle in triangles {
-            inside.extend(self.sites_inside(triangle));
+            let found = self.in_circle(triangle);
+            on_circles |= !found.on.is_empty();
+            inside.extend(found.inside);
         }
         for &point in &inside {
             self.join(point);
         }
-        if self.built.num_vertices() * 2 > self.sites.points().len()
+        if !self.complete
+            && !self.sites.is_part()
+            && self.built.num_vertices() * 2 > self.sites.points().len()
             && let Ok(whole) = load(self.sites.points())
         {
             self.built = whole;
             self.hint = None;
             self.complete = true;
-            return true;
+            return Joined::Some;
         }
-        !inside.is_empty()
+        match (inside.is_empty(), on_circles) {
+            (false, _) => Joined::Some,
+            (true, true) => Joined::NoneButOnCircles,
+            (true, false) => Joined::None,
+        }
     }
 
     /// The sites strictly inside the circumcircle of a triangle, of many those nearest to its
-    /// middle.
-    fn sites_inside(&self, triangle: &Triangle) -> Vec<DVec3> {
+    /// middle; and those on it, its corners left out.
+    fn in_circle(&self, triangle: &Triangle) -> InCircle {
         let [a, b, c] = triangle.map(|site| site.point().truncate());
         let (ab, ac) = (b - a, c - a);
         let to_center = (ab.length_squared() * ac.perp() - ac.length_squared() * ab.perp())
             / (-2.0 * ab.perp_dot(ac));
         let (center, radius_squared) = (a + to_center, to_center.length_squared());
+        let radius = radius_squared.sqrt();
         let coord = |p: DVec2| Coord { x: p.x, y: p.y };
-        let mut found = Vec::new();
-        self.sites
-            .near_disc(center, radius_squared.sqrt(), |_, site| {
-                let place = site.truncate();
-                // Clearly outside; NaN, of a circle too large for f64, is left to the predicate.
-                if place.distance_squared(center) > radius_squared * (1.0 + 1e-6) {
-                    return;
-                }
-                if incircle(coord(a), coord(b), coord(c), coord(place)) > 0.0 {
-                    found.push(*site);
-                }
-            });
+        let (mut inside, mut on) = (Vec::new(), Vec::new());
+        self.sites.near_disc(center, radius, |_, site| {
+            let place = site.truncate();
+            // Clearly outside; NaN, of a circle too large for f64, is left to the predicate.
+            if place.distance_squared(center) > radius_squared * (1.0 + 1e-6)
+                || [a, b, c].contains(&place)
+            {
+                return;
+            }
+            let found = incircle(coord(a), coord(b), coord(c), coord(place));
+            if found > 0.0 {
+                inside.push(*site);
+            } else if found == 0.0 {
+                on.push(*site);
+            }
+        });
+        if inside.is_empty() {
+            self.sites.want_disc(center, radius);
+        }
         let middle = (a + b + c) / 3.0;
-        if found.len() > SITES_AT_ONCE {
-            found.select_nth_unstable_by(SITES_AT_ONCE, |p, q| {
+        if inside.len() > SITES_AT_ONCE {
+            inside.select_nth_unstable_by(SITES_AT_ONCE, |p, q| {
                 let distance = |p: &DVec3| p.truncate().distance_squared(middle);
                 distance(p).total_cmp(&distance(q))
             });
-            found.truncate(SITES_AT_ONCE);
+            inside.truncate(SITES_AT_ONCE);
         }
-        found
+        InCircle { inside, on }
     }
 
     /// How many sites have been triangulated so far.
@@ -539,7 +680,12 @@ fn met(t: f64, there: &[Triangle]) -> Met {
 }
 
 fn nearer(a: Option<Met>, b: Option<Met>) -> Option<Met> {
-    a.into_iter().chain(b).min_by(|a, b| a.t.total_cmp(&b.t))
+    a.into_iter().chain(b).min_by(first)
+}
+
+/// Which of two is met first; on an edge, of two triangles the smaller one.
+fn first(a: &Met, b: &Met) -> std::cmp::Ordering {
+    (a.t.total_cmp(&b.t)).then(a.longest_edge.total_cmp(&b.longest_edge))
 }
 
 /// The longest edge of a triangle.
@@ -556,16 +702,44 @@ fn spade_point(place: DVec2) -> Point2<f64> {
 
 /// The triangle on the left of an edge, or `None` outside of the hull.
 fn triangle(edge: Edge<'_>) -> Option<Triangle> {
-    Some(
-        edge.face()
-            .as_inner()?
-            .vertices()
-            .map(|vertex| *vertex.data()),
-    )
+    let corners = edge.face().as_inner()?.vertices();
+    Some(first_first(corners.map(|vertex| *vertex.data())))
 }
 
 fn corners(face: Face<'_>) -> [DVec3; 3] {
-    face.vertices().map(|vertex| vertex.data().point())
+    first_first(face.vertices().map(|vertex| *vertex.data())).map(|site| site.point())
+}
+
+/// Whether a place comes before another one, by (x, y).
+fn is_before(a: DVec3, b: DVec3) -> bool {
+    (a.x, a.y) < (b.x, b.y)
+}
+
+/// The same triangle with its first corner, by (x, y), first: the same products whichever way it was found.
+fn first_first([a, b, c]: Triangle) -> Triangle {
+    let [at_a, at_b, at_c] = [a, b, c].map(|site| site.point());
+    if is_before(at_a, at_b) && is_before(at_a, at_c) {
+        [a, b, c]
+    } else if is_before(at_b, at_c) {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
+}
+
+/// Triangles sorted by their corners.
+fn in_order(triangles: impl Iterator<Item = Triangle>) -> Vec<Triangle> {
+    let mut triangles: Vec<Triangle> = triangles.collect();
+    triangles.sort_by(|a, b| {
+        let places = a.iter().zip(b).map(|(a, b)| {
+            let (a, b) = (a.point(), b.point());
+            a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
+        });
+        places
+            .reduce(std::cmp::Ordering::then)
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
+    triangles
 }
 
 /// Where the trace crosses an edge, and the surface's height there.

@@ -106,12 +106,36 @@ impl Polygon {
         distances.fold(f64::MAX, f64::min)
     }
 
+    /// How much of its area lies inside a box of the map (least and greatest x and y), square world units: cut off along
+    /// one side of the box after the other (Sutherland & Hodgman 1974). What that leaves of a polygon with bays may hang
+    /// together by threads, which have no area.
+    pub fn area_inside(&self, [min, max]: [DVec2; 2]) -> f64 {
+        let mut left = self.corners.clone();
+        for (normal, most) in [
+            (DVec2::X, max.x),
+            (DVec2::Y, max.y),
+            (DVec2::NEG_X, -min.x),
+            (DVec2::NEG_Y, -min.y),
+        ] {
+            let beyond = |corner: DVec2| normal.dot(corner) - most;
+            let mut kept = Vec::with_capacity(left.len() + 1);
+            for (place, &from) in left.iter().enumerate() {
+                let to = left[(place + 1) % left.len()];
+                let (start, end) = (beyond(from), beyond(to));
+                if start <= 0.0 {
+                    kept.push(from);
+                }
+                if (start <= 0.0) != (end <= 0.0) {
+                    kept.push(from + (to - from) * (start / (start - end)));
+                }
+            }
+            left = kept;
+        }
+        twice_signed_area(&left).max(0.0) / 2.0
+    }
+
     fn twice_signed_area(&self) -> f64 {
-        // From its first corner: squares of UTM coordinates would lose the digits.
-        let from = self.corners[0];
-        let pairs = self.corners.windows(2);
-        let twice = pairs.map(|pair| (pair[0] - from).perp_dot(pair[1] - from));
-        twice.sum()
+        twice_signed_area(&self.corners)
     }
 
     /// It in triangles that do not overlap, counter-clockwise, less `origin`.
@@ -190,9 +214,40 @@ fn touch(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
     crosses(side(a, b, c), side(a, b, d)) && crosses(side(c, d, a), side(c, d, b))
 }
 
+/// Of a ring of corners, positive where they run counter-clockwise.
+fn twice_signed_area(corners: &[DVec2]) -> f64 {
+    let Some(&from) = corners.first() else {
+        return 0.0;
+    };
+    // From its first corner: squares of UTM coordinates would lose the digits.
+    let pairs = corners.windows(2);
+    let twice = pairs.map(|pair| (pair[0] - from).perp_dot(pair[1] - from));
+    twice.sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// An L of three squares of side 10, far from the origin: what boxes leave of it, counted by hand.
+    #[test]
+    fn what_lies_inside_a_box() {
+        let corners = [(0, 0), (20, 0), (20, 10), (10, 10), (10, 20), (0, 20)];
+        let world =
+            |(x, y): (i32, i32)| DVec2::new(f64::from(x) + 500_000.0, f64::from(y) + 5_000_000.0);
+        let polygon = Polygon::new(&corners.map(world)).unwrap();
+        for (min, max, expected) in [
+            ((-5, -5), (25, 25), 300.0),
+            ((5, 5), (15, 15), 75.0),
+            // Two parts of it, over the bay.
+            ((5, 15), (25, 18), 15.0),
+            ((12, 12), (30, 30), 0.0),
+            ((30, 0), (40, 10), 0.0),
+        ] {
+            let found = polygon.area_inside([world(min), world(max)]);
+            assert!((found - expected).abs() < 1e-6, "{min:?} {max:?}: {found}");
+        }
+    }
 
     /// Of a square of side 2 about the origin, turned by 45 degrees: half its diagonal is the root of 2.
     #[test]

@@ -1,7 +1,9 @@
 //! Where tests find their files: those of the repository, and the real data beside it, which stay
 //! outside of it because their licences differ. Only tests and benchmarks use this crate.
 
+pub mod copc;
 pub mod jpeg;
+pub mod node_server;
 pub mod ros;
 
 use std::fs::OpenOptions;

@@ -18,6 +18,7 @@ mod own_frame;
 mod wrong_pile;
 
 mod anova;
+mod batch;
 mod clicked;
 #[cfg(all(feature = "app", target_os = "linux"))]
 mod clipboard;
@@ -28,14 +29,17 @@ mod delineate;
 mod effort;
 mod georeference;
 mod geotiff;
+mod in_part;
 mod independent_answers;
 mod intervals;
 mod map;
 mod mission;
+mod node_odm;
 mod on_surface;
 mod overwriting;
 mod plan;
 mod plan_areas;
+mod plan_surveys;
 mod psd_compare;
 mod real_data;
 mod reconstruct;

@@ -44,6 +44,19 @@ fn a_mission_is_told_and_written_for_another() {
         error.contains("bench.kmz: DJI's files need the drone"),
         "{error}"
     );
+    // A take-off whose numbers were swapped.
+    let far = crate::common::error_of(&["mission", &path("bench.waypoints"), "--take-off", "7,50"]);
+    assert!(far.contains("the latitude comes first"), "{far}");
+    // By haversines on a sphere of 6371 km; half a degree of latitude is 55.6 km of it, 0.4 are 44.5.
+    assert!(far.contains("a stop lies 6221 km from there"), "{far}");
+    let north = ["mission", &path("bench.waypoints"), "--take-off"];
+    let far = crate::common::error_of(&[&north[..], &["50.5001,7.0001"]].concat());
+    assert!(far.contains("a stop lies 56 km from there"), "{far}");
+    crate::common::stdout_of(&[&north[..], &["50.4001,7.0001"]].concat());
+    let shown = crate::common::stdout_of(&["info", &path("bench.waypoints")]);
+    let take_off =
+        "take off: elevation (above the geoid EGM96, metres 160.0), latitude 50.0, longitude 7.0";
+    assert!(shown.contains(take_off), "{shown}");
     // What was read is not written over.
     let own = crate::common::fragscale(&[
         "mission",

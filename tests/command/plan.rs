@@ -1,13 +1,14 @@
 //! `fragscale plan`: over a surface that is made here, and read back.
 
 use std::fs;
+use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{fragscale, shared_data, stdout_of};
+use crate::common::{error_of, fragscale, shared_data, stdout_of};
 
 /// A plane in UTM that falls to the east by 1 in 2, and a flight of one photo over it.
-pub(super) fn plane(folder: &std::path::Path) -> String {
+pub(super) fn plane(folder: &Path) -> String {
     let mut points = String::new();
     for i in 0..41 * 41 {
         let (x, y) = (f64::from(i % 41) * 5.0, f64::from(i / 41) * 5.0);
@@ -35,7 +36,7 @@ pub(super) fn plane(folder: &std::path::Path) -> String {
 pub(super) const AREA: &str = "450060,5400060;450140,5400060;450140,5400140;450060,5400140";
 
 /// Plans photos of it from a drone of DJI's, with what stands behind that.
-fn planned(flight: &str, more: &[&str]) -> std::process::Output {
+pub(super) fn planned(flight: &str, more: &[&str]) -> std::process::Output {
     let scale = ["--drone", "mavic-3e", "--scale", "0.5 px/cm"];
     let places = ["--area", AREA, "--take-off", "450020,5400020"];
     fragscale(&[&["plan", flight][..], &scale, &places, more].concat())
@@ -128,7 +129,7 @@ fn a_plan_becomes_missions_that_say_the_same() {
     assert_eq!(refused.status.code(), Some(1));
     let error = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert!(
-        error.contains("take-off does not lie on the surface"),
+        error.contains("take-off does not lie on the surface: it lies around (440000.0, 5400020.0), the surface at x 450000.0 to 450200.0"),
         "{error}"
     );
 }
@@ -174,7 +175,12 @@ fn what_makes_no_plan_is_one_line() {
         "{error}"
     );
     let error = error_of(&with(&["--scale", "1 px/cm", "--area", "0,0;1,0;1,1"]), 1);
-    assert!(error.contains("off the surface"), "{error}");
+    assert!(
+        error.contains("the area does not lie on the surface: it lies around (0.5, 0.5)"),
+        "{error}"
+    );
+    let error = error_of(&with(&["--scale", "1 px/cm", "--overlap", "0.7"]), 2);
+    assert!(error.contains("it is in percent: 70"), "{error}");
     error_of(&with(&["--scale", "twenty"]), 2);
     error_of(&with(&["--scale", "1 px/cm", "--mission", "m.kmz"]), 2);
     let area = ["--area", "450060,5400060;450140,5400060;450140,5400140"];
@@ -188,6 +194,81 @@ fn what_makes_no_plan_is_one_line() {
         1,
     );
     assert!(error.contains("overlap"), "{error}");
+}
+
+/// What cannot be written is known before the work, and then nothing else is.
+#[test]
+fn what_no_drone_flies_is_refused_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (kmz, other, table) = (path("m.kmz"), path("m.plan"), path("p.csv"));
+    let places = ["--area", AREA, "--take-off", "450020,5400020"];
+    let refused = |drone: &[&str]| {
+        let files = ["--mission", &other, "--mission", &kmz, "-o", &table];
+        let scale = ["--scale", "0.5 px/cm"];
+        let error = error_of(&[&["plan", &flight][..], &scale, drone, &places, &files].concat());
+        assert!(
+            [&kmz, &other, &table]
+                .iter()
+                .all(|path| !Path::new(path).exists())
+        );
+        error
+    };
+    let error = refused(&["--drone", "phantom-4-rtk"]);
+    assert!(
+        error.contains("m.kmz: DJI's files of missions have no number for the DJI Phantom 4 RTK"),
+        "{error}"
+    );
+    let error = refused(&[]);
+    assert!(
+        error.contains("m.kmz: DJI's files need the drone"),
+        "{error}"
+    );
+    let error = refused(&["--drone", "mavic-3e", "--unit", "ft"]);
+    assert!(
+        error.contains("are in ft, and EPSG:32632 counts in units of 1 m"),
+        "{error}"
+    );
+    // Of a mission that is there, too.
+    let mission = planned(&flight, &["--mission", &other]);
+    assert_eq!(mission.status.code(), Some(0));
+    let error = error_of(&["mission", &other, "--to", &kmz, "--drone", "phantom-4-rtk"]);
+    assert!(
+        error.contains("no number for the DJI Phantom 4 RTK"),
+        "{error}"
+    );
+}
+
+/// Missions of a plan with more batteries lie beside the one of a plan with fewer: that is said, and no other file is.
+#[test]
+fn missions_of_another_plan_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let flight = plane(folder.path());
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    for other in ["m-old.kmz", "m-1-b.kmz", "n-1.kmz", "m-1.plan"] {
+        fs::write(path(other), "mine").unwrap();
+    }
+    let notes = |battery: &str| {
+        let mission = path("m.kmz");
+        let output = planned(&flight, &["--mission", &mission, "--battery", battery]);
+        let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{notes}");
+        notes
+    };
+    let first = notes("2");
+    assert!(Path::new(&path("m-battery-2.kmz")).is_file(), "{first}");
+    assert!(!first.contains("another plan"), "{first}");
+    let second = notes("60");
+    assert!(
+        second.contains("m-battery-1.kmz, m-battery-2.kmz"),
+        "{second}"
+    );
+    assert!(second.contains("beside it are of another plan"), "{second}");
+    assert!(
+        !second.contains("m-old") && !second.contains("m-1"),
+        "{second}"
+    );
 }
 
 /// A mission that was flown half a metre to the east, 0.2 to the south and 0.1 too high, without its second photo.
@@ -342,8 +423,17 @@ fn a_real_quarry_is_planned() {
     else {
         return;
     };
+    // As it is it lies on its side: that is said, and how to turn it.
+    let lying = terrain.display().to_string();
+    let scale = ["--drone", "mavic-3e", "--scale", "1 px/cm", "--unit", "m"];
+    let refused = fragscale(&[&["plan", &lying][..], &scale].concat());
+    let notes = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(
+        notes.contains("write up = \"y\" below [surface]"),
+        "{notes}"
+    );
     let folder = tempfile::tempdir().unwrap();
-    // A cloud alone has z upwards.
+    // A cloud alone has z upwards, unless another axis is named.
     let turned = fs::read_to_string(terrain).unwrap();
     let turned: String = (turned.lines())
         .filter_map(|line| {
@@ -361,10 +451,16 @@ fn a_real_quarry_is_planned() {
     let asked = [
         "--drone", "mavic-3e", "--scale", "1 px/cm", "--format", "json",
     ];
-    let told = fragscale(&[&["plan", &flight][..], &asked, &area].concat());
-    let notes = String::from_utf8_lossy(&told.stderr).into_owned();
-    assert_eq!(told.status.code(), Some(0), "{notes}");
-    let told: Value = serde_json::from_slice(&told.stdout).unwrap();
+    let told = |words: &[&str]| -> Value {
+        let told = fragscale(&[&["plan"], words, &asked, &area].concat());
+        let notes = String::from_utf8_lossy(&told.stderr).into_owned();
+        assert_eq!(told.status.code(), Some(0), "{notes}");
+        // Its unit was stated, and it has no photos to doubt.
+        assert!(!notes.contains("not a scale"), "{notes}");
+        serde_json::from_slice(&told.stdout).unwrap()
+    };
+    let (turned, told) = (told(&[&flight]), told(&[&lying, "--up", "y"]));
+    assert_eq!(turned["photos"], told["photos"]);
     let photos = told["photos"].as_array().unwrap();
     assert!(photos.len() > 5, "{}", photos.len());
     for photo in photos {

@@ -121,9 +121,33 @@ fn panels_are_put_away_and_come_back() {
     // By the menu too.
     desk.harness.query_menu("View").click();
     desk.settle();
+    // The window is lower than this menu.
+    desk.harness.query_menu("Photo and settings").scroll_to_me();
+    desk.settle();
     desk.harness.query_menu("Photo and settings").click();
     desk.settle();
     assert!(desk.shows(Role::Tab, "Flight"));
+}
+
+/// The menu of most entries, in a low window: all of it stays inside, and what is below is scrolled to.
+#[test]
+fn a_long_menu_scrolls_in_a_low_window() {
+    let mut desk = desk_of_size([900.0, 420.0], "tests/windrow");
+    desk.settle();
+    desk.harness.query_menu("View").click();
+    desk.settle();
+    assert!(desk.harness.query_menu("Theme").rect().min.y > 420.0);
+    desk.harness.query_menu("Theme").scroll_to_me();
+    desk.settle();
+    assert!(desk.harness.query_menu("Theme").rect().max.y < 420.0);
+    desk.harness.query_menu("Theme").click();
+    desk.settle();
+    desk.click(Role::RadioButton, "Light");
+    desk.settle();
+    assert_eq!(
+        desk.harness.ctx.options(|options| options.theme_preference),
+        egui::ThemePreference::Light
+    );
 }
 
 /// A button of the menu, whose name has its keys behind it.

@@ -14,7 +14,7 @@ use glam::DVec2;
 use crate::desk::Desk;
 
 /// A plane in UTM that falls to the east by 1 in 2, with a ridge so that a pile is found, and a flight of one photo.
-fn pile(folder: &Path) -> PathBuf {
+pub fn pile(folder: &Path) -> PathBuf {
     let mut points = String::new();
     for i in 0..81 * 81 {
         let (x, y) = (f64::from(i % 81) * 2.5, f64::from(i / 81) * 2.5);
@@ -36,7 +36,7 @@ fn pile(folder: &Path) -> PathBuf {
 }
 
 /// At its page, seen from above.
-fn planned(flight: &Path) -> Desk {
+pub fn planned(flight: &Path) -> Desk {
     let mut desk = Desk::new(Some(flight));
     desk.press(Modifiers::COMMAND, Key::Num4);
     desk.press(Modifiers::NONE, Key::T);
@@ -44,7 +44,7 @@ fn planned(flight: &Path) -> Desk {
     desk
 }
 
-fn count(desk: &Desk) -> usize {
+pub fn count(desk: &Desk) -> usize {
     desk.open()
         .planning
         .made

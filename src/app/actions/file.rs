@@ -6,6 +6,7 @@ use super::{Action, SHIFT, keys, on_pile, with_distributions, with_flight};
 use crate::command::{Answers, Asking, Command, Dialog};
 use crate::control_points::ControlStep;
 use crate::from_photos::FromPhotosStep;
+use crate::season::SeasonStep;
 use crate::size_distributions::DistributionCommand;
 
 actions! {
@@ -40,6 +41,12 @@ actions! {
         hover: "Make a flight from its photos alone: a cloud, and where each photo was taken",
         shortcut: keys(Modifiers::COMMAND, Key::N),
         command: |_| Some(Command::FromPhotos(FromPhotosStep::Ask(None))),
+    }
+    SEASON {
+        label: "Season of blasts…",
+        hover: "Do the same with many flights: scales, check, export, scale maps, fragments; and see how they are",
+        shortcut: None,
+        command: |_| Some(Command::Season(SeasonStep::Ask)),
     }
     ADD {
         label: "Add surface or photos…",
@@ -169,6 +176,7 @@ pub const MENU: &[Option<Action>] = &[
     Some(OPEN_FILE),
     Some(OPEN_FOLDER),
     Some(FROM_PHOTOS),
+    Some(SEASON),
     Some(ADD),
     Some(ADD_LAYER),
     Some(GEOREFERENCE),

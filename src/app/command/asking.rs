@@ -16,6 +16,8 @@ pub enum Asking {
     Export,
     /// Which photos a new flight is made of.
     FromPhotos,
+    /// Which season of blasts is gone through.
+    Season,
     /// What is known of the reconstruction's place in the world.
     Georeference,
     /// Where the georeferenced flight goes.
@@ -32,6 +34,8 @@ pub enum Asking {
     PlanTable,
     /// Where the page to print of the plan goes.
     PlanSheet,
+    /// Where the comparison of a mission with its flight goes.
+    Flown,
     /// Which files of size distributions to add.
     AddDistributions,
     /// A table of size distributions.

@@ -2,6 +2,8 @@
 
 use crate::from_photos::FolderField;
 use crate::open_flight::georeferencing::PathField;
+use crate::planning::PlanTool;
+use crate::season::SeasonField;
 
 /// The desktop's own dialog for a file or folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,12 +32,20 @@ pub enum Chooses {
 pub enum Answers {
     /// It is opened.
     Open,
+    /// It has the outlines of the selected photo.
+    Masks,
     /// It stands in the field of the small window that is open.
     Asking,
     /// It stands in this field of georeferencing.
     Georeference(PathField),
+    /// It is an area of the plan, or ground to keep out of.
+    Areas(PlanTool),
+    /// It is compared with the flight that came of it.
+    Flown,
     /// It stands in this field of a new flight from photos.
     FromPhotos(FolderField),
+    /// It stands in this field of a season.
+    Season(SeasonField),
 }
 
 impl Dialog {

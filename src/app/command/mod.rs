@@ -34,6 +34,7 @@ use crate::photo_view::PhotoCommand;
 use crate::planning::PlanStep;
 use crate::render::ColorBy;
 use crate::scale::CornerName;
+use crate::season::SeasonStep;
 use crate::size_distributions::{DistributionCommand, Page};
 use crate::state::layers::Layers;
 use crate::state::preferences::Theme;
@@ -116,6 +117,8 @@ pub enum Command {
     },
     /// A step of making a new flight from photos.
     FromPhotos(FromPhotosStep),
+    /// A step of going through a season of blasts.
+    Season(SeasonStep),
     /// Opens a small window that asks for a place, or closes it.
     Ask(Option<Asking>),
     /// Opens the desktop's own dialog.

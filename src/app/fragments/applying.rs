@@ -1,5 +1,7 @@
 //! Does what a step on the page of the fragments says.
 
+use std::path::PathBuf;
+
 use glam::DVec2;
 
 use super::{FragmentStep, FragmentTool, Fragments};
@@ -19,6 +21,7 @@ impl State {
     pub(crate) fn fragment_step(&mut self, step: FragmentStep) {
         match step {
             FragmentStep::Outline => self.outline_photo(),
+            FragmentStep::Masks(path) => self.read_masks(path),
             FragmentStep::TakeDistribution => self.take_fragments_distribution(),
             step => {
                 let Some(open) = &mut self.open else {
@@ -60,13 +63,9 @@ impl State {
         fragments.drawing.clear();
         fragments.refused = None;
         if let Some(of) = photo.and_then(|photo| fragments.photos.get_mut(&photo)) {
-            let done = if redo {
-                of.editing.redo()
-            } else {
-                of.editing.undo()
-            };
-            if done {
-                of.changed();
+            match redo {
+                true => of.redo(),
+                false => of.undo(),
             }
         }
         fragments.forget_gone(photo);
@@ -86,6 +85,24 @@ impl State {
         if let Some(middle) = middle {
             self.apply_to_photo(PhotoCommand::GoTo(middle));
         }
+    }
+}
+
+/// Endings of files of outlines.
+const MASKS: [&str; 6] = ["png", "tif", "tiff", "json", "geojson", "xml"];
+
+impl State {
+    /// Whether what was dropped is the selected photo's outlines: one file of such a kind, on the page of the fragments.
+    pub(crate) fn may_be_masks(&self, paths: &[PathBuf]) -> bool {
+        let [path] = paths else {
+            return false;
+        };
+        let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let is_selected = self
+            .open
+            .as_ref()
+            .is_some_and(|open| open.selected.is_some());
+        self.page == Page::Fragments && is_selected && MASKS.iter().any(|known| ending == *known)
     }
 }
 
@@ -145,7 +162,10 @@ impl Fragments {
             FragmentStep::Finer(at) => {
                 self.by_regions(photo, |regions, now| regions.finer(now, at))
             }
-            FragmentStep::Engine(_) | FragmentStep::Outline | FragmentStep::TakeDistribution => {}
+            FragmentStep::Engine(_)
+            | FragmentStep::Outline
+            | FragmentStep::Masks(_)
+            | FragmentStep::TakeDistribution => {}
         }
         self.forget_gone(Some(photo));
     }

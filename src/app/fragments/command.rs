@@ -1,5 +1,7 @@
 //! What she does on the page of the fragments, as data. Places are in pixels of the undistorted photo.
 
+use std::path::PathBuf;
+
 use glam::DVec2;
 
 /// One thing to do on the page of the fragments.
@@ -7,6 +9,8 @@ use glam::DVec2;
 pub enum FragmentStep {
     /// Outlines the fragments of the selected photo, whatever is outlined there.
     Outline,
+    /// Takes the outlines of the selected photo from a file of another tool, or a folder of them.
+    Masks(PathBuf),
     /// The engine that does, by its place in `ENGINES`.
     Engine(usize),
     /// What the mouse does from now on; what was drawn halfway is forgotten.

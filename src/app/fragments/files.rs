@@ -58,6 +58,7 @@ impl OpenFlight {
                     photo: self.name(*photo).to_owned(),
                     engine: of.engine.clone(),
                     lens: lens_of(camera),
+                    spread: of.spread,
                     sure: of.now().all_sure().clone(),
                 },
             })
@@ -158,7 +159,7 @@ impl State {
         if let Some(open) = &mut self.open
             && open.number == number
         {
-            let of = PhotoOutlines::new(read.outlines, read.engine, true);
+            let of = PhotoOutlines::new(read.outlines, read.engine, read.spread, true);
             // What was outlined meanwhile stays.
             open.fragments.photos.entry(photo).or_insert(of);
         }

@@ -6,7 +6,7 @@ use super::MeasuredFragments;
 use crate::delineation::intervals::{Doubts, SizeInterval, intervals};
 use crate::delineation::mass::{Steps, by_mass};
 use crate::delineation::measures::SieveShape;
-use crate::delineation::{self, engine_called, least_across};
+use crate::delineation::{self, engine_called};
 use crate::exports;
 use crate::fault::Fault;
 use crate::formats::{self, DistributionColumns};
@@ -44,7 +44,7 @@ impl State {
         }
         let (number, revision) = (open.number, of.revision);
         let labels = of.now().labels().clone();
-        let engine = engine_called(&of.engine);
+        let (engine, spread) = (engine_called(&of.engine), of.spread);
         let field = open.fragments.field.as_ref().filter(|(of, _)| *of == photo);
         let field = field.map(|(_, field)| field.clone());
         let flight = open.flight().clone();
@@ -54,21 +54,14 @@ impl State {
         let work = move |progress: &Progress| {
             progress.stage("measuring");
             let posed = &flight.parts().photos[photo];
-            let camera = flight.camera(posed);
             let field: Arc<ScaleField> = match field {
                 Some(field) => field,
                 None => Arc::new(delineation::photo::field(&flight, posed, progress)?),
             };
-            let least = engine.map_or(0.0, |engine| {
-                least_across(engine, camera.width, camera.height)
-            });
+            let least = delineation::photo::least_across_of(engine, &labels, spread);
             let shape = SieveShape::Calibrated;
             let measured = delineation::photo::fragments(&labels, &field, shape, least);
-            let fines = engine.map_or(1.0, |engine| engine.fines_of_unfound());
-            let steps = Steps {
-                fines,
-                ..Steps::default()
-            };
+            let steps = Steps::of(engine);
             let by_mass = by_mass([&measured], steps);
             let percents = SizeInterval::PERCENTS;
             let intervals = intervals(&[&measured], steps, doubts, &percents).unwrap_or_default();

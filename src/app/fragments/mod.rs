@@ -38,7 +38,10 @@ pub struct PhotoOutlines {
     pub editing: Editing,
     /// What outlined them first, as it is named in files.
     pub engine: String,
-    /// Counted up with each change, so that what was made of an earlier one is told from what is of now.
+    /// How far the photo's edges are spread, pixels, where that is known.
+    pub spread: Option<f64>,
+    /// The number of the last change that made them what they are, 0 before the first: what was made of another one is told
+    /// from what is of now, and a change that is undone and made again is the same one.
     pub revision: u64,
     /// Which revision the files hold.
     pub saved: Option<u64>,
@@ -46,18 +49,27 @@ pub struct PhotoOutlines {
     pub doubtful: Vec<(u32, f64)>,
     /// What they come to; of which revision.
     pub measured: Option<(u64, Arc<MeasuredFragments>)>,
+    /// The numbers of the changes that were made, and of those that were undone, the last one last.
+    made: Vec<u64>,
+    undone: Vec<u64>,
+    /// How many changes there ever were.
+    changes: u64,
 }
 
 impl PhotoOutlines {
     /// What an engine or a file gave. `saved` where a file holds the same.
-    pub fn new(outlines: Outlines, engine: String, saved: bool) -> Self {
+    pub fn new(outlines: Outlines, engine: String, spread: Option<f64>, saved: bool) -> Self {
         Self {
             doubtful: outlines.doubtful(),
             editing: Editing::new(outlines),
             engine,
+            spread,
             revision: 0,
             saved: saved.then_some(0),
             measured: None,
+            made: Vec::new(),
+            undone: Vec::new(),
+            changes: 0,
         }
     }
 
@@ -80,12 +92,31 @@ impl PhotoOutlines {
     fn make(&mut self, change: Change) {
         if !change.is_nothing() {
             self.editing.make(change);
+            self.changes += 1;
+            self.made.push(self.changes);
+            self.undone.clear();
+            self.changed();
+        }
+    }
+
+    /// Takes the last change back.
+    fn undo(&mut self) {
+        if self.editing.undo() {
+            self.undone.extend(self.made.pop());
+            self.changed();
+        }
+    }
+
+    /// Makes the change again that was undone last.
+    fn redo(&mut self) {
+        if self.editing.redo() {
+            self.made.extend(self.undone.pop());
             self.changed();
         }
     }
 
     fn changed(&mut self) {
-        self.revision += 1;
+        self.revision = self.made.last().copied().unwrap_or(0);
         self.doubtful = self.now().doubtful();
     }
 }

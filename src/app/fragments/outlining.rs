@@ -1,19 +1,27 @@
 //! Outlining the fragments of the selected photo, as a job.
 
+use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::PhotoOutlines;
-use crate::delineation::{self, Delineated, ENGINES};
+use crate::delineation::{self, Delineated, ENGINES, Regions};
 use crate::fault::Fault;
 use crate::jobs::Progress;
-use crate::labels::Outlines;
+use crate::labels::{LabelImage, Outlines};
+use crate::opening::OutlinesOfOthers;
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 use crate::tasks::photos::read_photo;
 
+/// What outlines of other tools are called in files.
+const MASKS: &str = "masks";
+
 impl Task {
     /// Outlining a photo's fragments.
     pub const OUTLINE: Self = Self::new("Outlining").of_flight();
+    /// Reading outlines of another tool.
+    pub const READ_MASKS: Self = Self::new("Reading outlines of another tool").of_flight();
 }
 
 impl State {
@@ -47,13 +55,69 @@ impl State {
             delineation::delineated(engine, &image, &left_out, progress).map_err(of_photo)
         };
         self.start(Task::OUTLINE, work, move |state, found| match found {
-            Ok(found) => state.take_outlines(number, photo, found, engine.name()),
+            Ok(found) => {
+                let Delineated {
+                    outlines,
+                    regions,
+                    spread,
+                } = found;
+                state.take_outlines(
+                    number,
+                    photo,
+                    outlines,
+                    Some(regions),
+                    spread,
+                    engine.name(),
+                );
+            }
             Err(message) => state.say(Severity::Error, &message),
         });
         self.say(Severity::Note, &format!("{said}: outlining its fragments"));
     }
 
-    fn take_outlines(&mut self, number: u64, photo: usize, found: Delineated, engine: &str) {
+    /// Takes the selected photo's outlines from a file of another tool, or a folder of them.
+    pub(super) fn read_masks(&mut self, path: PathBuf) {
+        let Some((open, photo)) = self
+            .open
+            .as_ref()
+            .and_then(|open| Some((open, open.selected?)))
+        else {
+            return;
+        };
+        let (flight, settings, number) = (open.flight().clone(), open.settings(), open.number);
+        let work = move |_: &Progress| -> Result<(LabelImage, Vec<String>), String> {
+            let others = OutlinesOfOthers::open(&path, None).map_err(|error| error.to_string())?;
+            let posed = &flight.parts().photos[photo];
+            let camera = flight.camera(posed);
+            // She says which photo it is.
+            let masks = others.of_photo(&posed.name, camera, true);
+            let mut masks = masks.map_err(|fault| fault.to_string())?;
+            let left_out = delineation::photo::left_out(&settings, posed, camera);
+            delineation::leave_out(&mut masks.labels, &left_out);
+            Ok((masks.labels, masks.notes))
+        };
+        self.start(Task::READ_MASKS, work, move |state, read| match read {
+            Ok((labels, notes)) => {
+                for note in notes {
+                    state.say(Severity::Warning, &note);
+                }
+                // A person or another tool looked at all of them.
+                let outlines = Outlines::new(labels, BTreeMap::new());
+                state.take_outlines(number, photo, outlines, None, None, MASKS);
+            }
+            Err(message) => state.say(Severity::Error, &message),
+        });
+    }
+
+    fn take_outlines(
+        &mut self,
+        number: u64,
+        photo: usize,
+        outlines: Outlines,
+        regions: Option<Regions>,
+        spread: Option<f64>,
+        engine: &str,
+    ) {
         let Some(open) = &mut self.open else {
             return;
         };
@@ -61,8 +125,9 @@ impl State {
             return;
         }
         let fragments = &mut open.fragments;
-        let Delineated { outlines, regions } = found;
-        fragments.regions = Some((photo, Arc::new(regions)));
+        if let Some(regions) = regions {
+            fragments.regions = Some((photo, Arc::new(regions)));
+        }
         fragments.refused = None;
         let count = count(&outlines);
         match fragments.photos.get_mut(&photo) {
@@ -70,9 +135,10 @@ impl State {
                 let change = of.now().become_these(&outlines);
                 of.make(change);
                 engine.clone_into(&mut of.engine);
+                of.spread = spread;
             }
             None => {
-                let of = PhotoOutlines::new(outlines, engine.to_owned(), false);
+                let of = PhotoOutlines::new(outlines, engine.to_owned(), spread, false);
                 fragments.photos.insert(photo, of);
             }
         }

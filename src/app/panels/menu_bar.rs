@@ -14,24 +14,45 @@ pub fn menu_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     egui::MenuBar::new().ui(ui, |ui| {
         for (name, entries) in MENUS {
             ui.menu_button(name, |ui| {
-                for entry in entries {
-                    match entry {
-                        None => {
-                            ui.separator();
-                        }
-                        Some(action) => entry_of(state, *action, ui, commands),
-                    }
-                    if entry.is_some_and(|action| action.label == OPEN_SAMPLE.label) {
-                        recent(state, ui, commands);
-                    }
-                }
-                if name == "View" {
-                    ui.separator();
-                    appearance(state, ui, commands);
-                }
+                // In a low window, or at 200 %, the last entries would lie below its edge. A bar that is always seen:
+                // nothing else says that there is more.
+                ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
+                let below_bar = ui.ctx().content_rect().bottom() - ui.min_rect().top();
+                ui.set_max_height(below_bar - LOWER_EDGE);
+                ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+                egui::ScrollArea::vertical()
+                    .max_height(below_bar - LOWER_EDGE)
+                    .show(ui, |ui| menu(state, name, entries, ui, commands));
             });
         }
     });
+}
+
+/// Left between a long menu and the window's lower edge, points.
+const LOWER_EDGE: f32 = 12.0;
+
+fn menu(
+    state: &State,
+    name: &str,
+    entries: &[Option<Action>],
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
+    for entry in entries {
+        match entry {
+            None => {
+                ui.separator();
+            }
+            Some(action) => entry_of(state, *action, ui, commands),
+        }
+        if entry.is_some_and(|action| action.label == OPEN_SAMPLE.label) {
+            recent(state, ui, commands);
+        }
+    }
+    if name == "View" {
+        ui.separator();
+        appearance(state, ui, commands);
+    }
 }
 
 fn entry_of(state: &State, action: Action, ui: &mut egui::Ui, commands: &mut Vec<Command>) {

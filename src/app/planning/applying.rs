@@ -28,6 +28,9 @@ impl State {
             }
             PlanStep::SaveMission(to) => self.save_mission(to),
             PlanStep::SaveTable(to) => self.save_plan_table(to),
+            PlanStep::ReadAreas(tool, text) => self.read_areas(tool, text),
+            PlanStep::Compare(path) => self.compare_mission(path),
+            PlanStep::SaveFlown(to) => self.save_flown(to),
             step => {
                 let Some(open) = &mut self.open else {
                     return;
@@ -188,7 +191,13 @@ impl Planning {
                     self.ask(asked);
                 }
             }
-            PlanStep::Make | PlanStep::SaveMission(_) | PlanStep::SaveTable(_) => {}
+            PlanStep::CloseFlown => self.flown = None,
+            PlanStep::Make
+            | PlanStep::SaveMission(_)
+            | PlanStep::SaveTable(_)
+            | PlanStep::ReadAreas(..)
+            | PlanStep::Compare(_)
+            | PlanStep::SaveFlown(_) => {}
         }
     }
 

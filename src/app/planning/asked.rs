@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use crate::plan::{
-    Drone, Pattern, Positioning, Size, USUAL_CLEARANCE, USUAL_OFF_NORMAL, USUAL_SETTLE,
-    USUAL_SPEED, USUAL_TILT, Wish,
+    Drone, Flying, Pattern, Positioning, Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL,
+    USUAL_TILT, Wish,
 };
 use crate::survey::{Polygon, SurveyError};
 
@@ -15,8 +15,10 @@ pub struct AskedPlan {
     pub pattern: Pattern,
     /// How large the rock is to be in them.
     pub size: Size,
-    /// 0 to under 1; `None` is the pattern's usual one.
-    pub overlap: Option<f64>,
+    /// Of photos for scales, 0 to under 1.
+    pub overlap: f64,
+    /// How photos of a survey lie, of a pattern that has some.
+    pub survey: SurveyWish,
     /// Whether gaps are filled with photos more.
     pub fill_gaps: bool,
     /// Degrees below the horizon, of the paper's pattern.
@@ -35,12 +37,8 @@ pub struct AskedPlan {
     pub keep_out: Vec<Vec<DVec2>>,
     /// Where it takes off and lands.
     pub take_off: Option<DVec2>,
-    /// Metres a second between photos.
-    pub speed: f64,
-    /// Seconds that it waits at a photo.
-    pub settle: f64,
-    /// Minutes that a battery lasts.
-    pub battery: Option<f64>,
+    /// How it is flown from photo to photo.
+    pub flying: Flying,
     /// When it is flown: a time with its difference from UTC.
     pub when: Option<String>,
     /// What was changed of single photos by hand, in order.
@@ -77,7 +75,8 @@ impl AskedPlan {
         Self {
             pattern: Pattern::default(),
             size,
-            overlap: None,
+            overlap: 0.0,
+            survey: SurveyWish::default(),
             fill_gaps: false,
             tilt: USUAL_TILT,
             off_normal: USUAL_OFF_NORMAL,
@@ -87,9 +86,7 @@ impl AskedPlan {
             area: None,
             keep_out: Vec::new(),
             take_off: None,
-            speed: USUAL_SPEED,
-            settle: USUAL_SETTLE,
-            battery: None,
+            flying: Flying::default(),
             when: None,
             edits: Vec::new(),
         }
@@ -99,9 +96,7 @@ impl AskedPlan {
     pub(super) fn base(&self) -> Self {
         Self {
             edits: Vec::new(),
-            speed: USUAL_SPEED,
-            settle: USUAL_SETTLE,
-            battery: None,
+            flying: Flying::default(),
             when: None,
             ..self.clone()
         }
@@ -130,7 +125,8 @@ impl AskedPlan {
         let usual = Wish::usual(self.pattern, self.size, self.drone, unit_metres);
         let keep_out = self.keep_out.iter().map(|corners| Polygon::new(corners));
         Ok(Wish {
-            overlap: self.overlap.unwrap_or(usual.overlap),
+            overlap: self.overlap,
+            survey: self.survey,
             tilt: self.tilt,
             off_normal: self.off_normal,
             clearance: self.clearance,
@@ -174,4 +170,13 @@ impl AskedPlan {
         }
         asked.instead_of(self)
     }
+}
+
+/// Corners as they are typed.
+pub fn typed_corners(corners: &[DVec2]) -> String {
+    let corners = corners.iter();
+    let corners: Vec<String> = corners
+        .map(|corner| format!("{:.3},{:.3}", corner.x, corner.y))
+        .collect();
+    corners.join(";")
 }

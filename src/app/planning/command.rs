@@ -1,5 +1,7 @@
 //! What the engineer does on the page of the plan, as data.
 
+use std::path::PathBuf;
+
 use glam::DVec2;
 
 use super::asked::{AskedPlan, Handle};
@@ -34,6 +36,14 @@ pub enum PlanStep {
     SaveMission(Destination),
     /// Writes the table (CSV or JSON) or the page to print (HTML), by the name's ending.
     SaveTable(Destination),
+    /// Takes outlines as the area, or as more ground to keep out of: typed, or a file.
+    ReadAreas(PlanTool, String),
+    /// Compares a mission with the flight that came of it.
+    Compare(PathBuf),
+    /// Looks at the plan again.
+    CloseFlown,
+    /// Writes the comparison: table, figure or page, by the name's ending.
+    SaveFlown(Destination),
 }
 
 /// What a click in the viewport does.

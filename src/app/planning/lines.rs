@@ -2,19 +2,20 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::camera::{Camera, Pose};
 use crate::plan::{Plan, PlannedPhoto, Terrain, Way};
 use crate::render::{PlannedLine, SELECTED};
 
 /// A photo that holds what was asked for.
-const GOOD: [u8; 3] = [70, 190, 130];
+pub(super) const GOOD: [u8; 3] = [70, 190, 130];
 /// One that does not.
-const TROUBLED: [u8; 3] = [240, 150, 40];
+pub(super) const TROUBLED: [u8; 3] = [240, 150, 40];
 /// What is photographed.
-const AREA: [u8; 3] = [235, 235, 235];
+pub(super) const AREA: [u8; 3] = [235, 235, 235];
 /// What is kept out of, and a way that is as near to the ground as it may be.
-const KEEP_OUT: [u8; 3] = [225, 60, 60];
+pub(super) const KEEP_OUT: [u8; 3] = [225, 60, 60];
 /// A way with twice the clearance, and one with more.
-const WAY: [[u8; 3]; 2] = [[240, 205, 60], [90, 160, 255]];
+pub(super) const WAY: [[u8; 3]; 2] = [[240, 205, 60], [90, 160, 255]];
 /// Points along a side of an area: it lies on the ground.
 const PER_SIDE: u32 = 16;
 /// The side of a camera, in the distance of its photo.
@@ -71,8 +72,13 @@ pub(super) fn photos(plan: &Plan, selected: Option<usize>) -> Vec<PlannedLine> {
             () if plan.troubles(place).is_empty() => (GOOD, 1.4),
             () => (TROUBLED, 1.4),
         };
-        let mut outline = photo.outline.clone();
-        outline.extend(photo.outline.first());
+        // Those of a survey lie over each other many times: beside photos for scales they hide these.
+        let is_hidden = photo.purpose != plan.wish.pattern.main() && Some(place) != selected;
+        let mut outline = match is_hidden {
+            true => Vec::new(),
+            false => photo.outline.clone(),
+        };
+        outline.extend(outline.first().copied());
         [outline, camera(photo, plan)].map(|points| PlannedLine {
             points,
             color,
@@ -84,14 +90,18 @@ pub(super) fn photos(plan: &Plan, selected: Option<usize>) -> Vec<PlannedLine> {
 
 /// A photo's camera as a small pyramid, in one line.
 fn camera(photo: &PlannedPhoto, plan: &Plan) -> Vec<DVec3> {
-    let camera = &plan.camera;
+    pyramid(&plan.camera, &photo.pose, CAMERA * photo.distance)
+}
+
+/// A camera at a pose as a pyramid of this height, in one line.
+pub(super) fn pyramid(camera: &Camera, pose: &Pose, side: f64) -> Vec<DVec3> {
     let (width, height) = (f64::from(camera.width), f64::from(camera.height));
     let corner = |x: f64, y: f64| {
         let direction = camera.direction_undistorted(DVec2::new(x * width, y * height));
-        photo.pose.center + photo.pose.rotation * direction * (CAMERA * photo.distance)
+        pose.center + pose.rotation * direction * side
     };
     let [a, b, c, d] = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| corner(x, y));
-    let eye = photo.pose.center;
+    let eye = pose.center;
     vec![a, b, c, d, a, eye, b, c, eye, d]
 }
 
@@ -131,4 +141,93 @@ pub(super) fn on_ground(places: &[DVec2], is_closed: bool, terrain: &Terrain) ->
         place.extend(height)
     });
     heights.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::jobs::Progress;
+    use crate::plan::{Drone, Pattern, Size, WayPoint, Wish};
+    use crate::surface::{Cloud, Surface};
+    use crate::survey::Polygon;
+
+    fn plan() -> Plan {
+        let points =
+            (0..121 * 121).map(|i| DVec3::new(f64::from(i % 121), f64::from(i / 121), 3.0));
+        let cloud = Cloud {
+            points: points.collect(),
+            ..Cloud::default()
+        };
+        let surface = Surface::new(cloud).unwrap();
+        let corners = [(40.0, 40.0), (80.0, 40.0), (80.0, 80.0), (40.0, 80.0)];
+        let area = Polygon::new(&corners.map(DVec2::from)).unwrap();
+        let camera = Drone::ALL[0].camera();
+        let wish = Wish::usual(Pattern::Paper, Size::Distance(20.0), None, 1.0);
+        Plan::new(&surface, &camera, area, wish, &Progress::default()).unwrap()
+    }
+
+    /// Over level ground, with a clearance of 5: up to 6.25 above it a way is red, up to 10 yellow, above blue; and the
+    /// climb from the ground, where it stands, is blue all along.
+    #[test]
+    fn a_way_is_coloured_by_its_height_above_the_ground() {
+        let plan = plan();
+        let at = |x: f64, height: f64| WayPoint {
+            place: DVec3::new(x, 60.0, 3.0 + height),
+            photo: None,
+        };
+        let flown = Way {
+            take_off: DVec3::new(20.0, 60.0, 3.0),
+            safe_height: 3.0 + 20.0,
+            points: vec![
+                at(30.0, 20.0),
+                at(40.0, 5.5),
+                at(60.0, 5.5),
+                at(60.0, 8.0),
+                at(80.0, 8.0),
+            ],
+            length: 0.0,
+        };
+        let lines = way(&flown, &plan);
+        let color_at = |x: f64, height: f64| {
+            let place = DVec3::new(x, 60.0, 3.0 + height);
+            let holds = |line: &&PlannedLine| {
+                line.points.windows(2).any(|leg| {
+                    let along = (leg[1] - leg[0]).normalize_or_zero();
+                    let on = (place - leg[0])
+                        .dot(along)
+                        .clamp(0.0, leg[0].distance(leg[1]));
+                    (leg[0] + along * on).distance(place) < 1e-6
+                })
+            };
+            lines.iter().find(holds).map(|line| line.color)
+        };
+        assert_eq!(color_at(20.0, 2.0), Some(WAY[1]));
+        assert_eq!(color_at(25.0, 20.0), Some(WAY[1]));
+        assert_eq!(color_at(50.0, 5.5), Some(KEEP_OUT));
+        assert_eq!(color_at(70.0, 8.0), Some(WAY[0]));
+        // It is one line from end to end.
+        for pair in lines.windows(2) {
+            assert_eq!(pair[0].points.last(), pair[1].points.first());
+        }
+    }
+
+    /// A photo that holds what was asked for, one that does not, and the one that is looked at, above the others.
+    #[test]
+    fn photos_are_coloured_by_their_troubles() {
+        let mut plan = plan();
+        let count = plan.photos.len();
+        plan.photos[1].forecast = None;
+        let lines = photos(&plan, Some(0));
+        let color_of = |photo: usize| {
+            let eye = plan.photos[photo].pose.center;
+            let has = |line: &&PlannedLine| line.points.contains(&eye);
+            lines.iter().find(has).unwrap().color
+        };
+        assert_eq!(
+            [color_of(0), color_of(1), color_of(2)],
+            [SELECTED, TROUBLED, GOOD]
+        );
+        assert_eq!(lines.len(), 2 * count);
+        assert_eq!(lines.last().unwrap().color, SELECTED);
+    }
 }

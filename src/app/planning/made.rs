@@ -4,13 +4,22 @@ use std::sync::Arc;
 
 use super::asked::AskedPlan;
 use super::lines;
+use crate::camera::Camera;
 use crate::plan::{Pace, Plan, Shadows, Sun, Way};
 use crate::render::PlannedLine;
+use crate::surface::Surface;
+use crate::survey::Polygon;
 
 /// A plan with what was asked for, and what the window needs of it.
 pub struct MadePlan {
     /// What it is of.
     pub asked: AskedPlan,
+    /// Over which surface.
+    pub(super) surface: Arc<Surface>,
+    /// The flight's first camera then, where it had one.
+    pub(super) camera: Option<Camera>,
+    /// The pile on it, where that was looked for.
+    pub(super) pile: Option<Polygon>,
     /// Without what was changed by hand.
     pub(super) base: Arc<Plan>,
     /// The plan.

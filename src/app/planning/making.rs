@@ -81,7 +81,18 @@ fn made(
     let no_area = |error: crate::survey::SurveyError| {
         Fault::new(format!("the area is none: {error}"), "draw it again")
     };
-    let before = before.filter(|before| before.asked.base() == asked.base());
+    // What was planned over another surface, or by another flight's camera, says nothing here.
+    let known = before.filter(|before| Arc::ptr_eq(&before.surface, &over.surface));
+    let before =
+        known.filter(|before| before.asked.base() == asked.base() && before.camera == over.camera);
+    let pile = match (&asked.area, known.and_then(|known| known.pile.as_ref())) {
+        (Some(_), pile) => pile.cloned(),
+        (None, Some(pile)) => Some(pile.clone()),
+        (None, None) => {
+            progress.stage("looking for the pile");
+            Some(plan::pile(&over.surface, progress)?)
+        }
+    };
     let base = match before {
         Some(before) => before.base.clone(),
         None => {
@@ -93,15 +104,15 @@ fn made(
                     return Err(Fault::new(what, "choose a drone"));
                 }
             };
-            let area = match &asked.area {
-                Some(corners) => Polygon::new(corners).map_err(no_area)?,
-                None => {
-                    progress.stage("looking for the pile");
-                    plan::pile(&over.surface, progress)?
+            let area = match (&asked.area, &pile) {
+                (None, Some(pile)) => pile.clone(),
+                (corners, _) => {
+                    Polygon::new(corners.as_deref().unwrap_or_default()).map_err(no_area)?
                 }
             };
             let wish = asked.wish(metres).map_err(no_area)?;
-            let plan = Plan::new(&over.surface, &camera, area, wish, progress)?;
+            let known = known.map(|known| &*known.base);
+            let plan = Plan::after(known, (&*over.surface, &camera), area, wish, progress)?;
             Arc::new(match asked.fill_gaps {
                 true => plan.with_gaps_filled(&over.surface, progress)?,
                 false => plan,
@@ -117,7 +128,7 @@ fn made(
     for edit in edits {
         plan = Arc::new(edited(&plan, edit, &over.surface, progress)?);
     }
-    let pace = Pace::of(asked.speed, asked.settle, asked.battery, metres);
+    let pace = Pace::of(&asked.flying, metres);
     let ways = match asked.take_off {
         None => Ok(Vec::new()),
         Some(place) => {
@@ -129,7 +140,8 @@ fn made(
         Ok(ways) => (ways, None),
         Err(fault) => (Vec::new(), Some(fault.to_string())),
     };
-    let warnings = plan_warnings(&PlanReport {
+    let mut warnings: Vec<String> = plan::lying(&over.surface).into_iter().collect();
+    warnings.extend(plan_warnings(&PlanReport {
         flight: &over.name,
         world: over.unit,
         scales: over.unit,
@@ -138,7 +150,7 @@ fn made(
         pace,
         is_nominal: asked.drone.is_some(),
         sun: None,
-    });
+    }));
     let sun = asked.when.as_deref().map(|when| {
         progress.stage("where the sun stands");
         let crs = over.crs.as_deref().ok_or_else(|| {
@@ -155,6 +167,9 @@ fn made(
     lines.extend(ways.iter().flat_map(|way| lines::way(way, &plan)));
     Ok(MadePlan {
         asked: asked.clone(),
+        surface: over.surface.clone(),
+        camera: over.camera.clone(),
+        pile,
         base,
         plan,
         ways,
@@ -180,5 +195,113 @@ fn edited(plan: &Plan, edit: &Edit, surface: &Surface, progress: &Progress) -> R
             Some(photo) => plan.without_photo(photo),
             None => plan.clone(),
         }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::plan::{Drone, Flying, Pattern, Size};
+    use crate::surface::Cloud;
+
+    fn over() -> Over {
+        let points = (0..161 * 161).map(|i| {
+            let place = DVec2::new(f64::from(i % 161), f64::from(i / 161)) - 80.0;
+            let pile = (12.0 - 0.5 * place.length()).max(0.0);
+            place.extend(pile + 0.3 * (place.x * 0.4).sin())
+        });
+        let cloud = Cloud {
+            points: points.collect(),
+            ..Cloud::default()
+        };
+        Over {
+            name: "pile".to_owned(),
+            surface: Arc::new(Surface::new(cloud).unwrap()),
+            camera: None,
+            unit: LengthUnit::Metre,
+            crs: None,
+        }
+    }
+
+    fn asked() -> AskedPlan {
+        AskedPlan {
+            take_off: Some(DVec2::new(-60.0, -60.0)),
+            ..AskedPlan::usual(Size::scale(150.0), Some(Drone::ALL[0]), 1.0)
+        }
+    }
+
+    fn make(asked: &AskedPlan, over: &Over, before: Option<&MadePlan>) -> MadePlan {
+        made(asked, over, before, &Progress::default()).unwrap()
+    }
+
+    /// Whatever was planned before, the plan is that of the command: with another clearance, area, overlap, pattern or
+    /// scale, and with the same again. What stays is kept, not made anew.
+    #[test]
+    fn a_plan_does_not_depend_on_the_one_before() {
+        let over = over();
+        let first = make(&asked(), &over, None);
+        let smaller = first.plan.area.corners().iter();
+        let smaller: Vec<DVec2> = smaller.map(|corner| *corner * 0.7).collect();
+        let larger: Vec<DVec2> = smaller.iter().map(|corner| *corner * 1.6).collect();
+        let changes: [&dyn Fn(&mut AskedPlan); 8] = [
+            &|asked| asked.clearance = 7.0,
+            &|asked| asked.area = Some(smaller.clone()),
+            &|asked| asked.area = Some(larger.clone()),
+            &|asked| asked.overlap = 0.2,
+            &|asked| asked.pattern = Pattern::Both,
+            &|asked| asked.size = Size::scale(140.0),
+            &|asked| asked.take_off = Some(DVec2::new(70.0, 10.0)),
+            &|asked| asked.positioning = crate::plan::Positioning::Rtk,
+        ];
+        let mut before = first;
+        for (change, number) in changes.into_iter().zip(1..) {
+            let mut asked = before.asked.clone();
+            change(&mut asked);
+            let behind = make(&asked, &over, Some(&before));
+            let fresh = make(&asked, &over, None);
+            assert_eq!(behind.plan.photos, fresh.plan.photos, "{number}");
+            assert_eq!(behind.plan.cover, fresh.plan.cover, "{number}");
+            assert_eq!(behind.ways, fresh.ways, "{number}");
+            before = behind;
+        }
+        // Another surface is looked at for itself.
+        let other = self::over();
+        let there = make(&before.asked, &other, Some(&before));
+        assert!(Arc::ptr_eq(&there.surface, &other.surface));
+    }
+
+    /// A photo's time and its share of the battery, by hand: legs at 4 m/s, upwards no faster than 5 and downwards than 3, and at
+    /// each photo 2 s of wait, 2 for the shot, 2 for braking and starting.
+    #[test]
+    fn a_photo_has_its_share_of_the_battery() {
+        let over = over();
+        let mut asked = asked();
+        asked.flying = Flying {
+            battery: Some(12.0),
+            ..asked.flying
+        };
+        let made = make(&asked, &over, None);
+        assert_eq!(made.ways.len(), 1);
+        let way = &made.ways[0];
+        let mut last = way.take_off.truncate().extend(way.safe_height);
+        let mut seconds = (last.z - way.take_off.z) / 4.0;
+        let mut seen = 0;
+        for point in &way.points {
+            let rise = point.place.z - last.z;
+            let upright = if rise > 0.0 { rise / 5.0 } else { -rise / 3.0 };
+            seconds += upright.max(point.place.distance(last) / 4.0);
+            last = point.place;
+            if let Some(photo) = point.photo {
+                seconds += 6.0;
+                let (minutes, share) = made.flown_at(photo).unwrap();
+                assert!((minutes - seconds / 60.0).abs() < 1e-9, "{minutes}");
+                assert!((share.unwrap() - seconds / 720.0).abs() < 1e-9, "{share:?}");
+                seen += 1;
+            }
+        }
+        assert_eq!(seen, made.plan.photos.len());
+        assert!(made.flown_at(seen).is_none());
     }
 }

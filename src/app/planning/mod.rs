@@ -9,13 +9,19 @@
 //! making    the plan, as a job, whenever something else is asked for
 //! lines     the plan as lines of the picture
 //! saving    mission and table as files
+//! areas     areas that are typed or in a file
+//! flown     a mission against the flight that came of it
+//! comparing makes and writes that
 //! ```
 //!
 //! The surface stays the viewport's; the flight's own cameras give way to the planned ones.
 
 pub mod applying;
+mod areas;
 mod asked;
 mod command;
+mod comparing;
+mod flown;
 mod lines;
 mod made;
 mod making;
@@ -25,8 +31,9 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-pub use asked::{AskedPlan, Edit, Handle};
+pub use asked::{AskedPlan, Edit, Handle, typed_corners};
 pub use command::{PlanStep, PlanTool};
+pub use flown::FlownMission;
 pub use made::MadePlan;
 
 use crate::render::PlannedLine;
@@ -54,6 +61,8 @@ pub struct Planning {
     lines: Arc<Vec<PlannedLine>>,
     /// Whether the viewport shows what that photo will.
     pub through: bool,
+    /// A mission against the flight, which is looked at in place of the plan.
+    pub flown: Option<Arc<FlownMission>>,
 }
 
 impl Planning {
@@ -79,9 +88,12 @@ impl Planning {
         self.selected
     }
 
-    /// The plan as lines of the picture.
+    /// What is looked at as lines of the picture: a mission and the flight that came of it, else the plan.
     pub fn lines(&self) -> Arc<Vec<PlannedLine>> {
-        self.lines.clone()
+        match &self.flown {
+            Some(flown) => flown.lines.clone(),
+            None => self.lines.clone(),
+        }
     }
 
     /// Looks at another photo, or at none.

@@ -51,11 +51,12 @@ impl State {
             name,
             drone: asked.drone.and_then(|drone| drone.codes),
             unit: open.flight().parts().unit,
-            speed: asked.speed,
-            settle: asked.settle,
+            speed: asked.flying.speed,
+            settle: asked.flying.settle,
         };
         let missions = (MissionFormat::of(&to.path))
-            .and_then(|_| match &made.no_way {
+            .and_then(|format| format.check_drone(asked.drone.as_ref()))
+            .and_then(|()| match &made.no_way {
                 Some(why) => Err(Fault::new(why, "change the plan")),
                 None if made.ways.is_empty() => {
                     let what = "nobody says where the drone takes off";
@@ -127,7 +128,7 @@ impl State {
         let sheet = FlightSheet {
             report: &report,
             drone: made.asked.drone.map(|drone| drone.title),
-            settle: made.asked.settle,
+            settle: made.asked.flying.settle,
             crs: open.files.crs.as_deref(),
             warnings: &made.warnings,
         };

@@ -17,6 +17,7 @@ use crate::opening::OpenOptions;
 use crate::opening_preview::OpeningPreview;
 use crate::photo_view::Middle;
 use crate::render::Gpu;
+use crate::season::SeasonList;
 use crate::size_distributions::{Page, SizeDistributions};
 use crate::tasks::work::Work;
 use preferences::{Preferences, Theme};
@@ -125,6 +126,8 @@ pub struct State {
     pub tried: Option<(PathBuf, OpenOptions)>,
     /// What the small window for a new flight from photos holds.
     pub from_photos: FromPhotos,
+    /// What the small window of a season holds.
+    pub season: SeasonList,
     /// The flights of the folder that was named last, to choose from.
     pub choices: Vec<Candidate>,
     /// The cloud that was dropped or opened beside the flight on the screen: it is asked what it is to be.
@@ -161,6 +164,7 @@ impl State {
             may_quit: false,
             tried: None,
             from_photos: FromPhotos::default(),
+            season: SeasonList::default(),
             choices: Vec::new(),
             cloud: None,
             reads_other: false,

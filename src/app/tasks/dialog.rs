@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use super::work::Task;
 use crate::command::{Answers, Chooses, Command, Dialog};
+use crate::fragments::FragmentStep;
 use crate::jobs::Progress;
+use crate::planning::PlanStep;
 use crate::state::{Severity, State};
 
 impl Task {
@@ -42,8 +44,15 @@ impl State {
         };
         match answers {
             Answers::Open => self.apply(Command::Open(path)),
+            Answers::Masks => self.apply(Command::Fragments(FragmentStep::Masks(path))),
             Answers::Asking => self.answered = Some(path),
+            Answers::Areas(tool) => {
+                let text = path.display().to_string();
+                self.plan_step(PlanStep::ReadAreas(tool, text));
+            }
+            Answers::Flown => self.plan_step(PlanStep::Compare(path)),
             Answers::FromPhotos(field) => self.take_folder_of_photos(field, path),
+            Answers::Season(field) => self.take_place_of_season(field, &path),
             Answers::Georeference(field) => {
                 if let Some(open) = &self.open {
                     let mut form = open.georeferencing.form.clone();

@@ -40,28 +40,51 @@ pub(super) fn show_planned(open: &OpenFlight, show: &mut Show) {
     show.drawn_lines.clear();
     show.drawn_points.clear();
     let planning = &open.planning;
-    let Some(made) = &planning.made else {
+    if planning.flown.is_some() {
+        show.frusta = Scope::All;
+        show.planned_lines = planning.lines();
         return;
-    };
+    }
     if !planning.through && planning.refused().is_none() {
         show.planned_lines = planning.lines();
     }
-    let terrain = &made.plan.terrain;
+    let on_ground = Heights::of(open);
+    // What is asked for stands there before it is planned, and where it cannot be.
+    if let Some(now) = planning.now().filter(|_| !planning.is_of_now()) {
+        for corners in now.area.iter().chain(&now.keep_out) {
+            let around = corners.iter().chain(corners.first());
+            let around = around.map(|corner| on_ground.at(*corner));
+            show.drawn_lines.push(around.collect());
+        }
+    }
     let mut corners = planning.drawing.clone();
     if !corners.is_empty() {
         corners.extend(open.pointer.hover.map(|point| point.truncate()));
     }
-    show.drawn_points = corners.iter().map(|corner| at(*corner, terrain)).collect();
+    show.drawn_points = corners.iter().map(|corner| on_ground.at(*corner)).collect();
     show.drawn_lines.push(show.drawn_points.clone());
 }
 
-/// A place of the map on the ground; where there is none, at the height of its lowest corner.
-fn at(place: DVec2, terrain: &Terrain) -> DVec3 {
-    let lowest = || {
-        let heights = terrain.heights().iter().filter(|height| !height.is_nan());
-        heights.copied().fold(f64::MAX, f64::min)
-    };
-    place.extend(terrain.height(place).unwrap_or_else(lowest))
+/// How high places of the map are drawn.
+struct Heights<'a> {
+    terrain: Option<&'a Terrain>,
+    /// Where that has no ground.
+    otherwise: f64,
+}
+
+impl<'a> Heights<'a> {
+    fn of(open: &'a OpenFlight) -> Self {
+        Self {
+            terrain: open.planning.made.as_ref().map(|made| &made.plan.terrain),
+            otherwise: open.ground(),
+        }
+    }
+
+    /// A place of the map on the ground.
+    fn at(&self, place: DVec2) -> DVec3 {
+        let height = self.terrain.and_then(|terrain| terrain.height(place));
+        place.extend(height.unwrap_or(self.otherwise))
+    }
 }
 
 /// Where a ray meets the ground: on the level of the place before, again and again.
@@ -136,7 +159,7 @@ pub(super) fn handles(
         return;
     };
     // A click that is to be a corner must not be taken by one that is there.
-    if planning.through || planning.tool != PlanTool::Select {
+    if planning.flown.is_some() || planning.through || planning.tool != PlanTool::Select {
         return;
     }
     let mut all: Vec<(Handle, DVec2, String, Color32)> = Vec::new();
@@ -164,8 +187,9 @@ pub(super) fn handles(
     }
     let painter = ui.painter().with_clip_rect(scene.place);
     let terrain = &made.plan.terrain;
+    let heights = Heights::of(open);
     for (handle, place, label, color) in all {
-        let point = at(place, terrain);
+        let point = heights.at(place);
         let Some(pixel) = scene.view.project(point, scene.size()) else {
             continue;
         };

@@ -1,13 +1,17 @@
-//! `fragscale reconstruct`: photos become a flight.
+//! `fragscale reconstruct`: photos become a flight, here or on a node.
 
 use std::path::PathBuf;
 
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 
-use crate::cli::Answer;
+use crate::cli::{Answer, interrupt};
+use crate::fault::Fault;
 use crate::jobs::Progress;
-use crate::reconstruct::{Card, EngineName, Quality, Request, left_out, reconstruct, summary};
+use crate::node_odm::{Address, Asked, Limits, NodeRequest, Token, reconstruct_on_node};
+use crate::reconstruct::{
+    Card, EngineName, Quality, Reconstructed, Request, left_out, reconstruct, summary,
+};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ReconstructArguments {
@@ -33,13 +37,67 @@ pub(in crate::cli) struct ReconstructArguments {
     /// Let the processor do all, also where there is a graphics card.
     #[arg(long)]
     no_gpu: bool,
+    #[command(flatten)]
+    node: NodeArguments,
+}
+
+/// Where another computer is to reconstruct.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "On another computer")]
+struct NodeArguments {
+    /// Let this NodeODM or ClusterODM reconstruct: http://HOST:PORT or https://HOST. Photos, where they were
+    /// taken and the photos' gcp_list.txt are sent there and nowhere else; the results are fetched, and
+    /// removed there.
+    // (Read later: clap would repeat a token that somebody puts into it.)
+    #[arg(
+        long,
+        value_name = "URL",
+        conflicts_with_all = ["crs", "camera", "engine", "quality", "no_gpu"]
+    )]
+    node: Option<String>,
+    /// What opens the node. Other users of this computer can read it in the list of processes: better set the
+    /// environment variable FRAGSCALE_NODE_TOKEN.
+    #[arg(long, value_name = "TOKEN", requires = "node")]
+    token: Option<String>,
+    /// An option of OpenDroneMap, like pc-quality=high; a name alone is name=true. May be repeated.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = Asked::parse, requires = "node")]
+    option: Vec<Asked>,
+    /// Ground control points with their marks in photos, as OpenDroneMap's gcp_list.txt; without it the one
+    /// among the photos, if there is one.
+    #[arg(long, value_name = "FILE", requires = "node")]
+    gcp: Option<PathBuf>,
+    /// Let photos and token cross the network unencrypted, where the node has http:// and is another computer.
+    #[arg(long, requires = "node")]
+    insecure: bool,
+    /// How many minutes a node that does not answer is asked again.
+    #[arg(long, value_name = "MINUTES", default_value = "10", requires = "node", value_parser = minutes)]
+    give_up_after: f64,
+}
+
+fn minutes(typed: &str) -> Result<f64, Fault> {
+    let minutes = typed
+        .parse()
+        .ok()
+        .filter(|minutes: &f64| minutes.is_finite() && *minutes > 0.0);
+    minutes.ok_or_else(|| Fault::new("it is no number of minutes", "write it as 10 or 0.5"))
 }
 
 impl ReconstructArguments {
     /// What stays of it where it is interrupted.
     pub(in crate::cli) fn kept(&self) -> String {
         let to = self.to.display();
-        format!("what is done lies in {to}: the same command goes on with it")
+        match &self.node.node {
+            None => format!("what is done lies in {to}: the same command goes on with it"),
+            // Where calling it off takes too long.
+            Some(_) => {
+                "the node may go on with the task: the same command goes on with it".to_owned()
+            }
+        }
+    }
+
+    /// How long it has to end what it has started, where it is interrupted.
+    pub(in crate::cli) fn takes_long_to_end(&self) -> bool {
+        self.node.node.is_some()
     }
 }
 
@@ -84,6 +142,17 @@ pub(in crate::cli) fn run(
     arguments: &ReconstructArguments,
     progress: &Progress,
 ) -> Result<Answer, String> {
+    let made = match &arguments.node.node {
+        Some(node) => on_node(arguments, node, progress)?,
+        None => here(arguments, progress)?,
+    };
+    let mut warnings = left_out(&made.left_out, made.photos);
+    warnings.extend(made.warnings.iter().cloned());
+    let lines = summary(&made).into_iter().map(|line| line + "\n");
+    Ok(Answer::new(lines.collect::<String>(), warnings))
+}
+
+fn here(arguments: &ReconstructArguments, progress: &Progress) -> Result<Reconstructed, String> {
     let request = Request {
         photos: arguments.photos.clone(),
         to: arguments.to.clone(),
@@ -94,9 +163,36 @@ pub(in crate::cli) fn run(
     };
     let engine = arguments.engine.0.engine();
     let engine = engine.map_err(|fault| fault.to_string())?;
-    let made = reconstruct(&request, &*engine, progress).map_err(|error| error.to_string())?;
-    let mut warnings = left_out(&made.left_out, made.photos);
-    warnings.extend(made.warnings.iter().cloned());
-    let lines = summary(&made).into_iter().map(|line| line + "\n");
-    Ok(Answer::new(lines.collect::<String>(), warnings))
+    reconstruct(&request, &*engine, progress).map_err(|error| error.to_string())
+}
+
+/// The environment variable that holds the token, unseen by other users.
+const TOKEN: &str = "FRAGSCALE_NODE_TOKEN";
+
+fn on_node(
+    arguments: &ReconstructArguments,
+    node: &str,
+    progress: &Progress,
+) -> Result<Reconstructed, String> {
+    let given = &arguments.node;
+    let node = Address::parse(node).map_err(|fault| format!("--node: {fault}"))?;
+    let token = given.token.clone().or_else(|| std::env::var(TOKEN).ok());
+    let request = NodeRequest {
+        photos: arguments.photos.clone(),
+        to: arguments.to.clone(),
+        node,
+        token: token.as_deref().and_then(Token::typed),
+        insecure: given.insecure,
+        options: given.option.clone(),
+        control_points: given.gcp.clone(),
+        limits: Limits::default().giving_up_after(given.give_up_after),
+    };
+    // (The node's messages stand beside the bar and in the log.)
+    let made = reconstruct_on_node(&request, &|_| {}, progress);
+    made.map_err(|error| {
+        if progress.is_cancelled() {
+            interrupt::keeps(&error.fault.to_string());
+        }
+        error.to_string()
+    })
 }

@@ -50,10 +50,11 @@ pub(super) struct Doing {
 }
 
 impl Doing {
-    /// That it was not done with so many of the photos, where there are any.
-    pub(super) fn not_all(&self, failed: usize, of: usize) -> Option<Fault> {
-        let what = || format!("{failed} of {of} photos are {}", self.not_done);
-        (failed > 0).then(|| Fault::new(what(), "see the warnings above"))
+    /// That it was not done with these of the photos, where there are any: a sentence of each.
+    pub(super) fn not_all(&self, failed: &[String], of: usize) -> Option<Fault> {
+        let first = failed.first()?;
+        let what = format!("{} of {of} photos are {}", failed.len(), self.not_done);
+        Some(Fault::new(what, format!("the first: {first}")))
     }
 }
 

@@ -1,29 +1,34 @@
 //! `fragscale delineate`: the fragments of photos outlined, measured where they lie, and their size
 //! distribution.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use image::RgbImage;
 
+use super::chosen_engine::{ChosenEngine, OpenEngine};
 use super::chosen_photos::{ChosenPhotos, Doing};
-use super::outlines_of_others::{MasksArguments, OutlinesOfOthers};
-use super::sizes::{Done, OutlinedBy, Sizes};
+use super::masks_arguments::MasksArguments;
+use super::mass_arguments::MassArguments;
+use super::page::Page;
+use super::sizes::{Done, OutlinedBy, Sizes, Way};
+use super::unfinished::{KeptPhoto, Unfinished};
 use super::written_outlines::{OtherForm, WrittenOutlines};
 use crate::cli::flight_arguments::FlightArguments;
-use crate::cli::outputs::{Force, Outputs};
+use crate::cli::outputs::{Force, Outputs, apart_from_photos};
 use crate::cli::{Answer, OutputUnit};
 use crate::delineation::mass::PhotoFragments;
 use crate::delineation::measures::SieveShape;
 use crate::delineation::{
-    Classical, Engine, LabelImage, Learned, NOT_ROCK, delineate as outline, engine_called, photo,
+    Engine, LabelImage, Learned, NOT_ROCK, delineate as outline, engine_called, leave_out, photo,
 };
-use crate::exports::{self, PhotoOfFragments};
+use crate::exports::{self, FoundSize, MapPlaces, PhotoOfFragments, WorldOutlines};
 use crate::fault::Fault;
-use crate::files::Kind;
-use crate::formats::FileError;
+use crate::files::{Kind, Recording};
+use crate::formats::{FileError, read_bytes};
 use crate::jobs::Progress;
-use crate::opening::{Opened, outline_files, read_outlines};
+use crate::opening::{Opened, OutlinesOfOthers, outline_files, read_outlines};
+use crate::picture::edge_spread;
 use crate::units::LengthUnit;
 
 #[derive(Debug, Args)]
@@ -33,14 +38,17 @@ pub(in crate::cli) struct DelineateArguments {
     /// One photo, as the flight names it; without it all photos.
     #[arg(long, value_name = "NAME")]
     photo: Option<String>,
-    /// The folder to write to: of each photo its label image and its outlines, then fragments.csv, distribution.csv and
-    /// sizes.csv (P20, P50 and P80 with their 95 % intervals).
+    /// The folder to write to: of each photo its label image, its outlines over the photo and in the world (GeoJSON), then
+    /// fragments.csv, distribution.csv, sizes.csv (P20, P50 and P80 with their 95 % intervals) and report.html. What was
+    /// stopped goes on with the photos that are not done when it is started again.
     #[arg(long, value_name = "DIR")]
     to: PathBuf,
-    /// What finds the borders of fragments. Without it, outlines that were saved in the window are taken where there are
-    /// any (fragments/NAME.png beside flight.toml), and else the learned engine.
-    #[arg(long, value_enum)]
-    engine: Option<EngineName>,
+    /// What finds the borders of fragments: learned (a small network that was trained on simulated piles), classical (edges
+    /// and shadows at several scales; no weights), or FILE.toml, which describes an ONNX model of yours. Without it, outlines
+    /// that were saved in the window are taken where there are any (fragments/NAME.png beside flight.toml), and else the
+    /// learned engine.
+    #[arg(long, value_name = "learned|classical|FILE.toml", value_parser = ChosenEngine::parse)]
+    engine: Option<ChosenEngine>,
     #[command(flatten)]
     masks: MasksArguments,
     /// Outlines for other tools, too, beside the label images, all of the undistorted photos; several with commas.
@@ -53,23 +61,16 @@ pub(in crate::cli) struct DelineateArguments {
     #[arg(long, value_enum, default_value = "cm")]
     unit: OutputUnit,
     #[command(flatten)]
+    mass: MassArguments,
+    #[command(flatten)]
     force: Force,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum EngineName {
-    /// A small network that was trained on simulated piles.
-    Learned,
-    /// Edges and shadows at several scales; no weights.
-    Classical,
-}
-
-impl EngineName {
-    fn engine(self) -> &'static dyn Engine {
-        match self {
-            Self::Classical => &Classical,
-            Self::Learned => &Learned,
-        }
+impl DelineateArguments {
+    /// What stays of it where it is stopped.
+    pub(in crate::cli) fn kept(&self) -> String {
+        let to = self.to.display();
+        format!("the photos that are done are kept in {to}; start it again to go on")
     }
 }
 
@@ -97,36 +98,118 @@ pub(in crate::cli) fn delineate(
     arguments: &DelineateArguments,
     progress: &Progress,
 ) -> Result<Answer, String> {
-    let inputs = arguments.flight.files().cloned();
-    let mut outputs = Outputs::new(arguments.force, inputs.chain(arguments.masks.masks.clone()));
-    let others = OutlinesOfOthers::open(&arguments.masks)?;
+    let outliners = Outliners::open(arguments)?;
     let opened = arguments.flight.open(progress)?;
+    let (answer, _) = delineate_of(arguments, &outliners, &opened, progress)?;
+    Ok(answer)
+}
+
+/// What outlines the fragments: looked at before the flight is opened, so that what is wrong is said at once.
+pub(in crate::cli) struct Outliners {
+    engine: Option<OpenEngine>,
+    /// The files of the engine.
+    of_engine: Vec<PathBuf>,
+    /// Outlines in place of an engine's.
+    others: Option<OutlinesOfOthers>,
+}
+
+impl Outliners {
+    /// Those that are asked for.
+    pub(in crate::cli) fn open(arguments: &DelineateArguments) -> Result<Self, String> {
+        arguments.mass.check()?;
+        let recording = Recording::start();
+        let chosen = arguments.engine.as_ref().map(ChosenEngine::open);
+        let engine = chosen.transpose()?;
+        let of_engine = recording.files();
+        drop(recording);
+        Ok(Self {
+            engine,
+            of_engine,
+            others: arguments.masks.open()?,
+        })
+    }
+
+    fn engine(&self) -> &dyn Engine {
+        self.engine
+            .as_ref()
+            .map_or(&Learned, |engine| engine.engine())
+    }
+}
+
+/// The same of a flight that is open, with the sizes of all fragments together in the unit that is asked for.
+pub(in crate::cli) fn delineate_of(
+    arguments: &DelineateArguments,
+    outliners: &Outliners,
+    opened: &Opened,
+    progress: &Progress,
+) -> Result<(Answer, Vec<FoundSize>), String> {
+    let inputs = arguments.flight.files().cloned();
+    let inputs = inputs.chain(arguments.masks.masks.clone());
+    let described = arguments.engine.as_ref().and_then(ChosenEngine::file);
+    let inputs = inputs
+        .chain(described.cloned())
+        .chain(arguments.mass.file());
+    let mut outputs = Outputs::new(arguments.force, inputs);
     outputs.read(&opened.read)?;
+    apart_from_photos(&arguments.to, opened)?;
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let flight = &opened.flight;
+    let (world, unit): (LengthUnit, LengthUnit) = (flight.parts().unit, arguments.unit.into());
+    let tail = arguments.mass.tail(world)?;
     let photos = ChosenPhotos::one_or_all(arguments.photo.clone());
     let chosen = photos.of(flight).map_err(in_flight)?;
     let stems = exports::photo_file_stems(flight);
     let to = &arguments.to;
-    let pictures = |index: usize| {
-        ["labels", "outlines"].map(|kind| to.join(format!("{}_{kind}.png", stems[index])))
+    let own_files = |index: usize| {
+        ["labels.png", "outlines.png", "world.geojson"]
+            .map(|kind| to.join(format!("{}_{kind}", stems[index])))
     };
-    let planned: Vec<[PathBuf; 2]> = chosen.iter().map(|index| pictures(*index)).collect();
-    let tables = ["fragments.csv", "distribution.csv", "sizes.csv"].map(|name| to.join(name));
+    let planned: Vec<[PathBuf; 3]> = chosen.iter().map(|index| own_files(*index)).collect();
+    let names = [
+        "fragments.csv",
+        "distribution.csv",
+        "sizes.csv",
+        "report.html",
+    ];
+    let tables = names.map(|name| to.join(name));
     let mut written = WrittenOutlines::new(to, &arguments.also);
     let for_others = written.paths(chosen.iter().map(|index| stems[*index].as_str()));
     let files = planned.iter().flatten().chain(&tables).chain(&for_others);
     outputs.check_all(files.map(PathBuf::as_path))?;
+    let places = MapPlaces::new(opened.crs.as_deref(), world);
+    let unfinished = match outliners.others {
+        // Outlines that stand already are measured in no time.
+        Some(_) => Unfinished::nothing(to),
+        None => {
+            let read: Vec<PathBuf> = opened
+                .inputs
+                .iter()
+                .chain(&outliners.of_engine)
+                .cloned()
+                .collect();
+            let options = format!(
+                "{:?} {:?} {:?} {:?}",
+                arguments.engine, arguments.shape, arguments.unit, arguments.also
+            );
+            Unfinished::new(to, &options, &read, progress)
+        }
+    };
     let maker = Maker {
         arguments,
-        opened: &opened,
-        others: others.as_ref(),
+        engine: outliners.engine(),
+        opened,
+        others: outliners.others.as_ref(),
         is_only: chosen.len() == 1,
         stems: &stems,
+        places: &places,
+        units: [world, unit],
         progress,
     };
     let mut warnings = opened.all_warnings();
+    if let Some(fault) = places.fault() {
+        warnings.push(fault.to_string());
+    }
     let doing = Doing {
         doing: "outlining the fragments of",
         not_done: "not delineated",
@@ -137,34 +220,59 @@ pub(in crate::cli) fn delineate(
     let names = chosen.iter().map(name);
     let failed = photos.make_each(names, &doing, path, progress, |place| {
         let index = chosen[place];
-        let made = maker.make(index)?;
-        let files = written.add(name(&index), &stems[index], &made.labels)?;
-        outputs.make_folder(to)?;
-        let pictures = planned[place].iter().cloned().zip(made.pictures);
-        for (path, bytes) in pictures.chain(files) {
-            outputs.write(&path, &bytes, Kind::Result)?;
-        }
-        said.extend(
-            made.notes
-                .iter()
-                .map(|note| format!("{}: {note}", name(&index))),
-        );
+        let (photo, stem) = (name(&chosen[place]), stems[index].as_str());
+        let key = unfinished.key(&maker.files_of(index), progress);
+        let mut paths = planned[place].to_vec();
+        paths.extend(written.of_photo(stem));
+        let kept = unfinished.kept(stem, key.as_deref(), &paths, progress);
+        let kept = kept.and_then(|kept| Some((maker.outlined_by(&kept)?, kept)));
+        let (outlined, kept) = match kept {
+            Some((outlined, kept)) => {
+                if written.needs_labels() {
+                    written.add(photo, stem, &read_own_labels(&planned[place][0])?)?;
+                }
+                (outlined, kept)
+            }
+            None => {
+                let made = maker.make(index)?;
+                let files = written.add(photo, stem, &made.labels)?;
+                outputs.make_folder(to)?;
+                let own = planned[place].iter().cloned().zip(made.files);
+                let files: Vec<(PathBuf, Vec<u8>)> = own.chain(files).collect();
+                for (path, bytes) in &files {
+                    outputs.write(path, bytes, Kind::Result)?;
+                }
+                let kept = KeptPhoto {
+                    fragments: made.fragments,
+                    is_saved: matches!(made.outlined, OutlinedBy::Saved(_)),
+                    engine: made
+                        .outlined
+                        .engine()
+                        .map_or_else(String::new, |of| of.name().to_owned()),
+                    spread: made.spread,
+                    notes: made.notes,
+                };
+                unfinished.keep(stem, photo, key.as_deref(), &files, &kept, &outputs)?;
+                (made.outlined, kept)
+            }
+        };
+        said.extend(kept.notes.iter().map(|note| format!("{photo}: {note}")));
         done.push(Done {
             index,
-            photo: name(&chosen[place]),
-            fragments: made.fragments,
-            outlined: made.outlined,
+            photo,
+            fragments: kept.fragments,
+            outlined,
+            spread: kept.spread,
         });
         Ok(())
     })?;
-    let not_all = doing.not_all(failed.len(), chosen.len()).map(in_flight);
+    let not_all = doing.not_all(&failed, chosen.len()).map(in_flight);
     warnings.extend(said);
     warnings.extend(failed);
-    let world = flight.parts().unit;
-    let unit: LengthUnit = arguments.unit.into();
     let report =
         |error: Box<dyn std::error::Error>| in_flight(Fault::new(error.to_string(), "report this"));
     let mut text = String::new();
+    let mut of_all = Vec::new();
     if !done.is_empty() {
         let rows: Vec<PhotoOfFragments<'_>> = done
             .iter()
@@ -177,8 +285,13 @@ pub(in crate::cli) fn delineate(
             exports::fragments_csv(&rows, world, unit).map_err(|error| report(error.into()))?;
         outputs.write(&tables[0], bytes.as_bytes(), Kind::Result)?;
         written.finish(&outputs)?;
-        let sizes = Sizes::of(&done, &opened, progress).map_err(in_flight)?;
-        let method = format!("fragscale ({})", method_of(&done));
+        let way = Way {
+            mass: &arguments.mass,
+            tail: tail.as_ref(),
+        };
+        let sizes = Sizes::of(&done, opened, &way, progress).map_err(in_flight)?;
+        let methods = method_of(&done);
+        let method = format!("fragscale ({methods})");
         let curves = sizes.curves();
         let bytes = exports::curves_csv(&method, &curves, world, unit)
             .map_err(|error| report(error.into()))?;
@@ -187,28 +300,63 @@ pub(in crate::cli) fn delineate(
             exports::sizes_csv(&sizes.rows(), world, unit).map_err(|error| report(error.into()))?;
         outputs.write(&tables[2], bytes.as_bytes(), Kind::Result)?;
         text = sizes.words(world, unit);
-        warnings.extend(sizes.without);
+        of_all = sizes.of_all(world.in_units_of(unit));
+        warnings.extend(sizes.without.iter().cloned());
+        let page = Page {
+            flight: &flight.parts().name,
+            method: &methods,
+            units: [world, unit],
+            tail: arguments.mass.tail_in_words(),
+            warnings: &warnings,
+        };
+        let pictures = |of: &Done<'_>| own_files(of.index)[1].clone();
+        let bytes = page.html(&sizes, &done, pictures).map_err(in_flight)?;
+        outputs.write(&tables[3], bytes.as_bytes(), Kind::Result)?;
     }
-    Ok(Answer {
+    // Photos that could not be made are tried again; those that were need not be.
+    if not_all.is_none() {
+        unfinished.remove(chosen.iter().map(|index| stems[*index].as_str()));
+    }
+    let answer = Answer {
         text,
         warnings,
         failed: not_all,
+    };
+    Ok((answer, of_all))
+}
+
+/// The label image of a file that this command wrote.
+fn read_own_labels(path: &Path) -> Result<LabelImage, Fault> {
+    let bytes = read_bytes(path).map_err(|error| error.fault)?;
+    let broken = |error: image::ImageError| Fault::new(error.to_string(), "remove the file");
+    let image = image::load_from_memory(&bytes)
+        .map_err(broken)?
+        .into_luma16();
+    let labels = image.pixels().map(|pixel| match pixel.0 {
+        [u16::MAX] => NOT_ROCK,
+        [label] => u32::from(label),
+    });
+    Ok(LabelImage {
+        width: image.width() as usize,
+        height: image.height() as usize,
+        labels: labels.collect(),
     })
 }
 
 /// What outlined them, in a word or two.
-fn method_of(done: &[Done<'_>]) -> &'static str {
-    let mut found = done.iter().map(|of| of.outlined.method());
-    let first = found.next().unwrap_or_default();
-    match found.all(|other| other == first) {
-        true => first,
-        false => "saved and learned",
-    }
+fn method_of(done: &[Done<'_>]) -> String {
+    let mut methods: Vec<&str> = done.iter().map(|of| of.outlined.method()).collect();
+    // Saved ones first.
+    methods.sort_by_key(|method| (*method != "saved", *method));
+    methods.dedup();
+    methods.join(" and ")
 }
 
 /// What all photos of a flight are outlined by.
 struct Maker<'a> {
     arguments: &'a DelineateArguments,
+    /// Of photos whose outlines are neither saved nor another tool's.
+    engine: &'a dyn Engine,
     opened: &'a Opened,
     /// Outlines in place of an engine's.
     others: Option<&'a OutlinesOfOthers>,
@@ -216,30 +364,38 @@ struct Maker<'a> {
     is_only: bool,
     /// What the files of each photo are called.
     stems: &'a [String],
+    /// How places of the world are written.
+    places: &'a MapPlaces,
+    /// Of the world, and of what is written.
+    units: [LengthUnit; 2],
     progress: &'a Progress,
 }
 
 /// A photo's files and fragments.
-struct Made {
-    pictures: [Vec<u8>; 2],
+struct Made<'a> {
+    /// Label image, outlines over the photo and in the world.
+    files: [Vec<u8>; 3],
     labels: LabelImage,
     fragments: PhotoFragments,
-    outlined: OutlinedBy,
+    outlined: OutlinedBy<'a>,
+    spread: Option<f64>,
     /// What was mended or left out.
     notes: Vec<String>,
 }
 
 /// A photo's outlines, before they are measured.
-struct Outlined {
+struct Outlined<'a> {
     labels: LabelImage,
-    by: OutlinedBy,
+    by: OutlinedBy<'a>,
     /// Nothing narrower is claimed, pixels.
     least_across: f64,
+    /// How far the photo's edges are spread, pixels.
+    spread: Option<f64>,
     notes: Vec<String>,
 }
 
-impl Maker<'_> {
-    fn make(&self, index: usize) -> Result<Made, Fault> {
+impl<'a> Maker<'a> {
+    fn make(&self, index: usize) -> Result<Made<'a>, Fault> {
         let flight = &self.opened.flight;
         let photo = &flight.parts().photos[index];
         let camera = flight.camera(photo);
@@ -249,6 +405,7 @@ impl Maker<'_> {
             labels,
             by,
             least_across,
+            spread,
             notes,
         } = self.outlined(index, &image, &left_out)?;
         let field = photo::field(flight, photo, self.progress)?;
@@ -265,14 +422,24 @@ impl Maker<'_> {
                 *is_cut = true;
             }
         }
+        let world = WorldOutlines {
+            photo: &photo.name,
+            labels: &labels,
+            field: &field,
+            fragments: &fragments.fragments,
+        };
+        let [unit, wanted] = self.units;
+        let world = exports::world_geojson(&world, self.places, unit, wanted);
         Ok(Made {
-            pictures: [
+            files: [
                 exports::labels_png(&labels)?,
                 exports::outlines_png(&image, &labels, &is_cut)?,
+                world.into_bytes(),
             ],
             fragments,
             labels,
             outlined: by,
+            spread,
             notes,
         })
     }
@@ -282,20 +449,19 @@ impl Maker<'_> {
         index: usize,
         image: &RgbImage,
         left_out: &[bool],
-    ) -> Result<Outlined, Fault> {
+    ) -> Result<Outlined<'a>, Fault> {
         let flight = &self.opened.flight;
         let photo = &flight.parts().photos[index];
         let camera = flight.camera(photo);
+        let spread = edge_spread(image);
         if let Some(others) = self.others {
             let mut masks = others.of_photo(&photo.name, camera, self.is_only)?;
-            let labels = masks.labels.labels.iter_mut().zip(left_out);
-            for (label, _) in labels.filter(|(_, is_left_out)| **is_left_out) {
-                *label = NOT_ROCK;
-            }
+            leave_out(&mut masks.labels, left_out);
             return Ok(Outlined {
-                least_across: narrowest(&masks.labels),
+                least_across: OutlinedBy::Masks.least_across(&masks.labels, spread),
                 labels: masks.labels,
                 by: OutlinedBy::Masks,
+                spread,
                 notes: masks.notes,
             });
         }
@@ -308,24 +474,40 @@ impl Maker<'_> {
                 read.map_err(|error| Fault::new(error.to_string(), "or say --engine learned"))?;
             let by = OutlinedBy::Saved(engine_called(&read.engine));
             return Ok(Outlined {
-                least_across: by.least_across(camera),
+                least_across: by.least_across(read.outlines.labels(), spread),
                 labels: read.outlines.into_labels(),
                 by,
+                spread,
                 notes: read.notes,
             });
         }
-        let engine = self
-            .arguments
-            .engine
-            .unwrap_or(EngineName::Learned)
-            .engine();
-        let by = OutlinedBy::Engine(engine);
+        let by = OutlinedBy::Engine(self.engine);
+        let labels = outline(self.engine, image, left_out, self.progress)?;
         Ok(Outlined {
-            labels: outline(engine, image, left_out, self.progress)?,
-            least_across: by.least_across(camera),
+            least_across: by.least_across(&labels, spread),
+            labels,
             by,
+            spread,
             notes: Vec::new(),
         })
+    }
+
+    /// All that a photo's outlines rest on besides the flight.
+    fn files_of(&self, index: usize) -> Vec<PathBuf> {
+        let photo = self.opened.photo_files.get(index);
+        let photo = photo.and_then(|file| file.path.clone());
+        let saved = self.saved_of(index).into_iter().flatten();
+        photo.into_iter().chain(saved).collect()
+    }
+
+    /// What outlined a photo that was kept; `None` where that is not known any more.
+    fn outlined_by(&self, kept: &KeptPhoto) -> Option<OutlinedBy<'_>> {
+        match kept.is_saved {
+            true => Some(OutlinedBy::Saved(
+                engine_called(&kept.engine).map(|engine| engine as _),
+            )),
+            false => (kept.engine == self.engine.name()).then_some(OutlinedBy::Engine(self.engine)),
+        }
     }
 
     /// The files of a photo's saved outlines, where those are to be taken.
@@ -336,13 +518,4 @@ impl Maker<'_> {
         let (flight_file, _) = self.opened.file.as_ref()?;
         Some(outline_files(flight_file, self.stems.get(index)?))
     }
-}
-
-/// The diameter of the circle of as many pixels as the smallest fragment has: nothing is claimed of what is smaller.
-fn narrowest(labels: &LabelImage) -> f64 {
-    let areas = labels.areas();
-    let least = areas.iter().skip(1).filter(|area| **area > 0).min();
-    least.map_or(0.0, |pixels| {
-        (4.0 / std::f64::consts::PI * *pixels as f64).sqrt()
-    })
 }

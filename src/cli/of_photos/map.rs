@@ -7,7 +7,6 @@ use glam::DVec2;
 
 use super::length::Length;
 use crate::cli::flight_arguments::FlightArguments;
-use crate::cli::on_surface::places::places;
 use crate::cli::outputs::{Force, Outputs};
 use crate::cli::{Answer, OutputUnit};
 use crate::exports::{MeasuredOutline, Plan, PlanFormat, PlanGround, PlanRequest, taken_in_words};
@@ -17,6 +16,7 @@ use crate::flight::{Limits, Review};
 use crate::formats::FileError;
 use crate::formats::photos::photo_metadata;
 use crate::jobs::Progress;
+use crate::opening::places;
 use crate::survey::{Polygon, SurveyError};
 
 #[derive(Debug, Args)]

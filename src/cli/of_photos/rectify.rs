@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use super::chosen_photos::{ChosenPhotos, Doing};
 use super::length::Length;
 use crate::cli::flight_arguments::FlightArguments;
-use crate::cli::outputs::{Force, Outputs};
+use crate::cli::outputs::{Force, Outputs, apart_from_photos};
 use crate::cli::{Answer, OutputUnit};
 use crate::exports::{self, RectifiedFormat, RectifiedPhoto};
 use crate::fault::Fault;
@@ -66,6 +66,7 @@ pub(in crate::cli) fn rectify(
     let mut outputs = Outputs::new(arguments.force, arguments.flight.files());
     let opened = arguments.flight.open(progress)?;
     outputs.read(&opened.read)?;
+    apart_from_photos(&arguments.to, &opened)?;
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let flight = &opened.flight;
@@ -115,7 +116,7 @@ pub(in crate::cli) fn rectify(
         warnings.extend(made.warning.map(|warning| format!("{name}: {warning}")));
         Ok(())
     })?;
-    let not_all = doing.not_all(failed.len(), chosen.len()).map(in_flight);
+    let not_all = doing.not_all(&failed, chosen.len()).map(in_flight);
     warnings.extend(failed);
     Ok(Answer {
         text,

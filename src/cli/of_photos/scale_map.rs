@@ -1,12 +1,13 @@
 //! `fragscale scale-map`: the scale of every pixel of a photo, or of all photos, into files.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
 use super::chosen_photos::{ChosenPhotos, Doing};
-use crate::cli::flight_arguments::FlightArguments;
-use crate::cli::outputs::{Force, Outputs};
+use crate::cli::flight_arguments::{FlightArguments, MemoryArguments};
+use crate::cli::outputs::{Force, Outputs, apart_from_photos};
 use crate::cli::{Answer, OutputUnit};
 use crate::exports::{self, MapLayer, ScaleMap};
 use crate::fault::Fault;
@@ -14,6 +15,7 @@ use crate::files::Kind;
 use crate::flight::{Flight, Photo};
 use crate::formats::FileError;
 use crate::jobs::Progress;
+use crate::opening::Opened;
 use crate::picture;
 use crate::scale::FieldGrid;
 
@@ -24,6 +26,8 @@ const PICTURE_SIDE: u32 = 2048;
 pub(in crate::cli) struct ScaleMapArguments {
     #[command(flatten)]
     flight: FlightArguments,
+    #[command(flatten)]
+    memory: MemoryArguments,
     #[command(flatten)]
     photos: ChosenPhotos,
     /// The file to write: numbers where it ends in .tif, colours with a legend where it ends in .png;
@@ -64,6 +68,13 @@ impl From<Layer> for MapLayer {
     }
 }
 
+impl ScaleMapArguments {
+    /// What is written of all photos: more is known when the flight is open.
+    pub(in crate::cli) fn outputs(&self) -> Outputs<'_> {
+        Outputs::new(self.force, self.flight.files())
+    }
+}
+
 /// What a file holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum MapFormat {
@@ -97,30 +108,83 @@ pub(in crate::cli) fn scale_map(
     arguments: &ScaleMapArguments,
     progress: &Progress,
 ) -> Result<Answer, String> {
-    let mut outputs = Outputs::new(arguments.force, arguments.flight.files());
+    let mut outputs = arguments.outputs();
     if !arguments.photos.all {
         for path in &arguments.output {
             MapFormat::of(path)?;
             outputs = outputs.and(path, Kind::Result)?;
         }
     }
+    let (flight, memory) = (&arguments.flight, &arguments.memory);
+    // Of a cloud that is read in part, the work may begin anew: what is written holds.
+    let mut written = BTreeSet::new();
+    let (opened, made) = memory.with_flight(flight, false, progress, |opened| {
+        outputs.read(&opened.read)?;
+        make_maps(arguments, opened, &outputs, &mut written, progress)
+    })?;
+    Ok(made.answer(arguments, &opened))
+}
+
+/// The same of a flight that is open, all of it.
+pub(in crate::cli) fn scale_map_of(
+    arguments: &ScaleMapArguments,
+    mut outputs: Outputs<'_>,
+    opened: &Opened,
+    progress: &Progress,
+) -> Result<Answer, String> {
+    outputs.read(&opened.read)?;
+    let made = make_maps(arguments, opened, &outputs, &mut BTreeSet::new(), progress)?;
+    Ok(made.answer(arguments, opened))
+}
+
+/// What came of the maps of a flight.
+struct MadeMaps {
+    /// Of which photos there is none, and why.
+    failed: Vec<String>,
+    /// Whether there is none at all.
+    has_none: bool,
+}
+
+impl MadeMaps {
+    fn answer(self, arguments: &ScaleMapArguments, opened: &Opened) -> Answer {
+        let mut warnings = opened.all_warnings();
+        warnings.extend(self.failed);
+        let fault = || {
+            let fault = Fault::new("none of its photos has a map", "see the warnings above");
+            FileError::new(&arguments.flight.flight, fault).to_string()
+        };
+        Answer {
+            text: String::new(),
+            warnings,
+            failed: self.has_none.then(fault),
+        }
+    }
+}
+
+/// Writes the maps of an opened flight that are not written yet.
+fn make_maps(
+    arguments: &ScaleMapArguments,
+    opened: &Opened,
+    outputs: &Outputs<'_>,
+    written: &mut BTreeSet<usize>,
+    progress: &Progress,
+) -> Result<MadeMaps, String> {
     let mut layers: Vec<MapLayer> = Vec::new();
     for layer in arguments.layers.iter().copied().map(MapLayer::from) {
         if !layers.contains(&layer) {
             layers.push(layer);
         }
     }
-    let opened = arguments.flight.open(progress)?;
-    outputs.read(&opened.read)?;
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let flight = &opened.flight;
     let chosen = arguments.photos.of(flight).map_err(in_flight)?;
     let planned = plan(arguments, flight, &chosen)?;
-    let files = planned.iter().flat_map(|planned| &planned.files);
+    let waiting = (planned.iter().enumerate()).filter(|(place, _)| !written.contains(place));
+    let files = waiting.flat_map(|(_, planned)| &planned.files);
     outputs.check_all(files.map(|(path, _)| path.as_path()))?;
-
     if arguments.photos.all {
+        apart_from_photos(&arguments.output[0], opened)?;
         outputs.make_folder(&arguments.output[0])?;
     }
     let maker = Maker {
@@ -130,7 +194,6 @@ pub(in crate::cli) fn scale_map(
         crs: opened.crs.as_deref(),
         progress,
     };
-    let mut warnings = opened.all_warnings();
     let doing = Doing {
         doing: "mapping",
         not_done: "no map",
@@ -138,24 +201,23 @@ pub(in crate::cli) fn scale_map(
     let names = planned.iter().map(|planned| planned.photo.name.as_str());
     let chosen_photos = &arguments.photos;
     let failed = chosen_photos.make_each(names, &doing, path, progress, |place| {
+        if written.contains(&place) {
+            return Ok(());
+        }
         let planned = &planned[place];
-        for (path, format) in &planned.files {
-            let bytes = maker.bytes(planned.photo, *format)?;
-            outputs.write(path, &bytes, Kind::Result)?;
+        let files = planned.files.iter();
+        let files = files.map(|(path, format)| Ok((path, maker.bytes(planned.photo, *format)?)));
+        let files = files.collect::<Result<Vec<_>, Fault>>()?;
+        if opened.is_settled() {
+            for (path, bytes) in files {
+                outputs.write(path, &bytes, Kind::Result)?;
+            }
+            written.insert(place);
         }
         Ok(())
     })?;
     let has_none = failed.len() == planned.len();
-    warnings.extend(failed);
-    if has_none {
-        let fault = Fault::new("none of its photos has a map", "see the warnings above");
-        return Ok(Answer {
-            text: String::new(),
-            warnings,
-            failed: Some(in_flight(fault)),
-        });
-    }
-    Ok(Answer::new(String::new(), warnings))
+    Ok(MadeMaps { failed, has_none })
 }
 
 /// Which files are written for each photo.

@@ -1,10 +1,11 @@
 //! The sizes of photos whose fragments were outlined: their distributions, how sure they are, and the words for both.
 
-use crate::camera::Camera;
+use super::mass_arguments::MassArguments;
 use crate::delineation::intervals::{Doubts, SizeInterval, intervals};
-use crate::delineation::mass::{ByMass, PhotoFragments, Steps, by_mass};
-use crate::delineation::{Engine, least_across, photo};
-use crate::exports::PhotoOfSizes;
+use crate::delineation::mass::{ByMass, PhotoFragments, StepTaken, by_mass, steps_taken};
+use crate::delineation::tail::Tail;
+use crate::delineation::{Engine, LabelImage, photo};
+use crate::exports::{FoundSize, PhotoOfSizes};
 use crate::fault::Fault;
 use crate::flight::{Limits, Review};
 use crate::jobs::Progress;
@@ -17,17 +18,17 @@ const ALL: &str = "all photos";
 
 /// What outlined a photo's fragments.
 #[derive(Clone, Copy)]
-pub(super) enum OutlinedBy {
+pub(super) enum OutlinedBy<'a> {
     /// This one, just now.
-    Engine(&'static dyn Engine),
+    Engine(&'a dyn Engine),
     /// This one, and then a person in the window; `None` where it is not known any more.
-    Saved(Option<&'static dyn Engine>),
+    Saved(Option<&'a dyn Engine>),
     /// Another tool.
     Masks,
 }
 
-impl OutlinedBy {
-    fn engine(self) -> Option<&'static dyn Engine> {
+impl<'a> OutlinedBy<'a> {
+    pub(super) fn engine(self) -> Option<&'a dyn Engine> {
         match self {
             Self::Engine(engine) => Some(engine),
             Self::Saved(engine) => engine,
@@ -36,7 +37,7 @@ impl OutlinedBy {
     }
 
     /// As it is named in files.
-    pub(super) fn method(self) -> &'static str {
+    pub(super) fn method(self) -> &'a str {
         match self {
             Self::Engine(engine) => engine.name(),
             Self::Saved(_) => "saved",
@@ -44,12 +45,9 @@ impl OutlinedBy {
         }
     }
 
-    /// Nothing narrower is claimed, pixels.
-    pub(super) fn least_across(self, camera: &Camera) -> f64 {
-        let engine = self.engine();
-        engine.map_or(0.0, |engine| {
-            least_across(engine, camera.width, camera.height)
-        })
+    /// Nothing narrower is claimed, pixels, in a photo whose edges are spread so far.
+    pub(super) fn least_across(self, labels: &LabelImage, spread: Option<f64>) -> f64 {
+        photo::least_across_of(self.engine(), labels, spread)
     }
 }
 
@@ -62,20 +60,29 @@ pub(super) struct Done<'a> {
     /// What was measured.
     pub(super) fragments: PhotoFragments,
     /// What outlined them.
-    pub(super) outlined: OutlinedBy,
+    pub(super) outlined: OutlinedBy<'a>,
+    /// How far the photo's edges are spread, pixels.
+    pub(super) spread: Option<f64>,
 }
 
 /// A distribution, and how sure it is.
-struct Row<'a> {
-    photo: &'a str,
-    by_mass: ByMass,
-    intervals: Vec<SizeInterval>,
+pub(super) struct Row<'a> {
+    pub(super) photo: &'a str,
+    /// With the law's tail, where one is asked for.
+    pub(super) by_mass: ByMass,
+    pub(super) intervals: Vec<SizeInterval>,
+    /// How it came about.
+    pub(super) taken: Vec<StepTaken>,
+    /// Its place among the photos that were measured; `None` of all together.
+    pub(super) of: Option<usize>,
+    /// The mean scale of the photo's fragments, pixels per unit; `None` of all together.
+    scale: Option<f64>,
 }
 
 /// The distributions of photos, and of all of them together.
 pub(super) struct Sizes<'a> {
-    photos: Vec<Row<'a>>,
-    all: Option<Row<'a>>,
+    pub(super) photos: Vec<Row<'a>>,
+    pub(super) all: Option<Row<'a>>,
     /// Photos without a distribution, a sentence each.
     pub(super) without: Vec<String>,
 }
@@ -88,6 +95,7 @@ impl<'a> Sizes<'a> {
     pub(super) fn of(
         done: &'a [Done<'a>],
         opened: &Opened,
+        way: &Way<'_>,
         progress: &Progress,
     ) -> Result<Self, Fault> {
         let looked_up = opened.looked_up.clone();
@@ -100,8 +108,13 @@ impl<'a> Sizes<'a> {
             all: None,
             without: Vec::new(),
         };
-        for of in done {
-            match row(of.photo, &[of], scale_error(of)) {
+        for (place, of) in done.iter().enumerate() {
+            let row = row(of.photo, &[of], scale_error(of), way);
+            match row.map(|row| Row {
+                of: Some(place),
+                scale: scale_of(&of.fragments),
+                ..row
+            }) {
                 Ok(row) => sizes.photos.push(row),
                 Err(fault) => {
                     let text = format!("{}: no size distribution: {fault}", of.photo);
@@ -117,7 +130,7 @@ impl<'a> Sizes<'a> {
             .fold(None, |most: Option<f64>, error| {
                 Some(most.map_or(error, |most| most.max(error)))
             });
-        sizes.all = row(ALL, &every, worst).ok();
+        sizes.all = row(ALL, &every, worst, way).ok();
         Ok(sizes)
     }
 
@@ -136,8 +149,27 @@ impl<'a> Sizes<'a> {
             photo: row.photo,
             by_mass: &row.by_mass,
             intervals: &row.intervals,
+            scale: row.scale,
         })
         .collect()
+    }
+
+    /// The sizes of all photos together, times `factor`.
+    pub(super) fn of_all(&self, factor: f64) -> Vec<FoundSize> {
+        let rows = self.all.iter();
+        let sizes = rows.flat_map(|row| row.intervals.iter().map(move |of| (row, of)));
+        sizes
+            .map(|(row, of)| FoundSize {
+                percent: of.percent,
+                size: row
+                    .by_mass
+                    .curve
+                    .size_at(of.percent)
+                    .map(|size| size * factor),
+                low: of.low.map(|low| low * factor),
+                high: of.high.map(|high| high * factor),
+            })
+            .collect()
     }
 
     /// A line of each photo, and one of all.
@@ -205,14 +237,32 @@ fn in_columns(table: &[[String; 8]]) -> String {
     text
 }
 
+/// The scale by which a photo's fragments have their area, pixels per unit.
+fn scale_of(photo: &PhotoFragments) -> Option<f64> {
+    let measured = photo
+        .fragments
+        .iter()
+        .filter_map(|of| Some((of.pixels as f64, of.world?.area)));
+    let [pixels, area] = measured.fold([0.0; 2], |[pixels, area], of| [pixels + of.0, area + of.1]);
+    (area > 0.0).then(|| (pixels / area).sqrt())
+}
+
+/// The way from outlines to the mass.
+pub(super) struct Way<'a> {
+    /// Its steps.
+    pub(super) mass: &'a MassArguments,
+    /// The law of the fines.
+    pub(super) tail: Option<&'a Tail>,
+}
+
 /// The distribution of photos together.
-fn row<'a>(name: &'a str, done: &[&Done<'_>], scale: Option<f64>) -> Result<Row<'a>, Fault> {
-    // What a person or another tool left without an outline is not there to be found; of several engines the mean.
-    let fines = |of: &&Done<'_>| of.outlined.engine().map_or(1.0, Engine::fines_of_unfound);
-    let steps = Steps {
-        fines: done.iter().map(fines).sum::<f64>() / done.len().max(1) as f64,
-        ..Steps::default()
-    };
+fn row<'a>(
+    name: &'a str,
+    done: &[&Done<'_>],
+    scale: Option<f64>,
+    way: &Way<'_>,
+) -> Result<Row<'a>, Fault> {
+    let steps = way.mass.steps(done.iter().map(|of| of.outlined));
     let doubts = done
         .iter()
         .map(|of| Doubts::of(of.outlined.engine(), scale));
@@ -220,9 +270,16 @@ fn row<'a>(name: &'a str, done: &[&Done<'_>], scale: Option<f64>) -> Result<Row<
         .reduce(Doubts::or_greater)
         .unwrap_or_else(|| Doubts::of(None, scale));
     let photos: Vec<&PhotoFragments> = done.iter().map(|of| &of.fragments).collect();
+    let mut by_mass = by_mass(photos.iter().copied(), steps)?;
+    if let Some(tail) = way.tail {
+        by_mass.curve = tail.below(&by_mass.curve)?;
+    }
     Ok(Row {
         photo: name,
-        by_mass: by_mass(photos.iter().copied(), steps)?,
+        by_mass,
         intervals: intervals(&photos, steps, doubts, &SizeInterval::PERCENTS)?,
+        taken: steps_taken(&photos, steps)?,
+        of: None,
+        scale: None,
     })
 }

@@ -57,6 +57,17 @@ impl<'a> WrittenOutlines<'a> {
         paths
     }
 
+    /// Whether files of all photos need the labels of each.
+    pub(super) fn needs_labels(&self) -> bool {
+        self.forms.iter().any(|form| of_all(*form).is_some())
+    }
+
+    /// The files of a photo alone.
+    pub(super) fn of_photo(&self, stem: &str) -> Vec<PathBuf> {
+        let forms = self.forms.iter().filter(|form| of_all(**form).is_none());
+        forms.map(|form| self.path(*form, stem)).collect()
+    }
+
     fn path(&self, form: OtherForm, stem: &str) -> PathBuf {
         let ending = match form {
             OtherForm::Labelme => "labelme.json",

@@ -3,7 +3,7 @@
 use clap::Args;
 use glam::DVec2;
 
-use super::places::{place, places};
+use super::places::place;
 use crate::cli::Answer;
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::outputs::NamedAnswerArguments;
@@ -11,6 +11,7 @@ use crate::exports::{self, MeasuredUnit, ProfileReport};
 use crate::fault::Fault;
 use crate::formats::FileError;
 use crate::jobs::Progress;
+use crate::opening::places;
 use crate::survey::Profile;
 
 #[derive(Debug, Args)]

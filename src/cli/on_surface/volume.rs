@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::places::places;
 use crate::cli::Answer;
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::outputs::NamedAnswerArguments;
@@ -12,6 +11,7 @@ use crate::exports::{self, MeasuredUnit, VolumeReport};
 use crate::fault::Fault;
 use crate::formats::FileError;
 use crate::jobs::Progress;
+use crate::opening::places;
 use crate::opening::{StatedWorld, second_surface};
 use crate::survey::{self, Base, Polygon};
 

@@ -3,19 +3,18 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use crate::cli::Answer;
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::on_surface::places::place;
 use crate::cli::outputs::NamedAnswerArguments;
+use crate::cli::written_beside::check_report_name;
 use crate::exports::{self, DrawingFormat, FlownFigure, FlownReport};
-use crate::fault::Fault;
 use crate::files::Kind;
-use crate::formats::{FileError, read_mission};
-use crate::geodesy::{Crs, CrsKind};
+use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::plan::{Flown, Taken, ground_at, planned_poses};
+use crate::opening::{FlightOfMission, compare_flown};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct FlownArguments {
@@ -30,6 +29,9 @@ pub(in crate::cli) struct FlownArguments {
     /// Draw what was planned and flown into this file, .svg, .pdf or .png; may be given more than once.
     #[arg(long, value_name = "FILE")]
     figure: Vec<PathBuf>,
+    /// Write the figure, the numbers and every photo's residuals as a page to this file, .html.
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
     #[command(flatten)]
     answer: NamedAnswerArguments,
 }
@@ -47,44 +49,26 @@ pub(in crate::cli) fn flown(
         formats.push((path, format));
         outputs = outputs.and(path, Kind::Result)?;
     }
-    let mission = read_mission(&arguments.mission).map_err(|error| error.to_string())?;
+    if let Some(path) = &arguments.report {
+        check_report_name(path)?;
+        outputs = outputs.and(path, Kind::Result)?;
+    }
     let opened = arguments.flight.open(progress)?;
     outputs.read(&opened.read)?;
-    let in_flight = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
-    let in_mission = |fault: Fault| FileError::new(&arguments.mission, fault).to_string();
+    let of = FlightOfMission {
+        file: &arguments.flight.flight,
+        flight: &opened.flight,
+        crs: opened.crs.as_deref(),
+    };
+    let compared = compare_flown(&arguments.mission, of, arguments.take_off, progress);
+    let compared = compared.map_err(|error| error.to_string())?;
     let parts = opened.flight.parts();
-    let crs = opened.crs.as_deref().ok_or_else(|| {
-        let what = "nobody says in which coordinate system its places are";
-        in_flight(Fault::new(what, "say it in flight.toml (world.crs)"))
-    })?;
-    let crs = Crs::understand(crs).map_err(in_flight)?;
-    let ground = |place| ground_at(&parts.surface, place);
-    let planned = planned_poses(&mission.mission, &crs, arguments.take_off, ground);
-    let planned = planned.map_err(in_mission)?;
-    if planned.is_empty() {
-        let what = "it has no photos to compare with";
-        return Err(in_mission(Fault::new(
-            what,
-            "give the mission of this flight",
-        )));
-    }
-    let taken: Vec<Taken<'_>> = (parts.photos.iter())
-        .map(|photo| Taken {
-            name: &photo.name,
-            pose: &photo.pose,
-            camera: opened.flight.camera(photo),
-        })
-        .collect();
-    progress.stage("planned against flown");
-    let flown = Flown::compare(&planned, &taken, &parts.surface, progress);
-    let flown = flown.map_err(in_flight)?;
-    let photos: Vec<&str> = taken.iter().map(|taken| taken.name).collect();
     let report = FlownReport {
         flight: &parts.name,
         unit: parts.unit,
-        planned: &planned,
-        photos: &photos,
-        flown: &flown,
+        planned: &compared.planned,
+        photos: &compared.photos,
+        flown: &compared.flown,
     };
     let text = arguments.answer.deliver(
         &outputs,
@@ -93,11 +77,10 @@ pub(in crate::cli) fn flown(
         exports::flown_csv,
         exports::flown_json,
     )?;
-    let places: Vec<DVec3> = taken.iter().map(|taken| taken.pose.center).collect();
     let figure = FlownFigure {
         report: &report,
-        places: &places,
-        is_on_map: crs.kind() == CrsKind::Projected,
+        places: &compared.places,
+        is_on_map: compared.is_on_map,
     };
     for (path, format) in formats {
         let bytes = figure.bytes(format);
@@ -105,7 +88,12 @@ pub(in crate::cli) fn flown(
         outputs.write(path, &bytes, Kind::Result)?;
     }
     let mut warnings = exports::flown_warnings(&report);
-    warnings.extend(mission.notes);
+    warnings.extend(compared.notes);
+    if let Some(path) = &arguments.report {
+        let page = figure.page(&warnings);
+        let page = page.map_err(|fault| FileError::new(path, fault).to_string())?;
+        outputs.write(path, page.as_bytes(), Kind::Result)?;
+    }
     warnings.extend(opened.all_warnings());
     Ok(Answer::new(text, warnings))
 }

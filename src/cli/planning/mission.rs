@@ -8,11 +8,12 @@ use clap::Args;
 use crate::cli::Answer;
 use crate::cli::outputs::Force;
 use crate::cli::planning::plan::drone_values;
-use crate::exports::write_missions;
+use crate::cli::planning::stated::StatedArguments;
+use crate::exports::{MissionFormat, write_missions};
 use crate::fault::one_line;
 use crate::files::Inputs;
-use crate::formats::{MissionFile, read_mission};
-use crate::plan::{Drone, Finish, Height, Mission};
+use crate::formats::{FileError, MissionFile, read_mission};
+use crate::plan::{Drone, Height, Mission};
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct MissionArguments {
@@ -26,6 +27,8 @@ pub(in crate::cli) struct MissionArguments {
     #[arg(long, value_name = "NAME", value_parser = drone_values())]
     drone: Option<String>,
     #[command(flatten)]
+    stated: StatedArguments,
+    #[command(flatten)]
     force: Force,
 }
 
@@ -36,8 +39,14 @@ pub(in crate::cli) fn mission(arguments: &MissionArguments) -> Result<Answer, St
         notes: mut warnings,
     } = read_mission(&arguments.file).map_err(|e| e.to_string())?;
     if let Some(drone) = arguments.drone.as_deref().and_then(Drone::named) {
+        if let Some(to) = &arguments.to {
+            MissionFormat::of(to)
+                .and_then(|format| format.check_drone(Some(&drone)))
+                .map_err(|fault| FileError::new(to, fault).to_string())?;
+        }
         mission.drone = drone.codes;
     }
+    warnings.extend(arguments.stated.apply(&mut mission)?);
     let mut text = told(&mission, format);
     if let Some(to) = &arguments.to {
         let inputs = Inputs::of([&arguments.file]);
@@ -83,11 +92,7 @@ fn told(mission: &Mission, format: &str) -> String {
     if let Some(speed) = mission.speed {
         let _ = writeln!(text, "speed: {speed} m/s");
     }
-    let finish = match mission.finish {
-        Finish::ReturnHome => "returns home",
-        Finish::Hover => "hovers",
-        Finish::Land => "lands",
-    };
+    let finish = mission.finish.in_words();
     let _ = writeln!(text, "at the end: {finish}");
     for ((stop, pitch), number) in mission.stops.iter().zip(mission.gimbal_pitches()).zip(1..) {
         let _ = write!(

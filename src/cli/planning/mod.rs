@@ -1,7 +1,10 @@
 //! The commands about flights that are to be flown.
 
-mod areas;
 pub(super) mod flown;
+mod flying;
 pub(super) mod mission;
+mod pixel_scale;
 pub(super) mod plan;
 mod sheet;
+mod stated;
+mod survey;

@@ -1,7 +1,6 @@
 //! `fragscale plan`: where to fly, so that each photo has the wished scale on this surface.
 
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
@@ -9,12 +8,14 @@ use glam::DVec2;
 
 use crate::camera::Camera;
 use crate::cli::Answer;
-use crate::cli::flight_arguments::FlightArguments;
+use crate::cli::flight_arguments::{FlightArguments, MemoryArguments};
 use crate::cli::of_photos::length::Length;
 use crate::cli::on_surface::places::place;
 use crate::cli::outputs::NamedAnswerArguments;
-use crate::cli::planning::areas::Areas;
+use crate::cli::planning::flying::{FlyingArguments, percent, positive};
+use crate::cli::planning::pixel_scale::PixelScale;
 use crate::cli::planning::sheet::SheetArguments;
+use crate::cli::planning::survey::SurveyArguments;
 use crate::exports::{self, FlightSheet, MissionFormat, PlanReport};
 use crate::fault::{Fault, one_line};
 use crate::files::Kind;
@@ -22,14 +23,18 @@ use crate::formats::{FileError, read_camera};
 use crate::geodesy::Crs;
 use crate::geometry::extent;
 use crate::jobs::Progress;
-use crate::opening::Opened;
-use crate::plan::{self, Drone, Pace, Pattern, Plan, Positioning, Size, Told, Way, Wish};
+use crate::opening::{Areas, Opened};
+use crate::plan::{
+    self, Drone, Pace, Pattern, Plan, Positioning, Purpose, Shadows, Size, Sun, Told, Way, Wish,
+};
 use crate::units::LengthUnit;
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct PlanArguments {
     #[command(flatten)]
     flight: FlightArguments,
+    #[command(flatten)]
+    memory: MemoryArguments,
     /// The scale that each photo is to have, as '20 px/cm'.
     #[arg(
         long,
@@ -39,27 +44,39 @@ pub(in crate::cli) struct PlanArguments {
     )]
     scale: Option<PixelScale>,
     /// How far it may be off anywhere in a photo, as '2 px/cm'; else a tenth of it.
-    #[arg(long, value_name = "N px/UNIT", requires = "scale")]
+    #[arg(
+        long,
+        value_name = "N px/UNIT",
+        requires = "scale",
+        allow_hyphen_values = true
+    )]
     within: Option<PixelScale>,
     /// Fly so high instead, as 30m: above the highest of the area, of the slope pattern from the ground.
-    #[arg(long, value_name = "LENGTH", conflicts_with = "scale")]
+    #[arg(
+        long,
+        value_name = "LENGTH",
+        conflicts_with = "scale",
+        allow_hyphen_values = true
+    )]
     height: Option<Length>,
     /// How the photos lie.
     #[arg(long, value_enum, default_value_t)]
     pattern: PhotoPattern,
-    /// How much a photo shares with the next, in percent of its width and height; else 0, of a survey 70.
-    #[arg(long, value_name = "PERCENT")]
+    /// How much a photo shares with the next, in percent of its width and height; else 0, of the pattern survey 70.
+    #[arg(long, value_name = "PERCENT", value_parser = percent, allow_hyphen_values = true)]
     overlap: Option<f64>,
+    #[command(flatten)]
+    survey: SurveyArguments,
     /// Fill gaps between photos with photos more, which share more with others than --overlap says.
     #[arg(long)]
     fill_gaps: bool,
-    /// The camera's axis below the horizon, of the paper's pattern, degrees.
-    #[arg(long, value_name = "DEGREES", default_value_t = plan::USUAL_TILT)]
-    tilt: f64,
-    /// How far a photo's axis may lie off the normal of the ground, of the slope pattern, degrees: photos that are
-    /// square in their strips share less with their neighbours.
-    #[arg(long, value_name = "DEGREES", value_parser = positive, default_value_t = plan::USUAL_OFF_NORMAL)]
-    off_normal: f64,
+    /// The camera's axis below the horizon, of the patterns paper and paper-both, degrees; else 83.
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
+    tilt: Option<f64>,
+    /// How far a photo's axis may lie off the normal of the ground, of the patterns slope and both, degrees; else 10: photos
+    /// that are square in their strips share less with their neighbours.
+    #[arg(long, value_name = "DEGREES", value_parser = positive, allow_hyphen_values = true)]
+    off_normal: Option<f64>,
     /// The corners of what is to be photographed, in the world, or a file with one a line; or a polygon of a map, as
     /// GeoJSON or KML; without it the pile that stands out of its floor.
     #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true)]
@@ -80,7 +97,7 @@ pub(in crate::cli) struct PlanArguments {
     #[arg(long, value_name = "LOW,HIGH", value_parser = place, allow_hyphen_values = true)]
     gimbal: Option<DVec2>,
     /// The drone stays so far from the surface; else 5 m.
-    #[arg(long, value_name = "LENGTH")]
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     clearance: Option<Length>,
     /// The corners of ground that the drone does not fly over, at any height (misfires, people), or a file with one a
     /// line; or the polygons of a map, as GeoJSON or KML. May be given several times.
@@ -92,15 +109,8 @@ pub(in crate::cli) struct PlanArguments {
     /// Where the drone takes off and lands, in the world: on the surface, and heights of a mission count from there.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     take_off: Option<DVec2>,
-    /// Metres a second between photos.
-    #[arg(long, value_name = "M/S", value_parser = speed, allow_hyphen_values = true, default_value_t = plan::USUAL_SPEED)]
-    speed: f64,
-    /// Seconds that the drone waits at a photo, for the gimbal to settle.
-    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true, default_value_t = plan::USUAL_SETTLE)]
-    settle: f64,
-    /// Minutes in the air that a battery lasts: a longer way becomes several missions, NAME-battery-1 and so on.
-    #[arg(long, value_name = "MINUTES", value_parser = positive, allow_hyphen_values = true, requires = "take_off")]
-    battery: Option<f64>,
+    #[command(flatten)]
+    flying: FlyingArguments,
     /// When it is flown, as 2026-06-01T10:00+02:00: where the sun stands then, and what lies in shadow.
     #[arg(long, value_name = "TIME")]
     sun: Option<String>,
@@ -118,22 +128,35 @@ impl PlanArguments {
     fn drone(&self) -> Option<Drone> {
         Drone::named(self.drone.as_deref()?)
     }
-}
 
-/// A number above zero.
-fn positive(text: &str) -> Result<f64, String> {
-    let number: Option<f64> = text.trim().parse().ok();
-    let number = number.filter(|number| *number > 0.0 && number.is_finite());
-    number.ok_or_else(|| "give a number above zero".to_owned())
-}
-
-/// Metres a second that a drone flies.
-fn speed(text: &str) -> Result<f64, String> {
-    let number = positive(text)?;
-    let flies = number <= plan::MOST_SPEED;
-    flies
-        .then_some(number)
-        .ok_or_else(|| format!("give at most {} m/s", plan::MOST_SPEED))
+    /// An error where something was typed that the pattern knows nothing of: who types it believes that it counts.
+    fn check_pattern(&self) -> Result<(), String> {
+        let PhotoPattern(pattern) = self.pattern;
+        if pattern == Pattern::Survey && self.overlap.is_some() && self.survey.has_overlap() {
+            return Err(
+                "--overlap and --survey-overlap: of the pattern survey they are the same; give one"
+                    .to_owned(),
+            );
+        }
+        let survey = self.survey.typed();
+        let tilt = self.tilt.map(|_| "--tilt");
+        let off_normal = self.off_normal.map(|_| "--off-normal");
+        let has_survey = pattern.has(Purpose::Survey);
+        let wrong = [
+            (survey, has_survey, "survey, both and paper-both"),
+            (tilt, pattern.is_level(), "paper and paper-both"),
+            (off_normal, pattern.is_square(), "slope and both"),
+        ];
+        for (option, is_known, of) in wrong {
+            if let (Some(option), false) = (option, is_known) {
+                let own = pattern.as_str();
+                return Err(format!(
+                    "{option}: the pattern {own} knows nothing of it; leave it out, or take a pattern that does ({of})"
+                ));
+            }
+        }
+        Ok(())
+    }
 }
 
 pub(super) fn drone_values() -> PossibleValuesParser {
@@ -147,11 +170,15 @@ struct PhotoPattern(Pattern);
 
 impl ValueEnum for PhotoPattern {
     fn value_variants<'a>() -> &'a [Self] {
-        const ALL: [PhotoPattern; 3] = [
-            PhotoPattern(Pattern::Slope),
-            PhotoPattern(Pattern::Paper),
-            PhotoPattern(Pattern::Survey),
-        ];
+        const ALL: [PhotoPattern; Pattern::ALL.len()] = {
+            let mut all = [PhotoPattern(Pattern::Slope); Pattern::ALL.len()];
+            let mut at = 0;
+            while at < all.len() {
+                all[at] = PhotoPattern(Pattern::ALL[at]);
+                at += 1;
+            }
+            all
+        };
         &ALL
     }
 
@@ -178,53 +205,119 @@ impl ValueEnum for DronePositioning {
     }
 }
 
-/// Pixels per a unit of length.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct PixelScale {
-    pixels: f64,
-    unit: LengthUnit,
-}
-
-impl FromStr for PixelScale {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || "give pixels per a unit, as '20 px/cm'".to_owned();
-        let (number, unit) = text.split_once('/').ok_or_else(wrong)?;
-        let number = number.trim().trim_end_matches("px").trim();
-        let pixels: f64 = number.parse().map_err(|_| wrong())?;
-        let unit = unit.trim().parse().map_err(|_| wrong())?;
-        let is_scale = pixels > 0.0 && pixels.is_finite();
-        is_scale.then_some(Self { pixels, unit }).ok_or_else(wrong)
-    }
-}
-
-impl PixelScale {
-    /// Pixels per this unit.
-    fn per(self, unit: LengthUnit) -> f64 {
-        self.pixels * unit.in_units_of(self.unit)
-    }
-}
-
 pub(in crate::cli) fn plan(
     arguments: &PlanArguments,
     progress: &Progress,
 ) -> Result<Answer, String> {
+    arguments.check_pattern()?;
     // Of areas that are typed there is no file.
     let areas = arguments.area.iter().chain(&arguments.keep_out);
     let areas = areas.map(PathBuf::from).collect::<Vec<_>>();
     let inputs = arguments.flight.files().chain(&arguments.camera);
     let mut outputs = arguments.answer.output.outputs(inputs.chain(&areas))?;
     for path in &arguments.mission {
-        MissionFormat::of(path).map_err(|fault| FileError::new(path, fault).to_string())?;
+        // Known before the work: nothing is written where one of them cannot be.
+        MissionFormat::of(path)
+            .and_then(|format| format.check_drone(arguments.drone().as_ref()))
+            .map_err(|fault| FileError::new(path, fault).to_string())?;
         outputs = outputs.and(path, Kind::Result)?;
     }
     outputs = arguments.sheet.among(outputs)?;
     let area = arguments.area.as_deref().map(Areas::read).transpose()?;
     let keep_out = arguments.keep_out.iter().map(|text| Areas::read(text));
     let keep_out: Vec<_> = keep_out.collect::<Result<_, String>>()?;
-    let opened = arguments.flight.open_to_measure(progress)?;
-    outputs.read(&opened.read)?;
+    let (flight, memory) = (&arguments.flight, &arguments.memory);
+    let (opened, planned) = memory.with_flight(flight, true, progress, |opened| {
+        outputs.read(&opened.read)?;
+        planned(
+            arguments,
+            opened,
+            (area.clone(), keep_out.clone()),
+            progress,
+        )
+    })?;
+    let Planned {
+        unit,
+        plan,
+        ways,
+        pace,
+        sun,
+        mut warnings,
+    } = planned;
+    let parts = opened.flight.parts();
+    let in_flight = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
+    let flying = arguments.flying.flying();
+    let missions = match arguments.mission.is_empty() || ways.is_empty() {
+        true => Vec::new(),
+        false => {
+            let told = Told {
+                name: parts.name.clone(),
+                drone: arguments.drone().and_then(|drone| drone.codes),
+                unit,
+                speed: flying.speed,
+                settle: flying.settle,
+            };
+            let crs = crs_of(arguments, &opened)?;
+            plan::missions(&plan, &ways, &crs, &told).map_err(in_flight)?
+        }
+    };
+    let stated_crs = arguments.crs.as_deref().or(opened.crs.as_deref());
+    let report = PlanReport {
+        flight: &parts.name,
+        world: unit,
+        scales: arguments.scale.map_or(unit, |scale| scale.unit),
+        plan: &plan,
+        ways: &ways,
+        pace,
+        is_nominal: arguments.camera.is_none() && arguments.drone.is_some(),
+        sun: sun.as_ref().map(|(sun, shadows)| (sun, shadows)),
+    };
+    let text = arguments.answer.deliver(
+        &outputs,
+        &report,
+        exports::plan_table,
+        exports::plan_csv,
+        exports::plan_json,
+    )?;
+    warnings.extend(exports::plan_warnings(&report));
+    if !missions.is_empty() {
+        for path in &arguments.mission {
+            for note in outputs.write_missions(&missions, path)? {
+                if !warnings.contains(&note) {
+                    warnings.push(note);
+                }
+            }
+        }
+    }
+    let sheet = FlightSheet {
+        report: &report,
+        drone: arguments.drone().map(|drone| drone.title),
+        settle: flying.settle,
+        crs: stated_crs,
+        warnings: &warnings,
+    };
+    arguments.sheet.write(&outputs, &sheet)?;
+    // What was looked up of the flight's own photos says nothing of those that are planned.
+    warnings.extend(opened.warnings.iter().cloned());
+    Ok(Answer::new(text, warnings))
+}
+
+/// What is planned on the surface of an opened flight.
+struct Planned {
+    unit: LengthUnit,
+    plan: Plan,
+    ways: Vec<Way>,
+    pace: Pace,
+    sun: Option<(Sun, Shadows)>,
+    warnings: Vec<String>,
+}
+
+fn planned(
+    arguments: &PlanArguments,
+    opened: &Opened,
+    (area, keep_out): (Option<Areas>, Vec<Areas>),
+    progress: &Progress,
+) -> Result<Planned, String> {
     let in_flight = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
     let parts = opened.flight.parts();
     if let Some(gimbal) = arguments.gimbal.filter(|gimbal| gimbal.x > gimbal.y) {
@@ -239,17 +332,13 @@ pub(in crate::cli) fn plan(
         let remedy = "say it: --unit m; or world.unit in flight.toml";
         return Err(in_flight(Fault::new(what, remedy)));
     };
-    let stated_crs = arguments.crs.as_deref().or(opened.crs.as_deref());
-    let crs = || {
-        let stated = stated_crs.ok_or_else(|| {
-            let what = "nobody says in which coordinate system its places are";
-            let remedy = "say it: --crs EPSG:n; or world.crs in flight.toml";
-            in_flight(Fault::new(what, remedy))
-        });
-        Crs::understand(stated?).map_err(in_flight)
-    };
-    let camera = camera(arguments, &opened)?;
-    let mut warnings = Vec::new();
+    let crs = || crs_of(arguments, opened);
+    // Of a system that is none is told where it is needed.
+    if let Ok(crs) = crs() {
+        plan::same_unit(unit, &crs).map_err(in_flight)?;
+    }
+    let camera = camera(arguments, opened)?;
+    let mut warnings: Vec<String> = plan::lying(&parts.surface).into_iter().collect();
     if let (Some(said), Some(own)) = (&arguments.crs, &opened.crs)
         && said != own
     {
@@ -287,12 +376,8 @@ pub(in crate::cli) fn plan(
         let filled = plan.with_gaps_filled(&parts.surface, progress);
         plan = filled.map_err(in_flight)?;
     }
-    let pace = Pace::of(
-        arguments.speed,
-        arguments.settle,
-        arguments.battery,
-        unit.metres(),
-    );
+    let flying = arguments.flying.flying();
+    let pace = Pace::of(&flying, unit.metres());
     let ways = match arguments.take_off {
         None => Vec::new(),
         Some(place) => {
@@ -308,52 +393,26 @@ pub(in crate::cli) fn plan(
             Some(sun.map_err(|fault| format!("sun: {fault}"))?)
         }
     };
-    let report = PlanReport {
-        flight: &parts.name,
-        world: unit,
-        scales: arguments.scale.map_or(unit, |scale| scale.unit),
-        plan: &plan,
-        ways: &ways,
+    Ok(Planned {
+        unit,
+        plan,
+        ways,
         pace,
-        is_nominal: arguments.camera.is_none() && arguments.drone.is_some(),
-        sun: sun.as_ref().map(|(sun, shadows)| (sun, shadows)),
-    };
-    let text = arguments.answer.deliver(
-        &outputs,
-        &report,
-        exports::plan_table,
-        exports::plan_csv,
-        exports::plan_json,
-    )?;
-    warnings.extend(exports::plan_warnings(&report));
-    if !arguments.mission.is_empty() && !ways.is_empty() {
-        let crs = crs()?;
-        let told = Told {
-            name: parts.name.clone(),
-            drone: arguments.drone().and_then(|drone| drone.codes),
-            unit,
-            speed: arguments.speed,
-            settle: arguments.settle,
-        };
-        let missions = plan::missions(&plan, &ways, &crs, &told).map_err(in_flight)?;
-        for path in &arguments.mission {
-            for note in outputs.write_missions(&missions, path)? {
-                if !warnings.contains(&note) {
-                    warnings.push(note);
-                }
-            }
-        }
-    }
-    let sheet = FlightSheet {
-        report: &report,
-        drone: arguments.drone().map(|drone| drone.title),
-        settle: arguments.settle,
-        crs: stated_crs,
-        warnings: &warnings,
-    };
-    arguments.sheet.write(&outputs, &sheet)?;
-    warnings.extend(opened.all_warnings());
-    Ok(Answer::new(text, warnings))
+        sun,
+        warnings,
+    })
+}
+
+/// The coordinate system of the places.
+fn crs_of(arguments: &PlanArguments, opened: &Opened) -> Result<Crs, String> {
+    let in_flight = |fault: Fault| FileError::new(&arguments.flight.flight, fault).to_string();
+    let stated = arguments.crs.as_deref().or(opened.crs.as_deref());
+    let stated = stated.ok_or_else(|| {
+        let what = "nobody says in which coordinate system its places are";
+        let remedy = "say it: --crs EPSG:n; or world.crs in flight.toml";
+        in_flight(Fault::new(what, remedy))
+    });
+    Crs::understand(stated?).map_err(in_flight)
 }
 
 /// The camera that is to fly, without what its lens bends: plans are for undistorted images.
@@ -396,12 +455,10 @@ fn wish(arguments: &PlanArguments, unit: LengthUnit) -> Wish {
     let metres = unit.metres();
     let usual = Wish::usual(arguments.pattern.0, size, arguments.drone(), metres);
     let clearance = arguments.clearance.map(|length| length.in_units_of(unit));
-    Wish {
-        overlap: arguments
-            .overlap
-            .map_or(usual.overlap, |percent| percent / 100.0),
-        tilt: arguments.tilt,
-        off_normal: arguments.off_normal,
+    let mut wish = Wish {
+        survey: arguments.survey.wish(unit),
+        tilt: arguments.tilt.unwrap_or(usual.tilt),
+        off_normal: arguments.off_normal.unwrap_or(usual.off_normal),
         gimbal: arguments
             .gimbal
             .map_or(usual.gimbal, |gimbal| gimbal.to_array()),
@@ -409,24 +466,9 @@ fn wish(arguments: &PlanArguments, unit: LengthUnit) -> Wish {
         errors: arguments.positioning.0.errors(metres),
         take_off: arguments.take_off,
         ..usual
+    };
+    if let Some(percent) = arguments.overlap {
+        wish.set_overlap(percent / 100.0);
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn scales_have_a_unit() {
-        let scale = |text: &str| {
-            text.parse::<PixelScale>()
-                .map(|scale| scale.per(LengthUnit::Metre))
-        };
-        assert_eq!(scale("20 px/cm"), Ok(2000.0));
-        assert_eq!(scale("0.5px/mm"), Ok(500.0));
-        assert_eq!(scale("30/m"), Ok(30.0));
-        for wrong in ["20", "px/cm", "-1 px/cm", "20 px/km", "inf/m", ""] {
-            assert!(scale(wrong).is_err(), "{wrong}");
-        }
-    }
+    wish
 }

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use crate::choice::Scorer;
 use crate::engine::Engine;
-use crate::evidence::Evidence;
+use crate::evidence::{Evidence, gray};
 use crate::smoothing::smoothed_floats;
 
 static SCORER: LazyLock<Option<Scorer>> = LazyLock::new(|| {
@@ -77,17 +77,6 @@ impl Engine for Classical {
             gray,
         })
     }
-}
-
-/// The brightness (ITU-R BT.601's weights).
-pub(crate) fn gray(photo: &RgbImage) -> Vec<u8> {
-    let pixels = photo.as_raw().par_chunks_exact(3);
-    pixels
-        .map(|rgb| {
-            let [r, g, b] = [rgb[0], rgb[1], rgb[2]].map(u32::from);
-            ((299 * r + 587 * g + 114 * b + 500) / 1000) as u8
-        })
-        .collect()
 }
 
 fn evened(gray: &[u8], width: usize, height: usize) -> Vec<f32> {

@@ -11,24 +11,32 @@ use std::sync::LazyLock;
 use fragscale_core::fault::Fault;
 use fragscale_core::jobs::Progress;
 use image::RgbImage;
-use image::imageops::{FilterType, resize};
 use rayon::prelude::*;
 use rten::Model;
 use rten_tensor::prelude::*;
 use rten_tensor::{NdTensor, NdTensorView};
 
 use crate::choice::Scorer;
-use crate::classical::gray;
 use crate::engine::Engine;
-use crate::evidence::Evidence;
+use crate::evidence::{Evidence, gray};
+use crate::network::{self, Channels, Input, Normal, Parts};
 
-/// Side of the part that the network sees at once, pixels, and how much of it is thrown away where the photo goes
-/// on, because the network knows nothing of that.
-const PART: usize = 1152;
-const MARGIN: usize = 48;
+/// The network halves its picture four times, and wants sides that can be; it knows nothing of what lies beyond the
+/// part that it sees, so the margin is thrown away where the photo goes on.
+const PARTS: Parts = Parts {
+    part: [1152, 1152],
+    margin: 48,
+    step: 16,
+    is_fixed: false,
+};
 
-/// The network halves its picture so many times, and wants sides that can be.
-const STEP: usize = 16;
+const INPUT: Input = Input {
+    layout: network::Layout::ChannelsFirst,
+    channels: Channels::Rgb,
+    white: 1.0,
+    normal: Normal::OfPhoto,
+    bytes: false,
+};
 
 /// How many times smaller the photo is looked at, while it stays larger than the least side.
 const SIZES: [u32; 3] = [1, 2, 4];
@@ -95,31 +103,17 @@ impl Engine for Learned {
             .into_iter()
             .map(|by| by * first)
             .filter(|by| *by == first || (width / by >= LEAST_SIDE && height / by >= LEAST_SIDE));
-        let sizes: Vec<u32> = sizes.collect();
-        // The largest size is nearly all of the work.
-        let mut sums: [Vec<f32>; KINDS] = Default::default();
-        for by in &sizes {
-            let small = match by {
-                1 => None,
-                by => Some(resize(photo, width / by, height / by, FilterType::Triangle)),
-            };
-            let seen = seen(model, small.as_ref().unwrap_or(photo), progress)?;
-            let from = (width / by, height / by);
-            for (sum, seen) in sums.iter_mut().zip(seen) {
-                let seen = enlarged(&seen, from, (width, height));
-                if sum.is_empty() {
-                    *sum = seen;
-                } else {
-                    let pairs = sum.par_iter_mut().zip(&seen);
-                    pairs.for_each(|(sum, more)| *sum += more);
-                }
-            }
-        }
-        let share = 255.0 / sizes.len() as f32;
-        let [border, rock, middle] = sums.map(|sum| -> Vec<u8> {
+        let sizes: Vec<f64> = sizes.map(f64::from).collect();
+        let means = network::mean_of_sizes(photo, &sizes, progress, |photo, progress| {
+            seen(model, photo, progress)
+        })?;
+        let means: [Vec<f32>; KINDS] = means
+            .try_into()
+            .map_err(|_| broken("what it gives has another shape"))?;
+        let [border, rock, middle] = means.map(|mean| -> Vec<u8> {
             // Casts of floats end at the limits of their type.
-            sum.par_iter()
-                .map(|value| (value * share).round() as u8)
+            mean.par_iter()
+                .map(|value| (value * 255.0).round() as u8)
                 .collect()
         });
         Ok(Evidence {
@@ -141,110 +135,38 @@ fn broken(error: impl std::fmt::Display) -> Fault {
 }
 
 /// What the network sees in a photo, part by part.
-fn seen(model: &Model, photo: &RgbImage, progress: &Progress) -> Result<[Vec<f32>; KINDS], Fault> {
+fn seen(model: &Model, photo: &RgbImage, progress: &Progress) -> Result<Vec<Vec<f32>>, Fault> {
     let (width, height) = (photo.width() as usize, photo.height() as usize);
-    let mut found: [Vec<f32>; KINDS] = std::array::from_fn(|_| vec![0.0; width * height]);
-    let (mean, deviation) = mean_and_deviation(photo);
-    let inner = PART - 2 * MARGIN;
-    let corners: Vec<(usize, usize)> = (0..height)
-        .step_by(inner)
-        .flat_map(|y| (0..width).step_by(inner).map(move |x| (x, y)))
-        .collect();
-    for (number, &(left, top)) in corners.iter().enumerate() {
-        progress.advance(number as u64, corners.len() as u64)?;
-        let (right, bottom) = ((left + inner).min(width), (top + inner).min(height));
-        // Where the photo goes on, the part does.
-        let (first, above) = (left.saturating_sub(MARGIN), top.saturating_sub(MARGIN));
-        let columns = ((right + MARGIN).min(width) - first).next_multiple_of(STEP);
-        let rows = ((bottom + MARGIN).min(height) - above).next_multiple_of(STEP);
-        let mut input = NdTensor::zeros([1, 3, rows, columns]);
-        for row in 0..rows {
-            // Sides that cannot be halved so often go on with the photo's mirror.
-            let y = mirrored(above + row, height);
-            for column in 0..columns {
-                let x = mirrored(first + column, width);
-                let pixel = photo.get_pixel(x as u32, y as u32).0;
-                for (channel, part) in pixel.into_iter().enumerate() {
-                    input[[0, channel, row, column]] = (f32::from(part) / 255.0 - mean) / deviation;
-                }
-            }
-        }
-        let out = model.run_one(input.view().into(), None).map_err(broken)?;
-        let out: NdTensor<f32, 4> = out
-            .try_into()
-            .map_err(|_| broken("what it gives has another shape"))?;
-        if out.shape() != [1, KINDS, rows, columns] {
-            return Err(broken("what it gives has another shape"));
+    let mut found = vec![vec![0.0; width * height]; KINDS];
+    let other_shape = || broken("what it takes or gives has another shape");
+    let normals = INPUT.normals(photo);
+    let (&input, &output) = model
+        .input_ids()
+        .first()
+        .zip(model.output_ids().first())
+        .ok_or_else(other_shape)?;
+    let parts = PARTS.of(width, height);
+    for (number, part) in parts.iter().enumerate() {
+        progress.advance(number as u64, parts.len() as u64)?;
+        let tensor = INPUT
+            .tensor(photo, part, &normals)
+            .ok_or_else(other_shape)?;
+        let out = network::run(model, vec![(input, tensor.into())], &[output]).map_err(broken)?;
+        let out = out.into_iter().next().ok_or_else(other_shape)?;
+        let out: NdTensor<f32, 4> = out.try_into().map_err(|_| other_shape())?;
+        if out.shape() != [1, KINDS, part.rows, part.columns] {
+            return Err(other_shape());
         }
         let view: NdTensorView<'_, f32, 4> = out.view();
         for (kind, found) in found.iter_mut().enumerate() {
-            for y in top..bottom {
-                for x in left..right {
-                    found[y * width + x] = view[[0, kind, y - above, x - first]];
+            for y in part.top..part.bottom {
+                for x in part.left..part.right {
+                    found[y * width + x] = view[[0, kind, y - part.above, x - part.first]];
                 }
             }
         }
     }
     Ok(found)
-}
-
-/// A place that lies on the photo, by reflection at its far edge.
-fn mirrored(place: usize, size: usize) -> usize {
-    let last = size.saturating_sub(1);
-    if place <= last {
-        place
-    } else {
-        (2 * last).saturating_sub(place)
-    }
-}
-
-/// Over all pixels and channels, of 0 to 1.
-fn mean_and_deviation(photo: &RgbImage) -> (f32, f32) {
-    let (mut sum, mut squares) = (0u64, 0u64);
-    for part in photo.as_raw() {
-        let part = u64::from(*part);
-        sum += part;
-        squares += part * part;
-    }
-    let count = photo.as_raw().len().max(1) as f64;
-    let mean = sum as f64 / count / 255.0;
-    let variance = squares as f64 / count / 255.0 / 255.0 - mean * mean;
-    (mean as f32, variance.max(0.0).sqrt() as f32 + 1e-3)
-}
-
-/// Values of a smaller photo at the size of the larger, linear between the middles of pixels.
-fn enlarged(
-    values: &[f32],
-    (width, height): (u32, u32),
-    (to_width, to_height): (u32, u32),
-) -> Vec<f32> {
-    if (width, height) == (to_width, to_height) {
-        return values.to_vec();
-    }
-    let (columns, rows) = (width as usize, height as usize);
-    let place = |to: usize, size: usize, to_size: u32| {
-        let at = (to as f32 + 0.5) * size as f32 / to_size as f32 - 0.5;
-        let at = at.clamp(0.0, (size - 1) as f32);
-        let first = at as usize;
-        (first, (first + 1).min(size - 1), at - first as f32)
-    };
-    let across: Vec<_> = (0..to_width as usize)
-        .map(|x| place(x, columns, to_width))
-        .collect();
-    let mut large = vec![0.0; to_width as usize * to_height as usize];
-    large
-        .par_chunks_mut(to_width as usize)
-        .enumerate()
-        .for_each(|(y, row)| {
-            let (above, below, down) = place(y, rows, to_height);
-            let (above, below) = (&values[above * columns..], &values[below * columns..]);
-            for (value, &(left, right, along)) in row.iter_mut().zip(&across) {
-                let mix = |line: &[f32]| line[left] + (line[right] - line[left]) * along;
-                let (one, other) = (mix(above), mix(below));
-                *value = one + (other - one) * down;
-            }
-        });
-    large
 }
 
 #[cfg(test)]

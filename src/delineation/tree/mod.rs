@@ -7,6 +7,7 @@
 //! children's, so a tree of half a million nodes takes a second.
 
 mod joining;
+mod leaves;
 mod watershed;
 
 use glam::DVec2;

@@ -15,6 +15,7 @@ mod shapes;
 mod strokes;
 pub(crate) mod svg;
 
+pub(crate) use base64::base64;
 pub use format::DrawingFormat;
 pub(crate) use shapes::{Anchor, Colour, Pen, Shape};
 pub use strokes::{Dash, Marker};

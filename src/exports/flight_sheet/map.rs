@@ -204,7 +204,13 @@ fn beside([x, y]: [f64; 2], long: f64, plan: &Plan, frame: &MapFrame) -> clip::B
 
 /// Footprints that lie over each other in layers are lines alone: ground and way are seen through them.
 fn style(sheet: &FlightSheet<'_>) -> FootprintStyle {
-    let shared = &sheet.report.plan.cover.shared;
+    let plan = sheet.report.plan;
+    let main = plan.wish.pattern.main();
+    let shared = plan.photos.iter().zip(&plan.cover.shared);
+    let shared: Vec<f64> = shared
+        .filter(|(photo, _)| photo.purpose == main)
+        .map(|(_, shared)| *shared)
+        .collect();
     let mean = shared.iter().sum::<f64>() / shared.len().max(1) as f64;
     match mean > LAYERS {
         true => FootprintStyle {
@@ -268,12 +274,15 @@ fn photos(plan: &FlightPlan) -> Vec<PlanPhoto> {
             true => Verdict::Trust,
             false => Verdict::Check,
         };
-        let outline = photo.outline.iter().map(|point| point.truncate());
+        // Those of a survey lie over each other many times: beside photos for scales they are cameras alone.
+        let is_main = photo.purpose == plan.wish.pattern.main();
+        let outline = photo.outline.iter().filter(|_| is_main);
+        let outline = outline.map(|point| point.truncate());
         PlanPhoto {
             name: photo.name.clone(),
             verdict: Some(verdict),
             outline: outline.collect(),
-            middle: Some(photo.target.truncate()),
+            middle: is_main.then(|| photo.target.truncate()),
             camera: photo.pose.center.truncate(),
         }
     });

@@ -3,11 +3,11 @@
 use glam::DVec3;
 
 use super::FlightSheet;
-use crate::flight_plan::{PlanReport, sun_in_words};
+use crate::flight_plan::{PlanReport, kinds_in_words, sun_in_words};
 use crate::geodesy::Crs;
 use crate::measured::percent;
 use crate::numbers::{four_digits, significant_digits};
-use fragscale_core::plan::{Pattern, Size, Way};
+use fragscale_core::plan::{Size, Way};
 
 /// Names and what is said of them, in the order of the page.
 #[derive(Default)]
@@ -25,14 +25,25 @@ pub(super) fn numbers(sheet: &FlightSheet<'_>) -> Vec<(String, String)> {
     let (plan, unit) = (report.plan, report.world);
     let number = |number: f64| significant_digits(number, 3);
     let mut said = Said::default();
-    said.say("Photos", plan.photos.len().to_string());
+    let kinds = kinds_in_words(plan).map(|kinds| format!(": {kinds}"));
+    said.say(
+        "Photos",
+        format!("{}{}", plan.photos.len(), kinds.unwrap_or_default()),
+    );
     if !plan.refused.is_empty() {
         said.say("Not possible", format!("{} photos", plan.refused.len()));
     }
     said.say("Pattern", plan.wish.pattern.as_str());
     said.say("Wished", wished(report));
-    if plan.wish.overlap > 0.0 {
-        said.say("Overlap", percent(plan.wish.overlap));
+    for purpose in plan.wish.pattern.purposes() {
+        let overlap = plan.wish.overlap_of(*purpose);
+        let name = match plan.wish.pattern.main() == *purpose {
+            true => "Overlap",
+            false => "Survey's overlap",
+        };
+        if overlap > 0.0 {
+            said.say(name, percent(overlap));
+        }
     }
     let camera = &plan.camera;
     let pixels = format!("{} x {} px", camera.width, camera.height);
@@ -55,6 +66,12 @@ pub(super) fn numbers(sheet: &FlightSheet<'_>) -> Vec<(String, String)> {
         let gap = number(plan.cover.widest_gap);
         said.say("Widest gap", format!("{gap} {unit}"));
     }
+    if let Some(share) = plan.cover.surveyed {
+        said.say(
+            "Survey",
+            format!("{} of the area in 3 photos or more", percent(share)),
+        );
+    }
     if let Some(words) = sun_in_words(report) {
         said.say("Sun", words);
     }
@@ -70,6 +87,13 @@ pub(super) fn numbers(sheet: &FlightSheet<'_>) -> Vec<(String, String)> {
     let speed = plain(report.pace.speed * unit.metres());
     let settle = plain(sheet.settle);
     said.say("Speed", format!("{speed} m/s, waits {settle} s at a photo"));
+    if let Some(steepest) = report.pace.steepest {
+        let words = format!(
+            "slanted legs climb and fall by at most {}°",
+            plain(steepest)
+        );
+        said.say("Steepest", words);
+    }
     if let Some(first) = report.ways.first() {
         say_ways(report, first, &mut said);
         say_place(sheet, first.take_off, &mut said);
@@ -158,9 +182,9 @@ fn wished(report: &PlanReport<'_>) -> String {
             format!("{pixels}{} px/{scales}", within.unwrap_or_default())
         }
         Size::Distance(distance) => {
-            let from = match report.plan.wish.pattern {
-                Pattern::Slope => "from the ground",
-                _ => "above the highest of the area",
+            let from = match report.plan.wish.pattern.is_square() {
+                true => "from the ground",
+                false => "above the highest of the area",
             };
             format!("{} {unit} {from}", plain(distance))
         }

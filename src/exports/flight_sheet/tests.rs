@@ -83,6 +83,9 @@ fn sheet(world: LengthUnit, with_take_off: bool) -> Sheet {
         speed: 4.0,
         stop: 3.0,
         battery: None,
+        climb: 4.0,
+        descent: 4.0,
+        steepest: None,
     };
     let ways = match with_take_off {
         true => Way::through(&plan, &surface, MIDDLE - 50.0, &pace).unwrap(),
@@ -105,7 +108,7 @@ fn sheet(world: LengthUnit, with_take_off: bool) -> Sheet {
         crs: Some("EPSG:32632"),
         warnings: &[
             "a <warning> & more".to_owned(),
-            "no photo at (500035.0, 5000000.0): it lies > 3 below".to_owned(),
+            "no photo at (500035.00, 5000000.00): it lies > 3 below".to_owned(),
         ],
     };
     let page = flight_sheet(&sheet).unwrap();

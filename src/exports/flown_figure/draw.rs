@@ -6,7 +6,7 @@ use super::FlownFigure;
 use super::names::{NamesRoom, WIDER};
 use super::view::{AZIMUTH, ELEVATION, View};
 use crate::drawing::{Anchor, Colour, Dash, Marker, Pen, Shape, png};
-use crate::flown_report::summary;
+use crate::flown_report::flown_summary;
 use crate::geometry::{Bounds, LevelBox};
 use crate::numbers::significant_digits;
 use crate::plan::photos::shortened;
@@ -109,7 +109,7 @@ impl Drawing<'_> {
     fn unplanned(&self) -> impl Iterator<Item = (&str, DVec3)> {
         let (report, places) = (self.figure.report, self.figure.places);
         let photos = report.flown.unplanned.iter();
-        photos.filter_map(|photo| Some((*report.photos.get(*photo)?, *places.get(*photo)?)))
+        photos.filter_map(|photo| Some((report.photos.get(*photo)?.as_str(), *places.get(*photo)?)))
     }
 
     fn head(&self, pen: &mut Pen) {
@@ -117,7 +117,7 @@ impl Drawing<'_> {
         let title = format!("{}: planned and flown", shortened(report.flight));
         let at = [MARGIN, MARGIN];
         pen.text(at, TITLE, &title, Anchor::Left, INK);
-        let said = summary(report);
+        let said = flown_summary(report);
         let said = said.iter().map(|(name, words)| format!("{name} {words}"));
         let said: Vec<String> = said.collect();
         let at = [MARGIN, MARGIN + TITLE + 5.0];

@@ -10,10 +10,12 @@
 //! view   from which side, and how large
 //! draw   the box, the paths, the photos, the legend
 //! names  of photos, where they have room
+//! page   the figure with the table of residuals, as a page for the flight's report
 //! ```
 
 mod draw;
 mod names;
+mod page;
 #[cfg(test)]
 mod tests;
 mod view;
@@ -36,6 +38,14 @@ pub struct FlownFigure<'a> {
 }
 
 impl FlownFigure<'_> {
+    /// The figure with the numbers, the table of residuals and what was not taken, as one HTML page.
+    ///
+    /// # Errors
+    /// Only where the figure cannot be encoded.
+    pub fn page(&self, warnings: &[String]) -> Result<String, Fault> {
+        page::page(self, warnings)
+    }
+
     /// The bytes of a file of this format.
     ///
     /// # Errors

@@ -52,7 +52,7 @@ fn figure_in(format: DrawingFormat) -> Vec<u8> {
         flight: "Bench 7 < east",
         unit: LengthUnit::Metre,
         planned: &planned,
-        photos: &["1.jpg", "EXTRA.jpg", "2.jpg", "4.jpg"],
+        photos: &["1.jpg", "EXTRA.jpg", "2.jpg", "4.jpg"].map(str::to_owned),
         flown: &flown,
     };
     let figure = FlownFigure {

@@ -25,9 +25,33 @@ pub fn fragments_csv(
     world: LengthUnit,
     unit: LengthUnit,
 ) -> Result<String, csv::Error> {
+    let heads = heads(world, unit);
+    let mut rows = vec![heads.to_vec()];
+    for photo in photos {
+        for fragment in photo.fragments {
+            let cut = if fragment.is_cut { "yes" } else { "no" };
+            let mut row = vec![
+                photo.photo.to_owned(),
+                fragment.number.to_string(),
+                fragment.middle.x.to_string(),
+                fragment.middle.y.to_string(),
+                fragment.pixels.to_string(),
+                cut.to_owned(),
+            ];
+            match numbers(fragment, world.in_units_of(unit)) {
+                None => row.resize(heads.len(), String::new()),
+                Some(numbers) => row.extend(numbers.map(|number| number.to_string())),
+            }
+            rows.push(row);
+        }
+    }
+    csv_of(rows)
+}
+
+/// What is said of a fragment: its photo and pixels, then [`numbers`].
+pub(super) fn heads(world: LengthUnit, unit: LengthUnit) -> [String; 21] {
     let (u, w) = (unit.symbol(), world.symbol());
-    let factor = world.in_units_of(unit);
-    let heads = [
+    [
         "photo".to_owned(),
         "fragment".to_owned(),
         "column_px".to_owned(),
@@ -49,47 +73,29 @@ pub fn fragments_csv(
         "roundness".to_owned(),
         format!("height_{u}"),
         format!("sieve_size_{u}"),
-    ];
-    let columns = heads.len();
-    let mut rows = vec![heads.to_vec()];
-    for photo in photos {
-        for fragment in photo.fragments {
-            let cut = if fragment.is_cut { "yes" } else { "no" };
-            let mut row = vec![
-                photo.photo.to_owned(),
-                fragment.number.to_string(),
-                fragment.middle.x.to_string(),
-                fragment.middle.y.to_string(),
-                fragment.pixels.to_string(),
-                cut.to_owned(),
-            ];
-            match &fragment.world {
-                None => row.resize(columns, String::new()),
-                Some(world) => {
-                    let numbers = [
-                        world.place.x,
-                        world.place.y,
-                        world.place.z,
-                        world.scale / factor,
-                        world.area * factor * factor,
-                        world.surface_area * factor * factor,
-                        world.diameter * factor,
-                        world.rectangle[0] * factor,
-                        world.rectangle[1] * factor,
-                        world.widths[1] * factor,
-                        world.widths[0] * factor,
-                        world.inscribed * factor,
-                        world.roundness,
-                        world.height * factor,
-                        world.sieve_size * factor,
-                    ];
-                    row.extend(numbers.map(|number| number.to_string()));
-                }
-            }
-            rows.push(row);
-        }
-    }
-    csv_of(rows)
+    ]
+}
+
+/// The last 15 of [`heads`]; `None` where too little of it lies on the surface. `factor`: units in one of the world.
+pub(super) fn numbers(fragment: &Fragment, factor: f64) -> Option<[f64; 15]> {
+    let world = fragment.world?;
+    Some([
+        world.place.x,
+        world.place.y,
+        world.place.z,
+        world.scale / factor,
+        world.area * factor * factor,
+        world.surface_area * factor * factor,
+        world.diameter * factor,
+        world.rectangle[0] * factor,
+        world.rectangle[1] * factor,
+        world.widths[1] * factor,
+        world.widths[0] * factor,
+        world.inscribed * factor,
+        world.roundness,
+        world.height * factor,
+        world.sieve_size * factor,
+    ])
 }
 
 /// Curves in the form that `fragscale psd` and the window's size distributions read: one of each photo, named, and
@@ -127,6 +133,8 @@ pub struct PhotoOfSizes<'a> {
     pub by_mass: &'a ByMass,
     /// How sure its sizes are.
     pub intervals: &'a [SizeInterval],
+    /// The mean scale of the photo, pixels per unit of the world; `None` of several photos.
+    pub scale: Option<f64>,
 }
 
 /// A line a percent: the size that it passes, and its 95 % interval; empty where it is below what the photo shows.

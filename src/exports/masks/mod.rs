@@ -28,6 +28,7 @@ pub use cvat::CvatFile;
 pub use geojson::fragments_geojson;
 pub use labelme::labelme_json;
 pub use tiff::labels_tiff;
+pub(crate) use trace::parts;
 
 /// What regions are called in all of them; `formats::masks` knows these names.
 const FRAGMENT: &str = "fragment";

@@ -6,15 +6,15 @@ use crate::delineation::LabelImage;
 
 /// Pixels of one label that touch by their sides, and no others of that label do.
 #[derive(Debug)]
-pub(super) struct Part {
-    pub(super) label: u32,
+pub(crate) struct Part {
+    pub(crate) label: u32,
     /// Its outline, clockwise as the photo is seen, then its holes, counterclockwise; corners of pixels, each where the
     /// line turns. An outline may touch itself at a corner, where two pixels do.
-    pub(super) rings: Vec<Vec<[u32; 2]>>,
+    pub(crate) rings: Vec<Vec<[u32; 2]>>,
 }
 
 /// All parts of a label image, by their first pixels row by row; and of each pixel its part.
-pub(super) fn parts(image: &LabelImage) -> (Vec<Part>, Vec<u32>) {
+pub(crate) fn parts(image: &LabelImage) -> (Vec<Part>, Vec<u32>) {
     let (mut parts, part_of) = numbered(image);
     let grid = Grid {
         width: image.width,

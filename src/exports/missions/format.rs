@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use fragscale_core::plan::Drone;
+
 use crate::fault::Fault;
 
 /// For whom a mission is written.
@@ -32,6 +34,12 @@ const MOST_COMMANDS: usize = 700;
 /// several such missions, for which the drone must be in reach.
 const MOST_LITCHI_STOPS: usize = 99;
 
+/// What is wrong with a mission for DJI that names no drone.
+pub(super) fn no_drone() -> Fault {
+    let what = "DJI's files need the drone, and the mission does not say it";
+    Fault::new(what, "name it: --drone NAME")
+}
+
 impl MissionFormat {
     /// All of them.
     pub const ALL: [Self; 6] = [
@@ -55,6 +63,25 @@ impl MissionFormat {
             let remedy = "let its name end in .kmz (DJI), .plan (QGroundControl), .waypoints (Mission Planner), .csv (Litchi), .kml or .geojson";
             Fault::new("its name does not say what ground station it is for", remedy)
         })
+    }
+
+    /// Whether its files can name the drone that is to fly: DJI's have to, by DJI's own numbers.
+    ///
+    /// # Errors
+    /// Where they have to, and it is not said or has no number.
+    pub fn check_drone(self, drone: Option<&Drone>) -> Result<(), Fault> {
+        match (self, drone) {
+            (Self::DjiWpml, None) => Err(no_drone()),
+            (Self::DjiWpml, Some(drone)) if drone.codes.is_none() => {
+                let what = format!(
+                    "DJI's files of missions have no number for the {}",
+                    drone.title
+                );
+                let remedy = "write a file of another ground station for it, such as Litchi's .csv";
+                Err(Fault::new(what, remedy))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// How the names of its files end, without the point.

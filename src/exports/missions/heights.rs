@@ -7,8 +7,7 @@ use crate::fault::Fault;
 /// The fault of an absolute height that nobody can fly.
 pub(super) fn no_datum(whose: &str) -> Fault {
     let what = format!("{whose} is absolute, and nobody says above what");
-    let remedy =
-        "say whether it counts from the ellipsoid or from the geoid: they are up to 107 m apart";
+    let remedy = "say whether it counts from the ellipsoid or from the geoid, up to 107 m apart: --datum of 'fragscale mission'";
     Fault::new(what, remedy)
 }
 
@@ -29,7 +28,7 @@ pub(super) fn metres_above(
             format!("the height of stop {number} counts from {from}, and the target's from {to}");
         let remedy = match stop.height.above {
             Above::Ground => "plan heights above the place of take-off",
-            _ => "give the elevation of the take-off, and above what",
+            _ => "give the elevation of the take-off, and above what: --elevation and --datum of 'fragscale mission'",
         };
         Fault::new(what, remedy)
     })

@@ -14,6 +14,7 @@ use fragscale_core::plan::{Above, Finish, Mission, Stop};
 use super::heights::metres_above;
 use super::{angle, decimal, degrees, metres};
 use crate::fault::Fault;
+use crate::files::LITCHI_MARK;
 
 const ACTIONS: usize = 15;
 
@@ -81,7 +82,7 @@ pub(super) fn bytes(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec<u8
         for (kind, parameter) in actions {
             let _ = write!(text, ",{kind},{parameter}");
         }
-        let _ = writeln!(text, ",{mode},{},0,0,0,0,-1,-1", decimal(speed, 3));
+        let _ = writeln!(text, ",{mode},{}{LITCHI_MARK}", decimal(speed, 3));
     }
     if mission
         .stops

@@ -170,6 +170,7 @@ pub fn write_missions(
             .and_then(|()| files::may_write(path, Kind::Result, inputs, force))
             .map_err(|fault| FileError::new(path, fault))?;
     }
+    said.extend(of_another_plan(path, &named));
     let mut written = Vec::new();
     for (path, bytes) in named {
         files::write(&path, &bytes, Kind::Result, inputs, force)
@@ -179,6 +180,41 @@ pub fn write_missions(
     Ok(WrittenMission {
         files: written,
         notes: said,
+    })
+}
+
+/// That files stand beside a mission's that look like its parts and are none of `named`: of a plan with other batteries,
+/// or more stops. Who flies them too flies an old plan.
+fn of_another_plan(path: &Path, named: &[(PathBuf, Vec<u8>)]) -> Option<String> {
+    let stem = path.file_stem()?.to_str()?;
+    let is_part = |other: &Path| {
+        let rest = (other.file_stem()?.to_str()?).strip_prefix(stem)?;
+        let numbers = rest.strip_prefix("-battery").unwrap_or(rest);
+        let is_number =
+            |number: &str| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit());
+        let mut numbers = numbers.split('-');
+        let is_numbered = numbers.next() == Some("") && numbers.all(is_number);
+        (rest.is_empty() || is_numbered).then_some(())
+    };
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let entries = folder.unwrap_or(Path::new(".")).read_dir().ok()?;
+    let mut others: Vec<String> = entries
+        .flatten()
+        .map(|entry| path.with_file_name(entry.file_name()))
+        .filter(|other| other.extension() == path.extension() && is_part(other).is_some())
+        .filter(|other| named.iter().all(|(path, _)| path != other))
+        .filter_map(|other| Some(other.file_name()?.to_string_lossy().into_owned()))
+        .collect();
+    others.sort();
+    (!others.is_empty()).then(|| {
+        format!(
+            "{} beside it {} of another plan: take {} away, so that nobody flies it",
+            others.join(", "),
+            if others.len() == 1 { "is" } else { "are" },
+            if others.len() == 1 { "it" } else { "them" },
+        )
     })
 }
 

@@ -8,6 +8,7 @@ use fragscale_core::plan::Mission;
 use super::mavlink::{commands, home};
 use super::{degrees, metres};
 use crate::fault::Fault;
+use crate::files::WAYPOINTS_MARK;
 
 /// The file of a mission.
 pub(super) fn bytes(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec<u8>, Fault> {
@@ -17,7 +18,7 @@ pub(super) fn bytes(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec<u8
     // Writing to a String cannot fail.
     let _ = writeln!(
         text,
-        "0\t1\t0\t16\t0\t0\t0\t0\t{}\t{}\t{}\t1",
+        "{WAYPOINTS_MARK}{}\t{}\t{}\t1",
         degrees(home.latitude),
         degrees(home.longitude),
         metres(elevation)

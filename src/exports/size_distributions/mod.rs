@@ -12,6 +12,7 @@ mod text_table;
 pub use anova::{AnovaReport, anova_csv, anova_json, anova_table};
 pub use comparison::{comparison_csv, comparison_json, comparison_text};
 pub use effort::{effort_csv, effort_json, effort_text};
+pub(crate) use figure::passing_figure;
 pub use figure::{
     Band, Dash, FigureContents, FigureFormat, FigureStyle, FittedDistribution, Marker, Panel,
     Series, SizeAxis, SizeTick, figure_of_comparison, figure_of_fits, figure_png, figure_svg,

@@ -9,13 +9,16 @@ use sha2::{Digest, Sha256};
 
 use crate::jobs::Progress;
 
-/// Of bytes.
-pub(super) fn of_bytes(bytes: &[u8]) -> String {
+/// SHA-256 of bytes, in hexadecimal.
+pub fn of_bytes(bytes: &[u8]) -> String {
     hexadecimal(&Sha256::digest(bytes))
 }
 
-/// Of a file, read piece by piece; an error of kind `Interrupted` where the work was cancelled.
-pub(super) fn of_file(path: &Path, progress: &Progress) -> io::Result<String> {
+/// SHA-256 of a file, in hexadecimal, read piece by piece.
+///
+/// # Errors
+/// What the system says; one of kind `Interrupted` where the work was cancelled.
+pub fn of_file(path: &Path, progress: &Progress) -> io::Result<String> {
     let mut file = File::open(path)?;
     let mut hash = Sha256::new();
     let mut piece = vec![0; 1 << 20];

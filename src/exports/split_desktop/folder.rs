@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use super::checksum;
 use super::whose::FlightOfExport;
 use crate::fault::Fault;
-use crate::files::{FileError, Inputs, cannot_be, is_unfinished, write_whole};
+use crate::files::{FileError, Inputs, cannot_be, is_unfinished, note_kept, write_whole};
 use crate::jobs::Progress;
 
 /// The list's file.
@@ -229,6 +229,13 @@ impl<'a> ExportFolder<'a> {
         })
     }
 
+    /// Leaves files as they are that are done.
+    pub(super) fn keep(&self, names: &[String]) {
+        for name in names {
+            note_kept(&self.folder.join(name));
+        }
+    }
+
     /// Writes files; each is there whole or not at all.
     pub(super) fn write(
         &mut self,
@@ -247,8 +254,10 @@ impl<'a> ExportFolder<'a> {
         for (name, bytes) in files {
             let entry = self.list.files.get(name);
             let sum = entry.map(|entry| entry.sha256.clone()).unwrap_or_default();
-            if self.present.get(name) != Some(&sum) {
-                let path = self.folder.join(name);
+            let path = self.folder.join(name);
+            if self.present.get(name) == Some(&sum) {
+                note_kept(&path);
+            } else {
                 let is_new =
                     !self.present.contains_key(name) && fs::symlink_metadata(&path).is_ok();
                 if is_new && self.replace != Replace::Anything {

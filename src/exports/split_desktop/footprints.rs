@@ -1,25 +1,20 @@
 //! Footprints as GeoJSON (RFC 7946) and KML.
 //!
-//! RFC 7946 knows longitude and latitude on WGS 84 only. Where the coordinate system of the flight is
-//! known and can be projected back, that is what the file holds, without heights. Else the positions
-//! are x, y, z of the flight's world, and the foreign member "coordinates" says so: "local, in m".
+//! Positions are as `map_places` has them.
 
 use serde_json::{Value, json};
 
 use super::ExportRequest;
 use super::kml;
 use crate::fault::Fault;
-use crate::geodesy::{Crs, CrsKind};
+use crate::map_places::{MapPlaces, closed_ring};
 use crate::scale::{FootprintPoint, ScaleEstimate};
-use crate::units::LengthUnit;
 use crate::{PhotoLine, ScaleReport};
 
 /// The footprints of a flight on their way out.
 pub(super) struct Footprints<'a> {
     request: &'a ExportRequest<'a>,
-    /// The flight's coordinate system, where it leads to longitude and latitude.
-    crs: Option<Crs>,
-    warning: Option<String>,
+    places: MapPlaces,
 }
 
 /// One photo's footprint.
@@ -37,27 +32,22 @@ pub(super) struct PhotoFootprint<'a> {
 impl<'a> Footprints<'a> {
     pub(super) fn new(request: &'a ExportRequest<'a>) -> Self {
         let unit = request.review.flight().parts().unit;
-        let understood = request.from.crs.map(|crs| map_system(crs, unit));
-        let (crs, warning) = match understood {
-            None => (None, None),
-            Some(Ok(system)) => (Some(system), None),
-            Some(Err(fault)) => (None, Some(fault.to_string())),
-        };
         Self {
             request,
-            crs,
-            warning,
+            places: MapPlaces::new(request.from.crs, unit),
         }
     }
 
     /// Whether longitudes and latitudes are known.
     pub(super) fn is_on_maps(&self) -> bool {
-        self.crs.is_some()
+        self.places.are_on_maps()
     }
 
     /// Why a stated coordinate system is not used.
-    pub(super) fn warning(&self) -> Option<&str> {
-        self.warning.as_deref()
+    pub(super) fn warning(&self) -> Option<String> {
+        let fault = self.places.fault()?;
+        let remedy = "the footprints stay in local coordinates, without KML";
+        Some(Fault::new(fault.what.clone(), remedy).to_string())
     }
 
     fn of_photos<'b>(
@@ -84,14 +74,7 @@ impl<'a> Footprints<'a> {
     }
 
     fn position(&self, point: &FootprintPoint) -> Option<Vec<f64>> {
-        let point = point.point()?;
-        match &self.crs {
-            Some(crs) => {
-                let place = crs.to_geographic(point)?;
-                Some(vec![place.longitude, place.latitude])
-            }
-            None => Some(point.to_array().to_vec()),
-        }
+        self.places.position(point.point()?)
     }
 
     /// A feature a photo.
@@ -100,14 +83,10 @@ impl<'a> Footprints<'a> {
             .of_photos(report)
             .map(|footprint| feature(&footprint, report))
             .collect();
-        let coordinates = match self.is_on_maps() {
-            true => "WGS 84 longitude, latitude".to_owned(),
-            false => format!("local, in {}", report.world_unit()),
-        };
         let value = json!({
             "type": "FeatureCollection",
             "name": report.flight(),
-            "coordinates": coordinates,
+            "coordinates": self.places.words(),
             "crs_of_flight": self.request.from.crs,
             "features": features,
         });
@@ -119,27 +98,6 @@ impl<'a> Footprints<'a> {
         self.is_on_maps()
             .then(|| kml::document(report, self.of_photos(report)))
     }
-}
-
-/// The coordinate system of a flight: a projected one whose unit is the flight's.
-fn map_system(crs: &str, unit: LengthUnit) -> Result<Crs, Fault> {
-    let refuse = |what: String| {
-        Fault::new(
-            what,
-            "the footprints stay in local coordinates, without KML",
-        )
-    };
-    let crs = Crs::understand(crs).map_err(|fault| refuse(fault.what))?;
-    let name = crs.name();
-    if crs.kind() != CrsKind::Projected {
-        return Err(refuse(format!("{name} is no projected system")));
-    }
-    // A US survey foot and a foot differ by 2 parts in a million: a metre on a state's northing.
-    if (crs.unit_metres() / unit.metres() - 1.0).abs() > 1e-7 {
-        let what = format!("{name} is not in {unit}, the unit of the flight");
-        return Err(refuse(what));
-    }
-    Ok(crs)
 }
 
 fn feature(footprint: &PhotoFootprint<'_>, report: &ScaleReport<'_>) -> Value {
@@ -179,54 +137,4 @@ fn feature(footprint: &PhotoFootprint<'_>, report: &ScaleReport<'_>) -> Value {
             "note": photo.notes().join("; "),
         },
     })
-}
-
-/// A linear ring of RFC 7946: the first position again at the end, counterclockwise; empty with fewer
-/// than three positions.
-fn closed_ring(mut ring: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    let [first, _, _, ..] = &ring[..] else {
-        return Vec::new();
-    };
-    let first = first.clone();
-    // The shoelace formula, from the first position, which loses no digit to large coordinates.
-    let twice_area: f64 = ring
-        .windows(2)
-        .map(|pair| {
-            let [ax, ay] = [pair[0][0] - first[0], pair[0][1] - first[1]];
-            let [bx, by] = [pair[1][0] - first[0], pair[1][1] - first[1]];
-            ax * by - ay * bx
-        })
-        .sum();
-    ring.push(first);
-    if twice_area < 0.0 {
-        ring.reverse();
-    }
-    ring
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_leads_to_no_map_says_why() {
-        let why = |crs, unit| map_system(crs, unit).unwrap_err().what;
-        assert!(why("EPSG:4326", LengthUnit::Metre).contains("no projected system"));
-        assert!(why("ECEF", LengthUnit::Metre).contains("no projected system"));
-        assert!(why("EPSG:32633", LengthUnit::Foot).contains("not in ft"));
-        assert!(why("EPSG:2285", LengthUnit::Foot).contains("not in ft"));
-        assert!(why("EPSG:65000", LengthUnit::Metre).contains("65000"));
-        assert!(map_system("EPSG:2285", LengthUnit::UsSurveyFoot).is_ok());
-        assert!(map_system("EPSG:32633", LengthUnit::Metre).is_ok());
-    }
-
-    #[test]
-    fn rings_are_closed_and_counterclockwise() {
-        let [a, b, c] = [vec![0.0, 0.0], vec![0.0, 1.0], vec![1.0, 0.0]];
-        let clockwise = vec![a.clone(), b.clone(), c.clone()];
-        let expected = vec![a.clone(), c.clone(), b.clone(), a.clone()];
-        assert_eq!(closed_ring(clockwise), expected);
-        assert_eq!(closed_ring(vec![a.clone(), c, b]), expected);
-        assert!(closed_ring(vec![a.clone(), a]).is_empty());
-    }
 }

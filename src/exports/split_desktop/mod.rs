@@ -20,7 +20,7 @@
 //! An export that was interrupted is started again and goes on: each file is there whole or not at
 //! all, and pictures that are there and still right are not made again.
 
-mod checksum;
+pub(crate) mod checksum;
 mod folder;
 mod footprints;
 mod kml;
@@ -173,9 +173,7 @@ pub fn export_for_split_desktop(
         photos: chosen.len(),
         ..ExportSummary::default()
     };
-    summary
-        .warnings
-        .extend(footprints.warning().map(str::to_owned));
+    summary.warnings.extend(footprints.warning());
     let of_chosen = objects.iter().flatten();
     summary
         .warnings
@@ -389,6 +387,7 @@ fn one_photo(
         Err(fault) => return Ok(Done::Damaged(fault)),
     };
     let Some(photo) = photo else {
+        lock(work).folder.keep(&names.all());
         return Ok(Done::Kept(doubt));
     };
     // Before the photo's memory is given away; without it the others are of use all the same.

@@ -16,7 +16,7 @@ use toml::de::DeTable;
 pub use self::camera_entry::{CameraEntry, CameraSource};
 pub use self::poses_flight::PosesFlight;
 
-use self::known_keys::{key_line, line_of, nth_key_line, refuse_unknown_keys};
+use self::known_keys::KNOWN_KEYS;
 use self::uncertainty_entry::UncertaintyEntry;
 use super::decision::{Decision, DecisionEntry};
 use super::scale_object::{ScaleObject, ScaleObjectEntry};
@@ -26,6 +26,7 @@ use crate::fault::Fault;
 use crate::files::FLIGHT_MARK;
 use crate::scale::{Ground, ImageKind, ScalePair, StatedErrors};
 use crate::surface::{SurfaceOptions, UpAxis};
+use crate::toml_text::{key_line, line_of, nth_key_line, refuse_unknown_keys};
 use crate::units::LengthUnit;
 
 /// The text of a flight. Paths are relative to the file and stay text here.
@@ -244,7 +245,7 @@ impl FlightFile {
             )
         };
         let table = DeTable::parse(text).map_err(fault)?;
-        refuse_unknown_keys(text, "", table.get_ref())?;
+        refuse_unknown_keys(&KNOWN_KEYS, text, table.get_ref())?;
         let file: Self = toml::from_str(text).map_err(fault)?;
         file.check(|table, key| key_line(text, table, key))?;
         for (number, entry) in file.scale_objects.iter().enumerate() {

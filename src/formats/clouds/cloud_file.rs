@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::fault::Fault;
 use crate::geodesy::{Crs, CrsKind};
 use crate::geometry::Bounds;
-use crate::surface::Cloud;
+use crate::surface::{Cloud, CloudFacts};
 
 /// A cloud as its file has it.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -18,6 +18,9 @@ pub struct CloudFile {
     pub geographic: bool,
     /// What the reader had to assume, one sentence each.
     pub warnings: Vec<String>,
+    /// Of octrees: what their file says of the whole cloud, so that a surface of all of it is that which a part of
+    /// it belongs to. In the file's coordinates: gone where the points were moved.
+    pub facts: Option<CloudFacts>,
 }
 
 impl CloudFile {

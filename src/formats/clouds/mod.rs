@@ -9,8 +9,10 @@ pub(crate) mod las;
 pub(crate) mod leica;
 pub(crate) mod obj;
 pub(crate) mod pcd;
+pub(crate) mod pieces;
 pub(crate) mod ply;
 pub(crate) mod stl;
 pub(crate) mod xyz;
 
 pub use cloud_file::CloudFile;
+pub use pieces::{CloudPiece, CloudPieces};

@@ -27,6 +27,8 @@ struct Document {
     crs: Value,
     /// The photo of a GeoJSON of ours.
     photo: Option<String>,
+    /// What the positions of a GeoJSON of ours are, where they are not pixels.
+    coordinates: Option<String>,
 }
 
 /// The images of a text; whether it is of one image, which need not be named.
@@ -41,6 +43,12 @@ pub(super) fn read(text: &[u8], is_own: bool) -> Result<(Vec<OutlinedImage>, boo
         return Ok((vec![image], true));
     }
     if let Some(features) = document.features {
+        if let Some(coordinates) = document.coordinates.filter(|_| is_own) {
+            let what = format!("its places are {coordinates}");
+            let remedy =
+                "give the label image beside it, or outlines in pixels (delineate --also geojson)";
+            return Err(Fault::new(what, remedy));
+        }
         let image = geojson::image(features, &document.crs, document.photo, is_own)?;
         return Ok((vec![image], true));
     }

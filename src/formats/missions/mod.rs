@@ -78,6 +78,29 @@ pub fn read_mission(path: &Path) -> Result<MissionFile, FileError> {
     Ok(found)
 }
 
+/// Whether a file is a mission, by its first bytes, and of a .kmz by what its zip holds.
+pub(crate) fn is_mission(path: &Path, start: &[u8]) -> bool {
+    let ends = |wanted: &str| {
+        let ending = path.extension();
+        ending.is_some_and(|ending| ending.eq_ignore_ascii_case(wanted))
+    };
+    if start.starts_with(b"PK") {
+        return ends("kmz") && wpml::is_in_zip(path);
+    }
+    let text = String::from_utf8_lossy(start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start));
+    let first = text.lines().next().unwrap_or_default();
+    match text.trim_start().chars().next() {
+        Some('<') => text.contains("xmlns:wpml="),
+        Some('{') => ends("plan") || geojson::is_ours(&text),
+        _ => first.starts_with("QGC WPL") || litchi::is_header(first),
+    }
+}
+
+/// Whether a folder is that of a DJI .kmz.
+pub(crate) fn is_mission_folder(path: &Path) -> bool {
+    wpml::is_folder(path)
+}
+
 /// A mission from the bytes of its file. Its name stays empty where the file does not say it.
 fn read_bytes(bytes: &[u8]) -> Result<MissionFile, Fault> {
     if bytes.starts_with(b"PK") {

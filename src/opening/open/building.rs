@@ -9,6 +9,8 @@ use crate::evidence::look_up;
 use crate::fault::{Fault, Lacking};
 use crate::files::{FileError, Inputs};
 use crate::flight::{Flight, FlightParts};
+use crate::formats::CloudFile;
+use crate::in_part::InPart;
 use crate::jobs::Progress;
 use crate::origin::FlightOrigin;
 use crate::photo_files::PhotoFile;
@@ -23,6 +25,7 @@ pub(super) fn build(
     framed: Framed,
     photo_files: Vec<PhotoFile>,
     options: &OpenOptions,
+    part: Option<&mut InPart>,
     progress: &Progress,
 ) -> Result<Opened, FileError> {
     let Framed { cloud, world } = framed;
@@ -53,14 +56,26 @@ pub(super) fn build(
             "{file}: it has faces, so it is used as it is and not thinned"
         ));
     }
-    progress.stage("building the surface");
-    let surface = Surface::with_options(cloud.cloud, &settings.surface).map_err(|error| {
-        let remedy = match settings.surface.thinning {
-            Some(_) => "check the surface file, or thin less",
-            None => "check the surface file",
-        };
-        at_surface(Fault::new(error.to_string(), remedy))
-    })?;
+    let surface = match (part, &source.moving) {
+        (Some(part), Some(moving)) => {
+            let (photos, cameras) = (&source.photos, &source.cameras);
+            let (image, max_edge) = (settings.image, settings.surface.max_edge);
+            part.surface(moving, photos, cameras, image, max_edge, progress)
+                .map_err(at_surface)?
+        }
+        _ => {
+            progress.stage("building the surface");
+            let CloudFile { cloud, facts, .. } = cloud;
+            let surface = Surface::with_facts(cloud, &settings.surface, facts.as_ref());
+            surface.map_err(|error| {
+                let remedy = match settings.surface.thinning {
+                    Some(_) => "check the surface file, or thin less",
+                    None => "check the surface file",
+                };
+                at_surface(Fault::new(error.to_string(), remedy))
+            })?
+        }
+    };
     let parts = FlightParts {
         name: source.name,
         unit: settings.unit,

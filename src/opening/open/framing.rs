@@ -73,6 +73,12 @@ pub(super) fn bring_to_world(
     of_points
         .points(&mut cloud.cloud.points)
         .map_err(at_surface)?;
+    if !of_points.is_none() {
+        cloud.facts = None;
+    }
+    if let (Some(moving), Some(frame)) = (&mut source.moving, &surface) {
+        moving.frames = Some((frame.clone(), world.clone()));
+    }
     let middle = cloud.cloud.points.first().copied();
     let doubt = middle.map(|point| world.check_lengths(point)).transpose();
     let doubt = doubt.map_err(at_surface)?.flatten();

@@ -8,6 +8,7 @@
 //! framing   poses and surface are brought to one world
 //! placing   control points bring both to another one
 //! building  the flight
+//! within    all of that again with more of a large cloud
 //! ```
 
 mod building;
@@ -17,6 +18,7 @@ mod placing;
 mod reading;
 mod source;
 mod surface;
+mod within;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -28,11 +30,14 @@ use crate::fault::Fault;
 use crate::files::{FileError, Inputs, Recording};
 use crate::flight::{Flight, FlightFile, FlightSettings, Limits, LookedUp, Review};
 use crate::formats;
+use crate::in_part::InPart;
 use crate::jobs::Progress;
 use crate::origin::FlightOrigin;
 use crate::photo_files::PhotoFile;
 use crate::picture;
 use crate::surface::{Cloud, UpAxis};
+
+pub use within::with_flight;
 
 /// What the user says beside the flight itself.
 #[derive(Debug, Clone, Default)]
@@ -45,6 +50,8 @@ pub struct OpenOptions {
     pub topic: Option<String>,
     /// What to set instead of what the flight says.
     pub settings: Option<FlightSettings>,
+    /// The axis of the surface's file that points up, instead of what the flight says.
+    pub surface_up: Option<UpAxis>,
     /// Whether a cloud without photos is opened, to be looked at: there is no scale in it.
     pub may_lack_photos: bool,
 }
@@ -100,6 +107,12 @@ pub struct Opened {
 }
 
 impl Opened {
+    /// Whether what was computed of it so far holds: of a cloud that is read in part, only where nothing was asked
+    /// for that is not in memory.
+    pub fn is_settled(&self) -> bool {
+        self.flight.parts().surface.wanted().is_nothing()
+    }
+
     /// What was noticed while reading and what was looked up, one sentence each with the file in front.
     pub fn all_warnings(&self) -> Vec<String> {
         let mut warnings = self.warnings.clone();
@@ -162,13 +175,29 @@ pub fn open_flight_sampled(
     on_sample: Option<OnSample<'_>>,
     progress: &Progress,
 ) -> Result<Opened, FileError> {
+    open(path, options, on_sample, None, progress)
+}
+
+fn open(
+    path: &Path,
+    options: &OpenOptions,
+    on_sample: Option<OnSample<'_>>,
+    mut part: Option<&mut InPart>,
+    progress: &Progress,
+) -> Result<Opened, FileError> {
     let recording = Recording::start();
     let mut source = reading::read(path, options, progress)?;
     let photo_files = cameras::fit(&mut source)?;
-    let surface = surface::read(&mut source, options, on_sample, progress)?;
+    let surface = surface::read(
+        &mut source,
+        options,
+        part.as_deref_mut(),
+        on_sample,
+        progress,
+    )?;
     let mut framed = framing::bring_to_world(&mut source, surface, progress)?;
     placing::place(&mut source, &mut framed, options)?;
-    let mut opened = building::build(source, framed, photo_files, options, progress)?;
+    let mut opened = building::build(source, framed, photo_files, options, part, progress)?;
     let photos = opened.photo_files.iter().flat_map(|file| &file.path);
     opened.read = Inputs::of(opened.inputs.iter().chain(photos)).with_opened(&recording.files());
     Ok(opened)

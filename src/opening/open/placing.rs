@@ -41,6 +41,10 @@ pub(super) fn place(
     for point in &mut framed.cloud.cloud.points {
         *point = by.apply(*point);
     }
+    framed.cloud.facts = None;
+    if let Some(moving) = &mut source.moving {
+        moving.placed = Some(by);
+    }
     let errors = &mut source.package_errors;
     errors.pose = moved_errors(errors.pose, &by);
     errors.surface = errors.surface.map(|deviation| deviation * by.scale);

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::cameras;
 use super::source::{Source, name_of};
 use super::{FlightReconstruction, OpenOptions};
+use crate::dropped::no_flight_but_mission;
 use crate::fault::Fault;
 use crate::files::{FileError, read_text};
 use crate::flight::{CameraEntry, FlightFile, FlightSettings, Photo, PhotoSource};
@@ -33,6 +34,7 @@ pub(super) fn read(
         Kind::Flight(file) => of_file(file, options, progress),
         Kind::Reconstruction(..) => of_reconstruction(path, options, progress),
         Kind::SizeDistributions => Err(FileError::new(path, no_flight_but_sizes())),
+        Kind::Mission => Err(FileError::new(path, no_flight_but_mission())),
         Kind::Cloud(_) if options.may_lack_photos => Ok(of_cloud(path, options)),
         Kind::Cloud(_) | Kind::Camera | Kind::Poses | Kind::Trajectory(_) => Err(FileError::new(
             path,

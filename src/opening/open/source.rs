@@ -8,6 +8,7 @@ use crate::flight::{FlightFile, FlightSettings, Photo};
 use crate::formats::{CloudFile, PoseCovariance};
 use crate::geodesy::Crs;
 use crate::geometry::Similarity;
+use crate::in_part::Moving;
 use crate::scale::StatedErrors;
 use crate::surface::UpAxis;
 use crate::units::LengthUnit;
@@ -42,6 +43,8 @@ pub(super) struct Source {
     pub(super) surface_note: Option<String>,
     /// The way of the package's frame to the world, where flight.toml says it.
     pub(super) package_surface_to_world: Option<Similarity>,
+    /// What is to be done with the points of a cloud that is read in part.
+    pub(super) moving: Option<Moving>,
     pub(super) reconstruction_cloud: CloudFile,
     pub(super) photo_folder: Option<PathBuf>,
     /// Whether somebody named that folder, so that it must be the photos'.
@@ -69,7 +72,10 @@ impl Source {
         Self {
             file: file.to_owned(),
             name: name_of(file),
-            settings,
+            settings: FlightSettings {
+                surface_up: options.surface_up.unwrap_or(settings.surface_up),
+                ..settings
+            },
             unit_is_stated: true,
             flight_file: None,
             named_crs: None,
@@ -82,6 +88,7 @@ impl Source {
             surface_is_packages: false,
             surface_note: None,
             package_surface_to_world: None,
+            moving: None,
             reconstruction_cloud: CloudFile::default(),
             photo_folder: options.photos.clone(),
             photo_folder_is_named: options.photos.is_some(),

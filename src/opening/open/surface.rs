@@ -4,6 +4,7 @@ use super::source::Source;
 use super::{OnSample, OpenOptions, SurfaceSample};
 use crate::files::FileError;
 use crate::formats::{CloudFile, read_cloud, read_cloud_sample};
+use crate::in_part::{InPart, Moving};
 use crate::jobs::Progress;
 use crate::surface::{UpAxis, doubtful_up};
 
@@ -14,6 +15,7 @@ use crate::surface::{UpAxis, doubtful_up};
 pub(super) fn read(
     source: &mut Source,
     options: &OpenOptions,
+    mut part: Option<&mut InPart>,
     on_sample: Option<OnSample<'_>>,
     progress: &Progress,
 ) -> Result<Option<CloudFile>, FileError> {
@@ -35,9 +37,31 @@ pub(super) fn read(
         let cloud = sample.cloud;
         on_sample(SurfaceSample { cloud, of }, progress);
     }
-    let mut file = read_cloud(&path, progress)?;
+    let thinning = settings.surface.thinning.is_some();
+    let photos = source.photos.len();
+    let stand_in = match &mut part {
+        Some(part) => part.stand_in(&path, photos, thinning)?,
+        None => None,
+    };
+    source.moving = stand_in.is_some().then(|| Moving {
+        up,
+        ..Moving::default()
+    });
+    let mut file = match stand_in {
+        Some(file) => file,
+        None => {
+            let mut file = read_cloud(&path, progress)?;
+            let points = file.cloud.points.len() as u64;
+            file.warnings
+                .extend(part.and_then(|part| part.exceeded(points)));
+            file
+        }
+    };
     for point in &mut file.cloud.points {
         *point = up.to_z_up(*point);
+    }
+    if up != UpAxis::Z {
+        file.facts = None;
     }
     // The package's own cloud is in the frame of its poses, unless it says otherwise.
     if let Some(similarity) = &source.package_surface_to_world
@@ -48,13 +72,17 @@ pub(super) fn read(
         for point in &mut file.cloud.points {
             *point = similarity.apply(*point);
         }
+        file.facts = None;
+        if let Some(moving) = &mut source.moving {
+            moving.package = Some(*similarity);
+        }
     }
     if let Some((axis, along_axis, along_z)) = doubtful_up(&file.cloud) {
         let (along_axis, along_z) = (100.0 * along_axis, 100.0 * along_z);
         source.doubtful_up = Some(axis);
         let axis = axis.name();
         file.warnings.push(format!(
-            "seen along {axis}, {along_axis:.0} % of its area faces one way, along z {along_z:.0} %: where {axis} is up in the file, write up = \"{axis}\" below [surface] in a flight.toml (a steep wall looks the same)"
+            "seen along {axis}, {along_axis:.0} % of its area faces one way, along z {along_z:.0} %: where {axis} is up in the file, write up = \"{axis}\" below [surface] in a flight.toml, or --up {axis} behind the command (a steep wall looks the same)"
         ));
     }
     source.warn(&path, &file.warnings);

@@ -12,6 +12,7 @@ use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
 use crate::geodesy::{Crs, Geographic};
 use crate::jobs::Progress;
+use crate::plan::Purpose;
 use crate::scale::{FieldGrid, ImageKind, ScaleField};
 use crate::surface::Surface;
 
@@ -122,7 +123,7 @@ pub fn planned_poses(
         planned.push(PlannedPose {
             // As plans call them, for climbs are stops without a photo.
             name: (photo.name.clone())
-                .unwrap_or_else(|| crate::plan::photo_name(planned.len() + 1)),
+                .unwrap_or_else(|| Purpose::Scale.photo_name(planned.len() + 1)),
             pose: pose(stop, pitch, center, crs, place).ok_or_else(|| {
                 let what = format!("stop {number} does not say where the camera looks");
                 Fault::new(what, "give a mission with headings and gimbal pitches")

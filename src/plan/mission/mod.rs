@@ -12,7 +12,9 @@ mod told;
 pub use flown::{Flown, PlannedPose, Residual, Taken, planned_poses};
 #[cfg(test)]
 pub(super) use told::true_heading;
-pub use told::{Told, missions};
+pub use told::{Told, missions, same_unit};
+
+use glam::DVec3;
 
 use crate::fault::Fault;
 use crate::geodesy::geoid_height;
@@ -85,6 +87,17 @@ pub enum Finish {
     Hover,
     /// Land below the last stop.
     Land,
+}
+
+impl Finish {
+    /// In words that follow "at the end:".
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::ReturnHome => "returns home",
+            Self::Hover => "hovers",
+            Self::Land => "lands",
+        }
+    }
 }
 
 /// A place where the drone stops.
@@ -200,6 +213,21 @@ const LONGEST_WAIT: f64 = 86_400.0;
 const FASTEST: f64 = 300.0;
 
 impl Mission {
+    /// From the take-off to the farthest stop, kilometres on a sphere of the Earth's size; `None` where one is not known.
+    pub fn farthest_from_take_off(&self) -> Option<f64> {
+        const RADIUS: f64 = 6371.0;
+        let direction = |latitude: f64, longitude: f64| {
+            let [(sin, cos), (east, north)] =
+                [latitude, longitude].map(|angle| angle.to_radians().sin_cos());
+            DVec3::new(cos * north, cos * east, sin)
+        };
+        let from = self.take_off?;
+        let from = direction(from.latitude, from.longitude);
+        let stops = self.stops.iter();
+        let angles = stops.map(|stop| direction(stop.latitude, stop.longitude).angle_between(from));
+        Some(RADIUS * angles.reduce(f64::max)?)
+    }
+
     /// Whether a drone could be told this: places on the Earth, finite heights and angles, a speed above
     /// zero. One without stops is none to be flown, but may have been read.
     ///

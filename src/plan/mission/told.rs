@@ -29,6 +29,23 @@ pub struct Told {
     pub settle: f64,
 }
 
+/// Whether a surface counts in the unit of its coordinate system.
+///
+/// # Errors
+/// Where it does not: one of both is wrong.
+pub fn same_unit(unit: LengthUnit, crs: &Crs) -> Result<(), Fault> {
+    let counted = crs.unit_metres();
+    if (unit.metres() / counted - 1.0).abs() <= SAME_UNIT {
+        return Ok(());
+    }
+    let what = format!(
+        "the surface's coordinates are in {unit}, and {} counts in units of {counted} m",
+        crs.name()
+    );
+    let remedy = "state the unit and the system that the surface is in";
+    Err(Fault::new(what, remedy))
+}
+
 /// A mission for each way of a plan over a surface in a coordinate system, with what the name of its file has behind
 /// that of the plan: nothing, or the number of the battery.
 ///
@@ -40,16 +57,7 @@ pub fn missions(
     crs: &Crs,
     told: &Told,
 ) -> Result<Vec<(String, Mission)>, Fault> {
-    let counted = crs.unit_metres();
-    if (told.unit.metres() / counted - 1.0).abs() > SAME_UNIT {
-        let what = format!(
-            "the surface's coordinates are in {}, and {} counts in units of {counted} m",
-            told.unit,
-            crs.name()
-        );
-        let remedy = "state the unit and the system that the surface is in";
-        return Err(Fault::new(what, remedy));
-    }
+    same_unit(told.unit, crs)?;
     let numbered = ways.iter().zip(1..).map(|(way, number)| {
         let battery = match ways.len() {
             0 | 1 => String::new(),

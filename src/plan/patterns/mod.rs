@@ -6,29 +6,37 @@
 //!   the direction in which the ground rises most, in the mean, is that of the strips. A drone's camera has no roll
 //!   of its own, so that a photo's up is uphill: where the ground falls along its strip, to [`Wish::off_normal`]
 //!   degrees, the photo lies square in it; else it is turned, and shares more with its neighbours.
-//! - **survey**: rows straight down, with overlap both ways, and a row on each side that looks aslant at the middle:
-//!   what a reconstruction needs.
+//! - **survey**: what a reconstruction needs: rows straight down with overlap both ways, the same across, and a ring of
+//!   photos around the area that look aslant into it.
+//! - **both**: photos for scales in one of the first two, and a survey, in one flight.
 //!
 //! ```text
 //! one_photo  where it is taken from, whether the drone may go there, what it will show
+//! ring       aslant, around the area
 //! strips     in which photos lie, and places along the ground
 //! ```
 
 mod one_photo;
+mod ring;
 mod strips;
+
+use std::sync::OnceLock;
 
 use glam::DVec2;
 
-use super::footprint;
-use super::photo::{PlannedPhoto, Refused};
+use super::photo::{NO_GROUND, PlannedPhoto, Purpose, Refused};
 use super::terrain::{Terrain, ground_at};
 use super::wish::{Size, Wish};
+use super::{distance, footprint};
 use crate::camera::Camera;
+use crate::fault::Fault;
 use crate::geometry::surrounds;
 use crate::surface::Surface;
 use crate::survey::Polygon;
 use one_photo::azimuth;
-use strips::{evenly, range_of};
+#[cfg(test)]
+pub(super) use ring::{ASLANT, TURN};
+use strips::{Strips, evenly, range_of};
 
 /// How photos lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -40,11 +48,21 @@ pub enum Pattern {
     Slope,
     /// With overlap, for a reconstruction.
     Survey,
+    /// Along the slope, and a survey.
+    Both,
+    /// The paper's rows, and a survey.
+    PaperBoth,
 }
 
 impl Pattern {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Slope, Self::Paper, Self::Survey];
+    pub const ALL: [Self; 5] = [
+        Self::Slope,
+        Self::Paper,
+        Self::Survey,
+        Self::Both,
+        Self::PaperBoth,
+    ];
 
     /// Its name on the command line.
     pub fn as_str(self) -> &'static str {
@@ -52,6 +70,8 @@ impl Pattern {
             Self::Paper => "paper",
             Self::Slope => "slope",
             Self::Survey => "survey",
+            Self::Both => "both",
+            Self::PaperBoth => "paper-both",
         }
     }
 
@@ -61,15 +81,41 @@ impl Pattern {
             Self::Paper => "Rows",
             Self::Slope => "Along the slope",
             Self::Survey => "Survey",
+            Self::Both => "Along the slope, and a survey",
+            Self::PaperBoth => "Rows, and a survey",
         }
     }
 
-    /// The overlap that is usual of it, 0 to under 1.
-    pub fn usual_overlap(self) -> f64 {
+    /// What its photos are taken for.
+    pub fn purposes(self) -> &'static [Purpose] {
         match self {
-            Self::Paper | Self::Slope => 0.0,
-            Self::Survey => SURVEY_OVERLAP,
+            Self::Paper | Self::Slope => &[Purpose::Scale],
+            Self::Survey => &[Purpose::Survey],
+            Self::Both | Self::PaperBoth => &[Purpose::Scale, Purpose::Survey],
         }
+    }
+
+    /// What those are taken for that it is named for.
+    pub fn main(self) -> Purpose {
+        match self {
+            Self::Survey => Purpose::Survey,
+            _ => Purpose::Scale,
+        }
+    }
+
+    /// Whether it has photos that are taken for this.
+    pub fn has(self, purpose: Purpose) -> bool {
+        self.purposes().contains(&purpose)
+    }
+
+    /// Whether its photos for scales look along the normal of the ground.
+    pub fn is_square(self) -> bool {
+        matches!(self, Self::Slope | Self::Both)
+    }
+
+    /// Whether its photos for scales have one height and one tilt.
+    pub fn is_level(self) -> bool {
+        matches!(self, Self::Paper | Self::PaperBoth)
     }
 
     /// What speaks for it.
@@ -80,52 +126,81 @@ impl Pattern {
                 "Each photo looks along the normal of the ground from the distance that gives the scale"
             }
             Self::Survey => {
-                "Overlapping rows straight down and a row aslant on each side, for a reconstruction"
+                "Overlapping rows straight down and a ring that looks aslant, for a reconstruction"
             }
+            Self::Both => "Photos along the slope, and a survey for the cloud, in one flight",
+            Self::PaperBoth => "Rows at one height, and a survey for the cloud, in one flight",
         }
     }
 }
 
-/// Overlap of the survey where nobody says it.
-const SURVEY_OVERLAP: f64 = 0.7;
-/// Why there is no plane of the ground.
-const NO_GROUND: &str = "most of the photo would look beyond the surface, or into a hole of it";
-/// The tilt of the survey's photos that look aslant, degrees below the horizon.
-const ASLANT: f64 = 50.0;
+/// The tilt of a survey's rows.
+const STRAIGHT_DOWN: f64 = 90.0;
 /// The most photos: more is a mistake of units.
 pub(in crate::plan) const MOST: usize = 20_000;
 
-/// What the patterns work on.
+/// What the patterns work on: photos for one purpose.
 pub(in crate::plan) struct Ground<'a> {
     camera: &'a Camera,
     area: &'a Polygon,
     terrain: &'a Terrain,
     wish: &'a Wish,
+    purpose: Purpose,
     /// The highest that the surface is at a corner of the area.
     highest_corner: Option<f64>,
     /// The distance along the axis, world units.
     distance: f64,
+    /// [`Ground::level`], once it is known.
+    level: OnceLock<f64>,
 }
 
 impl<'a> Ground<'a> {
+    /// The ground for photos of a wish with a purpose.
+    ///
+    /// # Errors
+    /// Where the wish says no distance.
     pub(in crate::plan) fn new(
         (surface, terrain): (&Surface, &'a Terrain),
         camera: &'a Camera,
         area: &'a Polygon,
-        wish: &'a Wish,
-        distance: f64,
-    ) -> Self {
+        (wish, purpose): (&'a Wish, Purpose),
+    ) -> Result<Self, Fault> {
         // Pixels of the terrain are looked at in their middles; the highest place of a slope is at a corner.
         let corners = area.corners().iter();
         let highest = corners.filter_map(|corner| ground_at(surface, *corner));
-        Self {
+        Ok(Self {
             highest_corner: highest.reduce(f64::max),
             camera,
             area,
             terrain,
             wish,
-            distance,
+            purpose,
+            distance: distance(camera, wish.size_of(purpose))?,
+            level: OnceLock::new(),
+        })
+    }
+
+    /// Whether a photo is one of its own.
+    pub(in crate::plan) fn is_for(&self, photo: &PlannedPhoto) -> bool {
+        photo.purpose == self.purpose
+    }
+
+    /// What its photos are of, for people.
+    pub(in crate::plan) fn what(&self) -> &'static str {
+        match (self.purpose, self.wish.pattern.purposes()) {
+            (_, [_]) => "the area",
+            (Purpose::Scale, _) => "the area for scales",
+            (Purpose::Survey, _) => "the survey",
         }
+    }
+
+    /// Whether its photos look along the normal of the ground.
+    fn is_square(&self) -> bool {
+        self.purpose == Purpose::Scale && self.wish.pattern.is_square()
+    }
+
+    fn overlap(&self) -> f64 {
+        self.wish.overlap_of(self.purpose)
     }
 
     /// A photo of a place, as the pattern has it; of photos of one tilt it looks as another one does.
@@ -134,15 +209,13 @@ impl<'a> Ground<'a> {
         place: DVec2,
         like: &PlannedPhoto,
     ) -> Result<PlannedPhoto, String> {
-        match self.wish.pattern {
-            Pattern::Slope => self.square_to_ground(place, self.strips().along),
-            Pattern::Paper | Pattern::Survey => {
-                let side = self.footprint().max_element();
-                let ground = self.terrain.plane(place, side).ok_or(NO_GROUND)?;
-                let target = place.extend(self.level());
-                Ok(self.looking_at(target, [like.tilt, like.pan], ground))
-            }
+        if self.is_square() {
+            return self.square_to_ground(place, self.strips().along);
         }
+        let side = self.footprint().max_element();
+        let ground = self.terrain.plane(place, side).ok_or(NO_GROUND)?;
+        let target = place.extend(self.level());
+        Ok(self.looking_at(target, [like.tilt, like.pan], ground))
     }
 
     /// A photo's width and height on a plane across its axis, at the distance.
@@ -151,17 +224,17 @@ impl<'a> Ground<'a> {
     }
 
     pub(in crate::plan) fn photos(&self) -> (Vec<PlannedPhoto>, Vec<Refused>) {
-        match self.wish.pattern {
-            Pattern::Slope => self.slope(),
-            Pattern::Paper => self.rows(self.wish.tilt),
-            Pattern::Survey => self.survey(),
+        match self.purpose {
+            Purpose::Survey => self.survey(),
+            Purpose::Scale if self.is_square() => self.slope(),
+            Purpose::Scale => self.rows(&self.longest_side(), self.wish.tilt),
         }
     }
 
     fn slope(&self) -> (Vec<PlannedPhoto>, Vec<Refused>) {
         let strips = self.strips();
         let footprint = self.footprint();
-        let step = footprint * (1.0 - self.wish.overlap);
+        let step = footprint * (1.0 - self.overlap());
         let corners = self.area.corners().iter();
         let across: Vec<f64> = corners.map(|&c| strips.strips_from_world(c).y).collect();
         let range = range_of(across.iter().copied());
@@ -190,12 +263,12 @@ impl<'a> Ground<'a> {
         (photos, refused)
     }
 
-    /// Rows at one height over the area, all of one tilt, every second row flown backwards.
-    fn rows(&self, tilt: f64) -> (Vec<PlannedPhoto>, Vec<Refused>) {
+    /// Rows at one height over the area, all of one tilt, every second row flown backwards. Those of a survey begin and end
+    /// over its edge or beyond, so that the edge is in as many photos as the middle.
+    fn rows(&self, strips: &Strips, tilt: f64) -> (Vec<PlannedPhoto>, Vec<Refused>) {
         let sine = tilt.to_radians().sin();
         let footprint = self.footprint() * DVec2::new(1.0, 1.0 / sine);
-        let strips = self.longest_side();
-        let step = footprint * (1.0 - self.wish.overlap);
+        let step = footprint * (1.0 - self.overlap());
         let corners = || {
             self.area
                 .corners()
@@ -203,13 +276,19 @@ impl<'a> Ground<'a> {
                 .map(|&c| strips.strips_from_world(c))
         };
         let across = range_of(corners().map(|c| c.y));
+        let beyond = match self.purpose {
+            Purpose::Scale => DVec2::ZERO,
+            Purpose::Survey => step / 2.0,
+        };
+        let reaching = |(from, to): (f64, f64), beyond: f64| (from - beyond, to + beyond);
         let level = self.level();
         let (mut photos, mut refused) = (Vec::new(), Vec::new());
-        for (row, across) in evenly(across, step.x).into_iter().enumerate() {
-            let Some(range) = self.in_strip(&strips, across, footprint.x) else {
+        let rows = evenly(reaching(across, beyond.x), step.x);
+        for (row, across) in rows.into_iter().enumerate() {
+            let Some(range) = self.in_strip(strips, across, footprint.x) else {
                 continue;
             };
-            let mut places = evenly(range, step.y);
+            let mut places = evenly(reaching(range, beyond.y), step.y);
             let mut looks = strips.along;
             if row % 2 == 1 {
                 places.reverse();
@@ -222,8 +301,7 @@ impl<'a> Ground<'a> {
                 let place = strips.place(along, across);
                 let side = footprint.max_element();
                 let Some(ground) = self.terrain.plane(place, side) else {
-                    let why = NO_GROUND.to_owned();
-                    refused.push(Refused { place, why });
+                    refused.push(Refused::without_ground(place));
                     continue;
                 };
                 let target = place.extend(level);
@@ -233,37 +311,23 @@ impl<'a> Ground<'a> {
         (photos, refused)
     }
 
+    /// Rows straight down, the same across them, and the ring, as far as they are wished.
     fn survey(&self) -> (Vec<PlannedPhoto>, Vec<Refused>) {
-        let (mut photos, refused) = self.rows(90.0);
         let strips = self.longest_side();
-        let corners = || {
-            self.area
-                .corners()
-                .iter()
-                .map(|&c| strips.strips_from_world(c))
+        let (mut photos, mut refused) = self.rows(&strips, STRAIGHT_DOWN);
+        let mut add = |(more, not): (Vec<_>, Vec<_>)| {
+            photos.extend(more);
+            refused.extend(not);
         };
-        let (along, across) = (
-            range_of(corners().map(|c| c.x)),
-            range_of(corners().map(|c| c.y)),
-        );
-        let middle = DVec2::new(along.0 + along.1, across.0 + across.1) / 2.0;
-        let half = DVec2::new(along.1 - along.0, across.1 - across.0) / 2.0;
-        let step = self.footprint().x * (1.0 - self.wish.overlap);
-        for (looks, reach) in [
-            (strips.along, half.y),
-            (-strips.along, half.y),
-            (strips.along.perp(), half.x),
-            (-strips.along.perp(), half.x),
-        ] {
-            let center = strips.place(middle.x, middle.y);
-            for beside in evenly((-reach, reach), step) {
-                let place = center + looks.perp() * beside;
-                let side = self.footprint().max_element();
-                if let Some(ground) = self.terrain.plane(place, side) {
-                    let target = place.extend(self.level());
-                    photos.push(self.looking_at(target, [ASLANT, azimuth(looks)], ground));
-                }
-            }
+        if self.wish.survey.cross {
+            let across = Strips {
+                along: strips.along.perp(),
+                ..strips
+            };
+            add(self.rows(&across, STRAIGHT_DOWN));
+        }
+        if self.wish.survey.ring {
+            add(self.ring());
         }
         (photos, refused)
     }
@@ -271,10 +335,14 @@ impl<'a> Ground<'a> {
     /// The height that photos of one height look at: the area's mean, where the scale is to be right; the highest
     /// of it, where the height above is said.
     fn level(&self) -> f64 {
+        *self.level.get_or_init(|| self.level_of_area())
+    }
+
+    fn level_of_area(&self) -> f64 {
         let inside = (self.terrain.points())
             .filter(|point| surrounds(self.area.corners(), point.truncate()));
         let heights: Vec<f64> = inside.map(|point| point.z).collect();
-        match self.wish.size {
+        match self.wish.size_of(self.purpose) {
             Size::Scale { .. } => heights.iter().sum::<f64>() / heights.len().max(1) as f64,
             Size::Distance(_) => {
                 (heights.iter().copied()).fold(self.highest_corner.unwrap_or(f64::MIN), f64::max)

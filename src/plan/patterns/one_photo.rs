@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Ground, NO_GROUND, Pattern};
+use super::{Ground, NO_GROUND};
 use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::jobs::Progress;
@@ -21,8 +21,7 @@ impl Ground<'_> {
     /// Moves a photo of the slope pattern along its axis until the middle of the bulk of its scales is the wished one,
     /// by the terrain's raster.
     pub(in crate::plan) fn set_distance(&self, photo: &mut PlannedPhoto) {
-        let (Pattern::Slope, Size::Scale { pixels, .. }) = (self.wish.pattern, self.wish.size)
-        else {
+        let (true, Size::Scale { pixels, .. }) = (self.is_square(), self.wish.size) else {
             return;
         };
         let focal = (self.camera.fx * self.camera.fy).sqrt();
@@ -40,15 +39,22 @@ impl Ground<'_> {
         }
     }
 
-    /// Why the drone does not go to where a photo is to be taken from, one clause; `None` where it does.
+    /// Why the drone does not take a photo, by its gimbal or by where it is to be taken from, one clause; `None` where it
+    /// does.
     pub(in crate::plan) fn not_flown(
         &self,
         photo: &PlannedPhoto,
         keep_out: &KeepOut<'_>,
     ) -> Option<String> {
-        let from = photo.pose.center;
+        let (from, pitch) = (photo.pose.center, -photo.tilt);
+        let [lowest, highest] = self.wish.gimbal;
+        if pitch < lowest || pitch > highest {
+            return Some(format!(
+                "the gimbal would have to pitch to {pitch:.0} degrees, and goes from {lowest:.0} to {highest:.0}"
+            ));
+        }
         if self.terrain.is_near(from, self.wish.clearance) {
-            let why = "the drone would come nearer to the ground than the clearance";
+            let why = "the drone would come nearer to the ground than the clearance (--clearance)";
             return Some(why.to_owned());
         }
         let why = "the drone would stand over an area to keep out of, or too near to it";
@@ -93,12 +99,6 @@ impl Ground<'_> {
         // Uphill; straight down any direction does, so that of the strip.
         let looks = if level.length() < 1e-9 { along } else { level };
         let pitch = axis.z.clamp(-1.0, 1.0).asin().to_degrees();
-        let [lowest, highest] = self.wish.gimbal;
-        if pitch < lowest || pitch > highest {
-            return Err(format!(
-                "the gimbal would have to pitch to {pitch:.0} degrees, and goes from {lowest:.0} to {highest:.0}"
-            ));
-        }
         Ok(self.looking_at(ground.point, [-pitch, azimuth(looks)], ground))
     }
 
@@ -111,10 +111,8 @@ impl Ground<'_> {
     ) -> PlannedPhoto {
         let camera = self.camera;
         // A height above all is one: aslant the way to it is longer.
-        let distance = match (self.wish.size, self.wish.pattern) {
-            (Size::Distance(height), Pattern::Paper | Pattern::Survey) => {
-                height / angles[0].to_radians().sin()
-            }
+        let distance = match (self.wish.size_of(self.purpose), self.is_square()) {
+            (Size::Distance(height), false) => height / angles[0].to_radians().sin(),
             _ => self.distance,
         };
         let middle = DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
@@ -125,6 +123,7 @@ impl Ground<'_> {
         let axis = level.rotation * DVec3::Z;
         PlannedPhoto {
             name: String::new(),
+            purpose: self.purpose,
             pose: Pose { center, ..level },
             tilt: angles[0],
             pan: angles[1].rem_euclid(360.0),

@@ -1,6 +1,10 @@
 //! Plans over surfaces whose answers are known.
 
+mod legs;
 mod random_surfaces;
+mod surveys;
+
+use glam::DVec3;
 
 use super::*;
 use crate::camera::Distortion;
@@ -48,6 +52,7 @@ fn wish(pattern: Pattern) -> Wish {
             within: Some(0.5),
         },
         overlap: 0.0,
+        survey: SurveyWish::default(),
         gap: 0.1,
         tilt: 90.0,
         off_normal: 5.0,
@@ -68,12 +73,20 @@ fn ways(
     take_off: DVec2,
     battery: Option<f64>,
 ) -> Result<Vec<Way>, Fault> {
-    let pace = Pace {
+    let pace = Pace { battery, ..pace() };
+    Way::through(plan, surface, take_off, &pace)
+}
+
+/// As fast upright as level.
+fn pace() -> Pace {
+    Pace {
         speed: 4.0,
         stop: 3.0,
-        battery,
-    };
-    Way::through(plan, surface, take_off, &pace)
+        battery: None,
+        climb: 4.0,
+        descent: 4.0,
+        steepest: None,
+    }
 }
 
 /// Each battery lasts, with one photo more it would not, and every photo is taken once, in the one order.
@@ -85,11 +98,7 @@ fn a_way_is_cut_where_the_battery_ends() {
     let whole = ways((&plan, &surface), take_off, None).unwrap();
     let cut = ways((&plan, &surface), take_off, Some(120.0)).unwrap();
     assert!(cut.len() > 2, "{}", cut.len());
-    let pace = Pace {
-        speed: 4.0,
-        stop: 3.0,
-        battery: None,
-    };
+    let pace = pace();
     let photos = |ways: &[Way]| -> Vec<usize> {
         let points = ways.iter().flat_map(|way| &way.points);
         points.filter_map(|point| point.photo).collect()
@@ -469,7 +478,7 @@ fn what_is_kept_out_of_is_flown_around() {
     let (_, mission) = missions(&plan, &ways, &crs, &told).unwrap().remove(0);
     assert!(!mission.fences[0].keep_in && mission.fences[0].corners.len() == 4);
     // From inside nobody takes off.
-    let pace = Pace::of(4.0, 2.0, None, 1.0);
+    let pace = Pace::of(&Flying::default(), 1.0);
     let inside = Way::through(&plan, &surface, at(-10.0, 0.0), &pace).unwrap_err();
     assert!(inside.what.contains("keep out"), "{inside}");
 }

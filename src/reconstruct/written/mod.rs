@@ -7,14 +7,13 @@ mod proposed;
 mod report;
 
 pub(crate) use self::folder::{Folder, folder};
-pub use self::proposed::{may_be_made, proposed_folder};
+pub use self::proposed::{check_new_folder, may_be_made, name_of, proposed_folder};
 
 use std::fs;
 use std::io;
 
 use self::flight_files::{FlightOf, SOURCE, flight_files};
 use self::folder::FLIGHT;
-use self::proposed::name_of;
 use self::report::{ReportOf, report};
 use crate::card::Card;
 use crate::dense_cloud::dense_cloud;

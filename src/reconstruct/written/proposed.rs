@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::folder::checked;
+use super::folder::{FLIGHT, checked};
+use crate::files::{self, FileError, Inputs, Kind};
 
 /// Beside the folder of the photos: "NAME flight", or with a number where another flight is there. A folder
 /// that a run left unfinished is proposed again, for the next one goes on in it.
@@ -21,7 +22,7 @@ const PLAIN: [&str; 6] = ["photos", "images", "pictures", "dcim", "jpg", "jpeg"]
 
 /// What a flight of photos in a folder is called: as the folder, or as the one that it lies in where its own name
 /// says nothing.
-pub(super) fn name_of(photos: &Path) -> String {
+pub fn name_of(photos: &Path) -> String {
     let photos = photos.canonicalize().unwrap_or_else(|_| photos.to_owned());
     let named = |folder: &Path| Some(folder.file_name()?.to_string_lossy().into_owned());
     let own = named(&photos).unwrap_or_default();
@@ -33,6 +34,22 @@ pub(super) fn name_of(photos: &Path) -> String {
 /// Whether a flight of photos may be made here: a folder that is new, empty, or of a run that did not end.
 pub fn may_be_made(folder: &Path) -> bool {
     checked(folder).is_ok()
+}
+
+/// The same, said; and that the flight would not lie among its photos.
+///
+/// # Errors
+/// Where it may not be made.
+pub fn check_new_folder(folder: &Path, photos: &Path) -> Result<(), FileError> {
+    let may_be = checked(folder).and_then(|()| {
+        files::may_write(
+            &folder.join(FLIGHT),
+            Kind::Flight,
+            &Inputs::of([photos]),
+            false,
+        )
+    });
+    may_be.map_err(|fault| FileError::new(folder, fault))
 }
 
 #[cfg(test)]

@@ -183,7 +183,7 @@ impl Nearest<'_> {
 }
 
 /// What of a triangle (camera axes) lies on the inner side of all planes through the camera.
-fn clipped(corners: [DVec3; 3], sides: &[DVec3; 5]) -> Vec<DVec3> {
+pub(in crate::scale) fn clipped(corners: [DVec3; 3], sides: &[DVec3; 5]) -> Vec<DVec3> {
     let mut polygon = corners.to_vec();
     for side in sides {
         let mut inside = Vec::with_capacity(polygon.len() + 1);

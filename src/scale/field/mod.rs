@@ -13,6 +13,7 @@ mod samples;
 use glam::DVec3;
 use rayon::prelude::*;
 
+pub(super) use self::depths::clipped;
 pub(super) use self::rays::meet_rays;
 pub use self::samples::FieldGrid;
 

@@ -8,11 +8,13 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::draws::{Draws, deviation, interval_of};
-use super::surface_error::{DepthError, LEAST_POINTS, UNSEEN_BIAS};
+use super::surface_error::{DepthError, LEAST_POINTS};
+use super::unseen::Unseen;
 use super::{Interval, UncertainPhoto};
 use crate::geometry::Ray;
 use crate::scale::CornerOutcome;
-use crate::scale::pyramid::Pyramid;
+use crate::scale::field::clipped;
+use crate::scale::pyramid::{Pyramid, inward};
 use crate::surface::{Cloud, Surface};
 
 /// How many times errors are drawn: the ends of a 95 % interval are then known to a tenth of its half.
@@ -64,15 +66,17 @@ struct Around {
     depth: f64,
     /// The triangles near its ray, in camera axes; `None` where no ray will be cast.
     near: Option<Surface>,
-    /// Depth errors of the points around it, and their root mean square.
+    /// How far places like those of the points around it are off, shares of the depth.
     errors: Vec<f64>,
-    roughness: f64,
+    /// By how much depths are too small there in the mean.
+    unseen: f64,
 }
 
 impl CornerDraws {
     pub(super) fn new(
         photo: &UncertainPhoto<'_>,
         depths: &[DepthError],
+        unseen: Unseen,
         surface: &Surface,
     ) -> Self {
         let stated = &photo.errors;
@@ -125,8 +129,8 @@ impl CornerDraws {
                 direction,
                 depth,
                 near: near.flatten(),
-                roughness: root_mean_square_of(&errors),
-                errors,
+                unseen: unseen.bias() * root_mean_square_of(&errors),
+                errors: errors.iter().map(|error| error * unseen.wider()).collect(),
             })
         });
         let mut of_parts = |parts: Parts| -> [Vec<f64>; 4] {
@@ -258,19 +262,14 @@ fn triangles_near(
     let pose = photo.field.pose();
     let center = surface.frame().local_from_world(pose.center);
     let seen = Pyramid::of_directions(min, max, center, pose.rotation);
+    let sides = inward(min, max);
     let camera_from_local = pose.rotation.transpose();
     let mut points = Vec::new();
     for patch in surface.patches().seen(|bounds| seen.misses(bounds)).ok()? {
         for triangle in patch.triangles_seen(|bounds| seen.misses(bounds)) {
             let corners = triangle.map(|corner| camera_from_local * (corner - center));
-            // Behind the camera it is met by no ray; beside it in part, and then it is kept.
-            let outside = |is_out: &dyn Fn(DVec3) -> bool| corners.iter().all(|&c| is_out(c));
-            if outside(&|c| c.z <= 0.0)
-                || outside(&|c| c.x < min.x * c.z)
-                || outside(&|c| c.x > max.x * c.z)
-                || outside(&|c| c.y < min.y * c.z)
-                || outside(&|c| c.y > max.y * c.z)
-            {
+            // Only what the pyramid holds of the surface, so that it does not matter which others are there.
+            if clipped(corners, &sides).is_empty() {
                 continue;
             }
             points.extend(corners);
@@ -299,7 +298,8 @@ fn edges_under(
         .iter()
         .map(|corner| {
             let near = corner.as_ref()?.near.as_ref()?;
-            near.caster().ok()
+            // Each of the first rays would look at every triangle: of a wide reach there are millions.
+            near.caster_for(shared.len()).ok()
         })
         .collect();
     let camera = photo.field.camera();
@@ -328,8 +328,7 @@ fn edges_under(
             if parts.surface && !corner.errors.is_empty() {
                 let error = corner.errors[draws.place(corner.errors.len())];
                 let stated = photo.errors.surface.unwrap_or(0.0) * draws.normal();
-                let unseen = UNSEEN_BIAS * corner.roughness;
-                along = along * (1.0 + error + unseen) + stated / direction.length();
+                along = along * (1.0 + error + corner.unseen) + stated / direction.length();
             }
             ends[index] = Some(origin + direction * along);
         }

@@ -84,6 +84,16 @@ impl Line {
             (self.b * self.tt - self.t * self.tb) / determinant,
         ]
     }
+
+    /// What one more in what is off at a place would do to its ends; not finite where they are not.
+    pub(super) fn weights(self, down: f64) -> [f64; 2] {
+        let one = Self {
+            t: 1.0 - down,
+            b: down,
+            ..self
+        };
+        one.ends()
+    }
 }
 
 /// The standard deviations of the ends of the line, in the unit of what is off it: how far the line of

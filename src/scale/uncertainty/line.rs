@@ -6,11 +6,12 @@
 
 use glam::DVec3;
 
-use super::bridges::{Bridged, of_bridges};
+use super::bridges::Bridged;
 use super::draws::normal_interval;
 use super::holes::of_holes;
 use super::moved::of_moves;
-use super::surface_error::{DepthError, LINE_BIAS, LINE_SPREAD, root_mean_square};
+use super::surface_error::{DepthError, root_mean_square};
+use super::unseen::Unseen;
 use super::{Interval, UncertainPhoto};
 use crate::camera::Camera;
 use crate::scale::field::ScaleField;
@@ -32,6 +33,10 @@ struct LineEnd {
     too_large: f64,
 }
 
+/// How much what lies unseen differs between photos at the ends of their lines, over the root mean square of the
+/// depth errors (standard deviation; `unseen` says of which photos; so that 95 % of them are held).
+const SPREAD: f64 = 0.06;
+
 /// What the line through a field is, as a function of the plane: top = m·0th, bottom = m·1st.
 type Ends = [DVec3; 2];
 
@@ -41,7 +46,7 @@ impl LineErrors {
         fitted: &FittedScale,
         plane: DVec3,
         depths: &[DepthError],
-        is_cloud: bool,
+        (unseen, bridged): (Unseen, Bridged),
     ) -> Self {
         let (field, errors) = (photo.field, &photo.errors);
         let ends = ends_by_plane(field, field.camera());
@@ -61,10 +66,7 @@ impl LineErrors {
         let roughness = root_mean_square(depths);
         let counted = depths.len() as f64;
         let holes = of_holes(field, fitted);
-        let bridged = match is_cloud {
-            true => of_bridges(field, fitted, plane),
-            false => Bridged::default(),
-        };
+        let too_large = unseen.of_line(field, fitted, depths);
         let end = |index: usize, scale: f64| {
             let by_plane = ends[index];
             let share = 1.0 / plane.dot(by_plane);
@@ -88,7 +90,7 @@ impl LineErrors {
             let surface = roughness.map(|roughness| {
                 // The end of a line through independent values has four times the variance of their mean.
                 let seen = 2.0 * roughness / counted.sqrt();
-                let unseen = LINE_SPREAD * roughness;
+                let unseen = SPREAD * roughness;
                 // Each point has its stated error, and the line is the mean of many.
                 let depth = 1.0 / plane.z.abs().max(f64::MIN_POSITIVE);
                 let stated = 2.0 * errors.surface.unwrap_or(0.0) / depth / counted.sqrt();
@@ -103,8 +105,7 @@ impl LineErrors {
                     surface,
                     errors.world_scale.map(|percent| percent / 100.0),
                 ],
-                too_large: bridged.too_large[index]
-                    + roughness.map_or(0.0, |roughness| LINE_BIAS * roughness),
+                too_large: bridged.too_large[index] + too_large[index],
             }
         };
         Self {

@@ -5,8 +5,8 @@
 //! (`corners`); thousands of pixels behind the best line see the pile as a whole, of which derivatives
 //! tell all (`line`); where the surface ends inside the photo, what is not seen of it is drawn from what
 //! is (`holes`), and where triangles bridge what no photo saw, it is deeper (`bridges`); one pixel hangs on
-//! one place as well (`pixels`). What the surface adds comes from the cloud itself (`surface_error`). Draws follow from
-//! one seed: the same on every run.
+//! one place as well (`pixels`). What the surface adds comes from the cloud itself (`surface_error`), and more where few
+//! photos saw it (`unseen`). Draws follow from one seed: the same on every run.
 
 mod bridges;
 mod corners;
@@ -16,12 +16,15 @@ mod line;
 mod moved;
 mod pixels;
 mod surface_error;
+mod unseen;
 
+use self::bridges::{Bridged, of_bridges};
 use self::corners::CornerDraws;
 pub use self::draws::Draws;
 use self::line::LineErrors;
 pub use self::pixels::PixelErrors;
 use self::surface_error::{depth_errors, plane_of};
+use self::unseen::Unseen;
 use super::field::ScaleField;
 use super::{EdgeScales, FittedScale, PhotoScale, ScalePair, StatedErrors};
 use crate::surface::Surface;
@@ -124,10 +127,15 @@ impl Uncertainty {
     pub fn compute(photo: &UncertainPhoto<'_>, surface: &Surface) -> Option<Self> {
         let plane = plane_of(photo.field)?;
         let depths = depth_errors(photo.field, plane, surface);
-        let corners = CornerDraws::new(photo, &depths, surface);
-        let line = photo
-            .fitted
-            .map(|fitted| LineErrors::new(photo, fitted, plane, &depths, surface.is_cloud()));
+        let unseen = Unseen::of(&depths, surface.is_cloud());
+        let corners = CornerDraws::new(photo, &depths, unseen, surface);
+        let line = photo.fitted.map(|fitted| {
+            let bridged = match surface.is_cloud() {
+                true => of_bridges(photo.field, fitted, plane),
+                false => Bridged::default(),
+            };
+            LineErrors::new(photo, fitted, plane, &depths, (unseen, bridged))
+        });
         let line_parts = line.as_ref().map(LineErrors::parts_percent);
         let line_parts_percent = line_parts.unwrap_or_default();
         let corner_parts_percent = corners.parts_percent();

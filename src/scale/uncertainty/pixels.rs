@@ -9,7 +9,8 @@ use glam::DVec3;
 
 use super::Interval;
 use super::draws::normal_interval;
-use super::surface_error::{LEAST_POINTS, UNSEEN_BIAS, depth_errors, plane_of, root_mean_square};
+use super::surface_error::{LEAST_POINTS, depth_errors, plane_of, root_mean_square};
+use super::unseen::Unseen;
 use crate::camera::Camera;
 use crate::scale::field::ScaleField;
 use crate::scale::{ImageKind, StatedErrors};
@@ -27,6 +28,7 @@ pub struct PixelErrors {
     /// Root mean square of the depth errors, shares of the depth, square by square; `None` where the
     /// photo shows too few points.
     roughness: Option<Vec<f64>>,
+    unseen: Unseen,
 }
 
 impl PixelErrors {
@@ -58,6 +60,7 @@ impl PixelErrors {
             stated: *stated,
             plane,
             roughness,
+            unseen: Unseen::of(&depths, surface.is_cloud()),
         })
     }
 
@@ -91,11 +94,11 @@ impl PixelErrors {
         let roughness = roughness.and_then(|of| of.get(square(field.camera(), pixel)).copied());
         let of_surface = roughness.map(|roughness| {
             let stated = stated.surface.unwrap_or(0.0) / (depth * direction.length());
-            roughness * roughness + stated * stated
+            (roughness * self.unseen.wider()).powi(2) + stated * stated
         });
         let parts = [of_angle, of_position, of_focal, of_world, of_surface];
         let share = parts.iter().flatten().sum::<f64>().sqrt();
-        let too_large = UNSEEN_BIAS * roughness.unwrap_or(0.0);
+        let too_large = self.unseen.bias() * roughness.unwrap_or(0.0);
         Some(normal_interval(
             scale * (1.0 - too_large),
             scale * share,

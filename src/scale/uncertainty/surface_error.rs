@@ -1,29 +1,15 @@
 //! The surface's part in a photo's error, from the cloud itself.
 //!
 //! How far the points of the cloud lie from what the points around them predict (`surface::LeftOut`) is,
-//! seen by the photo, a draw from the error of the depth at its pixels. One thing no cloud can say: what
-//! lies between fragments where fewer than three photos look has no points, so the surface runs above it
-//! and scales are too large. Of simulated piles, whose true surface is known, that is a nearly constant
-//! share of the roughness, whatever the place, the number of points (15 000 to 240 000) and their noise:
-//! [`UNSEEN_BIAS`] at corners; of lines, which see much, [`LINE_BIAS`] and [`LINE_SPREAD`] beside what
-//! bridges do (`bridges`, with which they were fitted). That of corners is measured by `benches/coverage.rs` on
-//! other piles than those that the coverage is stated for.
+//! seen by the photo, a draw from the error of the depth at its pixels, where many photos saw it. What lies
+//! between fragments where fewer than three photos look has no points, so the surface runs above it and scales are
+//! too large: `unseen`.
 
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::scale::field::ScaleField;
 use crate::scale::pyramid::Pyramid;
 use crate::surface::{Patch, Surface};
-
-/// How much too small depths are in the mean, over the root mean square of the depth errors at the
-/// points: the gaps between fragments that no point lies in.
-pub(super) const UNSEEN_BIAS: f64 = 0.06;
-
-/// The same in the line through all of a photo, bridges not counted.
-pub(super) const LINE_BIAS: f64 = 0.03;
-
-/// How much that differs between photos at the ends of their lines, over the same (standard deviation).
-pub(super) const LINE_SPREAD: f64 = 0.07;
 
 /// With fewer points nothing is known of a photo's surface.
 pub(super) const LEAST_POINTS: usize = 30;
@@ -41,6 +27,8 @@ pub(super) struct DepthError {
     pub(super) pixel: DVec2,
     /// The true depth over the predicted one, less 1: by so much scales are too large.
     pub(super) relative: f64,
+    /// What the triangles at the point cover (over x and y) over its squared depth.
+    pub(super) area: f64,
 }
 
 /// The plane that lies best through a photo's field, in camera axes: m·X = 1, so that the inverse of the
@@ -85,6 +73,7 @@ pub(super) fn depth_errors(field: &ScaleField, plane: DVec3, surface: &Surface) 
         errors.push(DepthError {
             pixel,
             relative: 1.0 / predicted - 1.0,
+            area: left_out.star / (point.z * point.z),
         });
     }
     errors

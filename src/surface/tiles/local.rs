@@ -4,14 +4,14 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use glam::DVec2;
-use robust::incircle;
+use robust::{incircle, orient2d};
 
 use super::triangulated::{Triangulated, coord};
 use crate::surface::SurfaceError;
 use crate::surface::sites::{Cells, Sites};
 
 /// Cells around a tile. Of random points hardly a circle reaches further.
-const MARGIN: usize = 4;
+pub(super) const MARGIN: usize = 4;
 
 /// How many sites found in one circle join at once: the nearest settle most circles.
 const SITES_AT_ONCE: usize = 64;
@@ -40,6 +40,11 @@ impl<'a> Local<'a> {
         if sites.ranges_of(cells).all(|range| range.is_empty()) {
             return Ok(None);
         }
+        Self::around(sites, cells).map(Some)
+    }
+
+    /// The same, although the tile may have none.
+    pub(super) fn around(sites: &'a Sites, cells: &Cells) -> Result<Self, SurfaceError> {
         let region = sites.widened(cells, MARGIN);
         let (mut here, mut is_own) = (Vec::new(), Vec::new());
         let own_columns = Cells {
@@ -75,7 +80,12 @@ impl<'a> Local<'a> {
             local.add(sites.hull_indices().to_vec());
         }
         local.triangulate()?;
-        Ok(Some(local))
+        Ok(local)
+    }
+
+    /// Whether the tile has sites.
+    pub(super) fn has_own(&self) -> bool {
+        self.is_own.iter().any(|&is_own| is_own)
     }
 
     /// Adds sites. Says whether there were any that were not here.
@@ -112,18 +122,24 @@ impl<'a> Local<'a> {
 
     /// Adds sites until no circle around a triangle at an own site holds one that is not here, and no own
     /// site is at the rim unless the hull of all is here, which settles where the surface ends. Then the
-    /// triangles around each own site are all there, and proven.
-    pub(super) fn settle(&mut self) -> Result<(), SurfaceError> {
+    /// triangles around each own site are all there, and proven. With a rectangle (its least and its greatest
+    /// corner) the same holds of all triangles that reach into it.
+    pub(super) fn settle(&mut self, into: Option<[DVec2; 2]>) -> Result<(), SurfaceError> {
         loop {
             let mut missing: Vec<u32> = Vec::new();
             let mut at_the_rim = self.made.at_the_rim();
-            if self.made.is_empty() || at_the_rim.any(|corner| self.is_own[corner as usize]) {
+            if self.made.is_empty()
+                || at_the_rim.any(|corner| self.is_own[corner as usize])
+                || into.is_some_and(|into| !self.covers(into))
+            {
                 missing.extend(self.sites.hull_indices());
             }
             drop(at_the_rim);
             for triangle in 0..self.made.len() {
                 let corners = self.made.corners(triangle);
-                if corners.iter().any(|&corner| self.is_own[corner as usize]) {
+                if corners.iter().any(|&corner| self.is_own[corner as usize])
+                    || into.is_some_and(|into| self.reaches_into(triangle, into))
+                {
                     self.find_missing(corners, &mut missing);
                 }
             }
@@ -132,6 +148,42 @@ impl<'a> Local<'a> {
             }
             self.triangulate()?;
         }
+    }
+
+    /// Whether its triangles cover a rectangle, but for what rounding leaves open.
+    fn covers(&self, [min, max]: [DVec2; 2]) -> bool {
+        let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+        let is_inside = |[from, to]: [u32; 2]| {
+            let [from, to] = [from, to].map(|place| coord(self.places[place as usize]));
+            let turn = |corner: &DVec2| orient2d(from, to, coord(*corner));
+            corners.iter().all(|corner| turn(corner) >= 0.0)
+        };
+        self.made.rim().all(is_inside)
+    }
+
+    /// Whether the box around a triangle touches a rectangle.
+    fn reaches_into(&self, triangle: usize, [min, max]: [DVec2; 2]) -> bool {
+        let [a, b, c] = (self.made.corners(triangle)).map(|corner| self.places[corner as usize]);
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        high.cmpge(min).all() && low.cmple(max).all()
+    }
+
+    /// The first corners (indices of sites) of the triangles that reach into a rectangle: whose tile owns them.
+    pub(super) fn first_of_reaching(&self, into: [DVec2; 2]) -> Vec<u32> {
+        let reaching = (0..self.made.len()).filter(|&triangle| self.reaches_into(triangle, into));
+        let mut first: Vec<u32> = reaching
+            .filter_map(|triangle| {
+                let on_the_circle = match self.made.shares_circle(triangle) {
+                    true => self.on_one_circle(triangle),
+                    false => vec![triangle],
+                };
+                let corners = on_the_circle.iter().flat_map(|&t| self.made.corners(t));
+                corners.map(|corner| self.here[corner as usize]).min()
+            })
+            .collect();
+        first.sort_unstable();
+        first.dedup();
+        first
     }
 
     /// Finds sites that are not here and lie in or on the circle of a triangle.
@@ -155,6 +207,10 @@ impl<'a> Local<'a> {
                 found.push((index, place));
             }
         });
+        if found.is_empty() {
+            // Of a part of the sites: that nothing else is there is known of what is here alone.
+            self.sites.want_disc(center, radius);
+        }
         if found.len() > SITES_AT_ONCE {
             let middle = (a + b + c) / 3.0;
             found.select_nth_unstable_by(SITES_AT_ONCE, |p, q| {

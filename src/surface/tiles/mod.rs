@@ -11,8 +11,13 @@
 //!
 //! Of four or more sites on one empty circle (a lattice is made of such) any triangulation is Delaunay.
 //! For tiles to agree there is one rule: a fan around the first of them, which its tile owns.
+//!
+//! Which tiles have triangles in some place is known before any is made where all sites are here (`reach`). Of a part
+//! of the sites it is not; there (`of_part`) a tile that is looked into is triangulated until every triangle that
+//! reaches into it is proven, whoever owns it, and those who do are made.
 
 mod local;
+mod of_part;
 mod reach;
 mod triangulated;
 
@@ -22,18 +27,19 @@ use super::SurfaceError;
 use super::left_out::Kept;
 use super::made_once::MadeOnce;
 use super::patches::{TriangleBlock, sort_into_blocks};
-use super::sites::{Cells, Sites};
+use super::sites::{BLOCK, Cells, Sites};
 use crate::geometry::Bounds;
 
 /// Cells along a tile's sides; about 8000 sites. Smaller tiles make more of their margins, larger
 /// ones more of what nobody asks for.
-const SIDE: usize = 64;
+const SIDE: usize = BLOCK;
 
 /// The triangulation of sites, as far as it was asked for.
 #[derive(Debug)]
 pub(super) struct Tiles {
     tiles: Vec<Tile>,
-    reach: Reach,
+    /// Of a part of the sites it is not known.
+    reach: Option<Reach>,
 }
 
 /// One block of cells.
@@ -41,10 +47,12 @@ pub(super) struct Tiles {
 struct Tile {
     cells: Cells,
     made: MadeOnce<Result<Made, SurfaceError>>,
+    /// Of a part of the sites: the tiles that own the triangles which reach into this one.
+    owners: MadeOnce<Result<Vec<usize>, SurfaceError>>,
 }
 
 /// The triangles that a tile owns.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Made {
     /// Indices of sites, counter-clockwise seen from above, the first corner first; block by block.
     pub(super) triangles: Vec<[u32; 3]>,
@@ -67,10 +75,12 @@ impl Tiles {
                     rows: row..(row + SIDE).min(rows),
                 },
                 made: MadeOnce::default(),
+                owners: MadeOnce::default(),
             })
         });
         let tiles: Vec<Tile> = tiles.collect();
-        let reach = Reach::new(sites, tiles.iter().map(|tile| &tile.cells));
+        let reach =
+            (!sites.is_part()).then(|| Reach::new(sites, tiles.iter().map(|tile| &tile.cells)));
         Self { tiles, reach }
     }
 
@@ -84,17 +94,22 @@ impl Tiles {
         sites: &Sites,
         misses: impl Fn(&Bounds) -> bool,
     ) -> Result<Vec<&Made>, SurfaceError> {
-        let Reach {
-            over_closed,
-            fields,
-            ..
-        } = &self.reach;
-        let seen = self.reach.seen_fields(&misses);
-        let is_seen = |field: &u32| seen[*field as usize];
-        let wanted = (self.tiles.iter().zip(over_closed).zip(fields))
-            .filter(|((_, bounds), fields)| fields.iter().any(is_seen) || !misses(bounds))
-            .map(|((tile, _), _)| tile);
-        let wanted: Vec<&Tile> = wanted.collect();
+        let wanted: Vec<&Tile> = match &self.reach {
+            None => self.of_part(sites, &misses)?,
+            Some(reach) => {
+                let Reach {
+                    over_closed,
+                    fields,
+                    ..
+                } = reach;
+                let seen = reach.seen_fields(&misses);
+                let is_seen = |field: &u32| seen[*field as usize];
+                (self.tiles.iter().zip(over_closed).zip(fields))
+                    .filter(|((_, bounds), fields)| fields.iter().any(is_seen) || !misses(bounds))
+                    .map(|((tile, _), _)| tile)
+                    .collect()
+            }
+        };
         let make = |tile: &&Tile| make(sites, &tile.cells);
         MadeOnce::make_all(&wanted, |tile| &tile.made, make);
         let made = wanted.iter().map(|tile| tile.made.get(|| make(tile)));
@@ -105,18 +120,19 @@ impl Tiles {
 
 /// A tile's triangles.
 fn make(sites: &Sites, cells: &Cells) -> Result<Made, SurfaceError> {
-    let nothing = Made {
-        triangles: Vec::new(),
-        blocks: Vec::new(),
-        bounds: None,
-        left_out: MadeOnce::default(),
-    };
     let Some(mut local) = Local::new(sites, cells)? else {
-        return Ok(nothing);
+        return Ok(Made::default());
     };
-    local.settle()?;
+    local.settle(None)?;
+    Ok(made_of(&local, sites))
+}
+
+/// The triangles that a tile owns of its settled surroundings.
+fn made_of(local: &Local<'_>, sites: &Sites) -> Made {
     // Without the room for those of the margin.
     let mut triangles = local.owned().into_boxed_slice().into_vec();
+    // In one order, whatever they were made of.
+    triangles.sort_unstable();
     let points = sites.points();
     let blocks = sort_into_blocks(&mut triangles, points);
     let corners = triangles
@@ -135,12 +151,12 @@ fn make(sites: &Sites, cells: &Cells) -> Result<Made, SurfaceError> {
             },
         ))
     });
-    Ok(Made {
+    Made {
         triangles,
         blocks,
         bounds,
         left_out: MadeOnce::default(),
-    })
+    }
 }
 
 #[cfg(test)]

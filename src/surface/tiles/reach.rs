@@ -211,7 +211,11 @@ impl Sites {
     }
 
     /// The box over a block of cells between two heights; at the border it reaches to the last site.
-    fn bounds_between(&self, cells: &Cells, (low, high): (f64, f64)) -> Bounds {
+    pub(in crate::surface) fn bounds_between(
+        &self,
+        cells: &Cells,
+        (low, high): (f64, f64),
+    ) -> Bounds {
         let (min, max) = self.corners_of(cells);
         let all = self.bounds();
         let clamp = |place: glam::DVec2| place.clamp(all.min.truncate(), all.max.truncate());

@@ -206,6 +206,13 @@ impl Triangulated {
             .map(|(&from, _)| from)
     }
 
+    /// The edges at the rim, indices of places, the triangles on their left.
+    pub(super) fn rim(&self) -> impl Iterator<Item = [u32; 2]> {
+        let edges = self.twins.iter().enumerate();
+        let at_the_rim = edges.filter(|(_, twin)| **twin == NONE);
+        at_the_rim.map(|(edge, _)| [self.corners[edge], self.corners[next_halfedge(edge)]])
+    }
+
     /// The corners of a triangle, indices of places.
     pub(super) fn corners(&self, triangle: usize) -> [u32; 3] {
         [0, 1, 2].map(|k| self.corners[3 * triangle + k])

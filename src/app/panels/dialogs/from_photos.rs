@@ -1,7 +1,8 @@
 //! The small window that makes a new flight from photos: what was found in their folder, where the flight
 //! goes, how far it is.
 
-use super::{browse, named_field};
+use super::on_node::{ended_on_node, messages, node_rows};
+use super::{browse, named_field, path_line};
 use crate::command::{Answers, Command, Dialog};
 use crate::from_photos::{Ended, FolderField, FromPhotos, FromPhotosForm, FromPhotosStep};
 use crate::names;
@@ -16,6 +17,8 @@ pub(super) fn from_photos(state: &State, ui: &mut egui::Ui, commands: &mut Vec<C
     let most = (ui.ctx().content_rect().height() - 90.0).max(150.0);
     egui::ScrollArea::vertical()
         .max_height(most)
+        // It grows with what is in it.
+        .min_scrolled_height(most)
         .show(ui, |ui| contents(state, ui, commands));
 }
 
@@ -27,7 +30,10 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.label("Photos that overlap by 70 % become a flight: cloud, poses and lens.");
     ui.add_space(4.0);
     let mut form = held.form.clone();
-    if held.growing.is_some() && run.is_some() {
+    if form.node.chosen && run.is_some() {
+        // So that the node's messages are seen in a small window, too.
+        names::name(ui, &format!("{} at {}", form.photos, form.node.address));
+    } else if held.growing.is_some() && run.is_some() {
         // The model behind this window is what one wants to see.
         names::name(ui, &form.photos);
     } else {
@@ -39,6 +45,11 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             let proposed = proposed.map(|found| found.proposed.display().to_string());
             let hint = proposed.unwrap_or_default();
             folder_row(FolderField::To, &mut form, &hint, ui, commands);
+            engine_row(held, &mut form, ui);
+            if form.node.chosen {
+                node_rows(&mut form.node, ui);
+                return;
+            }
             ui.horizontal(|ui| {
                 ui.label("Coordinate system");
                 let hint = "EPSG:n; if empty the zone of UTM";
@@ -51,7 +62,6 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             });
             calibration_row(&mut form, ui, commands);
             quality_row(&mut form, ui);
-            engine_row(held, &mut form, ui);
             how_long(held, &form, ui);
         });
     }
@@ -61,11 +71,14 @@ fn contents(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.separator();
     match run {
         Some((_, (sentence, fraction))) => {
-            let pauses = PauseOf {
-                can: form.engine == EngineName::Embedded,
-                is: state.work.is_paused(Task::RECONSTRUCT),
+            let works = match (form.node.chosen, form.engine) {
+                (true, _) => Works::OnNode,
+                (false, EngineName::Embedded) => Works::Embedded,
+                (false, EngineName::Colmap) => Works::Colmap,
             };
-            progress(&sentence, fraction, &pauses, ui, commands);
+            let is_paused = state.work.is_paused(Task::RECONSTRUCT);
+            progress(&sentence, fraction, (works, is_paused), ui, commands);
+            messages(held, ui);
         }
         None => start(held, &form, ui, commands),
     }
@@ -143,12 +156,13 @@ fn engine_row(held: &FromPhotos, form: &mut FromPhotosForm, ui: &mut egui::Ui) {
                 (EngineName::Colmap, Some(Err(why))) => ("COLMAP", Some(why.as_str())),
                 (EngineName::Colmap, None) => ("COLMAP", Some("Looking for it…")),
             };
-            let radio = egui::RadioButton::new(form.engine == engine, text);
+            let is_chosen = form.engine == engine && !form.node.chosen;
+            let radio = egui::RadioButton::new(is_chosen, text);
             let radio = ui.add_enabled(why_not.is_none(), radio);
             if radio.clicked() {
                 form.engine = engine;
+                form.node.chosen = false;
             }
-            let is_chosen = form.engine == engine;
             radio.widget_info(|| {
                 let name = format!("Engine: {text}");
                 let role = egui::Role::RadioButton;
@@ -157,6 +171,18 @@ fn engine_row(held: &FromPhotos, form: &mut FromPhotosForm, ui: &mut egui::Ui) {
             let radio = radio.on_hover_text(engine.explained());
             radio.on_disabled_hover_text(why_not.unwrap_or_default());
         }
+        let is_chosen = form.node.chosen;
+        let radio = ui.radio(is_chosen, "NodeODM");
+        if radio.clicked() {
+            form.node.chosen = true;
+        }
+        radio.widget_info(|| {
+            let role = egui::Role::RadioButton;
+            egui::WidgetInfo::selected(role, true, is_chosen, "Engine: NodeODM")
+        });
+        radio.on_hover_text(
+            "OpenDroneMap on another computer: a NodeODM or ClusterODM, to which the photos are sent",
+        );
     });
 }
 
@@ -183,12 +209,7 @@ fn folder_row(
     ui.label(label);
     ui.horizontal(|ui| {
         let width = ui.available_width() - 80.0;
-        let font = egui::TextStyle::Body.resolve(ui.style());
-        let hint = names::fitted(ui, hint, &font, width - 10.0).into_owned();
-        let edit = egui::TextEdit::singleline(text)
-            .hint_text(hint)
-            .desired_width(width);
-        let edit = ui.add(edit);
+        let edit = path_line(ui, text, hint, width);
         if field == FolderField::Photos {
             crate::panels::path_field::takes_the_keys_at_first(ui, &edit);
         }
@@ -248,20 +269,24 @@ fn photo_set(set: &PhotoSet, ui: &mut egui::Ui) {
     }
 }
 
-/// Whether the run can be paused, and whether it is.
-struct PauseOf {
-    can: bool,
-    is: bool,
+/// What works.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Works {
+    /// The only one that can be paused.
+    Embedded,
+    Colmap,
+    OnNode,
 }
 
 fn progress(
     sentence: &str,
     fraction: f64,
-    pauses: &PauseOf,
+    (works, is_paused): (Works, bool),
     ui: &mut egui::Ui,
     commands: &mut Vec<Command>,
 ) {
-    match pauses.is {
+    let can_pause = works == Works::Embedded;
+    match is_paused {
         true => ui.label(format!("Paused: {sentence}")),
         false => ui.label(sentence),
     };
@@ -272,31 +297,36 @@ fn progress(
         cancel.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Button, true, "Cancel reconstruction")
         });
-        let hover = "What is done by then is kept: Start goes on with it";
+        let hover = match works {
+            Works::OnNode => "The task on the node is cancelled and removed",
+            _ => "What is done by then is kept: Start goes on with it",
+        };
         if cancel.on_hover_text(hover).clicked() {
             commands.push(Command::Cancel(Task::RECONSTRUCT));
         }
-        if pauses.can {
-            let pause = ui.button(if pauses.is { "Go on" } else { "Pause" });
+        if can_pause {
+            let pause = ui.button(if is_paused { "Go on" } else { "Pause" });
             pause.widget_info(|| {
-                let name = match pauses.is {
+                let name = match is_paused {
                     true => "Go on with the reconstruction",
                     false => "Pause reconstruction",
                 };
                 egui::WidgetInfo::labeled(egui::Role::Button, true, name)
             });
-            let hover = match pauses.is {
+            let hover = match is_paused {
                 true => "Go on where it waits",
                 false => "End the photo or the pair that is being worked on, then wait and use no processor",
             };
             if pause.on_hover_text(hover).clicked() {
-                commands.push(Command::FromPhotos(FromPhotosStep::Pause(!pauses.is)));
+                commands.push(Command::FromPhotos(FromPhotosStep::Pause(!is_paused)));
             }
         }
-        ui.weak(match (pauses.can, pauses.is) {
+        ui.weak(match (works, is_paused) {
             (_, true) => "It waits when this window is closed, too.",
-            (true, false) => "It goes on when this window is closed.",
-            (false, false) => "It goes on when this window is closed. COLMAP cannot be paused.",
+            (Works::Embedded | Works::OnNode, false) => "It goes on when this window is closed.",
+            (Works::Colmap, false) => {
+                "It goes on when this window is closed. COLMAP cannot be paused."
+            }
         });
     });
 }
@@ -305,6 +335,9 @@ fn start(held: &FromPhotos, form: &FromPhotosForm, ui: &mut egui::Ui, commands: 
     let kept = "What was done is kept in that folder: Start goes on with it.";
     match &held.ended {
         None => {}
+        Some(ended @ (Ended::Cancelled | Ended::Failed(_))) if held.node.is_some() => {
+            ended_on_node(held, ended, ui);
+        }
         Some(Ended::Cancelled) => {
             ui.label(format!("Cancelled. {kept}"));
         }
@@ -323,7 +356,8 @@ fn start(held: &FromPhotos, form: &FromPhotosForm, ui: &mut egui::Ui, commands: 
             ui.separator();
         }
     }
-    let ready = held.photos().is_some() && *form == held.form;
+    let is_known = !form.node.chosen || form.node.typed().is_ok();
+    let ready = held.photos().is_some() && *form == held.form && is_known;
     let button = ui.add_enabled(ready, egui::Button::new("Start"));
     button.widget_info(|| {
         egui::WidgetInfo::labeled(egui::Role::Button, ready, "Start reconstruction")
@@ -332,7 +366,10 @@ fn start(held: &FromPhotos, form: &FromPhotosForm, ui: &mut egui::Ui, commands: 
         "Finds what the photos have in common, where they were taken, and opens the flight. It can be \
          cancelled, and goes on later",
     );
-    let button = button.on_disabled_hover_text("First name a folder with three photos or more");
+    let button = button.on_disabled_hover_text(match is_known {
+        true => "First name a folder with three photos or more",
+        false => "First type the node's address",
+    });
     if button.clicked() {
         commands.push(Command::FromPhotos(FromPhotosStep::Start));
     }

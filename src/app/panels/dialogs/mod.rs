@@ -6,9 +6,11 @@ mod cloud_use;
 mod control_list;
 mod from_photos;
 mod georeference;
+mod on_node;
 mod planning;
 mod residuals;
 mod save_measured;
+mod season;
 
 use std::path::PathBuf;
 
@@ -42,6 +44,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::Choose => "Which of them?",
             Asking::Export => "Export for Split-Desktop",
             Asking::FromPhotos => "New flight from photos",
+            Asking::Season => "Season of blasts",
             Asking::Georeference => "Georeference",
             Asking::SaveGeoreferenced => "Save georeferenced flight",
             Asking::SaveAs => "Save flight",
@@ -50,6 +53,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::Mission => "Save mission",
             Asking::PlanTable => "Save table of the plan",
             Asking::PlanSheet => "Save page for the pilot",
+            Asking::Flown => "Save comparison",
             Asking::AddDistributions => "Add size distributions",
             Asking::PasteTable => "Paste table",
             Asking::AddEffort => "Add times of steps",
@@ -74,13 +78,18 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             .default_pos(context.content_rect().center())
             .show(context, |ui| {
                 let wide = matches!(asking, Asking::Georeference | Asking::FromPhotos);
-                ui.set_max_width(if wide { 540.0 } else { 460.0 });
+                ui.set_max_width(match asking {
+                    Asking::Season => season::WIDTH.min(context.content_rect().width() - 40.0),
+                    _ if wide => 540.0,
+                    _ => 460.0,
+                });
                 match asking {
                     Asking::Open => open(state, ui, commands),
                     Asking::Add => add(state, ui, commands),
                     Asking::Choose => choose(state, ui, commands),
                     Asking::Export => export(state, ui, commands),
                     Asking::FromPhotos => from_photos(state, ui, commands),
+                    Asking::Season => season::season(state, ui, commands),
                     Asking::Georeference => georeference(state, ui, commands),
                     Asking::SaveGeoreferenced => save_georeferenced(state, ui, commands),
                     Asking::SaveAs => save_as(state, ui, commands),
@@ -89,6 +98,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::Mission => mission(state, ui, commands),
                     Asking::PlanTable => plan_table(PlanFile::Table, state, ui, commands),
                     Asking::PlanSheet => plan_table(PlanFile::Sheet, state, ui, commands),
+                    Asking::Flown => plan_table(PlanFile::Flown, state, ui, commands),
                     Asking::AddDistributions => add_distributions(state, ui, commands),
                     Asking::PasteTable => paste(state, ui, commands),
                     Asking::AddEffort => add_effort(state, ui, commands),
@@ -499,6 +509,14 @@ fn about(ui: &mut egui::Ui) {
     ui.label("After Bamford, Esmaeili & Schoellig (2017), Point-Cloud-Based Aerial Fragmentation Analysis for Application in the Minerals Industry.");
     ui.add_space(6.0);
     ui.weak("MIT OR Apache-2.0");
+}
+
+/// A field for a path that counts while it is typed; `hint` is what counts while it is empty.
+fn path_line(ui: &mut egui::Ui, text: &mut String, hint: &str, width: f32) -> egui::Response {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let hint = names::fitted(ui, hint, &font, width - 10.0).into_owned();
+    let edit = egui::TextEdit::singleline(text).hint_text(hint);
+    ui.add(edit.desired_width(width))
 }
 
 /// What a screen reader says of a text field, and what the mouse finds out.

@@ -39,6 +39,8 @@ pub(super) enum PlanFile {
     Table,
     /// A page to print.
     Sheet,
+    /// A mission against the flight that came of it.
+    Flown,
 }
 
 pub(super) fn plan_table(
@@ -63,6 +65,13 @@ pub(super) fn plan_table(
             "plan.html",
             "Write page",
         ),
+        PlanFile::Flown => (
+            "Planned against flown, as 'fragscale flown' writes it: a table (.csv, .json), the figure (.svg, .pdf, .png), or \
+             a page with both (.html).",
+            Dialog::new_file("Save comparison", "flown.html"),
+            "flown.html",
+            "Write comparison",
+        ),
     };
     ui.label(what);
     let start = proposed(open, Some(name));
@@ -74,6 +83,10 @@ pub(super) fn plan_table(
     if let Some(path) = path
         && (button.clicked() || entered)
     {
-        commands.push(Command::Plan(PlanStep::SaveTable(path.into())));
+        let to = path.into();
+        commands.push(Command::Plan(match file {
+            PlanFile::Table | PlanFile::Sheet => PlanStep::SaveTable(to),
+            PlanFile::Flown => PlanStep::SaveFlown(to),
+        }));
     }
 }

@@ -2,7 +2,7 @@
 
 use egui::{Button, Key, Modifiers, Role, Ui, WidgetInfo};
 
-use crate::command::Command;
+use crate::command::{Answers, Command, Dialog};
 use crate::delineation::ENGINES;
 use crate::fragments::{FragmentStep, FragmentTool};
 use crate::open_flight::OpenFlight;
@@ -89,6 +89,7 @@ pub(super) fn tools(
     commands: &mut Vec<Command>,
 ) {
     let fragments = &open.fragments;
+    let mut browse = None;
     let mut send = |step| commands.push(Command::Fragments(step));
     ui.horizontal_wrapped(|ui| {
         let name = |place: usize| ENGINES.get(place).map_or("", |engine| engine.name());
@@ -119,6 +120,14 @@ pub(super) fn tools(
         if button.on_hover_text(hover).clicked() {
             send(FragmentStep::Outline);
         }
+        let reads = state.work.is_running(Task::READ_MASKS);
+        let button = ui.add_enabled(!reads, Button::new("Outlines of another tool…"));
+        let hover = "Take this photo's outlines from a label image (PNG, TIFF), COCO, LabelMe, CVAT or GeoJSON in pixels; such a \
+                     file can also be dropped here. Undo brings back what is outlined now";
+        if button.on_hover_text(hover).clicked() {
+            let dialog = Dialog::file("Outlines of this photo").answering(Answers::Masks);
+            browse = Some(Command::Browse(dialog));
+        }
     });
     ui.horizontal_wrapped(|ui| {
         for (tool, name, modifiers, key, hover) in TOOLS {
@@ -144,6 +153,7 @@ pub(super) fn tools(
             send(FragmentStep::Brush(radius));
         }
     }
+    commands.extend(browse);
     if let Some(fault) = &fragments.refused {
         ui.colored_label(ui.visuals().warn_fg_color, fault.to_string());
     }

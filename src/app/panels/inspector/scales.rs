@@ -15,6 +15,11 @@ use crate::scale::{ErrorSource, FittedScale, Interval, ScaleEstimate, ScalePair,
 use crate::state::State;
 use crate::units::LengthUnit;
 
+/// Said because some scales stand at the end of their own interval.
+const SCALE_WITH_INTERVAL: &str = "Scale at this edge of the image with its 95 % interval. A cloud has more points of \
+     the stones' tops than of what lies deeper between them: the interval counts that, the scale does not, and so it \
+     may stand near the upper end";
+
 /// What "P80 ± 2 %" means.
 pub(in crate::panels) const SIZE_ERROR: &str = "What the scale's 95 % interval does to every size that is measured by it, the P80 among \
      them; outlines, hidden fragments and sampling err besides";
@@ -162,7 +167,7 @@ fn typed(
             ui.weak(format!("{name}, px/{unit}"));
             let text = RichText::new(end.text()).size(18.0).strong();
             ui.label(text).on_hover_text(match end.interval {
-                Some(_) => "Scale at this edge of the image with its 95 % interval",
+                Some(_) => SCALE_WITH_INTERVAL,
                 None => "Scale at this edge of the image",
             });
             if let Some(error) = end.size_error() {

@@ -3,13 +3,15 @@
 use egui::{ComboBox, Ui};
 
 use super::found::found;
-use crate::command::{Asking, Command};
+use super::places::places;
+use crate::command::{Answers, Asking, Command, Dialog};
 use crate::open_flight::OpenFlight;
 use crate::panels::field::{combo_box, hinted_field, number_field};
-use crate::plan::{Drone, MOST_SPEED, Pattern, Positioning, Size};
-use crate::planning::{AskedPlan, PlanStep, PlanTool};
+use crate::plan::{Drone, Flying, MOST_SPEED, Pattern, Positioning, Purpose, Size};
+use crate::planning::{AskedPlan, PlanStep};
 use crate::state::State;
 use crate::tasks::Task;
+use crate::typed::typed;
 use crate::units::LengthUnit;
 
 /// Draws the panel.
@@ -39,8 +41,10 @@ pub fn asked_of_plan(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
             if &asked != now {
                 commands.push(Command::Plan(PlanStep::Ask(Box::new(asked))));
             }
-            ui.separator();
-            found(state, open, ui, commands);
+            if planning.flown.is_none() {
+                ui.separator();
+                found(state, open, ui, commands);
+            }
             ui.separator();
             ui.horizontal_wrapped(|ui| {
                 let is_there = planning.is_of_now();
@@ -67,7 +71,44 @@ pub fn asked_of_plan(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
                     }
                 }
             });
+            compare(state, open, ui, commands);
         });
+}
+
+/// The way to what came of a mission.
+fn compare(state: &State, open: &OpenFlight, ui: &mut Ui, commands: &mut Vec<Command>) {
+    ui.separator();
+    ui.horizontal_wrapped(|ui| {
+        ui.label("After the flight:");
+        let running = state.work.is_running(Task::FLOWN);
+        let button = ui.add_enabled(!running, egui::Button::new("Compare with mission…"));
+        let hover = "Planned against flown: a mission's file (.kmz, .plan, .waypoints, .csv, .geojson) beside this flight. It can \
+                     also be dropped on this window";
+        if button.on_hover_text(hover).clicked() {
+            let dialog = Dialog::file("Mission as it was planned").answering(Answers::Flown);
+            commands.push(Command::Browse(dialog));
+        }
+        if running {
+            ui.spinner();
+        }
+    });
+    let hover = "The path of a mission's file, with Enter";
+    let width = ui.available_width().clamp(80.0, 320.0);
+    let hint = "or its path";
+    if let Some(path) = hinted_field(ui, "Mission's file", hover, "", hint, width)
+        && let Some(path) = typed(&path)
+    {
+        commands.push(Command::Plan(PlanStep::Compare(path)));
+    }
+    if open.planning.flown.is_some() {
+        let back = ui.button("Back to the plan");
+        if back
+            .on_hover_text("Look at what is planned again")
+            .clicked()
+        {
+            commands.push(Command::Plan(PlanStep::CloseFlown));
+        }
+    }
 }
 
 /// A list to choose one of.
@@ -110,29 +151,30 @@ fn fields(state: &State, open: &OpenFlight, asked: &mut AskedPlan, ui: &mut Ui) 
         let patterns = Pattern::ALL.map(|pattern| (pattern, pattern.title(), pattern.explained()));
         choice("Pattern", &mut asked.pattern, &patterns, ui);
         sizes(asked, (shown, per_shown), lengths, ui);
-        let overlap = asked.overlap.unwrap_or(asked.pattern.usual_overlap()) * 100.0;
-        let hover = "How much a photo shares with the next, of its width and height";
-        if let Some(percent) = number("Overlap", hover, overlap, "%", ui) {
-            asked.overlap = Some(percent.clamp(0.0, 95.0) / 100.0);
+        if asked.pattern.has(Purpose::Scale) {
+            let hover = "How much a photo shares with the next, of its width and height";
+            if let Some(percent) = number("Overlap", hover, asked.overlap * 100.0, "%", ui) {
+                asked.overlap = percent.clamp(0.0, 95.0) / 100.0;
+            }
+            ui.label("");
+            let fill = ui.checkbox(&mut asked.fill_gaps, "Fill gaps");
+            fill.on_hover_text("With photos more, which share more with others than the overlap says");
+            ui.end_row();
         }
-        ui.label("");
-let fill = ui.checkbox(&mut asked.fill_gaps, "Fill gaps");
-fill.on_hover_text("With photos more, which share more with others than the overlap says");
-ui.end_row();
-        match asked.pattern {
-            Pattern::Paper => {
-                let hover = "The camera's axis below the horizon: 90 looks straight down";
-                if let Some(tilt) = number("Tilt", hover, asked.tilt, "°", ui) {
-                    asked.tilt = tilt.clamp(5.0, 90.0);
-                }
+        if asked.pattern.is_level() {
+            let hover = "The camera's axis below the horizon: 90 looks straight down";
+            if let Some(tilt) = number("Tilt", hover, asked.tilt, "°", ui) {
+                asked.tilt = tilt.clamp(5.0, 90.0);
             }
-            Pattern::Slope => {
-                let hover = "How far a photo may look off the normal of the ground, to lie square in its strip";
-                if let Some(off) = number("Off the normal", hover, asked.off_normal, "°", ui) {
-                    asked.off_normal = off.clamp(0.1, 60.0);
-                }
+        }
+        if asked.pattern.is_square() {
+            let hover = "How far a photo may look off the normal of the ground, to lie square in its strip";
+            if let Some(off) = number("Off the normal", hover, asked.off_normal, "°", ui) {
+                asked.off_normal = off.clamp(0.1, 60.0);
             }
-            Pattern::Survey => {}
+        }
+        if asked.pattern.has(Purpose::Survey) {
+            survey(asked, (shown, per_shown), ui);
         }
         let own = parts.cameras.first().map(|_| {
             (None, "The flight's camera", "The first camera of this flight, as it was calibrated")
@@ -147,19 +189,7 @@ ui.end_row();
         if let Some(near) = number("Clearance", hover, asked.clearance, lengths, ui) {
             asked.clearance = near.max(parts.unit.metres().recip() * 0.01);
         }
-        let hover = "Between photos";
-        if let Some(speed) = number("Speed", hover, asked.speed, "m/s", ui) {
-            asked.speed = speed.clamp(0.1, MOST_SPEED);
-        }
-        let hover = "How long the drone waits at a photo, for the gimbal to settle";
-        if let Some(settle) = number("Wait", hover, asked.settle, "s", ui) {
-            asked.settle = settle.clamp(0.1, 60.0);
-        }
-        let hover = "Minutes in the air: a longer way becomes several missions. 0 does not ask";
-        let battery = asked.battery.unwrap_or(0.0);
-        if let Some(minutes) = number("Battery", hover, battery, "min (0: any)", ui) {
-            asked.battery = (minutes > 0.0).then_some(minutes);
-        }
+        flying(&mut asked.flying, ui);
         ui.label("Flown at");
         let hover = "Where the sun stands then, and what lies in shadow: a time with its difference from UTC, as \
                      2026-06-01T10:00+02:00";
@@ -171,6 +201,62 @@ ui.end_row();
         }
         ui.end_row();
     });
+}
+
+/// How the photos of a survey lie.
+fn survey(asked: &mut AskedPlan, (shown, per_shown): (LengthUnit, f64), ui: &mut Ui) {
+    let survey = &mut asked.survey;
+    let hover = "How much a photo of the survey shares with the next, of its width and height";
+    if let Some(percent) = number("Survey's overlap", hover, survey.overlap * 100.0, "%", ui) {
+        survey.overlap = percent.clamp(0.0, 95.0) / 100.0;
+    }
+    if asked.pattern.has(Purpose::Scale) {
+        let own = match survey.size {
+            Some(Size::Scale { pixels, .. }) => pixels * per_shown,
+            _ => 0.0,
+        };
+        let unit = format!("px/{shown} (0: as wished)");
+        let hover = "The scale of the survey's photos: a coarser one needs fewer. 0 takes that of the others";
+        if let Some(scale) = number("Survey's scale", hover, own, &unit, ui) {
+            survey.size = (scale > 0.0).then(|| Size::scale(scale / per_shown));
+        }
+    }
+    ui.label("");
+    ui.horizontal_wrapped(|ui| {
+        let cross = ui.checkbox(&mut survey.cross, "Cross grid");
+        cross.on_hover_text("Rows straight down across the others, too");
+        let ring = ui.checkbox(&mut survey.ring, "Ring");
+        ring.on_hover_text("Photos around the area that look aslant into it");
+    });
+    ui.end_row();
+}
+
+/// How the drone is flown from photo to photo.
+fn flying(flying: &mut Flying, ui: &mut Ui) {
+    let speeds = "At most";
+    if let Some(speed) = number("Speed", "Between photos", flying.speed, "m/s", ui) {
+        flying.speed = speed.clamp(0.1, MOST_SPEED);
+    }
+    if let Some(climb) = number("Climb", speeds, flying.climb, "m/s", ui) {
+        flying.climb = climb.clamp(0.1, MOST_SPEED);
+    }
+    if let Some(descent) = number("Descent", speeds, flying.descent, "m/s", ui) {
+        flying.descent = descent.clamp(0.1, MOST_SPEED);
+    }
+    let hover = "How steeply a slanted leg may climb or fall: steeper ones are flown upright and level. 0 does not ask";
+    let steepest = flying.steepest.unwrap_or(0.0);
+    if let Some(degrees) = number("Steepest leg", hover, steepest, "° (0: any)", ui) {
+        flying.steepest = (degrees > 0.0).then_some(degrees.min(89.0));
+    }
+    let hover = "How long the drone waits at a photo, for the gimbal to settle";
+    if let Some(settle) = number("Wait", hover, flying.settle, "s", ui) {
+        flying.settle = settle.clamp(0.1, 60.0);
+    }
+    let hover = "Minutes in the air: a longer way becomes several missions. 0 does not ask";
+    let battery = flying.battery.unwrap_or(0.0);
+    if let Some(minutes) = number("Battery", hover, battery, "min (0: any)", ui) {
+        flying.battery = (minutes > 0.0).then_some(minutes);
+    }
 }
 
 /// The scale, or the height.
@@ -223,77 +309,5 @@ fn sizes(asked: &mut AskedPlan, (shown, per_shown): (LengthUnit, f64), lengths: 
                 asked.size = Size::Distance(height);
             }
         }
-    }
-}
-
-/// What is set by clicks on the surface.
-fn places(open: &OpenFlight, asked: &mut AskedPlan, ui: &mut Ui, commands: &mut Vec<Command>) {
-    let planning = &open.planning;
-    let mut tool = |tool: PlanTool, text: &str, hover: &str, ui: &mut Ui| {
-        let is_taken = planning.tool == tool;
-        let button = ui.add(egui::Button::new(text).selected(is_taken));
-        button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_taken, text));
-        if button.on_hover_text(hover).clicked() {
-            commands.push(Command::Plan(PlanStep::Tool(tool)));
-        }
-    };
-    ui.add_space(4.0);
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Area:");
-        ui.label(match &asked.area {
-            None => "the pile that was found".to_owned(),
-            Some(corners) => format!("drawn, {} corners", corners.len()),
-        });
-        let hover = "Click the corners of what is to be photographed; its corners can be dragged";
-        tool(PlanTool::Area, "Draw area", hover, ui);
-        let find = ui.add_enabled(asked.area.is_some(), egui::Button::new("Find the pile"));
-        if find
-            .on_hover_text("What stands out of the floor around it")
-            .clicked()
-        {
-            asked.area = None;
-        }
-    });
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Keep out:");
-        ui.label(match asked.keep_out.len() {
-            0 => "nothing".to_owned(),
-            1 => "1 area".to_owned(),
-            count => format!("{count} areas"),
-        });
-        let hover =
-            "Click the corners of ground that is not flown over, at any height: misfires, people";
-        tool(PlanTool::KeepOut, "Draw keep-out", hover, ui);
-        let has = !asked.keep_out.is_empty();
-        let remove = ui.add_enabled(has, egui::Button::new("Remove last"));
-        if remove
-            .on_hover_text("The area that was drawn last")
-            .clicked()
-        {
-            asked.keep_out.pop();
-        }
-    });
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Take-off:");
-        ui.label(match asked.take_off {
-            None => "not set".to_owned(),
-            Some(place) => format!("{:.1}, {:.1}", place.x, place.y),
-        });
-        let hover =
-            "Click where the drone takes off and lands: heights of the mission count from there";
-        tool(PlanTool::TakeOff, "Set take-off", hover, ui);
-    });
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Photos:");
-        let hover = "Click places for one photo more each; drag the selected photo over the ground; Delete leaves it out";
-        tool(PlanTool::Add, "Add photos", hover, ui);
-        let changed = !asked.edits.is_empty();
-        let anew = ui.add_enabled(changed, egui::Button::new("As planned"));
-        if anew.on_hover_text("Take back what was changed by hand").clicked() {
-            asked.edits.clear();
-        }
-    });
-    if matches!(planning.tool, PlanTool::Area | PlanTool::KeepOut) {
-        ui.weak("Double click or Enter ends it; Backspace takes a corner back.");
     }
 }

@@ -38,8 +38,12 @@ pub(super) fn found(state: &State, open: &OpenFlight, ui: &mut Ui, commands: &mu
     let unit = open.flight().parts().unit;
     let plan = &made.plan;
     let number = |number: f64| significant_digits(number, 4);
+    let kinds = crate::exports::kinds_in_words(plan);
     let mut rows = vec![
-        ("Photos", plan.photos.len().to_string()),
+        (
+            "Photos",
+            kinds.unwrap_or_else(|| plan.photos.len().to_string()),
+        ),
         ("Area", format!("{} {unit}²", number(plan.area.area()))),
         ("Photographed", crate::exports::percent(plan.cover.covered)),
         (
@@ -50,6 +54,9 @@ pub(super) fn found(state: &State, open: &OpenFlight, ui: &mut Ui, commands: &mu
             },
         ),
     ];
+    if let Some(share) = plan.cover.surveyed {
+        rows.push(("In 3 of the survey", crate::exports::percent(share)));
+    }
     let seconds: f64 = made.ways.iter().map(|way| way.seconds(&made.pace)).sum();
     if !made.ways.is_empty() {
         let length: f64 = made.ways.iter().map(|way| way.length).sum();

@@ -3,6 +3,7 @@
 use egui::Ui;
 use egui_extras::{Column, TableBuilder};
 
+use super::flown::flown_photos;
 use crate::command::Command;
 use crate::flight::Verdict;
 use crate::numbers::significant_digits;
@@ -20,6 +21,10 @@ pub fn planned_photos(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
     let Some(open) = &state.open else {
         return;
     };
+    if let Some(flown) = &open.planning.flown {
+        flown_photos(open, flown, ui, commands);
+        return;
+    }
     let Some(made) = open
         .planning
         .made

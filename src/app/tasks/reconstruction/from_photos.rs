@@ -1,13 +1,17 @@
 //! A new flight from photos: looking what a folder holds, and reconstructing it.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::Duration;
 
 use crate::command::{Asking, Command};
+use crate::fault::Fault;
 use crate::files::FileError;
-use crate::from_photos::{Ended, FolderField, FoundPhotos, FromPhotosForm, FromPhotosStep};
+use crate::from_photos::{
+    Ended, FolderField, FoundPhotos, FromNode, FromPhotosForm, FromPhotosStep, NodeForm,
+};
 use crate::jobs::Progress;
+use crate::node_odm::{Asked, Limits, NodeRequest, Token, reconstruct_on_node};
 use crate::opening_preview::OpeningPreview;
 use crate::reconstruct::{
     Card, Embedded, EngineName, OnGrowth, PhotoSet, Quality, Reconstructed, Request, about,
@@ -149,9 +153,15 @@ impl State {
             card: None,
         };
         let (engine, processor_only) = (form.engine, form.processor_only);
+        let node = form.node.clone();
         self.from_photos.ended = None;
+        self.from_photos.node = None;
         let (writing, opened) = (self.from_photos.writing.clone(), self.opened);
         self.from_photos.growing = None;
+        if node.chosen {
+            self.start_on_node(request, &node);
+            return;
+        }
         // Of its own: a cancelled run may still have something to show.
         self.from_photos.grown = Default::default();
         let (grown, context) = (self.from_photos.grown.clone(), self.context.clone());
@@ -177,6 +187,15 @@ impl State {
             let engine = engine.map_err(|fault| FileError::new(&request.photos, fault))?;
             reconstruct(&request, &*engine, progress)
         };
+        self.run_reconstruction(work, opened);
+    }
+
+    /// Reconstructs; `opened` tells whether another flight was opened since.
+    fn run_reconstruction(
+        &mut self,
+        work: impl FnOnce(&Progress) -> Result<Reconstructed, FileError> + Send + 'static,
+        opened: u64,
+    ) {
         self.start(
             Task::RECONSTRUCT,
             work,
@@ -185,6 +204,35 @@ impl State {
                 Err(error) => state.take_failed(error.to_string()),
             },
         );
+    }
+
+    /// The same on a node, whose messages are shown as they come.
+    fn start_on_node(&mut self, of: Request, node: &NodeForm) {
+        let request = match on_node(of, node) {
+            Ok(request) => request,
+            Err(fault) => return self.take_failed(fault.to_string()),
+        };
+        let told = Arc::new(Mutex::new(FromNode::default()));
+        self.from_photos.node = Some(told.clone());
+        let (writing, opened) = (self.from_photos.writing.clone(), self.opened);
+        let context = self.context.clone();
+        let work = move |progress: &Progress| {
+            let _writes = alone(&writing, &request.to, progress)?;
+            let tell = |tells: &dyn Fn(&mut FromNode)| {
+                tells(&mut told.lock().unwrap_or_else(PoisonError::into_inner));
+                context.request_repaint();
+            };
+            let heard = |message: &str| tell(&|told| told.hear(message));
+            let made = reconstruct_on_node(&request, &heard, progress);
+            // Nobody takes the end of a run that was cancelled; but what became of the task is of interest.
+            if let Err(error) = &made
+                && progress.is_cancelled()
+            {
+                tell(&|told| told.called_off = Some(error.fault.to_string()));
+            }
+            made
+        };
+        self.run_reconstruction(work, opened);
     }
 
     /// Takes the model of the run as it is now, where it is looked at: with no other flight on the screen.
@@ -238,6 +286,23 @@ impl State {
         }
         self.from_photos.ended = Some(Ended::Failed(why));
     }
+}
+
+/// What is asked of a node.
+///
+/// # Errors
+/// Where the address is none, or an option.
+fn on_node(of: Request, node: &NodeForm) -> Result<NodeRequest, Fault> {
+    Ok(NodeRequest {
+        photos: of.photos,
+        to: of.to,
+        node: node.typed()?,
+        token: Token::typed(&node.token.0),
+        insecure: node.insecure,
+        options: Asked::parse_all(&node.options)?,
+        control_points: None,
+        limits: Limits::default(),
+    })
 }
 
 /// The text of a field, where there is one.

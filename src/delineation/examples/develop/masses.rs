@@ -43,7 +43,12 @@ pub(super) fn masses(engine: Option<&dyn Engine>, flights: &[&str]) -> Result<()
                     let is_ball: Vec<bool> = image.pixels().map(|pixel| is_ball(pixel.0)).collect();
                     (
                         delineate(engine, &image, &is_ball, &progress)?,
-                        least_across(engine, camera.width, camera.height),
+                        least_across(
+                            engine,
+                            camera.width,
+                            camera.height,
+                            picture::edge_spread(&image),
+                        ),
                     )
                 }
             };

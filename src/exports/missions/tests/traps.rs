@@ -82,9 +82,10 @@ fn heights_count_from_the_take_off() {
     let lines = lines(&mission());
     let indices: Vec<usize> = lines.iter().map(|line| line[0].parse().unwrap()).collect();
     assert_eq!(indices, (0..15).collect::<Vec<_>>());
+    // The last parameter of home says who wrote it (files::marks).
     assert_eq!(
         lines[0][1..],
-        ["1", "0", "16", "0", "0", "0", "0", "50", "7", "160", "1"]
+        ["1", "0", "16", "0", "0", "0", "-0", "50", "7", "160", "1"]
     );
     assert_eq!(
         lines[1][2..],
@@ -255,7 +256,7 @@ fn heights_of_no_datum_are_refused() {
     let mut unknown = mission();
     unknown.stops[2].height.above = Above::Unknown;
     for format in MissionFormat::ALL {
-        let expected = "the height of stop 3 is absolute, and nobody says above what; say whether it counts from the ellipsoid or from the geoid: they are up to 107 m apart";
+        let expected = "the height of stop 3 is absolute, and nobody says above what; say whether it counts from the ellipsoid or from the geoid, up to 107 m apart: --datum of 'fragscale mission'";
         assert_eq!(refused(&unknown, format), expected);
     }
     let mut take_off = mission();

@@ -19,6 +19,7 @@ use zip::write::SimpleFileOptions;
 use fragscale_core::plan::{Above, DroneCodes, Finish, Mission};
 
 use self::stop::{Placed, actions, heading, point, position, suffix};
+use super::format::no_drone;
 use super::heights::metres_above;
 use super::xml::Xml;
 use super::{decimal, degrees, metres};
@@ -35,8 +36,10 @@ const SAFE_HEIGHTS: (f64, f64) = (1.2, 1500.0);
 /// `globalTransitionalSpeed`, in m/s.
 const FASTEST_TRANSIT: f64 = 15.0;
 
-/// Drones with their cameras (`droneEnumValue`, `droneSubEnumValue`; `payloadEnumValue`s), from the Cloud
-/// API's "Common Elements" and "Product Support".
+/// Drones with their cameras (`droneEnumValue`, `droneSubEnumValue`; `payloadEnumValue`s): the Cloud API's "Common
+/// Elements" (dji-sdk/Cloud-API-Doc@4ec6b0c7, `40.common-element.md`) and "Product Support" (v1.14, `type`, `sub_type`),
+/// but for the P1, which is `DJI_CAMERA_TYPE_P1` of the Payload SDK (`dji_typedef.h`), whose camera types these numbers
+/// are.
 const DRONES: [(u32, u32, &[u32]); 11] = [
     // M300 RTK and M350 RTK with H20, H20T, P1, H20N, H30, H30T or one made with the Payload SDK.
     (60, 0, &[42, 43, 50, 61, 82, 83, 65_534]),
@@ -51,7 +54,7 @@ const DRONES: [(u32, u32, &[u32]); 11] = [
     // Matrice 3D, 3TD.
     (91, 0, &[80]),
     (91, 1, &[81]),
-    // Matrice 4E, 4T.
+    // Matrice 4E, 4T: "Product Support" since v1.13; of a 4T real files say 99/1 and 89.
     (99, 0, &[88]),
     (99, 1, &[89]),
 ];
@@ -113,21 +116,19 @@ pub(super) fn bytes(mission: &Mission, notes: &mut Vec<String>) -> Result<Vec<u8
 
 fn common<'a>(mission: &'a Mission, notes: &mut Vec<String>) -> Result<Common<'a>, Fault> {
     let lacks = |what: &str, remedy: &str| Fault::new(format!("DJI's files need {what}"), remedy);
-    let codes = mission.drone.ok_or_else(|| {
-        lacks(
-            "the drone, and the mission does not say it",
-            "name the drone",
-        )
-    })?;
+    let codes = mission.drone.ok_or_else(no_drone)?;
     let speed = mission.speed.ok_or_else(|| {
         lacks(
             "a speed, and the mission does not say it",
-            "give a speed in m/s",
+            "say it: --speed M/S of 'fragscale mission'",
         )
     })?;
     let safe_height = mission.safe_height.ok_or_else(|| {
         let what = "a height to climb to first, and the mission does not say it";
-        lacks(what, "give it in metres above the place of take-off")
+        lacks(
+            what,
+            "say it: --safe-height METRES above the take-off of 'fragscale mission'",
+        )
     })?;
     let (lowest, highest) = SAFE_HEIGHTS;
     if !(lowest..=highest).contains(&safe_height) {

@@ -5,8 +5,9 @@ use fragscale_core::plan::{DroneCodes, Stop};
 use crate::missions::xml::Xml;
 use crate::missions::{angle, decimal, degrees};
 
-/// Drones that have to be told which lens shoots (`payloadLensIndex`): M30 and Matrice 3D.
-const ASK_FOR_A_LENS: [u32; 2] = [67, 91];
+/// Drones that have to be told which lens shoots (`payloadLensIndex`, "required" of M30, M3D and M4E in the Cloud API's
+/// "Common Elements" of June 2025), and how the lens is called: that of the Matrice 4 by FlightHub's own files.
+const ASK_FOR_A_LENS: [(u32, &str); 3] = [(67, "wide"), (91, "wide"), (99, "visable")];
 
 /// A stop with its heights in metres.
 pub(super) struct Placed<'a> {
@@ -89,8 +90,9 @@ pub(super) fn actions(xml: &mut Xml, placed: &Placed<'_>, codes: DroneCodes) {
             action(xml, "takePhoto", &|xml| {
                 xml.leaf("wpml:payloadPositionIndex", position);
                 xml.leaf("wpml:fileSuffix", suffix(photo.name.as_deref()));
-                if ASK_FOR_A_LENS.contains(&codes.drone) {
-                    xml.leaf("wpml:payloadLensIndex", "wide");
+                let asks = |(drone, _): &&(u32, &str)| *drone == codes.drone;
+                if let Some((_, lens)) = ASK_FOR_A_LENS.iter().find(asks) {
+                    xml.leaf("wpml:payloadLensIndex", lens);
                 }
                 xml.leaf("wpml:useGlobalPayloadLensIndex", 0);
             });

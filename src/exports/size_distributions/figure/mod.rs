@@ -3,7 +3,7 @@
 //! ```text
 //! style       colours, markers and dashes that are told apart in print and by the colour-blind
 //! size_axis   where the logarithmic axis begins and ends, its lines and labels
-//! of_comparison, of_fits  what is shown of them
+//! of_comparison, of_fits, of_passing  what is shown of them
 //! panels      what the panels of both have in common
 //! layout      where everything is
 //! draw        the contents as shapes (`crate::drawing`), the same on paper (SVG) and in pixels (PNG)
@@ -16,6 +16,7 @@ mod draw;
 mod layout;
 mod of_comparison;
 mod of_fits;
+mod of_passing;
 mod panels;
 mod picture;
 mod size_axis;
@@ -31,6 +32,7 @@ mod tests;
 pub use crate::drawing::{Dash, Marker};
 pub use of_comparison::figure_of_comparison;
 pub use of_fits::{FittedDistribution, figure_of_fits};
+pub(crate) use of_passing::passing_figure;
 pub use picture::{FigureFormat, figure_png, figure_svg};
 pub use size_axis::{SizeAxis, SizeTick};
 pub use style::FigureStyle;

@@ -17,13 +17,19 @@
 use std::collections::HashSet;
 use std::io::Cursor;
 
+use glam::DVec3;
 use serde::Deserialize;
 
 use crate::clouds::cloud_file::CloudFile;
 use crate::clouds::las;
+use crate::clouds::pieces::piece::{LEAST_SAMPLE, sample_of};
 use crate::fault::Fault;
+use crate::geometry::Bounds;
 use crate::jobs::Progress;
+use crate::surface::CloudFacts;
 use crate::text::json::{Object, parse};
+
+pub(super) mod pieces;
 
 /// The name of the file that stands for the whole.
 pub(crate) const HEADER: &str = "ept.json";
@@ -63,6 +69,11 @@ struct Header {
     hierarchy_type: Option<String>,
     points: Option<u64>,
     srs: Option<Srs>,
+    /// The cube of the octree: the lowest and the highest corner.
+    bounds: Option<[f64; 6]>,
+    /// Around its points.
+    #[serde(rename = "boundsConforming")]
+    conforming: Option<[f64; 6]>,
 }
 
 #[derive(Deserialize)]
@@ -108,6 +119,14 @@ impl Srs {
 }
 
 impl Header {
+    /// What is to be said where the tiles hold another number of points.
+    fn warning(&self, found: u64) -> Option<String> {
+        let points = self.points.filter(|&points| points != found)?;
+        Some(format!(
+            "{HEADER} promises {points} points, its tiles hold {found}"
+        ))
+    }
+
     fn check(&self) -> Result<(), Fault> {
         if self.data_type != LASZIP {
             let what = format!(
@@ -142,29 +161,46 @@ pub(crate) fn read(
     header.check()?;
     let tiles = tiles(beside)?;
     let mut whole = CloudFile::default();
+    let mut coarse = 0;
     for (done, tile) in tiles.iter().enumerate() {
         progress.advance(done as u64, tiles.len() as u64)?;
-        let name = format!("ept-data/{tile}.laz");
-        let bytes = beside(&name).map_err(|fault| of_file(&name, fault))?;
-        // The fraction is that of the whole, and each tile's reading would count from its own start.
-        let of_tile = Progress::default();
-        let part =
-            las::read(Cursor::new(bytes), &of_tile).map_err(|fault| of_file(&name, fault))?;
-        add(&mut whole, part);
+        add(&mut whole, read_tile(&tile.key, beside)?);
+        if coarse < LEAST_SAMPLE {
+            coarse = whole.cloud.points.len();
+        }
     }
     let found = whole.cloud.points.len() as u64;
-    if let Some(points) = header.points
-        && points != found
-    {
-        whole.warnings.push(format!(
-            "{HEADER} promises {points} points, its tiles hold {found}"
-        ));
-    }
+    whole.warnings.extend(header.warning(found));
     if let Some(crs) = header.srs.as_ref().and_then(Srs::crs) {
         whole.crs = Some(crs);
     }
     whole.expect_points()?;
+    let sample = whole.cloud.points.get(..coarse).unwrap_or_default();
+    whole.facts = header.conforming.map(|bounds| CloudFacts {
+        count: found,
+        bounds: box_of(bounds),
+        sample: sample_of(sample),
+    });
     Ok(whole)
+}
+
+/// The points of a tile.
+fn read_tile(
+    key: &str,
+    beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>,
+) -> Result<CloudFile, Fault> {
+    let name = format!("ept-data/{key}.laz");
+    let bytes = beside(&name).map_err(|fault| of_file(&name, fault))?;
+    // The fraction is that of the whole, and each tile's reading would count from its own start.
+    let of_tile = Progress::default();
+    las::read(Cursor::new(bytes), &of_tile).map_err(|fault| of_file(&name, fault))
+}
+
+fn box_of([x, y, z, to_x, to_y, to_z]: [f64; 6]) -> Bounds {
+    Bounds {
+        min: DVec3::new(x, y, z),
+        max: DVec3::new(to_x, to_y, to_z),
+    }
 }
 
 /// Adds the points of a tile to those of the tiles before.
@@ -188,8 +224,16 @@ fn add(whole: &mut CloudFile, part: CloudFile) {
     }
 }
 
-/// The keys of all tiles with points, coarse ones first.
-fn tiles(beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>) -> Result<Vec<String>, Fault> {
+/// A tile with points.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct Tile {
+    level: u32,
+    key: String,
+    count: u64,
+}
+
+/// All tiles with points, coarse ones first.
+fn tiles(beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>) -> Result<Vec<Tile>, Fault> {
     let root = "0-0-0-0".to_owned();
     let mut seen = HashSet::from([root.clone()]);
     let mut open = vec![root];
@@ -203,8 +247,10 @@ fn tiles(beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>) -> Result<Vec<String>,
                 let what = format!("{name}: \"{key}\" is no key of a tile");
                 Fault::new(what, REMEDY)
             })?;
-            if count > 0 {
-                tiles.push((level, key));
+            if let Ok(count) = u64::try_from(count) {
+                if count > 0 {
+                    tiles.push(Tile { level, key, count });
+                }
             } else if count == -1 && seen.insert(key.clone()) {
                 open.push(key);
             }
@@ -216,12 +262,16 @@ fn tiles(beside: &dyn Fn(&str) -> Result<Vec<u8>, Fault>) -> Result<Vec<String>,
     }
     tiles.sort();
     // A key may stand in the file that refers to its own as well.
-    tiles.dedup();
-    Ok(tiles.into_iter().map(|(_, key)| key).collect())
+    tiles.dedup_by(|b, a| a.key == b.key);
+    Ok(tiles)
 }
 
 /// The level of a key D-X-Y-Z, if it is one: keys become names of files.
 fn level(key: &str) -> Option<u32> {
+    numbers(key).map(|[level, ..]| level)
+}
+
+fn numbers(key: &str) -> Option<[u32; 4]> {
     let numbers: Option<Vec<u32>> = key
         .split('-')
         .map(|number| {
@@ -229,10 +279,7 @@ fn level(key: &str) -> Option<u32> {
             number.parse().ok().filter(|_| plain)
         })
         .collect();
-    match numbers?[..] {
-        [level, _, _, _] => Some(level),
-        _ => None,
-    }
+    numbers?.try_into().ok()
 }
 
 /// A fault of one of its files.

@@ -20,9 +20,21 @@ const REMEDY: &str = "copy or export it again";
 
 /// How many variable length records a header states, and how many there are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct RecordCount {
+pub(in crate::clouds) struct RecordCount {
     pub(super) stated: u32,
-    pub(super) found: u32,
+    pub(in crate::clouds) found: u32,
+}
+
+impl RecordCount {
+    /// What is to be said where there are others than the header states.
+    pub(in crate::clouds) fn warning(self) -> Option<String> {
+        let Self { stated, found } = self;
+        (found != stated).then(|| {
+            format!(
+                "its header states {stated} variable length records, and there are {found} in front of its points: these are read"
+            )
+        })
+    }
 }
 
 /// Checks the claims; leaves the input at its start.
@@ -30,7 +42,7 @@ pub(super) struct RecordCount {
 /// # Errors
 /// Where the file cannot hold what its header says. The number of variable length records alone is
 /// none: what lies between header and points tells it, and other programs read such files.
-pub(super) fn check(input: &mut (impl Read + Seek)) -> Result<RecordCount, Fault> {
+pub(in crate::clouds) fn check(input: &mut (impl Read + Seek)) -> Result<RecordCount, Fault> {
     let unreadable = |e: &dyn std::fmt::Display| {
         Fault::new(format!("it cannot be read as LAS or LAZ ({e})"), REMEDY)
     };
@@ -105,7 +117,7 @@ fn count_records(
 
 /// A file whose header states another number of variable length records.
 #[derive(Debug)]
-pub(super) struct WithCount<R> {
+pub(in crate::clouds) struct WithCount<R> {
     inner: R,
     /// The next byte.
     at: u64,
@@ -117,7 +129,7 @@ const COUNT_AT: u64 = 100;
 
 impl<R> WithCount<R> {
     /// `inner` is at its start.
-    pub(super) fn new(inner: R, count: u32) -> Self {
+    pub(in crate::clouds) fn new(inner: R, count: u32) -> Self {
         Self {
             inner,
             at: 0,

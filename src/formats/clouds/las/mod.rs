@@ -12,7 +12,7 @@
 //! file, so that a header that claims too much ends in an error instead of in memory. Its decompressor asserts on damaged data; that panic is caught here
 //! and becomes an error like any other.
 
-mod claims;
+pub(super) mod claims;
 pub(crate) mod sample;
 
 use std::io::{Read, Seek};
@@ -21,11 +21,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use glam::DVec3;
 use las::PointDataBuilder;
 
-use claims::{RecordCount, WithCount};
+use claims::WithCount;
 
 use crate::clouds::cloud_file::{CloudFile, counts_degrees, first_not_finite};
+use crate::clouds::pieces::copc;
 use crate::fault::Fault;
 use crate::jobs::Progress;
+use crate::surface::CloudFacts;
 
 /// How many points are decoded at once: ten compressed chunks, so that all cores have work.
 const PORTION: u64 = 500_000;
@@ -44,14 +46,16 @@ pub(crate) fn read(
     // Nothing outlives the closure that a panic could have left half-done.
     catch_unwind(AssertUnwindSafe(|| {
         let count = claims::check(&mut input)?;
-        if count.found == count.stated {
-            return decode(input, progress);
-        }
-        let RecordCount { stated, found } = count;
-        let mut file = decode(WithCount::new(input, found), progress)?;
-        file.warnings.push(format!(
-            "its header states {stated} variable length records, and there are {found} in front of its points: these are read"
-        ));
+        let facts = facts(&mut input, count.found);
+        input.rewind().map_err(|error| {
+            Fault::new(format!("it cannot be read ({error})"), "check the disk")
+        })?;
+        let mut file = match count.warning() {
+            None => decode(input, progress)?,
+            Some(_) => decode(WithCount::new(input, count.found), progress)?,
+        };
+        file.warnings.extend(count.warning());
+        file.facts = facts;
         Ok(file)
     }))
     .unwrap_or_else(|_| {
@@ -60,6 +64,16 @@ pub(crate) fn read(
             "copy or export it again",
         ))
     })
+}
+
+/// What an octree says of its cloud; `None` where there is none, or none that can be used.
+fn facts(input: &mut (impl Read + Seek), records: u32) -> Option<CloudFacts> {
+    let header = las::Header::new(WithCount::new(&mut *input, records)).ok()?;
+    header.copc_info_vlr()?;
+    copc::Tree::read(input, &header)
+        .ok()??
+        .facts(input, &header)
+        .ok()
 }
 
 fn decode(
@@ -142,7 +156,7 @@ impl Colors {
 }
 
 /// The coordinate system as "EPSG:n" or WKT.
-fn crs(header: &las::Header) -> Option<String> {
+pub(super) fn crs(header: &las::Header) -> Option<String> {
     if let Some(wkt) = header.get_wkt_crs_bytes() {
         let text = String::from_utf8_lossy(wkt);
         let text = text.trim_matches(|c: char| c == '\0' || c.is_whitespace());
@@ -164,7 +178,7 @@ fn crs(header: &las::Header) -> Option<String> {
     Some(format!("EPSG:{code}"))
 }
 
-fn is_geographic(crs: Option<&str>, header: &las::Header) -> bool {
+pub(super) fn is_geographic(crs: Option<&str>, header: &las::Header) -> bool {
     match crs {
         Some(crs) => counts_degrees(crs),
         None => {

@@ -7,7 +7,7 @@ use fragscale_core::split_mix::SplitMix;
 use super::*;
 use crate::missions::read_bytes;
 
-fn all() -> Option<Vec<(PathBuf, Vec<u8>)>> {
+pub(super) fn all() -> Option<Vec<(PathBuf, Vec<u8>)>> {
     let root = shared_data("missions")?;
     let mut folders = vec![root];
     let mut files = Vec::new();

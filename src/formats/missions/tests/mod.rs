@@ -3,6 +3,7 @@
 
 mod damaged;
 mod dji;
+mod mutated;
 mod others;
 
 use fragscale_core::plan::{Above, Mission, Stop};

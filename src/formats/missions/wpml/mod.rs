@@ -10,7 +10,7 @@ mod folder;
 
 use std::borrow::Cow;
 use std::fmt::Display;
-use std::io::{Cursor, Read};
+use std::io::{BufReader, Cursor, Read};
 use std::path::Path;
 
 use roxmltree::{Document, Node};
@@ -22,7 +22,7 @@ use self::folder::add_folder;
 use super::route::Route;
 use super::{LARGEST, MissionFile, text_in};
 use crate::fault::Fault;
-use crate::files::{FileError, last_segment, text_from_bytes};
+use crate::files::{FileError, last_segment, open_file, text_from_bytes};
 use crate::text::fields::shown;
 use crate::text::notes::Notes;
 use crate::text::xml_document::{Writer, child, line_of, parse_of, text};
@@ -58,6 +58,25 @@ pub(super) fn read_kmz(bytes: &[u8]) -> Result<MissionFile, Fault> {
     }
     let what = "it holds neither waylines.wpml nor template.kml";
     found.ok_or_else(|| Fault::new(what, super::KNOWN))
+}
+
+/// Whether a zip holds a file of a mission; not one that cannot be read.
+pub(super) fn is_in_zip(path: &Path) -> bool {
+    let archive = open_file(path)
+        .ok()
+        .map(BufReader::new)
+        .map(ZipArchive::new);
+    let Some(Ok(archive)) = archive else {
+        return false;
+    };
+    let mut names = archive.file_names().filter_map(Result::ok);
+    names.any(|name| FILES.contains(&last_segment(&name)))
+}
+
+/// Whether a folder holds a file of a mission, itself or in `wpmz`.
+pub(super) fn is_folder(path: &Path) -> bool {
+    let folders = [path.join("wpmz"), path.to_owned()];
+    (folders.iter()).any(|folder| FILES.iter().any(|file| folder.join(file).is_file()))
 }
 
 fn broken(error: &dyn Display) -> Fault {

@@ -1,6 +1,8 @@
 //! Outlines of fragments that were saved beside a flight.toml to go on with: `fragments/NAME.png`, a label image, with
 //! `fragments/NAME_outlines.json`, which says what it is of.
 
+mod of_others;
+
 use std::path::{Path, PathBuf};
 
 use crate::camera::Camera;
@@ -8,6 +10,8 @@ use crate::delineation::saved::SavedOutlines;
 use crate::fault::Fault;
 use crate::formats::{FileError, OutlinedPhoto, read_bytes, read_masks};
 use crate::labels::Outlines;
+
+pub use self::of_others::OutlinesOfOthers;
 
 /// The folder beside flight.toml.
 const FOLDER: &str = "fragments";
@@ -19,6 +23,8 @@ pub struct OutlinesRead {
     pub outlines: Outlines,
     /// What outlined them first.
     pub engine: String,
+    /// How far the photo's edges are spread, pixels, where that is known.
+    pub spread: Option<f64>,
     /// What was mended.
     pub notes: Vec<String>,
 }
@@ -61,6 +67,7 @@ pub fn read_outlines(
     Ok(OutlinesRead {
         outlines: Outlines::new(masks.labels, saved.sure),
         engine: saved.engine,
+        spread: saved.spread,
         notes: masks.notes,
     })
 }

@@ -4,36 +4,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
-
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::files::{last_segment, unreadable_folder};
 use crate::formats::{FileError, MaskFile, Masks, OutlinedPhoto};
 use crate::picture;
-
-/// `--masks`.
-#[derive(Debug, Clone, Args)]
-pub(super) struct MasksArguments {
-    /// Outlines of another tool in place of an engine's: label images (PNG, TIFF), COCO, LabelMe, CVAT for images 1.1 or
-    /// GeoJSON in pixels. A file, or a folder of files named as the photos (NAME.png, NAME_labels.png, NAME_mask.png,
-    /// NAME_pred.tif, NAME.json, NAME.geojson, ...). Where they overlap, the smaller lies on top; what nobody outlined is
-    /// fines, all of it; nothing smaller than the smallest outline is claimed.
-    #[arg(long, value_name = "PATH", conflicts_with = "engine")]
-    pub(super) masks: Option<PathBuf>,
-    /// Which photo they were outlined in; without it, fragscale's own files are of the undistorted photo and all others of
-    /// the original one.
-    #[arg(long, value_enum, value_name = "PHOTO", requires = "masks")]
-    masks_of: Option<MasksOf>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum MasksOf {
-    /// The photo as the camera took it.
-    Original,
-    /// The photo without its lens, as fragscale exports it.
-    Undistorted,
-}
+use crate::scale::ImageKind;
 
 /// Endings of a photo's files in a folder, behind its name without what follows the last dot: in this order they are looked
 /// for. ImageGrains puts its model between: NAME_MODEL_pred.tif.
@@ -61,12 +37,14 @@ const ENDINGS: [&str; 20] = [
 ];
 
 /// Where outlines are looked for.
-pub(super) struct OutlinesOfOthers {
+#[derive(Debug)]
+pub struct OutlinesOfOthers {
     path: PathBuf,
-    of: Option<MasksOf>,
+    of: Option<ImageKind>,
     place: Place,
 }
 
+#[derive(Debug)]
 enum Place {
     File(MaskFile),
     /// The files of a folder, by name.
@@ -74,29 +52,27 @@ enum Place {
 }
 
 impl OutlinesOfOthers {
-    /// Reads the file, or lists the folder.
+    /// Reads the file, or lists the folder. `of` is the photo that they were outlined in; without it, fragscale's own files are
+    /// of the undistorted photo and all others of the original one.
     ///
     /// # Errors
     /// Where it is neither, or the file has no outlines.
-    pub(super) fn open(arguments: &MasksArguments) -> Result<Option<Self>, String> {
-        let Some(path) = &arguments.masks else {
-            return Ok(None);
-        };
+    pub fn open(path: &Path, of: Option<ImageKind>) -> Result<Self, FileError> {
         let place = if path.is_dir() {
             let entries = fs::read_dir(path)
-                .map_err(|error| FileError::new(path, unreadable_folder(&error)).to_string())?;
+                .map_err(|error| FileError::new(path, unreadable_folder(&error)))?;
             let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
             files.retain(|file| file.is_file());
             files.sort_unstable();
             Place::Folder(files)
         } else {
-            Place::File(MaskFile::read(path).map_err(|error| error.to_string())?)
+            Place::File(MaskFile::read(path)?)
         };
-        Ok(Some(Self {
-            path: path.clone(),
-            of: arguments.masks_of,
+        Ok(Self {
+            path: path.to_owned(),
+            of,
             place,
-        }))
+        })
     }
 
     /// The label image of the undistorted photo, with what is to be said about it. `is_only`: no other photo is asked for, so
@@ -104,12 +80,7 @@ impl OutlinesOfOthers {
     ///
     /// # Errors
     /// Where there is none of this photo, or it cannot be read; the file is named.
-    pub(super) fn of_photo(
-        &self,
-        name: &str,
-        camera: &Camera,
-        is_only: bool,
-    ) -> Result<Masks, Fault> {
+    pub fn of_photo(&self, name: &str, camera: &Camera, is_only: bool) -> Result<Masks, Fault> {
         let photo = OutlinedPhoto {
             name,
             width: camera.width,
@@ -162,7 +133,7 @@ impl OutlinesOfOthers {
                 .push(format!("{} is taken, not {}", file(path), file(other)));
         }
         let is_undistorted = match self.of {
-            Some(of) => of == MasksOf::Undistorted,
+            Some(of) => of == ImageKind::Undistorted,
             None => file.is_own(),
         };
         if !is_undistorted {

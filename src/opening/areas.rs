@@ -1,17 +1,36 @@
-//! Areas of plans: corners that are typed or in a file, in the world, or polygons of a map, in degrees.
+//! Areas of plans, and places: corners that are typed or in a file, in the world, or polygons of a map, in degrees.
 
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
-use crate::cli::on_surface::places::places;
 use crate::fault::Fault;
-use crate::formats::{FileError, holds_areas, read_areas};
+use crate::formats::{FileError, holds_areas, read_areas, read_places, typed_places};
 use crate::geodesy::{Crs, Geographic};
-use crate::survey::Polygon;
+use fragscale_core::survey::Polygon;
+
+/// `x,y;x,y;…`, or a file with a place a line. With what was mended of the file.
+///
+/// # Errors
+/// Where it is none of both, in a line.
+pub fn places(text: &str) -> Result<(Vec<DVec2>, Vec<String>), String> {
+    match typed_places(text) {
+        Ok(places) => Ok((places, Vec::new())),
+        Err(fault) => {
+            let path = Path::new(text);
+            // Who types semicolons or nothing but numbers means no file.
+            let means_file = path.exists() || text.chars().any(char::is_alphabetic);
+            match means_file && !text.contains(';') {
+                true => read_places(path).map_err(|error| error.to_string()),
+                false => Err(fault.to_string()),
+            }
+        }
+    }
+}
 
 /// Outlines as somebody gave them.
-pub(super) enum Areas {
+#[derive(Debug, Clone, PartialEq)]
+pub enum Areas {
     /// One, in the world, and what was mended of it.
     InWorld(Vec<DVec2>, Vec<String>),
     /// Of a file of a map: one or more.
@@ -23,7 +42,7 @@ impl Areas {
     ///
     /// # Errors
     /// Where it is none of these, in a line.
-    pub(super) fn read(text: &str) -> Result<Self, String> {
+    pub fn read(text: &str) -> Result<Self, String> {
         let path = Path::new(text);
         if holds_areas(path) {
             let areas = read_areas(path).map_err(|error| error.to_string())?;
@@ -38,7 +57,7 @@ impl Areas {
     ///
     /// # Errors
     /// Where one is no polygon, or lies where the coordinate system does not hold; where that is not known.
-    pub(super) fn in_world(
+    pub fn in_world(
         self,
         what: &str,
         crs: impl FnOnce() -> Result<Crs, String>,
@@ -70,7 +89,7 @@ impl Areas {
     ///
     /// # Errors
     /// As [`Areas::in_world`], and where they are several.
-    pub(super) fn one_in_world(
+    pub fn one_in_world(
         self,
         what: &str,
         crs: impl FnOnce() -> Result<Crs, String>,

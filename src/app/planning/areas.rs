@@ -1,0 +1,75 @@
+//! Areas of the plan that are typed or in a file: what the command's `--area` and `--keep-out` take.
+
+use super::{AskedPlan, PlanTool};
+use crate::fault::Fault;
+use crate::geodesy::Crs;
+use crate::jobs::Progress;
+use crate::opening::Areas;
+use crate::state::{Severity, State};
+use crate::survey::Polygon;
+use crate::tasks::Task;
+
+impl Task {
+    /// Reading areas of the plan.
+    pub const READ_AREAS: Self = Self::new("Reading areas").of_flight();
+}
+
+impl State {
+    /// Takes outlines as the area, or as more ground to keep out of: `x,y;x,y;…`, or a file.
+    pub(super) fn read_areas(&mut self, tool: PlanTool, text: String) {
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        open.begin_planning();
+        let crs = open.files.crs.clone();
+        let work = move |_: &Progress| read(tool, &text, crs.as_deref());
+        self.start(Task::READ_AREAS, work, move |state, read| match read {
+            Ok((areas, said)) => {
+                for sentence in said {
+                    state.say(Severity::Warning, &sentence);
+                }
+                if let Some(open) = &mut state.open
+                    && let Some(now) = open.planning.now().cloned()
+                {
+                    let asked = with(now, tool, areas);
+                    state.plan_step(super::PlanStep::Ask(Box::new(asked)));
+                }
+            }
+            Err(why) => state.say(Severity::Error, &why),
+        });
+    }
+}
+
+/// What is asked with other areas.
+fn with(mut asked: AskedPlan, tool: PlanTool, areas: Vec<Polygon>) -> AskedPlan {
+    let mut corners = areas.iter().map(|area| area.corners().to_vec());
+    match tool {
+        PlanTool::KeepOut => asked.keep_out.extend(corners),
+        _ => asked.area = corners.next().or(asked.area),
+    }
+    asked
+}
+
+fn read(
+    tool: PlanTool,
+    text: &str,
+    crs: Option<&str>,
+) -> Result<(Vec<Polygon>, Vec<String>), String> {
+    let crs = || {
+        let stated = crs.ok_or_else(|| {
+            let what = "nobody says in which coordinate system the flight's places are";
+            Fault::new(what, "set it under Flight")
+        });
+        stated
+            .and_then(Crs::understand)
+            .map_err(|fault| fault.to_string())
+    };
+    let areas = Areas::read(text)?;
+    match tool {
+        PlanTool::KeepOut => areas.in_world("keep-out", crs),
+        _ => {
+            let (area, said) = areas.one_in_world("area", crs)?;
+            Ok((vec![area], said))
+        }
+    }
+}

@@ -1,0 +1,303 @@
+//! What is done with every flight: steps with options, which are words of the single commands.
+
+use std::collections::BTreeMap;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use crate::units::LengthUnit;
+
+/// Something that is done with a flight, called as the command that does it alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Step {
+    /// `scales`: scales.csv and scales.json.
+    Scales,
+    /// `check`: check.txt.
+    Check,
+    /// `export`: the folder for Split-Desktop.
+    Export,
+    /// `scale-map`: a folder with the maps of all photos.
+    ScaleMap,
+    /// `delineate`: a folder with outlines and sizes.
+    Delineate,
+    /// `psd compare`: the outlined fragments held against a reference.
+    Psd,
+}
+
+/// What can be said of a step.
+#[derive(Debug, Clone, Copy)]
+pub struct StepOption {
+    /// The key in SEASON.toml; the command has it as `--key`.
+    pub key: &'static str,
+    /// What it may be; any text where there are none.
+    pub values: &'static [&'static str],
+    /// Whether several values may stand together.
+    pub is_list: bool,
+}
+
+const fn one_of(key: &'static str, values: &'static [&'static str]) -> StepOption {
+    StepOption {
+        key,
+        values,
+        is_list: false,
+    }
+}
+
+const fn some_of(key: &'static str, values: &'static [&'static str]) -> StepOption {
+    StepOption {
+        key,
+        values,
+        is_list: true,
+    }
+}
+
+impl Step {
+    /// In the order in which they are done.
+    pub const ALL: [Self; 6] = [
+        Self::Scales,
+        Self::Check,
+        Self::Export,
+        Self::ScaleMap,
+        Self::Delineate,
+        Self::Psd,
+    ];
+
+    /// The word for it.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Scales => "scales",
+            Self::Check => "check",
+            Self::Export => "export",
+            Self::ScaleMap => "scale-map",
+            Self::Delineate => "delineate",
+            Self::Psd => "psd",
+        }
+    }
+
+    /// For people: what comes of it.
+    pub fn explained(self) -> &'static str {
+        match self {
+            Self::Scales => "every photo's scale: scales.csv, scales.json",
+            Self::Check => "what may be wrong with the flight: check.txt",
+            Self::Export => "the folder for Split-Desktop: split-desktop/",
+            Self::ScaleMap => "the scale of every pixel: scale-maps/",
+            Self::Delineate => "outlined fragments and their sizes: fragments/",
+            Self::Psd => {
+                "the outlined fragments held against a reference: psd.csv, psd.html (needs delineate)"
+            }
+        }
+    }
+
+    /// What can be said of it.
+    pub fn options(self) -> &'static [StepOption] {
+        const EXPORT: [StepOption; 2] = [
+            one_of("photos", &["all", "trusted"]),
+            one_of("rectified", &["fit", "horizontal", "ortho"]),
+        ];
+        const SCALE_MAP: [StepOption; 1] = [some_of("layers", &["scale", "depth", "x", "y", "z"])];
+        const DELINEATE: [StepOption; 3] = [
+            one_of("engine", &["learned", "classical"]),
+            one_of("shape", &["calibrated", "breadth", "circle"]),
+            some_of("also", &["coco", "labelme", "cvat", "geojson", "tiff"]),
+        ];
+        const PSD: [StepOption; 3] = [
+            one_of("reference", &[]),
+            one_of("model", &["swebrec", "swebrec5", "rosin-rammler", "ggs"]),
+            one_of("merge", &["equal", "area", "mass"]),
+        ];
+        match self {
+            Self::Scales | Self::Check => &[],
+            Self::Export => &EXPORT,
+            Self::ScaleMap => &SCALE_MAP,
+            Self::Delineate => &DELINEATE,
+            Self::Psd => &PSD,
+        }
+    }
+}
+
+impl FromStr for Step {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|step| step.as_str() == text);
+        found.ok_or_else(|| {
+            let all = Self::ALL.map(Self::as_str).join(", ");
+            format!("'{text}' is no step; the steps are {all}")
+        })
+    }
+}
+
+/// A step with what was said of it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AskedStep {
+    /// What is done.
+    pub step: Step,
+    /// By key: see [`Step::options`].
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub options: BTreeMap<String, Vec<String>>,
+}
+
+/// What is done with every flight.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Asked {
+    /// Of all lengths that are written; one of [`Asked::UNITS`].
+    pub unit: String,
+    /// In the order of [`Step::ALL`], each once.
+    pub steps: Vec<AskedStep>,
+}
+
+impl Default for Asked {
+    /// Scales and check, in cm.
+    fn default() -> Self {
+        Self::of(&[Step::Scales, Step::Check])
+    }
+}
+
+impl Asked {
+    /// The units that commands write.
+    pub const UNITS: [&'static str; 5] = ["mm", "cm", "m", "in", "ft"];
+
+    /// These steps without options, in cm.
+    pub fn of(steps: &[Step]) -> Self {
+        let mut asked = Self {
+            unit: "cm".to_owned(),
+            steps: Vec::new(),
+        };
+        asked.set_steps(steps);
+        asked
+    }
+
+    /// Whether it is among them.
+    pub fn has(&self, step: Step) -> bool {
+        self.steps.iter().any(|asked| asked.step == step)
+    }
+
+    /// These steps; what was said of those that stay is kept.
+    pub fn set_steps(&mut self, steps: &[Step]) {
+        let old = std::mem::take(&mut self.steps);
+        let all = Step::ALL.into_iter().filter(|step| steps.contains(step));
+        self.steps = all
+            .map(|step| {
+                let before = old.iter().find(|asked| asked.step == step).cloned();
+                before.unwrap_or(AskedStep {
+                    step,
+                    options: BTreeMap::new(),
+                })
+            })
+            .collect();
+    }
+
+    /// The unit of all lengths that are written.
+    ///
+    /// # Errors
+    /// Where it is none of [`Asked::UNITS`].
+    pub fn length_unit(&self) -> Result<LengthUnit, String> {
+        let known = Self::UNITS.contains(&self.unit.as_str());
+        let unit = known.then(|| self.unit.parse().ok()).flatten();
+        unit.ok_or_else(|| {
+            let all = Self::UNITS.join(", ");
+            format!("unit is '{}', none of {all}", self.unit)
+        })
+    }
+
+    /// Says something of a step.
+    ///
+    /// # Errors
+    /// Where the step is not asked for, has no such option, or the option no such value.
+    pub fn set(&mut self, step: Step, key: &str, values: Vec<String>) -> Result<(), String> {
+        let name = step.as_str();
+        let Some(option) = step.options().iter().find(|option| option.key == key) else {
+            let known: Vec<&str> = step.options().iter().map(|option| option.key).collect();
+            return Err(match known.is_empty() {
+                true => format!("{name} has no options"),
+                false => format!("{name} has no option '{key}', only {}", known.join(", ")),
+            });
+        };
+        if values.is_empty() || values.len() > 1 && !option.is_list {
+            return Err(format!("{name}.{key} takes one value"));
+        }
+        let wrong = values.iter().find(|value| {
+            value.is_empty()
+                || !option.values.is_empty() && !option.values.contains(&value.as_str())
+        });
+        if let Some(wrong) = wrong {
+            let all = match option.values.is_empty() {
+                true => "a name".to_owned(),
+                false => format!("one of {}", option.values.join(", ")),
+            };
+            return Err(format!("{name}.{key} is '{wrong}', not {all}"));
+        }
+        let Some(asked) = self.steps.iter_mut().find(|asked| asked.step == step) else {
+            return Err(format!("{name} is not among the steps"));
+        };
+        asked.options.insert(key.to_owned(), values);
+        Ok(())
+    }
+
+    /// What the steps need of each other.
+    ///
+    /// # Errors
+    /// Where one has not what it needs.
+    pub fn check(&self) -> Result<(), String> {
+        if self.steps.is_empty() {
+            return Err("there is no step, so nothing would be done".to_owned());
+        }
+        if self.has(Step::Psd) && !self.has(Step::Delineate) {
+            return Err(
+                "psd holds outlined fragments against a reference, so it needs delineate"
+                    .to_owned(),
+            );
+        }
+        self.length_unit().map(|_| ())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_in_their_order_and_keep_what_was_said() {
+        let mut asked = Asked::of(&[Step::Delineate, Step::Scales]);
+        let steps: Vec<Step> = asked.steps.iter().map(|asked| asked.step).collect();
+        assert_eq!(steps, [Step::Scales, Step::Delineate]);
+        let value = |text: &str| vec![text.to_owned()];
+        asked
+            .set(Step::Delineate, "engine", value("classical"))
+            .unwrap();
+        asked.set_steps(&[Step::Delineate, Step::Export]);
+        assert_eq!(asked.steps[1].options["engine"], value("classical"));
+        for (step, key, text, why) in [
+            (Step::Delineate, "engin", "classical", "no option 'engin'"),
+            (
+                Step::Delineate,
+                "engine",
+                "both",
+                "one of learned, classical",
+            ),
+            (Step::Scales, "unit", "m", "has no options"),
+            (Step::ScaleMap, "layers", "scale", "is not among the steps"),
+            (Step::Export, "photos", "", "not one of all, trusted"),
+        ] {
+            let error = asked.set(step, key, value(text)).unwrap_err();
+            assert!(error.contains(why), "{error}");
+        }
+        let two = vec!["fit".to_owned(), "ortho".to_owned()];
+        assert!(asked.set(Step::Export, "rectified", two).is_err());
+        assert!("scale".parse::<Step>().unwrap_err().contains("scale-map"));
+    }
+
+    #[test]
+    fn what_cannot_be_done_is_refused() {
+        assert!(Asked::default().check().is_ok());
+        assert!(Asked::of(&[]).check().is_err());
+        assert!(Asked::of(&[Step::Psd]).check().is_err());
+        assert!(Asked::of(&[Step::Psd, Step::Delineate]).check().is_ok());
+        let asked = Asked {
+            unit: "km".to_owned(),
+            ..Asked::default()
+        };
+        assert!(asked.check().unwrap_err().contains("'km'"));
+    }
+}

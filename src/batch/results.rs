@@ -1,0 +1,112 @@
+//! The folder of a season's results: whose it is, and its tables.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::path::Path;
+
+use crate::exports::{self, SeasonReport, SeasonRow};
+use crate::fault::Fault;
+use crate::files::{self, FileError, Inputs, Kind, cannot_be};
+use crate::record;
+use crate::units::LengthUnit;
+
+/// Whoever works in the folder holds it; and by it the folder is known.
+pub(crate) const LOCK: &str = "season.lock";
+
+/// The folder of a season's results, held by this process: no other one works in it.
+#[derive(Debug)]
+pub struct ResultsFolder {
+    /// The system takes it away with the process, however that ends.
+    _lock: File,
+}
+
+impl ResultsFolder {
+    /// Makes or opens it.
+    ///
+    /// # Errors
+    /// Where it holds something else, another process works in it, or it cannot be made.
+    pub fn open(to: &Path) -> Result<Self, FileError> {
+        files::make_folder(to)?;
+        let path = to.join(LOCK);
+        let cannot = |error: std::io::Error| FileError::new(&path, cannot_be("made", &error));
+        let mut entries = to
+            .read_dir()
+            .map_err(|error| FileError::new(to, files::unreadable_folder(&error)))?;
+        if !path.is_file() && entries.next().is_some() {
+            let what = "it is not empty, and holds no results of a season";
+            let remedy = "choose a new folder, or one of an earlier batch";
+            return Err(FileError::new(to, Fault::new(what, remedy)));
+        }
+        let mut options = OpenOptions::new();
+        let options = options.create(true).append(true);
+        let lock = options.open(&path).map_err(cannot)?;
+        match lock.try_lock() {
+            Ok(()) => Ok(Self { _lock: lock }),
+            Err(TryLockError::WouldBlock) => {
+                let what = "another batch is at work in it";
+                let fault = Fault::new(what, "wait for its end, or choose another folder");
+                Err(FileError::new(to, fault))
+            }
+            // Some shared disks know no locks; the flights' files are whole even so.
+            Err(TryLockError::Error(_)) => Ok(Self { _lock: lock }),
+        }
+    }
+}
+
+/// That results of other flights lie in the folder: of one that was renamed or taken away, or of another season's.
+pub fn of_other_flights(to: &Path, rows: &[SeasonRow]) -> Option<String> {
+    let is_other = |name: &String| {
+        to.join(name).join(record::NAME).is_file() && rows.iter().all(|row| row.results != *name)
+    };
+    let names = to.read_dir().ok()?.flatten();
+    let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let mut others: Vec<String> = names.filter(is_other).collect();
+    others.sort();
+    (!others.is_empty()).then(|| {
+        format!(
+            "results of flights that are none of these stay in {}: {}",
+            to.display(),
+            others.join(", ")
+        )
+    })
+}
+
+/// Writes the tables of a season, `season.csv`, `season.html` and `season.jsonl`, into the folder of its results, and
+/// returns the table for people. Flights with a date come in its order, the others after them.
+///
+/// # Errors
+/// Where one cannot be written, or stands there from others.
+pub fn write_results(
+    to: &Path,
+    name: &str,
+    unit: LengthUnit,
+    rows: Vec<SeasonRow>,
+    mut notes: Vec<String>,
+    force: bool,
+) -> Result<String, FileError> {
+    notes.extend(of_other_flights(to, &rows));
+    let mut report = SeasonReport {
+        name,
+        unit,
+        rows,
+        notes,
+    };
+    // Stable: blasts of a day keep their order.
+    report
+        .rows
+        .sort_by_key(|row| (row.date.is_none(), row.date));
+    let memory = |error: String| FileError::new(to, Fault::new(error, "close other programs"));
+    let csv = exports::season_csv(&report).map_err(|error| memory(error.to_string()))?;
+    let lines = exports::season_json_lines(&report).map_err(|error| memory(error.to_string()))?;
+    let page = exports::season_page(&report);
+    let nothing = Inputs::default();
+    for (file, text) in [
+        ("season.csv", csv),
+        ("season.jsonl", lines),
+        ("season.html", page),
+    ] {
+        let path = to.join(file);
+        files::write(&path, text.as_bytes(), Kind::Result, &nothing, force)
+            .map_err(|fault| FileError::new(&path, fault))?;
+    }
+    Ok(exports::season_table(&report))
+}

@@ -1,0 +1,286 @@
+use std::fs;
+
+use super::*;
+use crate::asked::Step;
+
+const SEASON: &str = r#"format = 1
+name = "North"
+to = "./out"
+unit = "mm"
+steps = ["delineate", "scales", "psd"]
+
+[delineate]
+engine = "classical"
+also = ["coco", "tiff"]
+
+[export]
+photos = "trusted"
+
+[psd]
+reference = "sieves.csv"
+
+[[flight]]
+path = "flights/*"
+
+[[flight]]
+path = "late"
+name = "B/31"
+date = 2026-06-02
+reference = "late.csv"
+"#;
+
+fn parsed(text: &str) -> Result<Season, Fault> {
+    file::parse(text, Path::new("a/season.toml"))
+}
+
+#[test]
+fn a_season_says_what_is_done() {
+    let season = parsed(SEASON).unwrap();
+    assert_eq!(
+        (season.name.as_str(), season.asked.unit.as_str()),
+        ("North", "mm")
+    );
+    assert_eq!(season.to.as_deref(), Some(Path::new("a/out")));
+    let steps: Vec<Step> = season.asked.steps.iter().map(|asked| asked.step).collect();
+    assert_eq!(steps, [Step::Scales, Step::Delineate, Step::Psd]);
+    let options = &season.asked.steps[1].options;
+    assert_eq!(options["engine"], ["classical"]);
+    assert_eq!(options["also"], ["coco", "tiff"]);
+    assert_eq!(season.asked.steps[2].options["reference"], ["a/sieves.csv"]);
+    assert_eq!(
+        season.sources[1].reference.as_deref(),
+        Some(Path::new("a/late.csv"))
+    );
+    assert_eq!(season.sources[1].date, "2026-06-02".parse().ok());
+    let quoted = SEASON.replace("2026-06-02", "\"2026-06-02\"");
+    assert_eq!(parsed(&quoted).unwrap(), season);
+    let least = parsed("format = 1\n[[flight]]\npath = \"b\"\n").unwrap();
+    assert_eq!(least.name, "season");
+    assert!(least.asked.has(Step::Scales) && least.asked.has(Step::Check));
+}
+
+/// The keys that a file may have are the options that the steps have.
+#[test]
+fn keys_are_those_of_the_steps() {
+    for step in Step::ALL {
+        for option in step.options() {
+            let value = option.values.first().unwrap_or(&"x");
+            let text = format!(
+                "format = 1\nsteps = [\"{}\", \"delineate\"]\n[{}]\n{} = \"{value}\"\n[[flight]]\npath = \"b\"\n",
+                step.as_str(),
+                step.as_str(),
+                option.key
+            );
+            let season = parsed(&text).unwrap();
+            let asked = season
+                .asked
+                .steps
+                .iter()
+                .find(|asked| asked.step == step)
+                .unwrap();
+            assert!(asked.options.contains_key(option.key), "{text}");
+        }
+    }
+}
+
+#[test]
+fn what_is_wrong_is_said_with_its_line() {
+    for (old, new, line, what) in [
+        ("format = 1", "format = 2", 1, "format 2 is not known"),
+        (
+            "format = 1\n",
+            "",
+            1,
+            "missing field `format`; write format = 1",
+        ),
+        (
+            "name = \"North\"",
+            "nmae = \"North\"",
+            2,
+            "unknown key 'nmae'",
+        ),
+        ("unit = \"mm\"", "unit = \"km\"", 4, "'km'"),
+        ("\"psd\"]", "\"psds\"]", 5, "'psds' is no step"),
+        ("engine = \"classical\"", "engine = \"both\"", 8, "'both'"),
+        (
+            "engine = \"classical\"",
+            "engin = \"classical\"",
+            8,
+            "unknown key 'engin'",
+        ),
+        (
+            "also = [\"coco\", \"tiff\"]",
+            "also = 3",
+            9,
+            "neither a text",
+        ),
+        (
+            "path = \"late\"",
+            "path = \" \"",
+            21,
+            "flight.path is empty",
+        ),
+        (
+            "date = 2026-06-02",
+            "date = \"2026-02-30\"",
+            23,
+            "no day of the calendar",
+        ),
+        (
+            "path = \"late\"",
+            "file = \"late\"",
+            21,
+            "unknown key 'file'",
+        ),
+        ("[export]", "[exports]", 11, "unknown key 'exports'"),
+        ("\"delineate\", ", "", 5, "needs delineate"),
+    ] {
+        assert!(SEASON.contains(old), "{old}");
+        let fault = parsed(&SEASON.replacen(old, new, 1)).unwrap_err();
+        assert!(fault.to_string().contains(what), "{fault}");
+        // serde says of some that a table lacks something, and names the table.
+        assert_eq!(fault.line, Some(line), "{fault}");
+    }
+    assert!(
+        parsed("format = 1\n")
+            .unwrap_err()
+            .what
+            .contains("no flight")
+    );
+    assert!(parsed("format = ").unwrap_err().line.is_some());
+    let nearest = parsed("format = 1\nstep = []\n").unwrap_err();
+    assert!(nearest.remedy.contains("'steps'"), "{nearest}");
+}
+
+fn flight_in(folder: &Path) {
+    fs::create_dir_all(folder).unwrap();
+    fs::write(folder.join("flight.toml"), "format = 1\n").unwrap();
+}
+
+fn names(found: &Found) -> Vec<&str> {
+    found
+        .flights
+        .iter()
+        .map(|flight| flight.results.as_str())
+        .collect()
+}
+
+#[test]
+fn flights_are_found_below_folders() {
+    let root = tempfile::tempdir().unwrap();
+    let root = root.path();
+    for name in ["b", "a/2", "a/1", "c/flight"] {
+        flight_in(&root.join(name));
+    }
+    // No flights: nothing, results of this season and of another, an export, what is hidden.
+    fs::create_dir_all(root.join("empty/inside")).unwrap();
+    fs::write(root.join("notes.txt"), "x").unwrap();
+    flight_in(&root.join("out/a-1"));
+    flight_in(&root.join("older/x"));
+    fs::write(root.join("older/season.lock"), "").unwrap();
+    flight_in(&root.join("d/split-desktop/x"));
+    fs::write(root.join("d/split-desktop/export.json"), "{}").unwrap();
+    flight_in(&root.join(".hidden"));
+    // Inside a flight nothing is looked for.
+    flight_in(&root.join("b/older"));
+    let to = root.join("out");
+    let season = Season::of_folders(&[root.to_owned()], Asked::default()).unwrap();
+    let found = season.flights(&to).unwrap();
+    assert_eq!(names(&found), ["a-1", "a-2", "b", "c-flight"]);
+    assert_eq!(found.notes.len(), 1, "{:?}", found.notes);
+    let note = &found.notes[0];
+    assert!(note.contains("empty") && !note.contains("inside"), "{note}");
+    // One more beside them changes no other name.
+    flight_in(&root.join("a/0"));
+    let found = season.flights(&to).unwrap();
+    assert_eq!(names(&found), ["a-0", "a-1", "a-2", "b", "c-flight"]);
+
+    // What is named is one, and fails by itself where it is none.
+    let named = ["b", "empty"].map(|name| root.join(name));
+    let season = Season::of_folders(&named, Asked::default()).unwrap();
+    assert_eq!(names(&season.flights(&to).unwrap()), ["b", "empty"]);
+    // What is not there was mistyped.
+    let missing = [root.join("b"), root.join("missing")];
+    let error = Season::of_folders(&missing, Asked::default()).unwrap_err();
+    assert!(
+        error.to_string().contains("missing: there is no such"),
+        "{error}"
+    );
+
+    // Two of one name.
+    flight_in(&root.join("e/b"));
+    let twins = ["b", "e/b"].map(|name| root.join(name));
+    let season = Season::of_folders(&twins, Asked::default()).unwrap();
+    let error = season.flights(&to).unwrap_err().to_string();
+    assert!(
+        error.contains("SEASON.toml") && error.contains("'b'"),
+        "{error}"
+    );
+}
+
+#[test]
+fn seasons_name_flights_by_patterns() {
+    let root = tempfile::tempdir().unwrap();
+    for name in ["flights/x1", "flights/x2", "late"] {
+        flight_in(&root.path().join(name));
+    }
+    let path = root.path().join("SEASON.toml");
+    fs::write(&path, SEASON).unwrap();
+    assert!(Season::is_season(&path));
+    assert!(!Season::is_season(&root.path().join("late/flight.toml")));
+    let season = Season::read(&path).unwrap();
+    let found = season.flights(&root.path().join("out")).unwrap();
+    assert_eq!(names(&found), ["x1", "x2", "B_31"]);
+    assert_eq!(found.flights[2].blast, "B/31");
+    assert!(found.notes.is_empty());
+    // A name for several.
+    let many = SEASON.replace("path = \"late\"", "path = \"flights\"");
+    fs::write(&path, many).unwrap();
+    let error = Season::read(&path)
+        .unwrap()
+        .flights(Path::new("out"))
+        .unwrap_err();
+    assert!(error.to_string().contains("2 flights"), "{error}");
+}
+
+/// Found by a pattern and named by itself, a blast counts once, with what is said of it; the season's file may lack one.
+#[test]
+fn a_flight_that_is_named_in_two_ways_is_one() {
+    let root = tempfile::tempdir().unwrap();
+    for name in ["flights/x1", "flights/x2"] {
+        flight_in(&root.path().join(name));
+    }
+    let path = root.path().join("SEASON.toml");
+    let named = |itself: &str| {
+        let text = format!(
+            "format = 1\n[[flight]]\npath = \"flights/*\"\n[[flight]]\npath = \"{itself}\"\nname = \"B2\"\n"
+        );
+        fs::write(&path, text).unwrap();
+        let season = Season::read(&path).unwrap();
+        season.flights(&root.path().join("out")).unwrap()
+    };
+    for itself in [
+        "flights/x2",
+        "flights/x2/flight.toml",
+        "flights/../flights/x2",
+    ] {
+        assert_eq!(names(&named(itself)), ["x1", "B2"], "{itself}");
+    }
+    assert_eq!(names(&named("flights/x3")), ["x1", "x2", "B2"]);
+}
+
+#[test]
+fn folders_have_safe_names() {
+    for (name, folder) in [
+        ("2026-05-31", "2026-05-31"),
+        ("a/b:c", "a_b_c"),
+        ("..", "_"),
+        ("", "_"),
+        (".x", "_.x"),
+        ("season.csv", "_season.csv"),
+        ("x. ", "x"),
+        ("Grube Süd", "Grube Süd"),
+    ] {
+        assert_eq!(results_folder(name), folder);
+    }
+}

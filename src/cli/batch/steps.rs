@@ -1,0 +1,270 @@
+//! A step of a flight that is open: the arguments are those that a person would type, so that the files are the same.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+
+use crate::batch::{AskedStep, FlightTold, Step};
+use crate::cli::check::check_of;
+use crate::cli::export::export_of;
+use crate::cli::flight_arguments::FlightArguments;
+use crate::cli::of_photos::delineate::{Outliners, delineate_of};
+use crate::cli::of_photos::scale_map::scale_map_of;
+use crate::cli::psd::PsdCommand;
+use crate::cli::psd_compare::compare_shifts;
+use crate::cli::{Answer, Arguments, Command, deliver_scales, review_of_scales};
+use crate::exports::{FoundSize, SizeShift};
+use crate::files;
+use crate::flight::Review;
+use crate::jobs::Progress;
+use crate::opening::Opened;
+
+/// What a step found.
+#[derive(Default)]
+pub(super) struct StepMade {
+    /// What it has to say.
+    pub(super) warnings: Vec<String>,
+    /// Why it failed although it did what it could.
+    pub(super) failed: Option<String>,
+    /// The flight's review, where it made one.
+    pub(super) review: Option<Review>,
+    pub(super) sizes: Vec<FoundSize>,
+    pub(super) shifts: Vec<SizeShift>,
+}
+
+impl From<Answer> for StepMade {
+    fn from(answer: Answer) -> Self {
+        Self {
+            warnings: answer.warnings,
+            failed: answer.failed,
+            ..Self::default()
+        }
+    }
+}
+
+/// The folder of the outlined fragments.
+const FRAGMENTS: &str = "fragments";
+/// The folder for Split-Desktop.
+pub(super) const SPLIT_DESKTOP: &str = "split-desktop";
+
+/// The words of the command that does the step alone, once for each file of a step that writes several.
+fn words(asked: &AskedStep, told: &FlightTold) -> Vec<Vec<OsString>> {
+    let in_results = |name: &str| told.to.join(name).into_os_string();
+    let flag = |name: &str, value: OsString| [OsString::from(name), value];
+    let mut before: Vec<OsString> = vec![asked.step.as_str().into()];
+    let mut after: Vec<OsString> = Vec::new();
+    if asked.step == Step::Psd {
+        before = vec!["psd".into(), "compare".into()];
+    } else {
+        for (name, path) in [
+            ("--surface", &told.surface),
+            ("--photo-folder", &told.photos),
+        ] {
+            after.extend(path.iter().flat_map(|path| flag(name, path.clone().into())));
+        }
+    }
+    if told.force {
+        after.push("--force".into());
+    }
+    for (key, values) in &asked.options {
+        // It is a file to read, not a word.
+        if (asked.step, key.as_str()) != (Step::Psd, "reference") {
+            after.extend(flag(&format!("--{key}"), values.join(",").into()));
+        }
+    }
+    let unit = || flag("--unit", told.asked.unit.clone().into());
+    match asked.step {
+        Step::Scales | Step::ScaleMap | Step::Delineate | Step::Export => after.extend(unit()),
+        Step::Check | Step::Psd => {}
+    }
+    let mut variants: Vec<Vec<OsString>> = Vec::new();
+    match asked.step {
+        Step::Scales => {
+            for format in ["csv", "json"] {
+                let output = flag("-o", in_results(&format!("scales.{format}")));
+                let format = flag("--format", format.into());
+                variants.push(output.into_iter().chain(format).collect());
+            }
+        }
+        Step::Check => variants.push(flag("-o", in_results("check.txt")).into()),
+        Step::Export => variants.push(flag("--to", in_results(SPLIT_DESKTOP)).into()),
+        Step::ScaleMap => {
+            let mut words: Vec<OsString> = vec!["--all".into()];
+            words.extend(flag("-o", in_results("scale-maps")));
+            variants.push(words);
+        }
+        Step::Delineate => variants.push(flag("--to", in_results(FRAGMENTS)).into()),
+        Step::Psd => {
+            let mut words: Vec<OsString> = flag("--format", "csv".into()).into();
+            words.extend(flag("-o", in_results("psd.csv")));
+            words.extend(flag("--report", in_results("psd.html")));
+            variants.push(words);
+        }
+    }
+    let mut files: Vec<OsString> = vec!["--".into()];
+    match asked.step {
+        Step::Psd => {
+            let of_flight = told.reference.clone().map(OsString::from);
+            let of_season = asked
+                .options
+                .get("reference")
+                .and_then(|values| values.first());
+            // The first is the reference, whatever it is called.
+            files.extend(of_flight.or_else(|| of_season.map(OsString::from)));
+            files.push(in_results(&format!("{FRAGMENTS}/distribution.csv")));
+        }
+        _ => files.push(told.flight.clone().into()),
+    }
+    let program = OsString::from("fragscale");
+    let whole = variants.into_iter().map(|variant| {
+        let parts = [before.clone(), after.clone(), variant, files.clone()];
+        let words = parts.into_iter().flatten();
+        std::iter::once(program.clone()).chain(words).collect()
+    });
+    whole.collect()
+}
+
+/// The commands that do the step alone.
+pub(super) fn commands(asked: &AskedStep, told: &FlightTold) -> Result<Vec<Command>, String> {
+    let commands = words(asked, told).into_iter().map(|words| {
+        let parsed = Arguments::try_parse_from(words).map_err(|error| error.to_string())?;
+        parsed.command.ok_or_else(|| "it is no command".to_owned())
+    });
+    commands.collect()
+}
+
+/// What a step lacks is said before the hours that others may take.
+pub(super) fn check(asked: &AskedStep, told: &FlightTold) -> Result<(), String> {
+    if asked.step != Step::Psd {
+        return Ok(());
+    }
+    let of_season = asked
+        .options
+        .get("reference")
+        .and_then(|values| values.first());
+    let Some(reference) = told
+        .reference
+        .clone()
+        .or_else(|| of_season.map(PathBuf::from))
+    else {
+        let what =
+            "psd has no reference for it; name one in SEASON.toml ([psd] or [[flight]] reference)";
+        return Err(format!("{}: {what}", told.flight.display()));
+    };
+    let opened = files::open_file(&reference);
+    opened.map(drop).map_err(|error| error.to_string())
+}
+
+/// Does a step.
+pub(super) fn make(
+    asked: &AskedStep,
+    told: &FlightTold,
+    flight: &FlightArguments,
+    opened: &Opened,
+    progress: &Progress,
+) -> Result<StepMade, String> {
+    let mut made = StepMade::default();
+    for command in commands(asked, told)? {
+        match command {
+            Command::Scales(arguments) => {
+                if made.review.is_none() {
+                    made.review = Some(review_of_scales(flight, opened, progress)?);
+                }
+                let outputs = arguments.output.outputs(arguments.flight.files())?;
+                if let Some(review) = &made.review {
+                    made.warnings = deliver_scales(&arguments, outputs, opened, review)?.warnings;
+                }
+            }
+            Command::Check(arguments) => {
+                let (answer, review) =
+                    check_of(&arguments, arguments.outputs()?, opened, progress)?;
+                made = StepMade {
+                    review,
+                    ..answer.into()
+                };
+            }
+            Command::Export(arguments) => {
+                make_parent(&told.to.join(SPLIT_DESKTOP))?;
+                let (answer, review) = export_of(&arguments, opened, progress)?;
+                made = StepMade {
+                    review: Some(review),
+                    ..answer.into()
+                };
+            }
+            Command::ScaleMap(arguments) => {
+                let outputs = arguments.outputs();
+                made = scale_map_of(&arguments, outputs, opened, progress)?.into();
+            }
+            Command::Delineate(arguments) => {
+                let outliners = Outliners::open(&arguments)?;
+                let (answer, sizes) = delineate_of(&arguments, &outliners, opened, progress)?;
+                made = StepMade {
+                    sizes,
+                    ..answer.into()
+                };
+            }
+            Command::Psd(PsdCommand::Compare(arguments)) => {
+                let (answer, shifts) = compare_shifts(&arguments, progress)?;
+                made = StepMade {
+                    shifts,
+                    ..answer.into()
+                };
+            }
+            // No step is another command.
+            _ => {}
+        }
+    }
+    Ok(made)
+}
+
+fn make_parent(folder: &Path) -> Result<(), String> {
+    let parent = folder.parent().unwrap_or(folder);
+    files::make_folder(parent).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::batch::Asked;
+
+    /// Every option of every step, with every value, is one that its command takes: the two lists do not part.
+    #[test]
+    fn all_options_are_those_of_the_commands() {
+        let mut tried = 0;
+        for step in Step::ALL {
+            for option in step.options() {
+                let free = ["name"];
+                let values = match option.values.is_empty() {
+                    true => &free[..],
+                    false => option.values,
+                };
+                for value in values {
+                    let mut asked = Asked::of(&Step::ALL);
+                    let value = (*value).to_owned();
+                    asked.set(step, option.key, vec![value.clone()]).unwrap();
+                    let told = FlightTold {
+                        flight: PathBuf::from("-flight"),
+                        surface: Some(PathBuf::from("cloud.laz")),
+                        photos: None,
+                        reference: None,
+                        to: PathBuf::from("to"),
+                        asked: asked.clone(),
+                        force: true,
+                    };
+                    for step in &asked.steps {
+                        let commands = commands(step, &told);
+                        assert!(commands.is_ok(), "{step:?} {value}: {commands:?}");
+                    }
+                    tried += 1;
+                }
+            }
+        }
+        assert_eq!(tried, 2 + 3 + 5 + 2 + 3 + 5 + 1 + 4 + 3);
+        for unit in Asked::UNITS {
+            let mut asked = Asked::default();
+            unit.clone_into(&mut asked.unit);
+            assert!(asked.length_unit().is_ok());
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Which steps lead from outlines to a distribution by mass.
+
+use std::fs;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::sizes::OutlinedBy;
+use crate::delineation::mass::{LOOSE, Steps};
+use crate::delineation::tail::Tail;
+use crate::fault::Fault;
+use crate::formats::{DistributionColumns, FileError, read_bytes, size_distributions};
+use crate::units::LengthUnit;
+
+/// `--steps` and what they need.
+#[derive(Debug, Clone, Args)]
+pub(super) struct MassArguments {
+    /// The steps from fragments to a distribution by mass, several with commas; their shares are in the report. Without it,
+    /// edges and fines for an engine's outlines, and pores, too, for those of people and other tools.
+    #[arg(long, value_enum, value_name = "STEPS", value_delimiter = ',')]
+    steps: Option<Vec<StepName>>,
+    /// The porosity of the pile, for the step pores.
+    #[arg(long, value_name = "SHARE", default_value_t = LOOSE, value_parser = share)]
+    porosity: f64,
+    /// How the fines are distributed below what the photos show: as the Swebrec function of what they show, or as a table of
+    /// the same material sieved. Without it nothing is claimed of them.
+    #[arg(long, value_name = "swebrec|FILE.csv")]
+    tail: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum StepName {
+    /// Large fragments are cut by the photo's edge more often, and count for more.
+    Edges,
+    /// Small fragments are seen deeper down between large ones, and count for less.
+    Pores,
+    /// What is not outlined is fines (of an engine's outlines a part of it).
+    Fines,
+    /// None of them: the area that is seen of each fragment.
+    None,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share: Option<f64> = text.parse().ok();
+    let share = share.filter(|share| (0.0..=0.9).contains(share));
+    share.ok_or_else(|| "a share from 0 to 0.9, 0.45 for loose rock".to_owned())
+}
+
+impl MassArguments {
+    /// An error where steps are named that exclude each other.
+    pub(super) fn check(&self) -> Result<(), String> {
+        let steps = self.steps.as_deref().unwrap_or_default();
+        match steps.contains(&StepName::None) && steps.iter().any(|step| *step != StepName::None) {
+            true => Err("--steps: none goes with no other step; leave it out".to_owned()),
+            false => Ok(()),
+        }
+    }
+
+    /// The file that is read for the tail.
+    pub(super) fn file(&self) -> Option<PathBuf> {
+        let tail = self.tail.as_ref()?;
+        (!tail.eq_ignore_ascii_case("swebrec")).then(|| tail.into())
+    }
+
+    /// The law of the fines, where one is asked for.
+    pub(super) fn tail_in_words(&self) -> Option<String> {
+        let tail = self.tail.as_ref()?;
+        Some(match self.file() {
+            None => "Swebrec".to_owned(),
+            Some(_) => format!("as sieved in {tail}"),
+        })
+    }
+
+    /// The steps for photos that were outlined by these.
+    pub(super) fn steps<'a>(
+        &self,
+        outlined: impl Iterator<Item = OutlinedBy<'a>> + Clone,
+    ) -> Steps {
+        // Of several the mean.
+        let usual: Vec<Steps> = outlined.map(|of| Steps::of(of.engine())).collect();
+        let fines = usual.iter().map(|of| of.fines).sum::<f64>() / usual.len().max(1) as f64;
+        let of_people = usual.iter().all(|of| of.pores.is_some());
+        let takes = |step: StepName| match &self.steps {
+            Some(steps) => steps.contains(&step),
+            None => step != StepName::Pores || of_people,
+        };
+        Steps {
+            edges: takes(StepName::Edges),
+            pores: takes(StepName::Pores).then_some(self.porosity),
+            fines: if takes(StepName::Fines) { fines } else { 0.0 },
+        }
+    }
+
+    /// The law of the fines, its sizes in the world's unit.
+    ///
+    /// # Errors
+    /// Where its table cannot be read, or has several curves.
+    pub(super) fn tail(&self, world: LengthUnit) -> Result<Option<Tail>, String> {
+        if self.tail.is_none() {
+            return Ok(None);
+        }
+        let Some(path) = self.file() else {
+            return Ok(Some(Tail::Swebrec));
+        };
+        let at = |fault: Fault| FileError::new(&path, fault).to_string();
+        if fs::metadata(&path).is_err() {
+            let what = "there is no such file, and no law of that name";
+            return Err(at(Fault::new(
+                what,
+                "say swebrec, or name a table of sizes",
+            )));
+        }
+        let bytes = read_bytes(&path).map_err(|error| error.to_string())?;
+        let text = String::from_utf8_lossy(&bytes);
+        let (set, _) = size_distributions(&text, &DistributionColumns::default()).map_err(at)?;
+        let set = set.in_unit(world).map_err(at)?;
+        let [curve] = set.curves.as_slice() else {
+            let what = format!("it has {} curves", set.curves.len());
+            return Err(at(Fault::new(what, "give a table of one sieved curve")));
+        };
+        Ok(Some(Tail::Sieved(curve.distribution.clone())))
+    }
+}

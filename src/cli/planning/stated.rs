@@ -1,0 +1,140 @@
+//! What a mission's file does not say and another ground station asks for, as it is typed.
+
+use clap::{Args, ValueEnum};
+
+use crate::cli::on_surface::places::place;
+use crate::cli::planning::flying::speed;
+use crate::plan::{Above, Height, Mission, TakeOff};
+
+/// No drone for photos comes back from farther, kilometres: who typed it took one number for another.
+const FARTHEST: f64 = 50.0;
+
+#[derive(Debug, Args)]
+pub(super) struct StatedArguments {
+    /// Metres a second between stops, where the file does not say it, or instead of what it says.
+    #[arg(long, value_name = "M/S", value_parser = speed, allow_hyphen_values = true)]
+    speed: Option<f64>,
+    /// Metres above the take-off that the drone climbs to before the first stop, likewise. Nobody checks it against the
+    /// ground.
+    #[arg(long, value_name = "METRES", value_parser = number, allow_hyphen_values = true)]
+    safe_height: Option<f64>,
+    /// Where the drone takes off, in degrees of WGS 84, likewise.
+    #[arg(long, value_name = "LATITUDE,LONGITUDE", value_parser = place, allow_hyphen_values = true)]
+    take_off: Option<glam::DVec2>,
+    /// The elevation of the take-off in metres, likewise: of files whose heights are absolute, for drones that count
+    /// from there.
+    #[arg(long, value_name = "METRES", value_parser = number, allow_hyphen_values = true, requires = "datum")]
+    elevation: Option<f64>,
+    /// What --elevation, and absolute heights of a file that does not say it, count from.
+    #[arg(long, value_enum, value_name = "DATUM")]
+    datum: Option<Datum>,
+}
+
+/// What absolute heights count from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Datum {
+    /// The ellipsoid of WGS 84, as RTK gives them.
+    Ellipsoid,
+    /// The geoid EGM96: mean sea level.
+    Geoid,
+}
+
+impl Datum {
+    fn above(self) -> Above {
+        match self {
+            Self::Ellipsoid => Above::Ellipsoid,
+            Self::Geoid => Above::Geoid,
+        }
+    }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.trim().parse().ok();
+    let number = number.filter(|number| number.is_finite());
+    number.ok_or_else(|| "give a number of metres".to_owned())
+}
+
+impl StatedArguments {
+    /// Puts what was stated into a mission; what the file said otherwise is told, a sentence each.
+    ///
+    /// # Errors
+    /// Where nobody says where the take-off is whose elevation was stated; where no drone could be told it.
+    pub(super) fn apply(&self, mission: &mut Mission) -> Result<Vec<String>, String> {
+        let mut told = Vec::new();
+        let mut instead = |name: &str, before: Option<f64>, now: f64, unit: &str| {
+            if let Some(before) = before.filter(|before| *before != now) {
+                told.push(format!(
+                    "--{name} {now} is taken; the file says {before} {unit}"
+                ));
+            }
+        };
+        if let Some(speed) = self.speed {
+            instead("speed", mission.speed, speed, "m/s");
+            mission.speed = Some(speed);
+        }
+        if let Some(height) = self.safe_height {
+            instead("safe-height", mission.safe_height, height, "m");
+            mission.safe_height = Some(height);
+        }
+        if let Some(place) = self.take_off {
+            if let Some(before) = mission.take_off {
+                told.push(format!(
+                    "--take-off is taken; the file says {:.7}, {:.7}",
+                    before.latitude, before.longitude
+                ));
+            }
+            mission.take_off = Some(TakeOff {
+                latitude: place.x,
+                longitude: place.y,
+                elevation: None,
+            });
+        }
+        if let (Some(_), Some(kilometres)) = (self.take_off, mission.farthest_from_take_off())
+            && kilometres > FARTHEST
+        {
+            let what = format!("take-off: a stop lies {kilometres:.0} km from there");
+            return Err(format!(
+                "{what}; the latitude comes first, then the longitude"
+            ));
+        }
+        if let Some(above) = self.datum.map(Datum::above) {
+            let state = |height: &mut Height| {
+                if height.above == Above::Unknown {
+                    height.above = above;
+                }
+            };
+            mission
+                .stops
+                .iter_mut()
+                .for_each(|stop| state(&mut stop.height));
+            let elevation = mission
+                .take_off
+                .as_mut()
+                .and_then(|at| at.elevation.as_mut());
+            if let Some(elevation) = elevation {
+                state(elevation);
+            }
+            if let Some(metres) = self.elevation {
+                let Some(take_off) = &mut mission.take_off else {
+                    let what = "elevation: nobody says where the take-off is";
+                    return Err(format!(
+                        "{what}; say it, too: --take-off LATITUDE,LONGITUDE"
+                    ));
+                };
+                let before = take_off.elevation.replace(Height { metres, above });
+                if let Some(before) =
+                    before.filter(|before| (before.metres, before.above) != (metres, above))
+                {
+                    told.push(format!(
+                        "--elevation {metres} is taken; the file says {} m above {}",
+                        before.metres,
+                        before.above.in_words()
+                    ));
+                }
+            }
+        }
+        // The file was good: what is wrong now was typed.
+        mission.check().map_err(|fault| fault.to_string())?;
+        Ok(told)
+    }
+}

@@ -1,0 +1,596 @@
+//! Any network that the user names: an ONNX model with a description of what it takes and gives (`description.rs`).
+//!
+//! Maps go the way of the engines that the program brings along: the mean over sizes is [`Evidence`], of which the tree
+//! is grown. Instances are outlines as they are (`instances.rs`). Which score judges the tree's nodes follows from the
+//! maps: with border, inside and middle that of the learned engine, else that of the classical one, which needs a border
+//! alone. A model that gives what lies inside and no border has its border where it is not inside.
+
+mod description;
+mod instances;
+mod outputs;
+#[cfg(test)]
+mod tests;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use fragscale_core::fault::{Fault, one_line};
+use fragscale_core::jobs::Progress;
+use image::RgbImage;
+use rten::{DataType, Dimension, Model, NodeId, ValueOrView, ValueType};
+
+pub use description::Description;
+
+use crate::choice::Scorer;
+use crate::classical::Classical;
+use crate::engine::{Engine, Outlined};
+use crate::evidence::{Evidence, gray};
+use crate::intervals::OF_OTHERS;
+use crate::learned::Learned;
+use crate::network::{self, Channels, Input, Layout, Normal, Part, Parts};
+use description::{ChannelsWord, LayoutWord, Meaning, OutputEntry};
+use instances::{Instances, Seen};
+use outputs::{Mask, Numbers};
+
+/// Of what a network calls a fragment: at least even odds.
+const LEAST_OF_INSTANCES: f64 = 0.5;
+
+/// The evidence's kinds, in the order in which they are kept.
+const KINDS: [Meaning; 4] = [
+    Meaning::Border,
+    Meaning::Inside,
+    Meaning::Middle,
+    Meaning::Fines,
+];
+
+/// A network of the user's.
+pub struct NamedModel {
+    name: String,
+    model: Model,
+    description: Description,
+    input: Input,
+    input_id: NodeId,
+    parts: Parts,
+    /// The model's output of each entry of the description.
+    outputs: Vec<NodeId>,
+}
+
+impl std::fmt::Debug for NamedModel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("NamedModel")
+            .field("name", &self.name)
+            .finish_non_exhaustive()
+    }
+}
+
+impl NamedModel {
+    /// From the bytes of an ONNX file and what is said of it. `name` is what it is called where the description does not
+    /// say.
+    ///
+    /// # Errors
+    /// What of the model cannot be run, or does not agree with the description. Its file is that of the model.
+    pub fn new(bytes: Vec<u8>, description: Description, name: &str) -> Result<Self, Fault> {
+        let loaded = catch_unwind(AssertUnwindSafe(|| Model::load(bytes)));
+        let model = match loaded {
+            Ok(Ok(model)) => model,
+            Ok(Err(error)) => {
+                let what = format!(
+                    "this model cannot be run ({})",
+                    one_line(&error.to_string())
+                );
+                let remedy = "export it as one ONNX file with other operators, or a lower opset";
+                return Err(Fault::new(what, remedy));
+            }
+            Err(_) => {
+                let what = "this is a broken ONNX model, or one that cannot be run";
+                return Err(Fault::new(what, "export it again"));
+            }
+        };
+        let name = description
+            .name
+            .as_deref()
+            .unwrap_or(name)
+            .trim()
+            .to_owned();
+        if name.is_empty() || crate::engine_called(&name).is_some() {
+            let what = format!("\"{name}\" is no name for it");
+            return Err(Fault::new(what, "give another name in the description"));
+        }
+        let (input_id, sides, bytes) = input_of(&model)?;
+        let layout = match description.input.layout {
+            LayoutWord::Nchw => Layout::ChannelsFirst,
+            LayoutWord::Nhwc => Layout::ChannelsLast,
+        };
+        let channels = match description.input.channels {
+            ChannelsWord::Rgb => Channels::Rgb,
+            ChannelsWord::Bgr => Channels::Bgr,
+            ChannelsWord::Gray => Channels::Gray,
+        };
+        let normal = description.normal(channels.count())?;
+        let normal = match description.input.normalize {
+            Some(_) => Normal::OfPhoto,
+            None => Normal::Given(normal),
+        };
+        let parts = parts_of(&description, &sides, layout, channels)?;
+        let outputs = outputs_of(&model, &description)?;
+        Ok(Self {
+            name,
+            input: Input {
+                layout,
+                channels,
+                white: description.input.white.unwrap_or(1.0),
+                normal,
+                bytes,
+            },
+            model,
+            description,
+            input_id,
+            parts,
+            outputs,
+        })
+    }
+
+    fn entries(&self) -> impl Iterator<Item = (&OutputEntry, NodeId)> {
+        let outputs = self.outputs.iter().copied();
+        self.description.output.iter().zip(outputs)
+    }
+
+    fn gives(&self, meaning: Meaning) -> bool {
+        self.description.output.iter().any(|of| of.is == meaning)
+    }
+
+    fn gives_maps(&self) -> bool {
+        self.description.output.iter().all(|of| of.is.is_map())
+    }
+
+    /// How many times smaller a photo is looked at, the least first.
+    fn sizes(&self, width: u32, height: u32) -> Vec<f64> {
+        if self.description.input.whole {
+            let fits = |side: u32, part: usize| f64::from(side) / part as f64;
+            let by = fits(width, self.parts.part[0]).max(fits(height, self.parts.part[1]));
+            return vec![by.max(1.0)];
+        }
+        let sizes = self.description.input.sizes.clone();
+        sizes.unwrap_or_else(|| vec![1.0])
+    }
+
+    /// All outputs of each part of a photo in one size, one part after the other.
+    fn see(
+        &self,
+        photo: &RgbImage,
+        progress: &Progress,
+        mut take: impl FnMut(&Part, &[Numbers]) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        let (width, height) = (photo.width() as usize, photo.height() as usize);
+        let parts = self.whole_or_parts(width, height);
+        let normals = self.input.normals(photo);
+        let mut ids = self.outputs.clone();
+        ids.sort_unstable();
+        ids.dedup();
+        for (number, part) in parts.iter().enumerate() {
+            progress.advance(number as u64, parts.len() as u64)?;
+            let tensor = self.input.tensor(photo, part, &normals);
+            let tensor = tensor.ok_or_else(|| self.wrong("takes no such picture".to_owned()))?;
+            let inputs = vec![(self.input_id, ValueOrView::from(tensor))];
+            let values = network::run(&self.model, inputs, &ids).map_err(|error| {
+                let of = format!("{} x {} pixels", part.columns, part.rows);
+                self.wrong(format!("fails on {of} ({})", one_line(&error)))
+            })?;
+            let numbers = self.entries().map(|(entry, id)| {
+                let place = ids.binary_search(&id).ok();
+                let value = place.and_then(|place| values.get(place));
+                value
+                    .and_then(Numbers::of)
+                    .ok_or_else(|| self.wrong(format!("gives no numbers for {}", entry.is.word())))
+            });
+            let numbers: Vec<Numbers> = numbers.collect::<Result<_, _>>()?;
+            take(part, &numbers)?;
+        }
+        Ok(())
+    }
+
+    /// A photo that is looked at whole is one part, whatever its shape is.
+    fn whole_or_parts(&self, width: usize, height: usize) -> Vec<Part> {
+        let parts = match self.description.input.whole {
+            true => Parts {
+                margin: 0,
+                ..self.parts
+            },
+            false => self.parts,
+        };
+        parts.of(width, height)
+    }
+
+    fn wrong(&self, what: String) -> Fault {
+        Fault::new(
+            format!("the network {} {what}", self.name),
+            "look at its description: the tile, multiple, layout, and which output is what",
+        )
+    }
+
+    fn wrong_shape(&self, meaning: Meaning, of: &Numbers, part: &Part) -> Fault {
+        self.wrong(format!(
+            "gives {} of {} for {} x {} pixels",
+            meaning.word(),
+            of.words(),
+            part.columns,
+            part.rows
+        ))
+    }
+
+    /// The maps of a photo in one size, those of [`KINDS`] that it gives.
+    fn maps(&self, photo: &RgbImage, progress: &Progress) -> Result<Vec<Vec<f32>>, Fault> {
+        let (width, height) = (photo.width() as usize, photo.height() as usize);
+        let kinds: Vec<Meaning> = self.kinds().collect();
+        let mut maps = vec![vec![0.0; width * height]; kinds.len()];
+        self.see(photo, progress, |part, numbers| {
+            for (entry, of) in self.description.output.iter().zip(numbers) {
+                let seen = [part.columns, part.rows];
+                let pictures = of
+                    .pictures(self.input.layout == Layout::ChannelsLast, seen)
+                    .filter(|pictures| entry.channel < pictures.count)
+                    .ok_or_else(|| self.wrong_shape(entry.is, of, part))?;
+                let chances = of.chances(&pictures, entry.channel, entry.values);
+                let from = (pictures.columns, pictures.rows);
+                let chances = match from == (part.columns, part.rows) {
+                    true => chances,
+                    false => network::enlarged_part(&chances, from, (part.columns, part.rows)),
+                };
+                let map = kinds.iter().position(|kind| *kind == entry.is);
+                let Some(map) = map.and_then(|kind| maps.get_mut(kind)) else {
+                    continue;
+                };
+                for y in part.top..part.bottom {
+                    let row = &chances[(y - part.above) * part.columns..][..part.columns];
+                    let row = &row[part.left - part.first..part.right - part.first];
+                    map[y * width + part.left..][..row.len()].copy_from_slice(row);
+                }
+            }
+            Ok(())
+        })?;
+        Ok(maps)
+    }
+
+    fn kinds(&self) -> impl Iterator<Item = Meaning> {
+        KINDS.into_iter().filter(|kind| self.gives(*kind))
+    }
+
+    fn evidence(&self, photo: &RgbImage, progress: &Progress) -> Result<Evidence, Fault> {
+        let (width, height) = photo.dimensions();
+        let sizes = self.sizes(width, height);
+        let means = network::mean_of_sizes(photo, &sizes, progress, |photo, progress| {
+            self.maps(photo, progress)
+        })?;
+        let kinds: Vec<Meaning> = self.kinds().collect();
+        let mean = |kind: Meaning| means.get(kinds.iter().position(|own| *own == kind)?);
+        let bytes = |chance: f32| (255.0 * chance).round() as u8;
+        let pixels = width as usize * height as usize;
+        let of =
+            |kind| mean(kind).map(|mean| -> Vec<u8> { mean.iter().map(|of| bytes(*of)).collect() });
+        let mut rock = of(Meaning::Inside).unwrap_or_else(|| vec![255; pixels]);
+        if let Some(fines) = mean(Meaning::Fines) {
+            for (rock, fines) in rock.iter_mut().zip(fines) {
+                *rock = (*rock).min(bytes(1.0 - fines));
+            }
+        }
+        let border = of(Meaning::Border);
+        let border = border.unwrap_or_else(|| rock.iter().map(|rock| 255 - rock).collect());
+        Ok(Evidence {
+            width: width as usize,
+            height: height as usize,
+            border,
+            rock,
+            middle: of(Meaning::Middle).unwrap_or_else(|| vec![0; pixels]),
+            gray: gray(photo),
+        })
+    }
+
+    fn instances(&self, photo: &RgbImage, progress: &Progress) -> Result<Outlined, Fault> {
+        let full = [photo.width() as usize, photo.height() as usize];
+        let mut all = Instances::default();
+        for by in self.sizes(photo.width(), photo.height()) {
+            let sized = network::at_size(photo, by);
+            let size = [sized.width() as usize, sized.height() as usize];
+            self.see(&sized, progress, |part, numbers| {
+                let seen = Seen { part, size, full };
+                let masks = self.masks(part, numbers)?;
+                for mask in masks.filter(|mask| mask.score >= self.least_score()) {
+                    let mask = mask.enlarged([part.columns, part.rows]);
+                    let Some(instance) = seen.instance(&mask) else {
+                        continue;
+                    };
+                    if !all.add(instance, full[0] * full[1]) {
+                        return Err(self.wrong("covers the photo with too many masks".to_owned()));
+                    }
+                }
+                Ok(())
+            })?;
+        }
+        let (labels, sure) = all.painted(full[0], full[1]);
+        Ok(Outlined { labels, sure })
+    }
+
+    /// The masks of a part.
+    fn masks<'a>(
+        &'a self,
+        part: &Part,
+        numbers: &'a [Numbers],
+    ) -> Result<Box<dyn Iterator<Item = Mask> + 'a>, Fault> {
+        let of = |meaning: Meaning| {
+            let all = self.description.output.iter().zip(numbers);
+            let mut all = all.filter(|(entry, _)| entry.is == meaning);
+            all.next()
+        };
+        let seen = [part.columns, part.rows];
+        if let Some((entry, labels)) = of(Meaning::Labels) {
+            let pictures = labels
+                .pictures(self.input.layout == Layout::ChannelsLast, seen)
+                .filter(|pictures| entry.channel < pictures.count);
+            let pictures = pictures.ok_or_else(|| self.wrong_shape(entry.is, labels, part))?;
+            let masks = outputs::of_labels(labels, &pictures, entry.channel);
+            return Ok(Box::new(masks.into_iter()));
+        }
+        if let (Some((_, detections)), Some((_, prototypes))) =
+            (of(Meaning::Detections), of(Meaning::Prototypes))
+        {
+            let least = self.least_score();
+            let masks = outputs::of_detections(detections, prototypes, seen, least);
+            let masks = masks.ok_or_else(|| {
+                let (one, other) = (detections.words(), prototypes.words());
+                self.wrong(format!(
+                    "gives detections of {one} with prototypes of {other}"
+                ))
+            })?;
+            return Ok(Box::new(masks));
+        }
+        let Some((entry, masks)) = of(Meaning::Masks) else {
+            return Ok(Box::new(std::iter::empty()));
+        };
+        let pictures = masks.pictures(false, seen);
+        let pictures = pictures.ok_or_else(|| self.wrong_shape(entry.is, masks, part))?;
+        let scores = of(Meaning::Scores).map(|(_, scores)| scores);
+        if let Some(scores) = scores.filter(|scores| scores.values.len() != pictures.count) {
+            let what = format!(
+                "gives {} masks and scores of {}",
+                pictures.count,
+                scores.words()
+            );
+            return Err(self.wrong(what));
+        }
+        let values = entry.values;
+        Ok(Box::new((0..pictures.count).map(move |number| {
+            let score = scores.and_then(|scores| scores.values.get(number));
+            Mask {
+                of: [pictures.columns, pictures.rows],
+                columns: 0..pictures.columns,
+                rows: 0..pictures.rows,
+                chances: masks.chances(&pictures, number, values),
+                score: score.map_or(1.0, |score| f64::from(*score)),
+            }
+        })))
+    }
+}
+
+impl Engine for NamedModel {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn look(&self, photo: &RgbImage, progress: &Progress) -> Result<Evidence, Fault> {
+        if self.gives_maps() {
+            return self.evidence(photo, progress);
+        }
+        let outlined = self.instances(photo, progress)?;
+        Ok(Evidence::of_outlines(&outlined.labels, photo))
+    }
+
+    fn outline(&self, photo: &RgbImage, progress: &Progress) -> Result<Option<Outlined>, Fault> {
+        match self.gives_maps() {
+            true => Ok(None),
+            false => self.instances(photo, progress).map(Some),
+        }
+    }
+
+    fn sees_every(&self, width: u32, height: u32) -> u32 {
+        let sizes = self.sizes(width, height);
+        // No more than 64, or of a photo of 2^32 pixels along a side.
+        sizes.first().map_or(1, |by| by.ceil() as u32)
+    }
+
+    fn least_score(&self) -> f64 {
+        let own = match (self.gives_maps(), self.judges_as_learned()) {
+            (false, _) => LEAST_OF_INSTANCES,
+            (true, true) => Learned.least_score(),
+            (true, false) => Classical.least_score(),
+        };
+        self.description.least_score.unwrap_or(own)
+    }
+
+    fn fines_of_unfound(&self) -> f64 {
+        // Nobody measured it: as of other tools.
+        self.description.fines_of_unfound.unwrap_or(1.0)
+    }
+
+    fn doubts(&self) -> [f64; 2] {
+        OF_OTHERS
+    }
+
+    fn scorer(&self) -> Result<&Scorer, Fault> {
+        if self.judges_as_learned() {
+            Learned.scorer()
+        } else {
+            Classical.scorer()
+        }
+    }
+}
+
+impl NamedModel {
+    fn judges_as_learned(&self) -> bool {
+        let needs = [Meaning::Border, Meaning::Inside, Meaning::Middle];
+        needs.into_iter().all(|kind| self.gives(kind))
+    }
+}
+
+/// The one input: its name in the graph, its sides where they are known, and whether it takes bytes.
+fn input_of(model: &Model) -> Result<(NodeId, Vec<Option<usize>>, bool), Fault> {
+    let named = |ids: &[NodeId]| -> String {
+        let names = ids.iter().map(|id| {
+            let info = model.node_info(*id);
+            info.and_then(|info| info.name()).unwrap_or("?").to_owned()
+        });
+        names.collect::<Vec<_>>().join(", ")
+    };
+    let inputs = model.input_ids();
+    let &[id] = inputs else {
+        let what = format!(
+            "the model takes {} inputs ({})",
+            inputs.len(),
+            named(inputs)
+        );
+        let remedy = "export one that takes a picture alone";
+        return Err(Fault::new(what, remedy));
+    };
+    let info = model.node_info(id);
+    let sides = info.as_ref().and_then(|info| info.shape());
+    let sides = sides.map_or_else(
+        || vec![None; 4],
+        |sides| {
+            let known = sides.iter().map(|side| match side {
+                Dimension::Fixed(side) => Some(*side),
+                Dimension::Symbolic(_) => None,
+            });
+            known.collect()
+        },
+    );
+    let bytes = match info.and_then(|info| info.dtype()) {
+        Some(ValueType::Tensor(DataType::UInt8)) => true,
+        None | Some(ValueType::Tensor(DataType::Float)) => false,
+        Some(other) => {
+            let what = format!("the model takes {other:?}");
+            return Err(Fault::new(
+                what,
+                "export one that takes floats of 32 bits, or bytes",
+            ));
+        }
+    };
+    Ok((id, sides, bytes))
+}
+
+/// How a photo is cut, from what the description and the model say.
+fn parts_of(
+    description: &Description,
+    sides: &[Option<usize>],
+    layout: Layout,
+    channels: Channels,
+) -> Result<Parts, Fault> {
+    let (pictures, own_channels, rows, columns) = match (sides, layout) {
+        (&[n, c, h, w], Layout::ChannelsFirst) | (&[n, h, w, c], Layout::ChannelsLast) => {
+            (n, c, h, w)
+        }
+        _ => {
+            let what = format!("the model takes a tensor of {} sides", sides.len());
+            return Err(Fault::new(
+                what,
+                "export one that takes pictures: four sides",
+            ));
+        }
+    };
+    if pictures.is_some_and(|pictures| pictures != 1) {
+        let what = "the model takes several pictures at once";
+        return Err(Fault::new(what, "export it for one"));
+    }
+    if let Some(own) = own_channels.filter(|own| *own != channels.count()) {
+        let what = format!(
+            "the model takes {own} channels, the description says {}",
+            channels.count()
+        );
+        return Err(Fault::new(
+            what,
+            "set channels, or layout, in the description",
+        ));
+    }
+    let tile = description.tile();
+    let is_fixed = rows.is_some() || columns.is_some();
+    let part = [columns.unwrap_or(tile), rows.unwrap_or(tile)];
+    let said = description.input.tile;
+    if said.is_some_and(|said| is_fixed && part != [said; 2]) {
+        let what = format!(
+            "the model takes {} x {} pixels, the description says {tile}",
+            part[0], part[1]
+        );
+        return Err(Fault::new(what, "leave tile out of the description"));
+    }
+    let margin = description.input.margin;
+    if part
+        .iter()
+        .any(|side| *side > 4096 || *side < 16 || 4 * margin > *side)
+    {
+        let what = format!(
+            "the model takes {} x {} pixels, with a margin of {margin}",
+            part[0], part[1]
+        );
+        return Err(Fault::new(
+            what,
+            "give one of 16 to 4096, and a margin of a quarter at most",
+        ));
+    }
+    let step = description.input.multiple.unwrap_or(1);
+    // A part is never larger than the tile.
+    let part = part.map(|side| if is_fixed { side } else { side / step * step });
+    Ok(Parts {
+        part,
+        margin,
+        step,
+        is_fixed,
+    })
+}
+
+/// Which of the model's outputs each entry is.
+fn outputs_of(model: &Model, description: &Description) -> Result<Vec<NodeId>, Fault> {
+    let ids = model.output_ids();
+    let name_of = |id: &NodeId| {
+        let info = model.node_info(*id);
+        info.and_then(|info| info.name())
+            .unwrap_or_default()
+            .to_owned()
+    };
+    let names: Vec<String> = ids.iter().map(name_of).collect();
+    let all = || names.join(", ");
+    let entries = &description.output;
+    let found = entries.iter().map(|entry| match &entry.name {
+        None if ids.len() == 1 => Ok(ids[0]),
+        None => {
+            let what = format!("{} is which of its outputs ({})?", entry.is.word(), all());
+            Err(Fault::new(what, "give its name in the description"))
+        }
+        Some(name) => {
+            let place = names.iter().position(|own| own == name);
+            place.map(|place| ids[place]).ok_or_else(|| {
+                let what = format!("the model has no output \"{name}\"; it has {}", all());
+                Fault::new(what, "give one of these in the description")
+            })
+        }
+    });
+    let found: Vec<NodeId> = found.collect::<Result<_, _>>()?;
+    let mut meanings: Vec<Meaning> = entries.iter().map(|entry| entry.is).collect();
+    meanings.sort_unstable();
+    let is_twice = meanings.windows(2).any(|pair| pair[0] == pair[1]);
+    let maps = meanings.iter().filter(|of| of.is_map()).count();
+    let is_known = match meanings.as_slice() {
+        _ if is_twice => false,
+        of if maps == of.len() => of.contains(&Meaning::Border) || of.contains(&Meaning::Inside),
+        of => matches!(
+            of,
+            [Meaning::Masks]
+                | [Meaning::Masks, Meaning::Scores]
+                | [Meaning::Labels]
+                | [Meaning::Detections, Meaning::Prototypes]
+        ),
+    };
+    if !is_known {
+        let words: Vec<&str> = meanings.iter().map(|of| of.word()).collect();
+        let what = format!("nothing is outlined by {}", words.join(", "));
+        let remedy = "describe maps with border or inside; masks, with scores or without; labels; or detections and prototypes";
+        return Err(Fault::new(what, remedy));
+    }
+    Ok(found)
+}
