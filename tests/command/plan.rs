@@ -148,6 +148,11 @@ fn what_makes_no_plan_is_one_line() {
     };
     let drone = ["--drone", "mavic-3e"];
     let with = |more: &[&'static str]| [&drone[..], more].concat();
+    let error = error_of(&drone, 2);
+    assert!(
+        error.contains("--scale") && error.contains("--height"),
+        "{error}"
+    );
     let error = error_of(&with(&["--scale", "1 px/cm"]), 1);
     assert!(error.contains("no pile stands out of the floor"), "{error}");
     // The cloud alone: nobody says in which unit it is.

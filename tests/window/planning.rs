@@ -73,6 +73,18 @@ fn drag(desk: &mut Desk, from: Pos2, to: Pos2) {
     desk.settle();
 }
 
+/// The bundled lab is flown from half a metre, where the usual clearance of 5 m would refuse every photo.
+#[test]
+fn a_lab_begins_with_a_clearance_that_fits() {
+    let mut desk = Desk::new(Some(&crate::desk::flight("assets/sample")));
+    desk.press(Modifiers::COMMAND, Key::Num4);
+    let asked = desk.open().planning.now().expect("a wish").clone();
+    assert_eq!(asked.clearance, 0.2);
+    assert!(count(&desk) > 0);
+    desk.fill("Clearance", "5");
+    assert!(desk.says("the clearance"));
+}
+
 /// What the page writes is what the command writes.
 #[test]
 fn window_and_command_plan_the_same() {

@@ -101,7 +101,12 @@ impl OpenFlight {
         let pixels = crate::geometry::median(&mut of_photos)
             .unwrap_or((camera.fx * camera.fy).sqrt() * metres / USUAL_HEIGHT);
         let size = Size::scale(crate::numbers::round_near(pixels).unwrap_or(pixels));
-        let asked = AskedPlan::usual(size, drone, metres);
+        let mut asked = AskedPlan::usual(size, drone, metres);
+        // A lab is flown nearer than the usual clearance: half of the photos' distance is left for the relief.
+        let half = (camera.fx * camera.fy).sqrt() / pixels / 2.0;
+        asked.clearance = asked
+            .clearance
+            .min(crate::numbers::round_near(half).unwrap_or(half));
         self.planning.asked = Some(History::new(asked));
     }
 

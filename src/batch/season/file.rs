@@ -128,6 +128,8 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Season, Fault> {
     }
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
     let below = |name: &str| folder.join(name);
+    // What is said of a step that is not asked for now is looked at, and waits until it is.
+    let mut waiting = Asked::of(&Step::ALL);
     for (name, options) in &read.rest {
         // Keys that are no steps were refused.
         let (Ok(step), Value::Table(options)) = (name.parse::<Step>(), options) else {
@@ -147,10 +149,11 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Season, Fault> {
                     .map(|path| path.to_string_lossy().into_owned())
                     .collect();
             }
-            // What is said of a step that is not asked for now waits until it is.
-            if asked.has(step) {
-                asked.set(step, key, values).map_err(wrong)?;
-            }
+            let asked = match asked.has(step) {
+                true => &mut asked,
+                false => &mut waiting,
+            };
+            asked.set(step, key, values).map_err(wrong)?;
         }
     }
     let mut sources = Vec::new();

@@ -201,9 +201,14 @@ impl Season {
                     Some(name) => name.clone(),
                     None => naming::below(&root, &flight),
                 };
+                let results = results_folder(&blast);
+                if results != blast {
+                    let note = format!("the results of '{blast}' go into the folder '{results}'");
+                    found.notes.push(note);
+                }
                 let is_named = flight == source.path;
                 let flight = SeasonFlight {
-                    results: results_folder(&blast),
+                    results,
                     blast,
                     date: source.date,
                     path: flight,

@@ -83,6 +83,19 @@ fn keys_are_those_of_the_steps() {
     }
 }
 
+/// A wrong value waits for nobody: also where its step is not asked for now.
+#[test]
+fn what_waits_is_looked_at() {
+    let of = |engine: &str| {
+        parsed(&format!(
+            "format = 1\nsteps = [\"scales\"]\n[delineate]\nengine = \"{engine}\"\n[[flight]]\npath = \"b\"\n"
+        ))
+    };
+    assert!(!of("classical").unwrap().asked.has(Step::Delineate));
+    let error = of("both").unwrap_err().to_string();
+    assert!(error.contains("'both'"), "{error}");
+}
+
 #[test]
 fn what_is_wrong_is_said_with_its_line() {
     for (old, new, line, what) in [
@@ -232,7 +245,8 @@ fn seasons_name_flights_by_patterns() {
     let found = season.flights(&root.path().join("out")).unwrap();
     assert_eq!(names(&found), ["x1", "x2", "B_31"]);
     assert_eq!(found.flights[2].blast, "B/31");
-    assert!(found.notes.is_empty());
+    let note = "the results of 'B/31' go into the folder 'B_31'";
+    assert_eq!(found.notes, [note]);
     // A name for several.
     let many = SEASON.replace("path = \"late\"", "path = \"flights\"");
     fs::write(&path, many).unwrap();

@@ -30,6 +30,7 @@ use crate::plan::{
 use crate::units::LengthUnit;
 
 #[derive(Debug, Args)]
+#[command(group = clap::ArgGroup::new("size").required(true))]
 pub(in crate::cli) struct PlanArguments {
     #[command(flatten)]
     flight: FlightArguments,
@@ -39,7 +40,7 @@ pub(in crate::cli) struct PlanArguments {
     #[arg(
         long,
         value_name = "N px/UNIT",
-        required_unless_present = "height",
+        group = "size",
         allow_hyphen_values = true
     )]
     scale: Option<PixelScale>,
@@ -55,7 +56,7 @@ pub(in crate::cli) struct PlanArguments {
     #[arg(
         long,
         value_name = "LENGTH",
-        conflicts_with = "scale",
+        group = "size",
         allow_hyphen_values = true
     )]
     height: Option<Length>,

@@ -25,7 +25,9 @@ const FOOT: f64 = 0.3048;
 
 /// Whether a line names Litchi's columns.
 pub(super) fn is_header(line: &str) -> bool {
-    let names: Vec<String> = line.split(',').take(8).map(key).collect();
+    // A spreadsheet of a country with decimal commas saves semicolons.
+    let names = line.split([',', ';', '\t']).take(8).map(key);
+    let names: Vec<String> = names.collect();
     names.first().is_some_and(|name| name == "latitude")
         && names.get(1).is_some_and(|name| name == "longitude")
         && names.iter().any(|name| name == "gimbalmode")

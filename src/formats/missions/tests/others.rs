@@ -232,6 +232,13 @@ fn files_of_litchi() {
     assert_eq!(mission.speed, Some(15.0));
     assert!(said(&file, "only where Litchi's heading mode is Custom"));
 
+    // Saved again by a spreadsheet that writes decimal commas.
+    let path = shared_data("missions/litchi/litchi_wp_waypoints.csv").unwrap();
+    let text = std::fs::read_to_string(path).unwrap();
+    let saved_again = text.replace(',', ";").replace('.', ",");
+    let (_folder, path) = written("mission.csv", saved_again);
+    assert_eq!(read_mission(&path).unwrap().mission, *mission);
+
     // Blanks behind the commas, and actionparam9 twice in the head.
     let blanks = shared("litchi/fp2lm_LitchiMissionTest.csv").unwrap();
     assert_eq!(blanks.mission.stops.len(), 10);
