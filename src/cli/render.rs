@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 use glam::{DVec2, DVec3};
@@ -9,6 +10,7 @@ use image::{DynamicImage, RgbaImage};
 
 use super::Answer;
 use super::flight_arguments::FlightArguments;
+use super::on_surface::places::place;
 use super::outputs::{Force, Outputs};
 use crate::camera::Camera;
 use crate::fault::Fault;
@@ -18,11 +20,11 @@ use crate::formats::photos::photo_metadata;
 use crate::formats::{self, FileError};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
-use crate::opening::{Opened, PhotoFile};
+use crate::opening::{ComparedFlight, FlightOfMission, Opened, PhotoFile, compare_flown};
 use crate::picture;
 use crate::render::{
     Background, ColorBy, Gpu, MOST_PIXELS, Orbit, PhotoGeometry, PhotoImage, Renderer, Scope,
-    Shapes, Show, SurfaceBuffers, Taken, View, drawn_ground, flight_line,
+    Shapes, Show, SurfaceBuffers, Taken, View, drawn_ground, flight_line, flown_lines,
 };
 use crate::scale::Corner;
 
@@ -62,6 +64,12 @@ pub(super) struct RenderArguments {
     /// The selected photo.
     #[arg(long, value_name = "PHOTO")]
     select: Option<String>,
+    /// A mission that this flight came of: its path and cameras, the flown path, and which photos were not taken (red).
+    #[arg(long, value_name = "FILE")]
+    mission: Option<PathBuf>,
+    /// Where the drone of the mission took off, in the world and on the surface, if that is not where the mission says.
+    #[arg(long, value_name = "X,Y", value_parser = place, requires = "mission", allow_hyphen_values = true)]
+    take_off: Option<DVec2>,
     /// How much of the photo lies over the view through its camera, 0 to 1.
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share)]
     blend: f64,
@@ -186,13 +194,15 @@ fn share(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn render(arguments: &RenderArguments, progress: &Progress) -> Result<Answer, String> {
-    let outputs = Outputs::new(arguments.force, arguments.flight.files());
+    let inputs = arguments.flight.files().chain(&arguments.mission);
+    let outputs = Outputs::new(arguments.force, inputs);
     let mut outputs = outputs.and(&arguments.output, Kind::Result)?;
     let opened = arguments.flight.open(progress)?;
     outputs.read(&opened.read)?;
     let path = &arguments.flight.flight;
+    let compared = compared(arguments, &opened, progress).map_err(|error| error.to_string())?;
     let at_flight = |fault| FileError::new(path, fault).to_string();
-    let picture = draw(arguments, &opened, progress).map_err(at_flight)?;
+    let picture = draw(arguments, &opened, compared.as_ref(), progress).map_err(at_flight)?;
     progress.stage("writing the picture");
     let mut bytes = Vec::new();
     picture
@@ -208,13 +218,33 @@ pub(super) fn render(arguments: &RenderArguments, progress: &Progress) -> Result
             FileError::new(&arguments.output, fault).to_string()
         })?;
     outputs.write(&arguments.output, &marked_png(bytes), Kind::Result)?;
-    Ok(Answer::new(String::new(), opened.all_warnings()))
+    let mut warnings = opened.all_warnings();
+    warnings.extend(compared.into_iter().flat_map(|compared| compared.notes));
+    Ok(Answer::new(String::new(), warnings))
+}
+
+/// The mission beside the flight, where one is named.
+fn compared(
+    arguments: &RenderArguments,
+    opened: &Opened,
+    progress: &Progress,
+) -> Result<Option<ComparedFlight>, FileError> {
+    let of = FlightOfMission {
+        file: &arguments.flight.flight,
+        flight: &opened.flight,
+        crs: opened.crs.as_deref(),
+    };
+    let mission = arguments.mission.as_deref();
+    mission
+        .map(|mission| compare_flown(mission, of, arguments.take_off, progress))
+        .transpose()
 }
 
 /// Opens the graphics device and draws.
 fn draw(
     arguments: &RenderArguments,
     opened: &Opened,
+    compared: Option<&ComparedFlight>,
     progress: &Progress,
 ) -> Result<RgbaImage, Fault> {
     let flight = &opened.flight;
@@ -255,7 +285,17 @@ fn draw(
     let frame = LocalFrame::near(&bounds);
     let photos = PhotoGeometry::of_review(&frame, &review);
     let bulk = surface.bulk_bounds();
-    let show = show(arguments, &review, selected, &bulk);
+    let mut show = show(arguments, &review, selected, &bulk);
+    if let Some(ComparedFlight {
+        planned,
+        places,
+        flown,
+        ..
+    }) = compared
+    {
+        let lines = flown_lines(planned, places, flown, parts.cameras.first());
+        show.planned_lines = Arc::new(lines);
+    }
     let mut renderer = Renderer::new(&gpu);
     renderer.start(&frame);
     let wanted = Shapes {
@@ -276,7 +316,9 @@ fn draw(
     let view = match looked_through.and_then(|index| review.photo(index)) {
         Some(photo) => View::through(&photo, 1.0),
         None => {
-            let points = points_to_fit(&review);
+            let mut points = points_to_fit(&review);
+            let planned = compared.iter().flat_map(|compared| &compared.planned);
+            points.extend(planned.map(|plan| plan.pose.center));
             orbit(&arguments.view, &points, &bounds, size).view()
         }
     };

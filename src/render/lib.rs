@@ -25,14 +25,16 @@ mod surface_buffers;
 mod view;
 
 use fragscale_core::{
-    camera, fault, flight, geometry, jobs, numbers, picture, scale, surface, units,
+    camera, fault, flight, geometry, jobs, numbers, picture, plan, scale, surface, units,
 };
 
 pub use device::gpu::{Gpu, device_descriptor};
 pub use fragscale_core::picture::viridis;
 pub use furniture::flight_line::{Taken, flight_line};
+pub use furniture::flown_lines::flown_lines;
 pub use furniture::labels::{Label, Legend, ScaleBar};
 pub use furniture::photo_lines::SELECTED;
+pub use furniture::plan_lines::{plan_areas, plan_photos, plan_way};
 pub use primitives::mesh::MeshBuffers;
 pub use primitives::points::CloudBuffers;
 pub use primitives::surface::LargePhoto;

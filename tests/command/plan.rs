@@ -339,6 +339,27 @@ fn what_was_flown_is_compared_with_its_mission() {
         );
         assert!(flown["shared"].as_f64().unwrap() > 0.9, "{flown}");
     }
+    // In a picture the photo that was not taken is red; without the mission nothing is.
+    #[cfg(feature = "render")]
+    {
+        let reds = |name: &str, more: &[&str]| {
+            let picture = path(name);
+            let own = ["render", &flight, "-o", &picture, "--size", "640x360"];
+            let output = fragscale(&[&own[..], more].concat());
+            let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert_eq!(output.status.code(), Some(0), "{notes}");
+            let pixels = image::open(&picture).unwrap().into_rgb8();
+            // Thin lines are mixed with what is behind them.
+            let is_red = |pixel: &&image::Rgb<u8>| {
+                let [red, green, blue] = pixel.0.map(i32::from);
+                red - green.max(blue) > 60 && (green - blue).abs() < 20
+            };
+            pixels.pixels().filter(is_red).count()
+        };
+        let of = ["--mission", &mission, "--take-off", "450020,5400020"];
+        assert!(reds("flown3d.png", &of) > 10);
+        assert_eq!(reds("alone.png", &[]), 0);
+    }
     let figures = ["flown.svg", "flown.pdf", "flown.png"].map(path);
     let place = ["--mission", &mission, "--take-off", "450020,5400020"];
     let mut more = vec!["flown", &flight];

@@ -3,20 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use glam::DVec3;
-
-use super::lines::{GOOD, KEEP_OUT, TROUBLED, WAY, pyramid};
-use crate::camera::Camera;
 use crate::exports::{FlownReport, flown_warnings};
 use crate::flight::Flight;
-use crate::geometry::Bounds;
 use crate::opening::ComparedFlight;
-use crate::plan::Drone;
-use crate::render::PlannedLine;
+use crate::render::{PlannedLine, flown_lines};
 use crate::units::LengthUnit;
-
-/// The side of a camera, in the size of the flight.
-const CAMERA: f64 = 0.025;
 
 /// A mission beside the flight on the screen.
 pub struct FlownMission {
@@ -44,11 +35,15 @@ impl FlownMission {
 
     pub(super) fn of(file: &Path, compared: ComparedFlight, flight: &Flight) -> Self {
         let parts = flight.parts();
-        let camera = parts.cameras.first().cloned();
-        let camera = camera.unwrap_or_else(|| Drone::ALL[0].camera());
+        let lines = flown_lines(
+            &compared.planned,
+            &compared.places,
+            &compared.flown,
+            parts.cameras.first(),
+        );
         let mut flown = Self {
             file: file.to_owned(),
-            lines: Arc::new(lines(&compared, &camera)),
+            lines: Arc::new(lines),
             compared,
             warnings: Vec::new(),
         };
@@ -59,34 +54,4 @@ impl FlownMission {
         flown.warnings.extend(flown.compared.notes.iter().cloned());
         flown
     }
-}
-
-/// The planned and the flown path, every photo with its way from the plan, and those that were not taken.
-fn lines(compared: &ComparedFlight, camera: &Camera) -> Vec<PlannedLine> {
-    let planned: Vec<DVec3> = (compared.planned.iter())
-        .map(|plan| plan.pose.center)
-        .collect();
-    let all: Vec<DVec3> = planned.iter().chain(&compared.places).copied().collect();
-    let size = Bounds::of(&all).map_or(1.0, |bounds| bounds.size().length());
-    let line = |points: Vec<DVec3>, color: [u8; 3], width: f64| PlannedLine {
-        points,
-        color,
-        width,
-    };
-    let mut lines = vec![
-        line(planned, WAY[1], 1.5),
-        line(compared.places.clone(), GOOD, 1.5),
-    ];
-    for (plan, residual) in compared.planned.iter().zip(&compared.flown.residuals) {
-        let flown = residual.and_then(|residual| compared.places.get(residual.photo));
-        let color = match flown {
-            Some(_) => WAY[1],
-            None => KEEP_OUT,
-        };
-        lines.push(line(pyramid(camera, &plan.pose, CAMERA * size), color, 1.4));
-        if let Some(flown) = flown {
-            lines.push(line(vec![plan.pose.center, *flown], TROUBLED, 2.5));
-        }
-    }
-    lines
 }

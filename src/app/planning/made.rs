@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use super::asked::AskedPlan;
-use super::lines;
 use crate::camera::Camera;
 use crate::plan::{Pace, Plan, Shadows, Sun, Way};
-use crate::render::PlannedLine;
+use crate::render::{PlannedLine, plan_photos};
 use crate::surface::Surface;
 use crate::survey::Polygon;
 
@@ -44,7 +43,7 @@ impl MadePlan {
     /// All of it as lines of the picture.
     pub fn lines(&self, selected: Option<usize>) -> Vec<PlannedLine> {
         let mut lines = self.lines.clone();
-        lines.extend(lines::photos(&self.plan, selected));
+        lines.extend(plan_photos(&self.plan, selected));
         lines
     }
 }

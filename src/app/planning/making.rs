@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use super::asked::{AskedPlan, Edit};
-use super::lines;
 use super::made::MadePlan;
 use crate::camera::Camera;
 use crate::exports::{PlanReport, plan_warnings};
@@ -11,6 +10,7 @@ use crate::fault::Fault;
 use crate::geodesy::Crs;
 use crate::jobs::Progress;
 use crate::plan::{self, Pace, Plan, Way};
+use crate::render::{plan_areas, plan_way};
 use crate::state::State;
 use crate::surface::Surface;
 use crate::survey::Polygon;
@@ -163,8 +163,8 @@ fn made(
         Ok(sun) => (sun, None),
         Err::<_, Fault>(fault) => (None, Some(fault.to_string())),
     };
-    let mut lines = lines::areas(&plan);
-    lines.extend(ways.iter().flat_map(|way| lines::way(way, &plan)));
+    let mut lines = plan_areas(&plan);
+    lines.extend(ways.iter().flat_map(|way| plan_way(way, &plan)));
     Ok(MadePlan {
         asked: asked.clone(),
         surface: over.surface.clone(),

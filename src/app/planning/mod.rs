@@ -7,7 +7,6 @@
 //! applying  does that
 //! made      the plan that came of it
 //! making    the plan, as a job, whenever something else is asked for
-//! lines     the plan as lines of the picture
 //! saving    mission and table as files
 //! areas     areas that are typed or in a file
 //! flown     a mission against the flight that came of it
@@ -22,7 +21,6 @@ mod asked;
 mod command;
 mod comparing;
 mod flown;
-mod lines;
 mod made;
 mod making;
 mod saving;

@@ -4,11 +4,13 @@ mod clip_box;
 pub(crate) mod crowd;
 mod drawn;
 pub(crate) mod flight_line;
+pub(crate) mod flown_lines;
 pub(crate) mod image_edge;
 pub(crate) mod labels;
 mod measured;
 pub(crate) mod photo_lines;
 mod picked;
+pub(crate) mod plan_lines;
 pub(crate) mod words;
 
 use glam::{DVec2, DVec3};

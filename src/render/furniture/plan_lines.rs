@@ -4,14 +4,16 @@ use glam::{DVec2, DVec3};
 
 use crate::camera::{Camera, Pose};
 use crate::plan::{Plan, PlannedPhoto, Terrain, Way};
-use crate::render::{PlannedLine, SELECTED};
+use crate::show::PlannedLine;
+
+use super::photo_lines::SELECTED;
 
 /// A photo that holds what was asked for.
 pub(super) const GOOD: [u8; 3] = [70, 190, 130];
 /// One that does not.
 pub(super) const TROUBLED: [u8; 3] = [240, 150, 40];
 /// What is photographed.
-pub(super) const AREA: [u8; 3] = [235, 235, 235];
+const AREA: [u8; 3] = [235, 235, 235];
 /// What is kept out of, and a way that is as near to the ground as it may be.
 pub(super) const KEEP_OUT: [u8; 3] = [225, 60, 60];
 /// A way with twice the clearance, and one with more.
@@ -22,7 +24,7 @@ const PER_SIDE: u32 = 16;
 const CAMERA: f64 = 0.08;
 
 /// The way in pieces that have one colour each.
-pub(super) fn way(way: &Way, plan: &Plan) -> Vec<PlannedLine> {
+pub fn plan_way(way: &Way, plan: &Plan) -> Vec<PlannedLine> {
     let (terrain, least) = (&plan.terrain, plan.wish.clearance);
     let color_of = |place: DVec3| match terrain.clearance(place, 2.0 * least) {
         near if near < 1.25 * least => KEEP_OUT,
@@ -62,7 +64,7 @@ pub(super) fn way(way: &Way, plan: &Plan) -> Vec<PlannedLine> {
 }
 
 /// The photos, the selected one above the others.
-pub(super) fn photos(plan: &Plan, selected: Option<usize>) -> Vec<PlannedLine> {
+pub fn plan_photos(plan: &Plan, selected: Option<usize>) -> Vec<PlannedLine> {
     let order = (0..plan.photos.len()).filter(|place| Some(*place) != selected);
     let order = order.chain(selected.filter(|place| *place < plan.photos.len()));
     let lines = order.flat_map(|place| {
@@ -106,7 +108,7 @@ pub(super) fn pyramid(camera: &Camera, pose: &Pose, side: f64) -> Vec<DVec3> {
 }
 
 /// What is photographed and what is kept out of.
-pub(super) fn areas(plan: &Plan) -> Vec<PlannedLine> {
+pub fn plan_areas(plan: &Plan) -> Vec<PlannedLine> {
     let keep_out = plan.wish.keep_out.iter().map(|area| (area, KEEP_OUT));
     let all = [(&plan.area, AREA)].into_iter().chain(keep_out);
     let lines = all.map(|(area, color)| PlannedLine {
@@ -118,7 +120,7 @@ pub(super) fn areas(plan: &Plan) -> Vec<PlannedLine> {
 }
 
 /// A line through places of the map, lying on the ground; where there is none, at the height of what is beside it.
-pub(super) fn on_ground(places: &[DVec2], is_closed: bool, terrain: &Terrain) -> Vec<DVec3> {
+fn on_ground(places: &[DVec2], is_closed: bool, terrain: &Terrain) -> Vec<DVec3> {
     let ends = places.iter().zip(places.iter().cycle().skip(1));
     let sides = if is_closed {
         places.len()
@@ -149,7 +151,7 @@ mod tests {
     use crate::jobs::Progress;
     use crate::plan::{Drone, Pattern, Size, WayPoint, Wish};
     use crate::surface::{Cloud, Surface};
-    use crate::survey::Polygon;
+    use fragscale_core::survey::Polygon;
 
     fn plan() -> Plan {
         let points =
@@ -187,7 +189,7 @@ mod tests {
             ],
             length: 0.0,
         };
-        let lines = way(&flown, &plan);
+        let lines = plan_way(&flown, &plan);
         let color_at = |x: f64, height: f64| {
             let place = DVec3::new(x, 60.0, 3.0 + height);
             let holds = |line: &&PlannedLine| {
@@ -217,7 +219,7 @@ mod tests {
         let mut plan = plan();
         let count = plan.photos.len();
         plan.photos[1].forecast = None;
-        let lines = photos(&plan, Some(0));
+        let lines = plan_photos(&plan, Some(0));
         let color_of = |photo: usize| {
             let eye = plan.photos[photo].pose.center;
             let has = |line: &&PlannedLine| line.points.contains(&eye);
