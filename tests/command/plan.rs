@@ -344,7 +344,8 @@ fn what_was_flown_is_compared_with_its_mission() {
     {
         let reds = |name: &str, more: &[&str]| {
             let picture = path(name);
-            let own = ["render", &flight, "-o", &picture, "--size", "640x360"];
+            // An axis is red, too.
+            let own = ["render", &flight, "-o", &picture, "--show", "mesh"];
             let output = fragscale(&[&own[..], more].concat());
             let notes = String::from_utf8_lossy(&output.stderr).into_owned();
             assert_eq!(output.status.code(), Some(0), "{notes}");
