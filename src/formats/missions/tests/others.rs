@@ -236,8 +236,9 @@ fn files_of_litchi() {
     let path = shared_data("missions/litchi/litchi_wp_waypoints.csv").unwrap();
     let text = std::fs::read_to_string(path).unwrap();
     let saved_again = text.replace(',', ";").replace('.', ",");
-    let (_folder, path) = written("mission.csv", saved_again);
-    assert_eq!(read_mission(&path).unwrap().mission, *mission);
+    let (_folder, path) = written("litchi_wp_waypoints.csv", saved_again);
+    let again = read_mission(&path).unwrap().mission;
+    assert_eq!(again, *mission);
 
     // Blanks behind the commas, and actionparam9 twice in the head.
     let blanks = shared("litchi/fp2lm_LitchiMissionTest.csv").unwrap();
