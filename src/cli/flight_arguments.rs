@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::jobs::Progress;
-use crate::opening::{self, Memory, OpenOptions, Opened, half_of_the_machines, memory_size};
+use crate::opening::{
+    self, FlightOfMission, Memory, OpenOptions, Opened, half_of_the_machines, memory_size,
+};
 use crate::surface::UpAxis;
 
 #[derive(Debug, Args)]
@@ -58,6 +60,15 @@ impl FlightArguments {
     /// The same, but a cloud without photos does too: what is measured on the surface needs none.
     pub(super) fn open_to_measure(&self, progress: &Progress) -> Result<Opened, String> {
         self.open_with(true, progress)
+    }
+
+    /// The flight that was opened, to be held against a mission.
+    pub(super) fn of_mission<'a>(&'a self, opened: &'a Opened) -> FlightOfMission<'a> {
+        FlightOfMission {
+            file: &self.flight,
+            flight: &opened.flight,
+            crs: opened.crs.as_deref(),
+        }
     }
 
     fn open_with(&self, may_lack_photos: bool, progress: &Progress) -> Result<Opened, String> {

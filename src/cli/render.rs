@@ -20,7 +20,7 @@ use crate::formats::photos::photo_metadata;
 use crate::formats::{self, FileError};
 use crate::geometry::{Bounds, LocalFrame};
 use crate::jobs::Progress;
-use crate::opening::{ComparedFlight, FlightOfMission, Opened, PhotoFile, compare_flown};
+use crate::opening::{ComparedFlight, Opened, PhotoFile, compare_flown};
 use crate::picture;
 use crate::render::{
     Background, ColorBy, Gpu, MOST_PIXELS, Orbit, PhotoGeometry, PhotoImage, Renderer, Scope,
@@ -229,11 +229,7 @@ fn compared(
     opened: &Opened,
     progress: &Progress,
 ) -> Result<Option<ComparedFlight>, FileError> {
-    let of = FlightOfMission {
-        file: &arguments.flight.flight,
-        flight: &opened.flight,
-        crs: opened.crs.as_deref(),
-    };
+    let of = arguments.flight.of_mission(opened);
     let mission = arguments.mission.as_deref();
     mission
         .map(|mission| compare_flown(mission, of, arguments.take_off, progress))

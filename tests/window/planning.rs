@@ -83,6 +83,19 @@ fn a_lab_begins_with_a_clearance_that_fits() {
     assert!(count(&desk) > 0);
     desk.fill("Clearance", "5");
     assert!(desk.says("the clearance"));
+    // Flown from a hundred metres it is the usual one, in feet as in metres.
+    let folder = tempfile::tempdir().expect("a folder");
+    let flight = pile(folder.path());
+    let in_metres = fs::read_to_string(&flight).expect("a flight");
+    // A system in metres would contradict feet.
+    let in_feet = in_metres.replace("unit = \"m\"\ncrs = \"EPSG:32632\"", "unit = \"ft\"");
+    for (text, clearance) in [(in_metres, 5.0), (in_feet, 5.0 / 0.3048)] {
+        fs::write(&flight, &text).expect("a flight");
+        let mut desk = Desk::new(Some(&flight));
+        desk.press(Modifiers::COMMAND, Key::Num4);
+        let asked = desk.open().planning.now().expect("a wish").clearance;
+        assert!((asked - clearance).abs() < 1e-9, "{asked}: {text}");
+    }
 }
 
 /// What the page writes is what the command writes.

@@ -93,17 +93,18 @@ impl OpenFlight {
         let metres = parts.unit.metres();
         let drone = parts.cameras.is_empty().then_some(Drone::ALL[0]);
         let camera = (parts.cameras.first().cloned()).unwrap_or_else(|| Drone::ALL[0].camera());
+        let focal = (camera.fx * camera.fy).sqrt();
         let of_photos = (0..self.review.count()).filter_map(|photo| {
             let [top, bottom] = self.review.photo(photo)?.pair(parts.unit);
             Some((top? + bottom?) / 2.0)
         });
         let mut of_photos: Vec<f64> = of_photos.collect();
-        let pixels = crate::geometry::median(&mut of_photos)
-            .unwrap_or((camera.fx * camera.fy).sqrt() * metres / USUAL_HEIGHT);
+        let pixels =
+            crate::geometry::median(&mut of_photos).unwrap_or(focal * metres / USUAL_HEIGHT);
         let size = Size::scale(crate::numbers::round_near(pixels).unwrap_or(pixels));
         let mut asked = AskedPlan::usual(size, drone, metres);
         // A lab is flown nearer than the usual clearance: half of the photos' distance is left for the relief.
-        let half = (camera.fx * camera.fy).sqrt() / pixels / 2.0;
+        let half = focal / pixels / 2.0;
         asked.clearance = asked
             .clearance
             .min(crate::numbers::round_near(half).unwrap_or(half));

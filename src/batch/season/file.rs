@@ -115,12 +115,14 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Season, Fault> {
         let remedy = "write format = 1, or use a newer fragscale";
         return Err(at("", "format", what, remedy));
     }
-    let mut asked = Asked::of(&STEPS);
+    let mut steps = STEPS.to_vec();
     if let Some(names) = &read.steps {
-        let steps: Result<Vec<Step>, String> = names.iter().map(|name| name.parse()).collect();
+        let named: Result<Vec<Step>, String> = names.iter().map(|name| name.parse()).collect();
         let remedy = "correct or remove it";
-        asked.set_steps(&steps.map_err(|what| at("", "steps", what, remedy))?);
+        steps = named.map_err(|what| at("", "steps", what, remedy))?;
     }
+    // What is said of a step is looked at also where the step is not asked for now.
+    let mut asked = Asked::of(&Step::ALL);
     if let Some(unit) = read.unit {
         asked.unit = unit;
         let wrong = |what| at("", "unit", what, "name one of them");
@@ -128,8 +130,6 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Season, Fault> {
     }
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
     let below = |name: &str| folder.join(name);
-    // What is said of a step that is not asked for now is looked at, and waits until it is.
-    let mut waiting = Asked::of(&Step::ALL);
     for (name, options) in &read.rest {
         // Keys that are no steps were refused.
         let (Ok(step), Value::Table(options)) = (name.parse::<Step>(), options) else {
@@ -149,13 +149,10 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<Season, Fault> {
                     .map(|path| path.to_string_lossy().into_owned())
                     .collect();
             }
-            let asked = match asked.has(step) {
-                true => &mut asked,
-                false => &mut waiting,
-            };
             asked.set(step, key, values).map_err(wrong)?;
         }
     }
+    asked.set_steps(&steps);
     let mut sources = Vec::new();
     for (number, flight) in read.flight.iter().enumerate() {
         let line = |key: &str| nth_key_line(text, "flight", number, key);

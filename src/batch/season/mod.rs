@@ -201,14 +201,9 @@ impl Season {
                     Some(name) => name.clone(),
                     None => naming::below(&root, &flight),
                 };
-                let results = results_folder(&blast);
-                if results != blast {
-                    let note = format!("the results of '{blast}' go into the folder '{results}'");
-                    found.notes.push(note);
-                }
                 let is_named = flight == source.path;
                 let flight = SeasonFlight {
-                    results,
+                    results: results_folder(&blast),
                     blast,
                     date: source.date,
                     path: flight,
@@ -220,6 +215,11 @@ impl Season {
             }
         }
         found.flights = once.flights();
+        let renamed = (found.flights.iter()).filter(|flight| flight.results != flight.blast);
+        found.notes.extend(renamed.map(|flight| {
+            let (blast, results) = (&flight.blast, &flight.results);
+            format!("the results of '{blast}' go into the folder '{results}'")
+        }));
         let said = [
             (without, ["holds no flight", "hold no flight"]),
             (

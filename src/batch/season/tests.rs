@@ -283,6 +283,28 @@ fn a_flight_that_is_named_in_two_ways_is_one() {
     assert_eq!(names(&named("flights/x3")), ["x1", "x2", "B2"]);
 }
 
+/// Where results go is said of flights that are done, and not of names that were only found on the way to them.
+#[test]
+fn a_name_that_is_replaced_has_no_folder() {
+    let root = tempfile::tempdir().unwrap();
+    flight_in(&root.path().join("flights/x2."));
+    let path = root.path().join("SEASON.toml");
+    let found = |more: &str| {
+        let text = format!("format = 1\n[[flight]]\npath = \"flights/*\"\n{more}");
+        fs::write(&path, text).unwrap();
+        let season = Season::read(&path).unwrap();
+        season.flights(&root.path().join("out")).unwrap()
+    };
+    let by_itself = "[[flight]]\npath = \"flights/x2.\"\nname = \"B2\"\n";
+    assert_eq!(
+        found("").notes,
+        ["the results of 'x2.' go into the folder 'x2'"]
+    );
+    let named = found(by_itself);
+    assert_eq!(names(&named), ["B2"]);
+    assert!(named.notes.is_empty(), "{:?}", named.notes);
+}
+
 #[test]
 fn folders_have_safe_names() {
     for (name, folder) in [

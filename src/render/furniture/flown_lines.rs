@@ -48,49 +48,33 @@ pub fn flown_lines(
 
 #[cfg(test)]
 mod tests {
-    use glam::{DMat3, DVec2};
-
     use super::*;
     use crate::camera::Pose;
-    use crate::plan::Taken;
-    use fragscale_core::surface::{Cloud, Surface};
+    use crate::plan::Residual;
 
     /// Of three planned photos the second was not taken, the others lie beside their plan.
     #[test]
     fn what_was_not_taken_is_red_and_the_others_lead_to_their_photo() {
-        let down = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
-        let at = |x: f64, y: f64| Pose {
-            center: DVec3::new(x, y, 20.0),
-            rotation: down,
-        };
-        let camera = Drone::ALL[0].camera();
         let poses: Vec<PlannedPose> = [0.0, 40.0, 80.0]
             .map(|x| PlannedPose {
                 name: format!("P{x}"),
-                pose: at(x, 0.0),
+                pose: Pose::from_tilt_pan(DVec3::new(x, 0.0, 20.0), [90.0, 0.0]),
             })
             .into();
-        let points = (0..400).map(|i| {
-            let place = DVec2::new(f64::from(i % 20), f64::from(i / 20)) * 10.0 - 60.0;
-            place.extend(0.0)
-        });
-        let surface = Surface::new(Cloud {
-            points: points.collect(),
-            ..Cloud::default()
-        })
-        .unwrap();
-        let flown = [at(0.5, 0.0), at(80.0, 1.0)];
-        let taken: Vec<Taken<'_>> = (flown.iter().zip(["P0", "P80"]))
-            .map(|(pose, name)| Taken {
-                name,
-                pose,
-                camera: &camera,
-            })
-            .collect();
-        let residuals =
-            Flown::compare(&poses, &taken, &surface, &crate::jobs::Progress::default()).unwrap();
-        let places = flown.map(|pose| pose.center);
-        let lines = flown_lines(&poses, &places, &residuals, Some(&camera));
+        let places = [DVec3::new(80.0, 1.0, 20.0), DVec3::new(0.5, 0.0, 20.0)];
+        let taken_as = |photo: usize| Residual {
+            photo,
+            offset: DVec3::ZERO,
+            tilt: 0.0,
+            pan: 0.0,
+            turn: 0.0,
+            shared: None,
+        };
+        let flown = Flown {
+            residuals: vec![Some(taken_as(1)), None, Some(taken_as(0))],
+            unplanned: Vec::new(),
+        };
+        let lines = flown_lines(&poses, &places, &flown, None);
         let of = |color: [u8; 3]| lines.iter().filter(move |line| line.color == color);
         assert_eq!(of(KEEP_OUT).count(), 1);
         assert!(of(KEEP_OUT).all(|line| line.points.contains(&poses[1].pose.center)));
@@ -98,6 +82,6 @@ mod tests {
             .map(|line| [line.points[0], line.points[1]])
             .collect();
         let expected = [0, 2].map(|planned| poses[planned].pose.center);
-        assert_eq!(off, [[expected[0], places[0]], [expected[1], places[1]]]);
+        assert_eq!(off, [[expected[0], places[1]], [expected[1], places[0]]]);
     }
 }
