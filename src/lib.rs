@@ -67,9 +67,9 @@
 //! | a drone | `src/plan/drones.rs` | one row: camera, gimbal, DJI's numbers, each with its source |
 //! | a ground station's missions | `src/formats/missions/mod.rs`, `src/exports/missions/format.rs` | what reads and what writes it, a file each beside them; `exports/missions/tests/round_trip.rs` holds that all say the same |
 //! | a reconstruction engine | `src/reconstruct/engine.rs` | the trait; the engine is a folder beside it, and leaves COLMAP's text files |
-//! | an engine that outlines fragments | `src/delineation/engine.rs` | the trait; the engine is a folder beside it, its score is learned by `delineation/training/train_score.py`; `src/cli/of_photos/delineate.rs` offers it |
+//! | an engine that outlines fragments | `src/delineation/engine.rs` | the trait; the engine is a folder beside it, its score is learned by `delineation/training/train_score.py`; `src/cli/of_photos/delineate/mod.rs` offers it |
 //! | a step or option of a batch | `src/batch/asked.rs` | its words; `src/cli/batch/steps.rs` does it by the single command's function, `src/batch/season/file.rs` has its keys |
-//! | a format of outlines | `src/formats/masks/mod.rs`, `src/exports/masks/mod.rs` | what reads and what writes it, a file each beside them; `exports/masks/tests.rs` holds that all read back to the pixel; `src/cli/of_photos/written_outlines.rs` offers it |
+//! | a format of outlines | `src/formats/masks/mod.rs`, `src/exports/masks/mod.rs` | what reads and what writes it, a file each beside them; `exports/masks/tests.rs` holds that all read back to the pixel; `src/cli/of_photos/delineate/written_outlines.rs` offers it |
 //! | a job with a panel | `src/app/tasks/mod.rs` | the job with its task and its ending is a file beside it, the panel one in `panels/`; `command/mod.rs` and `apply.rs` start it |
 //!
 //! # Conventions (everywhere)

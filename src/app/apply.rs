@@ -309,6 +309,7 @@ impl State {
                     | Asking::VolumeBase
                     | Asking::CloudUse
                     | Asking::AddLayer
+                    | Asking::Masks
                     | Asking::ControlList
             )
         );

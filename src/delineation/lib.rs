@@ -17,6 +17,7 @@
 
 pub mod choice;
 mod classical;
+mod counted;
 mod delineating;
 mod engine;
 mod evidence;

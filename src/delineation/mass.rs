@@ -25,6 +25,7 @@ use fragscale_core::scale::ScaleField;
 use fragscale_fragmentation::SizeDistribution;
 use glam::DVec2;
 
+use crate::counted::Counted;
 use crate::engine::Engine;
 use crate::labels::{FINES, LabelImage};
 use crate::measures::Fragment;
@@ -44,12 +45,13 @@ pub struct PhotoFragments {
 
 impl PhotoFragments {
     /// From a photo's label image, the scale field of all its pixels and the measures of its fragments; the narrowest
-    /// that its engine outlines is `least_across` pixels.
+    /// that its engine outlines is `least_across` pixels. Of what other tools and people outlined (`None`) the smallest that
+    /// counts is the limit.
     pub fn new(
         labels: &LabelImage,
         field: &ScaleField,
         fragments: Vec<Fragment>,
-        least_across: f64,
+        least_across: Option<f64>,
     ) -> Self {
         let (mut fines, mut area, mut pixels) = (0.0, 0.0, 0.0);
         for (place, label) in labels.labels.iter().enumerate() {
@@ -65,11 +67,17 @@ impl PhotoFragments {
             }
         }
         let scale: f64 = (pixels / area).sqrt();
+        let counts = fragments.iter().filter(|of| !of.is_cut);
+        let sizes = counts.filter_map(|of| Some(of.world?.sieve_size));
+        let limit = match least_across {
+            Some(across) => across / scale,
+            None => sizes.reduce(f64::min).unwrap_or(0.0),
+        };
         Self {
-            fragments,
             frame: DVec2::new(labels.width as f64, labels.height as f64),
             fines,
-            limit: least_across / scale,
+            limit,
+            fragments,
         }
     }
 }
@@ -142,9 +150,6 @@ pub struct ByMass {
     pub area: f64,
 }
 
-/// Sizes per factor of ten.
-const PER_DECADE: f64 = 10.0;
-
 /// The distribution of all photos together.
 ///
 /// # Errors
@@ -153,82 +158,22 @@ pub fn by_mass<'a>(
     photos: impl IntoIterator<Item = &'a PhotoFragments>,
     steps: Steps,
 ) -> Result<ByMass, Fault> {
-    let (mut whole, mut cut, mut fines, mut rock) = (Vec::new(), 0, 0.0, 0.0);
-    let mut limit: f64 = 0.0;
-    for photo in photos {
-        limit = limit.max(photo.limit);
-        fines += photo.fines;
-        for fragment in &photo.fragments {
-            let Some(world) = fragment.world else {
-                continue;
-            };
-            rock += world.area;
-            if fragment.is_cut {
-                cut += 1;
-                continue;
-            }
-            let seldom = (DVec2::ONE - fragment.extent / photo.frame).max(DVec2::splat(0.02));
-            let stands_for = if steps.edges {
-                1.0 / (seldom.x * seldom.y)
-            } else {
-                1.0
-            };
-            whole.push((world.sieve_size, world.area * stands_for));
-        }
-    }
-    let nothing = || {
-        let what = "no photo shows a whole fragment on the surface";
-        Fault::new(what, "take photos from farther away, or another engine")
-    };
-    whole.sort_by(|a, b| a.0.total_cmp(&b.0));
-    if let Some(porosity) = steps.pores {
-        seen_between(&mut whole, porosity);
-    }
-    let largest = whole.last().ok_or_else(nothing)?.0;
-    let total: f64 = whole.iter().map(|(_, mass)| mass).sum();
-    let fines_share = steps.fines * fines / (fines + rock);
-    let mut points = Vec::new();
-    let first = (limit.max(largest * 1e-4).log10() * PER_DECADE).ceil() as i32;
-    for step in first.. {
-        let size = 10f64.powf(f64::from(step) / PER_DECADE);
-        let passed: f64 = whole
-            .iter()
-            .take_while(|(own, _)| *own <= size)
-            .map(|(_, mass)| mass)
-            .sum();
-        let share = (passed / total).min(1.0);
-        let all = size >= largest;
-        let share = if all { 1.0 } else { share };
-        points.push([size, 100.0 * (fines_share + (1.0 - fines_share) * share)]);
-        // A curve has two points.
-        if all && points.len() > 1 {
-            break;
-        }
-    }
-    Ok(ByMass {
-        curve: SizeDistribution::new(points)?,
-        whole: whole.len(),
-        cut,
-        unfound: fines / (fines + rock),
-        fines: fines_share,
-        limit,
-        area: fines + rock,
-    })
+    let counted = Counted::of(photos, steps)?;
+    by_mass_of(&counted, steps)
 }
 
-/// From areas to what they stand for: see step 3 above. Sizes with their weights.
-fn seen_between(fragments: &mut [(f64, f64)], porosity: f64) {
-    let porosity = porosity.clamp(0.0, 0.9);
-    let areas: Vec<f64> = fragments.iter().map(|(_, area)| *area).collect();
-    // The mean size by surface is that of the masses, which follow from it: in the first rounds it comes near.
-    for _ in 0..20 {
-        let mass: f64 = fragments.iter().map(|(_, mass)| mass).sum();
-        let surface: f64 = fragments.iter().map(|(size, mass)| mass / size).sum();
-        let free = 2.0 / 3.0 * porosity / (1.0 - porosity) * mass / surface;
-        for ((size, mass), area) in fragments.iter_mut().zip(&areas) {
-            *mass = area * *size / (0.5 * *size + free);
-        }
-    }
+fn by_mass_of(counted: &Counted, steps: Steps) -> Result<ByMass, Fault> {
+    let unfound = counted.fines / (counted.fines + counted.rock);
+    let fines = steps.fines * unfound;
+    Ok(ByMass {
+        curve: counted.curve(fines)?,
+        whole: counted.whole.len(),
+        cut: counted.cut,
+        unfound,
+        fines,
+        limit: counted.limit,
+        area: counted.fines + counted.rock,
+    })
 }
 
 /// A step on the way from what is seen to the mass.
@@ -265,33 +210,30 @@ pub fn steps_taken(photos: &[&PhotoFragments], steps: Steps) -> Result<Vec<StepT
         pores: None,
         fines: 0.0,
     };
-    let of = |steps: Steps| by_mass(photos.iter().copied(), steps);
+    let of = |steps: Steps| -> Result<(Counted, ByMass), Fault> {
+        let counted = Counted::of(photos.iter().copied(), steps)?;
+        let by_mass = by_mass_of(&counted, steps)?;
+        Ok((counted, by_mass))
+    };
+    let (mut before, seen) = of(so_far)?;
     let mut taken = vec![StepTaken {
         step: Step::Seen,
         share: 1.0,
-        curve: of(so_far)?.curve,
+        curve: seen.curve,
     }];
     for step in [Step::Edges, Step::Pores, Step::Fines] {
-        let is_taken = match step {
-            Step::Seen => false,
-            Step::Edges => steps.edges,
-            Step::Pores => steps.pores.is_some(),
-            Step::Fines => steps.fines > 0.0,
-        };
-        if !is_taken {
-            continue;
-        }
         match step {
-            Step::Edges => so_far.edges = true,
-            Step::Pores => so_far.pores = steps.pores,
-            Step::Fines => so_far.fines = steps.fines,
-            Step::Seen => {}
+            Step::Edges if steps.edges => so_far.edges = true,
+            Step::Pores if steps.pores.is_some() => so_far.pores = steps.pores,
+            Step::Fines if steps.fines > 0.0 => so_far.fines = steps.fines,
+            _ => continue,
         }
-        let now = of(so_far)?;
-        let share = match (step, taken.last()) {
-            (Step::Fines, _) | (_, None) => now.fines,
-            (_, Some(before)) => moved(&before.curve, &now.curve),
+        let (counted, now) = of(so_far)?;
+        let share = match step {
+            Step::Fines => now.fines,
+            _ => before.moved(&counted),
         };
+        before = counted;
         taken.push(StepTaken {
             step,
             share,
@@ -299,22 +241,6 @@ pub fn steps_taken(photos: &[&PhotoFragments], steps: Steps) -> Result<Vec<StepT
         });
     }
     Ok(taken)
-}
-
-/// The share of the mass that lies in other classes of sizes: half of the sum of what they differ by.
-fn moved(before: &SizeDistribution, now: &SizeDistribution) -> f64 {
-    let classes = |of: &SizeDistribution| -> Vec<f64> {
-        let mut last = 0.0;
-        let points = of.points().iter().map(|[_, percent]| {
-            let own = percent - last;
-            last = *percent;
-            own
-        });
-        points.collect()
-    };
-    // The same sizes, as both are of the same fragments.
-    let pairs = classes(before).into_iter().zip(classes(now));
-    pairs.map(|(a, b)| (a - b).abs()).sum::<f64>() / 200.0
 }
 
 #[cfg(test)]
@@ -414,58 +340,6 @@ pub(crate) mod tests {
             ..Steps::default()
         });
         assert!(not > 11.0, "{not}");
-    }
-
-    /// Balls strewn through a volume at random, so that they overlap (a Boolean model, of which the free path is known to be
-    /// exponential), and cut off at a level: those whose middle lies below it are seen from above. As much of the volume in
-    /// small ones as in large ones: by area the small ones are far more, with the pores both are as many.
-    #[test]
-    fn what_is_seen_between_others() {
-        let mut random = SplitMix(5);
-        let mut unit = || (random.next() >> 11) as f64 / (1u64 << 53) as f64;
-        let (side, deep) = (150.0, 15.0);
-        let sizes: [f64; 2] = [1.0, 4.0];
-        // Each class would fill a quarter if none overlapped.
-        let mut balls: Vec<(DVec3, f64)> = Vec::new();
-        for size in sizes {
-            let count = 0.25 * side * side * deep / (std::f64::consts::PI / 6.0 * size.powi(3));
-            for _ in 0..count as usize {
-                let place = DVec3::new(unit() * side, unit() * side, -deep * unit());
-                balls.push((place, size / 2.0));
-            }
-        }
-        // The highest over each of 600 x 600 places.
-        let cells = 600;
-        let mut top = vec![(f64::NEG_INFINITY, 0.0); cells * cells];
-        let step = side / cells as f64;
-        for (place, radius) in &balls {
-            let first = |at: f64| (((at - radius) / step).ceil().max(0.0)) as usize;
-            let last =
-                |at: f64| ((((at + radius) / step).floor()).max(0.0) as usize).min(cells - 1);
-            for y in first(place.y)..=last(place.y) {
-                for x in first(place.x)..=last(place.x) {
-                    let off = DVec2::new(x as f64 * step - place.x, y as f64 * step - place.y);
-                    let below = radius * radius - off.length_squared();
-                    let height = place.z + below.max(0.0).sqrt();
-                    let own = &mut top[y * cells + x];
-                    if below >= 0.0 && height > own.0 {
-                        *own = (height, 2.0 * radius);
-                    }
-                }
-            }
-        }
-        let area = |size: f64| top.iter().filter(|(_, own)| *own == size).count() as f64;
-        let mut seen: Vec<(f64, f64)> = sizes.iter().map(|size| (*size, area(*size))).collect();
-        assert!(seen[0].1 > 1.5 * seen[1].1, "{seen:?}");
-        // Where balls overlap the free path is 4 / (their surface in a volume) = (2/3) D / 0.5, that of bodies that do not
-        // with e / (1 - e) = 2.
-        seen_between(&mut seen, 2.0 / 3.0);
-        let ratio = seen[0].1 / seen[1].1;
-        assert!((0.9..1.1).contains(&ratio), "{ratio}");
-        // Without pores it is a cut: nothing moves.
-        let mut cut = vec![(1.0, 3.0), (4.0, 5.0)];
-        seen_between(&mut cut, 0.0);
-        assert!((cut[0].1 / cut[1].1 - 0.6).abs() < 1e-12);
     }
 
     #[test]

@@ -61,29 +61,23 @@ pub fn field(flight: &Flight, photo: &Photo, progress: &Progress) -> Result<Scal
     flight.field(photo, ImageKind::Undistorted, grid, progress)
 }
 
-/// Nothing narrower is claimed of a photo whose edges are spread so far, pixels: what its engine outlines at least, and of what
-/// other tools and people outlined (`None`) the diameter of the circle of as many pixels as their smallest fragment has.
+/// Nothing narrower is claimed of a photo whose edges are spread so far, pixels: what its engine outlines at least. `None` of what
+/// other tools and people outlined, where the smallest fragment itself is the limit.
 pub fn least_across_of(
     engine: Option<&dyn Engine>,
     labels: &LabelImage,
     spread: Option<f64>,
-) -> f64 {
-    if let Some(engine) = engine {
-        return least_across(engine, labels.width as u32, labels.height as u32, spread);
-    }
-    let areas = labels.areas();
-    let least = areas.iter().skip(1).filter(|area| **area > 0).min();
-    least.map_or(0.0, |pixels| {
-        (4.0 / std::f64::consts::PI * *pixels as f64).sqrt()
-    })
+) -> Option<f64> {
+    let [width, height] = [labels.width, labels.height].map(|side| side as u32);
+    engine.map(|engine| least_across(engine, width, height, spread))
 }
 
-/// What a photo's fragments are; none is narrower than `least_across` pixels.
+/// What a photo's fragments are; `least_across` is [`least_across_of`] it.
 pub fn fragments(
     labels: &LabelImage,
     field: &ScaleField,
     shape: SieveShape,
-    least_across: f64,
+    least_across: Option<f64>,
 ) -> PhotoFragments {
     let fragments = measured(labels, field, shape);
     PhotoFragments::new(labels, field, fragments, least_across)

@@ -82,9 +82,9 @@ pub use season::{
 pub use size_distributions::{
     AnovaReport, Band, ComparisonReport, Dash, FigureContents, FigureFormat, FigureStyle,
     FitReport, FittedCurve, FittedDistribution, Marker, Panel, Series, SizeAxis, SizeTick,
-    anova_csv, anova_json, anova_table, comparison_csv, comparison_json, comparison_report,
-    comparison_text, effort_csv, effort_json, effort_text, figure_of_comparison, figure_of_fits,
-    figure_png, figure_svg, fit_csv, fit_json, fit_table,
+    anova_csv, anova_json, anova_table, comparison_csv, comparison_json, comparison_notes,
+    comparison_report, comparison_text, effort_csv, effort_json, effort_text, figure_of_comparison,
+    figure_of_fits, figure_png, figure_svg, fit_csv, fit_json, fit_table,
 };
 pub use split_desktop::checksum::{of_bytes as sha256_of_bytes, of_file as sha256_of_file};
 pub use split_desktop::{

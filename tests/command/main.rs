@@ -33,6 +33,7 @@ mod in_part;
 mod independent_answers;
 mod intervals;
 mod map;
+mod masks;
 mod mission;
 mod node_odm;
 mod on_surface;

@@ -48,6 +48,8 @@ pub enum Asking {
     SaveReport,
     /// Which list has the control points.
     ControlList,
+    /// Which file has the outlines of the selected photo.
+    Masks,
     /// Which cloud is drawn beside the surface.
     AddLayer,
     /// What the cloud is to be that was dropped or opened beside a flight.

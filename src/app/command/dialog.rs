@@ -32,8 +32,6 @@ pub enum Chooses {
 pub enum Answers {
     /// It is opened.
     Open,
-    /// It has the outlines of the selected photo.
-    Masks,
     /// It stands in the field of the small window that is open.
     Asking,
     /// It stands in this field of georeferencing.

@@ -93,10 +93,17 @@ impl Preferences {
     /// Puts a flight in front of the recent ones.
     pub fn remember(&mut self, path: &Path) {
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        self.recent.retain(|known| *known != path);
+        self.recent
+            .retain(|known| flight_of(known) != flight_of(&path));
         self.recent.insert(0, path);
         self.recent.truncate(RECENT);
     }
+}
+
+/// The folder of a flight.toml, which opens the same flight; else the path itself.
+fn flight_of(path: &Path) -> &Path {
+    let folder = path.parent().filter(|_| path.ends_with("flight.toml"));
+    folder.unwrap_or(path)
 }
 
 #[cfg(test)]
@@ -110,6 +117,12 @@ mod tests {
             preferences.remember(Path::new(name));
         }
         assert_eq!(preferences.recent, [PathBuf::from("/a"), "/b".into()]);
+        // A folder and its flight.toml are one.
+        preferences.remember(Path::new("/b/flight.toml"));
+        assert_eq!(
+            preferences.recent,
+            [PathBuf::from("/b/flight.toml"), "/a".into()]
+        );
         for number in 0..50 {
             preferences.remember(Path::new(&format!("/{number}")));
         }

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use super::work::Task;
 use crate::command::{Answers, Chooses, Command, Dialog};
-use crate::fragments::FragmentStep;
 use crate::jobs::Progress;
 use crate::planning::PlanStep;
 use crate::state::{Severity, State};
@@ -44,7 +43,6 @@ impl State {
         };
         match answers {
             Answers::Open => self.apply(Command::Open(path)),
-            Answers::Masks => self.apply(Command::Fragments(FragmentStep::Masks(path))),
             Answers::Asking => self.answered = Some(path),
             Answers::Areas(tool) => {
                 let text = path.display().to_string();

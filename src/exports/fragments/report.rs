@@ -7,7 +7,7 @@ use crate::fault::Fault;
 use crate::fragmentation::SizeDistribution;
 use crate::html_page::{self, Cell, NONE, heading, names, notes, paragraph, table};
 use crate::markup::escaped;
-use crate::numbers::{significant_digits, with_interval};
+use crate::numbers::significant_digits;
 use crate::size_distributions::{FigureContents, FigureStyle, Series, figure_svg, passing_figure};
 use crate::units::LengthUnit;
 
@@ -99,13 +99,15 @@ pub fn fragments_report(report: &FragmentsReport<'_>) -> Result<String, Fault> {
     }
     body.push(heading(2, "Photos"));
     body.push(paragraph(
-        "Cut: fragments that the photo's edge cuts; they are not measured. Edges: how far the photo's edges are spread, the full \
-         width at half of the maximum. Limit: fragments narrower than it are not outlined, and nothing is claimed of them.",
+        "Cut: fragments that the photo's edge cuts, or what was left out of it; how large they are nobody knows, and they do not \
+         count. Edges: how far the photo's edges are spread, the full width at half of the maximum. Limit: nothing is claimed \
+         below it: an engine outlines no narrower ones, and of what people and other tools outlined it is the smallest that \
+         counts. \"May be less\": the lower end of its interval is below the limit.",
     ));
     body.push(report.table());
     body.push(heading(2, "Outlines"));
     body.push(paragraph(
-        "Yellow: fragments. Orange: those that the photo's edge cuts. Dark: no rock. Look at them before you believe the curve.",
+        "Yellow: fragments. Orange: cut ones. Dark: no rock. Look at them before you believe the curve.",
     ));
     for photo in &report.photos {
         body.push(picture(photo)?);
@@ -264,16 +266,7 @@ impl FragmentsReport<'_> {
             }));
             row.push(significant_digits(by_mass.limit * self.factor, 2).into());
             for interval in sizes.intervals {
-                let size = by_mass.curve.size_at(interval.percent);
-                let text = size.map(|size| {
-                    let size = size * self.factor;
-                    match (interval.low, interval.high) {
-                        (Some(low), Some(high)) => {
-                            with_interval(size, low * self.factor, high * self.factor)
-                        }
-                        _ => significant_digits(size, 2),
-                    }
-                });
+                let text = sizes.size_in_words(interval.percent, self.factor, "");
                 row.push(text.map_or_else(none, Cell::from));
             }
             row

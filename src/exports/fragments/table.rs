@@ -4,6 +4,7 @@ use crate::delineation::intervals::SizeInterval;
 use crate::delineation::mass::ByMass;
 use crate::delineation::measures::Fragment;
 use crate::measured::csv_of;
+use crate::numbers::{significant_digits, with_interval};
 use crate::units::LengthUnit;
 
 /// The fragments of a photo.
@@ -135,6 +136,20 @@ pub struct PhotoOfSizes<'a> {
     pub intervals: &'a [SizeInterval],
     /// The mean scale of the photo, pixels per unit of the world; `None` of several photos.
     pub scale: Option<f64>,
+}
+
+impl PhotoOfSizes<'_> {
+    /// The size that this percent passes, `factor` times, with its interval as far as it is known and `unit` behind them (" cm",
+    /// or nothing); `None` below what the photo shows.
+    pub fn size_in_words(&self, percent: f64, factor: f64, unit: &str) -> Option<String> {
+        let size = factor * self.by_mass.curve.size_at(percent)?;
+        let interval = self.intervals.iter().find(|of| of.percent == percent);
+        let ends = interval.and_then(|of| Some((of.low? * factor, of.high? * factor)));
+        Some(match ends {
+            Some((low, high)) => format!("{}{unit}", with_interval(size, low, high)),
+            None => format!("{}{unit}, may be less", significant_digits(size, 2)),
+        })
+    }
 }
 
 /// A line a percent: the size that it passes, and its 95 % interval; empty where it is below what the photo shows.

@@ -20,6 +20,32 @@ pub use figure::{
 pub use fit::{FitReport, FittedCurve, fit_csv, fit_json, fit_table};
 pub use report::{ComparisonReport, comparison_report};
 
+use crate::fragmentation::{Comparison, MethodCurve};
+
+/// What is to be known of a comparison before it is trusted, a sentence each: of the reference, of each method, of the
+/// functions that were fitted to them.
+pub fn comparison_notes(comparison: &Comparison) -> Vec<String> {
+    let of_methods = comparison.methods.iter().flat_map(|method| &method.notes);
+    let mut notes: Vec<String> = comparison.notes.iter().chain(of_methods).cloned().collect();
+    for curve in curves(comparison) {
+        let name = method_name(&curve.method);
+        notes.extend(
+            curve
+                .fit
+                .notes
+                .iter()
+                .map(|note| format!("'{name}': {note}")),
+        );
+    }
+    notes
+}
+
+/// The reference's curve, then the others'.
+fn curves(comparison: &Comparison) -> impl Iterator<Item = &MethodCurve> {
+    let others = comparison.methods.iter().map(|method| &method.curve);
+    std::iter::once(&comparison.reference).chain(others)
+}
+
 /// A method's name for people.
 fn method_name(method: &str) -> &str {
     match method {

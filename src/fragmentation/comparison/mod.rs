@@ -206,6 +206,8 @@ fn against(
         (curve.range(), reference.range())
         && (to < reference_from || from > reference_to)
     {
+        let [from, to, reference_from, reference_to] =
+            [from, to, reference_from, reference_to].map(as_typed);
         let what = format!(
             "the sizes of '{method}' ({from} to {to}) and of the reference '{}' ({reference_from} to \
              {reference_to}) do not overlap",
@@ -242,7 +244,7 @@ fn against(
 
 /// What was left out of a method's fit.
 fn partly_known(curve: &MethodCurve) -> Option<String> {
-    let sizes: Vec<String> = curve.partly_known().map(|size| size.to_string()).collect();
+    let sizes: Vec<String> = curve.partly_known().map(as_typed).collect();
     (!sizes.is_empty()).then(|| {
         format!(
             "'{}': not every trial is known at the sizes {}; they do not count in its fit",
@@ -258,14 +260,22 @@ fn notes_of_reference(reference: &MethodCurve, span: Span, unit: LengthUnit) -> 
         && (span.from < from || span.to > to)
     {
         notes.push(format!(
-            "the norms go from {} to {} {unit}, beyond the sizes {from} to {to} {unit} that '{}' was \
+            "the norms go from {} to {} {unit}, beyond the sizes {} to {} {unit} that '{}' was \
              measured at: there the fitted functions are compared where nothing was measured",
             rounded(span.from),
             rounded(span.to),
+            as_typed(from),
+            as_typed(to),
             reference.method
         ));
     }
     notes
+}
+
+/// A measured size as it was typed: units that were converted left 2.2399999999999998 of 2.24.
+fn as_typed(size: f64) -> String {
+    let near: Option<f64> = format!("{size:.9e}").parse().ok();
+    near.unwrap_or(size).to_string()
 }
 
 /// A size as a sentence says it: three digits.

@@ -4,7 +4,7 @@ use super::coordinates::{Coordinates, Optimum};
 use super::family::Family;
 use super::points::Points;
 use super::{FitOptions, FittedParameter};
-use crate::Curve;
+use crate::{Curve, PERCENTILES};
 
 /// Other optima with a sum of at most this many times the least are told.
 const NEARLY: f64 = 1.01;
@@ -69,7 +69,30 @@ pub(super) fn notes(told: &Told) -> Vec<String> {
         );
     }
     another_optimum(told, &mut notes);
+    notes.extend(beyond(told.points));
     notes
+}
+
+/// Which of the usual percentiles nothing was measured at.
+fn beyond(points: &Points) -> Option<String> {
+    let [first, last] = [points.points.first()?, points.points.last()?].map(|of| of.percent);
+    let beyond = PERCENTILES
+        .iter()
+        .filter(|percent| !(first..=last).contains(*percent));
+    let beyond: Vec<String> = beyond.map(|percent| format!("P{percent}")).collect();
+    let what = beyond.join(", ");
+    (!beyond.is_empty()).then(|| {
+        format!(
+            "the points go from {} % to {} % passing: {what} and what is computed from them are the function's \
+             word, with their bands; nobody measured there",
+            one_decimal(first),
+            one_decimal(last)
+        )
+    })
+}
+
+fn one_decimal(percent: f64) -> f64 {
+    (percent * 10.0).round() / 10.0
 }
 
 fn swebrec(told: &Told, at: &Coordinates, notes: &mut Vec<String>) {

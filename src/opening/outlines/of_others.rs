@@ -36,6 +36,15 @@ const ENDINGS: [&str; 20] = [
     ".png",
 ];
 
+/// What fragscale writes beside label images, of which nobody reads fragments.
+const BESIDE: [&str; 5] = [
+    "_outlines.png",
+    "_outlines.json",
+    "_world.geojson",
+    "fragments_coco.json",
+    "fragments_cvat.xml",
+];
+
 /// Where outlines are looked for.
 #[derive(Debug)]
 pub struct OutlinesOfOthers {
@@ -73,6 +82,36 @@ impl OutlinesOfOthers {
             of,
             place,
         })
+    }
+
+    /// Whether it has outlines that are said to be of this photo.
+    pub fn is_of(&self, name: &str) -> bool {
+        match &self.place {
+            Place::File(file) if file.is_of_one() => self.is_named_for(&self.path, file, name),
+            Place::File(file) => file.photos().any(|other| stem(other) == stem(name)),
+            Place::Folder(files) => candidates(files, name).next().is_some(),
+        }
+    }
+
+    /// What of it is of none of these photos, by the names of files in a folder, or of the photos in a file.
+    pub fn of_no_photo(&self, photos: &[&str]) -> Vec<String> {
+        let of_none = |is_of: &dyn Fn(&str) -> bool| !photos.iter().any(|photo| is_of(photo));
+        match &self.place {
+            Place::File(file) if file.is_of_one() => Vec::new(),
+            Place::File(file) => file
+                .photos()
+                .filter(|other| of_none(&|photo| stem(photo) == stem(other)))
+                .map(str::to_owned)
+                .collect(),
+            Place::Folder(files) => files
+                .iter()
+                .filter(|path| may_be_outlines(path))
+                .filter(|path| {
+                    of_none(&|photo| rank(path, photo).is_some() || is_photo(path, photo))
+                })
+                .filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned()))
+                .collect(),
+        }
     }
 
     /// The label image of the undistorted photo, with what is to be said about it. `is_only`: no other photo is asked for, so
@@ -159,10 +198,24 @@ fn candidates<'a>(files: &'a [PathBuf], photo: &str) -> impl Iterator<Item = &'a
     ranked.into_iter().map(|(_, path)| path)
 }
 
+/// Whether outlines may be in a file of this name: not what fragscale writes beside label images.
+fn may_be_outlines(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.to_lowercase();
+    let kinds = [".png", ".tif", ".tiff", ".json", ".geojson", ".xml"];
+    kinds.iter().any(|kind| name.ends_with(kind)) && !BESIDE.iter().any(|own| name.ends_with(own))
+}
+
+/// Whether a file is the photo itself.
+fn is_photo(path: &Path, photo: &str) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str());
+    name.is_some_and(|name| name.to_lowercase() == last_segment(photo).to_lowercase())
+}
+
 /// Which ending a photo's file has; `None` where it is not named as the photo, or is the photo.
 fn rank(path: &Path, photo: &str) -> Option<usize> {
     let name = path.file_name()?.to_str()?.to_lowercase();
-    if name == last_segment(photo).to_lowercase() {
+    if is_photo(path, photo) {
         return None;
     }
     let ending = name.strip_prefix(&stem(photo).to_lowercase())?;
@@ -212,5 +265,14 @@ mod tests {
         // The photo itself is no outline.
         assert_eq!(found("IMG_0005.png").len(), 3);
         assert!(found("IMG_0006.jpg").is_empty());
+        // What is of no photo is named: neither photos nor what lies beside label images.
+        let folder = OutlinesOfOthers {
+            path: "masks".into(),
+            of: None,
+            place: Place::Folder(files),
+        };
+        assert!(folder.is_of("IMG_00051.jpg") && !folder.is_of("IMG_0006.jpg"));
+        let of_none = folder.of_no_photo(&["a/IMG_0005.jpg", "b.jpg"]);
+        assert_eq!(of_none, ["IMG_00051_labels.png"]);
     }
 }

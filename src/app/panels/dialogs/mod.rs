@@ -6,6 +6,7 @@ mod cloud_use;
 mod control_list;
 mod from_photos;
 mod georeference;
+mod masks;
 mod on_node;
 mod planning;
 mod residuals;
@@ -60,6 +61,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::SaveFigure => "Save figure",
             Asking::SaveReport => "Save report",
             Asking::ControlList => "Load control points",
+            Asking::Masks => "Outlines of another tool",
             Asking::AddLayer => "Add cloud as layer",
             Asking::CloudUse => "What is this cloud?",
             Asking::VolumeBase => "Base of the volume",
@@ -105,6 +107,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::SaveFigure => save_figure(state, ui, commands),
                     Asking::SaveReport => save_report(state, ui, commands),
                     Asking::ControlList => control_list(state, ui, commands),
+                    Asking::Masks => masks::masks(state, ui, commands),
                     Asking::AddLayer => add_layer(state, ui, commands),
                     Asking::CloudUse => cloud_use(state, ui, commands),
                     Asking::VolumeBase => volume_base(state, ui, commands),
@@ -145,7 +148,7 @@ fn unsaved(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         let body = egui::TextStyle::Body.resolve(ui.style());
         let name = &open.flight().parts().name;
         ui.label(format!(
-            "The settings of {} or what was decided of its photos have changed since they were saved.",
+            "The settings of {}, what was decided of its photos or the outlines of fragments have changed since they were saved.",
             names::fitted(ui, name, &body, 300.0)
         ));
     }

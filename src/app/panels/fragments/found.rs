@@ -4,8 +4,9 @@ use egui::{Role, Ui, WidgetInfo};
 
 use crate::command::Command;
 use crate::delineation::measures::Fragment;
+use crate::exports::PhotoOfSizes;
 use crate::fragments::{FragmentStep, MeasuredFragments, PhotoOutlines};
-use crate::numbers::{significant_digits, with_interval};
+use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::panels::rows::pairs;
 use crate::state::State;
@@ -186,19 +187,16 @@ fn all(
     };
     let unit = state.preferences.unit();
     let factor = open.flight().parts().unit.in_units_of(unit);
+    let sizes = PhotoOfSizes {
+        photo: "",
+        by_mass,
+        intervals: &measured.intervals,
+        scale: None,
+    };
+    let behind = format!(" {unit}");
     let size = |percent: f64| {
-        let Some(size) = by_mass.curve.size_at(percent) else {
-            return "below what is seen".to_owned();
-        };
-        let interval = measured.intervals.iter().find(|of| of.percent == percent);
-        let ends = interval.and_then(|of| Some((of.low? * factor, of.high? * factor)));
-        match ends {
-            Some((low, high)) => format!("{} {unit}", with_interval(size * factor, low, high)),
-            None => format!(
-                "{} {unit}, may be less",
-                significant_digits(size * factor, 2)
-            ),
-        }
+        let size = sizes.size_in_words(percent, factor, &behind);
+        size.unwrap_or_else(|| "below what is seen".to_owned())
     };
     let rows = vec![
         ("P20", size(20.0)),

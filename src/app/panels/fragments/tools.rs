@@ -2,7 +2,7 @@
 
 use egui::{Button, Key, Modifiers, Role, Ui, WidgetInfo};
 
-use crate::command::{Answers, Command, Dialog};
+use crate::command::{Asking, Command};
 use crate::delineation::ENGINES;
 use crate::fragments::{FragmentStep, FragmentTool};
 use crate::open_flight::OpenFlight;
@@ -89,7 +89,7 @@ pub(super) fn tools(
     commands: &mut Vec<Command>,
 ) {
     let fragments = &open.fragments;
-    let mut browse = None;
+    let mut ask = false;
     let mut send = |step| commands.push(Command::Fragments(step));
     ui.horizontal_wrapped(|ui| {
         let name = |place: usize| ENGINES.get(place).map_or("", |engine| engine.name());
@@ -125,8 +125,7 @@ pub(super) fn tools(
         let hover = "Take this photo's outlines from a label image (PNG, TIFF), COCO, LabelMe, CVAT or GeoJSON in pixels; such a \
                      file can also be dropped here. Undo brings back what is outlined now";
         if button.on_hover_text(hover).clicked() {
-            let dialog = Dialog::file("Outlines of this photo").answering(Answers::Masks);
-            browse = Some(Command::Browse(dialog));
+            ask = true;
         }
     });
     ui.horizontal_wrapped(|ui| {
@@ -153,7 +152,9 @@ pub(super) fn tools(
             send(FragmentStep::Brush(radius));
         }
     }
-    commands.extend(browse);
+    if ask {
+        commands.push(Command::Ask(Some(Asking::Masks)));
+    }
     if let Some(fault) = &fragments.refused {
         ui.colored_label(ui.visuals().warn_fg_color, fault.to_string());
     }

@@ -70,7 +70,12 @@ pub(super) fn masses(engine: Option<&dyn Engine>, flights: &[&str]) -> Result<()
                     ]);
                 }
             }
-            photos.push(PhotoFragments::new(&labels, &field, fragments, across));
+            photos.push(PhotoFragments::new(
+                &labels,
+                &field,
+                fragments,
+                Some(across),
+            ));
         }
         let fines = engine.map_or(1.0, Engine::fines_of_unfound);
         let all = mass::by_mass(

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use crate::fragmentation::{
     Comparison, MethodComparison, MethodCurve, PERCENT_ERROR, SCALE_WARNING,
 };
+use crate::size_distributions::comparison_notes;
 use crate::size_distributions::text_table::{aligned, or_dash, signed, significant, trimmed};
 
 /// The curves, then the percent errors, the norms and the percentiles of every method.
@@ -29,8 +30,7 @@ pub fn comparison_text(comparison: &Comparison) -> String {
         shift_text(&mut text, method, comparison);
     }
     let _ = writeln!(text, "{SCALE_WARNING}");
-    let notes = comparison.methods.iter().flat_map(|method| &method.notes);
-    for note in comparison.notes.iter().chain(notes) {
+    for note in comparison_notes(comparison) {
         let _ = writeln!(text, "note: {note}");
     }
     text

@@ -12,11 +12,10 @@ mod tests;
 
 use numbers::{measured, number};
 
-use super::{figure_of_comparison, figure_svg, method_name};
+use super::{comparison_notes, curves, figure_of_comparison, figure_svg, method_name};
 use crate::fault::Fault;
 use crate::fragmentation::{
-    Analysis, Comparison, Fit, MethodComparison, MethodCurve, PERCENT_ERROR, Repeatability,
-    SCALE_WARNING,
+    Analysis, Comparison, Fit, MethodComparison, PERCENT_ERROR, Repeatability, SCALE_WARNING,
 };
 use crate::html_page::{
     self, Cell, NONE, heading, inside, names, notes, paragraph, percent, signed, table,
@@ -89,12 +88,6 @@ pub fn comparison_report(report: &ComparisonReport<'_>) -> String {
     html_page::page(&title, &window, &body.concat())
 }
 
-/// The reference, then the others.
-fn curves(comparison: &Comparison) -> impl Iterator<Item = &MethodCurve> {
-    let others = comparison.methods.iter().map(|method| &method.curve);
-    std::iter::once(&comparison.reference).chain(others)
-}
-
 /// What was compared, and what to know before reading on.
 fn compared(report: &ComparisonReport<'_>) -> String {
     let comparison = report.comparison;
@@ -126,16 +119,8 @@ fn compared(report: &ComparisonReport<'_>) -> String {
         format!("Largest, {unit}"),
     ];
     html += &table(&head, rows.collect());
-    let of_methods = comparison.methods.iter().flat_map(|method| &method.notes);
-    let of_fits: Vec<String> = curves(comparison).flat_map(fit_notes).collect();
-    let all = report.warnings.iter().chain(&comparison.notes);
-    html + &notes(all.chain(of_methods).chain(&of_fits))
-}
-
-/// What to know of a method's fit, with the method's name.
-fn fit_notes(curve: &MethodCurve) -> impl Iterator<Item = String> {
-    let notes = curve.fit.notes.iter();
-    notes.map(|note| format!("'{}': {note}", method_name(&curve.method)))
+    let known = comparison_notes(comparison);
+    html + &notes(report.warnings.iter().chain(&known))
 }
 
 /// How near each method is, in one table.

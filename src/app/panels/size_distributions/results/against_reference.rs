@@ -2,6 +2,7 @@
 
 use super::sentence::{sentence, warning};
 use crate::command::Command;
+use crate::exports::comparison_notes;
 use crate::fragmentation::{Comparison, PERCENT_ERROR, SCALE_WARNING};
 use crate::panels::size_distributions::table::{Table, fixed, number, signed};
 use crate::size_distributions::Computed;
@@ -25,13 +26,8 @@ fn tables(comparison: &Comparison, ui: &mut egui::Ui, commands: &mut Vec<Command
     let reference = &comparison.reference.method;
     sentence(&format!("Reference: {reference}."), ui);
     shifts(comparison, ui, commands);
-    for method in &comparison.methods {
-        for note in &method.notes {
-            warning(note, ui);
-        }
-    }
-    for note in &comparison.notes {
-        warning(note, ui);
+    for note in comparison_notes(comparison) {
+        warning(&note, ui);
     }
     sentence(&first_upper(SCALE_WARNING), ui);
     ui.add_space(8.0);

@@ -9,7 +9,7 @@ use crate::exports::{FoundSize, PhotoOfSizes};
 use crate::fault::Fault;
 use crate::flight::{Limits, Review};
 use crate::jobs::Progress;
-use crate::numbers::{significant_digits, with_interval};
+use crate::numbers::significant_digits;
 use crate::opening::Opened;
 use crate::units::LengthUnit;
 
@@ -46,7 +46,7 @@ impl<'a> OutlinedBy<'a> {
     }
 
     /// Nothing narrower is claimed, pixels, in a photo whose edges are spread so far.
-    pub(super) fn least_across(self, labels: &LabelImage, spread: Option<f64>) -> f64 {
+    pub(super) fn least_across(self, labels: &LabelImage, spread: Option<f64>) -> Option<f64> {
         photo::least_across_of(self.engine(), labels, spread)
     }
 }
@@ -189,19 +189,13 @@ impl<'a> Sizes<'a> {
             p80,
             "nothing below".to_owned(),
         ]);
-        for row in self.photos.iter().chain(&self.all) {
-            let size = |percent: f64| {
-                let Some(size) = row.by_mass.curve.size_at(percent) else {
-                    return "-".to_owned();
-                };
-                let interval = row.intervals.iter().find(|of| of.percent == percent);
-                let ends = interval.and_then(|of| Some((of.low? * factor, of.high? * factor)));
-                ends.map_or_else(
-                    || significant_digits(size * factor, 2),
-                    |(low, high)| with_interval(size * factor, low, high),
-                )
-            };
-            let [p20, p50, p80] = SizeInterval::PERCENTS.map(size);
+        let mut is_hidden = false;
+        for row in self.rows() {
+            let [p20, p50, p80] = SizeInterval::PERCENTS.map(|percent| {
+                let size = row.size_in_words(percent, factor, "");
+                is_hidden |= size.is_none();
+                size.unwrap_or_else(|| "-".to_owned())
+            });
             table.push([
                 row.photo.to_owned(),
                 row.by_mass.whole.to_string(),
@@ -216,7 +210,11 @@ impl<'a> Sizes<'a> {
                 ),
             ]);
         }
-        in_columns(&table)
+        let mut text = in_columns(&table);
+        if is_hidden {
+            text += "-: below what the photos show; a law of the fines may say it (--tail)\n";
+        }
+        text
     }
 }
 

@@ -1,19 +1,29 @@
 //! `fragscale delineate`: the fragments of photos outlined, measured where they lie, and their size
 //! distribution.
 
+mod chosen_engine;
+mod left_over;
+mod masks_arguments;
+mod mass_arguments;
+mod page;
+mod sizes;
+mod unfinished;
+mod written_outlines;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use image::RgbImage;
 
-use super::chosen_engine::{ChosenEngine, OpenEngine};
+use self::chosen_engine::{ChosenEngine, OpenEngine};
+use self::left_over::left_over;
+use self::masks_arguments::{MasksArguments, with_outlines};
+use self::mass_arguments::MassArguments;
+use self::page::Page;
+use self::sizes::{Done, OutlinedBy, Sizes, Way};
+use self::unfinished::{KeptPhoto, Unfinished};
+use self::written_outlines::{OtherForm, WrittenOutlines};
 use super::chosen_photos::{ChosenPhotos, Doing};
-use super::masks_arguments::MasksArguments;
-use super::mass_arguments::MassArguments;
-use super::page::Page;
-use super::sizes::{Done, OutlinedBy, Sizes, Way};
-use super::unfinished::{KeptPhoto, Unfinished};
-use super::written_outlines::{OtherForm, WrittenOutlines};
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::outputs::{Force, Outputs, apart_from_photos};
 use crate::cli::{Answer, OutputUnit};
@@ -30,6 +40,9 @@ use crate::jobs::Progress;
 use crate::opening::{Opened, OutlinesOfOthers, outline_files, read_outlines};
 use crate::picture::edge_spread;
 use crate::units::LengthUnit;
+
+/// How a photo's own files end: its label image, its outlines over it, and those in the world.
+const OWN: [&str; 3] = ["_labels.png", "_outlines.png", "_world.geojson"];
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct DelineateArguments {
@@ -158,13 +171,16 @@ pub(in crate::cli) fn delineate_of(
     let (world, unit): (LengthUnit, LengthUnit) = (flight.parts().unit, arguments.unit.into());
     let tail = arguments.mass.tail(world)?;
     let photos = ChosenPhotos::one_or_all(arguments.photo.clone());
-    let chosen = photos.of(flight).map_err(in_flight)?;
+    let mut warnings = opened.all_warnings();
+    let mut chosen = photos.of(flight).map_err(in_flight)?;
+    if let (Some(others), true) = (&outliners.others, photos.all) {
+        let (with, said) = with_outlines(others, chosen, flight);
+        chosen = with;
+        warnings.extend(said);
+    }
     let stems = exports::photo_file_stems(flight);
     let to = &arguments.to;
-    let own_files = |index: usize| {
-        ["labels.png", "outlines.png", "world.geojson"]
-            .map(|kind| to.join(format!("{}_{kind}", stems[index])))
-    };
+    let own_files = |index: usize| OWN.map(|ending| to.join(format!("{}{ending}", stems[index])));
     let planned: Vec<[PathBuf; 3]> = chosen.iter().map(|index| own_files(*index)).collect();
     let names = [
         "fragments.csv",
@@ -176,7 +192,9 @@ pub(in crate::cli) fn delineate_of(
     let mut written = WrittenOutlines::new(to, &arguments.also);
     let for_others = written.paths(chosen.iter().map(|index| stems[*index].as_str()));
     let files = planned.iter().flatten().chain(&tables).chain(&for_others);
-    outputs.check_all(files.map(PathBuf::as_path))?;
+    let files: Vec<&Path> = files.map(PathBuf::as_path).collect();
+    outputs.check_all(files.iter().copied())?;
+    warnings.extend(left_over(to, &files));
     let places = MapPlaces::new(opened.crs.as_deref(), world);
     let unfinished = match outliners.others {
         // Outlines that stand already are measured in no time.
@@ -206,7 +224,6 @@ pub(in crate::cli) fn delineate_of(
         units: [world, unit],
         progress,
     };
-    let mut warnings = opened.all_warnings();
     if let Some(fault) = places.fault() {
         warnings.push(fault.to_string());
     }
@@ -266,7 +283,8 @@ pub(in crate::cli) fn delineate_of(
         });
         Ok(())
     })?;
-    let not_all = doing.not_all(&failed, chosen.len()).map(in_flight);
+    let mut not_all = doing.not_all(&failed, chosen.len()).map(in_flight);
+    let is_whole = failed.is_empty();
     warnings.extend(said);
     warnings.extend(failed);
     let report =
@@ -301,6 +319,12 @@ pub(in crate::cli) fn delineate_of(
         outputs.write(&tables[2], bytes.as_bytes(), Kind::Result)?;
         text = sizes.words(world, unit);
         of_all = sizes.of_all(world.in_units_of(unit));
+        if let (true, Some(first), None) =
+            (sizes.photos.is_empty(), sizes.without.first(), &not_all)
+        {
+            let what = "no photo has a size distribution";
+            not_all = Some(in_flight(Fault::new(what, format!("the first: {first}"))));
+        }
         warnings.extend(sizes.without.iter().cloned());
         let page = Page {
             flight: &flight.parts().name,
@@ -314,7 +338,7 @@ pub(in crate::cli) fn delineate_of(
         outputs.write(&tables[3], bytes.as_bytes(), Kind::Result)?;
     }
     // Photos that could not be made are tried again; those that were need not be.
-    if not_all.is_none() {
+    if is_whole {
         unfinished.remove(chosen.iter().map(|index| stems[*index].as_str()));
     }
     let answer = Answer {
@@ -388,7 +412,7 @@ struct Outlined<'a> {
     labels: LabelImage,
     by: OutlinedBy<'a>,
     /// Nothing narrower is claimed, pixels.
-    least_across: f64,
+    least_across: Option<f64>,
     /// How far the photo's edges are spread, pixels.
     spread: Option<f64>,
     notes: Vec<String>,

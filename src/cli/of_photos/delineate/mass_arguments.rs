@@ -20,7 +20,7 @@ pub(super) struct MassArguments {
     #[arg(long, value_enum, value_name = "STEPS", value_delimiter = ',')]
     steps: Option<Vec<StepName>>,
     /// The porosity of the pile, for the step pores.
-    #[arg(long, value_name = "SHARE", default_value_t = LOOSE, value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value_t = LOOSE, value_parser = share, allow_hyphen_values = true)]
     porosity: f64,
     /// How the fines are distributed below what the photos show: as the Swebrec function of what they show, or as a table of
     /// the same material sieved. Without it nothing is claimed of them.

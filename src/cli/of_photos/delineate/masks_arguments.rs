@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use crate::fault::first_names;
+use crate::flight::Flight;
 use crate::opening::OutlinesOfOthers;
 use crate::scale::ImageKind;
 
@@ -52,4 +54,40 @@ impl MasksArguments {
             .map(|path| OutlinesOfOthers::open(path, of));
         opened.transpose().map_err(|error| error.to_string())
     }
+}
+
+/// Which of a flight's photos have outlines, where several are asked for; what of both has no part in it is said, a sentence
+/// each. All of them where none has: why is said of each.
+pub(super) fn with_outlines(
+    others: &OutlinesOfOthers,
+    chosen: Vec<usize>,
+    flight: &Flight,
+) -> (Vec<usize>, Vec<String>) {
+    let photos = &flight.parts().photos;
+    let (with, without): (Vec<usize>, Vec<usize>) = chosen
+        .iter()
+        .partition(|index| others.is_of(&photos[**index].name));
+    if with.is_empty() {
+        return (chosen, Vec::new());
+    }
+    let mut said = Vec::new();
+    let names: Vec<&str> = photos.iter().map(|photo| photo.name.as_str()).collect();
+    if !without.is_empty() {
+        said.push(format!(
+            "{} of {} photos have no outlines among those of --masks, and are left out: {}",
+            without.len(),
+            chosen.len(),
+            first_names(without.iter().map(|index| names[*index]))
+        ));
+    }
+    let of_none = others.of_no_photo(&names);
+    if !of_none.is_empty() {
+        let are = if of_none.len() == 1 { "is" } else { "are" };
+        said.push(format!(
+            "{} of --masks {are} of no photo of the flight: {}; name outlines as their photos",
+            of_none.len(),
+            first_names(&of_none)
+        ));
+    }
+    (with, said)
 }

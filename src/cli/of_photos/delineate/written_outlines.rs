@@ -69,12 +69,7 @@ impl<'a> WrittenOutlines<'a> {
     }
 
     fn path(&self, form: OtherForm, stem: &str) -> PathBuf {
-        let ending = match form {
-            OtherForm::Labelme => "labelme.json",
-            OtherForm::Geojson => "fragments.geojson",
-            _ => "labels.tif",
-        };
-        self.to.join(format!("{stem}_{ending}"))
+        self.to.join(format!("{stem}{}", ending(form)))
     }
 
     /// The files of a photo alone; it is kept for those of all.
@@ -125,6 +120,21 @@ impl<'a> WrittenOutlines<'a> {
             outputs.write(&self.to.join(name), text.as_bytes(), Kind::Result)?;
         }
         Ok(())
+    }
+}
+
+/// How the files of each form end: that of a photo, or of all.
+pub(super) fn endings() -> impl Iterator<Item = &'static str> {
+    let all = OtherForm::value_variants().iter();
+    all.map(|form| of_all(*form).unwrap_or(ending(*form)))
+}
+
+/// How a photo's file ends.
+fn ending(form: OtherForm) -> &'static str {
+    match form {
+        OtherForm::Labelme => "_labelme.json",
+        OtherForm::Geojson => "_fragments.geojson",
+        _ => "_labels.tif",
     }
 }
 
