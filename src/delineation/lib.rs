@@ -29,6 +29,7 @@ pub mod mass;
 pub mod measures;
 mod named;
 mod network;
+mod outlined_by;
 pub mod overlap;
 pub mod photo;
 mod regions;
@@ -46,6 +47,7 @@ pub use fragscale_core::labels;
 pub use fragscale_core::labels::{FINES, LabelImage, NOT_ROCK};
 pub use learned::Learned;
 pub use named::{Description, NamedModel};
+pub use outlined_by::OutlinedBy;
 pub use regions::Regions;
 
 /// All engines that the program brings along; the first is the one that measured best.

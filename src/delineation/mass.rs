@@ -29,6 +29,7 @@ use crate::counted::Counted;
 use crate::engine::Engine;
 use crate::labels::{FINES, LabelImage};
 use crate::measures::Fragment;
+use crate::outlined_by::OutlinedBy;
 
 /// What a photo contributes. Lengths in one unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,6 +124,43 @@ impl Steps {
             edges: true,
             pores: engine.is_none().then_some(LOOSE),
             fines: engine.map_or(1.0, Engine::fines_of_unfound),
+        }
+    }
+}
+
+/// The steps that somebody asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WantedSteps {
+    /// These alone; `None` where the usual ones are wanted.
+    pub named: Option<Vec<Step>>,
+    /// The porosity of the pile, where the pores are among them.
+    pub porosity: f64,
+}
+
+impl Default for WantedSteps {
+    fn default() -> Self {
+        Self {
+            named: None,
+            porosity: LOOSE,
+        }
+    }
+}
+
+impl WantedSteps {
+    /// Those for photos that were outlined by these.
+    pub fn of<'a>(&self, outlined: impl Iterator<Item = OutlinedBy<'a>>) -> Steps {
+        // Of several the mean.
+        let usual: Vec<Steps> = outlined.map(|of| Steps::of(of.engine())).collect();
+        let fines = usual.iter().map(|of| of.fines).sum::<f64>() / usual.len().max(1) as f64;
+        let of_people = usual.iter().all(|of| of.pores.is_some());
+        let takes = |step: Step| match &self.named {
+            Some(steps) => steps.contains(&step),
+            None => step != Step::Pores || of_people,
+        };
+        Steps {
+            edges: takes(Step::Edges),
+            pores: takes(Step::Pores).then_some(self.porosity),
+            fines: if takes(Step::Fines) { fines } else { 0.0 },
         }
     }
 }

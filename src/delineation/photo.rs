@@ -1,8 +1,12 @@
 //! A flight's photo on its way to fragments: the same for the command and the window.
 
+use std::sync::Arc;
+
 use fragscale_core::camera::Camera;
 use fragscale_core::fault::Fault;
-use fragscale_core::flight::{Flight, FlightSettings, Photo, PhotoReview};
+use fragscale_core::flight::{
+    Flight, FlightSettings, Limits, LookedUp, Photo, PhotoReview, Review,
+};
 use fragscale_core::jobs::Progress;
 use fragscale_core::labels::LabelImage;
 use fragscale_core::picture;
@@ -50,6 +54,24 @@ pub fn scale_error(photo: &PhotoReview<'_>) -> Option<f64> {
     };
     let [top, bottom] = [uncertainty.fitted_top, uncertainty.fitted_bottom].map(relative);
     Some((top? + bottom?) / 2.0)
+}
+
+/// The same of several photos of a flight, by their places in it.
+///
+/// # Errors
+/// On cancel.
+pub fn scale_errors(
+    flight: &Arc<Flight>,
+    looked_up: &LookedUp,
+    photos: impl Iterator<Item = usize>,
+    progress: &Progress,
+) -> Result<Vec<Option<f64>>, Fault> {
+    let (flight, looked_up) = (flight.clone(), looked_up.clone());
+    let mut review = Review::of_scales(flight, looked_up, &Limits::default(), progress)?;
+    review.compute_fields(progress)?;
+    Ok(photos
+        .map(|photo| scale_error(&review.photo(photo)?))
+        .collect())
 }
 
 /// The scale of every pixel of the undistorted photo, by which fragments are measured.

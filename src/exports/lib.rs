@@ -46,9 +46,8 @@ pub use flown_report::{
     FlownReport, flown_csv, flown_json, flown_summary, flown_table, flown_warnings,
 };
 pub use fragments::{
-    FragmentsReport, PhotoOfFragments, PhotoOfSizes, ReportPhoto, ReportSizes, WorldOutlines,
-    curves_csv, fragments_csv, fragments_report, label_png, labels_png, outlines_png,
-    report_pictures, sizes_csv, world_geojson,
+    FRAGMENT_TABLES, FragmentSizes, FragmentTables, MassWay, MeasuredPhoto, OUTLINED_ENDINGS,
+    PhotoOfSizes, PhotoOutlined, curves_csv, fragment_tables, label_png, labels_png,
 };
 pub use map_places::MapPlaces;
 pub use masks::{CocoFile, CvatFile, fragments_geojson, labelme_json, labels_tiff};

@@ -2,12 +2,17 @@
 
 mod label_image;
 mod outlines;
+mod photo_files;
 mod report;
+mod sizes;
 mod table;
+mod tables;
 mod world_outlines;
 
 pub use label_image::{label_png, labels_png};
-pub use outlines::outlines_png;
-pub use report::{FragmentsReport, ReportPhoto, ReportSizes, fragments_report, report_pictures};
-pub use table::{PhotoOfFragments, PhotoOfSizes, curves_csv, fragments_csv, sizes_csv};
-pub use world_outlines::{WorldOutlines, world_geojson};
+use outlines::outlines_png;
+pub use photo_files::{OUTLINED_ENDINGS, PhotoOutlined};
+pub use sizes::{FragmentSizes, MassWay, MeasuredPhoto};
+pub use table::{PhotoOfSizes, curves_csv};
+pub use tables::{FRAGMENT_TABLES, FragmentTables, fragment_tables};
+use world_outlines::{WorldOutlines, world_geojson};

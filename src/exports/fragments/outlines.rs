@@ -16,7 +16,7 @@ const CUT: [u8; 3] = [255, 120, 0];
 ///
 /// # Errors
 /// Where the picture cannot be encoded.
-pub fn outlines_png(
+pub(super) fn outlines_png(
     photo: &RgbImage,
     labels: &LabelImage,
     is_cut: &[bool],

@@ -20,7 +20,7 @@ const MOST_CURVES: usize = 12;
 
 /// What goes into the page.
 #[derive(Debug)]
-pub struct FragmentsReport<'a> {
+pub(super) struct FragmentsReport<'a> {
     /// The flight's name.
     pub flight: &'a str,
     /// What outlined the fragments: "learned", "saved and learned".
@@ -41,7 +41,7 @@ pub struct FragmentsReport<'a> {
 
 /// A photo of the page.
 #[derive(Debug)]
-pub struct ReportPhoto<'a> {
+pub(super) struct ReportPhoto<'a> {
     /// As the flight names it.
     pub photo: &'a str,
     /// The file with its outlines, beside the page.
@@ -56,7 +56,7 @@ pub struct ReportPhoto<'a> {
 
 /// A distribution and how it came about.
 #[derive(Debug, Clone, Copy)]
-pub struct ReportSizes<'a> {
+pub(super) struct ReportSizes<'a> {
     /// With its intervals.
     pub sizes: PhotoOfSizes<'a>,
     /// Step by step.
@@ -64,7 +64,7 @@ pub struct ReportSizes<'a> {
 }
 
 /// How many pictures the page shows at most.
-pub fn report_pictures() -> usize {
+pub(super) fn report_pictures() -> usize {
     MOST_PICTURES
 }
 
@@ -72,7 +72,7 @@ pub fn report_pictures() -> usize {
 ///
 /// # Errors
 /// Where a picture is broken.
-pub fn fragments_report(report: &FragmentsReport<'_>) -> Result<String, Fault> {
+pub(super) fn fragments_report(report: &FragmentsReport<'_>) -> Result<String, Fault> {
     let unit = report.unit;
     let title = format!("Fragments of {}", report.flight);
     let count = report.photos.len();

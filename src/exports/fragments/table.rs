@@ -9,7 +9,7 @@ use crate::units::LengthUnit;
 
 /// The fragments of a photo.
 #[derive(Debug, Clone, Copy)]
-pub struct PhotoOfFragments<'a> {
+pub(super) struct PhotoOfFragments<'a> {
     /// As the flight names it.
     pub photo: &'a str,
     /// Of its label image.
@@ -21,7 +21,7 @@ pub struct PhotoOfFragments<'a> {
 ///
 /// # Errors
 /// Where memory runs out.
-pub fn fragments_csv(
+pub(super) fn fragments_csv(
     photos: &[PhotoOfFragments<'_>],
     world: LengthUnit,
     unit: LengthUnit,
@@ -156,7 +156,7 @@ impl PhotoOfSizes<'_> {
 ///
 /// # Errors
 /// Where memory runs out.
-pub fn sizes_csv(
+pub(super) fn sizes_csv(
     photos: &[PhotoOfSizes<'_>],
     world: LengthUnit,
     unit: LengthUnit,

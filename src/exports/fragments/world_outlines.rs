@@ -21,7 +21,7 @@ const DRAWN_IN: f64 = 0.005;
 
 /// A photo's outlines on their way into the world.
 #[derive(Debug, Clone, Copy)]
-pub struct WorldOutlines<'a> {
+pub(super) struct WorldOutlines<'a> {
     /// As the flight names it.
     pub photo: &'a str,
     /// Of the undistorted photo.
@@ -34,7 +34,7 @@ pub struct WorldOutlines<'a> {
 
 /// A feature for each fragment, with the numbers of `fragments.csv`; without a geometry where too little of it lies on the
 /// surface. Lengths in `unit`, places as `places` has them.
-pub fn world_geojson(
+pub(super) fn world_geojson(
     outlines: &WorldOutlines<'_>,
     places: &MapPlaces,
     world: LengthUnit,

@@ -2,14 +2,17 @@
 
 use std::path::Path;
 
-use super::{OWN, written_outlines};
+use super::written_outlines;
+use crate::exports::OUTLINED_ENDINGS;
 use crate::fault::first_names;
 
 /// Those that are named as results and are none of these; a sentence, where there are any.
 pub(super) fn left_over(to: &Path, written: &[&Path]) -> Option<String> {
     let files = to.read_dir().ok()?.flatten();
     let is_result = |name: &str| {
-        let mut endings = OWN.into_iter().chain(written_outlines::endings());
+        let mut endings = OUTLINED_ENDINGS
+            .into_iter()
+            .chain(written_outlines::endings());
         endings.any(|ending| name.ends_with(ending))
     };
     let mut others: Vec<String> = files

@@ -5,8 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::sizes::OutlinedBy;
-use crate::delineation::mass::{LOOSE, Steps};
+use crate::delineation::mass::{LOOSE, Step, WantedSteps};
 use crate::delineation::tail::Tail;
 use crate::fault::Fault;
 use crate::formats::{DistributionColumns, FileError, read_bytes, size_distributions};
@@ -40,6 +39,17 @@ enum StepName {
     None,
 }
 
+impl StepName {
+    fn step(self) -> Option<Step> {
+        match self {
+            Self::Edges => Some(Step::Edges),
+            Self::Pores => Some(Step::Pores),
+            Self::Fines => Some(Step::Fines),
+            Self::None => None,
+        }
+    }
+}
+
 fn share(text: &str) -> Result<f64, String> {
     let share: Option<f64> = text.parse().ok();
     let share = share.filter(|share| (0.0..=0.9).contains(share));
@@ -71,23 +81,15 @@ impl MassArguments {
         })
     }
 
-    /// The steps for photos that were outlined by these.
-    pub(super) fn steps<'a>(
-        &self,
-        outlined: impl Iterator<Item = OutlinedBy<'a>> + Clone,
-    ) -> Steps {
-        // Of several the mean.
-        let usual: Vec<Steps> = outlined.map(|of| Steps::of(of.engine())).collect();
-        let fines = usual.iter().map(|of| of.fines).sum::<f64>() / usual.len().max(1) as f64;
-        let of_people = usual.iter().all(|of| of.pores.is_some());
-        let takes = |step: StepName| match &self.steps {
-            Some(steps) => steps.contains(&step),
-            None => step != StepName::Pores || of_people,
-        };
-        Steps {
-            edges: takes(StepName::Edges),
-            pores: takes(StepName::Pores).then_some(self.porosity),
-            fines: if takes(StepName::Fines) { fines } else { 0.0 },
+    /// The steps that are asked for.
+    pub(super) fn steps(&self) -> WantedSteps {
+        let named = self.steps.as_ref().map(|steps| {
+            let steps = steps.iter();
+            steps.filter_map(|step| step.step()).collect()
+        });
+        WantedSteps {
+            named,
+            porosity: self.porosity,
         }
     }
 

@@ -5,8 +5,6 @@ mod chosen_engine;
 mod left_over;
 mod masks_arguments;
 mod mass_arguments;
-mod page;
-mod sizes;
 mod unfinished;
 mod written_outlines;
 
@@ -19,8 +17,6 @@ use self::chosen_engine::{ChosenEngine, OpenEngine};
 use self::left_over::left_over;
 use self::masks_arguments::{MasksArguments, with_outlines};
 use self::mass_arguments::MassArguments;
-use self::page::Page;
-use self::sizes::{Done, OutlinedBy, Sizes, Way};
 use self::unfinished::{KeptPhoto, Unfinished};
 use self::written_outlines::{OtherForm, WrittenOutlines};
 use super::chosen_photos::{ChosenPhotos, Doing};
@@ -30,9 +26,13 @@ use crate::cli::{Answer, OutputUnit};
 use crate::delineation::mass::PhotoFragments;
 use crate::delineation::measures::SieveShape;
 use crate::delineation::{
-    Engine, LabelImage, Learned, NOT_ROCK, delineate as outline, engine_called, leave_out, photo,
+    Engine, LabelImage, Learned, NOT_ROCK, OutlinedBy, delineate as outline, engine_called,
+    leave_out, photo,
 };
-use crate::exports::{self, FoundSize, MapPlaces, PhotoOfFragments, WorldOutlines};
+use crate::exports::{
+    self, FRAGMENT_TABLES, FoundSize, FragmentSizes, FragmentTables, MapPlaces, MassWay,
+    MeasuredPhoto, OUTLINED_ENDINGS, PhotoOutlined,
+};
 use crate::fault::Fault;
 use crate::files::{Kind, Recording};
 use crate::formats::{FileError, read_bytes};
@@ -40,9 +40,6 @@ use crate::jobs::Progress;
 use crate::opening::{Opened, OutlinesOfOthers, outline_files, read_outlines};
 use crate::picture::edge_spread;
 use crate::units::LengthUnit;
-
-/// How a photo's own files end: its label image, its outlines over it, and those in the world.
-const OWN: [&str; 3] = ["_labels.png", "_outlines.png", "_world.geojson"];
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct DelineateArguments {
@@ -180,15 +177,10 @@ pub(in crate::cli) fn delineate_of(
     }
     let stems = exports::photo_file_stems(flight);
     let to = &arguments.to;
-    let own_files = |index: usize| OWN.map(|ending| to.join(format!("{}{ending}", stems[index])));
+    let own_files =
+        |index: usize| OUTLINED_ENDINGS.map(|ending| to.join(format!("{}{ending}", stems[index])));
     let planned: Vec<[PathBuf; 3]> = chosen.iter().map(|index| own_files(*index)).collect();
-    let names = [
-        "fragments.csv",
-        "distribution.csv",
-        "sizes.csv",
-        "report.html",
-    ];
-    let tables = names.map(|name| to.join(name));
+    let tables = FRAGMENT_TABLES.map(|name| to.join(name));
     let mut written = WrittenOutlines::new(to, &arguments.also);
     let for_others = written.paths(chosen.iter().map(|index| stems[*index].as_str()));
     let files = planned.iter().flatten().chain(&tables).chain(&for_others);
@@ -232,7 +224,8 @@ pub(in crate::cli) fn delineate_of(
         not_done: "not delineated",
     };
     let name = |index: &usize| flight.parts().photos[*index].name.as_str();
-    let mut done: Vec<Done<'_>> = Vec::new();
+    let mut done: Vec<MeasuredPhoto<'_>> = Vec::new();
+    let mut done_photos: Vec<usize> = Vec::new();
     let mut said: Vec<String> = Vec::new();
     let names = chosen.iter().map(name);
     let failed = photos.make_each(names, &doing, path, progress, |place| {
@@ -274,68 +267,54 @@ pub(in crate::cli) fn delineate_of(
             }
         };
         said.extend(kept.notes.iter().map(|note| format!("{photo}: {note}")));
-        done.push(Done {
-            index,
+        done.push(MeasuredPhoto {
             photo,
             fragments: kept.fragments,
             outlined,
             spread: kept.spread,
+            scale_error: None,
+            picture: format!("{stem}{}", OUTLINED_ENDINGS[1]),
         });
+        done_photos.push(index);
         Ok(())
     })?;
     let mut not_all = doing.not_all(&failed, chosen.len()).map(in_flight);
     let is_whole = failed.is_empty();
     warnings.extend(said);
     warnings.extend(failed);
-    let report =
-        |error: Box<dyn std::error::Error>| in_flight(Fault::new(error.to_string(), "report this"));
     let mut text = String::new();
     let mut of_all = Vec::new();
     if !done.is_empty() {
-        let rows: Vec<PhotoOfFragments<'_>> = done
-            .iter()
-            .map(|of| PhotoOfFragments {
-                photo: of.photo,
-                fragments: &of.fragments.fragments,
-            })
-            .collect();
-        let bytes =
-            exports::fragments_csv(&rows, world, unit).map_err(|error| report(error.into()))?;
-        outputs.write(&tables[0], bytes.as_bytes(), Kind::Result)?;
-        written.finish(&outputs)?;
-        let way = Way {
-            mass: &arguments.mass,
+        let photos = done_photos.iter().copied();
+        let errors = photo::scale_errors(flight, &opened.looked_up, photos, progress);
+        for (of, error) in done.iter_mut().zip(errors.map_err(in_flight)?) {
+            of.scale_error = error;
+        }
+        let way = MassWay {
+            steps: arguments.mass.steps(),
             tail: tail.as_ref(),
         };
-        let sizes = Sizes::of(&done, opened, &way, progress).map_err(in_flight)?;
-        let methods = method_of(&done);
-        let method = format!("fragscale ({methods})");
-        let curves = sizes.curves();
-        let bytes = exports::curves_csv(&method, &curves, world, unit)
-            .map_err(|error| report(error.into()))?;
-        outputs.write(&tables[1], bytes.as_bytes(), Kind::Result)?;
-        let bytes =
-            exports::sizes_csv(&sizes.rows(), world, unit).map_err(|error| report(error.into()))?;
-        outputs.write(&tables[2], bytes.as_bytes(), Kind::Result)?;
-        text = sizes.words(world, unit);
-        of_all = sizes.of_all(world.in_units_of(unit));
-        if let (true, Some(first), None) =
-            (sizes.photos.is_empty(), sizes.without.first(), &not_all)
-        {
+        let sizes = FragmentSizes::of(&done, &way);
+        if let (Some(first), None) = (sizes.nothing(), &not_all) {
             let what = "no photo has a size distribution";
             not_all = Some(in_flight(Fault::new(what, format!("the first: {first}"))));
         }
         warnings.extend(sizes.without.iter().cloned());
-        let page = Page {
+        let law = arguments.mass.tail_in_words();
+        let of_tables = FragmentTables {
             flight: &flight.parts().name,
-            method: &methods,
             units: [world, unit],
-            tail: arguments.mass.tail_in_words(),
+            tail: law.as_deref(),
             warnings: &warnings,
         };
-        let pictures = |of: &Done<'_>| own_files(of.index)[1].clone();
-        let bytes = page.html(&sizes, &done, pictures).map_err(in_flight)?;
-        outputs.write(&tables[3], bytes.as_bytes(), Kind::Result)?;
+        let picture = |name: &str| read_bytes(&to.join(name)).map_err(|error| error.fault);
+        let bytes = exports::fragment_tables(&of_tables, &done, &sizes, picture);
+        for (path, bytes) in tables.iter().zip(bytes.map_err(in_flight)?) {
+            outputs.write(path, &bytes, Kind::Result)?;
+        }
+        written.finish(&outputs)?;
+        text = sizes.words(world, unit);
+        of_all = sizes.of_all(world.in_units_of(unit));
     }
     // Photos that could not be made are tried again; those that were need not be.
     if is_whole {
@@ -365,15 +344,6 @@ fn read_own_labels(path: &Path) -> Result<LabelImage, Fault> {
         height: image.height() as usize,
         labels: labels.collect(),
     })
-}
-
-/// What outlined them, in a word or two.
-fn method_of(done: &[Done<'_>]) -> String {
-    let mut methods: Vec<&str> = done.iter().map(|of| of.outlined.method()).collect();
-    // Saved ones first.
-    methods.sort_by_key(|method| (*method != "saved", *method));
-    methods.dedup();
-    methods.join(" and ")
 }
 
 /// What all photos of a flight are outlined by.
@@ -435,31 +405,15 @@ impl<'a> Maker<'a> {
         let field = photo::field(flight, photo, self.progress)?;
         let shape = self.arguments.shape.into();
         let fragments = photo::fragments(&labels, &field, shape, least_across);
-        // By number, of which other tools leave some out.
-        let mut is_cut = vec![false; labels.fragments()];
-        for fragment in fragments
-            .fragments
-            .iter()
-            .filter(|fragment| fragment.is_cut)
-        {
-            if let Some(is_cut) = is_cut.get_mut(fragment.number as usize - 1) {
-                *is_cut = true;
-            }
-        }
-        let world = WorldOutlines {
-            photo: &photo.name,
+        let of = PhotoOutlined {
+            name: &photo.name,
+            pixels: &image,
             labels: &labels,
             field: &field,
-            fragments: &fragments.fragments,
+            fragments: &fragments,
         };
-        let [unit, wanted] = self.units;
-        let world = exports::world_geojson(&world, self.places, unit, wanted);
         Ok(Made {
-            files: [
-                exports::labels_png(&labels)?,
-                exports::outlines_png(&image, &labels, &is_cut)?,
-                world.into_bytes(),
-            ],
+            files: of.files(self.places, self.units)?,
             fragments,
             labels,
             outlined: by,

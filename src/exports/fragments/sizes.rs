@@ -1,68 +1,34 @@
 //! The sizes of photos whose fragments were outlined: their distributions, how sure they are, and the words for both.
 
-use super::mass_arguments::MassArguments;
+use super::table::PhotoOfSizes;
+use crate::delineation::OutlinedBy;
 use crate::delineation::intervals::{Doubts, SizeInterval, intervals};
-use crate::delineation::mass::{ByMass, PhotoFragments, StepTaken, by_mass, steps_taken};
+use crate::delineation::mass::{
+    ByMass, PhotoFragments, StepTaken, WantedSteps, by_mass, steps_taken,
+};
 use crate::delineation::tail::Tail;
-use crate::delineation::{Engine, LabelImage, photo};
-use crate::exports::{FoundSize, PhotoOfSizes};
 use crate::fault::Fault;
-use crate::flight::{Limits, Review};
-use crate::jobs::Progress;
 use crate::numbers::significant_digits;
-use crate::opening::Opened;
+use crate::season::FoundSize;
 use crate::units::LengthUnit;
 
 /// What the last row is called.
 const ALL: &str = "all photos";
 
-/// What outlined a photo's fragments.
-#[derive(Clone, Copy)]
-pub(super) enum OutlinedBy<'a> {
-    /// This one, just now.
-    Engine(&'a dyn Engine),
-    /// This one, and then a person in the window; `None` where it is not known any more.
-    Saved(Option<&'a dyn Engine>),
-    /// Another tool.
-    Masks,
-}
-
-impl<'a> OutlinedBy<'a> {
-    pub(super) fn engine(self) -> Option<&'a dyn Engine> {
-        match self {
-            Self::Engine(engine) => Some(engine),
-            Self::Saved(engine) => engine,
-            Self::Masks => None,
-        }
-    }
-
-    /// As it is named in files.
-    pub(super) fn method(self) -> &'a str {
-        match self {
-            Self::Engine(engine) => engine.name(),
-            Self::Saved(_) => "saved",
-            Self::Masks => "masks",
-        }
-    }
-
-    /// Nothing narrower is claimed, pixels, in a photo whose edges are spread so far.
-    pub(super) fn least_across(self, labels: &LabelImage, spread: Option<f64>) -> Option<f64> {
-        photo::least_across_of(self.engine(), labels, spread)
-    }
-}
-
 /// A photo whose fragments were outlined and measured.
-pub(super) struct Done<'a> {
-    /// Its place in the flight.
-    pub(super) index: usize,
+pub struct MeasuredPhoto<'a> {
     /// As the flight names it.
-    pub(super) photo: &'a str,
+    pub photo: &'a str,
     /// What was measured.
-    pub(super) fragments: PhotoFragments,
+    pub fragments: PhotoFragments,
     /// What outlined them.
-    pub(super) outlined: OutlinedBy<'a>,
+    pub outlined: OutlinedBy<'a>,
     /// How far the photo's edges are spread, pixels.
-    pub(super) spread: Option<f64>,
+    pub spread: Option<f64>,
+    /// The relative standard error of its scale, where that is known.
+    pub scale_error: Option<f64>,
+    /// The file with its outlines over the photo, which lies beside the tables.
+    pub picture: String,
 }
 
 /// A distribution, and how sure it is.
@@ -80,36 +46,23 @@ pub(super) struct Row<'a> {
 }
 
 /// The distributions of photos, and of all of them together.
-pub(super) struct Sizes<'a> {
+pub struct FragmentSizes<'a> {
     pub(super) photos: Vec<Row<'a>>,
     pub(super) all: Option<Row<'a>>,
     /// Photos without a distribution, a sentence each.
-    pub(super) without: Vec<String>,
+    pub without: Vec<String>,
 }
 
-impl<'a> Sizes<'a> {
+impl<'a> FragmentSizes<'a> {
     /// Of photos that were measured.
-    ///
-    /// # Errors
-    /// On cancel.
-    pub(super) fn of(
-        done: &'a [Done<'a>],
-        opened: &Opened,
-        way: &Way<'_>,
-        progress: &Progress,
-    ) -> Result<Self, Fault> {
-        let looked_up = opened.looked_up.clone();
-        let flight = opened.flight.clone();
-        let mut review = Review::of_scales(flight, looked_up, &Limits::default(), progress)?;
-        review.compute_fields(progress)?;
-        let scale_error = |of: &Done<'_>| photo::scale_error(&review.photo(of.index)?);
+    pub fn of(measured: &'a [MeasuredPhoto<'a>], way: &MassWay<'_>) -> Self {
         let mut sizes = Self {
             photos: Vec::new(),
             all: None,
             without: Vec::new(),
         };
-        for (place, of) in done.iter().enumerate() {
-            let row = row(of.photo, &[of], scale_error(of), way);
+        for (place, of) in measured.iter().enumerate() {
+            let row = row(of.photo, &[of], of.scale_error, way);
             match row.map(|row| Row {
                 of: Some(place),
                 scale: scale_of(&of.fragments),
@@ -122,16 +75,16 @@ impl<'a> Sizes<'a> {
                 }
             }
         }
-        let every: Vec<&Done<'_>> = done.iter().collect();
+        let every: Vec<&MeasuredPhoto<'_>> = measured.iter().collect();
         // The surface is one: errors of the photos' scales go together, and the largest stands for all.
-        let worst = done
-            .iter()
-            .filter_map(scale_error)
-            .fold(None, |most: Option<f64>, error| {
-                Some(most.map_or(error, |most| most.max(error)))
-            });
-        sizes.all = row(ALL, &every, worst, way).ok();
-        Ok(sizes)
+        let errors = measured.iter().filter_map(|of| of.scale_error);
+        sizes.all = row(ALL, &every, errors.reduce(f64::max), way).ok();
+        sizes
+    }
+
+    /// Why no photo has any, of the first of them.
+    pub fn nothing(&self) -> Option<&String> {
+        self.without.first().filter(|_| self.photos.is_empty())
     }
 
     /// The curves of the photos.
@@ -155,7 +108,7 @@ impl<'a> Sizes<'a> {
     }
 
     /// The sizes of all photos together, times `factor`.
-    pub(super) fn of_all(&self, factor: f64) -> Vec<FoundSize> {
+    pub fn of_all(&self, factor: f64) -> Vec<FoundSize> {
         let rows = self.all.iter();
         let sizes = rows.flat_map(|row| row.intervals.iter().map(move |of| (row, of)));
         sizes
@@ -173,7 +126,7 @@ impl<'a> Sizes<'a> {
     }
 
     /// A line of each photo, and one of all.
-    pub(super) fn words(&self, world: LengthUnit, unit: LengthUnit) -> String {
+    pub fn words(&self, world: LengthUnit, unit: LengthUnit) -> String {
         let factor = world.in_units_of(unit);
         let symbol = unit.symbol();
         let heads = [20, 50, 80].map(|percent| format!("P{percent} {symbol}"));
@@ -246,21 +199,21 @@ fn scale_of(photo: &PhotoFragments) -> Option<f64> {
 }
 
 /// The way from outlines to the mass.
-pub(super) struct Way<'a> {
+pub struct MassWay<'a> {
     /// Its steps.
-    pub(super) mass: &'a MassArguments,
+    pub steps: WantedSteps,
     /// The law of the fines.
-    pub(super) tail: Option<&'a Tail>,
+    pub tail: Option<&'a Tail>,
 }
 
 /// The distribution of photos together.
 fn row<'a>(
     name: &'a str,
-    done: &[&Done<'_>],
+    done: &[&MeasuredPhoto<'_>],
     scale: Option<f64>,
-    way: &Way<'_>,
+    way: &MassWay<'_>,
 ) -> Result<Row<'a>, Fault> {
-    let steps = way.mass.steps(done.iter().map(|of| of.outlined));
+    let steps = way.steps.of(done.iter().map(|of| of.outlined));
     let doubts = done
         .iter()
         .map(|of| Doubts::of(of.outlined.engine(), scale));
