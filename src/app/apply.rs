@@ -310,6 +310,7 @@ impl State {
                     | Asking::CloudUse
                     | Asking::AddLayer
                     | Asking::Masks
+                    | Asking::ExportFragments
                     | Asking::ControlList
             )
         );

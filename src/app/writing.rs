@@ -2,7 +2,7 @@
 //! file is replaced she is asked, and her answer counts as `--force`; what was read for what is on the
 //! screen is not written over whatever she answers.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::command::{Command, Destination};
 use crate::exports;
@@ -59,29 +59,58 @@ impl State {
         read: &Inputs,
         command: impl FnOnce(Destination) -> Command,
     ) -> bool {
+        self.may_write_all(to, &[to.path.clone()], kind, read, command)
+    }
+
+    /// The same of several files in the folder `to`: the first one that stands there is asked for.
+    pub(crate) fn may_write_all(
+        &mut self,
+        to: &Destination,
+        paths: &[PathBuf],
+        kind: Kind,
+        read: &Inputs,
+        command: impl FnOnce(Destination) -> Command,
+    ) -> bool {
         if to.replace {
             return true;
         }
-        let path = &to.path;
-        let there = match files::standing(path, kind, read) {
-            Standing::Free if !path.is_file() => return true,
-            Standing::Free => "It is empty.",
-            Standing::Ours => "fragscale wrote it.",
-            Standing::Foreign if kind == Kind::Flight => {
-                "It is no flight file that fragscale wrote."
-            }
-            Standing::Foreign => "It is no result that fragscale wrote.",
-            Standing::Read(_) | Standing::ReadFolder(_) | Standing::Folder => {
-                if let Err(fault) = files::may_write(path, kind, read, true) {
-                    let error = FileError::new(path, fault);
+        for path in paths {
+            let there = match self.standing(path, kind, read) {
+                Ok(None) => continue,
+                Ok(Some(there)) => there,
+                Err(error) => {
                     self.say(Severity::Error, &error.to_string());
+                    return false;
                 }
-                return false;
+            };
+            let there = format!("There is a file already: {}. {there}", path.display());
+            self.ask_to_replace(to, there, command);
+            return false;
+        }
+        true
+    }
+
+    /// What is to be asked before a file is written: `None` where nothing stands there.
+    fn standing(
+        &self,
+        path: &Path,
+        kind: Kind,
+        read: &Inputs,
+    ) -> Result<Option<&'static str>, FileError> {
+        Ok(match files::standing(path, kind, read) {
+            Standing::Free if !path.is_file() => None,
+            Standing::Free => Some("It is empty."),
+            Standing::Ours => Some("fragscale wrote it."),
+            Standing::Foreign if kind == Kind::Flight => {
+                Some("It is no flight file that fragscale wrote.")
             }
-        };
-        let there = format!("There is a file already: {}. {there}", path.display());
-        self.ask_to_replace(to, there, command);
-        false
+            Standing::Foreign => Some("It is no result that fragscale wrote."),
+            Standing::Read(_) | Standing::ReadFolder(_) | Standing::Folder => {
+                let written = files::may_write(path, kind, read, true);
+                written.map_err(|fault| FileError::new(path, fault))?;
+                return Ok(None);
+            }
+        })
     }
 
     /// Whether a folder can be exported to now; else asks.

@@ -11,7 +11,6 @@ use crate::exports::write_missions;
 use crate::fault::Fault;
 use crate::files::{self, Inputs, Kind};
 use crate::formats::FileError;
-use crate::opening::Opened;
 use crate::plan::Mission;
 
 /// `--force`.
@@ -216,25 +215,6 @@ impl<'a> Outputs<'a> {
             }
         }
     }
-}
-
-/// Refuses a folder in which photos of the flight lie: pictures beside them would count among them the next time.
-pub(super) fn apart_from_photos(folder: &Path, opened: &Opened) -> Result<(), String> {
-    let Ok(real) = folder.canonicalize() else {
-        // It is made anew.
-        return Ok(());
-    };
-    let mut photos = opened.photo_files.iter();
-    let lies_there = |path: &Path| {
-        let of_photo = path.parent().and_then(|parent| parent.canonicalize().ok());
-        of_photo.is_some_and(|of_photo| of_photo == real)
-    };
-    if !photos.any(|photo| photo.path.as_deref().is_some_and(lies_there)) {
-        return Ok(());
-    }
-    let what = "the flight's photos lie in it, and pictures beside them would be taken for photos";
-    let fault = Fault::new(what, "give a folder of its own, as one in it");
-    Err(FileError::new(folder, fault).to_string())
 }
 
 /// Whether one result after the other can go into it.

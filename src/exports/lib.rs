@@ -47,10 +47,12 @@ pub use flown_report::{
 };
 pub use fragments::{
     FRAGMENT_TABLES, FragmentSizes, FragmentTables, MassWay, MeasuredPhoto, OUTLINED_ENDINGS,
-    PhotoOfSizes, PhotoOutlined, curves_csv, fragment_tables, label_png, labels_png,
+    PhotoOfSizes, PhotoOutlined, curves_csv, fragment_tables, label_png, labels_png, left_over,
 };
 pub use map_places::MapPlaces;
-pub use masks::{CocoFile, CvatFile, fragments_geojson, labelme_json, labels_tiff};
+pub use masks::{
+    CocoFile, CvatFile, OUTLINE_ENDINGS, fragments_geojson, labelme_json, labels_tiff,
+};
 pub use measured::{
     MeasuredUnit, PointsReport, ProfileReport, VolumeReport, percent, points_csv, points_table,
     profile_csv, profile_json, profile_table, volume_csv, volume_json, volume_table,

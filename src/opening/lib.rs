@@ -65,7 +65,7 @@ pub use open::{
 pub use origin::{FlightOrigin, path_from};
 pub use outlines::{OutlinesOfOthers, OutlinesRead, outline_files, read_outlines};
 
-pub use photo_files::PhotoFile;
+pub use photo_files::{PhotoFile, apart_from_photos};
 pub use second_surface::{SecondSurface, StatedWorld, second_surface};
 
 #[cfg(test)]

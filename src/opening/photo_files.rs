@@ -2,7 +2,7 @@
 //! (contract, section 2, rule 7).
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use image::RgbImage;
 
@@ -202,6 +202,30 @@ fn most_common(sizes: impl Iterator<Item = (u32, u32)>) -> Option<(u32, u32)> {
         .into_iter()
         .max_by_key(|&(_, (count, place))| (count, std::cmp::Reverse(place)))
         .map(|(size, _)| size)
+}
+
+/// Refuses a folder in which photos of the flight lie: pictures beside them would count among them the next time.
+///
+/// # Errors
+/// Where they do.
+pub fn apart_from_photos(folder: &Path, photos: &[PhotoFile]) -> Result<(), FileError> {
+    let Ok(real) = folder.canonicalize() else {
+        // It is made anew.
+        return Ok(());
+    };
+    let lies_there = |path: &Path| {
+        let of_photo = path.parent().and_then(|parent| parent.canonicalize().ok());
+        of_photo.is_some_and(|of_photo| of_photo == real)
+    };
+    if !photos
+        .iter()
+        .any(|photo| photo.path.as_deref().is_some_and(lies_there))
+    {
+        return Ok(());
+    }
+    let what = "the flight's photos lie in it, and pictures beside them would be taken for photos";
+    let fault = Fault::new(what, "give a folder of its own, as one in it");
+    Err(FileError::new(folder, fault))
 }
 
 #[cfg(test)]

@@ -217,6 +217,78 @@ fn its_curve_stands_beside_the_sieves() {
     );
 }
 
+/// What the window writes of outlines that were corrected is what the command writes of the same when they are saved; before
+/// files are replaced it asks; the flight's photos keep their folder for themselves.
+#[test]
+fn results_are_those_of_the_command() {
+    let folder = sample();
+    let file = folder.path().join("flight.toml");
+    let mut desk = outlined(&file);
+    desk.press(Modifiers::NONE, Key::B);
+    drag(&mut desk, &[BALL, BALL + DVec2::new(40.0, 0.0)]);
+    assert_eq!(outlines(&desk).editing.changes(), 1);
+    let to = folder.path().join("from window");
+    desk.click(Role::Button, "Export fragments…");
+    desk.type_path(&folder.path().join("photos"));
+    desk.click(Role::Button, "Write results");
+    assert!(desk.logged("the flight's photos lie in it"));
+    for replaced in [false, true] {
+        desk.click(Role::Button, "Export fragments…");
+        desk.type_path(&to);
+        desk.click(Role::Button, "Write results");
+        if replaced {
+            assert!(desk.says("Replace the file?"));
+            desk.click(Role::Button, "Replace it");
+        }
+        assert!(desk.logged("fragments of 1 photo written"));
+    }
+    assert!(desk.logged("8 of 9 photos are not outlined, and are left out"));
+    assert!(desk.harness.state().state().is_changed());
+
+    desk.press(Modifiers::COMMAND, Key::S);
+    let by_command = folder.path().join("by command");
+    let done = std::process::Command::new(env!("CARGO_BIN_EXE_fragscale"))
+        .args(["delineate", "--photo", "IMG_0001.jpg"])
+        .args([file.as_path(), "--to".as_ref(), by_command.as_path()])
+        .status()
+        .unwrap();
+    assert!(done.success());
+    for name in [
+        "IMG_0001_labels.png",
+        "IMG_0001_outlines.png",
+        "IMG_0001_world.geojson",
+        "fragments.csv",
+        "distribution.csv",
+        "sizes.csv",
+    ] {
+        let [a, b] = [&to, &by_command].map(|folder| fs::read(folder.join(name)).unwrap());
+        assert!(a == b, "{name}");
+    }
+    let report = fs::read_to_string(to.join("report.html")).unwrap();
+    assert!(report.contains("8 of 9 photos are not outlined"));
+    // Closed and opened again it is the same of the saved outlines, which nobody has looked at since.
+    let mut again = Desk::new(Some(&file));
+    let third = folder.path().join("again");
+    again
+        .harness
+        .state_mut()
+        .apply(Command::Fragments(FragmentStep::Export(
+            third.clone().into(),
+        )));
+    again.settle();
+    assert!(again.logged("fragments of 1 photo written"));
+    let [a, b] = [&to, &third].map(|folder| fs::read(folder.join("sizes.csv")).unwrap());
+    assert!(a == b);
+    // And the outlines that it wrote come back as another tool's, by their path.
+    desk.press(Modifiers::NONE, Key::ArrowDown);
+    desk.click(Role::Button, "Outlines of another tool…");
+    assert!(desk.says("The outlines of IMG_0002.jpg: "));
+    desk.type_path(&to.join("IMG_0001_labels.png"));
+    desk.click(Role::Button, "Take the outlines");
+    assert!(fragments(outlines(&desk).now()) > 500);
+    assert!(!desk.shows(Role::Button, "Take the outlines"));
+}
+
 #[test]
 fn the_page_as_it_looks() {
     let screen = Screen {

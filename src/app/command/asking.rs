@@ -50,6 +50,8 @@ pub enum Asking {
     ControlList,
     /// Which file has the outlines of the selected photo.
     Masks,
+    /// Where the tables and the report of the fragments go.
+    ExportFragments,
     /// Which cloud is drawn beside the surface.
     AddLayer,
     /// What the cloud is to be that was dropped or opened beside a flight.

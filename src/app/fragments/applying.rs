@@ -23,6 +23,7 @@ impl State {
             FragmentStep::Outline => self.outline_photo(),
             FragmentStep::Masks(path) => self.read_masks(path),
             FragmentStep::TakeDistribution => self.take_fragments_distribution(),
+            FragmentStep::Export(to) => self.export_fragments(to),
             step => {
                 let Some(open) = &mut self.open else {
                     return;
@@ -165,6 +166,7 @@ impl Fragments {
             FragmentStep::Engine(_)
             | FragmentStep::Outline
             | FragmentStep::Masks(_)
+            | FragmentStep::Export(_)
             | FragmentStep::TakeDistribution => {}
         }
         self.forget_gone(Some(photo));

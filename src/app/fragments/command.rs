@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use glam::DVec2;
 
+use crate::command::Destination;
+
 /// One thing to do on the page of the fragments.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FragmentStep {
@@ -41,6 +43,8 @@ pub enum FragmentStep {
     Finer(DVec2),
     /// Takes the photo's size distribution over to its page.
     TakeDistribution,
+    /// Writes tables, report and outlines of all photos that are outlined into this folder.
+    Export(Destination),
 }
 
 /// What the mouse does in the photo.

@@ -7,6 +7,7 @@
 //! measured   what the outlines come to
 //! measuring  measures them, as a job whenever they change
 //! files      saved beside flight.toml, and read from there
+//! exporting  tables, report and outlines, as the command `delineate` writes them
 //! ```
 //!
 //! Outlines are of the undistorted photo at its full size. A change is made at once and can be undone without
@@ -15,6 +16,7 @@
 
 mod applying;
 mod command;
+mod exporting;
 pub(crate) mod files;
 mod measured;
 mod measuring;

@@ -7,14 +7,14 @@ use clap::{Args, ValueEnum};
 use super::chosen_photos::{ChosenPhotos, Doing};
 use super::length::Length;
 use crate::cli::flight_arguments::FlightArguments;
-use crate::cli::outputs::{Force, Outputs, apart_from_photos};
+use crate::cli::outputs::{Force, Outputs};
 use crate::cli::{Answer, OutputUnit};
 use crate::exports::{self, RectifiedFormat, RectifiedPhoto};
 use crate::fault::Fault;
 use crate::files::Kind;
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::Opened;
+use crate::opening::{Opened, apart_from_photos};
 use crate::scale::{Onto, PixelSize};
 use crate::units::LengthUnit;
 
@@ -66,7 +66,7 @@ pub(in crate::cli) fn rectify(
     let mut outputs = Outputs::new(arguments.force, arguments.flight.files());
     let opened = arguments.flight.open(progress)?;
     outputs.read(&opened.read)?;
-    apart_from_photos(&arguments.to, &opened)?;
+    apart_from_photos(&arguments.to, &opened.photo_files).map_err(|error| error.to_string())?;
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let flight = &opened.flight;

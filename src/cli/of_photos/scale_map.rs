@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 
 use super::chosen_photos::{ChosenPhotos, Doing};
 use crate::cli::flight_arguments::{FlightArguments, MemoryArguments};
-use crate::cli::outputs::{Force, Outputs, apart_from_photos};
+use crate::cli::outputs::{Force, Outputs};
 use crate::cli::{Answer, OutputUnit};
 use crate::exports::{self, MapLayer, ScaleMap};
 use crate::fault::Fault;
@@ -15,7 +15,7 @@ use crate::files::Kind;
 use crate::flight::{Flight, Photo};
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::Opened;
+use crate::opening::{Opened, apart_from_photos};
 use crate::picture;
 use crate::scale::FieldGrid;
 
@@ -184,7 +184,8 @@ fn make_maps(
     let files = waiting.flat_map(|(_, planned)| &planned.files);
     outputs.check_all(files.map(|(path, _)| path.as_path()))?;
     if arguments.photos.all {
-        apart_from_photos(&arguments.output[0], opened)?;
+        apart_from_photos(&arguments.output[0], &opened.photo_files)
+            .map_err(|error| error.to_string())?;
         outputs.make_folder(&arguments.output[0])?;
     }
     let maker = Maker {

@@ -1,6 +1,7 @@
 //! Outlined fragments: label images, the table of their measures, outlines over the photo and in the world, curves.
 
 mod label_image;
+mod left_over;
 mod outlines;
 mod photo_files;
 mod report;
@@ -10,6 +11,7 @@ mod tables;
 mod world_outlines;
 
 pub use label_image::{label_png, labels_png};
+pub use left_over::left_over;
 use outlines::outlines_png;
 pub use photo_files::{OUTLINED_ENDINGS, PhotoOutlined};
 pub use sizes::{FragmentSizes, MassWay, MeasuredPhoto};

@@ -30,6 +30,15 @@ pub use labelme::labelme_json;
 pub use tiff::labels_tiff;
 pub(crate) use trace::parts;
 
+/// How files of each form end behind a photo's name, or are called: COCO, CVAT, LabelMe, GeoJSON, TIFF.
+pub const OUTLINE_ENDINGS: [&str; 5] = [
+    "fragments_coco.json",
+    "fragments_cvat.xml",
+    "_labelme.json",
+    "_fragments.geojson",
+    "_labels.tif",
+];
+
 /// What regions are called in all of them; `formats::masks` knows these names.
 const FRAGMENT: &str = "fragment";
 const FINES_NAME: &str = "fines";

@@ -4,9 +4,9 @@
 mod choose;
 mod cloud_use;
 mod control_list;
+mod fragments;
 mod from_photos;
 mod georeference;
-mod masks;
 mod on_node;
 mod planning;
 mod residuals;
@@ -31,6 +31,7 @@ use crate::units::LengthUnit;
 use choose::choose;
 use cloud_use::cloud_use;
 use control_list::control_list;
+use fragments::{export_fragments, masks};
 use from_photos::from_photos;
 use georeference::{georeference, save_georeferenced};
 use planning::{PlanFile, mission, plan_table};
@@ -62,6 +63,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::SaveReport => "Save report",
             Asking::ControlList => "Load control points",
             Asking::Masks => "Outlines of another tool",
+            Asking::ExportFragments => "Export fragments",
             Asking::AddLayer => "Add cloud as layer",
             Asking::CloudUse => "What is this cloud?",
             Asking::VolumeBase => "Base of the volume",
@@ -107,7 +109,8 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::SaveFigure => save_figure(state, ui, commands),
                     Asking::SaveReport => save_report(state, ui, commands),
                     Asking::ControlList => control_list(state, ui, commands),
-                    Asking::Masks => masks::masks(state, ui, commands),
+                    Asking::Masks => masks(state, ui, commands),
+                    Asking::ExportFragments => export_fragments(state, ui, commands),
                     Asking::AddLayer => add_layer(state, ui, commands),
                     Asking::CloudUse => cloud_use(state, ui, commands),
                     Asking::VolumeBase => volume_base(state, ui, commands),

@@ -2,7 +2,7 @@
 
 use egui::{Role, Ui, WidgetInfo};
 
-use crate::command::Command;
+use crate::command::{Asking, Command};
 use crate::delineation::measures::Fragment;
 use crate::exports::PhotoOfSizes;
 use crate::fragments::{FragmentStep, MeasuredFragments, PhotoOutlines};
@@ -212,10 +212,21 @@ fn all(
         ),
     ];
     ui.strong("This photo, by mass");
+    ui.horizontal_wrapped(|ui| take_along(state, ui, commands));
     pairs("fragments by mass", rows, ui);
+}
+
+/// What is done with them.
+fn take_along(state: &State, ui: &mut Ui, commands: &mut Vec<Command>) {
     let button = ui.button("To size distributions");
     let hover = "Take this photo's curve over to the page of size distributions, beside sieves and other methods";
     if button.on_hover_text(hover).clicked() {
         commands.push(Command::Fragments(FragmentStep::TakeDistribution));
+    }
+    let is_busy = state.work.is_running(Task::EXPORT_FRAGMENTS);
+    let button = ui.add_enabled(!is_busy, egui::Button::new("Export fragments…"));
+    let hover = "Write outlines, tables and a report of all photos that are outlined, corrected as they are now";
+    if button.on_hover_text(hover).clicked() {
+        commands.push(Command::Ask(Some(Asking::ExportFragments)));
     }
 }

@@ -2,7 +2,6 @@
 //! distribution.
 
 mod chosen_engine;
-mod left_over;
 mod masks_arguments;
 mod mass_arguments;
 mod unfinished;
@@ -14,14 +13,13 @@ use clap::{Args, ValueEnum};
 use image::RgbImage;
 
 use self::chosen_engine::{ChosenEngine, OpenEngine};
-use self::left_over::left_over;
 use self::masks_arguments::{MasksArguments, with_outlines};
 use self::mass_arguments::MassArguments;
 use self::unfinished::{KeptPhoto, Unfinished};
 use self::written_outlines::{OtherForm, WrittenOutlines};
 use super::chosen_photos::{ChosenPhotos, Doing};
 use crate::cli::flight_arguments::FlightArguments;
-use crate::cli::outputs::{Force, Outputs, apart_from_photos};
+use crate::cli::outputs::{Force, Outputs};
 use crate::cli::{Answer, OutputUnit};
 use crate::delineation::mass::PhotoFragments;
 use crate::delineation::measures::SieveShape;
@@ -37,7 +35,7 @@ use crate::fault::Fault;
 use crate::files::{Kind, Recording};
 use crate::formats::{FileError, read_bytes};
 use crate::jobs::Progress;
-use crate::opening::{Opened, OutlinesOfOthers, outline_files, read_outlines};
+use crate::opening::{Opened, OutlinesOfOthers, apart_from_photos, outline_files, read_outlines};
 use crate::picture::edge_spread;
 use crate::units::LengthUnit;
 
@@ -161,7 +159,7 @@ pub(in crate::cli) fn delineate_of(
         .chain(arguments.mass.file());
     let mut outputs = Outputs::new(arguments.force, inputs);
     outputs.read(&opened.read)?;
-    apart_from_photos(&arguments.to, opened)?;
+    apart_from_photos(&arguments.to, &opened.photo_files).map_err(|error| error.to_string())?;
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
     let flight = &opened.flight;
@@ -186,7 +184,7 @@ pub(in crate::cli) fn delineate_of(
     let files = planned.iter().flatten().chain(&tables).chain(&for_others);
     let files: Vec<&Path> = files.map(PathBuf::as_path).collect();
     outputs.check_all(files.iter().copied())?;
-    warnings.extend(left_over(to, &files));
+    warnings.extend(exports::left_over(to, &files));
     let places = MapPlaces::new(opened.crs.as_deref(), world);
     let unfinished = match outliners.others {
         // Outlines that stand already are measured in no time.

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 
 use crate::cli::outputs::Outputs;
 use crate::delineation::LabelImage;
-use crate::exports::{self, CocoFile, CvatFile};
+use crate::exports::{self, CocoFile, CvatFile, OUTLINE_ENDINGS};
 use crate::fault::Fault;
 use crate::files::{Kind, last_segment};
 
@@ -123,26 +123,22 @@ impl<'a> WrittenOutlines<'a> {
     }
 }
 
-/// How the files of each form end: that of a photo, or of all.
-pub(super) fn endings() -> impl Iterator<Item = &'static str> {
-    let all = OtherForm::value_variants().iter();
-    all.map(|form| of_all(*form).unwrap_or(ending(*form)))
-}
-
-/// How a photo's file ends.
+/// How its files end.
 fn ending(form: OtherForm) -> &'static str {
+    let [coco, cvat, labelme, geojson, tiff] = OUTLINE_ENDINGS;
     match form {
-        OtherForm::Labelme => "_labelme.json",
-        OtherForm::Geojson => "_fragments.geojson",
-        _ => "_labels.tif",
+        OtherForm::Coco => coco,
+        OtherForm::Cvat => cvat,
+        OtherForm::Labelme => labelme,
+        OtherForm::Geojson => geojson,
+        OtherForm::Tiff => tiff,
     }
 }
 
 /// The file of all photos, of a form that has one.
 fn of_all(form: OtherForm) -> Option<&'static str> {
     match form {
-        OtherForm::Coco => Some("fragments_coco.json"),
-        OtherForm::Cvat => Some("fragments_cvat.xml"),
+        OtherForm::Coco | OtherForm::Cvat => Some(ending(form)),
         OtherForm::Labelme | OtherForm::Geojson | OtherForm::Tiff => None,
     }
 }

@@ -2,17 +2,15 @@
 
 use std::path::Path;
 
-use super::written_outlines;
-use crate::exports::OUTLINED_ENDINGS;
+use super::OUTLINED_ENDINGS;
 use crate::fault::first_names;
+use crate::masks::OUTLINE_ENDINGS;
 
 /// Those that are named as results and are none of these; a sentence, where there are any.
-pub(super) fn left_over(to: &Path, written: &[&Path]) -> Option<String> {
+pub fn left_over(to: &Path, written: &[&Path]) -> Option<String> {
     let files = to.read_dir().ok()?.flatten();
     let is_result = |name: &str| {
-        let mut endings = OUTLINED_ENDINGS
-            .into_iter()
-            .chain(written_outlines::endings());
+        let mut endings = OUTLINED_ENDINGS.into_iter().chain(OUTLINE_ENDINGS);
         endings.any(|ending| name.ends_with(ending))
     };
     let mut others: Vec<String> = files

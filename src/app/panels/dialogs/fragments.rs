@@ -1,12 +1,13 @@
-//! The small window that asks for the outlines of a photo that another tool made.
+//! The small windows that ask for the outlines of a photo that another tool made, and where the results of the fragments go.
 
+use super::proposed;
 use crate::command::{Command, Dialog};
 use crate::fragments::FragmentStep;
 use crate::panels::path_field::path_field;
 use crate::state::State;
 use crate::typed::typed;
 
-/// Draws the window's contents.
+/// Which file has the outlines.
 pub(super) fn masks(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let selected = state
         .open
@@ -33,5 +34,28 @@ pub(super) fn masks(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     {
         commands.push(Command::Fragments(FragmentStep::Masks(path)));
         commands.push(Command::Ask(None));
+    }
+}
+
+/// Where tables, report and outlines go.
+pub(super) fn export_fragments(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let Some(open) = &state.open else {
+        return;
+    };
+    ui.label(format!(
+        "Of all photos that are outlined, as 'fragscale delineate' writes them, into one folder: outlines over the photo and in the \
+         world, label images, tables of fragments, distributions and sizes in {}, and a page to read (report.html).",
+        state.preferences.unit()
+    ));
+    let browse = [("Browse…", Dialog::folder("Folder for the fragments"))];
+    let start = proposed(open, Some("fragment-sizes"));
+    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new("Write results"));
+    if let Some(path) = path
+        && (button.clicked() || entered)
+    {
+        commands.push(Command::Fragments(FragmentStep::Export(path.into())));
     }
 }

@@ -1,0 +1,301 @@
+//! Results of all photos that are outlined, as a job: what the command `delineate` writes of outlines that are there.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::FragmentStep;
+use crate::command::{Command, Destination};
+use crate::delineation::mass::WantedSteps;
+use crate::delineation::measures::SieveShape;
+use crate::delineation::{OutlinedBy, engine_called, photo};
+use crate::exports::{
+    self, FRAGMENT_TABLES, FragmentSizes, FragmentTables, MapPlaces, MassWay, MeasuredPhoto,
+    OUTLINED_ENDINGS, PhotoOutlined,
+};
+use crate::fault::Fault;
+use crate::files::{self, FileError, Inputs, Kind};
+use crate::flight::{Flight, LookedUp};
+use crate::formats::read_bytes;
+use crate::jobs::Progress;
+use crate::labels::LabelImage;
+use crate::open_flight::OpenFlight;
+use crate::opening::{apart_from_photos, outline_files, read_outlines};
+use crate::picture::edge_spread;
+use crate::state::{Severity, State};
+use crate::tasks::Task;
+use crate::tasks::photos::read_photo;
+use crate::units::LengthUnit;
+
+impl Task {
+    /// Writing the results of fragments.
+    pub const EXPORT_FRAGMENTS: Self = Self::new("Exporting fragments").writing();
+}
+
+/// Where a photo's outlines are.
+enum Outlines {
+    /// On the screen: as they are now, what outlined them first, and how far the photo's edges are spread.
+    Now(LabelImage, String, Option<f64>),
+    /// In files beside flight.toml.
+    Saved([PathBuf; 2]),
+}
+
+/// A photo that is outlined.
+struct Outlined {
+    index: usize,
+    name: String,
+    stem: String,
+    file: Option<PathBuf>,
+    outlines: Outlines,
+}
+
+impl Outlined {
+    /// Its own files in that folder.
+    fn paths(&self, folder: &Path) -> [PathBuf; 3] {
+        OUTLINED_ENDINGS.map(|ending| folder.join(format!("{}{ending}", self.stem)))
+    }
+
+    /// Why nothing came of it.
+    fn failed(&self, fault: &Fault) -> String {
+        format!("photo '{}': {fault}", self.name)
+    }
+}
+
+/// What was written, in words.
+struct Written {
+    sentence: String,
+    warnings: Vec<String>,
+}
+
+impl OpenFlight {
+    /// The photos that are outlined, on the screen or in files.
+    fn outlined(&self) -> Vec<Outlined> {
+        let own = self.files.origin.flight_file();
+        let stems = exports::photo_file_stems(self.flight());
+        let stems = stems.into_iter().enumerate();
+        stems
+            .filter_map(|(index, stem)| {
+                let outlines = match self.fragments.of(index) {
+                    Some(of) => {
+                        Outlines::Now(of.now().labels().clone(), of.engine.clone(), of.spread)
+                    }
+                    None => {
+                        let files = outline_files(own?, &stem);
+                        files[0].is_file().then_some(Outlines::Saved(files))?
+                    }
+                };
+                let file = self.files.photo_files.get(index).cloned();
+                Some(Outlined {
+                    index,
+                    name: self.name(index).to_owned(),
+                    stem,
+                    file: file.unwrap_or_default().path,
+                    outlines,
+                })
+            })
+            .collect()
+    }
+}
+
+impl State {
+    /// Writes the results of all photos that are outlined; asks before files are replaced.
+    pub(super) fn export_fragments(&mut self, to: Destination) {
+        self.asking = None;
+        if self.is_busy(Task::EXPORT_FRAGMENTS) {
+            return;
+        }
+        let Some(open) = &self.open else {
+            return;
+        };
+        let outlined = open.outlined();
+        let parts = open.flight().parts();
+        let count = parts.photos.len();
+        let refused = match (parts.unit_known, outlined.is_empty()) {
+            (false, _) => Some(
+                "the model is in a frame of its own, whose unit nobody states: georeference it first".to_owned(),
+            ),
+            (_, true) => Some("no photo is outlined yet: outline one or more first".to_owned()),
+            _ => apart_from_photos(&to.path, &open.files.photo_files)
+                .err()
+                .map(|error| error.to_string()),
+        };
+        if let Some(refused) = refused {
+            self.say(Severity::Error, &refused);
+            return;
+        }
+        let folder = to.path.clone();
+        let photos = outlined.iter().flat_map(|of| of.paths(&folder));
+        let tables = FRAGMENT_TABLES.map(|name| folder.join(name));
+        let paths: Vec<PathBuf> = photos.chain(tables).collect();
+        let mut warnings: Vec<String> = Vec::new();
+        if outlined.len() < count {
+            warnings.push(format!(
+                "{} of {count} photos are not outlined, and are left out",
+                count - outlined.len()
+            ));
+        }
+        let those: Vec<&Path> = paths.iter().map(PathBuf::as_path).collect();
+        warnings.extend(exports::left_over(&folder, &those));
+        let export = Export {
+            folder,
+            replace: to.replace,
+            read: self.read(),
+            outlined,
+            flight: open.flight().clone(),
+            crs: open.files.crs.clone(),
+            looked_up: open.review.looked_up().clone(),
+            unit: self.preferences.unit(),
+            warnings,
+        };
+        let command = |to| Command::Fragments(FragmentStep::Export(to));
+        if !self.may_write_all(&to, &paths, Kind::Result, &export.read.clone(), command) {
+            return;
+        }
+        let work = move |progress: &Progress| export.write(progress);
+        self.start(
+            Task::EXPORT_FRAGMENTS,
+            work,
+            |state, written| match written {
+                Ok(written) => {
+                    for warning in &written.warnings {
+                        state.say(Severity::Warning, warning);
+                    }
+                    state.say(Severity::Note, &written.sentence);
+                }
+                Err(message) => state.say(Severity::Error, &message),
+            },
+        );
+    }
+}
+
+/// All that the job needs.
+struct Export {
+    folder: PathBuf,
+    /// Whether files may be replaced.
+    replace: bool,
+    read: Inputs,
+    outlined: Vec<Outlined>,
+    flight: Arc<Flight>,
+    crs: Option<String>,
+    looked_up: LookedUp,
+    /// Of what is written.
+    unit: LengthUnit,
+    warnings: Vec<String>,
+}
+
+impl Export {
+    /// Measures photo by photo and writes what the command writes.
+    fn write(self, progress: &Progress) -> Result<Written, String> {
+        let parts = self.flight.parts();
+        let world = parts.unit;
+        let units = [world, self.unit];
+        let in_words = |fault: Fault| fault.to_string();
+        let places = MapPlaces::new(self.crs.as_deref(), world);
+        let mut warnings = self.warnings.clone();
+        warnings.extend(places.fault().map(|fault| fault.to_string()));
+        files::make_folder(&self.folder).map_err(|error| error.to_string())?;
+        let mut measured = Vec::new();
+        let count = self.outlined.len() as u64;
+        for (done, of) in self.outlined.iter().enumerate() {
+            progress.stage(format!("measuring the fragments of {}", of.name));
+            progress.advance(done as u64, count).map_err(in_words)?;
+            let (photo, notes) = self.photo(of, &places, units, progress)?;
+            warnings.extend(notes.iter().map(|note| format!("{}: {note}", of.name)));
+            measured.push(photo);
+        }
+        let photos = self.outlined.iter().map(|of| of.index);
+        let errors = photo::scale_errors(&self.flight, &self.looked_up, photos, progress);
+        for (of, error) in measured.iter_mut().zip(errors.map_err(in_words)?) {
+            of.scale_error = error;
+        }
+        let way = MassWay {
+            steps: WantedSteps::default(),
+            tail: None,
+        };
+        let sizes = FragmentSizes::of(&measured, &way);
+        warnings.extend(sizes.without.iter().cloned());
+        let of_tables = FragmentTables {
+            flight: &parts.name,
+            units,
+            tail: None,
+            warnings: &warnings,
+        };
+        let picture = |name: &str| read_bytes(&self.folder.join(name)).map_err(|error| error.fault);
+        let tables = exports::fragment_tables(&of_tables, &measured, &sizes, picture);
+        for (name, bytes) in FRAGMENT_TABLES.iter().zip(tables.map_err(in_words)?) {
+            self.write_file(&self.folder.join(name), &bytes)?;
+        }
+        let photos = if measured.len() == 1 {
+            "photo"
+        } else {
+            "photos"
+        };
+        Ok(Written {
+            sentence: format!(
+                "{}: fragments of {} {photos} written",
+                self.folder.display(),
+                measured.len()
+            ),
+            warnings,
+        })
+    }
+
+    /// Measures a photo and writes its files; with what was mended in its outlines.
+    fn photo<'a>(
+        &'a self,
+        of: &'a Outlined,
+        places: &MapPlaces,
+        units: [LengthUnit; 2],
+        progress: &Progress,
+    ) -> Result<(MeasuredPhoto<'a>, Vec<String>), String> {
+        let failed = |fault: Fault| of.failed(&fault);
+        let posed = &self.flight.parts().photos[of.index];
+        let camera = self.flight.camera(posed);
+        let missing = || format!("the file of photo '{}' is not there", of.name);
+        let pixels = read_photo(of.file.as_deref().ok_or_else(missing)?)?;
+        let pixels = photo::undistorted(&pixels, camera).map_err(failed)?;
+        let read;
+        let (labels, engine, spread, notes) = match &of.outlines {
+            Outlines::Now(labels, engine, spread) => (labels, engine, *spread, Vec::new()),
+            Outlines::Saved(files) => {
+                read = read_outlines(files, &of.name, camera).map_err(|error| error.to_string())?;
+                (
+                    read.outlines.labels(),
+                    &read.engine,
+                    read.spread,
+                    read.notes.clone(),
+                )
+            }
+        };
+        // Of outlines of other tools nobody has measured it yet.
+        let spread = spread.or_else(|| edge_spread(&pixels));
+        let outlined = OutlinedBy::Saved(engine_called(engine).map(|engine| engine as _));
+        let field = photo::field(&self.flight, posed, progress).map_err(failed)?;
+        let least = outlined.least_across(labels, spread);
+        let fragments = photo::fragments(labels, &field, SieveShape::Calibrated, least);
+        let written = PhotoOutlined {
+            name: &of.name,
+            pixels: &pixels,
+            labels,
+            field: &field,
+            fragments: &fragments,
+        };
+        let files = written.files(places, units).map_err(failed)?;
+        for (path, bytes) in of.paths(&self.folder).iter().zip(files) {
+            self.write_file(path, &bytes)?;
+        }
+        let measured = MeasuredPhoto {
+            photo: &of.name,
+            fragments,
+            outlined,
+            spread,
+            scale_error: None,
+            picture: format!("{}{}", of.stem, OUTLINED_ENDINGS[1]),
+        };
+        Ok((measured, notes))
+    }
+
+    fn write_file(&self, path: &Path, bytes: &[u8]) -> Result<(), String> {
+        files::write(path, bytes, Kind::Result, &self.read, self.replace)
+            .map_err(|fault| FileError::new(path, fault).to_string())
+    }
+}
