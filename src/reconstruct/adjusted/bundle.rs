@@ -6,8 +6,9 @@ use std::collections::{HashMap, HashSet};
 use cumulus3d_ba::{BaConfig, Loss, bundle_adjust};
 use cumulus3d_core::{CameraModelKind, Reconstruction, Vec3};
 
-use super::{Whose, failed};
+use super::{Whose, failed, not_waited_for};
 use crate::fault::Fault;
+use crate::jobs::Progress;
 
 /// Photos of a camera from which on its lens is adjusted: before, poses take up what is the lens's.
 const PHOTOS_OF_A_LENS: usize = 4;
@@ -16,6 +17,9 @@ const PHOTOS_OF_A_LENS: usize = 4;
 const FARTHEST_PX: f64 = 4.0;
 /// Degrees between two rays at least: below, the depth is noise.
 const LEAST_ANGLE: f64 = 1.5;
+
+/// As it is called where it fails.
+const DOING: &str = "the bundle adjustment";
 
 /// What is adjusted.
 pub(crate) struct Adjustment<'a> {
@@ -29,11 +33,15 @@ pub(crate) struct Adjustment<'a> {
     pub(crate) iterations: usize,
 }
 
-/// Adjusts, then takes away what does not fit.
+/// Adjusts, then takes away what does not fit. After an error the model is empty.
 ///
 /// # Errors
-/// Where there is no solution.
-pub(crate) fn adjust(model: &mut Reconstruction, what: Adjustment<'_>) -> Result<(), Fault> {
+/// Where there is no solution, or on cancel.
+pub(crate) fn adjust(
+    model: &mut Reconstruction,
+    what: Adjustment<'_>,
+    progress: &Progress,
+) -> Result<(), Fault> {
     let is_local = !what.images.is_empty();
     let mut of_camera: HashMap<u32, usize> = HashMap::new();
     for image in model.registered_images() {
@@ -68,10 +76,16 @@ pub(crate) fn adjust(model: &mut Reconstruction, what: Adjustment<'_>) -> Result
         function_tolerance: 1e-6,
         ..BaConfig::default()
     };
-    let summary = bundle_adjust(model, &config).map_err(|_| failed("the bundle adjustment"))?;
-    if !summary.is_usable() {
-        return Err(failed("the bundle adjustment"));
+    let mut taken = std::mem::replace(model, Reconstruction::new());
+    let adjusted = not_waited_for(DOING, progress, move || {
+        let summary = bundle_adjust(&mut taken, &config);
+        (summary, taken)
+    });
+    let (summary, adjusted) = adjusted?;
+    if !summary.is_ok_and(|summary| summary.is_usable()) {
+        return Err(failed(DOING));
     }
+    *model = adjusted;
     model.filter_observations_with_large_reprojection_error(FARTHEST_PX, None);
     model.filter_points3d_with_small_triangulation_angle(LEAST_ANGLE, None);
     Ok(())

@@ -8,15 +8,21 @@ use super::failed;
 use crate::fault::Fault;
 use crate::photo_set::PhotoSet;
 
-/// The same, with a photo's place in the folder, from 1, as its identifier. Photos of other names are left out.
+/// The same, with a photo's place in the folder, from 1, as its identifier, and its name there: `called` has the model's name of
+/// each photo. Photos of other names are left out.
 ///
 /// # Errors
 /// Where the model contradicts itself.
-pub(crate) fn in_order(model: &Reconstruction, photos: &PhotoSet) -> Result<Reconstruction, Fault> {
-    with_pixels(model, photos, |_, _, _, pixel| pixel)
+pub(crate) fn in_order(
+    model: &Reconstruction,
+    photos: &PhotoSet,
+    called: &[String],
+) -> Result<Reconstruction, Fault> {
+    let called = called.iter().map(String::as_str);
+    numbered(model, photos, called, |_, _, _, pixel| pixel).map_err(|_| failed("reading the model"))
 }
 
-/// The same with other pixels: of a photo's identifier in `model` and its camera's, the pixel's number, and what it
+/// The same of a model that calls the photos as the folder does, with other pixels: of a photo's identifier in `model` and its camera's, the pixel's number, and what it
 /// is.
 ///
 /// # Errors
@@ -26,12 +32,14 @@ pub(super) fn with_pixels(
     photos: &PhotoSet,
     pixel: impl FnMut(u32, u32, usize, Vec2) -> Vec2,
 ) -> Result<Reconstruction, Fault> {
-    numbered(model, photos, pixel).map_err(|_| failed("reading the model"))
+    let called = photos.photos.iter().map(|photo| photo.name.as_str());
+    numbered(model, photos, called, pixel).map_err(|_| failed("reading the model"))
 }
 
-fn numbered(
+fn numbered<'a>(
     model: &Reconstruction,
     photos: &PhotoSet,
+    called: impl Iterator<Item = &'a str>,
     mut changed: impl FnMut(u32, u32, usize, Vec2) -> Vec2,
 ) -> Result<Reconstruction, Error> {
     let mut made = Reconstruction::new();
@@ -40,8 +48,8 @@ fn numbered(
         made.add_rig(Rig::trivial(id))?;
     }
     let mut names = std::collections::HashMap::new();
-    for (id, photo) in (1..).zip(&photos.photos) {
-        let Some(image) = model.image_by_name(&photo.name) else {
+    for ((id, photo), called) in (1..).zip(&photos.photos).zip(called) {
+        let Some(image) = model.image_by_name(called) else {
             continue;
         };
         let (was, camera) = (image.image_id, image.camera_id);

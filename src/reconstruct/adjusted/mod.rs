@@ -29,7 +29,7 @@ use std::path::Path;
 
 pub(crate) use self::bundle::{Adjustment, adjust};
 pub(crate) use self::conversions::{point, pose};
-pub(crate) use self::guarded::{failed, guarded};
+pub(crate) use self::guarded::{failed, guarded, not_waited_for};
 pub(crate) use self::in_order::in_order;
 pub(crate) use self::model_files::read;
 pub(crate) use self::whose::Whose;

@@ -75,7 +75,7 @@ pub(super) fn place(
             whose,
             iterations: 100,
         };
-        adjust(model, adjustment)?;
+        adjust(model, adjustment, progress)?;
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 //! engine that others measure by.
 //!
 //! ```text
+//! called    photos under names that its lists can hold
 //! program   the program on the path, run with progress and cancelled with all that it started
 //! options   which of a command's options this version has
 //! log       how far it is, from what it prints
@@ -12,6 +13,7 @@
 //! Its database stays in the folder of unfinished work, so that a second run goes on where the first was cut
 //! off. Its mapper knows no positions: they come in afterwards, as with every engine (`adjusted`).
 
+mod called;
 mod log;
 mod options;
 mod program;
@@ -26,6 +28,7 @@ use std::path::{Path, PathBuf};
 use cumulus3d_core::Reconstruction;
 use rayon::prelude::*;
 
+use self::called::Called;
 use self::options::{Options, Setting};
 use self::program::Program;
 use crate::adjusted::{guarded, in_order, read, too_little_in_common};
@@ -73,20 +76,14 @@ impl Engine for Colmap {
         at: &Workplace,
         progress: &Progress,
     ) -> Result<Found, Fault> {
-        let blank = |name: &str| name.contains(char::is_whitespace);
-        if let Some(photo) = photos.photos.iter().find(|photo| blank(&photo.name)) {
-            let what = format!(
-                "COLMAP's list of pairs cannot name '{}': blanks end a name there",
-                photo.name
-            );
-            return Err(Fault::new(what, "rename it, or take the embedded engine"));
-        }
         let broken = broken(photos, progress)?;
+        let Called { names, folder } = Called::of(photos, at.folder)?;
         let run = Run {
             broken,
             program: &self.program,
             photos,
-            folder: photos_folder(photos),
+            called: names,
+            folder,
             database: at.folder.join(DATABASE),
             work: at.folder,
             progress,
@@ -108,6 +105,8 @@ struct Run<'a> {
     photos: &'a PhotoSet,
     /// Of each photo: why it cannot be read.
     broken: Vec<Option<String>>,
+    /// Of each photo: its name in `folder`.
+    called: Vec<String>,
     folder: PathBuf,
     database: PathBuf,
     work: &'a Path,
@@ -192,8 +191,10 @@ impl Run<'_> {
     /// The photos of a camera that can be read.
     fn names(&self, camera: usize) -> Vec<&str> {
         let its = self.photos.photos.iter().zip(&self.broken);
-        let its = its.filter(|(photo, broken)| photo.camera == camera && broken.is_none());
-        its.map(|(photo, _)| photo.name.as_str()).collect()
+        let its = its.zip(&self.called);
+        its.filter(|((photo, broken), _)| photo.camera == camera && broken.is_none())
+            .map(|(_, called)| called.as_str())
+            .collect()
     }
 
     fn left_out(&self) -> Vec<LeftOut> {
@@ -212,7 +213,7 @@ impl Run<'_> {
     fn matches(&self, pairs: &[[usize; 2]]) -> Result<(), Fault> {
         let command = "matches_importer";
         let options = Options::of(self.program, command)?;
-        let name = |at: usize| self.photos.photos[at].name.as_str();
+        let name = |at: usize| self.called[at].as_str();
         let list = self.work.join("pairs.txt");
         let mut settings = vec![
             Setting::path("database_path", &self.database),
@@ -288,7 +289,7 @@ impl Run<'_> {
         (self.program).run("model_converter", &settings, |_| (), self.progress)?;
         guarded(|| {
             let model = read(&text, &self.program.version)?;
-            in_order(&model, self.photos)
+            in_order(&model, self.photos, &self.called)
         })
     }
 
@@ -322,11 +323,6 @@ fn broken(photos: &PhotoSet, progress: &Progress) -> Result<Vec<Option<String>>,
     let broken = photos.photos.par_iter().map(why).collect();
     progress.advance(1, 1)?;
     Ok(broken)
-}
-
-fn photos_folder(photos: &PhotoSet) -> PathBuf {
-    let parent = photos.photos.first().and_then(|photo| photo.path.parent());
-    parent.unwrap_or_else(|| Path::new(".")).to_owned()
 }
 
 /// fx, fy, cx, cy, k1, k2, p1, p2 where the photos state a focal length: COLMAP then begins with it. (Of

@@ -45,8 +45,9 @@ mapper)
     printf 12345 > "$models/1/images.bin";;
 model_converter)
     to=$(after --output_path "$@")
+    second=$(cat "$(dirname "$0")/second" 2>/dev/null || echo c.png)
     echo '1 OPENCV 40 30 3001 3001 20 15 0 0 0 0' > "$to/cameras.txt"
-    printf '# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n# POINTS2D\n7 1 0 0 0 1 0 0 1 c.png\n8 9 5\n8 1 0 0 0 0 0 0 1 a.png\n0 0 -1 3 4 5\n' > "$to/images.txt"
+    printf '# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n# POINTS2D\n7 1 0 0 0 1 0 0 1 %s\n8 9 5\n8 1 0 0 0 0 0 0 1 a.png\n0 0 -1 3 4 5\n' "$second" > "$to/images.txt"
     echo "5 0 0 9 1 2 3 0.1 7 0 8 1" > "$to/points3D.txt";;
 esac
 "##;
@@ -266,16 +267,42 @@ fn cancelling_ends_the_whole_group() {
     assert!(!lives());
 }
 
-/// Its list of pairs has blanks between the two names.
+/// Its list of pairs has blanks between the two names: it sees the photos under names without any, the model has their own.
 #[test]
-fn names_with_blanks_are_refused() {
+fn names_with_blanks() {
     let folder = tempfile::tempdir().unwrap();
     let engine = colmap(folder.path());
     let mut photos = photos(folder.path());
+    let path = folder.path().join("c d.png");
+    fs::rename(folder.path().join("c.png"), &path).unwrap();
     photos.photos[1].name = "c d.png".to_owned();
+    photos.photos[1].path = path;
+    // The name that it would have is another photo's.
+    fs::rename(folder.path().join("d.png"), folder.path().join("c_d.png")).unwrap();
+    photos.photos[2].name = "c_d.png".to_owned();
+    photos.photos[2].path = folder.path().join("c_d.png");
+    fs::write(folder.path().join("second"), "_c_d.png").unwrap();
+    let work = folder.path().join("work");
+    fs::create_dir(&work).unwrap();
     let progress = Progress::default();
-    let found = engine.reconstruct(&photos, &[[0, 1]], &at(folder.path()), &progress);
-    assert!(found.err().unwrap().to_string().contains("'c d.png'"));
+    for _ in 0..2 {
+        let found = engine.reconstruct(&photos, &[[0, 1]], &at(&work), &progress);
+        let found = found.unwrap();
+        let names = found.model.images().map(|image| image.name.clone());
+        assert_eq!(names.collect::<Vec<String>>(), ["a.png", "c d.png"]);
+    }
+    let pairs = fs::read_to_string(work.join("pairs.txt")).unwrap();
+    assert_eq!(pairs, "a.png _c_d.png\n");
+    let mut linked: Vec<String> = fs::read_dir(work.join("photos"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    linked.sort();
+    assert_eq!(linked, ["_c_d.png", "a.png", "c_d.png"]);
+    let called = fs::read_to_string(folder.path().join("called.txt")).unwrap();
+    let own = format!("--image_path {}", work.join("photos").display());
+    let runs = called.lines().filter(|line| line.starts_with("mapper --"));
+    assert!(runs.into_iter().all(|line| line.contains(&own)), "{called}");
 }
 
 #[test]

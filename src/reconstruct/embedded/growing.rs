@@ -174,7 +174,7 @@ impl Growing<'_> {
             whose: &Whose::of(model, self.photos),
             iterations,
         };
-        adjust(model, adjustment)
+        adjust(model, adjustment, self.progress)
     }
 
     /// A photo with those that share most points with it.
