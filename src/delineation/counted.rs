@@ -29,7 +29,7 @@ pub(crate) struct Counted {
 }
 
 impl Counted {
-    /// Of all photos together: steps 1 to 3 of [`crate::mass`].
+    /// Of all photos together: steps 1 to 4 of [`crate::mass`].
     ///
     /// # Errors
     /// Where no photo shows a whole fragment.
@@ -46,7 +46,7 @@ impl Counted {
         };
         let mut off_surface = 0;
         for photo in photos {
-            counted.limit = counted.limit.max(photo.limit);
+            counted.limit = counted.limit.max(photo.limit / steps.engine);
             counted.fines += photo.fines;
             for fragment in &photo.fragments {
                 let Some(world) = fragment.world else {
@@ -68,7 +68,7 @@ impl Counted {
                 };
                 counted
                     .whole
-                    .push([world.sieve_size, world.area * stands_for]);
+                    .push([world.sieve_size / steps.engine, world.area * stands_for]);
             }
         }
         if counted.whole.is_empty() {
@@ -172,7 +172,7 @@ impl Counted {
     }
 }
 
-/// From areas to what they stand for: step 3 of [`crate::mass`]. Sizes with their weights.
+/// From areas to what they stand for: step 4 of [`crate::mass`]. Sizes with their weights.
 fn seen_between(fragments: &mut [[f64; 2]], porosity: f64) {
     let porosity = porosity.clamp(0.0, 0.9);
     let areas: Vec<f64> = fragments.iter().map(|[_, area]| *area).collect();

@@ -49,6 +49,12 @@ pub trait Engine: Send + Sync {
     /// measured on simulated piles.
     fn fines_of_unfound(&self) -> f64;
 
+    /// How many times the sieves' its sizes are, as measured on simulated piles: what it joins and what it does not find makes
+    /// them too large.
+    fn sizes_off(&self) -> f64 {
+        1.0
+    }
+
     /// The standard errors of all its sizes together, relative, and of [`Engine::fines_of_unfound`], as measured on
     /// simulated piles.
     fn doubts(&self) -> [f64; 2];

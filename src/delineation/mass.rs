@@ -5,9 +5,11 @@
 //! 1. What a photo's edge cuts is not measured, and large fragments are cut more often. Each whole one stands
 //!    for 1 / ((1 - w / W) (1 - h / H)) of its kind, w and h its extent, W and H the photo's (Miles 1974,
 //!    Lantuejoul 1980).
-//! 2. The share of the visible area is taken for the share of the mass (Delesse 1847), which is right on a cut through
+//! 2. An engine joins some fragments and does not find others, small ones before large ones: its sizes are too large, by how much
+//!    was measured on simulated piles. They are taken smaller by as much, and with them the limit.
+//! 3. The share of the visible area is taken for the share of the mass (Delesse 1847), which is right on a cut through
 //!    rock.
-//! 3. A pile's surface is no cut: whole bodies lie on it, and one looks down between them. A body whose middle lies at the
+//! 4. A pile's surface is no cut: whole bodies lie on it, and one looks down between them. A body whose middle lies at the
 //!    surface or below shows all of its shadow as long as its top does not lie under the surface, over half of its size d;
 //!    deeper down it is seen along lines that no other body meets, whose share falls off with the depth as exp(-depth / l).
 //!    l is the mean free path between bodies, 4 (pores' volume) / (their surface) (Tomkeieff 1945), for round ones
@@ -15,10 +17,10 @@
 //!    volume of the pile shows a share of the surface as V (d/2 + l) / d, and of what is seen an area A stands for a mass as
 //!    A d / (d/2 + l). Without it small bodies count for too much: by ideal outlines of simulated piles, as loose as that, P50
 //!    is 12 % and P80 7 % too small. A pile whose pores are full of fines is a cut, nearly: l is 0 then.
-//! 4. Of what nobody outlined a part is fines, and the rest fragments that were not found, of the same kinds as
+//! 5. Of what nobody outlined a part is fines, and the rest fragments that were not found, of the same kinds as
 //!    those that were: how large a part was measured on simulated piles, engine by engine. Its share of the area
 //!    is the fines' share of the mass.
-//! 5. How the fines are distributed no photo shows. A law may say it (`tail.rs`).
+//! 6. How the fines are distributed no photo shows. A law may say it (`tail.rs`).
 
 use fragscale_core::fault::Fault;
 use fragscale_core::scale::ScaleField;
@@ -98,6 +100,8 @@ impl PhotoFragments {
 pub struct Steps {
     /// Large fragments are cut more often.
     pub edges: bool,
+    /// How many times too large the engine's sizes are; 1 where they are taken as they are.
+    pub engine: f64,
     /// The porosity of the pile, between 0 and 1, where small bodies are seen deeper down between large ones; `None` where
     /// its surface is taken for a cut.
     pub pores: Option<f64>,
@@ -109,6 +113,7 @@ impl Default for Steps {
     fn default() -> Self {
         Self {
             edges: true,
+            engine: 1.0,
             pores: None,
             fines: 1.0,
         }
@@ -122,6 +127,7 @@ impl Steps {
     pub fn of(engine: Option<&dyn Engine>) -> Self {
         Self {
             edges: true,
+            engine: engine.map_or(1.0, Engine::sizes_off),
             pores: engine.is_none().then_some(LOOSE),
             fines: engine.map_or(1.0, Engine::fines_of_unfound),
         }
@@ -151,7 +157,8 @@ impl WantedSteps {
     pub fn of<'a>(&self, outlined: impl Iterator<Item = OutlinedBy<'a>>) -> Steps {
         // Of several the mean.
         let usual: Vec<Steps> = outlined.map(|of| Steps::of(of.engine())).collect();
-        let fines = usual.iter().map(|of| of.fines).sum::<f64>() / usual.len().max(1) as f64;
+        let mean =
+            |of: fn(&Steps) -> f64| usual.iter().map(of).sum::<f64>() / usual.len().max(1) as f64;
         let of_people = usual.iter().all(|of| of.pores.is_some());
         let takes = |step: Step| match &self.named {
             Some(steps) => steps.contains(&step),
@@ -159,8 +166,15 @@ impl WantedSteps {
         };
         Steps {
             edges: takes(Step::Edges),
+            engine: match takes(Step::Engine) {
+                true => mean(|of| of.engine),
+                false => 1.0,
+            },
             pores: takes(Step::Pores).then_some(self.porosity),
-            fines: if takes(Step::Fines) { fines } else { 0.0 },
+            fines: match takes(Step::Fines) {
+                true => mean(|of| of.fines),
+                false => 0.0,
+            },
         }
     }
 }
@@ -219,7 +233,8 @@ fn by_mass_of(counted: &Counted, steps: Steps) -> Result<ByMass, Fault> {
 pub struct StepTaken {
     /// Which.
     pub step: Step,
-    /// The share of the mass that it moves from one size to another, 0 to 1; of fines what they are.
+    /// The share of the mass that it moves from one size to another, 0 to 1; of fines what they are; all, where all sizes become
+    /// others.
     pub share: f64,
     /// The distribution behind it.
     pub curve: SizeDistribution,
@@ -232,6 +247,8 @@ pub enum Step {
     Seen,
     /// [`Steps::edges`].
     Edges,
+    /// [`Steps::engine`].
+    Engine,
     /// [`Steps::pores`].
     Pores,
     /// [`Steps::fines`].
@@ -245,6 +262,7 @@ pub enum Step {
 pub fn steps_taken(photos: &[&PhotoFragments], steps: Steps) -> Result<Vec<StepTaken>, Fault> {
     let mut so_far = Steps {
         edges: false,
+        engine: 1.0,
         pores: None,
         fines: 0.0,
     };
@@ -259,9 +277,10 @@ pub fn steps_taken(photos: &[&PhotoFragments], steps: Steps) -> Result<Vec<StepT
         share: 1.0,
         curve: seen.curve,
     }];
-    for step in [Step::Edges, Step::Pores, Step::Fines] {
+    for step in [Step::Edges, Step::Engine, Step::Pores, Step::Fines] {
         match step {
             Step::Edges if steps.edges => so_far.edges = true,
+            Step::Engine if steps.engine != 1.0 => so_far.engine = steps.engine,
             Step::Pores if steps.pores.is_some() => so_far.pores = steps.pores,
             Step::Fines if steps.fines > 0.0 => so_far.fines = steps.fines,
             _ => continue,
@@ -269,6 +288,7 @@ pub fn steps_taken(photos: &[&PhotoFragments], steps: Steps) -> Result<Vec<StepT
         let (counted, now) = of(so_far)?;
         let share = match step {
             Step::Fines => now.fines,
+            Step::Engine => 1.0,
             _ => before.moved(&counted),
         };
         before = counted;
@@ -385,12 +405,27 @@ pub(crate) mod tests {
         let photo = two_circles();
         let steps = Steps {
             edges: true,
+            engine: 1.0,
             pores: Some(0.5),
             fines: 1.0,
         };
         let taken = steps_taken(&[&photo], steps).unwrap();
         let names: Vec<Step> = taken.iter().map(|of| of.step).collect();
         assert_eq!(names, [Step::Seen, Step::Edges, Step::Pores, Step::Fines]);
+        // An engine's sizes, a quarter too large: all are smaller by that, the limit, too, and shares stay.
+        let of_engine = Steps {
+            engine: 1.25,
+            ..steps
+        };
+        let by_engine = steps_taken(&[&photo], of_engine).unwrap();
+        assert_eq!((by_engine[2].step, by_engine[2].share), (Step::Engine, 1.0));
+        let [before, after] = [steps, of_engine].map(|steps| by_mass([&photo], steps).unwrap());
+        for size in [1.0, 2.0] {
+            let [before, after] = [(&before, size), (&after, size / 1.25)]
+                .map(|(of, size)| of.curve.percent_passing(size).unwrap());
+            assert!((before - after).abs() < 1e-9, "{before} {after}");
+        }
+        assert_eq!(after.limit, before.limit / 1.25);
         // Nothing is near an edge; half is fines.
         assert_eq!((taken[1].share, taken[3].share), (0.0, 0.5));
         let [before, now] = [&taken[1], &taken[2]].map(|of| of.curve.percent_passing(1.5).unwrap());

@@ -208,6 +208,7 @@ impl FragmentsReport<'_> {
                 let name = match of.step {
                     Step::Seen => "Fragments by the area that is seen (Delesse)",
                     Step::Edges => "edges: large ones are cut more often (Miles, Lantuejoul)",
+                    Step::Engine => "engine: its sizes are too large on simulated piles",
                     Step::Pores => "pores: small ones are seen deeper down between large ones",
                     Step::Fines => "fines: what is not outlined",
                 };

@@ -69,7 +69,12 @@ mod tests {
         let panics = not_waited_for("the adjustment", &progress, || -> u32 {
             std::panic::panic_any(())
         });
-        assert!(panics.unwrap_err().to_string().contains("the adjustment failed"));
+        assert!(
+            panics
+                .unwrap_err()
+                .to_string()
+                .contains("the adjustment failed")
+        );
     }
 
     /// The work is under way until the test has its answer: no clock is needed to see that nobody waited for it.

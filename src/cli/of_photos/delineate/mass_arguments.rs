@@ -15,7 +15,7 @@ use crate::units::LengthUnit;
 #[derive(Debug, Clone, Args)]
 pub(super) struct MassArguments {
     /// The steps from fragments to a distribution by mass, several with commas; their shares are in the report. Without it,
-    /// edges and fines for an engine's outlines, and pores, too, for those of people and other tools.
+    /// edges, engine and fines for an engine's outlines, and edges, pores and fines for those of people and other tools.
     #[arg(long, value_enum, value_name = "STEPS", value_delimiter = ',')]
     steps: Option<Vec<StepName>>,
     /// The porosity of the pile, for the step pores.
@@ -31,6 +31,8 @@ pub(super) struct MassArguments {
 enum StepName {
     /// Large fragments are cut by the photo's edge more often, and count for more.
     Edges,
+    /// An engine's sizes are a little too large, as measured on simulated piles, and are taken smaller.
+    Engine,
     /// Small fragments are seen deeper down between large ones, and count for less.
     Pores,
     /// What is not outlined is fines (of an engine's outlines a part of it).
@@ -43,6 +45,7 @@ impl StepName {
     fn step(self) -> Option<Step> {
         match self {
             Self::Edges => Some(Step::Edges),
+            Self::Engine => Some(Step::Engine),
             Self::Pores => Some(Step::Pores),
             Self::Fines => Some(Step::Fines),
             Self::None => None,
