@@ -18,6 +18,8 @@ const PER_DECADE: f64 = 10.0;
 pub(crate) struct Counted {
     /// Of each fragment that counts, in the order of the photos: its size, and the mass that it stands for.
     pub(crate) whole: Vec<[f64; 2]>,
+    /// How much of the area that nobody outlined is fines.
+    pub(crate) of_fines: f64,
     /// How many an edge cuts.
     pub(crate) cut: usize,
     /// The area of all fragments.
@@ -29,23 +31,27 @@ pub(crate) struct Counted {
 }
 
 impl Counted {
-    /// Of all photos together: steps 1 to 4 of [`crate::mass`].
+    /// Of all photos together, each by its own steps: 1 to 5 of [`crate::mass`].
     ///
     /// # Errors
     /// Where no photo shows a whole fragment.
     pub(crate) fn of<'a>(
-        photos: impl IntoIterator<Item = &'a PhotoFragments>,
-        steps: Steps,
+        photos: impl IntoIterator<Item = (&'a PhotoFragments, Steps)>,
     ) -> Result<Self, Fault> {
         let mut counted = Self {
             whole: Vec::new(),
+            of_fines: 0.0,
             cut: 0,
             rock: 0.0,
             fines: 0.0,
             limit: 0.0,
         };
         let mut off_surface = 0;
-        for photo in photos {
+        // Those seen between others, by their places in `whole`.
+        let (mut between, mut pores) = (Vec::new(), None);
+        for (photo, steps) in photos {
+            let first = counted.whole.len();
+            counted.of_fines += steps.fines * photo.fines;
             counted.limit = counted.limit.max(photo.limit / steps.engine);
             counted.fines += photo.fines;
             for fragment in &photo.fragments {
@@ -70,14 +76,36 @@ impl Counted {
                     .whole
                     .push([world.sieve_size / steps.engine, world.area * stands_for]);
             }
+            if steps.pores.is_some() {
+                pores = steps.pores;
+                between.extend(first..counted.whole.len());
+            }
         }
         if counted.whole.is_empty() {
             return Err(counted.nothing(off_surface));
         }
-        if let Some(porosity) = steps.pores {
-            seen_between(&mut counted.whole, porosity);
+        if let Some(porosity) = pores {
+            counted.seen_between(&between, porosity);
         }
         Ok(counted)
+    }
+
+    /// Takes these fragments for seen between others. Together they keep their share of the mass beside those of photos that
+    /// are taken otherwise.
+    fn seen_between(&mut self, places: &[usize], porosity: f64) {
+        let mut those: Vec<[f64; 2]> = places.iter().map(|place| self.whole[*place]).collect();
+        let sum = |of: &[[f64; 2]]| of.iter().map(|[_, mass]| mass).sum::<f64>();
+        let before = sum(&those);
+        seen_between(&mut those, porosity);
+        let factor = before / sum(&those);
+        for (place, [_, mass]) in places.iter().zip(&those) {
+            self.whole[*place][1] = mass * factor;
+        }
+    }
+
+    /// The share of the mass that is fines, 0 to 1.
+    pub(crate) fn fines_share(&self) -> f64 {
+        self.of_fines / (self.fines + self.rock)
     }
 
     /// Why there is no whole fragment.
@@ -94,11 +122,12 @@ impl Counted {
         Fault::new("no fragment is outlined", remedy)
     }
 
-    /// The distribution, with this share of the mass as fines.
+    /// The distribution, fines and all.
     ///
     /// # Errors
     /// Where a size is no number.
-    pub(crate) fn curve(&self, fines: f64) -> Result<SizeDistribution, Fault> {
+    pub(crate) fn curve(&self) -> Result<SizeDistribution, Fault> {
+        let fines = self.fines_share();
         let passed = self.ascending();
         let Some(&[largest, total]) = passed.last() else {
             return SizeDistribution::new(Vec::new());
@@ -196,12 +225,13 @@ mod tests {
     use crate::mass::by_mass;
     use crate::mass::tests::fragment;
 
-    fn counted(fragments: &[[f64; 2]], limit: f64) -> Counted {
+    fn counted(fragments: &[[f64; 2]], limit: f64, of_fines: f64) -> Counted {
         Counted {
             whole: fragments.to_vec(),
+            of_fines,
             cut: 0,
-            rock: 1.0,
-            fines: 0.0,
+            rock: 0.5,
+            fines: 0.5,
             limit,
         }
     }
@@ -215,9 +245,8 @@ mod tests {
         let fragments: Vec<[f64; 2]> = (0..1000)
             .map(|_| [10f64.powf(unit() * 1.3), unit()])
             .collect();
-        let all = counted(&fragments, 1.0);
         for fines in [0.0, 0.23] {
-            let curve = all.curve(fines).unwrap();
+            let curve = counted(&fragments, 1.0, fines).curve().unwrap();
             let total: f64 = fragments.iter().map(|of| of[1]).sum();
             let passing = |size: f64| {
                 let own = fragments.iter().filter(|of| of[0] <= size);
@@ -246,7 +275,7 @@ mod tests {
         let fragments: Vec<[f64; 2]> = (0..240)
             .map(|of| [1.145 + 0.875 * f64::from(of) / 239.0, 1.0])
             .collect();
-        let curve = counted(&fragments, 1.145).curve(0.0).unwrap();
+        let curve = counted(&fragments, 1.145, 0.0).curve().unwrap();
         assert_eq!(curve.points()[0][0], 1.145);
         for percent in [20.0, 50.0, 80.0] {
             let wanted = 1.145 + 0.875 * percent / 100.0;
@@ -259,15 +288,17 @@ mod tests {
     #[test]
     fn one_size_alone() {
         for count in [1, 5] {
-            let curve = counted(&vec![[2.0, 1.0]; count], 2.0).curve(0.1).unwrap();
+            let curve = counted(&vec![[2.0, 1.0]; count], 2.0, 0.1).curve().unwrap();
             assert_eq!(curve.points()[0], [2.0, 100.0]);
             assert_eq!(curve.points().len(), 2);
-            let coarse = counted(&vec![[2.0, 1.0]; count], 0.5).curve(0.1).unwrap();
+            let coarse = counted(&vec![[2.0, 1.0]; count], 0.5, 0.1).curve().unwrap();
             assert_eq!(coarse.points().last(), Some(&[2.0, 100.0]));
             assert!((coarse.points()[0][1] - 10.0).abs() < 1e-12);
         }
         // All of it below the limit: nothing is claimed but that.
-        let hidden = counted(&[[2.0, 1.0], [1.0, 1.0]], 3.0).curve(0.0).unwrap();
+        let hidden = counted(&[[2.0, 1.0], [1.0, 1.0]], 3.0, 0.0)
+            .curve()
+            .unwrap();
         assert_eq!(hidden.points()[0], [3.0, 100.0]);
     }
 
@@ -291,7 +322,7 @@ mod tests {
             ),
             (vec![off(false)], "no fragment lies on the surface"),
         ] {
-            let fault = by_mass(&[photo(fragments)], Steps::default()).unwrap_err();
+            let fault = by_mass([(&photo(fragments), Steps::default())]).unwrap_err();
             assert!(fault.what.contains(wanted), "{fault}");
         }
     }

@@ -17,7 +17,7 @@ use crate::tree::tree;
 
 /// Fragments narrower than this are fines: the diameter of the circle of as many pixels that the engine sees. An
 /// outline is known to about a pixel, so that of ten is measured to a fifth.
-const LEAST_PIXELS_ACROSS: f64 = 10.0;
+pub(crate) const LEAST_PIXELS_ACROSS: f64 = 10.0;
 
 /// What an engine makes of a photo.
 #[derive(Debug, Clone, PartialEq)]

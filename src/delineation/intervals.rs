@@ -13,7 +13,7 @@ use crate::mass::{PhotoFragments, Steps, by_mass};
 
 /// Of outlines that are as right as they can be. Nobody knows a pile's porosity: by outlines of simulated piles a P50 is as it
 /// is by the sieves with the usual one, 11 % too small with none, 3 % too large with 0.5.
-pub(crate) const OF_OTHERS: [f64; 2] = [0.07, 0.2];
+const OF_OTHERS: [f64; 2] = [0.07, 0.2];
 
 /// How many draws: the ends of an interval are known to about a tenth of its width.
 const DRAWS: usize = 300;
@@ -82,37 +82,39 @@ impl SizeInterval {
 /// # Errors
 /// Where no photo shows a whole fragment.
 pub fn intervals(
-    photos: &[&PhotoFragments],
-    steps: Steps,
+    photos: &[(&PhotoFragments, Steps)],
     doubts: Doubts,
     percents: &[f64],
 ) -> Result<Vec<SizeInterval>, Fault> {
-    // Whether there is a curve at all.
-    by_mass(photos.iter().copied(), steps)?;
+    let limit = by_mass(photos.iter().copied())?.limit;
     let mut draws = Draws::new(0x5eed);
     let mut found: Vec<Vec<Option<f64>>> = vec![Vec::new(); percents.len()];
     for _ in 0..DRAWS {
-        let drawn: Vec<PhotoFragments> = (0..photos.len())
+        let drawn: Vec<(PhotoFragments, Steps)> = (0..photos.len())
             .map(|place| {
                 let place = match photos.len() < FEW {
                     true => place,
                     false => draws.place(photos.len()),
                 };
-                drawn(photos[place], &mut draws)
+                let (photo, steps) = photos[place];
+                (drawn(photo, &mut draws), steps)
             })
             .collect();
-        let steps = Steps {
-            fines: (steps.fines + doubts.fines * draws.normal()).clamp(0.0, 1.0),
-            ..steps
-        };
+        let more = doubts.fines * draws.normal();
+        let drawn = drawn.iter().map(|(photo, steps)| {
+            let fines = (steps.fines + more).clamp(0.0, 1.0);
+            (photo, Steps { fines, ..*steps })
+        });
         let off = doubts.sizes * draws.normal() + doubts.scale * draws.normal();
         // A draw may hold none but cut ones.
-        let Ok(all) = by_mass(&drawn, steps) else {
+        let Ok(all) = by_mass(drawn) else {
             continue;
         };
         for (percent, found) in percents.iter().zip(&mut found) {
             let size = all.curve.size_at(*percent);
-            found.push(size.map(|size| size * off.exp()));
+            let size = size.map(|size| size * off.exp());
+            // What is below the limit is not claimed, and an end there neither.
+            found.push(size.filter(|size| *size >= limit));
         }
     }
     let percents = percents.iter().zip(found);
@@ -181,7 +183,7 @@ mod tests {
         let mut draws = Draws::new(3);
         let holds = (0..100).filter(|_| {
             let photo = photo(250, &mut draws);
-            let found = intervals(&[&photo], Steps::default(), NONE, &[50.0]).unwrap()[0];
+            let found = intervals(&[(&photo, Steps::default())], NONE, &[50.0]).unwrap()[0];
             (found.low.unwrap()..=found.high.unwrap()).contains(&truth)
         });
         let holds = holds.count();
@@ -197,7 +199,7 @@ mod tests {
             scale: 0.06,
             ..NONE
         };
-        let found = intervals(&[&photo], Steps::default(), doubts, &[50.0]).unwrap()[0];
+        let found = intervals(&[(&photo, Steps::default())], doubts, &[50.0]).unwrap()[0];
         let width = (found.high.unwrap() / found.low.unwrap()).ln();
         assert!((width / (2.0 * 1.96 * 0.1) - 1.0).abs() < 0.12, "{width}");
         // Below the limit of what is seen nothing is said.
@@ -207,7 +209,7 @@ mod tests {
             .iter()
             .filter_map(|of| Some(of.world?.area))
             .sum();
-        let found = intervals(&[&dusty], Steps::default(), doubts, &[20.0, 80.0]).unwrap();
+        let found = intervals(&[(&dusty, Steps::default())], doubts, &[20.0, 80.0]).unwrap();
         assert_eq!((found[0].low, found[0].high), (None, None));
         assert!(found[1].low.is_some());
     }

@@ -28,6 +28,7 @@ use fragscale_fragmentation::SizeDistribution;
 use glam::DVec2;
 
 use crate::counted::Counted;
+use crate::delineating::LEAST_PIXELS_ACROSS;
 use crate::engine::Engine;
 use crate::labels::{FINES, LabelImage};
 use crate::measures::Fragment;
@@ -48,8 +49,8 @@ pub struct PhotoFragments {
 
 impl PhotoFragments {
     /// From a photo's label image, the scale field of all its pixels and the measures of its fragments; the narrowest
-    /// that its engine outlines is `least_across` pixels. Of what other tools and people outlined (`None`) the smallest that
-    /// counts is the limit.
+    /// that its engine outlines is `least_across` pixels. Of what other tools and people outlined (`None`) the limit is the
+    /// smallest that counts and has the pixels of the narrowest that an engine outlines: a speck says nothing of the rest.
     pub fn new(
         labels: &LabelImage,
         field: &ScaleField,
@@ -70,11 +71,15 @@ impl PhotoFragments {
             }
         }
         let scale: f64 = (pixels / area).sqrt();
-        let counts = fragments.iter().filter(|of| !of.is_cut);
-        let sizes = counts.filter_map(|of| Some(of.world?.sieve_size));
+        let smallest = |with_specks: bool| {
+            let counts = fragments.iter().filter(|of| !of.is_cut);
+            let counts = counts.filter(|of| with_specks || !is_speck(of));
+            let sizes = counts.filter_map(|of| Some(of.world?.sieve_size));
+            sizes.reduce(f64::min)
+        };
         let limit = match least_across {
             Some(across) => across / scale,
-            None => sizes.reduce(f64::min).unwrap_or(0.0),
+            None => smallest(false).or_else(|| smallest(true)).unwrap_or(0.0),
         };
         Self {
             frame: DVec2::new(labels.width as f64, labels.height as f64),
@@ -85,7 +90,27 @@ impl PhotoFragments {
     }
 }
 
+/// Whether a fragment has fewer pixels than the narrowest that an engine outlines.
+fn is_speck(fragment: &Fragment) -> bool {
+    (fragment.pixels as f64) < std::f64::consts::PI / 4.0 * LEAST_PIXELS_ACROSS.powi(2)
+}
+
 impl PhotoFragments {
+    /// That there are outlines too small for the limit, where people and other tools made some.
+    pub fn specks(&self) -> Option<String> {
+        let is_below = |of: &&Fragment| {
+            let size = of.world.filter(|_| !of.is_cut).map(|of| of.sieve_size);
+            is_speck(of) && size.is_some_and(|size| size < self.limit)
+        };
+        let count = self.fragments.iter().filter(is_below).count();
+        let outlines = if count == 1 { "outline" } else { "outlines" };
+        (count > 0).then(|| {
+            format!(
+                "{count} {outlines} of less than {LEAST_PIXELS_ACROSS} pixels across: too small to be measured, and below the limit"
+            )
+        })
+    }
+
     /// The same without any fragment.
     pub(crate) fn without_fragments(&self) -> Self {
         Self {
@@ -153,29 +178,22 @@ impl Default for WantedSteps {
 }
 
 impl WantedSteps {
-    /// Those for photos that were outlined by these.
-    pub fn of<'a>(&self, outlined: impl Iterator<Item = OutlinedBy<'a>>) -> Steps {
-        // Of several the mean.
-        let usual: Vec<Steps> = outlined.map(|of| Steps::of(of.engine())).collect();
-        let mean =
-            |of: fn(&Steps) -> f64| usual.iter().map(of).sum::<f64>() / usual.len().max(1) as f64;
-        let of_people = usual.iter().all(|of| of.pores.is_some());
-        let takes = |step: Step| match &self.named {
-            Some(steps) => steps.contains(&step),
-            None => step != Step::Pores || of_people,
+    /// Those for a photo that was outlined by this.
+    pub fn of(&self, outlined: OutlinedBy<'_>) -> Steps {
+        let usual = Steps::of(outlined.engine());
+        let Some(named) = &self.named else {
+            return Steps {
+                pores: usual.pores.map(|_| self.porosity),
+                ..usual
+            };
         };
-        Steps {
-            edges: takes(Step::Edges),
-            engine: match takes(Step::Engine) {
-                true => mean(|of| of.engine),
-                false => 1.0,
-            },
-            pores: takes(Step::Pores).then_some(self.porosity),
-            fines: match takes(Step::Fines) {
-                true => mean(|of| of.fines),
-                false => 0.0,
-            },
-        }
+        let all = Steps {
+            pores: Some(self.porosity),
+            ..usual
+        };
+        named
+            .iter()
+            .fold(Steps::NONE, |steps, step| steps.with(*step, &all))
     }
 }
 
@@ -202,27 +220,23 @@ pub struct ByMass {
     pub area: f64,
 }
 
-/// The distribution of all photos together.
+/// The distribution of all photos together, each by its own steps.
 ///
 /// # Errors
 /// Where no photo shows a whole fragment.
 pub fn by_mass<'a>(
-    photos: impl IntoIterator<Item = &'a PhotoFragments>,
-    steps: Steps,
+    photos: impl IntoIterator<Item = (&'a PhotoFragments, Steps)>,
 ) -> Result<ByMass, Fault> {
-    let counted = Counted::of(photos, steps)?;
-    by_mass_of(&counted, steps)
+    by_mass_of(&Counted::of(photos)?)
 }
 
-fn by_mass_of(counted: &Counted, steps: Steps) -> Result<ByMass, Fault> {
-    let unfound = counted.fines / (counted.fines + counted.rock);
-    let fines = steps.fines * unfound;
+fn by_mass_of(counted: &Counted) -> Result<ByMass, Fault> {
     Ok(ByMass {
-        curve: counted.curve(fines)?,
+        curve: counted.curve()?,
         whole: counted.whole.len(),
         cut: counted.cut,
-        unfound,
-        fines,
+        unfound: counted.fines / (counted.fines + counted.rock),
+        fines: counted.fines_share(),
         limit: counted.limit,
         area: counted.fines + counted.rock,
     })
@@ -255,37 +269,76 @@ pub enum Step {
     Fines,
 }
 
-/// What each of the steps that are taken does.
-///
-/// # Errors
-/// As [`by_mass`].
-pub fn steps_taken(photos: &[&PhotoFragments], steps: Steps) -> Result<Vec<StepTaken>, Fault> {
-    let mut so_far = Steps {
+impl Steps {
+    /// None of them.
+    const NONE: Self = Self {
         edges: false,
         engine: 1.0,
         pores: None,
         fines: 0.0,
     };
-    let of = |steps: Steps| -> Result<(Counted, ByMass), Fault> {
-        let counted = Counted::of(photos.iter().copied(), steps)?;
-        let by_mass = by_mass_of(&counted, steps)?;
+
+    /// Whether a step is among them.
+    fn takes(&self, step: Step) -> bool {
+        match step {
+            Step::Seen => true,
+            Step::Edges => self.edges,
+            Step::Engine => self.engine != 1.0,
+            Step::Pores => self.pores.is_some(),
+            Step::Fines => self.fines > 0.0,
+        }
+    }
+
+    /// The same with a step as `other` takes it.
+    fn with(self, step: Step, other: &Self) -> Self {
+        match step {
+            Step::Seen => self,
+            Step::Edges => Self {
+                edges: other.edges,
+                ..self
+            },
+            Step::Engine => Self {
+                engine: other.engine,
+                ..self
+            },
+            Step::Pores => Self {
+                pores: other.pores,
+                ..self
+            },
+            Step::Fines => Self {
+                fines: other.fines,
+                ..self
+            },
+        }
+    }
+}
+
+/// What each of the steps does that are taken for any of the photos.
+///
+/// # Errors
+/// As [`by_mass`].
+pub fn steps_taken(photos: &[(&PhotoFragments, Steps)]) -> Result<Vec<StepTaken>, Fault> {
+    let mut so_far = vec![Steps::NONE; photos.len()];
+    let of = |so_far: &[Steps]| -> Result<(Counted, ByMass), Fault> {
+        let photos = photos.iter().zip(so_far);
+        let counted = Counted::of(photos.map(|((photo, _), steps)| (*photo, *steps)))?;
+        let by_mass = by_mass_of(&counted)?;
         Ok((counted, by_mass))
     };
-    let (mut before, seen) = of(so_far)?;
+    let (mut before, seen) = of(&so_far)?;
     let mut taken = vec![StepTaken {
         step: Step::Seen,
         share: 1.0,
         curve: seen.curve,
     }];
     for step in [Step::Edges, Step::Engine, Step::Pores, Step::Fines] {
-        match step {
-            Step::Edges if steps.edges => so_far.edges = true,
-            Step::Engine if steps.engine != 1.0 => so_far.engine = steps.engine,
-            Step::Pores if steps.pores.is_some() => so_far.pores = steps.pores,
-            Step::Fines if steps.fines > 0.0 => so_far.fines = steps.fines,
-            _ => continue,
+        if !photos.iter().any(|(_, steps)| steps.takes(step)) {
+            continue;
         }
-        let (counted, now) = of(so_far)?;
+        for (so_far, (_, steps)) in so_far.iter_mut().zip(photos) {
+            *so_far = so_far.with(step, steps);
+        }
+        let (counted, now) = of(&so_far)?;
         let share = match step {
             Step::Fines => now.fines,
             Step::Engine => 1.0,
@@ -348,7 +401,7 @@ pub(crate) mod tests {
     #[test]
     fn shares_by_hand() {
         let photo = two_circles();
-        let all = by_mass(std::slice::from_ref(&photo), Steps::default()).unwrap();
+        let all = by_mass([(&photo, Steps::default())]).unwrap();
         assert_eq!((all.whole, all.cut, all.fines), (2, 0, 0.5));
         assert!((all.curve.percent_passing(1.5).unwrap() - 60.0).abs() < 1e-9);
         assert_eq!(all.curve.percent_passing(2.6), Some(100.0));
@@ -356,9 +409,9 @@ pub(crate) mod tests {
             fines: 0.0,
             ..Steps::default()
         };
-        let rock_alone = by_mass(&[photo], steps).unwrap();
+        let rock_alone = by_mass([(&photo, steps)]).unwrap();
         assert!((rock_alone.curve.percent_passing(1.5).unwrap() - 20.0).abs() < 1e-9);
-        assert!(by_mass(&[], Steps::default()).is_err());
+        assert!(by_mass([]).is_err());
     }
 
     /// Circles strewn evenly over far more than a frame of 100: those that it cuts are left out, more of the large
@@ -384,7 +437,7 @@ pub(crate) mod tests {
             limit: 1.0,
         };
         let small = |steps: Steps| {
-            let all = by_mass(std::slice::from_ref(&photo), steps).unwrap();
+            let all = by_mass([(&photo, steps)]).unwrap();
             all.curve.percent_passing(20.0).unwrap()
         };
         let strewn = 100.0 / 17.0;
@@ -409,7 +462,7 @@ pub(crate) mod tests {
             pores: Some(0.5),
             fines: 1.0,
         };
-        let taken = steps_taken(&[&photo], steps).unwrap();
+        let taken = steps_taken(&[(&photo, steps)]).unwrap();
         let names: Vec<Step> = taken.iter().map(|of| of.step).collect();
         assert_eq!(names, [Step::Seen, Step::Edges, Step::Pores, Step::Fines]);
         // An engine's sizes, a quarter too large: all are smaller by that, the limit, too, and shares stay.
@@ -417,9 +470,9 @@ pub(crate) mod tests {
             engine: 1.25,
             ..steps
         };
-        let by_engine = steps_taken(&[&photo], of_engine).unwrap();
+        let by_engine = steps_taken(&[(&photo, of_engine)]).unwrap();
         assert_eq!((by_engine[2].step, by_engine[2].share), (Step::Engine, 1.0));
-        let [before, after] = [steps, of_engine].map(|steps| by_mass([&photo], steps).unwrap());
+        let [before, after] = [steps, of_engine].map(|steps| by_mass([(&photo, steps)]).unwrap());
         for size in [1.0, 2.0] {
             let [before, after] = [(&before, size), (&after, size / 1.25)]
                 .map(|(of, size)| of.curve.percent_passing(size).unwrap());
@@ -431,6 +484,45 @@ pub(crate) mod tests {
         let [before, now] = [&taken[1], &taken[2]].map(|of| of.curve.percent_passing(1.5).unwrap());
         assert!((taken[2].share - (before - now) / 100.0).abs() < 1e-9);
         assert!(before > now);
-        assert_eq!(taken[3].curve, by_mass([&photo], steps).unwrap().curve);
+        assert_eq!(taken[3].curve, by_mass([(&photo, steps)]).unwrap().curve);
+    }
+
+    /// A photo of people's outlines beside one of an engine's: fines are summed over both areas, each by its own share; pores
+    /// move masses among the fragments of the first alone, which keep their share of all.
+    #[test]
+    fn each_photo_by_its_own_steps() {
+        let photo = two_circles();
+        let other = PhotoFragments {
+            fragments: vec![fragment(8.0, 0.0, false)],
+            fines: 1.0,
+            ..photo.without_fragments()
+        };
+        let rock = |of: &PhotoFragments| -> f64 {
+            of.fragments
+                .iter()
+                .filter_map(|of| Some(of.world?.area))
+                .sum()
+        };
+        let [of_people, of_engine] = [
+            Steps {
+                pores: Some(0.5),
+                ..Steps::default()
+            },
+            Steps {
+                fines: 0.6,
+                ..Steps::default()
+            },
+        ];
+        let all = [(&photo, of_people), (&other, of_engine)];
+        let area = rock(&photo) + rock(&other) + photo.fines + other.fines;
+        let fines = (photo.fines + 0.6 * other.fines) / area;
+        let found = by_mass(all).unwrap();
+        assert!((found.fines - fines).abs() < 1e-12);
+        let small = found.curve.percent_passing(3.0).unwrap() / 100.0;
+        let wanted = fines + (1.0 - fines) * rock(&photo) / (rock(&photo) + rock(&other));
+        assert!((small - wanted).abs() < 1e-9, "{small} {wanted}");
+        let taken = steps_taken(&all).unwrap();
+        assert_eq!(taken.last().unwrap().curve, found.curve);
+        assert!(taken.iter().any(|of| of.step == Step::Pores));
     }
 }

@@ -50,9 +50,11 @@ impl Tail {
         let at_limit = law(limit)
             .filter(|percent| *percent > 0.0)
             .ok_or_else(nothing)?;
-        let steps = 1..=(PER_DECADE * DECADES) as i32;
+        // Sizes of the same series as above the limit.
+        let last = (limit.log10() * PER_DECADE).ceil() as i32 - 1;
+        let steps = (last - (PER_DECADE * DECADES) as i32..=last).rev();
         let below = steps.map_while(|step| {
-            let size = limit * 10f64.powf(-f64::from(step) / PER_DECADE);
+            let size = 10f64.powf(f64::from(step) / PER_DECADE);
             let percent = passing * law(size)? / at_limit;
             (percent >= LEAST).then_some([size, percent])
         });

@@ -157,8 +157,35 @@ impl Outlines {
             });
         } else {
             fill(labels, corners, &mut painting, NOT_ROCK)?;
+            self.remains(corners, |place| painting.paint(place, NOT_ROCK));
         }
         Ok(self.painted(painting, &[]))
+    }
+
+    /// Every pixel outside of an outline whose fragment has more of its pixels within: of a ball that is drawn about a little too
+    /// narrowly no rim is left, which would be measured as a fragment as wide as the ball.
+    fn remains(&self, corners: &[DVec2], mut found: impl FnMut(usize)) {
+        let labels = self.labels();
+        let (width, height) = (labels.width as u32, labels.height as u32);
+        let areas = labels.areas();
+        let mut within = vec![0usize; areas.len()];
+        spans_within(corners, width, height, |row, columns| {
+            for column in columns {
+                let label = labels.labels[row as usize * labels.width + column as usize];
+                if let Some(within) = within.get_mut(label as usize) {
+                    *within += 1;
+                }
+            }
+        });
+        let is_gone = |label: u32| {
+            let place = label as usize;
+            label != FINES && within.get(place).is_some_and(|own| 2 * own > areas[place])
+        };
+        for (place, label) in labels.labels.iter().enumerate() {
+            if is_gone(*label) {
+                found(place);
+            }
+        }
     }
 
     /// A fragment is right as it is: nobody needs to look at it again.

@@ -207,3 +207,33 @@ fn two_thousand_edits_are_undone() {
     while editing.redo() {}
     assert_eq!(*editing.now(), last);
 }
+
+/// What is drawn about too narrowly leaves no rim: a square of 10, of which 8 x 8 pixels are drawn about. Of one that is only
+/// touched most is left.
+#[test]
+fn what_is_mostly_excluded_is_excluded() {
+    let (width, height) = (40, 20);
+    let label = |place: usize| match (place % width, place / width) {
+        (5..15, 5..15) => 1,
+        (15..30, 5..15) => 2,
+        _ => FINES,
+    };
+    let labels = LabelImage {
+        width,
+        height,
+        labels: (0..width * height).map(label).collect(),
+    };
+    let outlines = Outlines::new(labels, BTreeMap::new());
+    let corners = [(6.0, 6.0), (17.0, 6.0), (17.0, 14.0), (6.0, 14.0)];
+    let corners = corners.map(|(x, y)| DVec2::new(x, y));
+    let excluded = after(&outlines, outlines.exclude(&corners, false).unwrap());
+    let count = |wanted: u32| {
+        let labels = excluded.labels().labels.iter();
+        labels.filter(|label| **label == wanted).count()
+    };
+    // The first, and two columns of the second.
+    assert_eq!(
+        (count(1), count(2), count(NOT_ROCK)),
+        (0, 150 - 16, 100 + 16)
+    );
+}

@@ -461,7 +461,7 @@ fn a_network_of_the_users() {
     };
     assert!(refused(&path("theirs.onnx")).contains("a model needs a description"));
     assert!(refused(&path("none.toml")).contains("none.toml: there is no such file"));
-    assert!(refused("sam").contains("learned, classical, or a TOML file"));
+    assert!(refused("sam").contains("learned, classical, saved, or a TOML file"));
     fs::write(
         path("no_model.toml"),
         described.replace("theirs.onnx", "gone.onnx"),

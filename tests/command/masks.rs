@@ -316,3 +316,87 @@ fn nothing_outlined_and_left_over() {
         assert!(said.contains(wanted), "{wanted} in {said}");
     }
 }
+
+/// Outlines of a folder are read: they are not written over, though fragscale wrote them. Options that would have no effect are
+/// refused, and a file that is named as another photo's outlines is said.
+#[test]
+fn what_is_read_stays() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let flight = sample();
+    let mut labels = image::GrayImage::new(1280, 720);
+    // Two stones and a speck, which is too small to say what is seen.
+    let stones = (0..10_000).map(|at| (600 + at % 100, 300 + at / 100, 1));
+    let stones = stones.chain((0..2500).map(|at| (200 + at % 50, 300 + at / 50, 2)));
+    for (x, y, number) in stones.chain([(100, 100, 3)]) {
+        labels.put_pixel(x, y, image::Luma([number]));
+    }
+    labels.save(path("IMG_0004_labels.png")).expect("a picture");
+    let to = path("out");
+    let run = |photo: &str, masks: &str, rest: &[&str]| {
+        let own = [
+            "delineate",
+            &flight,
+            "--photo",
+            photo,
+            "--to",
+            &to,
+            "--masks",
+            masks,
+        ];
+        fragscale(&[&own[..], rest].concat())
+    };
+    let done = run(
+        "IMG_0005.jpg",
+        &path("IMG_0004_labels.png"),
+        &["--unit", "mm"],
+    );
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{said}");
+    for wanted in [
+        "IMG_0004_labels.png is named as the outlines of IMG_0004.jpg",
+        "1 outline of less than 10 pixels across: too small to be measured, and below the limit",
+    ] {
+        assert!(said.contains(wanted), "{said}");
+    }
+    let sizes = columns(
+        &Path::new(&to).join("fragments.csv"),
+        &["pixels", "sieve_size_mm"],
+    );
+    let of_second = sizes
+        .iter()
+        .find(|row| (2000.0..3000.0).contains(&number(&row[0])));
+    let curve = columns(&Path::new(&to).join("distribution.csv"), &["size_mm"]);
+    assert_eq!(curve[0][0], of_second.expect("the second stone")[1]);
+
+    let before = fs::read(Path::new(&to).join("IMG_0005_labels.png")).expect("labels");
+    let refused = |rest: &[&str], wanted: &str| {
+        let done = run("IMG_0005.jpg", &to, rest);
+        let said = String::from_utf8_lossy(&done.stderr);
+        assert!(!done.status.success() && said.contains(wanted), "{said}");
+    };
+    refused(&[], "IMG_0005_labels.png");
+    refused(
+        &["--steps", "edges", "--porosity", "0.3"],
+        "--porosity is for the step pores",
+    );
+    refused(
+        &["--steps", "none", "--tail", "swebrec"],
+        "--tail is of the fines",
+    );
+    let after = fs::read(Path::new(&to).join("IMG_0005_labels.png")).expect("labels");
+    assert!(before == after);
+    // No outlines are saved beside the bundled flight.
+    let error = error_of(&[
+        "delineate",
+        &flight,
+        "--engine",
+        "saved",
+        "--to",
+        &path("saved"),
+    ]);
+    assert!(
+        error.contains("no outlines of these photos are saved"),
+        "{error}"
+    );
+}

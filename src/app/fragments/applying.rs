@@ -210,7 +210,8 @@ impl Fragments {
     }
 
     fn change(&mut self, photo: usize, change: impl FnOnce(&Outlines) -> Result<Change, Fault>) {
-        let Some(of) = self.photos.get_mut(&photo) else {
+        let of = self.photos.get_mut(&photo);
+        let Some(of) = of.filter(|of| !of.is_nothing()) else {
             let what = "nothing is outlined in this photo yet";
             self.refused = Some(Fault::new(what, "press 'Outline this photo' first"));
             return;
@@ -260,7 +261,9 @@ impl Fragments {
 impl OpenFlight {
     /// Whether a change of the selected photo's outlines can be undone, and made again.
     pub fn can_undo_fragments(&self) -> [bool; 2] {
-        let of = self.selected.and_then(|photo| self.fragments.of(photo));
+        let of = self
+            .selected
+            .and_then(|photo| self.fragments.photos.get(&photo));
         of.map_or([false; 2], |of| of.editing.can())
     }
 

@@ -76,7 +76,8 @@ impl OpenFlight {
             .filter_map(|(index, stem)| {
                 let outlines = match self.fragments.of(index) {
                     Some(of) => {
-                        Outlines::Now(of.now().labels().clone(), of.engine.clone(), of.spread)
+                        let by = of.by();
+                        Outlines::Now(of.now().labels().clone(), by.engine.clone(), by.spread)
                     }
                     None => {
                         let files = outline_files(own?, &stem);
@@ -254,7 +255,7 @@ impl Export {
         let pixels = read_photo(of.file.as_deref().ok_or_else(missing)?)?;
         let pixels = photo::undistorted(&pixels, camera).map_err(failed)?;
         let read;
-        let (labels, engine, spread, notes) = match &of.outlines {
+        let (labels, engine, spread, mut notes) = match &of.outlines {
             Outlines::Now(labels, engine, spread) => (labels, engine, *spread, Vec::new()),
             Outlines::Saved(files) => {
                 read = read_outlines(files, &of.name, camera).map_err(|error| error.to_string())?;
@@ -272,6 +273,7 @@ impl Export {
         let field = photo::field(&self.flight, posed, progress).map_err(failed)?;
         let least = outlined.least_across(labels, spread);
         let fragments = photo::fragments(labels, &field, SieveShape::Calibrated, least);
+        notes.extend(fragments.specks());
         let written = PhotoOutlined {
             name: &of.name,
             pixels: &pixels,

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::PhotoOutlines;
+use super::{Outliner, PhotoOutlines};
 use crate::delineation::saved::{SavedOutlines, lens_of};
 use crate::exports;
 use crate::files::{self, FileError, Inputs, Kind};
@@ -26,7 +26,8 @@ pub(crate) struct OutlinesToSave {
     /// Which of its revisions.
     pub revision: u64,
     files: [PathBuf; 2],
-    labels: LabelImage,
+    /// `None` where what the files hold is undone.
+    labels: Option<LabelImage>,
     saved: SavedOutlines,
 }
 
@@ -46,19 +47,22 @@ impl OpenFlight {
         let is_own = own.is_some_and(|own| files::is_same_file(own, path));
         let stems = exports::photo_file_stems(self.flight());
         let to_save = self.fragments.photos.iter();
-        let to_save = to_save.filter(|(_, of)| !is_own || of.is_changed());
+        let to_save = to_save.filter(|(_, of)| match of.is_nothing() {
+            true => is_own && of.is_changed(),
+            false => !is_own || of.is_changed(),
+        });
         let to_save = to_save.filter_map(|(photo, of)| {
             let camera = self.review.photo(*photo)?.camera;
             Some(OutlinesToSave {
                 photo: *photo,
                 revision: of.revision,
                 files: outline_files(path, stems.get(*photo)?),
-                labels: of.now().labels().clone(),
+                labels: (!of.is_nothing()).then(|| of.now().labels().clone()),
                 saved: SavedOutlines {
                     photo: self.name(*photo).to_owned(),
-                    engine: of.engine.clone(),
+                    engine: of.by().engine.clone(),
                     lens: lens_of(camera),
-                    spread: of.spread,
+                    spread: of.by().spread,
                     sure: of.now().all_sure().clone(),
                 },
             })
@@ -75,14 +79,23 @@ impl OpenFlight {
 }
 
 impl OutlinesToSave {
-    /// Writes both files.
+    /// Writes both files, or takes them away.
     ///
     /// # Errors
     /// Why they may not be written, or what the system says.
     pub(crate) fn write(&self, read: &Inputs) -> Result<(), FileError> {
         let [picture, json] = &self.files;
-        let bytes =
-            exports::labels_png(&self.labels).map_err(|fault| FileError::new(picture, fault))?;
+        let Some(labels) = &self.labels else {
+            for path in &self.files {
+                let own = read.clone().without(path);
+                if files::standing(path, Kind::Result, &own) == files::Standing::Ours {
+                    // What cannot be taken away is there again when the flight is opened, and can be undone again.
+                    let _ = std::fs::remove_file(path);
+                }
+            }
+            return Ok(());
+        };
+        let bytes = exports::labels_png(labels).map_err(|fault| FileError::new(picture, fault))?;
         write_both(
             [picture, json],
             [&bytes, self.saved.to_json().as_bytes()],
@@ -159,7 +172,11 @@ impl State {
         if let Some(open) = &mut self.open
             && open.number == number
         {
-            let of = PhotoOutlines::new(read.outlines, read.engine, read.spread, true);
+            let by = Outliner {
+                engine: read.engine,
+                spread: read.spread,
+            };
+            let of = PhotoOutlines::saved(read.outlines, by);
             // What was outlined meanwhile stays.
             open.fragments.photos.entry(photo).or_insert(of);
         }
@@ -173,7 +190,7 @@ impl State {
         };
         for (photo, revision) in saved {
             if let Some(of) = open.fragments.photos.get_mut(photo) {
-                of.saved = Some(*revision);
+                of.saved = (!of.is_nothing()).then_some(*revision);
             }
         }
     }

@@ -44,7 +44,7 @@ impl State {
         }
         let (number, revision) = (open.number, of.revision);
         let labels = of.now().labels().clone();
-        let (engine, spread) = (engine_called(&of.engine), of.spread);
+        let (engine, spread) = (engine_called(&of.by().engine), of.by().spread);
         let field = open.fragments.field.as_ref().filter(|(of, _)| *of == photo);
         let field = field.map(|(_, field)| field.clone());
         let flight = open.flight().clone();
@@ -62,9 +62,9 @@ impl State {
             let shape = SieveShape::Calibrated;
             let measured = delineation::photo::fragments(&labels, &field, shape, least);
             let steps = Steps::of(engine);
-            let by_mass = by_mass([&measured], steps);
+            let by_mass = by_mass([(&measured, steps)]);
             let percents = SizeInterval::PERCENTS;
-            let intervals = intervals(&[&measured], steps, doubts, &percents).unwrap_or_default();
+            let intervals = intervals(&[(&measured, steps)], doubts, &percents).unwrap_or_default();
             let measured = MeasuredFragments {
                 photo: measured,
                 by_mass,
@@ -110,7 +110,7 @@ impl State {
         let of = open.fragments.of(photo).ok_or_else(nothing)?;
         let measured = of.measured().ok_or_else(nothing)?;
         let by_mass = measured.by_mass.as_ref().map_err(Clone::clone)?;
-        let method = format!("fragscale ({})", of.engine);
+        let method = format!("fragscale ({})", of.by().engine);
         let (world, unit) = (open.flight().parts().unit, self.preferences.unit());
         let name = open.name(photo);
         let table = exports::curves_csv(&method, &[(name, by_mass)], world, unit);

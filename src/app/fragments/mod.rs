@@ -30,7 +30,7 @@ pub use measured::MeasuredFragments;
 
 use crate::delineation::Regions;
 use crate::fault::Fault;
-use crate::labels::{Change, Editing, Outlines};
+use crate::labels::{Change, Editing, FINES, LabelImage, Outlines};
 use crate::scale::ScaleField;
 
 /// A photo's outlines on the screen.
@@ -38,10 +38,6 @@ use crate::scale::ScaleField;
 pub struct PhotoOutlines {
     /// With all that was changed by hand.
     pub editing: Editing,
-    /// What outlined them first, as it is named in files.
-    pub engine: String,
-    /// How far the photo's edges are spread, pixels, where that is known.
-    pub spread: Option<f64>,
     /// The number of the last change that made them what they are, 0 before the first: what was made of another one is told
     /// from what is of now, and a change that is undone and made again is the same one.
     pub revision: u64,
@@ -56,23 +52,73 @@ pub struct PhotoOutlines {
     undone: Vec<u64>,
     /// How many changes there ever were.
     changes: u64,
+    /// What outlined them: of the first ones (0), and of those changes that were an outlining.
+    by: BTreeMap<u64, Outliner>,
+    /// Whether nothing was outlined before the first change.
+    from_nothing: bool,
+}
+
+/// What outlined a photo's fragments, before any correction.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Outliner {
+    /// As it is named in files.
+    pub engine: String,
+    /// How far the photo's edges are spread, pixels, where that is known.
+    pub spread: Option<f64>,
 }
 
 impl PhotoOutlines {
-    /// What an engine or a file gave. `saved` where a file holds the same.
-    pub fn new(outlines: Outlines, engine: String, spread: Option<f64>, saved: bool) -> Self {
+    /// What a file beside the flight has.
+    pub fn saved(outlines: Outlines, by: Outliner) -> Self {
+        Self::begun(outlines, by, Some(0), false)
+    }
+
+    /// What outlined a photo of which nothing was outlined; undo leads back to nothing.
+    pub fn first(outlines: &Outlines, by: Outliner) -> Self {
+        let labels = outlines.labels();
+        let nothing = LabelImage {
+            labels: vec![FINES; labels.labels.len()],
+            ..*labels
+        };
+        let nothing = Outlines::new(nothing, BTreeMap::new());
+        let mut first = Self::begun(nothing, Outliner::default(), None, true);
+        first.outline_anew(outlines, by);
+        first
+    }
+
+    fn begun(outlines: Outlines, by: Outliner, saved: Option<u64>, from_nothing: bool) -> Self {
         Self {
             doubtful: outlines.doubtful(),
             editing: Editing::new(outlines),
-            engine,
-            spread,
             revision: 0,
-            saved: saved.then_some(0),
+            saved,
             measured: None,
             made: Vec::new(),
             undone: Vec::new(),
             changes: 0,
+            by: BTreeMap::from([(0, by)]),
+            from_nothing,
         }
+    }
+
+    /// What outlined those of now.
+    pub fn by(&self) -> &Outliner {
+        let made = self.made.iter().rev().find_map(|made| self.by.get(made));
+        // The first is always there.
+        made.or_else(|| self.by.get(&0)).unwrap_or(&NOBODY)
+    }
+
+    /// Whether all that was outlined is undone.
+    pub fn is_nothing(&self) -> bool {
+        self.from_nothing && self.made.is_empty()
+    }
+
+    /// They become these.
+    pub(crate) fn outline_anew(&mut self, outlines: &Outlines, by: Outliner) {
+        let change = self.now().become_these(outlines);
+        self.make(change);
+        // Where nothing has changed it is that of now all the same.
+        self.by.insert(self.revision, by);
     }
 
     /// As they are now.
@@ -82,7 +128,11 @@ impl PhotoOutlines {
 
     /// Whether no file holds them.
     pub fn is_changed(&self) -> bool {
-        self.saved != Some(self.revision)
+        match self.is_nothing() {
+            // Files hold what is undone.
+            true => self.saved.is_some(),
+            false => self.saved != Some(self.revision),
+        }
     }
 
     /// What they come to, if that is known of those of now.
@@ -123,6 +173,12 @@ impl PhotoOutlines {
     }
 }
 
+/// Who outlined what nobody has.
+static NOBODY: Outliner = Outliner {
+    engine: String::new(),
+    spread: None,
+};
+
 /// The page of the fragments.
 #[derive(Default)]
 pub struct Fragments {
@@ -154,7 +210,7 @@ const USUAL_BRUSH: f64 = 12.0;
 impl Fragments {
     /// The outlines of a photo, if there are any.
     pub fn of(&self, photo: usize) -> Option<&PhotoOutlines> {
-        self.photos.get(&photo)
+        self.photos.get(&photo).filter(|of| !of.is_nothing())
     }
 
     /// Whether outlines are not saved.

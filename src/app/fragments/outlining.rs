@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::PhotoOutlines;
+use super::{Outliner, PhotoOutlines};
 use crate::delineation::{self, Delineated, ENGINES, Regions};
 use crate::fault::Fault;
 use crate::jobs::Progress;
@@ -94,6 +94,14 @@ impl State {
             let mut masks = masks.map_err(|fault| fault.to_string())?;
             let left_out = delineation::photo::left_out(&settings, posed, camera);
             delineation::leave_out(&mut masks.labels, &left_out);
+            let photos = flight
+                .parts()
+                .photos
+                .iter()
+                .map(|photo| photo.name.as_str());
+            masks
+                .notes
+                .extend(others.named_for_another(&posed.name, photos));
             Ok((masks.labels, masks.notes))
         };
         self.start(Task::READ_MASKS, work, move |state, read| match read {
@@ -130,15 +138,14 @@ impl State {
         }
         fragments.refused = None;
         let count = count(&outlines);
+        let by = Outliner {
+            engine: engine.to_owned(),
+            spread,
+        };
         match fragments.photos.get_mut(&photo) {
-            Some(of) => {
-                let change = of.now().become_these(&outlines);
-                of.make(change);
-                engine.clone_into(&mut of.engine);
-                of.spread = spread;
-            }
+            Some(of) => of.outline_anew(&outlines, by),
             None => {
-                let of = PhotoOutlines::new(outlines, engine.to_owned(), spread, false);
+                let of = PhotoOutlines::first(&outlines, by);
                 fragments.photos.insert(photo, of);
             }
         }

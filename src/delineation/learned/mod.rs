@@ -78,8 +78,14 @@ impl Engine for Learned {
         0.62
     }
 
+    fn sizes_off(&self) -> f64 {
+        // P50 and P80 of simulated flights are 8 % (lab) and 4 % (muckpile) too large, each within 1.5 % (standard deviation;
+        // `benches/fragments_seeds.py`, seeds from 501 on).
+        1.06
+    }
+
     fn doubts(&self) -> [f64; 2] {
-        // P50 of simulated piles is 4 to 7 % too large with a share of fines that was measured on one of them.
+        // Simulated piles differ by 2 % each way behind that; rock of other kinds nobody measured.
         [0.07, 0.15]
     }
 

@@ -99,7 +99,7 @@ pub(super) fn fragments_report(report: &FragmentsReport<'_>) -> Result<String, F
     }
     body.push(heading(2, "Photos"));
     body.push(paragraph(
-        "Cut: fragments that the photo's edge cuts, or what was left out of it; how large they are nobody knows, and they do not \
+        "Whole: fragments that count. Cut: fragments that the photo's edge cuts, or what was left out of it; how large they are nobody knows, and they do not \
          count. Edges: how far the photo's edges are spread, the full width at half of the maximum. Limit: nothing is claimed \
          below it: an engine outlines no narrower ones, and of what people and other tools outlined it is the smallest that \
          counts. \"May be less\": the lower end of its interval is below the limit.",
@@ -231,7 +231,7 @@ impl FragmentsReport<'_> {
         let unit = self.unit.symbol();
         let heads = [
             "Photo".to_owned(),
-            "Fragments".to_owned(),
+            "Whole".to_owned(),
             "Cut".to_owned(),
             "Not outlined, %".to_owned(),
             "Edges, px".to_owned(),

@@ -4,7 +4,7 @@ use super::table::PhotoOfSizes;
 use crate::delineation::OutlinedBy;
 use crate::delineation::intervals::{Doubts, SizeInterval, intervals};
 use crate::delineation::mass::{
-    ByMass, PhotoFragments, StepTaken, WantedSteps, by_mass, steps_taken,
+    ByMass, PhotoFragments, StepTaken, Steps, WantedSteps, by_mass, steps_taken,
 };
 use crate::delineation::tail::Tail;
 use crate::fault::Fault;
@@ -61,6 +61,7 @@ impl<'a> FragmentSizes<'a> {
             all: None,
             without: Vec::new(),
         };
+        let mut every: Vec<&MeasuredPhoto<'_>> = Vec::new();
         for (place, of) in measured.iter().enumerate() {
             let row = row(of.photo, &[of], of.scale_error, way);
             match row.map(|row| Row {
@@ -68,16 +69,21 @@ impl<'a> FragmentSizes<'a> {
                 scale: scale_of(&of.fragments),
                 ..row
             }) {
-                Ok(row) => sizes.photos.push(row),
+                Ok(row) => {
+                    sizes.photos.push(row);
+                    every.push(of);
+                }
                 Err(fault) => {
-                    let text = format!("{}: no size distribution: {fault}", of.photo);
+                    let text = format!(
+                        "{}: no size distribution, and it does not count in that of all photos: {fault}",
+                        of.photo
+                    );
                     sizes.without.push(text);
                 }
             }
         }
-        let every: Vec<&MeasuredPhoto<'_>> = measured.iter().collect();
         // The surface is one: errors of the photos' scales go together, and the largest stands for all.
-        let errors = measured.iter().filter_map(|of| of.scale_error);
+        let errors = every.iter().filter_map(|of| of.scale_error);
         sizes.all = row(ALL, &every, errors.reduce(f64::max), way).ok();
         sizes
     }
@@ -134,7 +140,7 @@ impl<'a> FragmentSizes<'a> {
         let [p20, p50, p80] = heads;
         table.push([
             "photo".to_owned(),
-            "fragments".to_owned(),
+            "whole".to_owned(),
             "cut".to_owned(),
             "not outlined %".to_owned(),
             p20,
@@ -213,23 +219,24 @@ fn row<'a>(
     scale: Option<f64>,
     way: &MassWay<'_>,
 ) -> Result<Row<'a>, Fault> {
-    let steps = way.steps.of(done.iter().map(|of| of.outlined));
     let doubts = done
         .iter()
         .map(|of| Doubts::of(of.outlined.engine(), scale));
     let doubts = doubts
         .reduce(Doubts::or_greater)
         .unwrap_or_else(|| Doubts::of(None, scale));
-    let photos: Vec<&PhotoFragments> = done.iter().map(|of| &of.fragments).collect();
-    let mut by_mass = by_mass(photos.iter().copied(), steps)?;
+    let photos = done.iter();
+    let photos = photos.map(|of| (&of.fragments, way.steps.of(of.outlined)));
+    let photos: Vec<(&PhotoFragments, Steps)> = photos.collect();
+    let mut by_mass = by_mass(photos.iter().copied())?;
     if let Some(tail) = way.tail {
         by_mass.curve = tail.below(&by_mass.curve)?;
     }
     Ok(Row {
         photo: name,
         by_mass,
-        intervals: intervals(&photos, steps, doubts, &SizeInterval::PERCENTS)?,
-        taken: steps_taken(&photos, steps)?,
+        intervals: intervals(&photos, doubts, &SizeInterval::PERCENTS)?,
+        taken: steps_taken(&photos)?,
         of: None,
         scale: None,
     })

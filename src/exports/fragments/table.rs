@@ -145,7 +145,10 @@ impl PhotoOfSizes<'_> {
         let size = factor * self.by_mass.curve.size_at(percent)?;
         let interval = self.intervals.iter().find(|of| of.percent == percent);
         let ends = interval.and_then(|of| Some((of.low? * factor, of.high? * factor)));
+        // Nothing else is said below the limit.
+        let is_law = size < factor * self.by_mass.limit;
         Some(match ends {
+            _ if is_law => format!("{}{unit} by the law", significant_digits(size, 2)),
             Some((low, high)) => format!("{}{unit}", with_interval(size, low, high)),
             None => format!("{}{unit}, may be less", significant_digits(size, 2)),
         })

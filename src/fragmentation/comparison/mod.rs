@@ -273,8 +273,8 @@ fn notes_of_reference(reference: &MethodCurve, span: Span, unit: LengthUnit) -> 
 }
 
 /// A measured size as it was typed: units that were converted left 2.2399999999999998 of 2.24.
-fn as_typed(size: f64) -> String {
-    let near: Option<f64> = format!("{size:.9e}").parse().ok();
+pub(crate) fn as_typed(size: f64) -> String {
+    let near: Option<f64> = format!("{size:.5e}").parse().ok();
     near.unwrap_or(size).to_string()
 }
 

@@ -4,6 +4,7 @@ use super::coordinates::{Coordinates, Optimum};
 use super::family::Family;
 use super::points::Points;
 use super::{FitOptions, FittedParameter};
+use crate::comparison::as_typed;
 use crate::{Curve, PERCENTILES};
 
 /// Other optima with a sum of at most this many times the least are told.
@@ -108,7 +109,7 @@ fn swebrec(told: &Told, at: &Coordinates, notes: &mut Vec<String>) {
         notes.push(format!(
             "xmax ended at the largest size that not everything passed, {}: the data ask for a smaller \
              one, which cannot be",
-            told.points.retained
+            as_typed(told.points.retained)
         ));
     }
     if !told.family.is_extended() {
@@ -144,7 +145,7 @@ fn gates_gaudin_schuhmann(told: &Told, at: &Coordinates, notes: &mut Vec<String>
         notes.push(format!(
             "xmax lies below {}, which not everything passed: it is where the straight line reaches \
              100 %, not the largest fragment",
-            told.points.retained
+            as_typed(told.points.retained)
         ));
     }
 }

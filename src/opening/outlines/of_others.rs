@@ -93,6 +93,35 @@ impl OutlinesOfOthers {
         }
     }
 
+    /// All files that may be read.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        let files = match &self.place {
+            Place::File(_) => std::slice::from_ref(&self.path),
+            Place::Folder(files) => files,
+        };
+        files.iter()
+    }
+
+    /// That a file of one photo, which is taken for `name`, is named as the outlines of another of these photos.
+    pub fn named_for_another<'p>(
+        &self,
+        name: &str,
+        mut photos: impl Iterator<Item = &'p str>,
+    ) -> Option<String> {
+        let Place::File(file) = &self.place else {
+            return None;
+        };
+        // What a file says itself of its photo is said elsewhere.
+        if !file.is_of_one() || file.photos().next().is_some() || rank(&self.path, name).is_some() {
+            return None;
+        }
+        let other = photos.find(|other| rank(&self.path, other).is_some())?;
+        Some(format!(
+            "{} is named as the outlines of {other}",
+            self.path.display()
+        ))
+    }
+
     /// What of it is of none of these photos, by the names of files in a folder, or of the photos in a file.
     pub fn of_no_photo(&self, photos: &[&str]) -> Vec<String> {
         let of_none = |is_of: &dyn Fn(&str) -> bool| !photos.iter().any(|photo| is_of(photo));

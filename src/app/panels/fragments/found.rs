@@ -31,6 +31,10 @@ pub(super) fn found(
             ui.weak("Reading the saved outlines…");
             return;
         }
+        if state.work.is_running(Task::OUTLINE) {
+            ui.weak("Outlining…");
+            return;
+        }
         ui.label("Nothing is outlined in this photo yet.");
         ui.weak(
             "Press 'Outline this photo'. Then correct what is wrong: every change can be undone, and the numbers follow. \
@@ -69,7 +73,7 @@ fn selected(
     ui.horizontal_wrapped(|ui| {
         ui.strong(format!("Fragment {number}"));
         ui.label(match of.now().sure(number) {
-            Some(sure) => format!("sure to {:.0} %", 100.0 * sure),
+            Some(sure) => format!("{:.0} % sure", 100.0 * sure),
             None => "looked at".to_owned(),
         });
     });
@@ -162,7 +166,7 @@ fn doubtful(of: &PhotoOutlines, selected: Option<u32>, ui: &mut Ui, commands: &m
         .show_rows(ui, ROW, doubtful.len(), |ui, rows| {
             for (number, sure) in &doubtful[rows] {
                 let on = selected == Some(*number);
-                let text = format!("{number}: sure to {:.0} %", 100.0 * sure);
+                let text = format!("{number}: {:.0} % sure", 100.0 * sure);
                 if ui.selectable_label(on, text).clicked() {
                     commands.push(Command::Fragments(FragmentStep::Show(*number)));
                 }

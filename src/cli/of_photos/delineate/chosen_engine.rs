@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::delineation::{Engine, NamedModel, engine_called};
+use crate::delineation::{Engine, Learned, NamedModel, engine_called};
 use crate::opening::read_named_engine;
 
 /// An engine, as it was named.
@@ -12,6 +12,8 @@ pub(super) enum ChosenEngine {
     BroughtAlong(String),
     /// What describes the user's.
     Described(PathBuf),
+    /// None: what was saved in the window.
+    Saved,
 }
 
 /// An engine that is ready.
@@ -23,6 +25,9 @@ pub(super) enum OpenEngine {
 impl ChosenEngine {
     /// From the command line.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
+        if text == "saved" {
+            return Ok(Self::Saved);
+        }
         if engine_called(text).is_some() {
             return Ok(Self::BroughtAlong(text.to_owned()));
         }
@@ -30,14 +35,14 @@ impl ChosenEngine {
         match ending.to_ascii_lowercase().to_string_lossy().as_ref() {
             "toml" => Ok(Self::Described(text.into())),
             "onnx" => Err("a model needs a description: name the TOML file that has one (README, \"Your own network\")".to_owned()),
-            _ => Err("learned, classical, or a TOML file that describes an ONNX model".to_owned()),
+            _ => Err("learned, classical, saved, or a TOML file that describes an ONNX model".to_owned()),
         }
     }
 
     /// The file that is read for it.
     pub(super) fn file(&self) -> Option<&PathBuf> {
         match self {
-            Self::BroughtAlong(_) => None,
+            Self::BroughtAlong(_) | Self::Saved => None,
             Self::Described(path) => Some(path),
         }
     }
@@ -48,6 +53,8 @@ impl ChosenEngine {
     /// Where the user's cannot be taken.
     pub(super) fn open(&self) -> Result<OpenEngine, String> {
         match self {
+            // Of a photo without saved outlines it is not asked.
+            Self::Saved => Ok(OpenEngine::BroughtAlong(&Learned)),
             Self::BroughtAlong(name) => {
                 let engine =
                     engine_called(name).ok_or_else(|| format!("there is no engine {name}"))?;

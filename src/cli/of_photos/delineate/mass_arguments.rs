@@ -18,9 +18,9 @@ pub(super) struct MassArguments {
     /// edges, engine and fines for an engine's outlines, and edges, pores and fines for those of people and other tools.
     #[arg(long, value_enum, value_name = "STEPS", value_delimiter = ',')]
     steps: Option<Vec<StepName>>,
-    /// The porosity of the pile, for the step pores.
-    #[arg(long, value_name = "SHARE", default_value_t = LOOSE, value_parser = share, allow_hyphen_values = true)]
-    porosity: f64,
+    /// The porosity of the pile, for the step pores; 0.45 without it.
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
+    porosity: Option<f64>,
     /// How the fines are distributed below what the photos show: as the Swebrec function of what they show, or as a table of
     /// the same material sieved. Without it nothing is claimed of them.
     #[arg(long, value_name = "swebrec|FILE.csv")]
@@ -29,7 +29,8 @@ pub(super) struct MassArguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum StepName {
-    /// Large fragments are cut by the photo's edge more often, and count for more.
+    /// Large fragments are cut by the photo's edge more often, and those that it does not cut count for more. (Cut ones are left
+    /// out in any case.)
     Edges,
     /// An engine's sizes are a little too large, as measured on simulated piles, and are taken smaller.
     Engine,
@@ -64,9 +65,17 @@ impl MassArguments {
     pub(super) fn check(&self) -> Result<(), String> {
         let steps = self.steps.as_deref().unwrap_or_default();
         match steps.contains(&StepName::None) && steps.iter().any(|step| *step != StepName::None) {
-            true => Err("--steps: none goes with no other step; leave it out".to_owned()),
-            false => Ok(()),
+            true => return Err("--steps: none goes with no other step; leave it out".to_owned()),
+            false => {}
         }
+        let takes = |step| self.steps.is_none() || steps.contains(&step);
+        if self.porosity.is_some() && !takes(StepName::Pores) {
+            return Err("--porosity is for the step pores, which --steps leaves out".to_owned());
+        }
+        if self.tail.is_some() && !takes(StepName::Fines) {
+            return Err("--tail is of the fines, which --steps leaves out".to_owned());
+        }
+        Ok(())
     }
 
     /// The file that is read for the tail.
@@ -92,7 +101,7 @@ impl MassArguments {
         });
         WantedSteps {
             named,
-            porosity: self.porosity,
+            porosity: self.porosity.unwrap_or(LOOSE),
         }
     }
 

@@ -52,10 +52,10 @@ pub(in crate::cli) struct DelineateArguments {
     #[arg(long, value_name = "DIR")]
     to: PathBuf,
     /// What finds the borders of fragments: learned (a small network that was trained on simulated piles), classical (edges
-    /// and shadows at several scales; no weights), or FILE.toml, which describes an ONNX model of yours. Without it, outlines
-    /// that were saved in the window are taken where there are any (fragments/NAME.png beside flight.toml), and else the
-    /// learned engine.
-    #[arg(long, value_name = "learned|classical|FILE.toml", value_parser = ChosenEngine::parse)]
+    /// and shadows at several scales; no weights), FILE.toml, which describes an ONNX model of yours, or saved: outlines that were
+    /// saved in the window alone (fragments/NAME.png beside flight.toml). Without it, these are taken where there are any, and
+    /// else the learned engine.
+    #[arg(long, value_name = "learned|classical|saved|FILE.toml", value_parser = ChosenEngine::parse)]
     engine: Option<ChosenEngine>,
     #[command(flatten)]
     masks: MasksArguments,
@@ -157,7 +157,9 @@ pub(in crate::cli) fn delineate_of(
     let inputs = inputs
         .chain(described.cloned())
         .chain(arguments.mass.file());
-    let mut outputs = Outputs::new(arguments.force, inputs);
+    // A folder of outlines may be written into, but not over those that are read.
+    let outlines = outliners.others.iter().flat_map(OutlinesOfOthers::files);
+    let mut outputs = Outputs::new(arguments.force, inputs.chain(outlines.cloned()));
     outputs.read(&opened.read)?;
     apart_from_photos(&arguments.to, &opened.photo_files).map_err(|error| error.to_string())?;
     let path = &arguments.flight.flight;
@@ -174,6 +176,11 @@ pub(in crate::cli) fn delineate_of(
         warnings.extend(said);
     }
     let stems = exports::photo_file_stems(flight);
+    if arguments.engine == Some(ChosenEngine::Saved) {
+        let (with, said) = with_saved(arguments, opened, chosen, &stems)?;
+        chosen = with;
+        warnings.extend(said);
+    }
     let to = &arguments.to;
     let own_files =
         |index: usize| OUTLINED_ENDINGS.map(|ending| to.join(format!("{}{ending}", stems[index])));
@@ -326,6 +333,36 @@ pub(in crate::cli) fn delineate_of(
     Ok((answer, of_all))
 }
 
+/// Those of the photos whose outlines are saved, and that the others are left out.
+fn with_saved(
+    arguments: &DelineateArguments,
+    opened: &Opened,
+    chosen: Vec<usize>,
+    stems: &[String],
+) -> Result<(Vec<usize>, Option<String>), String> {
+    let count = chosen.len();
+    let is_saved = |index: &usize| {
+        let files = saved_files(opened, &stems[*index]);
+        files.is_some_and(|[picture, _]| picture.is_file())
+    };
+    let with: Vec<usize> = chosen.into_iter().filter(is_saved).collect();
+    if with.is_empty() {
+        let what = "no outlines of these photos are saved beside the flight";
+        let fault = Fault::new(what, "save some in the window, or take another --engine");
+        return Err(FileError::new(&arguments.flight.flight, fault).to_string());
+    }
+    let without = count - with.len();
+    let said = (without > 0)
+        .then(|| format!("{without} of {count} photos have no saved outlines, and are left out"));
+    Ok((with, said))
+}
+
+/// Where a photo's outlines would be saved; `None` of a flight without a file.
+fn saved_files(opened: &Opened, stem: &str) -> Option<[PathBuf; 2]> {
+    let (flight_file, _) = opened.file.as_ref()?;
+    Some(outline_files(flight_file, stem))
+}
+
 /// The label image of a file that this command wrote.
 fn read_own_labels(path: &Path) -> Result<LabelImage, Fault> {
     let bytes = read_bytes(path).map_err(|error| error.fault)?;
@@ -398,11 +435,12 @@ impl<'a> Maker<'a> {
             by,
             least_across,
             spread,
-            notes,
+            mut notes,
         } = self.outlined(index, &image, &left_out)?;
         let field = photo::field(flight, photo, self.progress)?;
         let shape = self.arguments.shape.into();
         let fragments = photo::fragments(&labels, &field, shape, least_across);
+        notes.extend(fragments.specks());
         let of = PhotoOutlined {
             name: &photo.name,
             pixels: &image,
@@ -433,6 +471,16 @@ impl<'a> Maker<'a> {
         if let Some(others) = self.others {
             let mut masks = others.of_photo(&photo.name, camera, self.is_only)?;
             leave_out(&mut masks.labels, left_out);
+            if self.is_only {
+                let photos = flight
+                    .parts()
+                    .photos
+                    .iter()
+                    .map(|photo| photo.name.as_str());
+                masks
+                    .notes
+                    .extend(others.named_for_another(&photo.name, photos));
+            }
             return Ok(Outlined {
                 least_across: OutlinedBy::Masks.least_across(&masks.labels, spread),
                 labels: masks.labels,
@@ -488,10 +536,9 @@ impl<'a> Maker<'a> {
 
     /// The files of a photo's saved outlines, where those are to be taken.
     fn saved_of(&self, index: usize) -> Option<[PathBuf; 2]> {
-        if self.arguments.engine.is_some() {
-            return None;
+        match self.arguments.engine {
+            None | Some(ChosenEngine::Saved) => saved_files(self.opened, self.stems.get(index)?),
+            Some(_) => None,
         }
-        let (flight_file, _) = self.opened.file.as_ref()?;
-        Some(outline_files(flight_file, self.stems.get(index)?))
     }
 }

@@ -78,13 +78,11 @@ pub(super) fn masses(engine: Option<&dyn Engine>, flights: &[&str]) -> Result<()
             ));
         }
         let fines = engine.map_or(1.0, Engine::fines_of_unfound);
-        let all = mass::by_mass(
-            &photos,
-            Steps {
-                fines,
-                ..Steps::default()
-            },
-        )?;
+        let steps = Steps {
+            fines,
+            ..Steps::default()
+        };
+        let all = mass::by_mass(photos.iter().map(|photo| (photo, steps)))?;
         let reference = reference(&folder.join("reference.csv"))?;
         let at = |size: f64| interpolated(&reference, size);
         print!(
