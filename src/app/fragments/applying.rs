@@ -21,6 +21,7 @@ impl State {
     pub(crate) fn fragment_step(&mut self, step: FragmentStep) {
         match step {
             FragmentStep::Outline => self.outline_photo(),
+            FragmentStep::OutlineAll => self.outline_all(),
             FragmentStep::Masks(path) => self.read_masks(path),
             FragmentStep::TakeDistribution => self.take_fragments_distribution(),
             FragmentStep::Export(to) => self.export_fragments(to),
@@ -165,6 +166,7 @@ impl Fragments {
             }
             FragmentStep::Engine(_)
             | FragmentStep::Outline
+            | FragmentStep::OutlineAll
             | FragmentStep::Masks(_)
             | FragmentStep::Export(_)
             | FragmentStep::TakeDistribution => {}

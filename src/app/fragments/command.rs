@@ -11,6 +11,8 @@ use crate::command::Destination;
 pub enum FragmentStep {
     /// Outlines the fragments of the selected photo, whatever is outlined there.
     Outline,
+    /// Outlines all photos that are not outlined yet, on the screen or in files, one after the other.
+    OutlineAll,
     /// Takes the outlines of the selected photo from a file of another tool, or a folder of them.
     Masks(PathBuf),
     /// The engine that does, by its place in `ENGINES`.

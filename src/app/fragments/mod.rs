@@ -22,7 +22,7 @@ mod measured;
 mod measuring;
 mod outlining;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 pub use command::{FragmentStep, FragmentTool};
@@ -202,6 +202,8 @@ pub struct Fragments {
     field: Option<(usize, Arc<ScaleField>)>,
     /// Photos whose files were looked for.
     sought: Vec<usize>,
+    /// Photos that are outlined when the one before is done.
+    waiting: VecDeque<usize>,
 }
 
 /// The brush where nobody chose another, pixels.
@@ -211,6 +213,11 @@ impl Fragments {
     /// The outlines of a photo, if there are any.
     pub fn of(&self, photo: usize) -> Option<&PhotoOutlines> {
         self.photos.get(&photo).filter(|of| !of.is_nothing())
+    }
+
+    /// How many photos wait for their outlining.
+    pub fn waiting(&self) -> usize {
+        self.waiting.len()
     }
 
     /// Whether outlines are not saved.

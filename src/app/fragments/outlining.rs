@@ -1,15 +1,16 @@
 //! Outlining the fragments of the selected photo, as a job.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::{Outliner, PhotoOutlines};
 use crate::delineation::{self, Delineated, ENGINES, Regions};
+use crate::exports;
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::labels::{LabelImage, Outlines};
-use crate::opening::OutlinesOfOthers;
+use crate::opening::{OutlinesOfOthers, outline_files};
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 use crate::tasks::photos::read_photo;
@@ -27,10 +28,41 @@ impl Task {
 impl State {
     /// Outlines the selected photo. What is outlined there already can be had back by undo.
     pub(super) fn outline_photo(&mut self) {
-        let Some(open) = &self.open else {
+        let Some(open) = &mut self.open else {
             return;
         };
-        let Some(photo) = open.selected else {
+        open.fragments.waiting.clear();
+        if let Some(photo) = open.selected {
+            self.outline(photo);
+        }
+    }
+
+    /// Outlines all photos that are not outlined yet, on the screen or in files.
+    pub(super) fn outline_all(&mut self) {
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        let own = open.files.origin.flight_file();
+        let stems = exports::photo_file_stems(open.flight());
+        let is_saved = |stem: &str| own.is_some_and(|own| outline_files(own, stem)[0].is_file());
+        let photos = stems
+            .iter()
+            .enumerate()
+            .filter(|(photo, stem)| open.fragments.of(*photo).is_none() && !is_saved(stem));
+        let photos = photos.map(|(photo, _)| photo).collect();
+        open.fragments.waiting = photos;
+        self.outline_next();
+    }
+
+    fn outline_next(&mut self) {
+        let waiting = self.open.as_mut().map(|open| &mut open.fragments.waiting);
+        if let Some(photo) = waiting.and_then(VecDeque::pop_front) {
+            self.outline(photo);
+        }
+    }
+
+    fn outline(&mut self, photo: usize) {
+        let Some(open) = &self.open else {
             return;
         };
         let file = open.files.photo_files.get(photo).cloned();
@@ -54,23 +86,26 @@ impl State {
             progress.stage("outlining");
             delineation::delineated(engine, &image, &left_out, progress).map_err(of_photo)
         };
-        self.start(Task::OUTLINE, work, move |state, found| match found {
-            Ok(found) => {
-                let Delineated {
-                    outlines,
-                    regions,
-                    spread,
-                } = found;
-                state.take_outlines(
-                    number,
-                    photo,
-                    outlines,
-                    Some(regions),
-                    spread,
-                    engine.name(),
-                );
+        self.start(Task::OUTLINE, work, move |state, found| {
+            match found {
+                Ok(found) => {
+                    let Delineated {
+                        outlines,
+                        regions,
+                        spread,
+                    } = found;
+                    state.take_outlines(
+                        number,
+                        photo,
+                        outlines,
+                        Some(regions),
+                        spread,
+                        engine.name(),
+                    );
+                }
+                Err(message) => state.say(Severity::Error, &message),
             }
-            Err(message) => state.say(Severity::Error, &message),
+            state.outline_next();
         });
         self.say(Severity::Note, &format!("{said}: outlining its fragments"));
     }
@@ -133,7 +168,7 @@ impl State {
             return;
         }
         let fragments = &mut open.fragments;
-        if let Some(regions) = regions {
+        if let Some(regions) = regions.filter(|_| open.selected == Some(photo)) {
             fragments.regions = Some((photo, Arc::new(regions)));
         }
         fragments.refused = None;

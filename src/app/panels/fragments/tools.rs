@@ -120,6 +120,20 @@ pub(super) fn tools(
         if button.on_hover_text(hover).clicked() {
             send(FragmentStep::Outline);
         }
+        let count = open.flight().parts().photos.len();
+        if count > 1 {
+            let waiting = fragments.waiting();
+            let text = match (runs, waiting) {
+                (true, 1..) => format!("{waiting} more"),
+                _ => "Outline all".to_owned(),
+            };
+            let button = ui.add_enabled(!runs, Button::new(text));
+            let hover = "Outline every photo that is not outlined yet, one after the other; the log says how far it is, and the \
+                         status bar cancels it";
+            if button.on_hover_text(hover).clicked() {
+                send(FragmentStep::OutlineAll);
+            }
+        }
         let reads = state.work.is_running(Task::READ_MASKS);
         let button = ui.add_enabled(!reads, Button::new("Outlines of another tool…"));
         let hover = "Take this photo's outlines from a label image (PNG, TIFF), COCO, LabelMe, CVAT or GeoJSON in pixels; such a \
