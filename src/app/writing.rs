@@ -59,7 +59,7 @@ impl State {
         read: &Inputs,
         command: impl FnOnce(Destination) -> Command,
     ) -> bool {
-        self.may_write_all(to, &[to.path.clone()], kind, read, command)
+        self.may_write_all(to, std::slice::from_ref(&to.path), kind, read, command)
     }
 
     /// The same of several files in the folder `to`: the first one that stands there is asked for.

@@ -17,12 +17,10 @@
 
 pub mod choice;
 mod classical;
-mod counted;
 mod delineating;
 mod engine;
 mod evidence;
 mod hull;
-pub mod intervals;
 mod kept;
 mod learned;
 pub mod mass;
@@ -35,7 +33,6 @@ pub mod photo;
 mod regions;
 pub mod saved;
 mod smoothing;
-pub mod tail;
 mod transposed;
 pub mod tree;
 
@@ -46,6 +43,7 @@ pub use evidence::Evidence;
 pub use fragscale_core::labels;
 pub use fragscale_core::labels::{FINES, LabelImage, NOT_ROCK};
 pub use learned::Learned;
+pub use mass::{intervals, tail};
 pub use named::{Description, NamedModel};
 pub use outlined_by::OutlinedBy;
 pub use regions::Regions;

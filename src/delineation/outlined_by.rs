@@ -1,8 +1,6 @@
 //! What outlined a photo's fragments.
 
 use crate::engine::Engine;
-use crate::labels::LabelImage;
-use crate::photo;
 
 /// What outlined a photo's fragments.
 #[derive(Clone, Copy)]
@@ -32,10 +30,5 @@ impl<'a> OutlinedBy<'a> {
             Self::Saved(_) => "saved",
             Self::Masks => "masks",
         }
-    }
-
-    /// [`photo::least_across_of`] it.
-    pub fn least_across(self, labels: &LabelImage, spread: Option<f64>) -> Option<f64> {
-        photo::least_across_of(self.engine(), labels, spread)
     }
 }

@@ -271,7 +271,7 @@ impl Export {
         let spread = spread.or_else(|| edge_spread(&pixels));
         let outlined = OutlinedBy::Saved(engine_called(engine).map(|engine| engine as _));
         let field = photo::field(&self.flight, posed, progress).map_err(failed)?;
-        let least = outlined.least_across(labels, spread);
+        let least = photo::least_across_of(outlined.engine(), labels, spread);
         let fragments = photo::fragments(labels, &field, SieveShape::Calibrated, least);
         notes.extend(fragments.specks());
         let written = PhotoOutlined {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::cannot_write;
 use crate::fault::Fault;
+use crate::files::{self, Inputs, Kind};
 use crate::photo_set::PhotoSet;
 
 /// What COLMAP calls the photos, and where it finds them.
@@ -55,9 +56,10 @@ impl Called {
             let link = folder.join(name);
             // Of a run that was cut off.
             let _ = fs::remove_file(&link);
-            fs::hard_link(&photo.path, &link)
-                .or_else(|_| fs::copy(&photo.path, &link).map(|_| ()))
-                .map_err(|error| cannot_write(&link, &error))?;
+            if fs::hard_link(&photo.path, &link).is_err() {
+                let bytes = fs::read(&photo.path).map_err(|error| cannot_write(&link, &error))?;
+                files::write(&link, &bytes, Kind::Result, &Inputs::default(), true)?;
+            }
         }
         Ok(Self { names, folder })
     }

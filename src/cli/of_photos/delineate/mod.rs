@@ -482,7 +482,7 @@ impl<'a> Maker<'a> {
                     .extend(others.named_for_another(&photo.name, photos));
             }
             return Ok(Outlined {
-                least_across: OutlinedBy::Masks.least_across(&masks.labels, spread),
+                least_across: photo::least_across_of(None, &masks.labels, spread),
                 labels: masks.labels,
                 by: OutlinedBy::Masks,
                 spread,
@@ -498,7 +498,7 @@ impl<'a> Maker<'a> {
                 read.map_err(|error| Fault::new(error.to_string(), "or say --engine learned"))?;
             let by = OutlinedBy::Saved(engine_called(&read.engine));
             return Ok(Outlined {
-                least_across: by.least_across(read.outlines.labels(), spread),
+                least_across: photo::least_across_of(by.engine(), read.outlines.labels(), spread),
                 labels: read.outlines.into_labels(),
                 by,
                 spread,
@@ -508,7 +508,7 @@ impl<'a> Maker<'a> {
         let by = OutlinedBy::Engine(self.engine);
         let labels = outline(self.engine, image, left_out, self.progress)?;
         Ok(Outlined {
-            least_across: by.least_across(&labels, spread),
+            least_across: photo::least_across_of(by.engine(), &labels, spread),
             labels,
             by,
             spread,

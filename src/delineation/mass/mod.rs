@@ -22,12 +22,16 @@
 //!    is the fines' share of the mass.
 //! 6. How the fines are distributed no photo shows. A law may say it (`tail.rs`).
 
+mod counted;
+pub mod intervals;
+pub mod tail;
+
 use fragscale_core::fault::Fault;
 use fragscale_core::scale::ScaleField;
 use fragscale_fragmentation::SizeDistribution;
 use glam::DVec2;
 
-use crate::counted::Counted;
+use self::counted::Counted;
 use crate::delineating::LEAST_PIXELS_ACROSS;
 use crate::engine::Engine;
 use crate::labels::{FINES, LabelImage};
