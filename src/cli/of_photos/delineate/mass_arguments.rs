@@ -64,9 +64,8 @@ impl MassArguments {
     /// An error where steps are named that exclude each other.
     pub(super) fn check(&self) -> Result<(), String> {
         let steps = self.steps.as_deref().unwrap_or_default();
-        match steps.contains(&StepName::None) && steps.iter().any(|step| *step != StepName::None) {
-            true => return Err("--steps: none goes with no other step; leave it out".to_owned()),
-            false => {}
+        if steps.contains(&StepName::None) && steps.iter().any(|step| *step != StepName::None) {
+            return Err("--steps: none goes with no other step; leave it out".to_owned());
         }
         let takes = |step| self.steps.is_none() || steps.contains(&step);
         if self.porosity.is_some() && !takes(StepName::Pores) {
