@@ -46,8 +46,8 @@ pub use flown_report::{
     FlownReport, flown_csv, flown_json, flown_summary, flown_table, flown_warnings,
 };
 pub use fragments::{
-    FRAGMENT_TABLES, FragmentSizes, FragmentTables, MassWay, MeasuredPhoto, OUTLINED_ENDINGS,
-    PhotoOfSizes, PhotoOutlined, curves_csv, fragment_tables, label_png, labels_png, left_over,
+    FRAGMENT_TABLES, FragmentSizes, FragmentTables, MassWay, MeasuredPhoto, PhotoOfSizes,
+    PhotoOutlined, curves_csv, fragment_tables, label_png, labels_png, left_over, outlined_files,
 };
 pub use map_places::MapPlaces;
 pub use masks::{

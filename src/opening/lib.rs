@@ -63,7 +63,7 @@ pub use open::{
     open_flight_sampled, with_flight,
 };
 pub use origin::{FlightOrigin, path_from};
-pub use outlines::{OutlinesOfOthers, OutlinesRead, outline_files, read_outlines};
+pub use outlines::{OutlinesOfOthers, OutlinesRead, outline_files, read_outlines, saved_outlines};
 
 pub use photo_files::{PhotoFile, apart_from_photos};
 pub use second_surface::{SecondSurface, StatedWorld, second_surface};

@@ -168,6 +168,22 @@ fn columns(path: &Path, heads: &[&str]) -> Vec<Vec<String>> {
         .collect()
 }
 
+/// Outlines of a photo of the bundled flight, measured.
+fn measured(photo: &str, masks: &str, to: &str, rest: &[&str]) -> std::process::Output {
+    let flight = sample();
+    let own = [
+        "delineate",
+        &flight,
+        "--photo",
+        photo,
+        "--to",
+        to,
+        "--masks",
+        masks,
+    ];
+    fragscale(&[&own[..], rest].concat())
+}
+
 fn number(text: &str) -> f64 {
     text.parse().expect("a number")
 }
@@ -279,7 +295,6 @@ fn the_limit_is_the_smallest_outline() {
 fn nothing_outlined_and_left_over() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
-    let flight = sample();
     let [empty, one] = [path("empty.png"), path("one.png")];
     let mut labels = image::GrayImage::new(1280, 720);
     labels.save(&empty).expect("a picture");
@@ -288,20 +303,7 @@ fn nothing_outlined_and_left_over() {
     }
     labels.save(&one).expect("a picture");
     let to = path("out");
-    let run = |photo: &str, masks: &str| {
-        fragscale(&[
-            "delineate",
-            &flight,
-            "--photo",
-            photo,
-            "--to",
-            &to,
-            "--masks",
-            masks,
-            "--also",
-            "coco",
-        ])
-    };
+    let run = |photo: &str, masks: &str| measured(photo, masks, &to, &["--also", "coco"]);
     assert!(run("IMG_0004.jpg", &one).status.success());
     let done = run("IMG_0005.jpg", &empty);
     let said = String::from_utf8_lossy(&done.stderr);
@@ -333,19 +335,7 @@ fn what_is_read_stays() {
     }
     labels.save(path("IMG_0004_labels.png")).expect("a picture");
     let to = path("out");
-    let run = |photo: &str, masks: &str, rest: &[&str]| {
-        let own = [
-            "delineate",
-            &flight,
-            "--photo",
-            photo,
-            "--to",
-            &to,
-            "--masks",
-            masks,
-        ];
-        fragscale(&[&own[..], rest].concat())
-    };
+    let run = |photo: &str, masks: &str, rest: &[&str]| measured(photo, masks, &to, rest);
     let done = run(
         "IMG_0005.jpg",
         &path("IMG_0004_labels.png"),
@@ -399,4 +389,77 @@ fn what_is_read_stays() {
         error.contains("no outlines of these photos are saved"),
         "{error}"
     );
+}
+
+/// A photo in which nothing is outlined does not count in all photos together, and that is said.
+#[test]
+fn an_empty_photo_is_no_fines() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let mut labels = image::GrayImage::new(1280, 720);
+    labels.save(path("IMG_0004_labels.png")).expect("a picture");
+    for (number, left) in (1..).zip([100, 300, 500, 800]) {
+        let side = 30 + 20 * u32::from(number);
+        for (x, y) in (0..side * side).map(|at| (left + at % side, 200 + at / side)) {
+            labels.put_pixel(x, y, image::Luma([number]));
+        }
+    }
+    labels.save(path("IMG_0005_labels.png")).expect("a picture");
+    let [masks, to] =
+        [folder.path().to_owned(), path("out")].map(|path| path.to_string_lossy().into_owned());
+    let done = fragscale(&["delineate", &sample(), "--masks", &masks, "--to", &to]);
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{said}");
+    assert!(
+        said.contains(
+            "IMG_0004.jpg: no size distribution, and it does not count in that of all photos"
+        ),
+        "{said}"
+    );
+    let sizes = columns(
+        &path("out").join("sizes.csv"),
+        &["photo", "percent_passing", "size_cm"],
+    );
+    let of = |photo: &str| -> Vec<[String; 2]> {
+        let rows = sizes.iter().filter(|row| row[0] == photo);
+        rows.map(|row| [row[1].clone(), row[2].clone()]).collect()
+    };
+    assert_eq!(of("all photos"), of("IMG_0005.jpg"));
+    assert!(!of("IMG_0005.jpg").is_empty() && of("IMG_0004.jpg").is_empty());
+}
+
+/// The learned engine's sizes are taken 1.06 times smaller, all of them, and the limit with them; the list of fragments has them
+/// as they are outlined.
+#[test]
+fn the_step_engine_from_end_to_end() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let flight = sample();
+    let run = |name: &str, steps: &str| {
+        let to = folder.path().join(name);
+        let text = to.to_string_lossy().into_owned();
+        let own = [
+            "delineate",
+            &flight,
+            "--photo",
+            "IMG_0005.jpg",
+            "--to",
+            &text,
+        ];
+        stdout_of(&[&own[..], &["--engine", "learned", "--steps", steps]].concat());
+        let curve = columns(
+            &to.join("distribution.csv"),
+            &["size_cm", "percent_passing"],
+        );
+        let sizes = columns(&to.join("fragments.csv"), &["sieve_size_cm"]);
+        (
+            number(&curve[0][0]),
+            number(&curve[curve.len() - 1][0]),
+            sizes,
+        )
+    };
+    let (limit, largest, fragments) = run("without", "edges,fines");
+    let (limit_with, largest_with, fragments_with) = run("with", "edges,engine,fines");
+    assert!((limit / limit_with - 1.06).abs() < 1e-9);
+    assert!((largest / largest_with - 1.06).abs() < 1e-9);
+    assert_eq!(fragments, fragments_with);
 }

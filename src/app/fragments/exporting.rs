@@ -10,7 +10,7 @@ use crate::delineation::measures::SieveShape;
 use crate::delineation::{OutlinedBy, engine_called, photo};
 use crate::exports::{
     self, FRAGMENT_TABLES, FragmentSizes, FragmentTables, MapPlaces, MassWay, MeasuredPhoto,
-    OUTLINED_ENDINGS, PhotoOutlined,
+    PhotoOutlined,
 };
 use crate::fault::Fault;
 use crate::files::{self, FileError, Inputs, Kind};
@@ -19,7 +19,7 @@ use crate::formats::read_bytes;
 use crate::jobs::Progress;
 use crate::labels::LabelImage;
 use crate::open_flight::OpenFlight;
-use crate::opening::{apart_from_photos, outline_files, read_outlines};
+use crate::opening::{apart_from_photos, read_outlines, saved_outlines};
 use crate::picture::edge_spread;
 use crate::state::{Severity, State};
 use crate::tasks::Task;
@@ -49,11 +49,6 @@ struct Outlined {
 }
 
 impl Outlined {
-    /// Its own files in that folder.
-    fn paths(&self, folder: &Path) -> [PathBuf; 3] {
-        OUTLINED_ENDINGS.map(|ending| folder.join(format!("{}{ending}", self.stem)))
-    }
-
     /// Why nothing came of it.
     fn failed(&self, fault: &Fault) -> String {
         format!("photo '{}': {fault}", self.name)
@@ -79,10 +74,7 @@ impl OpenFlight {
                         let by = of.by();
                         Outlines::Now(of.now().labels().clone(), by.engine.clone(), by.spread)
                     }
-                    None => {
-                        let files = outline_files(own?, &stem);
-                        files[0].is_file().then_some(Outlines::Saved(files))?
-                    }
+                    None => Outlines::Saved(saved_outlines(own?, &stem)?),
                 };
                 let file = self.files.photo_files.get(index).cloned();
                 Some(Outlined {
@@ -124,7 +116,8 @@ impl State {
             return;
         }
         let folder = to.path.clone();
-        let photos = outlined.iter().flat_map(|of| of.paths(&folder));
+        let photos = outlined.iter();
+        let photos = photos.flat_map(|of| exports::outlined_files(&folder, &of.stem));
         let tables = FRAGMENT_TABLES.map(|name| folder.join(name));
         let paths: Vec<PathBuf> = photos.chain(tables).collect();
         let mut warnings: Vec<String> = Vec::new();
@@ -203,16 +196,12 @@ impl Export {
             warnings.extend(notes.iter().map(|note| format!("{}: {note}", of.name)));
             measured.push(photo);
         }
-        let photos = self.outlined.iter().map(|of| of.index);
-        let errors = photo::scale_errors(&self.flight, &self.looked_up, photos, progress);
-        for (of, error) in measured.iter_mut().zip(errors.map_err(in_words)?) {
-            of.scale_error = error;
-        }
         let way = MassWay {
             steps: WantedSteps::default(),
             tail: None,
         };
-        let sizes = FragmentSizes::of(&measured, &way);
+        let sizes = FragmentSizes::of(&measured, &way, &self.flight, &self.looked_up, progress);
+        let sizes = sizes.map_err(in_words)?;
         warnings.extend(sizes.without.iter().cloned());
         let of_tables = FragmentTables {
             flight: &parts.name,
@@ -270,28 +259,28 @@ impl Export {
         // Of outlines of other tools nobody has measured it yet.
         let spread = spread.or_else(|| edge_spread(&pixels));
         let outlined = OutlinedBy::Saved(engine_called(engine).map(|engine| engine as _));
-        let field = photo::field(&self.flight, posed, progress).map_err(failed)?;
-        let least = photo::least_across_of(outlined.engine(), labels, spread);
-        let fragments = photo::fragments(labels, &field, SieveShape::Calibrated, least);
-        notes.extend(fragments.specks());
         let written = PhotoOutlined {
-            name: &of.name,
+            flight: &self.flight,
+            index: of.index,
             pixels: &pixels,
             labels,
-            field: &field,
-            fragments: &fragments,
+            by: outlined,
+            spread,
+            shape: SieveShape::Calibrated,
         };
-        let files = written.files(places, units).map_err(failed)?;
-        for (path, bytes) in of.paths(&self.folder).iter().zip(files) {
+        let made = written.measured(places, units, progress).map_err(failed)?;
+        notes.extend(made.note);
+        let paths = exports::outlined_files(&self.folder, &of.stem);
+        for (path, bytes) in paths.iter().zip(made.bytes) {
             self.write_file(path, &bytes)?;
         }
         let measured = MeasuredPhoto {
             photo: &of.name,
-            fragments,
+            fragments: made.fragments,
             outlined,
             spread,
-            scale_error: None,
-            picture: format!("{}{}", of.stem, OUTLINED_ENDINGS[1]),
+            index: of.index,
+            stem: &of.stem,
         };
         Ok((measured, notes))
     }

@@ -10,7 +10,7 @@ use crate::formats;
 use crate::jobs::Progress;
 use crate::labels::LabelImage;
 use crate::open_flight::OpenFlight;
-use crate::opening::{OutlinesRead, outline_files, read_outlines};
+use crate::opening::{OutlinesRead, outline_files, read_outlines, saved_outlines};
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 
@@ -70,9 +70,9 @@ impl OpenFlight {
         let others = stems.iter().enumerate();
         let others = others.filter(|(photo, _)| self.fragments.of(*photo).is_none());
         let to_copy = others.filter_map(|(_, stem)| {
-            let from = outline_files(own.filter(|_| !is_own)?, stem);
+            let from = saved_outlines(own.filter(|_| !is_own)?, stem)?;
             let to = outline_files(path, stem);
-            from[0].is_file().then_some(OutlinesToCopy { from, to })
+            Some(OutlinesToCopy { from, to })
         });
         (to_save.collect(), to_copy.collect())
     }
@@ -150,8 +150,8 @@ impl State {
             return;
         };
         let stems = exports::photo_file_stems(open.flight());
-        let files = stems.get(photo).map(|stem| outline_files(own, stem));
-        let Some(files) = files.filter(|[picture, _]| picture.is_file()) else {
+        let files = stems.get(photo).and_then(|stem| saved_outlines(own, stem));
+        let Some(files) = files else {
             return;
         };
         let (flight, number) = (open.flight().clone(), open.number);

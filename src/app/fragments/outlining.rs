@@ -10,7 +10,7 @@ use crate::exports;
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::labels::{LabelImage, Outlines};
-use crate::opening::{OutlinesOfOthers, outline_files};
+use crate::opening::{OutlinesOfOthers, saved_outlines};
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 use crate::tasks::photos::read_photo;
@@ -44,7 +44,7 @@ impl State {
         };
         let own = open.files.origin.flight_file();
         let stems = exports::photo_file_stems(open.flight());
-        let is_saved = |stem: &str| own.is_some_and(|own| outline_files(own, stem)[0].is_file());
+        let is_saved = |stem: &str| own.is_some_and(|own| saved_outlines(own, stem).is_some());
         let photos = stems
             .iter()
             .enumerate()
@@ -124,19 +124,10 @@ impl State {
             let others = OutlinesOfOthers::open(&path, None).map_err(|error| error.to_string())?;
             let posed = &flight.parts().photos[photo];
             let camera = flight.camera(posed);
-            // She says which photo it is.
-            let masks = others.of_photo(&posed.name, camera, true);
-            let mut masks = masks.map_err(|fault| fault.to_string())?;
             let left_out = delineation::photo::left_out(&settings, posed, camera);
-            delineation::leave_out(&mut masks.labels, &left_out);
-            let photos = flight
-                .parts()
-                .photos
-                .iter()
-                .map(|photo| photo.name.as_str());
-            masks
-                .notes
-                .extend(others.named_for_another(&posed.name, photos));
+            // She says which photo it is.
+            let masks = others.of_flights_photo(&flight, photo, &left_out, true);
+            let masks = masks.map_err(|fault| fault.to_string())?;
             Ok((masks.labels, masks.notes))
         };
         self.start(Task::READ_MASKS, work, move |state, read| match read {

@@ -1,44 +1,88 @@
-//! The files of a photo whose fragments are outlined.
+//! A photo whose fragments are outlined: measured, and its files.
+
+use std::path::{Path, PathBuf};
 
 use image::RgbImage;
 
 use super::{WorldOutlines, labels_png, outlines_png, world_geojson};
-use crate::delineation::LabelImage;
 use crate::delineation::mass::PhotoFragments;
+use crate::delineation::measures::SieveShape;
+use crate::delineation::{LabelImage, OutlinedBy, photo};
 use crate::fault::Fault;
+use crate::flight::Flight;
+use crate::jobs::Progress;
 use crate::map_places::MapPlaces;
 use crate::scale::ScaleField;
 use crate::units::LengthUnit;
 
 /// How they end behind the photo's name: its label image, its outlines over it, and those in the world.
-pub const OUTLINED_ENDINGS: [&str; 3] = ["_labels.png", "_outlines.png", "_world.geojson"];
+pub(super) const OUTLINED_ENDINGS: [&str; 3] = ["_labels.png", "_outlines.png", "_world.geojson"];
+
+/// The files of a photo in a folder, in the order of [`OutlinedFiles::bytes`]. `stem` is what the photo's files are called.
+pub fn outlined_files(folder: &Path, stem: &str) -> [PathBuf; 3] {
+    OUTLINED_ENDINGS.map(|ending| folder.join(format!("{stem}{ending}")))
+}
 
 /// A photo with what is outlined in it.
-#[derive(Debug)]
 pub struct PhotoOutlined<'a> {
-    /// As the flight names it.
-    pub name: &'a str,
+    /// Whose photo it is.
+    pub flight: &'a Flight,
+    /// Its place there.
+    pub index: usize,
     /// Undistorted, at its full size.
     pub pixels: &'a RgbImage,
     /// Of the same pixels.
     pub labels: &'a LabelImage,
-    /// Of all of them.
-    pub field: &'a ScaleField,
+    /// What outlined them.
+    pub by: OutlinedBy<'a>,
+    /// How far the photo's edges are spread, pixels.
+    pub spread: Option<f64>,
+    /// How sieve sizes follow from outlines.
+    pub shape: SieveShape,
+}
+
+/// What comes of it.
+#[derive(Debug)]
+pub struct OutlinedFiles {
     /// What was measured.
-    pub fragments: &'a PhotoFragments,
+    pub fragments: PhotoFragments,
+    /// Of [`outlined_files`].
+    pub bytes: [Vec<u8>; 3],
+    /// What is to be said of the outlines.
+    pub note: Option<String>,
 }
 
 impl PhotoOutlined<'_> {
-    /// The bytes of its files, in the order of [`OUTLINED_ENDINGS`]. Units of the world, and of what is written.
+    /// Measures the fragments where they lie. Units of the world, and of what is written.
     ///
     /// # Errors
-    /// Where a picture cannot be written.
-    pub fn files(
+    /// Where the photo has no scale, a picture cannot be written, or on cancel.
+    pub fn measured(
         &self,
+        places: &MapPlaces,
+        units: [LengthUnit; 2],
+        progress: &Progress,
+    ) -> Result<OutlinedFiles, Fault> {
+        let posed = &self.flight.parts().photos[self.index];
+        let field = photo::field(self.flight, posed, progress)?;
+        let least = photo::least_across_of(self.by.engine(), self.labels, self.spread);
+        let fragments = photo::fragments(self.labels, &field, self.shape, least);
+        Ok(OutlinedFiles {
+            bytes: self.bytes(&posed.name, &field, &fragments, places, units)?,
+            note: fragments.specks(),
+            fragments,
+        })
+    }
+
+    fn bytes(
+        &self,
+        name: &str,
+        field: &ScaleField,
+        measured: &PhotoFragments,
         places: &MapPlaces,
         [world, unit]: [LengthUnit; 2],
     ) -> Result<[Vec<u8>; 3], Fault> {
-        let fragments = &self.fragments.fragments;
+        let fragments = &measured.fragments;
         // By number, of which other tools leave some out.
         let mut is_cut = vec![false; self.labels.fragments()];
         for fragment in fragments.iter().filter(|fragment| fragment.is_cut) {
@@ -47,9 +91,9 @@ impl PhotoOutlined<'_> {
             }
         }
         let outlines = WorldOutlines {
-            photo: self.name,
+            photo: name,
             labels: self.labels,
-            field: self.field,
+            field,
             fragments,
         };
         Ok([

@@ -1,13 +1,17 @@
 //! The sizes of photos whose fragments were outlined: their distributions, how sure they are, and the words for both.
 
+use std::sync::Arc;
+
 use super::table::PhotoOfSizes;
-use crate::delineation::OutlinedBy;
 use crate::delineation::intervals::{Doubts, SizeInterval, intervals};
 use crate::delineation::mass::{
     ByMass, PhotoFragments, StepTaken, Steps, WantedSteps, by_mass, steps_taken,
 };
 use crate::delineation::tail::Tail;
+use crate::delineation::{OutlinedBy, photo};
 use crate::fault::Fault;
+use crate::flight::{Flight, LookedUp};
+use crate::jobs::Progress;
 use crate::numbers::significant_digits;
 use crate::season::FoundSize;
 use crate::units::LengthUnit;
@@ -25,10 +29,10 @@ pub struct MeasuredPhoto<'a> {
     pub outlined: OutlinedBy<'a>,
     /// How far the photo's edges are spread, pixels.
     pub spread: Option<f64>,
-    /// The relative standard error of its scale, where that is known.
-    pub scale_error: Option<f64>,
-    /// The file with its outlines over the photo, which lies beside the tables.
-    pub picture: String,
+    /// Its place in the flight.
+    pub index: usize,
+    /// What its files are called.
+    pub stem: &'a str,
 }
 
 /// A distribution, and how sure it is.
@@ -54,16 +58,29 @@ pub struct FragmentSizes<'a> {
 }
 
 impl<'a> FragmentSizes<'a> {
-    /// Of photos that were measured.
-    pub fn of(measured: &'a [MeasuredPhoto<'a>], way: &MassWay<'_>) -> Self {
+    /// Of photos of a flight that were measured.
+    ///
+    /// # Errors
+    /// On cancel.
+    pub fn of(
+        measured: &'a [MeasuredPhoto<'a>],
+        way: &MassWay<'_>,
+        flight: &Arc<Flight>,
+        looked_up: &LookedUp,
+        progress: &Progress,
+    ) -> Result<Self, Fault> {
+        let photos = measured.iter().map(|of| of.index);
+        let errors = photo::scale_errors(flight, looked_up, photos, progress)?;
         let mut sizes = Self {
             photos: Vec::new(),
             all: None,
             without: Vec::new(),
         };
         let mut every: Vec<&MeasuredPhoto<'_>> = Vec::new();
-        for (place, of) in measured.iter().enumerate() {
-            let row = row(of.photo, &[of], of.scale_error, way);
+        // The surface is one: errors of the photos' scales go together, and the largest stands for all.
+        let mut worst: Option<f64> = None;
+        for (place, (of, error)) in measured.iter().zip(errors).enumerate() {
+            let row = row(of.photo, &[of], error, way);
             match row.map(|row| Row {
                 of: Some(place),
                 scale: scale_of(&of.fragments),
@@ -72,6 +89,7 @@ impl<'a> FragmentSizes<'a> {
                 Ok(row) => {
                     sizes.photos.push(row);
                     every.push(of);
+                    worst = worst.into_iter().chain(error).reduce(f64::max);
                 }
                 Err(fault) => {
                     let text = format!(
@@ -82,10 +100,8 @@ impl<'a> FragmentSizes<'a> {
                 }
             }
         }
-        // The surface is one: errors of the photos' scales go together, and the largest stands for all.
-        let errors = every.iter().filter_map(|of| of.scale_error);
-        sizes.all = row(ALL, &every, errors.reduce(f64::max), way).ok();
-        sizes
+        sizes.all = row(ALL, &every, worst, way).ok();
+        Ok(sizes)
     }
 
     /// Why no photo has any, of the first of them.

@@ -1,5 +1,6 @@
 //! The tables of photos whose fragments were measured, and the page with all of it.
 
+use super::OUTLINED_ENDINGS;
 use super::report::{FragmentsReport, ReportPhoto, ReportSizes, fragments_report, report_pictures};
 use super::sizes::{FragmentSizes, MeasuredPhoto};
 use super::table::{PhotoOfFragments, curves_csv, fragments_csv, sizes_csv};
@@ -78,8 +79,9 @@ fn page(
     let [world, unit] = of.units;
     let rows = sizes.rows();
     let photos = measured.iter().enumerate().map(|(place, of)| {
+        let file = format!("{}{}", of.stem, OUTLINED_ENDINGS[1]);
         let bytes = match place < report_pictures() {
-            true => picture(&of.picture)?,
+            true => picture(&file)?,
             false => Vec::new(),
         };
         let row = sizes.photos.iter().position(|row| row.of == Some(place));
@@ -87,7 +89,7 @@ fn page(
         let own = row.and_then(|row| rows.get(row)).zip(taken);
         Ok(ReportPhoto {
             photo: of.photo,
-            file: of.picture.clone(),
+            file,
             picture: bytes,
             spread: of.spread,
             sizes: own.map(|(sizes, row)| ReportSizes {

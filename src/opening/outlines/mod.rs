@@ -39,6 +39,11 @@ pub fn outline_files(flight_file: &Path, stem: &str) -> [PathBuf; 2] {
     ]
 }
 
+/// The same where they are there.
+pub fn saved_outlines(flight_file: &Path, stem: &str) -> Option<[PathBuf; 2]> {
+    Some(outline_files(flight_file, stem)).filter(|[picture, _]| picture.is_file())
+}
+
 /// Reads them. `photo` is what the flight calls it.
 ///
 /// # Errors

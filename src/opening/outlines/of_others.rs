@@ -5,8 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::camera::Camera;
+use crate::delineation::leave_out;
 use crate::fault::Fault;
 use crate::files::{last_segment, unreadable_folder};
+use crate::flight::Flight;
 use crate::formats::{FileError, MaskFile, Masks, OutlinedPhoto};
 use crate::picture;
 use crate::scale::ImageKind;
@@ -103,7 +105,7 @@ impl OutlinesOfOthers {
     }
 
     /// That a file of one photo, which is taken for `name`, is named as the outlines of another of these photos.
-    pub fn named_for_another<'p>(
+    fn named_for_another<'p>(
         &self,
         name: &str,
         mut photos: impl Iterator<Item = &'p str>,
@@ -143,12 +145,37 @@ impl OutlinesOfOthers {
         }
     }
 
+    /// The label image of a flight's undistorted photo without what of it is `left_out` (`delineation::photo::left_out`), with what
+    /// is to be said about it. `is_only`: no other photo is asked for, so that a file of one photo is of this one.
+    ///
+    /// # Errors
+    /// Where there is none of this photo, or it cannot be read; the file is named.
+    pub fn of_flights_photo(
+        &self,
+        flight: &Flight,
+        index: usize,
+        left_out: &[bool],
+        is_only: bool,
+    ) -> Result<Masks, Fault> {
+        let photos = &flight.parts().photos;
+        let photo = &photos[index];
+        let mut masks = self.of_photo(&photo.name, flight.camera(photo), is_only)?;
+        leave_out(&mut masks.labels, left_out);
+        if is_only {
+            let names = photos.iter().map(|photo| photo.name.as_str());
+            masks
+                .notes
+                .extend(self.named_for_another(&photo.name, names));
+        }
+        Ok(masks)
+    }
+
     /// The label image of the undistorted photo, with what is to be said about it. `is_only`: no other photo is asked for, so
     /// that a file of one photo is of this one.
     ///
     /// # Errors
     /// Where there is none of this photo, or it cannot be read; the file is named.
-    pub fn of_photo(&self, name: &str, camera: &Camera, is_only: bool) -> Result<Masks, Fault> {
+    fn of_photo(&self, name: &str, camera: &Camera, is_only: bool) -> Result<Masks, Fault> {
         let photo = OutlinedPhoto {
             name,
             width: camera.width,

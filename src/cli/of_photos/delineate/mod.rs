@@ -24,18 +24,17 @@ use crate::cli::{Answer, OutputUnit};
 use crate::delineation::mass::PhotoFragments;
 use crate::delineation::measures::SieveShape;
 use crate::delineation::{
-    Engine, LabelImage, Learned, NOT_ROCK, OutlinedBy, delineate as outline, engine_called,
-    leave_out, photo,
+    Engine, LabelImage, Learned, NOT_ROCK, OutlinedBy, delineate as outline, engine_called, photo,
 };
 use crate::exports::{
     self, FRAGMENT_TABLES, FoundSize, FragmentSizes, FragmentTables, MapPlaces, MassWay,
-    MeasuredPhoto, OUTLINED_ENDINGS, PhotoOutlined,
+    MeasuredPhoto, PhotoOutlined,
 };
 use crate::fault::Fault;
 use crate::files::{Kind, Recording};
 use crate::formats::{FileError, read_bytes};
 use crate::jobs::Progress;
-use crate::opening::{Opened, OutlinesOfOthers, apart_from_photos, outline_files, read_outlines};
+use crate::opening::{Opened, OutlinesOfOthers, apart_from_photos, read_outlines, saved_outlines};
 use crate::picture::edge_spread;
 use crate::units::LengthUnit;
 
@@ -182,9 +181,8 @@ pub(in crate::cli) fn delineate_of(
         warnings.extend(said);
     }
     let to = &arguments.to;
-    let own_files =
-        |index: usize| OUTLINED_ENDINGS.map(|ending| to.join(format!("{}{ending}", stems[index])));
-    let planned: Vec<[PathBuf; 3]> = chosen.iter().map(|index| own_files(*index)).collect();
+    let own_files = |index: &usize| exports::outlined_files(to, &stems[*index]);
+    let planned: Vec<[PathBuf; 3]> = chosen.iter().map(own_files).collect();
     let tables = FRAGMENT_TABLES.map(|name| to.join(name));
     let mut written = WrittenOutlines::new(to, &arguments.also);
     let for_others = written.paths(chosen.iter().map(|index| stems[*index].as_str()));
@@ -230,7 +228,6 @@ pub(in crate::cli) fn delineate_of(
     };
     let name = |index: &usize| flight.parts().photos[*index].name.as_str();
     let mut done: Vec<MeasuredPhoto<'_>> = Vec::new();
-    let mut done_photos: Vec<usize> = Vec::new();
     let mut said: Vec<String> = Vec::new();
     let names = chosen.iter().map(name);
     let failed = photos.make_each(names, &doing, path, progress, |place| {
@@ -277,10 +274,9 @@ pub(in crate::cli) fn delineate_of(
             fragments: kept.fragments,
             outlined,
             spread: kept.spread,
-            scale_error: None,
-            picture: format!("{stem}{}", OUTLINED_ENDINGS[1]),
+            index,
+            stem,
         });
-        done_photos.push(index);
         Ok(())
     })?;
     let mut not_all = doing.not_all(&failed, chosen.len()).map(in_flight);
@@ -290,16 +286,12 @@ pub(in crate::cli) fn delineate_of(
     let mut text = String::new();
     let mut of_all = Vec::new();
     if !done.is_empty() {
-        let photos = done_photos.iter().copied();
-        let errors = photo::scale_errors(flight, &opened.looked_up, photos, progress);
-        for (of, error) in done.iter_mut().zip(errors.map_err(in_flight)?) {
-            of.scale_error = error;
-        }
         let way = MassWay {
             steps: arguments.mass.steps(),
             tail: tail.as_ref(),
         };
-        let sizes = FragmentSizes::of(&done, &way);
+        let sizes = FragmentSizes::of(&done, &way, flight, &opened.looked_up, progress);
+        let sizes = sizes.map_err(in_flight)?;
         if let (Some(first), None) = (sizes.nothing(), &not_all) {
             let what = "no photo has a size distribution";
             not_all = Some(in_flight(Fault::new(what, format!("the first: {first}"))));
@@ -341,10 +333,7 @@ fn with_saved(
     stems: &[String],
 ) -> Result<(Vec<usize>, Option<String>), String> {
     let count = chosen.len();
-    let is_saved = |index: &usize| {
-        let files = saved_files(opened, &stems[*index]);
-        files.is_some_and(|[picture, _]| picture.is_file())
-    };
+    let is_saved = |index: &usize| saved_files(opened, &stems[*index]).is_some();
     let with: Vec<usize> = chosen.into_iter().filter(is_saved).collect();
     if with.is_empty() {
         let what = "no outlines of these photos are saved beside the flight";
@@ -357,10 +346,10 @@ fn with_saved(
     Ok((with, said))
 }
 
-/// Where a photo's outlines would be saved; `None` of a flight without a file.
+/// The files of a photo's saved outlines, where there are any.
 fn saved_files(opened: &Opened, stem: &str) -> Option<[PathBuf; 2]> {
     let (flight_file, _) = opened.file.as_ref()?;
-    Some(outline_files(flight_file, stem))
+    saved_outlines(flight_file, stem)
 }
 
 /// The label image of a file that this command wrote.
@@ -416,8 +405,6 @@ struct Made<'a> {
 struct Outlined<'a> {
     labels: LabelImage,
     by: OutlinedBy<'a>,
-    /// Nothing narrower is claimed, pixels.
-    least_across: Option<f64>,
     /// How far the photo's edges are spread, pixels.
     spread: Option<f64>,
     notes: Vec<String>,
@@ -433,24 +420,23 @@ impl<'a> Maker<'a> {
         let Outlined {
             labels,
             by,
-            least_across,
             spread,
             mut notes,
         } = self.outlined(index, &image, &left_out)?;
-        let field = photo::field(flight, photo, self.progress)?;
-        let shape = self.arguments.shape.into();
-        let fragments = photo::fragments(&labels, &field, shape, least_across);
-        notes.extend(fragments.specks());
         let of = PhotoOutlined {
-            name: &photo.name,
+            flight,
+            index,
             pixels: &image,
             labels: &labels,
-            field: &field,
-            fragments: &fragments,
+            by,
+            spread,
+            shape: self.arguments.shape.into(),
         };
+        let measured = of.measured(self.places, self.units, self.progress)?;
+        notes.extend(measured.note);
         Ok(Made {
-            files: of.files(self.places, self.units)?,
-            fragments,
+            files: measured.bytes,
+            fragments: measured.fragments,
             labels,
             outlined: by,
             spread,
@@ -469,36 +455,20 @@ impl<'a> Maker<'a> {
         let camera = flight.camera(photo);
         let spread = edge_spread(image);
         if let Some(others) = self.others {
-            let mut masks = others.of_photo(&photo.name, camera, self.is_only)?;
-            leave_out(&mut masks.labels, left_out);
-            if self.is_only {
-                let photos = flight
-                    .parts()
-                    .photos
-                    .iter()
-                    .map(|photo| photo.name.as_str());
-                masks
-                    .notes
-                    .extend(others.named_for_another(&photo.name, photos));
-            }
+            let masks = others.of_flights_photo(flight, index, left_out, self.is_only)?;
             return Ok(Outlined {
-                least_across: photo::least_across_of(None, &masks.labels, spread),
                 labels: masks.labels,
                 by: OutlinedBy::Masks,
                 spread,
                 notes: masks.notes,
             });
         }
-        let saved = self
-            .saved_of(index)
-            .filter(|[picture, _]| picture.is_file());
-        if let Some(files) = saved {
+        if let Some(files) = self.saved_of(index) {
             let read = read_outlines(&files, &photo.name, camera);
             let read =
                 read.map_err(|error| Fault::new(error.to_string(), "or say --engine learned"))?;
             let by = OutlinedBy::Saved(engine_called(&read.engine));
             return Ok(Outlined {
-                least_across: photo::least_across_of(by.engine(), read.outlines.labels(), spread),
                 labels: read.outlines.into_labels(),
                 by,
                 spread,
@@ -508,7 +478,6 @@ impl<'a> Maker<'a> {
         let by = OutlinedBy::Engine(self.engine);
         let labels = outline(self.engine, image, left_out, self.progress)?;
         Ok(Outlined {
-            least_across: photo::least_across_of(by.engine(), &labels, spread),
             labels,
             by,
             spread,
