@@ -1,7 +1,10 @@
 //! A field for a path, with the desktop's own dialog beside it.
 
+use std::path::PathBuf;
+
 use crate::command::{Command, Dialog};
 use crate::state::State;
+use crate::typed::typed;
 
 /// A path that is typed, or chosen in the desktop's dialog. Returns the text of now, and whether
 /// Enter was pressed in it.
@@ -45,6 +48,22 @@ pub(super) fn path_field(
     });
     ui.data_mut(|data| data.insert_temp(id, path.clone()));
     (path, entered)
+}
+
+/// The same with a button below it: the path, once the button or Enter is pressed.
+pub(super) fn taken_path(
+    state: &State,
+    ui: &mut egui::Ui,
+    start: &str,
+    browse: &[(&str, Dialog)],
+    button: &str,
+    commands: &mut Vec<Command>,
+) -> Option<PathBuf> {
+    let (path, entered) = path_field(state, ui, start, browse, commands);
+    ui.separator();
+    let path = typed(&path);
+    let button = ui.add_enabled(path.is_some(), egui::Button::new(button));
+    path.filter(|_| button.clicked() || entered)
 }
 
 /// She asked for this window, so what she types or pastes next belongs into this field of it.

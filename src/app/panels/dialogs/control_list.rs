@@ -2,9 +2,8 @@
 
 use crate::command::{Command, Dialog};
 use crate::control_points::ControlStep;
-use crate::panels::path_field::path_field;
+use crate::panels::path_field::taken_path;
 use crate::state::State;
-use crate::typed::typed;
 
 /// Draws the window's contents.
 pub(super) fn control_list(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -13,13 +12,7 @@ pub(super) fn control_list(state: &State, ui: &mut egui::Ui, commands: &mut Vec<
          marks or without. Points of the same name are replaced; undo takes all of it back.",
     );
     let browse = [("Browse…", Dialog::file("List of control points"))];
-    let (path, entered) = path_field(state, ui, "", &browse, commands);
-    ui.separator();
-    let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new("Load the list"));
-    if let Some(path) = path
-        && (button.clicked() || entered)
-    {
+    if let Some(path) = taken_path(state, ui, "", &browse, "Load the list", commands) {
         commands.push(Command::Control(ControlStep::Load(path)));
     }
 }

@@ -3,9 +3,8 @@
 use super::proposed;
 use crate::command::{Command, Dialog};
 use crate::fragments::FragmentStep;
-use crate::panels::path_field::path_field;
+use crate::panels::path_field::taken_path;
 use crate::state::State;
-use crate::typed::typed;
 
 /// Which file has the outlines.
 pub(super) fn masks(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
@@ -25,13 +24,7 @@ pub(super) fn masks(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         ("File…", Dialog::file("Outlines of this photo")),
         ("Folder…", Dialog::folder("Folder of outlines")),
     ];
-    let (path, entered) = path_field(state, ui, "", &browse, commands);
-    ui.separator();
-    let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new("Take the outlines"));
-    if let Some(path) = path
-        && (button.clicked() || entered)
-    {
+    if let Some(path) = taken_path(state, ui, "", &browse, "Take the outlines", commands) {
         commands.push(Command::Fragments(FragmentStep::Masks(path)));
         commands.push(Command::Ask(None));
     }
@@ -49,13 +42,14 @@ pub(super) fn export_fragments(state: &State, ui: &mut egui::Ui, commands: &mut 
     ));
     let browse = [("Browse…", Dialog::folder("Folder for the fragments"))];
     let start = proposed(open, Some("fragment-sizes"));
-    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
-    ui.separator();
-    let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new("Write results"));
-    if let Some(path) = path
-        && (button.clicked() || entered)
-    {
+    if let Some(path) = taken_path(
+        state,
+        ui,
+        &start.display().to_string(),
+        &browse,
+        "Write results",
+        commands,
+    ) {
         commands.push(Command::Fragments(FragmentStep::Export(path.into())));
     }
 }

@@ -20,7 +20,7 @@ use crate::command::{Answers, Asking, Command, Dialog, MeasuredTable, PictureReq
 use crate::map::MapCommand;
 use crate::names;
 use crate::open_flight::OpenFlight;
-use crate::panels::path_field::path_field;
+use crate::panels::path_field::{path_field, taken_path};
 use crate::panels::reconstruct_offer;
 use crate::panels::size_distributions::{
     add_distributions, add_effort, paste, save_figure, save_report,
@@ -229,13 +229,7 @@ fn open(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             Dialog::folder("Open a flight's folder").answering(Answers::Open),
         ),
     ];
-    let (path, entered) = path_field(state, ui, "", &browse, commands);
-    ui.separator();
-    let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new("Open flight"));
-    if let Some(path) = path
-        && (button.clicked() || entered)
-    {
+    if let Some(path) = taken_path(state, ui, "", &browse, "Open flight", commands) {
         commands.push(Command::Open(path));
     }
 }
@@ -273,13 +267,7 @@ fn add(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             Dialog::folder("Folder of the flight's photos"),
         ),
     ];
-    let (path, entered) = path_field(state, ui, "", &browse, commands);
-    ui.separator();
-    let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new("Add it"));
-    if let Some(path) = path
-        && (button.clicked() || entered)
-    {
+    if let Some(path) = taken_path(state, ui, "", &browse, "Add it", commands) {
         commands.push(Command::Add(path));
     }
     if state.from_photos.offered.is_some() {
@@ -334,13 +322,14 @@ fn save_as(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     );
     let start = proposed(open, None);
     let browse = [("Browse…", Dialog::new_file("Save flight", "flight.toml"))];
-    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
-    ui.separator();
-    let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new("Save flight"));
-    if let Some(path) = path
-        && (button.clicked() || entered)
-    {
+    if let Some(path) = taken_path(
+        state,
+        ui,
+        &start.display().to_string(),
+        &browse,
+        "Save flight",
+        commands,
+    ) {
         commands.push(Command::SaveAs(path.into()));
     }
 }
@@ -374,13 +363,14 @@ fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.data_mut(|data| data.insert_temp(id, options));
     let start = proposed(open, Some("figure.png"));
     let browse = [("Browse…", Dialog::new_file("Save picture", "figure.png"))];
-    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
-    ui.separator();
-    let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new("Write picture"));
-    if let Some(path) = path
-        && (button.clicked() || entered)
-    {
+    if let Some(path) = taken_path(
+        state,
+        ui,
+        &start.display().to_string(),
+        &browse,
+        "Write picture",
+        commands,
+    ) {
         commands.push(Command::Picture(PictureRequest {
             to: path.into(),
             size: [options.0, options.1],
@@ -413,13 +403,14 @@ fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     }
     let start = proposed(open, Some("map.pdf"));
     let browse = [("Browse…", Dialog::new_file("Export map", "map.pdf"))];
-    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
-    ui.separator();
-    let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new("Write map"));
-    if let Some(path) = path
-        && (button.clicked() || entered)
-    {
+    if let Some(path) = taken_path(
+        state,
+        ui,
+        &start.display().to_string(),
+        &browse,
+        "Write map",
+        commands,
+    ) {
         let to = path.into();
         commands.push(Command::Map(MapCommand::Save { to, pixel }));
     }

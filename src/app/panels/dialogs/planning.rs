@@ -2,10 +2,9 @@
 
 use super::proposed;
 use crate::command::{Command, Dialog};
-use crate::panels::path_field::path_field;
+use crate::panels::path_field::taken_path;
 use crate::planning::PlanStep;
 use crate::state::State;
-use crate::typed::typed;
 
 pub(super) fn mission(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let Some(open) = &state.open else {
@@ -21,13 +20,14 @@ pub(super) fn mission(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
     }
     let start = proposed(open, Some("mission.kmz"));
     let browse = [("Browse…", Dialog::new_file("Save mission", "mission.kmz"))];
-    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
-    ui.separator();
-    let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new("Write mission"));
-    if let Some(path) = path
-        && (button.clicked() || entered)
-    {
+    if let Some(path) = taken_path(
+        state,
+        ui,
+        &start.display().to_string(),
+        &browse,
+        "Write mission",
+        commands,
+    ) {
         commands.push(Command::Plan(PlanStep::SaveMission(path.into())));
     }
 }
@@ -76,13 +76,14 @@ pub(super) fn plan_table(
     ui.label(what);
     let start = proposed(open, Some(name));
     let browse = [("Browse…", dialog)];
-    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
-    ui.separator();
-    let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new(write));
-    if let Some(path) = path
-        && (button.clicked() || entered)
-    {
+    if let Some(path) = taken_path(
+        state,
+        ui,
+        &start.display().to_string(),
+        &browse,
+        write,
+        commands,
+    ) {
         let to = path.into();
         commands.push(Command::Plan(match file {
             PlanFile::Table | PlanFile::Sheet => PlanStep::SaveTable(to),

@@ -5,9 +5,8 @@ use std::path::PathBuf;
 
 use super::proposed;
 use crate::command::{Command, Dialog, MeasuredTable};
-use crate::panels::path_field::path_field;
+use crate::panels::path_field::taken_path;
 use crate::state::State;
-use crate::typed::typed;
 
 pub(super) fn save_measured(
     table: MeasuredTable,
@@ -35,13 +34,14 @@ pub(super) fn save_measured(
     ui.label(what);
     let start = proposed(open, Some(table.file_name()));
     let browse = [("Browse…", dialog)];
-    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
-    ui.separator();
-    let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new("Write table"));
-    if let Some(path) = path
-        && (button.clicked() || entered)
-    {
+    if let Some(path) = taken_path(
+        state,
+        ui,
+        &start.display().to_string(),
+        &browse,
+        "Write table",
+        commands,
+    ) {
         commands.push(Command::SaveMeasured(table, path.into()));
     }
 }
@@ -74,9 +74,5 @@ fn cloud(
 ) -> Option<PathBuf> {
     ui.label(what);
     let browse = [("Browse…", dialog)];
-    let (path, entered) = path_field(state, ui, "", &browse, commands);
-    ui.separator();
-    let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new(done));
-    path.filter(|_| button.clicked() || entered)
+    taken_path(state, ui, "", &browse, done, commands)
 }

@@ -3,10 +3,9 @@
 use std::path::PathBuf;
 
 use crate::command::{Command, Dialog};
-use crate::panels::path_field::path_field;
+use crate::panels::path_field::taken_path;
 use crate::size_distributions::DistributionCommand;
 use crate::state::State;
-use crate::typed::typed;
 
 /// Which file to add.
 pub(in crate::panels) fn add_distributions(
@@ -19,7 +18,7 @@ pub(in crate::panels) fn add_distributions(
          curve. It can also be dropped on this window.",
     );
     let browse = [("Browse…", Dialog::file("Size distributions"))];
-    if let Some(path) = path(state, "", &browse, "Add file", ui, commands) {
+    if let Some(path) = taken_path(state, ui, "", &browse, "Add file", commands) {
         commands.push(Command::Distributions(DistributionCommand::Add(vec![path])));
     }
 }
@@ -31,7 +30,7 @@ pub(in crate::panels) fn add_effort(state: &State, ui: &mut egui::Ui, commands: 
          of times for each trial. Minutes, where it says nothing else.",
     );
     let browse = [("Browse…", Dialog::file("Times of steps"))];
-    if let Some(path) = path(state, "", &browse, "Add times", ui, commands) {
+    if let Some(path) = taken_path(state, ui, "", &browse, "Add times", commands) {
         commands.push(Command::Distributions(DistributionCommand::AddEffort(path)));
     }
 }
@@ -50,7 +49,7 @@ pub(in crate::panels) fn save_figure(
         Dialog::new_file("Save figure", "size-distributions.svg"),
     )];
     let start = beside(state, "size-distributions.svg");
-    if let Some(path) = path(state, &start, &browse, "Write figure", ui, commands) {
+    if let Some(path) = taken_path(state, ui, &start, &browse, "Write figure", commands) {
         commands.push(Command::Distributions(DistributionCommand::SaveFigure(
             path.into(),
         )));
@@ -69,27 +68,11 @@ pub(in crate::panels) fn save_report(
         Dialog::new_file("Save report", "size-distributions.html"),
     )];
     let start = beside(state, "size-distributions.html");
-    if let Some(path) = path(state, &start, &browse, "Write report", ui, commands) {
+    if let Some(path) = taken_path(state, ui, &start, &browse, "Write report", commands) {
         commands.push(Command::Distributions(DistributionCommand::SaveReport(
             path.into(),
         )));
     }
-}
-
-/// A path field with the button that takes it.
-fn path(
-    state: &State,
-    start: &str,
-    browse: &[(&str, Dialog)],
-    button: &str,
-    ui: &mut egui::Ui,
-    commands: &mut Vec<Command>,
-) -> Option<PathBuf> {
-    let (path, entered) = path_field(state, ui, start, browse, commands);
-    ui.separator();
-    let path = typed(&path);
-    let button = ui.add_enabled(path.is_some(), egui::Button::new(button));
-    path.filter(|_| button.clicked() || entered)
 }
 
 /// A name beside the first file that was added. The bundled flight's folder stays as it came.
