@@ -46,8 +46,9 @@ pub use flown_report::{
     FlownReport, flown_csv, flown_json, flown_summary, flown_table, flown_warnings,
 };
 pub use fragments::{
-    FRAGMENT_TABLES, FragmentSizes, FragmentTables, MassWay, MeasuredPhoto, PhotoOfSizes,
-    PhotoOutlined, curves_csv, fragment_tables, label_png, labels_png, left_over, outlined_files,
+    FRAGMENT_TABLES, FragmentSizes, FragmentTables, MassWay, MeasuredPhoto, OutlinedFiles,
+    PhotoOfSizes, PhotoOutlined, curves_csv, fragment_tables, label_png, labels_png, left_over,
+    outlined_files,
 };
 pub use map_places::MapPlaces;
 pub use masks::{

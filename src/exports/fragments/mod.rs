@@ -14,7 +14,7 @@ pub use label_image::{label_png, labels_png};
 pub use left_over::left_over;
 use outlines::outlines_png;
 use photo_files::OUTLINED_ENDINGS;
-pub use photo_files::{PhotoOutlined, outlined_files};
+pub use photo_files::{OutlinedFiles, PhotoOutlined, outlined_files};
 pub use sizes::{FragmentSizes, MassWay, MeasuredPhoto};
 pub use table::{PhotoOfSizes, curves_csv};
 pub use tables::{FRAGMENT_TABLES, FragmentTables, fragment_tables};
