@@ -1,5 +1,6 @@
 //! What is wrong with an input, as one line for people: the place, the matter, the remedy.
 
+use std::collections::HashMap;
 use std::fmt;
 
 /// Bad input, said so that the engineer can mend it.
@@ -99,9 +100,47 @@ pub fn first_names(names: impl IntoIterator<Item = impl AsRef<str>>) -> String {
     first.join(", ") + dots
 }
 
+/// What is to be said of many things by their names, one sentence for each cause in the order of its first: the name and the
+/// text, or, where several have the same, how many `of_kind` ("photos") they are and the first few.
+pub fn by_cause<'a>(
+    said: impl IntoIterator<Item = (&'a str, String)>,
+    of_kind: &str,
+) -> Vec<String> {
+    let mut causes: Vec<(String, Vec<&str>)> = Vec::new();
+    let mut places: HashMap<String, usize> = HashMap::new();
+    for (name, text) in said {
+        let place = *places.entry(text).or_insert_with_key(|text| {
+            causes.push((text.clone(), Vec::new()));
+            causes.len() - 1
+        });
+        if let Some((_, names)) = causes.get_mut(place) {
+            names.push(name);
+        }
+    }
+    let sentences = causes.iter().map(|(text, names)| match names.as_slice() {
+        [name] => format!("{name}: {text}"),
+        names => {
+            let count = names.len();
+            format!("{count} {of_kind} ({}): {text}", first_names(names))
+        }
+    });
+    sentences.collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_cause_is_one_sentence() {
+        let said = [("a", "dark"), ("b", "gone"), ("c", "dark"), ("d", "dark"), ("e", "dark")];
+        let said = said.map(|(name, text)| (name, text.to_owned()));
+        assert_eq!(
+            by_cause(said, "photos"),
+            ["4 photos (a, c, d, ...): dark", "b: gone"]
+        );
+        assert!(by_cause([], "photos").is_empty());
+    }
 
     #[test]
     fn prints_on_one_line() {

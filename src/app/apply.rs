@@ -22,7 +22,7 @@ impl State {
         match command {
             Command::Drop(mut paths) if self.may_be_masks(&paths) => {
                 if let Some(path) = paths.pop() {
-                    self.fragment_step(FragmentStep::Masks(path));
+                    self.fragment_step(FragmentStep::Masks { path, of: None });
                 }
             }
             Command::Drop(paths) => {
@@ -316,6 +316,9 @@ impl State {
         );
         if needs_flight && self.open.is_none() {
             return;
+        }
+        if let (Some(Asking::Masks), Some(open)) = (asking, &mut self.open) {
+            open.fragments.masks_refused = None;
         }
         let georeferences = matches!(
             asking,

@@ -22,7 +22,7 @@ impl State {
         match step {
             FragmentStep::Outline => self.outline_photo(),
             FragmentStep::OutlineAll => self.outline_all(),
-            FragmentStep::Masks(path) => self.read_masks(path),
+            FragmentStep::Masks { path, of } => self.read_masks(path, of),
             FragmentStep::TakeDistribution => self.take_fragments_distribution(),
             FragmentStep::Export(to) => self.export_fragments(to),
             step => {
@@ -167,7 +167,7 @@ impl Fragments {
             FragmentStep::Engine(_)
             | FragmentStep::Outline
             | FragmentStep::OutlineAll
-            | FragmentStep::Masks(_)
+            | FragmentStep::Masks { .. }
             | FragmentStep::Export(_)
             | FragmentStep::TakeDistribution => {}
         }

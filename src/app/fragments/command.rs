@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use glam::DVec2;
 
 use crate::command::Destination;
+use crate::scale::ImageKind;
 
 /// One thing to do on the page of the fragments.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,7 +15,12 @@ pub enum FragmentStep {
     /// Outlines all photos that are not outlined yet, on the screen or in files, one after the other.
     OutlineAll,
     /// Takes the outlines of the selected photo from a file of another tool, or a folder of them.
-    Masks(PathBuf),
+    Masks {
+        /// The file or folder.
+        path: PathBuf,
+        /// Which photo they were outlined in; `None`: fragscale's own files in the undistorted one, all others as shot.
+        of: Option<ImageKind>,
+    },
     /// The engine that does, by its place in `ENGINES`.
     Engine(usize),
     /// What the mouse does from now on; what was drawn halfway is forgotten.

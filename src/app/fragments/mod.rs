@@ -202,8 +202,11 @@ pub struct Fragments {
     field: Option<(usize, Arc<ScaleField>)>,
     /// Photos whose files were looked for.
     sought: Vec<usize>,
-    /// Photos that are outlined when the one before is done.
+    /// The photo that is outlined now, while one is, and those whose turn comes after it.
+    outlining: Option<usize>,
     waiting: VecDeque<usize>,
+    /// Why outlines of another tool were not taken.
+    pub(crate) masks_refused: Option<String>,
 }
 
 /// The brush where nobody chose another, pixels.
@@ -213,6 +216,15 @@ impl Fragments {
     /// The outlines of a photo, if there are any.
     pub fn of(&self, photo: usize) -> Option<&PhotoOutlines> {
         self.photos.get(&photo).filter(|of| !of.is_nothing())
+    }
+
+    /// How many photos are outlined before this one, the one of now among them; `None` where it does not wait.
+    pub fn before(&self, photo: usize) -> Option<usize> {
+        if self.outlining == Some(photo) {
+            return Some(0);
+        }
+        let place = self.waiting.iter().position(|waiting| *waiting == photo);
+        place.map(|place| place + 1)
     }
 
     /// How many photos wait for their outlining.

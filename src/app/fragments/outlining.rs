@@ -1,16 +1,18 @@
 //! Outlining the fragments of the selected photo, as a job.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::{Outliner, PhotoOutlines};
+use crate::command::Asking;
 use crate::delineation::{self, Delineated, ENGINES, Regions};
 use crate::exports;
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::labels::{LabelImage, Outlines};
 use crate::opening::{OutlinesOfOthers, saved_outlines};
+use crate::scale::ImageKind;
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 use crate::tasks::photos::read_photo;
@@ -55,14 +57,17 @@ impl State {
     }
 
     fn outline_next(&mut self) {
-        let waiting = self.open.as_mut().map(|open| &mut open.fragments.waiting);
-        if let Some(photo) = waiting.and_then(VecDeque::pop_front) {
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        open.fragments.outlining = None;
+        if let Some(photo) = open.fragments.waiting.pop_front() {
             self.outline(photo);
         }
     }
 
     fn outline(&mut self, photo: usize) {
-        let Some(open) = &self.open else {
+        let Some(open) = &mut self.open else {
             return;
         };
         let file = open.files.photo_files.get(photo).cloned();
@@ -74,6 +79,7 @@ impl State {
         let number = open.number;
         let name = open.name(photo).to_owned();
         let said = name.clone();
+        open.fragments.outlining = Some(photo);
         let work = move |progress: &Progress| -> Result<Delineated, String> {
             let missing = || format!("the file of photo '{name}' is not there");
             let pixels = read_photo(&path.ok_or_else(missing)?)?;
@@ -111,17 +117,17 @@ impl State {
     }
 
     /// Takes the selected photo's outlines from a file of another tool, or a folder of them.
-    pub(super) fn read_masks(&mut self, path: PathBuf) {
-        let Some((open, photo)) = self
-            .open
-            .as_ref()
-            .and_then(|open| Some((open, open.selected?)))
-        else {
+    pub(super) fn read_masks(&mut self, path: PathBuf, of: Option<ImageKind>) {
+        let Some(open) = &mut self.open else {
             return;
         };
+        let Some(photo) = open.selected else {
+            return;
+        };
+        open.fragments.masks_refused = None;
         let (flight, settings, number) = (open.flight().clone(), open.settings(), open.number);
         let work = move |_: &Progress| -> Result<(LabelImage, Vec<String>), String> {
-            let others = OutlinesOfOthers::open(&path, None).map_err(|error| error.to_string())?;
+            let others = OutlinesOfOthers::open(&path, of).map_err(|error| error.to_string())?;
             let posed = &flight.parts().photos[photo];
             let camera = flight.camera(posed);
             let left_out = delineation::photo::left_out(&settings, posed, camera);
@@ -138,8 +144,16 @@ impl State {
                 // A person or another tool looked at all of them.
                 let outlines = Outlines::new(labels, BTreeMap::new());
                 state.take_outlines(number, photo, outlines, None, None, MASKS);
+                if state.asking == Some(Asking::Masks) {
+                    state.asking = None;
+                }
             }
-            Err(message) => state.say(Severity::Error, &message),
+            Err(message) => {
+                state.say(Severity::Error, &message);
+                if let Some(open) = &mut state.open {
+                    open.fragments.masks_refused = Some(message);
+                }
+            }
         });
     }
 

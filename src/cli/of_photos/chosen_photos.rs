@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 
-use crate::fault::Fault;
+use crate::fault::{Fault, by_cause};
 use crate::files::FileError;
 use crate::flight::Flight;
 use crate::jobs::Progress;
@@ -49,12 +49,31 @@ pub(super) struct Doing {
     pub not_done: &'static str,
 }
 
-impl Doing {
-    /// That it was not done with these of the photos, where there are any: a sentence of each.
-    pub(super) fn not_all(&self, failed: &[String], of: usize) -> Option<Fault> {
-        let first = failed.first()?;
-        let what = format!("{} of {of} photos are {}", failed.len(), self.not_done);
+/// The photos that something was not done with.
+pub(super) struct NotDone {
+    not_done: &'static str,
+    photos: Vec<(String, Fault)>,
+}
+
+impl NotDone {
+    /// How many they are.
+    pub(super) fn count(&self) -> usize {
+        self.photos.len()
+    }
+
+    /// That it was not done with these of so many photos, where there are any.
+    pub(super) fn not_all(&self, of: usize) -> Option<Fault> {
+        let (name, fault) = self.photos.first()?;
+        let what = format!("{} of {of} photos are {}", self.photos.len(), self.not_done);
+        let first = format!("{name}: {}: {fault}", self.not_done);
         Some(Fault::new(what, format!("the first: {first}")))
+    }
+
+    /// A sentence for each cause.
+    pub(super) fn sentences(&self) -> Vec<String> {
+        let said = self.photos.iter();
+        let said = said.map(|(name, fault)| (name.as_str(), format!("{}: {fault}", self.not_done)));
+        by_cause(said, "photos")
     }
 }
 
@@ -83,7 +102,7 @@ impl ChosenPhotos {
     }
 
     /// Makes the files of each chosen photo by `make`, which gets the photo's place among them. Of all
-    /// photos those that cannot be made are left out: returns a sentence of each. `path` is the flight's.
+    /// photos those that cannot be made are left out, and come back. `path` is the flight's.
     ///
     /// # Errors
     /// Where the one photo cannot be made, a file cannot be written, or the work was cancelled.
@@ -94,9 +113,9 @@ impl ChosenPhotos {
         path: &Path,
         progress: &Progress,
         mut make: impl FnMut(usize) -> Result<(), NotMade>,
-    ) -> Result<Vec<String>, String> {
+    ) -> Result<NotDone, String> {
         let in_flight = |fault| FileError::new(path, fault).to_string();
-        let mut failed = Vec::new();
+        let mut photos = Vec::new();
         let count = names.len() as u64;
         for (place, name) in names.enumerate() {
             progress.stage(format!("{} {name}", doing.doing));
@@ -109,10 +128,13 @@ impl ChosenPhotos {
                     return Err(in_flight(Fault::new(what, fault.remedy)));
                 }
                 Err(NotMade::Photo(fault)) => {
-                    failed.push(format!("{name}: {}: {fault}", doing.not_done));
+                    photos.push((name.to_owned(), fault));
                 }
             }
         }
-        Ok(failed)
+        Ok(NotDone {
+            not_done: doing.not_done,
+            photos,
+        })
     }
 }

@@ -116,8 +116,8 @@ pub(in crate::cli) fn rectify(
         warnings.extend(made.warning.map(|warning| format!("{name}: {warning}")));
         Ok(())
     })?;
-    let not_all = doing.not_all(&failed, chosen.len()).map(in_flight);
-    warnings.extend(failed);
+    let not_all = failed.not_all(chosen.len()).map(in_flight);
+    warnings.extend(failed.sentences());
     Ok(Answer {
         text,
         warnings,

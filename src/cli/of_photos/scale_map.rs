@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::chosen_photos::{ChosenPhotos, Doing};
+use super::chosen_photos::{ChosenPhotos, Doing, NotDone};
 use crate::cli::flight_arguments::{FlightArguments, MemoryArguments};
 use crate::cli::outputs::{Force, Outputs};
 use crate::cli::{Answer, OutputUnit};
@@ -140,7 +140,7 @@ pub(in crate::cli) fn scale_map_of(
 /// What came of the maps of a flight.
 struct MadeMaps {
     /// Of which photos there is none, and why.
-    failed: Vec<String>,
+    failed: NotDone,
     /// Whether there is none at all.
     has_none: bool,
 }
@@ -148,7 +148,7 @@ struct MadeMaps {
 impl MadeMaps {
     fn answer(self, arguments: &ScaleMapArguments, opened: &Opened) -> Answer {
         let mut warnings = opened.all_warnings();
-        warnings.extend(self.failed);
+        warnings.extend(self.failed.sentences());
         let fault = || {
             let fault = Fault::new("none of its photos has a map", "see the warnings above");
             FileError::new(&arguments.flight.flight, fault).to_string()
@@ -217,7 +217,7 @@ fn make_maps(
         }
         Ok(())
     })?;
-    let has_none = failed.len() == planned.len();
+    let has_none = failed.count() == planned.len();
     Ok(MadeMaps { failed, has_none })
 }
 

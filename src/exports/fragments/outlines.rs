@@ -9,9 +9,10 @@ use crate::picture::{PhotoFormat, encode};
 
 /// Outlines of fragments, and of those that an edge cuts and that are not measured.
 const WHOLE: [u8; 3] = [255, 220, 0];
-const CUT: [u8; 3] = [255, 120, 0];
+// Not orange: in the window that is an engine that is not sure.
+const CUT: [u8; 3] = [225, 130, 255];
 
-/// A PNG of the undistorted photo: yellow outlines, a pixel wide and wider on large photos, orange where an edge
+/// A PNG of the undistorted photo: yellow outlines, a pixel wide and wider on large photos, violet where an edge
 /// cuts the fragment; what is no rock is darkened.
 ///
 /// # Errors

@@ -100,14 +100,14 @@ pub(super) fn fragments_report(report: &FragmentsReport<'_>) -> Result<String, F
     body.push(heading(2, "Photos"));
     body.push(paragraph(
         "Whole: fragments that count. Cut: fragments that the photo's edge cuts, or what was left out of it; how large they are nobody knows, and they do not \
-         count. Edges: how far the photo's edges are spread, the full width at half of the maximum. Limit: nothing is claimed \
+         count. Not outlined: the share of the area, in the world. Edges: how far the photo's edges are spread, the full width at half of the maximum. Limit: nothing is claimed \
          below it: an engine outlines no narrower ones, and of what people and other tools outlined it is the smallest that \
          counts. \"May be less\": the lower end of its interval is below the limit.",
     ));
     body.push(report.table());
     body.push(heading(2, "Outlines"));
     body.push(paragraph(
-        "Yellow: fragments. Orange: cut ones. Dark: no rock. Look at them before you believe the curve.",
+        "Yellow: fragments. Violet: cut ones. Dark: no rock. Look at them before you believe the curve.",
     ));
     for photo in &report.photos {
         body.push(picture(photo)?);

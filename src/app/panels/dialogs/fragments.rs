@@ -4,6 +4,7 @@ use super::proposed;
 use crate::command::{Command, Dialog};
 use crate::fragments::FragmentStep;
 use crate::panels::path_field::taken_path;
+use crate::scale::ImageKind;
 use crate::state::State;
 
 /// Which file has the outlines.
@@ -24,9 +25,39 @@ pub(super) fn masks(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         ("File…", Dialog::file("Outlines of this photo")),
         ("Folder…", Dialog::folder("Folder of outlines")),
     ];
-    if let Some(path) = taken_path(state, ui, "", &browse, "Take the outlines", commands) {
-        commands.push(Command::Fragments(FragmentStep::Masks(path)));
-        commands.push(Command::Ask(None));
+    let id = ui.scope_id().with("masks of");
+    let mut of: Option<ImageKind> = ui.data(|data| data.get_temp(id)).flatten();
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Outlined in");
+        for (kind, name, hover) in [
+            (
+                None,
+                "the usual photo",
+                "Files that fragscale wrote: the undistorted photo; all others: the photo as shot",
+            ),
+            (
+                Some(ImageKind::AsShot),
+                "the photo as shot",
+                "As the camera took it",
+            ),
+            (
+                Some(ImageKind::Undistorted),
+                "the undistorted photo",
+                "Without its lens, as fragscale exports it",
+            ),
+        ] {
+            ui.radio_value(&mut of, kind, name).on_hover_text(hover);
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(id, of));
+    let path = taken_path(state, ui, "", &browse, "Take the outlines", commands);
+    // It closes itself once they are taken.
+    if let Some(path) = path {
+        commands.push(Command::Fragments(FragmentStep::Masks { path, of }));
+    }
+    let refused = state.open.as_ref();
+    if let Some(message) = refused.and_then(|open| open.fragments.masks_refused.as_ref()) {
+        ui.colored_label(ui.visuals().warn_fg_color, message);
     }
 }
 

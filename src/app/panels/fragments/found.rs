@@ -31,8 +31,14 @@ pub(super) fn found(
             ui.weak("Reading the saved outlines…");
             return;
         }
-        if state.work.is_running(Task::OUTLINE) {
-            ui.weak("Outlining…");
+        if state.work.is_running(Task::OUTLINE)
+            && let Some(before) = open.fragments.before(photo)
+        {
+            ui.weak(match before {
+                0 => "Outlining…".to_owned(),
+                1 => "Its turn to be outlined is next.".to_owned(),
+                _ => format!("{before} photos are outlined before this one."),
+            });
             return;
         }
         ui.label("Nothing is outlined in this photo yet.");
@@ -208,7 +214,7 @@ fn all(
         ("P80", size(80.0)),
         ("Whole fragments", by_mass.whole.to_string()),
         ("Cut by an edge", by_mass.cut.to_string()),
-        ("Not outlined", crate::exports::percent(by_mass.unfound)),
+        ("Area not outlined", crate::exports::percent(by_mass.unfound)),
         ("Of the mass, fines", crate::exports::percent(by_mass.fines)),
         (
             "Nothing said below",

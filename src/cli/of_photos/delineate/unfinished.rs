@@ -143,12 +143,17 @@ impl Unfinished {
         outputs.write(&self.file(stem), text.as_bytes(), Kind::Result)
     }
 
-    /// Everything is done: what was kept of these photos is removed, and the folder where nothing else lies in it.
-    pub(super) fn remove<'s>(&self, stems: impl Iterator<Item = &'s str>) {
+    /// Everything is done: what was kept of these photos is removed, and the folder where nothing else lies in it. Returns that
+    /// something does.
+    pub(super) fn remove<'s>(&self, stems: impl Iterator<Item = &'s str>) -> Option<String> {
         for stem in stems {
             // What cannot be removed is a file too many, and no harm.
             let _ = std::fs::remove_file(self.file(stem));
         }
         let _ = std::fs::remove_dir(&self.folder);
+        self.folder.is_dir().then(|| {
+            let folder = self.folder.display();
+            format!("{folder} is of another run, which was stopped: take it away, or start that one again")
+        })
     }
 }
