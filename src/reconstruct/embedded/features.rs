@@ -9,6 +9,7 @@ use cumulus3d_features::{
 };
 use image::{DynamicImage, RgbImage};
 
+use super::small_photos::SmallPhotos;
 use super::{camera_id, image_id};
 use crate::adjusted::failed;
 use crate::camera::Distortion;
@@ -30,7 +31,8 @@ const FEWEST: usize = 100;
 /// The result is written after so many photos, for a run that goes on.
 const WRITTEN_EACH: usize = 20;
 
-/// Finds the features of all photos that `store` does not have, and says which photos have none.
+/// Finds the features of all photos that `store` does not have, and says which photos have none. Of those that it looks at
+/// copies are kept in `small`.
 ///
 /// # Errors
 /// Where `kept` cannot be written, or the work was cancelled.
@@ -38,6 +40,7 @@ pub(super) fn find(
     store: &FeatureStore,
     photos: &PhotoSet,
     kept: &Path,
+    mut small: Option<&mut SmallPhotos>,
     progress: &Progress,
 ) -> Result<Vec<LeftOut>, Fault> {
     let error = || failed("finding features");
@@ -72,7 +75,12 @@ pub(super) fn find(
             }
             let size = &photos.cameras[photo.camera].camera;
             let gray = match photo.pixels(size) {
-                Ok(pixels) => gray(pixels)?,
+                Ok(pixels) => {
+                    if let Some(small) = &mut small {
+                        small.add(id, &pixels);
+                    }
+                    gray(pixels)?
+                }
                 Err(why) => {
                     leave_out(why);
                     continue;

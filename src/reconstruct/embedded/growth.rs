@@ -3,9 +3,10 @@
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-use cumulus3d_core::Reconstruction;
+use cumulus3d_core::{FeatureStore, Reconstruction};
 use glam::DVec3;
 
+use super::small_photos::SmallPhotos;
 use crate::adjusted::{point, pose};
 use crate::camera::Pose;
 
@@ -36,13 +37,21 @@ pub type OnGrowth = Box<dyn Fn(Growth) + Send + Sync>;
 /// Who is shown a model, and when last.
 pub(super) struct Watch<'a> {
     on_growth: &'a OnGrowth,
+    store: &'a FeatureStore,
+    small: &'a SmallPhotos,
     last: Cell<Option<Instant>>,
 }
 
 impl<'a> Watch<'a> {
-    pub(super) fn new(on_growth: &'a OnGrowth) -> Self {
+    pub(super) fn new(
+        on_growth: &'a OnGrowth,
+        store: &'a FeatureStore,
+        small: &'a SmallPhotos,
+    ) -> Self {
         Self {
             on_growth,
+            store,
+            small,
             last: Cell::new(None),
         }
     }
@@ -53,27 +62,23 @@ impl<'a> Watch<'a> {
         if is_early {
             return;
         }
-        (self.on_growth)(growth(model, photos));
+        (self.on_growth)(self.growth(model, photos));
         self.last.set(Some(Instant::now()));
     }
-}
 
-fn growth(model: &Reconstruction, photos: usize) -> Growth {
-    let of = model.num_points3d();
-    let step = of.div_ceil(MOST_POINTS).max(1);
-    let shown = || model.points3d().step_by(step).map(|(_, point)| point);
-    // Black is what points have before anybody looks.
-    let is_colored = shown().any(|point| point.color != [0; 3]);
-    let cameras = model.registered_images().into_iter();
-    let cameras = cameras.filter_map(|image| model.world_to_cam(image));
-    Growth {
-        points: shown().map(|shown| point(&shown.xyz)).collect(),
-        colors: match is_colored {
-            true => shown().map(|point| point.color).collect(),
-            false => Vec::new(),
-        },
-        of,
-        cameras: cameras.map(|found| pose(&found)).collect(),
-        photos,
+    fn growth(&self, model: &Reconstruction, photos: usize) -> Growth {
+        let of = model.num_points3d();
+        let step = of.div_ceil(MOST_POINTS).max(1);
+        let shown = || model.points3d().step_by(step).map(|(_, point)| point);
+        let cameras = model.registered_images().into_iter();
+        let cameras = cameras.filter_map(|image| model.world_to_cam(image));
+        let tracks = shown().map(|point| point.track.as_slice());
+        Growth {
+            points: shown().map(|shown| point(&shown.xyz)).collect(),
+            colors: self.small.colors(self.store, tracks),
+            of,
+            cameras: cameras.map(|found| pose(&found)).collect(),
+            photos,
+        }
     }
 }

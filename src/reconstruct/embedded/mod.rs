@@ -20,6 +20,7 @@
 
 mod features;
 mod growing;
+mod small_photos;
 mod growth;
 mod matching;
 mod nearest_two;
@@ -36,6 +37,7 @@ use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::photo_set::PhotoSet;
 use growth::Watch;
+use small_photos::SmallPhotos;
 pub use growth::{Growth, OnGrowth};
 
 /// The engine.
@@ -64,11 +66,14 @@ impl Engine for Embedded {
             let kept = at.folder.join(KEPT);
             // What was cut off while it was written is made again.
             let store = FeatureStore::load(&kept).unwrap_or_default();
-            let left_out = features::find(&store, photos, &kept, progress)?;
+            let mut small = self.on_growth.as_ref().map(|_| SmallPhotos::default());
+            let left_out = features::find(&store, photos, &kept, small.as_mut(), progress)?;
             let pairs = preemptive::worth_comparing(&store, photos, pairs, progress)?;
             matching::compare(&store, photos, &pairs, &kept, at.card, progress)?;
             let graph = MatchGraph::from_store(&store, &MatchGraphOptions::default());
-            let watch = self.on_growth.as_ref().map(Watch::new);
+            let small = small.unwrap_or_default();
+            let watch = self.on_growth.as_ref();
+            let watch = watch.map(|on_growth| Watch::new(on_growth, &store, &small));
             Ok(Found {
                 model: growing::grow(&store, &graph, photos, watch.as_ref(), progress)?,
                 left_out,
