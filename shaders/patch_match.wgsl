@@ -48,8 +48,9 @@ struct Source {
 @group(0) @binding(4) var<storage, read> sources: array<Source>;
 
 const SAMPLES = 36u;
-const SIGMA_GREY = 12.0;
-const SIGMA_PIXELS = 5.0;
+const EDGE = 3.0;
+const SIGMA_GREY = 40.0;
+const SIGMA_PIXELS = 2.5;
 const NOISE = 4.0;
 const BEST = 2u;
 const GATE = 0.05;
@@ -90,8 +91,10 @@ fn level_at(begin: u32, at: u32) -> f32 {
     return f32((word >> (8u * (at & 3u))) & 0xffu);
 }
 
+// One to three pixels to either side of the centre.
 fn offset(i: u32) -> vec2<f32> {
-    return vec2<f32>(f32(i % 6u), f32(i / 6u)) * 2.0 - 5.0;
+    let place = vec2<u32>(i % 6u, i / 6u);
+    return vec2<f32>(place) - select(vec2(3.0), vec2(2.0), place > vec2(2u));
 }
 
 fn prepare(at: vec2<u32>) {
@@ -266,7 +269,7 @@ fn near(plane: vec4<f32>, depth: f32, slope: f32) -> vec4<f32> {
     let a = signed_random();
     let b = signed_random();
     let c = signed_random();
-    return vec4(plane.x + depth * a, plane.y + slope / 5.0 * b, plane.z + slope / 5.0 * c, HUGE);
+    return vec4(plane.x + depth * a, plane.y + slope / EDGE * b, plane.z + slope / EDGE * c, HUGE);
 }
 
 fn anywhere() -> vec4<f32> {
@@ -328,7 +331,7 @@ fn sweep(@builtin(global_invocation_id) id: vec3<u32>) {
             case 6u: { tried = near(best, 0.0, 0.5 * reach); }
             default: { tried = anywhere(); }
         }
-        let apart = abs(tried.xyz - best.xyz) * vec3(1.0, 5.0, 5.0);
+        let apart = abs(tried.xyz - best.xyz) * vec3(1.0, EDGE, EDGE);
         if tried.w < 0.0 || all(apart < vec3(least)) || !is_possible(tried) {
             continue;
         }

@@ -18,7 +18,7 @@ use crate::view::{Photos, View};
 /// The shorter side under which an image is halved no more, pixels.
 const COARSEST: usize = 90;
 /// The weight of a pixel of reprojection error beside the correlation.
-const GEOMETRIC: f32 = 0.1;
+const GEOMETRIC: f32 = 0.3;
 
 /// Bytes of inverse depths that are kept in memory for the second pass.
 const MOST_BYTES: usize = 512 << 20;

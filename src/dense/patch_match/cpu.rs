@@ -13,7 +13,7 @@ use super::plane::{Plane, Planes};
 use super::random::Random;
 use super::window::{Fours, Weights, Window};
 use super::{
-    BEST, Backend, FAR_DEARER, FARTHEST, GATE, MOST_SOURCES, Problem, REACH, SAME, Source, Sweep,
+    BEST, Backend, EDGE, FAR_DEARER, FARTHEST, GATE, MOST_SOURCES, Problem, REACH, SAME, Source, Sweep,
     UNSEEN,
 };
 use crate::fault::Fault;
@@ -233,8 +233,8 @@ impl Half<'_> {
     ) {
         let least = SAME * self.problem.per_pixel;
         let is_same = (tried.inverse_depth - best.inverse_depth).abs() < least
-            && (tried.slope[0] - best.slope[0]).abs() * 5.0 < least
-            && (tried.slope[1] - best.slope[1]).abs() * 5.0 < least;
+            && (tried.slope[0] - best.slope[0]).abs() * EDGE < least
+            && (tried.slope[1] - best.slope[1]).abs() * EDGE < least;
         if is_same || !tried.is_possible(self.problem) {
             return;
         }

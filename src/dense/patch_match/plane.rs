@@ -1,7 +1,7 @@
 //! Planes at the pixels of an image.
 
 use super::random::Random;
-use super::{Problem, STEEPEST};
+use super::{EDGE, Problem, STEEPEST};
 
 /// A plane at a pixel, in the camera of its image.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,7 +53,7 @@ impl Plane {
     /// at the window's edge.
     #[inline(always)]
     pub(crate) fn near(self, depth: f32, slope: f32, random: &mut Random) -> Self {
-        let slope = slope / 5.0;
+        let slope = slope / EDGE;
         let (a, b, c) = (random.signed(), random.signed(), random.signed());
         Self {
             inverse_depth: self.inverse_depth + depth * a,
