@@ -133,7 +133,13 @@ mod tests {
 
     #[test]
     fn one_cause_is_one_sentence() {
-        let said = [("a", "dark"), ("b", "gone"), ("c", "dark"), ("d", "dark"), ("e", "dark")];
+        let said = [
+            ("a", "dark"),
+            ("b", "gone"),
+            ("c", "dark"),
+            ("d", "dark"),
+            ("e", "dark"),
+        ];
         let said = said.map(|(name, text)| (name, text.to_owned()));
         assert_eq!(
             by_cause(said, "photos"),

@@ -221,7 +221,12 @@ fn paused_and_shown_the_same_comes_out() {
     assert!(first.of > 50);
     assert_eq!(first.colors.len(), first.of);
     // Sand and stone: no point without a photo, and none black.
-    assert!(first.colors.iter().all(|color| color.iter().max() > Some(&20)));
+    assert!(
+        first
+            .colors
+            .iter()
+            .all(|color| color.iter().max() > Some(&20))
+    );
     for camera in &first.cameras {
         let ahead = |point: &&DVec3| camera.camera_from_world(**point).z > 0.0;
         assert_eq!(first.points.iter().filter(ahead).count(), first.of);

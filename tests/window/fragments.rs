@@ -327,9 +327,21 @@ fn results_are_those_of_the_command() {
     desk.press(Modifiers::NONE, Key::ArrowDown);
     desk.click(Role::Button, "Outlines of another tool…");
     assert!(desk.says("The outlines of IMG_0002.jpg: "));
+    // What cannot be taken is said where it was asked for.
+    desk.type_path(&to.join("report.html"));
+    desk.click(Role::Button, "Take the outlines");
+    assert!(desk.shows(Role::Button, "Take the outlines") && desk.says("report.html: "));
+    assert!(desk.open().fragments.of(1).is_none());
+    // As they are of the photo as shot, the lens moves them.
+    desk.type_path(&to.join("IMG_0001_labels.png"));
+    desk.click(Role::RadioButton, "the photo as shot");
+    desk.click(Role::Button, "Take the outlines");
+    let moved = outlines(&desk).now().clone();
+    desk.click(Role::Button, "Outlines of another tool…");
+    desk.click(Role::RadioButton, "the usual photo");
     desk.type_path(&to.join("IMG_0001_labels.png"));
     desk.click(Role::Button, "Take the outlines");
-    assert!(fragments(outlines(&desk).now()) > 500);
+    assert!(fragments(outlines(&desk).now()) > 500 && *outlines(&desk).now() != moved);
     assert!(!desk.shows(Role::Button, "Take the outlines"));
 }
 

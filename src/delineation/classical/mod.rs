@@ -121,7 +121,9 @@ fn shadows(even: &[f32], width: usize, height: usize) -> Vec<f32> {
     let mut most = vec![0.0f32; even.len()];
     for radius in [2, 5] {
         let closed = extreme(
-            extreme(smooth.clone(), width, height, radius, |a, b| if a < b { b } else { a }),
+            extreme(smooth.clone(), width, height, radius, |a, b| {
+                if a < b { b } else { a }
+            }),
             width,
             height,
             radius,

@@ -13,8 +13,8 @@ use super::plane::{Plane, Planes};
 use super::random::Random;
 use super::window::{Fours, Weights, Window};
 use super::{
-    BEST, Backend, EDGE, FAR_DEARER, FARTHEST, GATE, MOST_SOURCES, Problem, REACH, SAME, Source, Sweep,
-    UNSEEN,
+    BEST, Backend, EDGE, FAR_DEARER, FARTHEST, GATE, MOST_SOURCES, Problem, REACH, SAME, Source,
+    Sweep, UNSEEN,
 };
 use crate::fault::Fault;
 use crate::jobs::Progress;

@@ -63,7 +63,7 @@ pub struct Sweep {
 }
 
 /// The window's pixels along each axis from its centre: stones are small and stand out of each other, and a wider window shows
-/// parts of several (README, "dense").
+/// parts of several.
 pub(crate) const OFFSETS: [i32; 6] = [-3, -2, -1, 1, 2, 3];
 /// The farthest of them.
 pub(crate) const EDGE: f32 = 3.0;

@@ -20,7 +20,6 @@
 
 mod features;
 mod growing;
-mod small_photos;
 mod growth;
 mod matching;
 mod nearest_two;
@@ -28,6 +27,7 @@ mod nearest_two;
 mod on_card;
 mod preemptive;
 mod seed;
+mod small_photos;
 
 use cumulus3d_core::{FeatureStore, MatchGraph, MatchGraphOptions};
 
@@ -37,8 +37,8 @@ use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::photo_set::PhotoSet;
 use growth::Watch;
-use small_photos::SmallPhotos;
 pub use growth::{Growth, OnGrowth};
+use small_photos::SmallPhotos;
 
 /// The engine.
 #[derive(Default)]

@@ -214,7 +214,10 @@ fn all(
         ("P80", size(80.0)),
         ("Whole fragments", by_mass.whole.to_string()),
         ("Cut by an edge", by_mass.cut.to_string()),
-        ("Area not outlined", crate::exports::percent(by_mass.unfound)),
+        (
+            "Area not outlined",
+            crate::exports::percent(by_mass.unfound),
+        ),
         ("Of the mass, fines", crate::exports::percent(by_mass.fines)),
         (
             "Nothing said below",

@@ -197,4 +197,3 @@ fn read_own_labels(path: &Path) -> Result<LabelImage, Fault> {
         labels: labels.collect(),
     })
 }
-

@@ -157,3 +157,25 @@ impl Unfinished {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_another_run_left_is_said() {
+        let to = tempfile::tempdir().unwrap();
+        let unfinished = Unfinished::nothing(to.path());
+        assert_eq!(unfinished.remove(["a"].into_iter()), None);
+        let folder = to.path().join("unfinished");
+        std::fs::create_dir(&folder).unwrap();
+        for name in ["a.json", "b.json"] {
+            std::fs::write(folder.join(name), "x").unwrap();
+        }
+        let said = unfinished.remove(["a"].into_iter()).unwrap();
+        assert!(said.contains("unfinished is of another run"), "{said}");
+        assert!(!folder.join("a.json").exists() && folder.join("b.json").exists());
+        assert_eq!(unfinished.remove(["b"].into_iter()), None);
+        assert!(!folder.exists());
+    }
+}
