@@ -101,27 +101,49 @@ pub fn first_names(names: impl IntoIterator<Item = impl AsRef<str>>) -> String {
 }
 
 /// What is to be said of many things by their names, one sentence for each cause in the order of its first: the name and the
-/// text, or, where several have the same, how many `of_kind` ("photos") they are and the first few.
+/// text, or, where several have the same, how many `of_kind` ("photos") they are and the first few. Texts that differ by the
+/// number alone with which they begin ("12 outlines are too small") are one cause, and its numbers are added.
 pub fn by_cause<'a>(
     said: impl IntoIterator<Item = (&'a str, String)>,
     of_kind: &str,
 ) -> Vec<String> {
-    let mut causes: Vec<(String, Vec<&str>)> = Vec::new();
-    let mut places: HashMap<String, usize> = HashMap::new();
+    struct Cause<'a> {
+        text: String,
+        count: Option<u64>,
+        names: Vec<&'a str>,
+    }
+    let mut causes: Vec<Cause<'_>> = Vec::new();
+    let mut places: HashMap<(bool, String), usize> = HashMap::new();
     for (name, text) in said {
-        let place = *places.entry(text).or_insert_with_key(|text| {
-            causes.push((text.clone(), Vec::new()));
-            causes.len() - 1
-        });
-        if let Some((_, names)) = causes.get_mut(place) {
-            names.push(name);
+        let counted = text.split_once(' ');
+        let counted = counted.and_then(|(count, rest)| Some((count.parse::<u64>().ok()?, rest)));
+        let (count, text) = match counted {
+            Some((count, rest)) => (Some(count), rest.to_owned()),
+            None => (None, text),
+        };
+        let key = (count.is_some(), text.clone());
+        let place = *places.entry(key).or_insert(causes.len());
+        match causes.get_mut(place) {
+            Some(cause) => {
+                cause.names.push(name);
+                let both = cause.count.zip(count);
+                cause.count = both.map(|(one, other)| one.saturating_add(other));
+            }
+            None => causes.push(Cause {
+                text,
+                count,
+                names: vec![name],
+            }),
         }
     }
-    let sentences = causes.iter().map(|(text, names)| match names.as_slice() {
-        [name] => format!("{name}: {text}"),
-        names => {
-            let count = names.len();
-            format!("{count} {of_kind} ({}): {text}", first_names(names))
+    let sentences = causes.iter().map(|Cause { text, count, names }| {
+        let count = count.map_or_else(String::new, |count| format!("{count} "));
+        match names.as_slice() {
+            [name] => format!("{name}: {count}{text}"),
+            names => {
+                let (many, first) = (names.len(), first_names(names));
+                format!("{many} {of_kind} ({first}): {count}{text}")
+            }
         }
     });
     sentences.collect()
@@ -146,6 +168,12 @@ mod tests {
             ["4 photos (a, c, d, ...): dark", "b: gone"]
         );
         assert!(by_cause([], "photos").is_empty());
+        let said = ["7 are small", "12 are small", "are small", "7 are large"];
+        let said = ["a", "b", "c", "d"].into_iter().zip(said.map(str::to_owned));
+        assert_eq!(
+            by_cause(said, "photos"),
+            ["2 photos (a, b): 19 are small", "c: are small", "d: 7 are large"]
+        );
     }
 
     #[test]
