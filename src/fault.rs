@@ -169,10 +169,16 @@ mod tests {
         );
         assert!(by_cause([], "photos").is_empty());
         let said = ["7 are small", "12 are small", "are small", "7 are large"];
-        let said = ["a", "b", "c", "d"].into_iter().zip(said.map(str::to_owned));
+        let said = ["a", "b", "c", "d"]
+            .into_iter()
+            .zip(said.map(str::to_owned));
         assert_eq!(
             by_cause(said, "photos"),
-            ["2 photos (a, b): 19 are small", "c: are small", "d: 7 are large"]
+            [
+                "2 photos (a, b): 19 are small",
+                "c: are small",
+                "d: 7 are large"
+            ]
         );
     }
 

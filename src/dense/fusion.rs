@@ -11,7 +11,8 @@
 //! cost on which enough photos agree. What went into a point uses up whole cells, so that a place that n
 //! photos show has one point, not n. Nothing is drawn at random. Up to 20 megapixels together k is 1.
 //!
-//! What fewer than three photos have the same (two, where a photo was compared with one alone) makes no point.
+//! What fewer than three photos have the same (two, where a photo was compared with one alone) makes no point. With two there are
+//! half as many points more, and the surface is not nearer to the true one (README).
 //!
 //! # The standard error
 //!
