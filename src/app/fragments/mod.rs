@@ -259,3 +259,19 @@ impl Fragments {
         self
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whose_turn_it_is() {
+        let fragments = Fragments {
+            outlining: Some(4),
+            waiting: VecDeque::from([2, 7]),
+            ..Fragments::default()
+        };
+        let before = [4, 2, 7, 1].map(|photo| fragments.before(photo));
+        assert_eq!(before, [Some(0), Some(1), Some(2), None]);
+    }
+}
