@@ -168,20 +168,16 @@ fn columns(path: &Path, heads: &[&str]) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// Outlines of a photo of the bundled flight, measured.
-fn measured(photo: &str, masks: &str, to: &str, rest: &[&str]) -> std::process::Output {
+/// A photo of the bundled flight, delineated.
+fn delineated(photo: &str, to: &str, rest: &[&str]) -> std::process::Output {
     let flight = sample();
-    let own = [
-        "delineate",
-        &flight,
-        "--photo",
-        photo,
-        "--to",
-        to,
-        "--masks",
-        masks,
-    ];
+    let own = ["delineate", &flight, "--photo", photo, "--to", to];
     fragscale(&[&own[..], rest].concat())
+}
+
+/// The same by outlines of another tool.
+fn measured(photo: &str, masks: &str, to: &str, rest: &[&str]) -> std::process::Output {
+    delineated(photo, to, &[&["--masks", masks], rest].concat())
 }
 
 fn number(text: &str) -> f64 {
@@ -209,18 +205,7 @@ fn the_limit_is_the_smallest_outline() {
     let to = path("out");
     let [masks, to_text] =
         [path("IMG_0005_labels.png"), to.clone()].map(|path| path.to_string_lossy().into_owned());
-    let flight = sample();
-    let arguments = |steps: &'static str| {
-        let own = [
-            "delineate",
-            &flight,
-            "--photo",
-            "IMG_0005.jpg",
-            "--to",
-            &to_text,
-            "--masks",
-            &masks,
-        ];
+    let run = |steps: &str| {
         let rest = [
             "--masks-of",
             "undistorted",
@@ -229,14 +214,7 @@ fn the_limit_is_the_smallest_outline() {
             "--steps",
             steps,
         ];
-        own.into_iter()
-            .chain(rest)
-            .map(str::to_owned)
-            .collect::<Vec<String>>()
-    };
-    let run = |steps| {
-        let arguments = arguments(steps);
-        fragscale(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
+        measured("IMG_0005.jpg", &masks, &to_text, &rest)
     };
     assert!(run("none").status.success());
     let mut fragments: Vec<[f64; 2]> = columns(
@@ -433,19 +411,11 @@ fn an_empty_photo_is_no_fines() {
 #[test]
 fn the_step_engine_from_end_to_end() {
     let folder = tempfile::tempdir().expect("a folder");
-    let flight = sample();
     let run = |name: &str, steps: &str| {
         let to = folder.path().join(name);
-        let text = to.to_string_lossy().into_owned();
-        let own = [
-            "delineate",
-            &flight,
-            "--photo",
-            "IMG_0005.jpg",
-            "--to",
-            &text,
-        ];
-        stdout_of(&[&own[..], &["--engine", "learned", "--steps", steps]].concat());
+        let rest = ["--engine", "learned", "--steps", steps];
+        let done = delineated("IMG_0005.jpg", &to.to_string_lossy(), &rest);
+        assert!(done.status.success());
         let curve = columns(
             &to.join("distribution.csv"),
             &["size_cm", "percent_passing"],

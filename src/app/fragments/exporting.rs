@@ -12,7 +12,7 @@ use crate::exports::{
     self, FRAGMENT_TABLES, FragmentSizes, FragmentTables, MapPlaces, MassWay, MeasuredPhoto,
     PhotoOutlined,
 };
-use crate::fault::Fault;
+use crate::fault::{Fault, by_cause};
 use crate::files::{self, FileError, Inputs, Kind};
 use crate::flight::{Flight, LookedUp};
 use crate::formats::read_bytes;
@@ -188,14 +188,16 @@ impl Export {
         warnings.extend(places.fault().map(|fault| fault.to_string()));
         files::make_folder(&self.folder).map_err(|error| error.to_string())?;
         let mut measured = Vec::new();
+        let mut said: Vec<(&str, String)> = Vec::new();
         let count = self.outlined.len() as u64;
         for (done, of) in self.outlined.iter().enumerate() {
             progress.stage(format!("measuring the fragments of {}", of.name));
             progress.advance(done as u64, count).map_err(in_words)?;
             let (photo, notes) = self.photo(of, &places, units, progress)?;
-            warnings.extend(notes.iter().map(|note| format!("{}: {note}", of.name)));
+            said.extend(notes.into_iter().map(|note| (of.name.as_str(), note)));
             measured.push(photo);
         }
+        warnings.extend(by_cause(said, "photos"));
         let way = MassWay {
             steps: WantedSteps::default(),
             tail: None,

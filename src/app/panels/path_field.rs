@@ -1,6 +1,6 @@
 //! A field for a path, with the desktop's own dialog beside it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::command::{Command, Dialog};
 use crate::state::State;
@@ -11,7 +11,7 @@ use crate::typed::typed;
 pub(super) fn path_field(
     state: &State,
     ui: &mut egui::Ui,
-    start: &str,
+    start: &Path,
     browse: &[(&str, Dialog)],
     commands: &mut Vec<Command>,
 ) -> (String, bool) {
@@ -25,7 +25,7 @@ pub(super) fn path_field(
     ));
     let mut path: String = ui
         .data(|data| data.get_temp(id))
-        .unwrap_or_else(|| start.to_owned());
+        .unwrap_or_else(|| start.display().to_string());
     if let Some(answered) = &state.answered {
         path = answered.display().to_string();
         commands.push(Command::TakeAnswer);
@@ -54,7 +54,7 @@ pub(super) fn path_field(
 pub(super) fn taken_path(
     state: &State,
     ui: &mut egui::Ui,
-    start: &str,
+    start: &Path,
     browse: &[(&str, Dialog)],
     button: &str,
     commands: &mut Vec<Command>,

@@ -121,13 +121,11 @@ fn shadows(even: &[f32], width: usize, height: usize) -> Vec<f32> {
     let mut most = vec![0.0f32; even.len()];
     for radius in [2, 5] {
         let closed = extreme(
-            extreme(smooth.clone(), width, height, radius, |a, b| {
-                if a < b { b } else { a }
-            }),
+            extreme(smooth.clone(), width, height, radius, f32::max),
             width,
             height,
             radius,
-            |a, b| if b < a { b } else { a },
+            f32::min,
         );
         let parts = most.par_iter_mut().zip(&closed).zip(&smooth);
         parts.for_each(|((most, closed), value)| *most = most.max(closed - value));

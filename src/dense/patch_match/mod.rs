@@ -66,7 +66,7 @@ pub struct Sweep {
 /// parts of several.
 pub(crate) const OFFSETS: [i32; 6] = [-3, -2, -1, 1, 2, 3];
 /// The farthest of them.
-pub(crate) const EDGE: f32 = 3.0;
+pub(crate) const EDGE: f32 = OFFSETS[OFFSETS.len() - 1] as f32;
 /// How many pixels a window has.
 pub(crate) const SAMPLES: usize = OFFSETS.len() * OFFSETS.len();
 /// Standard deviation of the bilateral weights, in grey levels and in pixels.

@@ -66,12 +66,12 @@ impl Engine for Embedded {
             let kept = at.folder.join(KEPT);
             // What was cut off while it was written is made again.
             let store = FeatureStore::load(&kept).unwrap_or_default();
-            let mut small = self.on_growth.as_ref().map(|_| SmallPhotos::default());
-            let left_out = features::find(&store, photos, &kept, small.as_mut(), progress)?;
+            let mut small = SmallPhotos::default();
+            let shown = self.on_growth.is_some().then_some(&mut small);
+            let left_out = features::find(&store, photos, &kept, shown, progress)?;
             let pairs = preemptive::worth_comparing(&store, photos, pairs, progress)?;
             matching::compare(&store, photos, &pairs, &kept, at.card, progress)?;
             let graph = MatchGraph::from_store(&store, &MatchGraphOptions::default());
-            let small = small.unwrap_or_default();
             let watch = self.on_growth.as_ref();
             let watch = watch.map(|on_growth| Watch::new(on_growth, &store, &small));
             Ok(Found {

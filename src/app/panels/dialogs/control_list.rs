@@ -1,5 +1,7 @@
 //! The small window that asks for a list of control points.
 
+use std::path::Path;
+
 use crate::command::{Command, Dialog};
 use crate::control_points::ControlStep;
 use crate::panels::path_field::taken_path;
@@ -12,7 +14,7 @@ pub(super) fn control_list(state: &State, ui: &mut egui::Ui, commands: &mut Vec<
          marks or without. Points of the same name are replaced; undo takes all of it back.",
     );
     let browse = [("Browse…", Dialog::file("List of control points"))];
-    if let Some(path) = taken_path(state, ui, "", &browse, "Load the list", commands) {
+    if let Some(path) = taken_path(state, ui, Path::new(""), &browse, "Load the list", commands) {
         commands.push(Command::Control(ControlStep::Load(path)));
     }
 }

@@ -1,5 +1,7 @@
 //! The small windows that ask for the outlines of a photo that another tool made, and where the results of the fragments go.
 
+use std::path::Path;
+
 use super::proposed;
 use crate::command::{Command, Dialog};
 use crate::fragments::FragmentStep;
@@ -50,7 +52,14 @@ pub(super) fn masks(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
         }
     });
     ui.data_mut(|data| data.insert_temp(id, of));
-    let path = taken_path(state, ui, "", &browse, "Take the outlines", commands);
+    let path = taken_path(
+        state,
+        ui,
+        Path::new(""),
+        &browse,
+        "Take the outlines",
+        commands,
+    );
     // It closes itself once they are taken.
     if let Some(path) = path {
         commands.push(Command::Fragments(FragmentStep::Masks { path, of }));
@@ -73,14 +82,7 @@ pub(super) fn export_fragments(state: &State, ui: &mut egui::Ui, commands: &mut 
     ));
     let browse = [("Browse…", Dialog::folder("Folder for the fragments"))];
     let start = proposed(open, Some("fragment-sizes"));
-    if let Some(path) = taken_path(
-        state,
-        ui,
-        &start.display().to_string(),
-        &browse,
-        "Write results",
-        commands,
-    ) {
+    if let Some(path) = taken_path(state, ui, &start, &browse, "Write results", commands) {
         commands.push(Command::Fragments(FragmentStep::Export(path.into())));
     }
 }

@@ -381,7 +381,7 @@ pub(super) fn save_georeferenced(state: &State, ui: &mut egui::Ui, commands: &mu
         }
     }
     ui.data_mut(|data| data.insert_temp(id, keep_surface));
-    let start = open.proposed_georeferenced().display().to_string();
+    let start = open.proposed_georeferenced();
     let browse = [("Browse…", Dialog::new_file("Save flight", "flight.toml"))];
     let (path, entered) = path_field(state, ui, &start, &browse, commands);
     ui.separator();

@@ -13,7 +13,7 @@ mod residuals;
 mod save_measured;
 mod season;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::actions;
 use crate::command::{Answers, Asking, Command, Dialog, MeasuredTable, PictureRequest};
@@ -229,7 +229,7 @@ fn open(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             Dialog::folder("Open a flight's folder").answering(Answers::Open),
         ),
     ];
-    if let Some(path) = taken_path(state, ui, "", &browse, "Open flight", commands) {
+    if let Some(path) = taken_path(state, ui, Path::new(""), &browse, "Open flight", commands) {
         commands.push(Command::Open(path));
     }
 }
@@ -267,7 +267,7 @@ fn add(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             Dialog::folder("Folder of the flight's photos"),
         ),
     ];
-    if let Some(path) = taken_path(state, ui, "", &browse, "Add it", commands) {
+    if let Some(path) = taken_path(state, ui, Path::new(""), &browse, "Add it", commands) {
         commands.push(Command::Add(path));
     }
     if state.from_photos.offered.is_some() {
@@ -291,7 +291,7 @@ fn export(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ));
     let start = proposed(open, Some("split-desktop"));
     let browse = [("Browse…", Dialog::folder("Export for Split-Desktop into"))];
-    let (path, entered) = path_field(state, ui, &start.display().to_string(), &browse, commands);
+    let (path, entered) = path_field(state, ui, &start, &browse, commands);
     let mut rectified = state.preferences.export_rectified;
     let check = ui.checkbox(&mut rectified, "Rectified photos, too");
     let hover = "Each photo seen squarely onto the plane through what it shows, with one scale for the whole \
@@ -322,14 +322,7 @@ fn save_as(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     );
     let start = proposed(open, None);
     let browse = [("Browse…", Dialog::new_file("Save flight", "flight.toml"))];
-    if let Some(path) = taken_path(
-        state,
-        ui,
-        &start.display().to_string(),
-        &browse,
-        "Save flight",
-        commands,
-    ) {
+    if let Some(path) = taken_path(state, ui, &start, &browse, "Save flight", commands) {
         commands.push(Command::SaveAs(path.into()));
     }
 }
@@ -363,14 +356,7 @@ fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.data_mut(|data| data.insert_temp(id, options));
     let start = proposed(open, Some("figure.png"));
     let browse = [("Browse…", Dialog::new_file("Save picture", "figure.png"))];
-    if let Some(path) = taken_path(
-        state,
-        ui,
-        &start.display().to_string(),
-        &browse,
-        "Write picture",
-        commands,
-    ) {
+    if let Some(path) = taken_path(state, ui, &start, &browse, "Write picture", commands) {
         commands.push(Command::Picture(PictureRequest {
             to: path.into(),
             size: [options.0, options.1],
@@ -403,14 +389,7 @@ fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     }
     let start = proposed(open, Some("map.pdf"));
     let browse = [("Browse…", Dialog::new_file("Export map", "map.pdf"))];
-    if let Some(path) = taken_path(
-        state,
-        ui,
-        &start.display().to_string(),
-        &browse,
-        "Write map",
-        commands,
-    ) {
+    if let Some(path) = taken_path(state, ui, &start, &browse, "Write map", commands) {
         let to = path.into();
         commands.push(Command::Map(MapCommand::Save { to, pixel }));
     }

@@ -20,14 +20,7 @@ pub(super) fn mission(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
     }
     let start = proposed(open, Some("mission.kmz"));
     let browse = [("Browse…", Dialog::new_file("Save mission", "mission.kmz"))];
-    if let Some(path) = taken_path(
-        state,
-        ui,
-        &start.display().to_string(),
-        &browse,
-        "Write mission",
-        commands,
-    ) {
+    if let Some(path) = taken_path(state, ui, &start, &browse, "Write mission", commands) {
         commands.push(Command::Plan(PlanStep::SaveMission(path.into())));
     }
 }
@@ -76,14 +69,7 @@ pub(super) fn plan_table(
     ui.label(what);
     let start = proposed(open, Some(name));
     let browse = [("Browse…", dialog)];
-    if let Some(path) = taken_path(
-        state,
-        ui,
-        &start.display().to_string(),
-        &browse,
-        write,
-        commands,
-    ) {
+    if let Some(path) = taken_path(state, ui, &start, &browse, write, commands) {
         let to = path.into();
         commands.push(Command::Plan(match file {
             PlanFile::Table | PlanFile::Sheet => PlanStep::SaveTable(to),

@@ -1,7 +1,7 @@
 //! Where a table of what was measured goes, and which cloud comes
 //! beside the surface or under a volume.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::proposed;
 use crate::command::{Command, Dialog, MeasuredTable};
@@ -34,14 +34,7 @@ pub(super) fn save_measured(
     ui.label(what);
     let start = proposed(open, Some(table.file_name()));
     let browse = [("Browse…", dialog)];
-    if let Some(path) = taken_path(
-        state,
-        ui,
-        &start.display().to_string(),
-        &browse,
-        "Write table",
-        commands,
-    ) {
+    if let Some(path) = taken_path(state, ui, &start, &browse, "Write table", commands) {
         commands.push(Command::SaveMeasured(table, path.into()));
     }
 }
@@ -74,5 +67,5 @@ fn cloud(
 ) -> Option<PathBuf> {
     ui.label(what);
     let browse = [("Browse…", dialog)];
-    taken_path(state, ui, "", &browse, done, commands)
+    taken_path(state, ui, Path::new(""), &browse, done, commands)
 }

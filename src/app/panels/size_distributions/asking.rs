@@ -1,6 +1,6 @@
 //! The small windows that ask which files to add and where the figure and the report go.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::command::{Command, Dialog};
 use crate::panels::path_field::taken_path;
@@ -18,7 +18,7 @@ pub(in crate::panels) fn add_distributions(
          curve. It can also be dropped on this window.",
     );
     let browse = [("Browse…", Dialog::file("Size distributions"))];
-    if let Some(path) = taken_path(state, ui, "", &browse, "Add file", commands) {
+    if let Some(path) = taken_path(state, ui, Path::new(""), &browse, "Add file", commands) {
         commands.push(Command::Distributions(DistributionCommand::Add(vec![path])));
     }
 }
@@ -30,7 +30,7 @@ pub(in crate::panels) fn add_effort(state: &State, ui: &mut egui::Ui, commands: 
          of times for each trial. Minutes, where it says nothing else.",
     );
     let browse = [("Browse…", Dialog::file("Times of steps"))];
-    if let Some(path) = taken_path(state, ui, "", &browse, "Add times", commands) {
+    if let Some(path) = taken_path(state, ui, Path::new(""), &browse, "Add times", commands) {
         commands.push(Command::Distributions(DistributionCommand::AddEffort(path)));
     }
 }
@@ -76,7 +76,7 @@ pub(in crate::panels) fn save_report(
 }
 
 /// A name beside the first file that was added. The bundled flight's folder stays as it came.
-fn beside(state: &State, name: &str) -> String {
+fn beside(state: &State, name: &str) -> PathBuf {
     let bundled = crate::state::bundled::sample_flight();
     let mut paths = state
         .distributions
@@ -85,6 +85,5 @@ fn beside(state: &State, name: &str) -> String {
         .filter_map(|s| s.path.as_deref());
     let first = paths.find(|path| path.parent() != bundled.as_deref());
     let path = first.map_or_else(|| PathBuf::from(name), |first| first.with_file_name(name));
-    let path = std::path::absolute(&path).unwrap_or(path);
-    path.display().to_string()
+    std::path::absolute(&path).unwrap_or(path)
 }

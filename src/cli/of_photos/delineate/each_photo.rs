@@ -180,6 +180,7 @@ impl<'a> EachPhoto<'a> {
         }
     }
 }
+
 /// The label image of a file that this command wrote.
 fn read_own_labels(path: &Path) -> Result<LabelImage, Fault> {
     let bytes = read_bytes(path).map_err(|error| error.fault)?;

@@ -1,4 +1,4 @@
-//! One photo after the other: outlined, measured, and its files.
+//! One photo: outlined, measured, and its files.
 
 use std::path::PathBuf;
 
