@@ -4,6 +4,7 @@ use image::RgbImage;
 use rayon::prelude::*;
 
 use crate::labels::{FINES, LabelImage};
+use crate::votes::Votes;
 
 /// What an engine says of every pixel of a photo, row by row from the top left, each 0 to 255.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,6 +21,8 @@ pub struct Evidence {
     pub middle: Vec<u8>,
     /// How bright the photo is.
     pub gray: Vec<u8>,
+    /// How large the fragment is and where its middle, where the engine can tell.
+    pub votes: Option<Votes>,
 }
 
 impl Evidence {
@@ -46,6 +49,7 @@ impl Evidence {
             rock: rock.collect(),
             middle: vec![0; width * height],
             gray: gray(photo),
+            votes: None,
         }
     }
 }

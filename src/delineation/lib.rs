@@ -35,6 +35,7 @@ pub mod saved;
 mod smoothing;
 mod transposed;
 pub mod tree;
+mod votes;
 
 pub use classical::Classical;
 pub use delineating::{Delineated, delineate, delineated, least_across, leave_out};
@@ -47,6 +48,7 @@ pub use mass::{intervals, tail};
 pub use named::{Description, NamedModel};
 pub use outlined_by::OutlinedBy;
 pub use regions::Regions;
+pub use votes::{VoteSums, Votes};
 
 /// All engines that the program brings along; the first is the one that measured best.
 pub static ENGINES: [&dyn Engine; 2] = [&Learned, &Classical];

@@ -211,6 +211,7 @@ mod tests {
             rock: of(|_| 255),
             middle: of(|_| 0),
             gray: of(|_| 128),
+            votes: None,
         };
         let tree = tree(&evidence, &[], &Progress::default()).unwrap();
         let score = |area: f64| 1.0 / (1.0 + (area - wanted).abs());

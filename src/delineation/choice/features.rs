@@ -6,7 +6,7 @@ use crate::hull;
 use crate::tree::{Node, Tree};
 
 /// How many there are.
-pub const COUNT: usize = 18;
+pub const COUNT: usize = 22;
 
 /// Each about 0 to 1. Their numbers, from 0, are what `train_score.py` can leave out.
 pub fn features(tree: &Tree, place: usize) -> [f64; COUNT] {
@@ -23,6 +23,7 @@ pub fn features(tree: &Tree, place: usize) -> [f64; COUNT] {
     let lesser = children.map(|[a, b]| if a.sums.area < b.sums.area { a } else { b });
     let gray = sums.gray / area;
     let [elongation, ellipse] = shape(node);
+    let votes = against(node);
     [
         sums.strength / inner / 255.0,
         sums.weak / inner,
@@ -45,7 +46,27 @@ pub fn features(tree: &Tree, place: usize) -> [f64; COUNT] {
         (sums.gray_squared / area - gray * gray).max(0.0).sqrt() / 64.0,
         lesser.map_or(0.0, |lesser| lesser.sums.area / area),
         parent.map_or(1.0, |parent| area / parent.sums.area.max(1.0)),
+        // 18 to 21.
+        votes[0],
+        votes[1],
+        votes[2],
+        votes[3],
     ]
+}
+
+/// How far the votes of its pixels are from it ([`crate::votes`]): size, spread, middle, bias; 0 where nobody voted.
+fn against(node: &Node) -> [f64; 4] {
+    let sums = &node.sums;
+    let squares = sums.squares[0] + sums.squares[2];
+    let votes = sums.votes.against(sums.area.max(1.0), sums.place, squares);
+    votes.map_or([0.0; 4], |off| {
+        [
+            (off.size / 4.0).clamp(-1.0, 1.0),
+            (off.spread / 2.0).min(1.0),
+            off.middle.min(1.5),
+            off.bias.min(1.0),
+        ]
+    })
 }
 
 /// The lesser over the greater axis, and the area over that of the ellipse with the same second moments:

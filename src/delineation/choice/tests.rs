@@ -22,6 +22,7 @@ fn small_tree(seed: u64) -> Tree {
         rock: some(),
         middle: vec![0; width * height],
         gray: some(),
+        votes: None,
     };
     tree(&evidence, &[], &Progress::default()).unwrap()
 }

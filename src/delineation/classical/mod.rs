@@ -75,6 +75,7 @@ impl Engine for Classical {
             rock: vec![255; width * height],
             middle: vec![0; width * height],
             gray,
+            votes: None,
         })
     }
 }

@@ -1,8 +1,10 @@
 """Trains the score of nodes on simulated photos.
 
-    python3 train.py TRAIN VALID --to PATCHES --patches 300
+    python3 train.py TRAIN,MORE VALID --to PATCHES --patches 360
     cargo run --release -p fragscale-delineation --example develop -- features ENGINE PATCHES FEATURES
     python3 train_score.py FEATURES --to assets/delineation/score_ENGINE.txt --without 13 15
+
+score_unvoted.txt, for networks that give no votes: ENGINE `learned`, --without 13 15 18 19 20 21.
 
 Without the area and the deviation of the gray (13, 15): they say what simulated piles are like, not what a
 fragment is; on photos of the world it is a little better without them.
@@ -16,7 +18,7 @@ import numpy as np
 import torch
 import torch.nn as nn
 
-FEATURES = 18
+FEATURES = 22
 HIDDEN = 24
 
 

@@ -80,6 +80,9 @@ fn one(evidence: &Evidence, leaf_of: &[u32], leaf: u32, pixels: &[u32]) -> Measu
         let gray = f64::from(evidence.gray[pixel]);
         of.gray += gray;
         of.gray_squared += gray * gray;
+        if let Some(votes) = &evidence.votes {
+            of.votes.count(votes, pixel, place);
+        }
         let at_edge = [x == 0, y == 0, x + 1 == width, y + 1 == height];
         let at_edge = at_edge.into_iter().filter(|at| *at).count() as f64;
         of.at_edge += at_edge;
@@ -156,6 +159,7 @@ mod tests {
                 rock: some(256),
                 middle: some(256),
                 gray: some(256),
+                votes: None,
             };
             let left_out: Vec<bool> = some(9).into_iter().map(|value| value == 0).collect();
             let (leaf_of, leaves) = basins(width, height, &some(12), &left_out);

@@ -15,6 +15,8 @@ use glam::DVec2;
 pub use joining::tree;
 pub(crate) use watershed::NOWHERE;
 
+use crate::votes::VoteSums;
+
 /// A tree of regions. Children stand before their parents, leaves first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tree {
@@ -74,6 +76,8 @@ pub struct Sums {
     pub strength: f64,
     /// How many of the others are weak.
     pub weak: f64,
+    /// What its pixels vote for.
+    pub votes: VoteSums,
 }
 
 impl Sums {
@@ -96,6 +100,7 @@ impl Sums {
         sums.outline += other.outline - 2.0 * f64::from(shared.sides);
         sums.strength += other.strength - 2.0 * f64::from(shared.strength);
         sums.weak += other.weak - 2.0 * f64::from(shared.weak);
+        sums.votes = self.votes.and(&other.votes);
         sums
     }
 }

@@ -5,6 +5,7 @@ use fragscale_core::split_mix::SplitMix;
 
 use super::*;
 use crate::evidence::Evidence;
+use crate::votes::Votes;
 
 fn noise(width: usize, height: usize, seed: u64) -> Evidence {
     let mut random = SplitMix(seed);
@@ -20,6 +21,11 @@ fn noise(width: usize, height: usize, seed: u64) -> Evidence {
         rock: some(),
         middle: some(),
         gray: some(),
+        votes: Some(Votes {
+            size: some(),
+            right: some(),
+            down: some(),
+        }),
     }
 }
 

@@ -24,7 +24,7 @@ use std::time::Instant;
 use fragscale_core::jobs::Progress;
 use fragscale_delineation::choice::{self, Scorer, features};
 use fragscale_delineation::overlap::{self, Agreement};
-use fragscale_delineation::{Classical, Engine, Evidence, LabelImage, Learned, tree};
+use fragscale_delineation::{Classical, Engine, Evidence, LabelImage, Learned, Votes, tree};
 use image::{Rgb, RgbImage};
 
 // For the form of the measures against what passes a sieve: `develop masses ENGINE|truth FLIGHT...` of simulated
@@ -127,7 +127,7 @@ fn score(
     };
     let least_score: f64 =
         std::env::var("LEAST").map_or(Ok(engine.least_score()), |text| text.parse())?;
-    let mut sets: BTreeMap<String, (Agreement, Agreement, f64, usize)> = BTreeMap::new();
+    let mut sets: BTreeMap<String, (Agreement, Agreement, f64, usize, usize)> = BTreeMap::new();
     let progress = Progress::default();
     for row in csv::Reader::from_path(data.join("index.csv"))?.records() {
         let row = row?;
@@ -165,6 +165,11 @@ fn score(
             of.0 = of.0.and(Agreement::of(&ideal, &truth, least, complete));
             if let Some(best) = &best {
                 of.1 = of.1.and(Agreement::of(best, &truth, least, complete));
+                // Where small ones were not outlined, those that are smaller than nearly all that were.
+                let mut areas = truth.areas().split_off(1);
+                areas.sort_unstable();
+                let small = areas.get(areas.len() / 20).copied().unwrap_or_default();
+                of.4 += Agreement::of(best, &truth, small.max(least), complete).wrong;
             }
             of.2 += all;
             of.3 += tree.leaves;
@@ -189,10 +194,15 @@ fn score(
             seen.save(Path::new(folder).join(format!("seen_{name}")))?;
         }
     }
-    for (set, (ideal, best, seconds, leaves)) in sets {
+    for (set, (ideal, best, seconds, leaves, large)) in sets {
+        let without_small = Agreement {
+            wrong: large,
+            ..best
+        };
         println!(
-            "{set}: F1 {:.3} ({} right, {} wrong, {} missed), of the tree {:.3}; {leaves} leaves, {seconds:.1} s",
+            "{set}: F1 {:.3}, {:.3} without small finds ({} right, {} wrong, {} missed), of the tree {:.3}; {leaves} leaves, {seconds:.1} s",
             best.f1(),
+            without_small.f1(),
             best.right,
             best.wrong,
             best.missed,
@@ -214,6 +224,8 @@ fn looked_at(engine: &dyn Engine, photo: &RgbImage, name: &str) -> Result<Eviden
         let mut planes = bytes.chunks_exact(width * height).map(<[u8]>::to_vec);
         let mut next = || planes.next().unwrap_or_default();
         let [border, rock, middle, gray] = [next(), next(), next(), next()];
+        let [size, right, down] = [next(), next(), next()];
+        let votes = (!size.is_empty()).then_some(Votes { size, right, down });
         return Ok(Evidence {
             width,
             height,
@@ -221,6 +233,7 @@ fn looked_at(engine: &dyn Engine, photo: &RgbImage, name: &str) -> Result<Eviden
             rock,
             middle,
             gray,
+            votes,
         });
     }
     let evidence = engine.look(photo, &progress)?;
@@ -230,8 +243,12 @@ fn looked_at(engine: &dyn Engine, photo: &RgbImage, name: &str) -> Result<Eviden
         &evidence.middle,
         &evidence.gray,
     ];
+    let mut bytes = planes.map(Vec::as_slice).concat();
+    if let Some(votes) = &evidence.votes {
+        bytes.extend([&votes.size[..], &votes.right, &votes.down].concat());
+    }
     fs::create_dir_all(&folder)?;
-    fs::write(&file, planes.map(Vec::as_slice).concat())?;
+    fs::write(&file, bytes)?;
     Ok(evidence)
 }
 
