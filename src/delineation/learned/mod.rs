@@ -257,6 +257,32 @@ mod tests {
         }
     }
 
+    /// A fragment that is 45 pixels across in the photo is 23 in its half, where the network knows it best.
+    #[test]
+    fn votes_count_where_the_size_is_known_best() {
+        let planes = |size: f32, right: f32| {
+            vec![
+                vec![0.5],
+                vec![0.5],
+                vec![0.5],
+                vec![size],
+                vec![right],
+                vec![0.5],
+            ]
+        };
+        let full = weighed(planes(0.55, 0.9), 0.0);
+        let half = weighed(planes(0.45, 0.6), 1.0);
+        let off = ((5.5_f32 - 4.5) / 1.5).powi(2);
+        let [far, near] = [(-off).exp() + 0.02, 1.02];
+        let sum = |kind: usize| full[kind][0] + half[kind][0];
+        assert!((sum(KINDS) - far - near).abs() < 1e-5);
+        // Both are of the same size in the photo, and the way is that of the nearer.
+        assert!((sum(3) / sum(KINDS) - 0.55).abs() < 1e-5);
+        let way = (far * 0.9 + near * 0.6) / (far + near);
+        assert!((sum(4) / sum(KINDS) - way).abs() < 1e-5);
+        assert_eq!(full[0], [0.5]);
+    }
+
     /// A photo of several parts is seen as in one: what a part does not know of is thrown away.
     #[test]
     fn parts_meet() {

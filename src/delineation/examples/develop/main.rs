@@ -127,7 +127,7 @@ fn score(
     };
     let least_score: f64 =
         std::env::var("LEAST").map_or(Ok(engine.least_score()), |text| text.parse())?;
-    let mut sets: BTreeMap<String, (Agreement, Agreement, f64, usize, usize)> = BTreeMap::new();
+    let mut sets: BTreeMap<String, OfSet> = BTreeMap::new();
     let progress = Progress::default();
     for row in csv::Reader::from_path(data.join("index.csv"))?.records() {
         let row = row?;
@@ -162,17 +162,21 @@ fn score(
             let shared = overlap::of_nodes(&tree, &truth);
             let ideal = choice::labelled(&tree, &choice::chosen(&tree, &shared, 0.5));
             let of = sets.entry(set.to_owned()).or_default();
-            of.0 = of.0.and(Agreement::of(&ideal, &truth, least, complete));
+            of.ideal = of.ideal.and(Agreement::of(&ideal, &truth, least, complete));
             if let Some(best) = &best {
-                of.1 = of.1.and(Agreement::of(best, &truth, least, complete));
+                of.best = of.best.and(Agreement::of(best, &truth, least, complete));
                 // Where small ones were not outlined, those that are smaller than nearly all that were.
                 let mut areas = truth.areas().split_off(1);
                 areas.sort_unstable();
                 let small = areas.get(areas.len() / 20).copied().unwrap_or_default();
-                of.4 += Agreement::of(best, &truth, small.max(least), complete).wrong;
+                of.large += Agreement::of(best, &truth, small.max(least), complete).wrong;
+                let counts =
+                    |areas: Vec<usize>| areas.into_iter().filter(move |area| *area >= least);
+                of.found.extend(counts(on_outlined(best, &truth, complete)));
+                of.outlined.extend(counts(truth.areas().split_off(1)));
             }
-            of.2 += all;
-            of.3 += tree.leaves;
+            of.seconds += all;
+            of.leaves += tree.leaves;
         }
         if let Some(folder) = pictures {
             fs::create_dir_all(folder)?;
@@ -194,22 +198,73 @@ fn score(
             seen.save(Path::new(folder).join(format!("seen_{name}")))?;
         }
     }
-    for (set, (ideal, best, seconds, leaves, large)) in sets {
+    for (set, of) in sets {
         let without_small = Agreement {
-            wrong: large,
-            ..best
+            wrong: of.large,
+            ..of.best
         };
+        let Agreement {
+            right,
+            wrong,
+            missed,
+        } = of.best;
         println!(
-            "{set}: F1 {:.3}, {:.3} without small finds ({} right, {} wrong, {} missed), of the tree {:.3}; {leaves} leaves, {seconds:.1} s",
-            best.f1(),
+            "{set}: F1 {:.3}, {:.3} without small finds ({right} right, {wrong} wrong, {missed} missed), of the tree {:.3}; {} leaves, {:.1} s",
+            of.best.f1(),
             without_small.f1(),
-            best.right,
-            best.wrong,
-            best.missed,
-            ideal.f1()
+            of.ideal.f1(),
+            of.leaves,
+            of.seconds,
         );
+        print!("   diameters by area:");
+        for percent in [20, 50, 80] {
+            let [found, outlined] = [&of.found, &of.outlined].map(|areas| across(areas, percent));
+            print!(" P{percent} {:+.0} %", 100.0 * (found / outlined - 1.0));
+        }
+        println!();
     }
     Ok(())
+}
+
+/// What is counted of the photos of a set.
+#[derive(Default)]
+struct OfSet {
+    ideal: Agreement,
+    best: Agreement,
+    /// Wrong ones that are not small.
+    large: usize,
+    /// Pixels of each.
+    found: Vec<usize>,
+    outlined: Vec<usize>,
+    seconds: f64,
+    leaves: usize,
+}
+
+/// The pixels of each found fragment; where the truth is not `complete`, of those of which most was outlined.
+fn on_outlined(found: &LabelImage, truth: &LabelImage, complete: bool) -> Vec<usize> {
+    let mut outlined = vec![0; found.areas().len()];
+    for (label, other) in found.labels.iter().zip(&truth.labels) {
+        if let Some(count) = outlined.get_mut(*label as usize) {
+            *count += usize::from(*other != 0);
+        }
+    }
+    let both = found.areas().into_iter().zip(outlined).skip(1);
+    both.filter(|(area, outlined)| complete || 2 * outlined > *area)
+        .map(|(area, _)| area)
+        .collect()
+}
+
+/// The diameter that fragments with so many percent of the area do not exceed, pixels.
+fn across(areas: &[usize], percent: usize) -> f64 {
+    let mut areas = areas.to_vec();
+    areas.sort_unstable();
+    let all: usize = areas.iter().sum();
+    let mut below = 0;
+    let at = areas.into_iter().find(|area| {
+        below += area;
+        100 * below >= percent * all
+    });
+    (at.unwrap_or_default() as f64 * 4.0 / std::f64::consts::PI).sqrt()
 }
 
 /// What the engine sees, kept in the folder CACHE where that is set, so that another score takes seconds.
