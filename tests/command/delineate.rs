@@ -409,7 +409,8 @@ fn outlines_in_the_world() {
     assert!(rows[..=30].is_sorted_by(|a, b| a[0] < b[0] && a[1] < b[1]));
 }
 
-/// A network of the user's: our own one, described as if it were a stranger's, outlines the same to the bit.
+/// A network of the user's: our own one, described as if it were a stranger's, outlines nearly the same. (Its maps are the
+/// same to the bit, which a test of the engine holds; its votes are not taken.)
 #[test]
 fn a_network_of_the_users() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -440,7 +441,26 @@ fn a_network_of_the_users() {
     run("learned", &path("ours"));
     let [theirs, ours] = ["theirs", "ours"]
         .map(|to| fs::read(Path::new(&path(to)).join("IMG_0002_labels.png")).expect("labels"));
-    assert_eq!(theirs, ours);
+    let of_rock = |bytes: &[u8]| -> Vec<bool> {
+        let image = image::load_from_memory(bytes).expect("an image");
+        let labels = image.into_luma16().into_raw();
+        labels
+            .iter()
+            .map(|label| (1..u16::MAX).contains(label))
+            .collect()
+    };
+    let pairs = of_rock(&theirs).into_iter().zip(of_rock(&ours));
+    let (both, either) = pairs.fold((0, 0), |(both, either), (one, other)| {
+        (
+            both + u32::from(one && other),
+            either + u32::from(one || other),
+        )
+    });
+    assert!(both > 300_000, "{both}");
+    assert!(
+        f64::from(both) > 0.85 * f64::from(either),
+        "{both} {either}"
+    );
     let curve =
         fs::read_to_string(Path::new(&path("theirs")).join("distribution.csv")).expect("a curve");
     assert!(

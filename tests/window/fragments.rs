@@ -222,7 +222,15 @@ fn the_doubtful_ones_are_gone_through_with_keys() {
         .state_mut()
         .apply(Command::Photo(PhotoCommand::Fit));
     let before = outlines(&desk).now().clone();
-    let at = DVec2::new(620.0, 500.0);
+    // The pixel in the middle of all of one's.
+    let labels = before.labels();
+    let its = |place: &usize| labels.labels[*place] == doubtful[4].0;
+    let its: Vec<usize> = (0..labels.labels.len()).filter(its).collect();
+    let (x, y) = (
+        its[its.len() / 2] % labels.width,
+        its[its.len() / 2] / labels.width,
+    );
+    let at = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
     let place = on_screen(&desk, at);
     desk.harness.hover_at(place);
     desk.settle();
