@@ -10,7 +10,7 @@
 //!    another, the weakest first. All regions that ever were make a tree, and nearly every fragment is
 //!    one of its nodes; which one, no single strength of seams tells.
 //! 3. [`choice`]: every node gets a score, how likely it is a whole fragment (its seams against those
-//!    within it, its shape), and the best nodes that do not overlap are taken.
+//!    within it, its shape, what its pixels vote for), and the best nodes that do not overlap are taken.
 //!
 //! [`Regions`] keeps the tree for who looks for another node by hand; `photo` leads from a flight's photo here and
 //! on to its fragments, [`measures`] and [`mass`].

@@ -1,5 +1,5 @@
-//! Borders, and votes for fragments (`votes.rs`), by a small network, trained on simulated photos alone (`training/train.py`; its log lies beside the
-//! weights in `assets/delineation`).
+//! Borders, and votes for fragments (`votes.rs`), by a small network, trained on simulated photos alone
+//! (`training/train.py`; its log lies beside the weights in `assets/delineation`).
 //!
 //! It sees about a hundred pixels around each; so a photo is looked at in several sizes, the full one, a half
 //! and a quarter, and each pixel takes the mean: what is a border from near and from afar is one, the texture of

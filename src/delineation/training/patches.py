@@ -38,10 +38,9 @@ def asked(pair):
     image = np.array(Image.open(photo).convert("RGB")).transpose(2, 0, 1)
     own = measure.label(np.array(Image.open(label)).astype(np.int32), connectivity=1, background=0)
     count = np.bincount(own.ravel())
-    _, own = np.unique(np.where(count[own] < LEAST_PART, 0, own), return_inverse=True)
-    own = own.reshape(image.shape[1:])
-    if own.min() > 0 or (count[0] == 0 and own.max() > 0):
-        own = own + 1
+    numbers, own = np.unique(np.where(count[own] < LEAST_PART, 0, own), return_inverse=True)
+    # A photo that shows stones alone has no 0.
+    own = own.reshape(image.shape[1:]) + int(numbers[0] != 0)
     differs = np.zeros(own.shape, bool)
     for axis in (0, 1):
         step = np.diff(own, axis=axis) != 0

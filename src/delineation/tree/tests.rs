@@ -5,7 +5,7 @@ use fragscale_core::split_mix::SplitMix;
 
 use super::*;
 use crate::evidence::Evidence;
-use crate::votes::Votes;
+use crate::votes::{VoteSums, Votes};
 
 fn noise(width: usize, height: usize, seed: u64) -> Evidence {
     let mut random = SplitMix(seed);
@@ -56,6 +56,7 @@ fn sums_are_those_of_the_pixels() {
         };
         let (mut area, mut outline, mut at_edge, mut strength, mut border) =
             (0.0, 0.0, 0.0, 0.0, 0.0);
+        let mut votes = VoteSums::default();
         for y in 0..rows {
             for x in 0..columns {
                 if !is_in(x, y) {
@@ -64,6 +65,9 @@ fn sums_are_those_of_the_pixels() {
                 area += 1.0;
                 let own = evidence.border[y as usize * width + x as usize];
                 border += f64::from(own);
+                let middle = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                let pixel = y as usize * width + x as usize;
+                votes.count(evidence.votes.as_ref().unwrap(), pixel, middle);
                 for (a, b) in [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)] {
                     if is_in(a, b) {
                         continue;
@@ -89,6 +93,7 @@ fn sums_are_those_of_the_pixels() {
             (area, outline, at_edge)
         );
         assert_eq!((sums.strength, sums.border), (strength, border));
+        assert_eq!(sums.votes, votes);
         assert!(crate::hull::area(&node.hull) >= area);
     }
 }

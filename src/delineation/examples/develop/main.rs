@@ -30,6 +30,8 @@ use image::{Rgb, RgbImage};
 // For the form of the measures against what passes a sieve: `develop masses ENGINE|truth FLIGHT...` of simulated
 // flights without a lens (`fragscale sample DIR --lens none`): what their photos give against their sieves.
 mod masses;
+// Whether the surface helps to outline.
+mod depth;
 
 type Failed = Box<dyn std::error::Error>;
 
@@ -45,7 +47,11 @@ fn main() -> Result<(), Failed> {
             let engine = (*engine != "truth").then(|| engine_named(engine)).transpose()?;
             masses::masses(engine.as_deref(), flights)
         }
-        _ => Err("develop masses ENGINE|truth FLIGHT... | develop features ENGINE FOLDER OUT | develop score ENGINE SCORER DATA [PICTURES]".into()),
+        ["depth", engine, scorer, flights @ ..] => {
+            let scorer = Scorer::read(&fs::read_to_string(scorer)?).ok_or("not the numbers of a scorer")?;
+            depth::depth(&*engine_named(engine)?, &scorer, flights)
+        }
+        _ => Err("develop depth ENGINE SCORER FLIGHT... | develop masses ENGINE|truth FLIGHT... | develop features ENGINE FOLDER OUT | develop score ENGINE SCORER DATA [PICTURES]".into()),
     }
 }
 
