@@ -15,6 +15,7 @@
 //! [`Regions`] keeps the tree for who looks for another node by hand; `photo` leads from a flight's photo here and
 //! on to its fragments, [`measures`] and [`mass`].
 
+mod bare;
 pub mod choice;
 mod classical;
 mod delineating;
@@ -37,6 +38,7 @@ mod transposed;
 pub mod tree;
 mod votes;
 
+pub use bare::bare;
 pub use classical::Classical;
 pub use delineating::{Delineated, delineate, delineated, least_across, leave_out};
 pub use engine::{Engine, Outlined};

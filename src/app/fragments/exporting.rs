@@ -271,7 +271,7 @@ impl Export {
             shape: SieveShape::Calibrated,
         };
         let made = written.measured(places, units, progress).map_err(failed)?;
-        notes.extend(made.note);
+        notes.extend(made.notes);
         let paths = exports::outlined_files(&self.folder, &of.stem);
         for (path, bytes) in paths.iter().zip(made.bytes) {
             self.write_file(path, &bytes)?;

@@ -217,7 +217,8 @@ impl Sums {
                 diameter,
                 rectangle,
                 widths,
-                inscribed: 2.0 * self.deepest / scale,
+                // Of a few pixels it would be wider than they are.
+                inscribed: (2.0 * self.deepest / scale).min(widths[0]),
                 roundness: (diameter / widths[1]).powi(2),
                 height,
                 sieve_size: shape.sieve_size(diameter, widths[0], rectangle),

@@ -7,7 +7,7 @@ use image::RgbImage;
 use super::{WorldOutlines, labels_png, outlines_png, world_geojson};
 use crate::delineation::mass::PhotoFragments;
 use crate::delineation::measures::SieveShape;
-use crate::delineation::{LabelImage, OutlinedBy, photo};
+use crate::delineation::{LabelImage, OutlinedBy, bare, photo};
 use crate::fault::Fault;
 use crate::flight::Flight;
 use crate::jobs::Progress;
@@ -49,7 +49,7 @@ pub struct OutlinedFiles {
     /// Of [`outlined_files`].
     pub bytes: [Vec<u8>; 3],
     /// What is to be said of the outlines.
-    pub note: Option<String>,
+    pub notes: Vec<String>,
 }
 
 impl PhotoOutlined<'_> {
@@ -69,7 +69,11 @@ impl PhotoOutlined<'_> {
         let fragments = photo::fragments(self.labels, &field, self.shape, least);
         Ok(OutlinedFiles {
             bytes: self.bytes(&posed.name, &field, &fragments, places, units)?,
-            note: fragments.specks(),
+            notes: fragments
+                .specks()
+                .into_iter()
+                .chain(bare(self.labels))
+                .collect(),
             fragments,
         })
     }

@@ -155,7 +155,8 @@ impl PhotoOfSizes<'_> {
     }
 }
 
-/// A line a percent: the size that it passes, and its 95 % interval; empty where it is below what the photo shows.
+/// A line a percent: the size that it passes, its 95 % interval, and the size below which the photo shows nothing. Without a law's
+/// tail a size below that is empty; an end of an interval below it always.
 ///
 /// # Errors
 /// Where memory runs out.
@@ -171,6 +172,7 @@ pub(super) fn sizes_csv(
         format!("size_{u}"),
         format!("low_{u}"),
         format!("high_{u}"),
+        format!("limit_{u}"),
     ];
     let mut rows = vec![heads.to_vec()];
     for of in photos {
@@ -181,6 +183,7 @@ pub(super) fn sizes_csv(
             row.extend(
                 sizes.map(|size| size.map_or_else(String::new, |size| (size * factor).to_string())),
             );
+            row.push((of.by_mass.limit * factor).to_string());
             rows.push(row);
         }
     }

@@ -177,12 +177,19 @@ impl PhotoSet {
             left_out.push(LeftOut { photo: name, why });
         }
         if read.len() < 3 {
+            let out = left_out.iter().take(3);
+            let reasons: Vec<String> = out.map(|of| format!("{}: {}", of.photo, of.why)).collect();
+            let reasons = match reasons.join("; ") {
+                none if none.is_empty() => none,
+                some if left_out.len() > 3 => format!(" ({some}; ...)"),
+                some => format!(" ({some})"),
+            };
             let what = format!(
-                "{} of its {} photos can be read; a reconstruction needs three at least",
+                "{} of its {} photos can be read{reasons}; a reconstruction needs three at least",
                 read.len(),
                 files.len()
             );
-            let remedy = "name the folder in which the photos lie";
+            let remedy = "add photos that overlap, or name the folder in which they lie";
             return Err(at(Fault::new(what, remedy)));
         }
         let world = World::of(crs, read.iter().map(|(.., metadata)| metadata)).map_err(at)?;

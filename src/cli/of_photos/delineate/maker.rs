@@ -81,7 +81,7 @@ impl<'a> Maker<'a> {
             shape: self.arguments.shape.into(),
         };
         let measured = of.measured(self.places, self.units, self.progress)?;
-        notes.extend(measured.note);
+        notes.extend(measured.notes);
         Ok(Made {
             files: measured.bytes,
             fragments: measured.fragments,

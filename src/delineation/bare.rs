@@ -1,0 +1,81 @@
+//! Large pieces of a photo without any fragment.
+//!
+//! They may be fines, and are taken for some; a floor beside the pile looks the same to an engine, and makes a pile finer
+//! than it is. So it is said.
+
+use crate::labels::{FINES, LabelImage};
+
+/// Cells of the photo's longer side: what is between fragments has no cell to itself.
+const CELLS: usize = 32;
+/// From this share of the photo on a piece is worth a word.
+const LARGE: f64 = 0.1;
+
+/// That one piece without any fragment takes much of the photo.
+pub fn bare(labels: &LabelImage) -> Option<String> {
+    (largest_bare(labels) > LARGE).then(|| {
+        "one piece of more than a tenth of the photo is without any fragment, and counts as fines; where it is floor and not fines, \
+         exclude it (in the window, page Fragments)"
+            .to_owned()
+    })
+}
+
+/// The share of the photo that its largest piece of cells takes of which every pixel is fines.
+fn largest_bare(labels: &LabelImage) -> f64 {
+    let side = labels.width.max(labels.height).div_ceil(CELLS).max(1);
+    let [columns, rows] = [labels.width, labels.height].map(|length| length.div_ceil(side));
+    let mut is_bare = vec![true; columns * rows];
+    for (row, pixels) in labels.labels.chunks_exact(labels.width.max(1)).enumerate() {
+        for (column, label) in pixels.iter().enumerate() {
+            is_bare[row / side * columns + column / side] &= *label == FINES;
+        }
+    }
+    let mut most = 0;
+    for first in 0..is_bare.len() {
+        let (mut count, mut open) = (0, vec![first]);
+        while let Some(cell) = open.pop() {
+            if !std::mem::take(&mut is_bare[cell]) {
+                continue;
+            }
+            count += 1;
+            let (x, y) = (cell % columns, cell / columns);
+            open.extend((x > 0).then(|| cell - 1));
+            open.extend((x + 1 < columns).then(|| cell + 1));
+            open.extend((y > 0).then(|| cell - columns));
+            open.extend((y + 1 < rows).then(|| cell + columns));
+        }
+        most = most.max(count);
+    }
+    most as f64 / is_bare.len().max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::labels::NOT_ROCK;
+
+    /// A photo of which the left third is floor, beside fragments of 10 pixels with fines between them.
+    #[test]
+    fn a_floor_is_large_and_gaps_are_not() {
+        let floor_to = |edge: usize, floor: u32| LabelImage {
+            width: 320,
+            height: 200,
+            labels: (0..320 * 200)
+                .map(|place| {
+                    let (x, y) = (place % 320, place / 320);
+                    let is_gap = x % 12 < 2 || y % 12 < 2;
+                    match (x < edge, is_gap) {
+                        (true, _) => floor,
+                        (_, true) => FINES,
+                        _ => 1 + (x / 12 + y / 12 * 30) as u32,
+                    }
+                })
+                .collect(),
+        };
+        let share = largest_bare(&floor_to(110, FINES));
+        assert!((share - 11.0 / 32.0).abs() < 1e-9, "{share}");
+        assert!(bare(&floor_to(110, FINES)).is_some());
+        assert_eq!(largest_bare(&floor_to(0, FINES)), 0.0);
+        // What was excluded is no fines.
+        assert_eq!(bare(&floor_to(110, NOT_ROCK)), None);
+    }
+}
