@@ -11,7 +11,7 @@ use glam::DVec2;
 /// The votes of all pixels, row by row from the top left.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Votes {
-    /// The diameter of the circle with the fragment's area, pixels, as a power of two: 255 is [`SIZE_OF_ONE`].
+    /// The diameter of the circle with the fragment's area, pixels, as a power of two: 255 is the tenth.
     pub size: Vec<u8>,
     /// The way to the fragment's centroid, in those diameters: 0 is one to the left, 255 one to the right.
     pub right: Vec<u8>,
