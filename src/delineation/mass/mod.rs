@@ -35,8 +35,14 @@ use self::counted::Counted;
 use crate::delineating::LEAST_PIXELS_ACROSS;
 use crate::engine::Engine;
 use crate::labels::{FINES, LabelImage};
-use crate::measures::Fragment;
+use crate::measures::{Fragment, Measures};
 use crate::outlined_by::OutlinedBy;
+
+/// The largest circle within the outline of a ball, over the circle of its area: 0.97 and more in the nine photos of the
+/// bundled flight, while no fragment among the largest 200 has over 0.93.
+const AS_A_BALL: f64 = 0.95;
+/// A ball is to be seen from afar: 1.8 to 2.3 times the next there.
+const ALONE: f64 = 1.3;
 
 /// What a photo contributes. Lengths in one unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,6 +118,23 @@ impl PhotoFragments {
             format!(
                 "{count} {outlines} of less than {LEAST_PIXELS_ACROSS} pixels across: too small to be measured, and below the limit"
             )
+        })
+    }
+
+    /// That the largest one seems to be a ball, which nobody traced as a scale object.
+    pub fn ball(&self) -> Option<String> {
+        let whole = self.fragments.iter().filter(|of| !of.is_cut);
+        let mut whole: Vec<&Measures> = whole.filter_map(|of| of.world.as_ref()).collect();
+        whole.sort_by(|a, b| b.sieve_size.total_cmp(&a.sieve_size));
+        let [largest, next, ..] = whole[..] else {
+            return None;
+        };
+        let is_ball = largest.inscribed > AS_A_BALL * largest.diameter
+            && largest.sieve_size > ALONE * next.sieve_size;
+        is_ball.then(|| {
+            "its largest fragment is a circle, much larger than the next, and counts as rock; if it is a ball, trace it as a scale \
+             object, or exclude it (in the window)"
+                .to_owned()
         })
     }
 
@@ -364,7 +387,6 @@ pub(crate) mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::measures::Measures;
 
     pub(crate) fn fragment(size: f64, extent: f64, is_cut: bool) -> Fragment {
         let area = std::f64::consts::PI / 4.0 * size * size;
@@ -388,6 +410,32 @@ pub(crate) mod tests {
                 sieve_size: size,
             }),
         }
+    }
+
+    /// A circle of twice the next is taken for a ball; a square one, a larger next one and a cut one are not.
+    #[test]
+    fn a_ball_is_round_and_alone() {
+        let photo = |fragments: Vec<Fragment>| PhotoFragments {
+            fragments,
+            frame: DVec2::splat(100.0),
+            fines: 0.0,
+            limit: 0.1,
+        };
+        let [small, large] = [1.0, 2.0].map(|size| fragment(size, 0.0, false));
+        assert!(photo(vec![small.clone(), large.clone()]).ball().is_some());
+        assert_eq!(
+            photo(vec![fragment(1.6, 0.0, false), large.clone()]).ball(),
+            None
+        );
+        assert_eq!(
+            photo(vec![small.clone(), fragment(2.0, 0.0, true)]).ball(),
+            None
+        );
+        assert_eq!(photo(vec![large.clone()]).ball(), None);
+        let mut square = large;
+        // The circle of a square's area is 1.13 times its side.
+        square.world.as_mut().unwrap().inscribed = 2.0 / 1.13;
+        assert_eq!(photo(vec![small, square]).ball(), None);
     }
 
     /// Circles of 1 and 2: their areas are as 1 to 4. As much fines as rock.

@@ -69,10 +69,9 @@ impl PhotoOutlined<'_> {
         let fragments = photo::fragments(self.labels, &field, self.shape, least);
         Ok(OutlinedFiles {
             bytes: self.bytes(&posed.name, &field, &fragments, places, units)?,
-            notes: fragments
-                .specks()
+            notes: [fragments.specks(), fragments.ball(), bare(self.labels)]
                 .into_iter()
-                .chain(bare(self.labels))
+                .flatten()
                 .collect(),
             fragments,
         })
