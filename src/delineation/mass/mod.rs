@@ -422,16 +422,10 @@ pub(crate) mod tests {
             limit: 0.1,
         };
         let [small, large] = [1.0, 2.0].map(|size| fragment(size, 0.0, false));
-        assert!(photo(vec![small.clone(), large.clone()]).ball().is_some());
-        assert_eq!(
-            photo(vec![fragment(1.6, 0.0, false), large.clone()]).ball(),
-            None
-        );
-        assert_eq!(
-            photo(vec![small.clone(), fragment(2.0, 0.0, true)]).ball(),
-            None
-        );
-        assert_eq!(photo(vec![large.clone()]).ball(), None);
+        assert!(photo(vec![small, large]).ball().is_some());
+        assert_eq!(photo(vec![fragment(1.6, 0.0, false), large]).ball(), None);
+        assert_eq!(photo(vec![small, fragment(2.0, 0.0, true)]).ball(), None);
+        assert_eq!(photo(vec![large]).ball(), None);
         let mut square = large;
         // The circle of a square's area is 1.13 times its side.
         square.world.as_mut().unwrap().inscribed = 2.0 / 1.13;
