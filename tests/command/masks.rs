@@ -421,6 +421,16 @@ fn the_step_engine_from_end_to_end() {
             &["size_cm", "percent_passing"],
         );
         let sizes = columns(&to.join("fragments.csv"), &["sieve_size_cm"]);
+        // The limit is where the curve begins.
+        for limit in columns(&to.join("sizes.csv"), &["limit_cm"]) {
+            assert_eq!(limit[0], curve[0][0]);
+        }
+        // The ball of these photos, which no scale object traces.
+        let said = String::from_utf8_lossy(&done.stderr);
+        assert!(
+            said.contains("IMG_0005.jpg: its largest fragment is a circle"),
+            "{said}"
+        );
         (
             number(&curve[0][0]),
             number(&curve[curve.len() - 1][0]),
