@@ -649,6 +649,10 @@ fn folders_without_photos_that_overlap_are_refused() {
     };
     let refused = |what: &str| refused_by(&Embedded::default(), what);
     refused("a reconstruction needs three at least");
+    // Which cannot be read is said.
+    fs::write(photos.join("empty.jpg"), "").unwrap();
+    refused("0 of its 1 photos can be read (empty.jpg: ");
+    fs::remove_file(photos.join("empty.jpg")).unwrap();
     for (number, pose) in (1..4).zip(&poses()) {
         let name = format!("IMG_{number}.jpg");
         // Each of another place.
