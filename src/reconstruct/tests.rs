@@ -384,6 +384,10 @@ fn is_as_rendered(made: &Reconstructed, of_blank: &str) {
     assert_eq!(why("empty.jpg"), "it is empty");
     assert!(why("cut.jpg").contains("is cut off at"), "{said:?}");
     assert_eq!(why("copy of 5.jpg"), "it is a copy of IMG_5.jpg");
+    // The list beside the model has them all, each once.
+    let listed = fs::read_to_string(to.join("reconstruction/left_out.txt")).unwrap();
+    let listed = listed.lines().count();
+    assert_eq!((said.len(), listed), (5, 5), "{said:?}");
     assert!(made.reprojection_px.unwrap() < 0.5);
 
     let opened = open_flight(&made.flight, &OpenOptions::default(), &progress).unwrap();

@@ -24,7 +24,7 @@ use crate::files::FileError;
 use crate::formats::read_project;
 use crate::jobs::Progress;
 use crate::opening::{GeoreferenceRequest, flight_text_of, georeference_model, path_from};
-use crate::photo_set::PhotoSet;
+use crate::photo_set::{LeftOut, PhotoSet};
 use crate::{DensePoints, Reconstructed, Request};
 
 const REPORT: &str = "report.html";
@@ -43,11 +43,16 @@ pub(crate) fn write(
     request: &Request,
     folder: &Folder,
     photos: &PhotoSet,
-    (engine, sparse, goes_on): (String, Sparse, bool),
+    (engine, mut sparse, goes_on): (String, Sparse, bool),
     progress: &Progress,
 ) -> Result<Reconstructed, FileError> {
     let flight = folder.path.join(FLIGHT);
     let at = |error: &io::Error| FileError::new(&folder.path, cannot("be written", error));
+    // Those that could not be read stand with the model, too; of a model that is read again they are there already.
+    let mut left_out = photos.left_out.clone();
+    let is_new = |of: &LeftOut| photos.left_out.iter().all(|it| it.photo != of.photo);
+    left_out.extend(sparse.left_out.into_iter().filter(is_new));
+    sparse.left_out = left_out;
     let model = folder.write_model(&sparse)?;
     let read = read_project(&model, progress)?.reconstruction;
     let mut warnings = Vec::new();
@@ -138,13 +143,11 @@ pub(crate) fn write(
             None
         }
     };
-    let mut left_out = photos.left_out.clone();
-    left_out.extend(sparse.left_out);
     let made = Reconstructed {
         flight,
         registered: model.photos.len(),
         photos: photos.count,
-        left_out,
+        left_out: sparse.left_out,
         points: model.cloud.points.len(),
         dense: dense_points,
         reprojection_px: model.median_reprojection_px(),
