@@ -4,6 +4,7 @@ use std::fs;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2, vec2};
+use egui_kittest::kittest::Queryable as _;
 use fragscale::app::fragments::{FragmentStep, PhotoOutlines};
 use fragscale::app::size_distributions::Page;
 use fragscale::app::{Command, photo_view::PhotoCommand};
@@ -244,6 +245,15 @@ fn the_doubtful_ones_are_gone_through_with_keys() {
     assert!(desk.says("Nothing is outlined in this photo yet."));
     desk.press(Modifiers::NONE, Key::ArrowUp);
     assert!(outlines(&desk).editing.changes() >= 3);
+    // However far one goes, the list shows the selected one.
+    for _ in 0..20 {
+        desk.press(Modifiers::NONE, Key::N);
+    }
+    let selected = desk.open().fragments.selected.expect("a fragment");
+    let mut doubtful = outlines(&desk).doubtful.iter();
+    let (_, sure) = doubtful.find(|of| of.0 == selected).expect("in the list");
+    let row = format!("{selected}: {:.0} % sure", 100.0 * sure);
+    assert!(desk.harness.query_by_label(&row).is_some(), "{row}");
 }
 
 #[test]

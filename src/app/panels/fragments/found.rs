@@ -165,19 +165,32 @@ fn doubtful(of: &PhotoOutlines, selected: Option<u32>, ui: &mut Ui, commands: &m
     if doubtful.is_empty() {
         return;
     }
-    egui::ScrollArea::vertical()
+    let mut list = egui::ScrollArea::vertical()
         .id_salt("doubtful fragments")
         .max_height(ROWS)
-        .auto_shrink([false, true])
-        .show_rows(ui, ROW, doubtful.len(), |ui, rows| {
-            for (number, sure) in &doubtful[rows] {
-                let on = selected == Some(*number);
-                let text = format!("{number}: {:.0} % sure", 100.0 * sure);
-                if ui.selectable_label(on, text).clicked() {
-                    commands.push(Command::Fragments(FragmentStep::Show(*number)));
-                }
+        .auto_shrink([false, true]);
+    // Where another one is selected, the list goes to it.
+    let id = ui.scope_id().with("doubtful fragment shown");
+    let before = ui.data(|data| data.get_temp::<Option<u32>>(id));
+    ui.data_mut(|data| data.insert_temp(id, selected));
+    let at = doubtful
+        .iter()
+        .position(|(number, _)| selected == Some(*number));
+    if let (true, Some(at)) = (before != Some(selected), at) {
+        let row = ROW + ui.spacing().item_spacing.y;
+        // No farther than to the last one, where it would spring back.
+        let most = (doubtful.len() as f32 * row - ROWS).max(0.0);
+        list = list.vertical_scroll_offset((at as f32 * row - ROWS / 2.0).clamp(0.0, most));
+    }
+    list.show_rows(ui, ROW, doubtful.len(), |ui, rows| {
+        for (number, sure) in &doubtful[rows] {
+            let on = selected == Some(*number);
+            let text = format!("{number}: {:.0} % sure", 100.0 * sure);
+            if ui.selectable_label(on, text).clicked() {
+                commands.push(Command::Fragments(FragmentStep::Show(*number)));
             }
-        });
+        }
+    });
 }
 
 /// What all of them come to.
