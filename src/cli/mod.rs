@@ -398,9 +398,7 @@ fn answer_of_scales(
 /// What fell back or failed.
 fn notes_of(report: &exports::ScaleReport<'_>) -> impl Iterator<Item = String> {
     report.noted().into_iter().map(|noted| {
-        // Some notes begin with it.
-        let is_said = noted.has_scale || noted.notes.starts_with("no scale");
-        let verdict = if is_said { "" } else { "no scale: " };
+        let verdict = if noted.has_scale { "" } else { "no scale: " };
         format!("{}: {verdict}{}", noted.whose, noted.notes)
     })
 }

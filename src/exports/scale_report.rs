@@ -124,7 +124,12 @@ impl<'a> ScaleReport<'a> {
             let Some(verdict) = photo.settled().filter(|_| !photo.doubts.is_empty()) else {
                 return notes(line);
             };
-            Some(format!("{verdict}: {}", photo.reasons().join("; ")))
+            let (verdict, reasons) = (verdict.to_string(), photo.reasons().join("; "));
+            // That there is no scale is verdict and reason.
+            Some(match reasons.starts_with(&verdict) {
+                true => reasons,
+                false => format!("{verdict}: {reasons}"),
+            })
         })
     }
 

@@ -184,6 +184,11 @@ fn what_fell_back_is_said_everywhere() {
         stderr.contains("warning: IMG_0002.jpg: no scale: "),
         "{stderr}"
     );
+    // In the table verdict and reason say it once.
+    let table = fragscale(&["scales", path]);
+    let table = String::from_utf8(table.stdout).expect("UTF-8");
+    assert!(table.contains("\nIMG_0002.jpg: no scale: "), "{table}");
+    assert!(!table.contains("no scale: no scale"), "{table}");
     // No top scale, no number.
     assert!(stdout.contains("\nIMG_0002.jpg,1280,720,,"), "{stdout}");
     let json = scales_json(folder.path(), &[]);
