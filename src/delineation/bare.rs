@@ -4,6 +4,7 @@
 //! than it is. So it is said.
 
 use crate::labels::{FINES, LabelImage};
+use crate::tree::around;
 
 /// Cells of the photo's longer side: what is between fragments has no cell to itself.
 const CELLS: usize = 32;
@@ -37,11 +38,7 @@ fn largest_bare(labels: &LabelImage) -> f64 {
                 continue;
             }
             count += 1;
-            let (x, y) = (cell % columns, cell / columns);
-            open.extend((x > 0).then(|| cell - 1));
-            open.extend((x + 1 < columns).then(|| cell + 1));
-            open.extend((y > 0).then(|| cell - columns));
-            open.extend((y + 1 < rows).then(|| cell + columns));
+            open.extend(around(columns, rows, cell));
         }
         most = most.max(count);
     }

@@ -36,6 +36,20 @@ pub fn of_nodes(tree: &Tree, truth: &LabelImage) -> Vec<f64> {
     most
 }
 
+/// Whether each label's found fragment counts: where the truth is not `complete`, if most of it lies where something was outlined.
+pub fn counts(found: &LabelImage, truth: &LabelImage, complete: bool) -> Vec<bool> {
+    let areas = found.areas();
+    let mut outlined = vec![0; areas.len()];
+    for (label, other) in found.labels.iter().zip(&truth.labels) {
+        if *label != NOT_ROCK && *other != FINES && *other != NOT_ROCK {
+            outlined[*label as usize] += 1;
+        }
+    }
+    let both = areas.into_iter().zip(outlined);
+    both.map(|(area, outlined)| complete || 2 * outlined > area)
+        .collect()
+}
+
 /// How found fragments agree with true ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Agreement {
@@ -53,13 +67,11 @@ impl Agreement {
     pub fn of(found: &LabelImage, truth: &LabelImage, least: usize, complete: bool) -> Self {
         let (found_areas, true_areas) = (found.areas(), truth.areas());
         let mut shared: FxHashMap<[u32; 2], usize> = FxHashMap::default();
-        let mut outlined = vec![0; found_areas.len()];
         for (one, other) in found.labels.iter().zip(&truth.labels) {
             if *one == FINES || *one == NOT_ROCK || *other == FINES || *other == NOT_ROCK {
                 continue;
             }
             *shared.entry([*one, *other]).or_default() += 1;
-            outlined[*one as usize] += 1;
         }
         let mut is_right = vec![false; found_areas.len()];
         let mut is_found = vec![false; true_areas.len()];
@@ -70,11 +82,12 @@ impl Agreement {
                 is_found[other as usize] = true;
             }
         }
+        let counts = counts(found, truth, complete);
         let mut agreement = Self::default();
         for (label, area) in found_areas.iter().enumerate().skip(1) {
             if is_right[label] {
                 agreement.right += 1;
-            } else if *area >= least && (complete || 2 * outlined[label] > *area) {
+            } else if *area >= least && counts[label] {
                 agreement.wrong += 1;
             }
         }

@@ -65,11 +65,11 @@ def asked(pair):
 class Photos:
     """Square photos of one size, with what is asked of their pixels, on a device."""
 
-    def __init__(self, folders, device, processes=None):
+    def __init__(self, folders, device):
         pairs = []
         for folder in map(pathlib.Path, folders.split(",")):
             pairs += [(photo, folder / "labels" / f"{photo.stem}.png") for photo in sorted((folder / "photos").iterdir())]
-        with multiprocessing.Pool(processes) as pool:
+        with multiprocessing.Pool() as pool:
             parts = zip(*pool.map(asked, pairs, chunksize=4))
         self.image, self.own, self.maps = (torch.from_numpy(np.stack(part)).to(device) for part in parts)
         self.device = device

@@ -72,10 +72,13 @@ class Net(nn.Module):
         return self.head(x)
 
 
-def drawn(photos, seed, step, many, hard, size=SIDE):
+def generator_of(photos, seed, step):
+    return torch.Generator(photos.device).manual_seed(seed * 1_000_003 + step)
+
+
+def drawn(photos, seed, step, many, hard):
     """A batch: what the network sees and what it is to say."""
-    generator = torch.Generator(photos.device).manual_seed(seed * 1_000_003 + step)
-    image, *of_stones = patches(photos, generator, many, size, hard)
+    image, *of_stones = patches(photos, generator_of(photos, seed, step), many, SIDE, hard)
     return normalised(image), targets(*of_stones)
 
 
@@ -98,8 +101,7 @@ def write_patches(photos, seed, count, folder, hard):
     for kind in ("photos", "labels"):
         (folder / kind).mkdir(parents=True, exist_ok=True)
     for number in range(count):
-        generator = torch.Generator(photos.device).manual_seed(seed * 1_000_003 + number)
-        image, own, *_ = patches(photos, generator, 1, 384, hard)
+        image, own, *_ = patches(photos, generator_of(photos, seed, number), 1, 384, hard)
         image = (image[0] * 255).round().byte().permute(1, 2, 0).cpu().numpy()
         Image.fromarray(image).save(folder / "photos" / f"{number:05}.png")
         Image.fromarray(own[0, 0].cpu().numpy().astype(np.uint16)).save(folder / "labels" / f"{number:05}.png")

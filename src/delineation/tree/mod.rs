@@ -13,7 +13,7 @@ mod watershed;
 use glam::DVec2;
 
 pub use joining::tree;
-pub(crate) use watershed::NOWHERE;
+pub(crate) use watershed::{NOWHERE, around};
 
 use crate::votes::VoteSums;
 

@@ -141,7 +141,7 @@ impl Frame {
 }
 
 /// The pixels that share a side with one.
-pub(super) fn around(width: usize, height: usize, pixel: usize) -> impl Iterator<Item = usize> {
+pub(crate) fn around(width: usize, height: usize, pixel: usize) -> impl Iterator<Item = usize> {
     let (x, y) = (pixel % width, pixel / width);
     let left = (x > 0).then(|| pixel - 1);
     let right = (x + 1 < width).then_some(pixel + 1);

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use fragscale_core::jobs::Progress;
 use fragscale_core::picture;
-use fragscale_core::scale::{FieldGrid, ImageKind, ScaleField};
+use fragscale_core::scale::ScaleField;
 use fragscale_delineation::choice::{self, Scorer};
 use fragscale_delineation::overlap::Agreement;
 use fragscale_delineation::{Engine, tree};
@@ -27,13 +27,8 @@ pub(super) fn depth(engine: &dyn Engine, scorer: &Scorer, flights: &[&str]) -> R
         let mut agreements = [Agreement::default(); SHARES.len()];
         for (index, photo) in opened.flight.parts().photos.iter().enumerate() {
             let camera = opened.flight.camera(photo);
-            let grid = FieldGrid::of_pixels(camera);
-            let field = opened
-                .flight
-                .field(photo, ImageKind::Undistorted, grid, &progress)?;
+            let (truth, _, field) = super::simulated(&opened, folder, index)?;
             let bends = bends(&field);
-            let name = photo.name.replace(".jpg", ".png");
-            let (truth, _) = super::labels(&folder.join("labels").join(name))?;
             let image = picture::undistorted(&opened.pixels_of(index)?, camera, u32::MAX);
             let evidence = engine.look(&image, &progress)?;
             for (share, agreement) in SHARES.into_iter().zip(&mut agreements) {

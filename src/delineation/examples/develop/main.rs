@@ -22,9 +22,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use fragscale_core::jobs::Progress;
+use fragscale_core::scale::{FieldGrid, ImageKind, ScaleField};
 use fragscale_delineation::choice::{self, Scorer, features};
 use fragscale_delineation::overlap::{self, Agreement};
 use fragscale_delineation::{Classical, Engine, Evidence, LabelImage, Learned, Votes, tree};
+use fragscale_opening::Opened;
 use image::{Rgb, RgbImage};
 
 // For the form of the measures against what passes a sieve: `develop masses ENGINE|truth FLIGHT...` of simulated
@@ -83,6 +85,23 @@ fn labels(path: &Path) -> Result<(LabelImage, Vec<u16>), Failed> {
         labels,
     };
     Ok((labels, names))
+}
+
+/// Of a photo of a simulated flight in this folder: the true outlines with their numbers in the file, and the scales of all pixels.
+fn simulated(
+    opened: &Opened,
+    folder: &Path,
+    index: usize,
+) -> Result<(LabelImage, Vec<u16>, ScaleField), Failed> {
+    let photo = &opened.flight.parts().photos[index];
+    let grid = FieldGrid::of_pixels(opened.flight.camera(photo));
+    let progress = Progress::default();
+    let field = opened
+        .flight
+        .field(photo, ImageKind::Undistorted, grid, &progress)?;
+    let name = photo.name.replace(".jpg", ".png");
+    let (labels, numbers) = labels(&folder.join("labels").join(name))?;
+    Ok((labels, numbers, field))
 }
 
 fn write_features(engine: &dyn Engine, folder: &str, out: &str) -> Result<(), Failed> {
@@ -176,10 +195,16 @@ fn score(
                 areas.sort_unstable();
                 let small = areas.get(areas.len() / 20).copied().unwrap_or_default();
                 of.large += Agreement::of(best, &truth, small.max(least), complete).wrong;
-                let counts =
+                let large =
                     |areas: Vec<usize>| areas.into_iter().filter(move |area| *area >= least);
-                of.found.extend(counts(on_outlined(best, &truth, complete)));
-                of.outlined.extend(counts(truth.areas().split_off(1)));
+                let found = best
+                    .areas()
+                    .into_iter()
+                    .zip(overlap::counts(best, &truth, complete));
+                let found = found.skip(1).filter(|(_, counts)| *counts);
+                of.found
+                    .extend(large(found.map(|(area, _)| area).collect()));
+                of.outlined.extend(large(truth.areas().split_off(1)));
             }
             of.seconds += all;
             of.leaves += tree.leaves;
@@ -244,20 +269,6 @@ struct OfSet {
     outlined: Vec<usize>,
     seconds: f64,
     leaves: usize,
-}
-
-/// The pixels of each found fragment; where the truth is not `complete`, of those of which most was outlined.
-fn on_outlined(found: &LabelImage, truth: &LabelImage, complete: bool) -> Vec<usize> {
-    let mut outlined = vec![0; found.areas().len()];
-    for (label, other) in found.labels.iter().zip(&truth.labels) {
-        if let Some(count) = outlined.get_mut(*label as usize) {
-            *count += usize::from(*other != 0);
-        }
-    }
-    let both = found.areas().into_iter().zip(outlined).skip(1);
-    both.filter(|(area, outlined)| complete || 2 * outlined > *area)
-        .map(|(area, _)| area)
-        .collect()
 }
 
 /// The diameter that fragments with so many percent of the area do not exceed, pixels.

@@ -5,7 +5,6 @@ use std::path::Path;
 
 use fragscale_core::jobs::Progress;
 use fragscale_core::picture;
-use fragscale_core::scale::{FieldGrid, ImageKind};
 use fragscale_delineation::mass::{self, PhotoFragments, Steps};
 use fragscale_delineation::measures::{SieveShape, measured};
 use fragscale_delineation::{Engine, delineate, least_across};
@@ -28,12 +27,7 @@ pub(super) fn masses(engine: Option<&dyn Engine>, flights: &[&str]) -> Result<()
         let sizes = sizes(&folder.join("truth.json"))?;
         for (index, photo) in parts.photos.iter().enumerate() {
             let camera = opened.flight.camera(photo);
-            let grid = FieldGrid::of_pixels(camera);
-            let field = opened
-                .flight
-                .field(photo, ImageKind::Undistorted, grid, &progress)?;
-            let name = photo.name.replace(".jpg", ".png");
-            let (labels, numbers) = super::labels(&folder.join("labels").join(name))?;
+            let (labels, numbers, field) = super::simulated(&opened, folder, index)?;
             let (labels, across) = match engine {
                 None => (labels, 1.0),
                 Some(engine) => {
