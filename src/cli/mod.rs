@@ -42,7 +42,7 @@ use flight_arguments::{FlightArguments, MemoryArguments};
 use models::{georeference, reconstruct};
 use of_photos::{delineate, map, rectify, scale_map};
 use on_surface::{profile, volume};
-use outputs::{OutputArguments, Outputs};
+use outputs::{AnswerArguments, Outputs};
 use planning::{flown, mission, plan};
 
 use crate::batch::FLIGHT_COMMAND;
@@ -135,11 +135,8 @@ struct ScalesArguments {
     /// Scales are in pixels per this unit.
     #[arg(long, value_enum, default_value = "cm")]
     unit: OutputUnit,
-    /// How to write them.
-    #[arg(long, value_enum, default_value = "table")]
-    format: ScalesFormat,
     #[command(flatten)]
-    output: OutputArguments,
+    answer: AnswerArguments,
 }
 
 #[derive(Debug, Args)]
@@ -326,7 +323,7 @@ fn window(flight: Vec<PathBuf>) -> ExitCode {
 }
 
 fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, String> {
-    let mut outputs = arguments.output.outputs(arguments.flight.files())?;
+    let mut outputs = arguments.answer.output.outputs(arguments.flight.files())?;
     let (flight, memory) = (&arguments.flight, &arguments.memory);
     let (opened, (text, notes)) = memory.with_flight(flight, false, progress, |opened| {
         outputs.read(&opened.read)?;
@@ -374,11 +371,8 @@ fn scales_text(
     let report = exports::ScaleReport::new(review, arguments.unit.into())
         .with_scale_objects(&opened.settings.scale_objects)
         .map_err(in_flight)?;
-    let text = match arguments.format {
-        ScalesFormat::Table => exports::scales_table(&report),
-        ScalesFormat::Csv => exports::scales_csv(&report).map_err(|e| e.to_string())?,
-        ScalesFormat::Json => exports::scales_json(&report).map_err(|e| e.to_string())?,
-    };
+    let (csv, json) = (exports::scales_csv, exports::scales_json);
+    let text = arguments.answer.text(&report, exports::scales_table, csv, json)?;
     Ok((text, notes_of(&report).collect()))
 }
 

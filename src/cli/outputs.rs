@@ -44,34 +44,6 @@ impl OutputArguments {
 /// How and where the answer of a command goes that is a table for people, CSV or JSON.
 #[derive(Debug, Clone, Args)]
 pub(super) struct AnswerArguments {
-    /// How to write it.
-    #[arg(long, value_enum, default_value = "table")]
-    format: ScalesFormat,
-    #[command(flatten)]
-    pub(super) output: OutputArguments,
-}
-
-impl AnswerArguments {
-    /// What a report says in the chosen format.
-    pub(super) fn text<T, C: Display, J: Display>(
-        &self,
-        report: &T,
-        table: fn(&T) -> String,
-        csv: fn(&T) -> Result<String, C>,
-        json: fn(&T) -> Result<String, J>,
-    ) -> Result<String, String> {
-        match self.format {
-            ScalesFormat::Table => Ok(table(report)),
-            ScalesFormat::Csv => csv(report).map_err(|e| e.to_string()),
-            ScalesFormat::Json => json(report).map_err(|e| e.to_string()),
-        }
-    }
-}
-
-/// The same of a command whose file's name says how it is written: CSV, JSON, else the table. Who writes
-/// into a file of numbers sees the table besides.
-#[derive(Debug, Clone, Args)]
-pub(super) struct NamedAnswerArguments {
     /// How to write it; without it as the output's name ends, else as a table.
     #[arg(long, value_enum)]
     format: Option<ScalesFormat>,
@@ -79,8 +51,35 @@ pub(super) struct NamedAnswerArguments {
     pub(super) output: OutputArguments,
 }
 
-impl NamedAnswerArguments {
-    /// Delivers what a report says; what is left is for standard output.
+impl AnswerArguments {
+    /// The chosen format, or what the file's name says: a table in a .csv is a table that no program reads.
+    fn format(&self) -> ScalesFormat {
+        let file = self.output.output.as_deref();
+        let ending = file.and_then(Path::extension).unwrap_or_default();
+        let by_name = match ending.to_string_lossy().to_lowercase().as_str() {
+            "csv" => ScalesFormat::Csv,
+            "json" => ScalesFormat::Json,
+            _ => ScalesFormat::Table,
+        };
+        self.format.unwrap_or(by_name)
+    }
+
+    /// What a report says in that format.
+    pub(super) fn text<T, C: Display, J: Display>(
+        &self,
+        report: &T,
+        table: fn(&T) -> String,
+        csv: fn(&T) -> Result<String, C>,
+        json: fn(&T) -> Result<String, J>,
+    ) -> Result<String, String> {
+        match self.format() {
+            ScalesFormat::Table => Ok(table(report)),
+            ScalesFormat::Csv => csv(report).map_err(|e| e.to_string()),
+            ScalesFormat::Json => json(report).map_err(|e| e.to_string()),
+        }
+    }
+
+    /// Delivers it; what is left is for standard output. Who writes into a file of numbers sees the table besides.
     pub(super) fn deliver<T, C: Display, J: Display>(
         &self,
         outputs: &Outputs<'_>,
@@ -89,25 +88,12 @@ impl NamedAnswerArguments {
         csv: fn(&T) -> Result<String, C>,
         json: fn(&T) -> Result<String, J>,
     ) -> Result<String, String> {
-        let ending = self
-            .output
-            .output
-            .as_ref()
-            .and_then(|path| path.extension());
-        let ending = ending.unwrap_or_default().to_string_lossy().to_lowercase();
-        let by_name = match ending.as_str() {
-            "csv" => ScalesFormat::Csv,
-            "json" => ScalesFormat::Json,
-            _ => ScalesFormat::Table,
-        };
-        let answer = AnswerArguments {
-            format: self.format.unwrap_or(by_name),
-            output: self.output.clone(),
-        };
-        let left = outputs.deliver(answer.text(report, table, csv, json)?)?;
-        let numbers_in_file =
-            self.output.output.is_some() && !matches!(answer.format, ScalesFormat::Table);
-        Ok(if numbers_in_file { table(report) } else { left })
+        let left = outputs.deliver(self.text(report, table, csv, json)?)?;
+        let is_table = matches!(self.format(), ScalesFormat::Table);
+        Ok(match outputs.has_file() && !is_table {
+            true => table(report),
+            false => left,
+        })
     }
 }
 

@@ -87,6 +87,9 @@ const SUPPORTED: &str = "flight.toml; PLY, LAS, LAZ, E57, PCD, PTS, PTX, OBJ, ST
 /// What a folder of a reconstruction holds that is not finished yet: what it is of.
 pub const UNFINISHED: &str = "unfinished/photos.txt";
 
+/// The same where its photos could not be reconstructed: why, and what to do about it, one line.
+pub const FAILED: &str = "unfinished/failed.txt";
+
 /// How many bytes of a file are looked at to tell its kind.
 pub(crate) const DETECTED_BY: usize = 4096;
 
@@ -201,10 +204,13 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
         return Ok(Kind::Flight(flight));
     }
     if path.join(UNFINISHED).is_file() {
-        let fault = Fault::new(
-            "a reconstruction that is not finished",
-            "reconstruct the same photos into it again: it goes on where it was",
-        );
+        let fault = match fs::read_to_string(path.join(FAILED)) {
+            Ok(why) => Fault::new(format!("a reconstruction that failed: {why}"), "then reconstruct again"),
+            Err(_) => Fault::new(
+                "a reconstruction that is not finished",
+                "reconstruct the same photos into it again: it goes on where it was",
+            ),
+        };
         return Err(FileError::new(path, fault));
     }
     let mut meant = Contents::of(path).meant;

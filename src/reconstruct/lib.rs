@@ -157,7 +157,13 @@ pub fn reconstruct(
         let found = engine.reconstruct(&photos, &pairs, &place, progress)?;
         adjusted::adjusted(found, &photos, &folder.work, progress)
     };
-    let (sparse, goes_on) = kept_model::kept_or_found(&folder.work, find).map_err(at)?;
+    let kept_or_found = kept_model::kept_or_found(&folder.work, find);
+    if let Err(fault) = kept_or_found.as_ref()
+        && !progress.is_cancelled()
+    {
+        folder.write_why(fault)?;
+    }
+    let (sparse, goes_on) = kept_or_found.map_err(at)?;
     let found = (engine.name(), sparse, goes_on);
     written::write(request, &folder, &photos, found, progress)
 }

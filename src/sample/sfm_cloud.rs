@@ -1,7 +1,8 @@
 //! A cloud as structure from motion would give it.
 //!
 //! Points lie only where at least three photos of the survey see the surface, more where it has
-//! texture (a matcher finds nothing on a blank wall); their noise is largest
+//! texture (a matcher finds nothing on a blank wall) and light: into the dark between stones photos look, too, but of what
+//! `reconstruct` finds there most hangs before the true surface ([`LIT`]); their noise is largest
 //! along the viewing ray (a matching error of a fraction of a pixel, divided by the base-to-height
 //! ratio); a few fly. The survey is denser than the photos that are measured: rows with 75 % overlap
 //! and a ring around the pile, as a pilot flies it for a reconstruction.
@@ -34,6 +35,11 @@ const HEIGHT_OVER_BASE: f64 = 2.5;
 
 /// How far beside a place its texture is looked for, in pixels.
 const BESIDE_PX: f64 = 4.0;
+
+/// From this grey level on darkness costs no points. Measured on the 2.5 million points of a dense cloud that `reconstruct`
+/// made of 39 photos of a muckpile: of those in pixels of 0 to 20 levels 22 of 100 lie on the true surface (to a pixel),
+/// of 20 to 45 38, 45 to 80 63, 80 to 120 84, of brighter ones 93.
+const LIT: f64 = 100.0;
 
 /// How many photos must see a point.
 const SEEN_BY: usize = 3;
@@ -155,7 +161,7 @@ fn draw(
     Ok(cloud)
 }
 
-/// How likely a place is matched, 0 to 1: by the contrast with what lies a few pixels beside it.
+/// How likely a place is matched, 0 to 1: by the contrast with what lies a few pixels beside it, and its light.
 fn texture(
     caster: &mut SceneCaster<'_>,
     camera: &Camera,
@@ -174,7 +180,7 @@ fn texture(
     };
     let brightness = |color: [u8; 3]| color.iter().map(|&part| f64::from(part)).sum::<f64>() / 3.0;
     let contrast = (brightness(color) - brightness(color_of(caster, &met))).abs();
-    (0.2 + contrast / 20.0).min(1.0)
+    (0.2 + contrast / 20.0).min(1.0) * (brightness(color) / LIT).min(1.0)
 }
 
 /// Whether enough photos beside the first see a point.

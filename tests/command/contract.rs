@@ -156,6 +156,25 @@ fn csv_has_the_contracts_columns_and_the_same_numbers() {
     assert_eq!(lines.count(), 8);
 }
 
+/// Who names a file for a spreadsheet gets what a spreadsheet reads; the format that is named counts more.
+#[test]
+fn the_files_name_says_the_format() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let flight = sample();
+    let flight = flight.to_str().expect("UTF-8");
+    let written = |name: &str, more: &[&str]| {
+        let path = folder.path().join(name);
+        let path = path.to_str().expect("UTF-8");
+        stdout_of(&[&["scales", flight, "-o", path][..], more].concat());
+        fs::read_to_string(path).expect("the file")
+    };
+    for format in ["csv", "json", "table"] {
+        let expected = stdout_of(&["scales", flight, "--format", format]);
+        assert_eq!(written(&format!("scales.{format}"), &[]), expected);
+        assert_eq!(written("scales.CSV", &["--format", format]), expected);
+    }
+}
+
 /// A corner that fell back or failed is said in the export and on standard error; exit status 0.
 #[test]
 fn what_fell_back_is_said_everywhere() {

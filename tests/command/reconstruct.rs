@@ -17,6 +17,10 @@ fn photos_without_overlap_are_refused() {
     let error = error_of(&["reconstruct", photos, "--to", to]);
     assert!(error.contains("show the same"), "{error}");
     assert!(error.contains("overlap by two thirds"), "{error}");
+    // Whoever opens the folder is told that, and not to do it again.
+    let opened = error_of(&["scales", to]);
+    assert!(opened.contains("overlap by two thirds"), "{opened}");
+    assert!(!opened.contains("goes on where it was"), "{opened}");
 }
 
 #[test]

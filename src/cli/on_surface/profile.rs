@@ -6,7 +6,7 @@ use glam::DVec2;
 use super::places::place;
 use crate::cli::Answer;
 use crate::cli::flight_arguments::FlightArguments;
-use crate::cli::outputs::NamedAnswerArguments;
+use crate::cli::outputs::AnswerArguments;
 use crate::exports::{self, MeasuredUnit, ProfileReport};
 use crate::fault::Fault;
 use crate::formats::FileError;
@@ -28,7 +28,7 @@ pub(in crate::cli) struct ProfileArguments {
     #[arg(long, value_name = "X,Y;X,Y…|FILE", allow_hyphen_values = true, conflicts_with_all = ["from", "to"])]
     line: Option<String>,
     #[command(flatten)]
-    answer: NamedAnswerArguments,
+    answer: AnswerArguments,
 }
 
 pub(in crate::cli) fn profile(

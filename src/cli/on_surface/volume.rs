@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::cli::Answer;
 use crate::cli::flight_arguments::FlightArguments;
-use crate::cli::outputs::NamedAnswerArguments;
+use crate::cli::outputs::AnswerArguments;
 use crate::exports::{self, MeasuredUnit, VolumeReport};
 use crate::fault::Fault;
 use crate::formats::FileError;
@@ -32,7 +32,7 @@ pub(in crate::cli) struct VolumeArguments {
     )]
     base: BaseArgument,
     #[command(flatten)]
-    answer: NamedAnswerArguments,
+    answer: AnswerArguments,
 }
 
 #[derive(Debug, Clone)]

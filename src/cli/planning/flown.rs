@@ -8,7 +8,7 @@ use glam::DVec2;
 use crate::cli::Answer;
 use crate::cli::flight_arguments::FlightArguments;
 use crate::cli::on_surface::places::place;
-use crate::cli::outputs::NamedAnswerArguments;
+use crate::cli::outputs::AnswerArguments;
 use crate::cli::written_beside::check_report_name;
 use crate::exports::{self, DrawingFormat, FlownFigure, FlownReport};
 use crate::files::Kind;
@@ -33,7 +33,7 @@ pub(in crate::cli) struct FlownArguments {
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
     #[command(flatten)]
-    answer: NamedAnswerArguments,
+    answer: AnswerArguments,
 }
 
 pub(in crate::cli) fn flown(

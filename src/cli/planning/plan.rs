@@ -11,7 +11,7 @@ use crate::cli::Answer;
 use crate::cli::flight_arguments::{FlightArguments, MemoryArguments};
 use crate::cli::of_photos::length::Length;
 use crate::cli::on_surface::places::place;
-use crate::cli::outputs::NamedAnswerArguments;
+use crate::cli::outputs::AnswerArguments;
 use crate::cli::planning::flying::{FlyingArguments, percent, positive};
 use crate::cli::planning::pixel_scale::PixelScale;
 use crate::cli::planning::sheet::SheetArguments;
@@ -122,7 +122,7 @@ pub(in crate::cli) struct PlanArguments {
     #[command(flatten)]
     sheet: SheetArguments,
     #[command(flatten)]
-    answer: NamedAnswerArguments,
+    answer: AnswerArguments,
 }
 
 impl PlanArguments {

@@ -3,7 +3,8 @@
     python3 piles.py FOLDER SEED COUNT [SIDE]
 
 The pile is a height over the photo's plane: broken stones are the least of a few slanted planes, pebbles are
-superellipsoids; each is laid on what lies there, and what is highest is seen. So sizes can span 1 to 50, small
+superellipsoids, blocks are turned cuboids with bevels, whose two or three faces one sees differently lit, as a photo aslant
+into a muckpile does; each is laid on what lies there, and what is highest is seen. So sizes can span 1 to 50, small
 stones lie on large blocks, stones lie deep in fines, and a photo takes two seconds. Light: a sun or lamp with
 shadows cast over the height, and what comes from all around, less where it is narrow. What happens to surfaces
 (joints, mud, dust) and what a camera does is left to train.py, which draws it anew each time.
@@ -35,6 +36,26 @@ def tint(rng):
     return hue / hue.max()
 
 
+def block(rng, half, xs, ys):
+    """A cuboid turned any way, with unequal sides and a few bevels: the height of what looks up over its lower side."""
+    axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    away = half * np.array([1.0, rng.uniform(0.5, 1.0), rng.uniform(0.35, 0.9)]) / 1.25
+    planes = [(sign * axis + rng.normal(0, 0.12, 3), reach) for axis, reach in zip(axes, away) for sign in (-1, 1)]
+    for _ in range(int(rng.integers(0, 6))):
+        normal = rng.normal(size=3)
+        normal /= np.linalg.norm(normal)
+        planes.append((normal, rng.uniform(0.75, 1.0) * float(np.abs(axes @ normal) @ away)))
+    top, under = np.full(xs.shape, np.inf, np.float32), np.full(xs.shape, -np.inf, np.float32)
+    for (a, b, c), reach in planes:
+        plane = (reach - a * xs - b * ys) / (c if abs(c) > 0.02 else 0.02)
+        if c > 0 or abs(c) <= 0.02:
+            top = np.minimum(top, plane)
+        else:
+            under = np.maximum(under, plane)
+    # As high as it lies deep: half of it stands out.
+    return np.where(top > under, np.maximum(top + 0.5 * half, 0.02 * half), -1.0)
+
+
 def body(rng, size, kind, xs, ys):
     """The height of a stone over its middle plane at these places from its middle, below 0 beside it."""
     turn = rng.uniform(0, 2 * np.pi)
@@ -47,6 +68,8 @@ def body(rng, size, kind, xs, ys):
         power = rng.uniform(1.9, 3.2)
         inside = 1 - (np.abs(x / half) ** power + np.abs(y / half) ** power)
         return np.where(inside > 0, thick * half * np.sqrt(np.maximum(inside, 0)) + 0.02 * half, -1.0)
+    if kind == "block":
+        return block(rng, half, xs, ys)
     height = np.full(x.shape, np.inf, np.float32)
     sides = int(rng.integers(5, 12))
     for side in range(sides):
@@ -69,6 +92,7 @@ def pile(rng, side):
     # How many there are of a size: its power.
     steep = rng.uniform(1.2, 3.4)
     pebbles = rng.choice([0.0, 1.0, rng.random()], p=[0.5, 0.3, 0.2])
+    blocks = rng.choice([0.0, 1.0, rng.random()], p=[0.4, 0.35, 0.25])
     cover = rng.uniform(0.8, 4.5)
     sizes, area = [], 0.0
     while area < cover * side * side and len(sizes) < 6000:
@@ -93,7 +117,7 @@ def pile(rng, side):
         if x1 <= x0 or y1 <= y0:
             continue
         ys, xs = np.mgrid[y0:y1, x0:x1].astype(np.float32)
-        kind = "pebble" if rng.random() < pebbles else "broken"
+        kind = "pebble" if rng.random() < pebbles else "block" if rng.random() < blocks else "broken"
         own = body(rng, size, kind, xs - cx, ys - cy)
         solid = own > 0
         if not solid.any():

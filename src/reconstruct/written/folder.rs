@@ -9,7 +9,7 @@ use crate::engine::{Engine, Sparse};
 use crate::fault::Fault;
 use crate::files::{self, FileError, Inputs, Kind};
 use crate::flight::{FlightFile, PhotoSource};
-use crate::formats::UNFINISHED;
+use crate::formats::{FAILED, UNFINISHED};
 use crate::kept_model::{files_of, keep, kept_in};
 use crate::photo_set::PhotoSet;
 use crate::written::cannot;
@@ -136,8 +136,18 @@ impl Folder {
             }
             self.write(&of, text.as_bytes())?;
         }
+        match fs::remove_file(self.path.join(FAILED)) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(written(error)),
+            _ => {}
+        }
         self.of = text;
         Ok(())
+    }
+
+    /// Notes why the photos could not be reconstructed, for whoever opens the folder: the same photos once more
+    /// end the same way.
+    pub(crate) fn write_why(&self, fault: &Fault) -> Result<(), FileError> {
+        self.write(&self.path.join(FAILED), fault.to_string().as_bytes())
     }
 
     /// Writes the model in its own frame, whose folder is returned, with what it is of.
