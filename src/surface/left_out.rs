@@ -8,6 +8,10 @@
 
 use glam::DVec3;
 
+use super::SurfaceError;
+use super::delaunay::triangulate;
+use super::thinning::thin;
+
 /// A point and what takes its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeftOut {
@@ -36,6 +40,20 @@ impl Kept {
             above: self.above,
             star: self.star,
         }
+    }
+}
+
+impl LeftOut {
+    /// Of these points (in the surface's local frame) one of each square cell of that side over (x, y), each left out in
+    /// turn: what a cloud of no more points would say.
+    ///
+    /// # Errors
+    /// Where the triangulation fails.
+    pub fn of_thinned(mut points: Vec<DVec3>, cell: f64) -> Result<Vec<Self>, SurfaceError> {
+        thin(&mut points, &mut Vec::new(), cell)?;
+        let triangles = triangulate(&points)?;
+        let kept = leave_out_each(&points, &triangles).into_iter();
+        Ok(kept.map(|kept| kept.of(&points)).collect())
     }
 }
 
@@ -139,7 +157,6 @@ fn leave_out(point: DVec3, ring: &mut [DVec3]) -> Option<LeftOut> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::delaunay::triangulate;
 
     fn each(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<LeftOut> {
         let kept = leave_out_each(points, triangles).into_iter();

@@ -129,7 +129,7 @@ impl CornerDraws {
                 direction,
                 depth,
                 near: near.flatten(),
-                unseen: unseen.bias() * root_mean_square_of(&errors),
+                unseen: unseen.bias * root_mean_square_of(&errors),
                 errors: errors.iter().map(|error| error * unseen.wider()).collect(),
             })
         });

@@ -33,10 +33,6 @@ struct LineEnd {
     too_large: f64,
 }
 
-/// How much what lies unseen differs between photos at the ends of their lines, over the root mean square of the
-/// depth errors (standard deviation; `unseen` says of which photos; so that 95 % of them are held).
-const SPREAD: f64 = 0.06;
-
 /// What the line through a field is, as a function of the plane: top = m·0th, bottom = m·1st.
 type Ends = [DVec3; 2];
 
@@ -90,11 +86,11 @@ impl LineErrors {
             let surface = roughness.map(|roughness| {
                 // The end of a line through independent values has four times the variance of their mean.
                 let seen = 2.0 * roughness / counted.sqrt();
-                let unseen = SPREAD * roughness;
+                let of_unseen = unseen.spread() * roughness;
                 // Each point has its stated error, and the line is the mean of many.
                 let depth = 1.0 / plane.z.abs().max(f64::MIN_POSITIVE);
                 let stated = 2.0 * errors.surface.unwrap_or(0.0) / depth / counted.sqrt();
-                let parts = [seen, unseen, stated, holes[index], bridged.spread];
+                let parts = [seen, of_unseen, stated, holes[index], bridged.spread];
                 parts.iter().map(|part| part * part).sum::<f64>().sqrt()
             });
             LineEnd {

@@ -5,8 +5,8 @@
 //! (`corners`); thousands of pixels behind the best line see the pile as a whole, of which derivatives
 //! tell all (`line`); where the surface ends inside the photo, what is not seen of it is drawn from what
 //! is (`holes`), and where triangles bridge what no photo saw, it is deeper (`bridges`); one pixel hangs on
-//! one place as well (`pixels`). What the surface adds comes from the cloud itself (`surface_error`), and more where few
-//! photos saw it (`unseen`). Draws follow from one seed: the same on every run.
+//! one place as well (`pixels`). What the surface adds comes from the cloud itself (`surface_error`), and more where
+//! the deep between fragments has no points (`unseen`). Draws follow from one seed: the same on every run.
 
 mod bridges;
 mod corners;
@@ -23,7 +23,7 @@ use self::corners::CornerDraws;
 pub use self::draws::Draws;
 use self::line::LineErrors;
 pub use self::pixels::PixelErrors;
-use self::surface_error::{depth_errors, plane_of};
+use self::surface_error::{DepthErrors, plane_of};
 use self::unseen::Unseen;
 use super::field::ScaleField;
 use super::{EdgeScales, FittedScale, PhotoScale, ScalePair, StatedErrors};
@@ -126,8 +126,8 @@ impl Uncertainty {
     /// any source: that is not the same as no error.
     pub fn compute(photo: &UncertainPhoto<'_>, surface: &Surface) -> Option<Self> {
         let plane = plane_of(photo.field)?;
-        let depths = depth_errors(photo.field, plane, surface);
-        let unseen = Unseen::of(&depths, surface.is_cloud());
+        let errors = DepthErrors::of(photo.field, plane, surface);
+        let (unseen, depths) = (Unseen::of(&errors), errors.each);
         let corners = CornerDraws::new(photo, &depths, unseen, surface);
         let line = photo.fitted.map(|fitted| {
             let bridged = match surface.is_cloud() {

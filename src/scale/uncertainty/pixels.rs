@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::Interval;
 use super::draws::normal_interval;
-use super::surface_error::{LEAST_POINTS, depth_errors, plane_of, root_mean_square};
+use super::surface_error::{DepthErrors, LEAST_POINTS, plane_of, root_mean_square};
 use super::unseen::Unseen;
 use crate::camera::Camera;
 use crate::scale::field::ScaleField;
@@ -35,7 +35,8 @@ impl PixelErrors {
     /// Of a photo with this field. `None` where nothing is known of any source.
     pub fn new(field: &ScaleField, stated: &StatedErrors, surface: &Surface) -> Option<Self> {
         let plane = plane_of(field)?;
-        let depths = depth_errors(field, plane, surface);
+        let errors = DepthErrors::of(field, plane, surface);
+        let (unseen, depths) = (Unseen::of(&errors), errors.each);
         let roughness = root_mean_square(&depths).map(|of_all| {
             let camera = field.camera();
             let mut squares = vec![(0.0, 0_usize); ACROSS * rows(camera)];
@@ -60,7 +61,7 @@ impl PixelErrors {
             stated: *stated,
             plane,
             roughness,
-            unseen: Unseen::of(&depths, surface.is_cloud()),
+            unseen,
         })
     }
 
@@ -98,7 +99,7 @@ impl PixelErrors {
         });
         let parts = [of_angle, of_position, of_focal, of_world, of_surface];
         let share = parts.iter().flatten().sum::<f64>().sqrt();
-        let too_large = self.unseen.bias() * roughness.unwrap_or(0.0);
+        let too_large = self.unseen.bias * roughness.unwrap_or(0.0);
         Some(normal_interval(
             scale * (1.0 - too_large),
             scale * share,

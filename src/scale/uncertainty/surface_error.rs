@@ -1,18 +1,33 @@
 //! The surface's part in a photo's error, from the cloud itself.
 //!
 //! How far the points of the cloud lie from what the points around them predict (`surface::LeftOut`) is,
-//! seen by the photo, a draw from the error of the depth at its pixels, where many photos saw it. What lies
-//! between fragments where fewer than three photos look has no points, so the surface runs above it and scales are
-//! too large: `unseen`.
+//! seen by the photo, a draw from the error of the depth at its pixels. What lies deep between fragments has few points,
+//! so the surface runs above it and scales are too large: `unseen`.
+//!
+//! Points of a dense cloud lie on one stone with those around them, which predict them ever better the more there
+//! are, while what is between the stones stays as it is. So of a dense cloud so many points are looked at as a
+//! sparse one has, as if there were no others: what is unseen then is the same share of the errors for
+//! 15 000 points as for 800 000 (of simulated piles, 0.29 to 0.37).
 
 use glam::{DMat3, DVec2, DVec3};
 
 use crate::scale::field::ScaleField;
 use crate::scale::pyramid::Pyramid;
-use crate::surface::{Patch, Surface};
+use crate::surface::{LeftOut, Patch, Surface};
 
 /// With fewer points nothing is known of a photo's surface.
 pub(super) const LEAST_POINTS: usize = 30;
+
+/// Of more points in a photo only so many tell of it.
+pub(super) const MOST_POINTS: usize = 4000;
+
+/// By how much of a cell the squares are shifted that points twice as far apart are chosen from.
+pub(super) const SHIFTED: [DVec2; 4] = [
+    DVec2::ZERO,
+    DVec2::new(0.5, 0.0),
+    DVec2::new(0.0, 0.5),
+    DVec2::new(0.5, 0.5),
+];
 
 /// The root mean square of depth errors; `None` where they are too few.
 pub(super) fn root_mean_square(depths: &[DepthError]) -> Option<f64> {
@@ -27,8 +42,6 @@ pub(super) struct DepthError {
     pub(super) pixel: DVec2,
     /// The true depth over the predicted one, less 1: by so much scales are too large.
     pub(super) relative: f64,
-    /// What the triangles at the point cover (over x and y) over its squared depth.
-    pub(super) area: f64,
 }
 
 /// The plane that lies best through a photo's field, in camera axes: m·X = 1, so that the inverse of the
@@ -49,32 +62,69 @@ pub(super) fn plane_of(field: &ScaleField) -> Option<DVec3> {
     (normal.determinant() > 0.0 && plane.is_finite()).then_some(plane)
 }
 
-/// At each of the points that the photo of a field shows.
-pub(super) fn depth_errors(field: &ScaleField, plane: DVec3, surface: &Surface) -> Vec<DepthError> {
-    let (camera, pose) = (field.camera(), field.pose());
-    let center = surface.frame().local_from_world(pose.center);
-    let seen = Pyramid::of_image(camera, center, pose.rotation);
-    let camera_from_local = pose.rotation.transpose();
-    let up = camera_from_local * DVec3::Z;
-    let mut errors = Vec::new();
-    // The field has triangulated what the photo sees, so nothing can fail here.
-    let patches = surface.patches().seen(|bounds| seen.misses(bounds));
-    let patches = patches.unwrap_or_default();
-    for left_out in Patch::left_out(&patches) {
-        let point = camera_from_local * (left_out.point - center);
-        let pixel = field.image().pixel(camera, point);
-        let Some(pixel) = pixel.filter(|&pixel| camera.contains(pixel)) else {
-            continue;
+/// How far the points that a photo shows lie from what the points around them predict.
+#[derive(Debug, Clone, Default)]
+pub(super) struct DepthErrors {
+    /// At each of them; of more than twice [`MOST_POINTS`] of a cloud at each of about so many, spread evenly, as if there
+    /// were no others.
+    pub(super) each: Vec<DepthError>,
+    /// The same with points twice as far apart, at each of which there are in [`SHIFTED`] choices of them; none of a
+    /// surface that came with its faces.
+    pub(super) sparser: Vec<DepthError>,
+}
+
+impl DepthErrors {
+    /// Of the photo of a field.
+    pub(super) fn of(field: &ScaleField, plane: DVec3, surface: &Surface) -> Self {
+        let (camera, pose) = (field.camera(), field.pose());
+        let center = surface.frame().local_from_world(pose.center);
+        let seen = Pyramid::of_image(camera, center, pose.rotation);
+        let camera_from_local = pose.rotation.transpose();
+        let up = camera_from_local * DVec3::Z;
+        let pixel_of = |point: DVec3| {
+            let pixel = field.image().pixel(camera, camera_from_local * (point - center))?;
+            camera.contains(pixel).then_some(pixel)
         };
-        // m·(X - h up) = 1: moved up by h, the plane's depth along a ray grows by the share h m·up.
-        let relative = -left_out.above * plane.dot(up);
-        // A point high above its neighbours may lie where they predict nothing: at the camera.
-        let predicted = (1.0 + relative).max(0.1);
-        errors.push(DepthError {
-            pixel,
-            relative: 1.0 / predicted - 1.0,
-            area: left_out.star / (point.z * point.z),
-        });
+        let error = |left_out: &LeftOut| {
+            // m·(X - h up) = 1: moved up by h, the plane's depth along a ray grows by the share h m·up.
+            let relative = -left_out.above * plane.dot(up);
+            // A point high above its neighbours may lie where they predict nothing: at the camera.
+            let predicted = (1.0 + relative).max(0.1);
+            Some(DepthError {
+                pixel: pixel_of(left_out.point)?,
+                relative: 1.0 / predicted - 1.0,
+            })
+        };
+        // The field has triangulated what the photo sees, so nothing can fail here.
+        let patches = surface.patches().seen(|bounds| seen.misses(bounds));
+        let patches = patches.unwrap_or_default();
+        let all: Vec<LeftOut> = Patch::left_out(&patches)
+            .filter(|left_out| pixel_of(left_out.point).is_some())
+            .collect();
+        let errors = |all: &[LeftOut]| all.iter().filter_map(error).collect::<Vec<_>>();
+        if !surface.is_cloud() {
+            return Self {
+                each: errors(&all),
+                sparser: Vec::new(),
+            };
+        }
+        let area: f64 = all.iter().map(|left_out| left_out.star / 3.0).sum();
+        let spaced = |cell: f64, shift: DVec2| {
+            let points = all.iter().map(|left_out| left_out.point);
+            let points = points.map(|point| point + (shift * cell).extend(0.0));
+            let mut thinned = LeftOut::of_thinned(points.collect(), cell).unwrap_or_default();
+            for left_out in &mut thinned {
+                left_out.point -= (shift * cell).extend(0.0);
+            }
+            errors(&thinned)
+        };
+        let side = |count: usize| (area / count.max(1) as f64).sqrt();
+        let each: Vec<DepthError> = match all.len() > 2 * MOST_POINTS {
+            true => spaced(side(MOST_POINTS), DVec2::ZERO),
+            false => errors(&all),
+        };
+        let twice = 2.0 * side(each.len());
+        let sparser = SHIFTED.into_iter().flat_map(|shift| spaced(twice, shift)).collect();
+        Self { each, sparser }
     }
-    errors
 }
