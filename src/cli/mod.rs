@@ -372,7 +372,9 @@ fn scales_text(
         .with_scale_objects(&opened.settings.scale_objects)
         .map_err(in_flight)?;
     let (csv, json) = (exports::scales_csv, exports::scales_json);
-    let text = arguments.answer.text(&report, exports::scales_table, csv, json)?;
+    let text = arguments
+        .answer
+        .text(&report, exports::scales_table, csv, json)?;
     Ok((text, notes_of(&report).collect()))
 }
 

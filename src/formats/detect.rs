@@ -205,7 +205,10 @@ fn detect_folder(path: &Path) -> Result<Kind, FileError> {
     }
     if path.join(UNFINISHED).is_file() {
         let fault = match fs::read_to_string(path.join(FAILED)) {
-            Ok(why) => Fault::new(format!("a reconstruction that failed: {why}"), "then reconstruct again"),
+            Ok(why) => Fault::new(
+                format!("a reconstruction that failed: {why}"),
+                "then reconstruct again",
+            ),
             Err(_) => Fault::new(
                 "a reconstruction that is not finished",
                 "reconstruct the same photos into it again: it goes on where it was",

@@ -82,7 +82,9 @@ impl DepthErrors {
         let camera_from_local = pose.rotation.transpose();
         let up = camera_from_local * DVec3::Z;
         let pixel_of = |point: DVec3| {
-            let pixel = field.image().pixel(camera, camera_from_local * (point - center))?;
+            let pixel = field
+                .image()
+                .pixel(camera, camera_from_local * (point - center))?;
             camera.contains(pixel).then_some(pixel)
         };
         let error = |left_out: &LeftOut| {
@@ -98,7 +100,7 @@ impl DepthErrors {
         // The field has triangulated what the photo sees, so nothing can fail here.
         let patches = surface.patches().seen(|bounds| seen.misses(bounds));
         let patches = patches.unwrap_or_default();
-        let all: Vec<LeftOut> = Patch::left_out(&patches)
+        let mut all: Vec<LeftOut> = Patch::left_out(&patches)
             .filter(|left_out| pixel_of(left_out.point).is_some())
             .collect();
         let errors = |all: &[LeftOut]| all.iter().filter_map(error).collect::<Vec<_>>();
@@ -109,22 +111,24 @@ impl DepthErrors {
             };
         }
         let area: f64 = all.iter().map(|left_out| left_out.star / 3.0).sum();
-        let spaced = |cell: f64, shift: DVec2| {
-            let points = all.iter().map(|left_out| left_out.point);
-            let points = points.map(|point| point + (shift * cell).extend(0.0));
+        let side = |count: usize| (area / count.max(1) as f64).sqrt();
+        let spaced = |of: &[LeftOut], cell: f64, shift: DVec2| {
+            let shift = (shift * cell).extend(0.0);
+            let points = of.iter().map(|left_out| left_out.point + shift);
             let mut thinned = LeftOut::of_thinned(points.collect(), cell).unwrap_or_default();
             for left_out in &mut thinned {
-                left_out.point -= (shift * cell).extend(0.0);
+                left_out.point -= shift;
             }
-            errors(&thinned)
+            thinned
         };
-        let side = |count: usize| (area / count.max(1) as f64).sqrt();
-        let each: Vec<DepthError> = match all.len() > 2 * MOST_POINTS {
-            true => spaced(side(MOST_POINTS), DVec2::ZERO),
-            false => errors(&all),
-        };
-        let twice = 2.0 * side(each.len());
-        let sparser = SHIFTED.into_iter().flat_map(|shift| spaced(twice, shift)).collect();
+        if all.len() > 2 * MOST_POINTS {
+            all = spaced(&all, side(MOST_POINTS), DVec2::ZERO);
+        }
+        let twice = 2.0 * side(all.len());
+        let sparser = SHIFTED
+            .into_iter()
+            .flat_map(|shift| errors(&spaced(&all, twice, shift)));
+        let (each, sparser) = (errors(&all), sparser.collect());
         Self { each, sparser }
     }
 }
