@@ -156,6 +156,8 @@ fn leave_out(point: DVec3, ring: &mut [DVec3]) -> Option<LeftOut> {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec2;
+
     use super::*;
 
     fn each(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<LeftOut> {
@@ -172,6 +174,20 @@ mod tests {
             DVec3::new(x, y, height(x, y))
         })
         .collect()
+    }
+
+    /// On z = x² + y² a square lattice's points lie below what four neighbours at the distance d predict by d²: every
+    /// other one of a lattice of 1, those in the middles of cells of 2, by 4.
+    #[test]
+    fn thinned_points_know_of_no_others() {
+        let lattice = (0..8).flat_map(|x| (0..8).map(move |y| DVec2::new(x.into(), y.into())));
+        let points: Vec<DVec3> = lattice.map(|at| at.extend(at.length_squared())).collect();
+        for (cell, count, below) in [(1.0, 36, 1.0), (2.0, 4, 4.0)] {
+            let thinned = LeftOut::of_thinned(points.clone(), cell).unwrap();
+            // Those on the rim are not surrounded.
+            assert_eq!(thinned.len(), count, "{cell}");
+            assert!(thinned.iter().all(|left_out| left_out.above == -below));
+        }
     }
 
     #[test]

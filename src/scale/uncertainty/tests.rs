@@ -23,12 +23,18 @@ fn camera(distortion: Distortion) -> Camera {
 
 /// 9000 random points on 40 by 40 around the middle, at `height(x, y, uniform)`.
 fn surface(height: impl Fn(f64, f64, f64) -> f64) -> Surface {
+    surface_of(9000, height)
+}
+
+/// So many of them; none where the height is no number.
+fn surface_of(count: usize, height: impl Fn(f64, f64, f64) -> f64) -> Surface {
     let mut random = SplitMix(5);
     let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
-    let points = (0..9000).map(|_| {
+    let points = (0..count).map(|_| {
         let (x, y) = ((uniform() - 0.5) * 40.0, (uniform() - 0.5) * 40.0);
         DVec3::new(x, y, height(x, y, uniform()))
     });
+    let points = points.filter(|point| point.is_finite());
     Surface::new(Cloud {
         points: points.collect(),
         ..Cloud::default()
@@ -355,6 +361,40 @@ fn noise_of_the_points_is_found() {
     );
     // Hundreds of points say far more than two.
     assert!(share(uncertainty.fitted_top, found.fitted.top) < expected / 4.0);
+}
+
+/// Stones of 1.5 by 1.5, 1 high, like eggs in a carton, and no points in the lowest third of the height between them: the line over the cloud
+/// is too large, and the interval holds that of the whole surface, however many points there are.
+#[test]
+fn what_is_dark_between_stones_is_in_the_interval() {
+    let stones = |x: f64, y: f64| {
+        let wave = |at: f64| (std::f64::consts::TAU * at / 1.5).cos();
+        0.25 * (wave(x) + wave(y))
+    };
+    let (camera, pose) = (camera(Distortion::None), nadir(20.0));
+    let image = ImageKind::Undistorted;
+    let of = |surface: &Surface| compute(surface, &camera, &pose, image, StatedErrors::default());
+    let truth = of(&surface_of(400_000, |x, y, _| stones(x, y))).fitted;
+    for count in [9_000, 30_000, 200_000] {
+        let lit = surface_of(count, |x, y, _| match stones(x, y) {
+            dark if dark < -0.17 => f64::NAN,
+            height => height,
+        });
+        let found = of(&lit);
+        let uncertainty = found.uncertainty.unwrap();
+        let ends = [
+            (uncertainty.fitted_top, found.fitted.top, truth.top),
+            (uncertainty.fitted_bottom, found.fitted.bottom, truth.bottom),
+        ];
+        for (interval, scale, truth) in ends {
+            let interval = interval.unwrap();
+            assert!(scale > truth * 1.001, "{count}: {scale} over {truth}");
+            assert!(
+                interval.low <= truth && truth <= interval.high,
+                "{count}: {interval:?} of {truth}"
+            );
+        }
+    }
 }
 
 /// A corner over a step of 2 in the depth of 10, which many of the points around it lie beyond.
