@@ -161,7 +161,8 @@ pub fn reconstruct(
     if let Err(fault) = kept_or_found.as_ref()
         && !progress.is_cancelled()
     {
-        folder.write_why(fault)?;
+        // Where that cannot be written, the fault itself is said all the same.
+        let _ = folder.write_why(fault);
     }
     let (sparse, goes_on) = kept_or_found.map_err(at)?;
     let found = (engine.name(), sparse, goes_on);
