@@ -81,10 +81,8 @@ fn words(asked: &AskedStep, told: &FlightTold) -> Vec<Vec<OsString>> {
     let mut variants: Vec<Vec<OsString>> = Vec::new();
     match asked.step {
         Step::Scales => {
-            for format in ["csv", "json"] {
-                let output = flag("-o", in_results(&format!("scales.{format}")));
-                let format = flag("--format", format.into());
-                variants.push(output.into_iter().chain(format).collect());
+            for file in ["scales.csv", "scales.json"] {
+                variants.push(flag("-o", in_results(file)).into());
             }
         }
         Step::Check => variants.push(flag("-o", in_results("check.txt")).into()),
@@ -96,8 +94,7 @@ fn words(asked: &AskedStep, told: &FlightTold) -> Vec<Vec<OsString>> {
         }
         Step::Delineate => variants.push(flag("--to", in_results(FRAGMENTS)).into()),
         Step::Psd => {
-            let mut words: Vec<OsString> = flag("--format", "csv".into()).into();
-            words.extend(flag("-o", in_results("psd.csv")));
+            let mut words: Vec<OsString> = flag("-o", in_results("psd.csv")).into();
             words.extend(flag("--report", in_results("psd.html")));
             variants.push(words);
         }

@@ -72,7 +72,10 @@ impl NotDone {
     /// A sentence for each cause, besides the fault above, which says what is wrong with the first: of one photo that
     /// is all.
     pub(super) fn sentences(&self) -> Vec<String> {
-        let said = self.photos.iter().filter(|_| self.photos.len() > 1);
+        if self.photos.len() == 1 {
+            return Vec::new();
+        }
+        let said = self.photos.iter();
         let said = said.map(|(name, fault)| (name.as_str(), format!("{}: {fault}", self.not_done)));
         by_cause(said, "photos")
     }

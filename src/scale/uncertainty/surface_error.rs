@@ -100,16 +100,16 @@ impl DepthErrors {
         // The field has triangulated what the photo sees, so nothing can fail here.
         let patches = surface.patches().seen(|bounds| seen.misses(bounds));
         let patches = patches.unwrap_or_default();
-        let mut all: Vec<LeftOut> = Patch::left_out(&patches)
-            .filter(|left_out| pixel_of(left_out.point).is_some())
-            .collect();
-        let errors = |all: &[LeftOut]| all.iter().filter_map(error).collect::<Vec<_>>();
+        let left_out = Patch::left_out(&patches);
         if !surface.is_cloud() {
             return Self {
-                each: errors(&all),
+                each: left_out.filter_map(|left_out| error(&left_out)).collect(),
                 sparser: Vec::new(),
             };
         }
+        let mut all: Vec<LeftOut> = left_out
+            .filter(|left_out| pixel_of(left_out.point).is_some())
+            .collect();
         let area: f64 = all.iter().map(|left_out| left_out.star / 3.0).sum();
         let side = |count: usize| (area / count.max(1) as f64).sqrt();
         let spaced = |of: &[LeftOut], cell: f64, shift: DVec2| {
@@ -125,10 +125,10 @@ impl DepthErrors {
             all = spaced(&all, side(MOST_POINTS), DVec2::ZERO);
         }
         let twice = 2.0 * side(all.len());
-        let sparser = SHIFTED
-            .into_iter()
-            .flat_map(|shift| errors(&spaced(&all, twice, shift)));
-        let (each, sparser) = (errors(&all), sparser.collect());
-        Self { each, sparser }
+        let sparser = SHIFTED.iter().flat_map(|shift| spaced(&all, twice, *shift));
+        Self {
+            each: all.iter().filter_map(error).collect(),
+            sparser: sparser.filter_map(|left_out| error(&left_out)).collect(),
+        }
     }
 }

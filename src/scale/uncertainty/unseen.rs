@@ -21,9 +21,10 @@
 //! | `reconstruct`, dense: two muckpiles, a stockpile, a bench | 15 | 0.24 to 0.35 | 0.45 to 0.65 |
 //! | `reconstruct`, sparse: a muckpile | 3 | 0.30 | 0.49 |
 //!
-//! (Both kinds of a simulated cloud were looked at, for nobody knows how dark it was between the stones of a photo.) Ranges are over the places (lab, muckpile, stockpile, bench; seeds from 2000, 3000, 4000 and 5000 on). Fitted
-//! to the simulated ones by likelihood (Student's t of 4 degrees) with those of `bridges`; the reconstructed ones only
-//! looked at. README's coverage is of other piles (`benches/coverage.rs`).
+//! Ranges are over the places (lab, muckpile, stockpile, bench; seeds from 2000, 3000, 4000 and 5000 on). Fitted to the
+//! simulated ones by likelihood (Student's t of 4 degrees) with those of `bridges`, to both kinds of them, for nobody knows
+//! how dark it was between the stones of a photo; the reconstructed ones only looked at. README's coverage is of other
+//! piles (`benches/coverage.rs`).
 
 use super::holes::Line;
 use super::surface_error::{DepthError, DepthErrors, SHIFTED, root_mean_square};
