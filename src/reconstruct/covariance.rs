@@ -8,6 +8,12 @@
 //! cameras were, and how lenses are stated. Receivers' errors count as independent of each other: those of
 //! a base station in the wrong place move all alike and are not in it.
 //!
+//! A scale hangs on where a camera stands to the pile, not on where both are in the world: what moves, turns and
+//! stretches both alike is taken off, by the similarity that fits the points' own shifts best (an S-transformation,
+//! Baarda 1973, with all points as datum; how sure the length of the world's unit is, is stated apart). And where a longer
+//! focal length comes with a higher camera, the photos' scales stay: poses are stated as they are for a given
+//! lens, and of the focal length besides how much of it is left in the scales.
+//!
 //! The matrix is dense: 500 photos are 3000 rows, 70 MB and half a minute.
 
 use glam::{DMat3, DVec2, DVec3};
@@ -28,10 +34,13 @@ pub(crate) struct Known {
 /// Standard deviations.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Deviations {
-    /// Of each photo: its centre, units of the world, and rotations about its camera axes, radians.
+    /// Of each photo as it stands to the points, for a given lens: its centre, units of the world, and rotations about its
+    /// camera axes, radians.
     pub(crate) poses: Vec<(DVec3, DVec3)>,
     /// Of each camera's focal length, a part of it.
     pub(crate) focal: Vec<f64>,
+    /// How much of that is left in the scales of its photos, whose poses go with it, a part of them.
+    pub(crate) focal_in_scales: Vec<f64>,
     /// Of where a photo sees a point, pixels along each axis.
     pub(crate) pixel: f64,
 }
@@ -43,21 +52,27 @@ const AT_ONCE: usize = 4096;
 /// Numbers of a pose, and of a lens.
 const POSE: usize = 6;
 const LENS: usize = 8;
-/// Of a reconstruction in the world; `None` where fewer than three centres are known, so that the world
-/// is not determined, where nothing was observed, or where it has too many photos.
+/// Numbers of a similarity: a shift, a turn, a stretch.
+const SIMILARITY: usize = 7;
+/// Fewer known centres do not say where the model is; then all are held within so many of its sizes, for an inverse to be.
+const LEAST_KNOWN: usize = 3;
+const LOOSELY: f64 = 100.0;
+
+/// Of a reconstruction; `None` where nothing was observed, or where it has too many photos.
 pub(crate) fn deviations(model: &Reconstruction, known: &Known) -> Option<Deviations> {
     let photos = model.photos.len();
-    let stated = known.centers.iter().flatten().count();
-    if stated < 3 || photos > MOST_PHOTOS || model.observations.is_empty() {
+    if photos > MOST_PHOTOS || model.observations.is_empty() {
         return None;
     }
     let pixel = pixel_deviation(model)?;
     let size = photos * POSE + model.cameras.len() * LENS;
     let mut normal = DMatrix::<f64>::zeros(size, size);
     let points = by_point(model);
+    let mut shared = Shared::new(model, size);
     for some in points.chunks(AT_ONCE) {
         let blocks = some.par_iter().filter_map(|seen| block(model, seen));
         for block in blocks.collect::<Vec<_>>() {
+            shared.count(&block);
             let unknowns = &block.unknowns;
             for (row, &a) in unknowns.iter().enumerate() {
                 for (column, &b) in unknowns.iter().enumerate() {
@@ -67,8 +82,12 @@ pub(crate) fn deviations(model: &Reconstruction, known: &Known) -> Option<Deviat
         }
     }
     normal /= pixel * pixel;
+    let is_loose = known.centers.iter().flatten().count() < LEAST_KNOWN;
     for (photo, center) in known.centers.iter().enumerate() {
-        let Some(center) = center else { continue };
+        let loose = is_loose.then(|| DVec3::splat(LOOSELY * shared.reach));
+        let Some(center) = center.or(loose) else {
+            continue;
+        };
         for axis in 0..3 {
             let at = photo * POSE + 3 + axis;
             normal[(at, at)] += center[axis].max(1e-9).powi(-2);
@@ -80,9 +99,38 @@ pub(crate) fn deviations(model: &Reconstruction, known: &Known) -> Option<Deviat
             normal[(at, at)] += deviation.powi(-2);
         }
     }
-    let covariance = inverse(normal)?;
-    let deviation = |at: usize| covariance[(at, at)].max(0.0).sqrt();
-    let three = |at: usize| DVec3::new(deviation(at), deviation(at + 1), deviation(at + 2));
+    let mut covariance = inverse(normal)?;
+    shared.take_off(&mut covariance, pixel)?;
+    let lenses = photos * POSE..size;
+    let lens = covariance.view_range(lenses.clone(), lenses.clone());
+    let lens_inverse = inverse(lens.into_owned())?;
+    let depths = depths(model);
+    let mut poses = Vec::with_capacity(photos);
+    // Of each camera: the sum over its photos of what is left in their scales, squared, and how many they are.
+    let mut left = vec![(0.0, 0); model.cameras.len()];
+    for (number, photo) in model.photos.iter().enumerate() {
+        let own = number * POSE..(number + 1) * POSE;
+        // How the pose goes with the lenses.
+        let with = covariance.view_range(own.clone(), lenses.clone()) * &lens_inverse;
+        let given = covariance.view_range(own.clone(), own.clone())
+            - &with * covariance.view_range(lenses.clone(), own.clone());
+        let deviation = |at: usize| given[(at, at)].max(0.0).sqrt();
+        let three = |at: usize| DVec3::new(deviation(at), deviation(at + 1), deviation(at + 2));
+        poses.push((three(3), three(0)));
+        let Some(depth) = depths[number] else {
+            continue;
+        };
+        // The logarithm of focal length over depth, by the lenses.
+        let axis = photo.pose.rotation.z_axis / depth;
+        let mut by_lens = with.rows(3, 3).transpose() * nalgebra::Vector3::from(axis.to_array());
+        let camera = &model.cameras[photo.camera];
+        for place in 0..2 {
+            by_lens[photo.camera * LENS + place] += (camera.fx + camera.fy).recip();
+        }
+        let lens = covariance.view_range(lenses.clone(), lenses.clone());
+        left[photo.camera].0 += (by_lens.transpose() * lens * &by_lens)[(0, 0)].max(0.0);
+        left[photo.camera].1 += 1;
+    }
     let focal = |(number, camera): (usize, &Camera)| {
         let at = photos * POSE + number * LENS;
         // Of the mean of both: they go together.
@@ -90,13 +138,115 @@ pub(crate) fn deviations(model: &Reconstruction, known: &Known) -> Option<Deviat
             covariance[(at, at)] + covariance[(at + 1, at + 1)] + 2.0 * covariance[(at, at + 1)];
         both.max(0.0).sqrt() / (camera.fx + camera.fy)
     };
+    let focal: Vec<f64> = model.cameras.iter().enumerate().map(focal).collect();
+    let in_scales = left.iter().zip(&focal).map(|(&(sum, count), focal)| {
+        // Of a camera without photos that see anything nothing is made up for.
+        match count {
+            0 => *focal,
+            count => (sum / f64::from(count)).sqrt(),
+        }
+    });
     Some(Deviations {
-        poses: (0..photos)
-            .map(|photo| (three(photo * POSE + 3), three(photo * POSE)))
-            .collect(),
-        focal: model.cameras.iter().enumerate().map(focal).collect(),
+        poses,
+        focal_in_scales: in_scales.collect(),
+        focal,
         pixel,
     })
+}
+
+/// Of each photo the mean depth of what it sees.
+fn depths(model: &Reconstruction) -> Vec<Option<f64>> {
+    let mut sums = vec![(0.0, 0); model.photos.len()];
+    for seen in &model.observations {
+        let (_, pose, point) = of(model, seen);
+        let sum = &mut sums[seen.photo as usize];
+        sum.0 += pose.camera_from_world(point).z;
+        sum.1 += 1;
+    }
+    let mean = |(sum, count): (f64, i32)| (count > 0).then(|| sum / f64::from(count));
+    sums.into_iter().map(mean).collect()
+}
+
+/// What moves cameras and points alike: the similarity that fits the points' shifts best, each as much as it is sure.
+struct Shared {
+    /// Shifts of the unknowns by a similarity, about the points' middle.
+    of_similarity: DMatrix<f64>,
+    /// Its normal equations, ...
+    normal: DMatrix<f64>,
+    /// ... their right side by the unknowns, whose points follow them, ...
+    by_unknowns: DMatrix<f64>,
+    /// ... and what the points' own errors have in it, for a deviation of a pixel of 1.
+    own: DMatrix<f64>,
+    middle: DVec3,
+    /// How far points are from their middle, root mean square.
+    reach: f64,
+}
+
+impl Shared {
+    fn new(model: &Reconstruction, size: usize) -> Self {
+        let points = &model.cloud.points;
+        let count = points.len().max(1) as f64;
+        let middle = points.iter().sum::<DVec3>() / count;
+        let squares = points.iter().map(|point| point.distance_squared(middle));
+        let mut of_similarity = DMatrix::zeros(size, SIMILARITY);
+        for (number, photo) in model.photos.iter().enumerate() {
+            let camera_from_world = photo.pose.rotation.transpose();
+            for (column, shift) in shifts(photo.pose.center - middle).into_iter().enumerate() {
+                let turn = match column {
+                    3..6 => camera_from_world * DVec3::AXES[column - 3],
+                    _ => DVec3::ZERO,
+                };
+                let both = turn.to_array().into_iter().chain(shift.to_array());
+                for (row, value) in both.enumerate() {
+                    of_similarity[(number * POSE + row, column)] = value;
+                }
+            }
+        }
+        Self {
+            of_similarity,
+            normal: DMatrix::zeros(SIMILARITY, SIMILARITY),
+            by_unknowns: DMatrix::zeros(SIMILARITY, size),
+            own: DMatrix::zeros(SIMILARITY, SIMILARITY),
+            middle,
+            reach: (squares.sum::<f64>() / count).sqrt(),
+        }
+    }
+
+    fn count(&mut self, block: &Block) {
+        let shifts = shifts(block.at - self.middle);
+        let columns: Vec<f64> = shifts.iter().flat_map(|shift| shift.to_array()).collect();
+        let shifts = DMatrix::from_column_slice(3, SIMILARITY, &columns);
+        let weight = block.own.trace().recip();
+        let weighed = shifts.transpose() * weight;
+        self.normal += &weighed * &shifts;
+        self.own += &weighed * &block.own * weighed.transpose();
+        let by_unknowns = weighed * &block.by_unknowns;
+        for (column, &unknown) in block.unknowns.iter().enumerate() {
+            let mut sum = self.by_unknowns.column_mut(unknown);
+            sum += by_unknowns.column(column);
+        }
+    }
+
+    /// Makes of the covariance of the unknowns in the world that of the unknowns to the points.
+    fn take_off(&self, covariance: &mut DMatrix<f64>, pixel: f64) -> Option<()> {
+        let inverse = inverse(self.normal.clone())?;
+        let similarity = &inverse * &self.by_unknowns;
+        let own = &inverse * &self.own * &inverse * (pixel * pixel);
+        let with = &*covariance * similarity.transpose();
+        let of_both = similarity * &with + own;
+        // C - G K' - K G' + G (T K + Q) G'.
+        let half = &with - &self.of_similarity * (of_both * 0.5);
+        covariance.gemm(-1.0, &half, &self.of_similarity.transpose(), 1.0);
+        covariance.gemm(-1.0, &self.of_similarity, &half.transpose(), 1.0);
+        Some(())
+    }
+}
+
+/// How a place so far from the middle moves by each number of a similarity.
+fn shifts(from_middle: DVec3) -> [DVec3; SIMILARITY] {
+    let turned = DVec3::AXES.map(|axis| axis.cross(from_middle));
+    let [x, y, z] = DVec3::AXES;
+    [x, y, z, turned[0], turned[1], turned[2], from_middle]
 }
 
 /// Of a symmetric positive definite matrix, scaled to a diagonal of ones first: metres and coefficients
@@ -153,6 +303,12 @@ struct Block {
     /// Which unknowns of the whole.
     unknowns: Vec<usize>,
     normal: DMatrix<f64>,
+    /// Where the point is, ...
+    at: DVec3,
+    /// ... how it moves with the unknowns, ...
+    by_unknowns: DMatrix<f64>,
+    /// ... and its own covariance where they are known, for a deviation of a pixel of 1.
+    own: DMatrix<f64>,
 }
 
 /// The observations of each point, in the points' order: sums are the same on every run.
@@ -198,8 +354,16 @@ fn block(model: &Reconstruction, seen: &[&Observation]) -> Option<Block> {
     }
     let across = jacobian.tr_mul(&of_point);
     let own = of_point.tr_mul(&of_point).try_inverse()?;
-    let normal = jacobian.tr_mul(&jacobian) - &across * own * across.transpose();
-    Some(Block { unknowns, normal })
+    let by_unknowns = -&own * across.transpose();
+    let normal = jacobian.tr_mul(&jacobian) + across * &by_unknowns;
+    let (_, _, at) = of(model, seen.first()?);
+    Some(Block {
+        unknowns,
+        normal,
+        at,
+        by_unknowns,
+        own,
+    })
 }
 
 /// Of a pixel, by ...
@@ -391,20 +555,104 @@ mod tests {
             let at = photos * 6 + place;
             normal[(at, at)] += deviation.powi(-2);
         }
-        let covariance = normal.try_inverse().unwrap();
-        for (photo, (center, turn)) in found.poses.iter().enumerate() {
-            for axis in 0..3 {
-                for (part, at) in [(turn[axis], photo * 6), (center[axis], photo * 6 + 3)] {
-                    let expected = covariance[(at + axis, at + axis)].sqrt();
-                    assert!((part / expected - 1.0).abs() < 1e-4, "{part} {expected}");
+        let world = normal.try_inverse().unwrap();
+        // What the points' shifts, each by how sure it is, say of a similarity is taken off of all.
+        let lens_at = photos * 6;
+        let middle = model.cloud.points.iter().sum::<DVec3>() / points as f64;
+        let similarity = |at: usize, by: usize| match (at, by) {
+            (_, 0..3) => DVec3::AXES[by],
+            (_, 3..6) => DVec3::AXES[by - 3].cross(position(&model, at) - middle),
+            _ => position(&model, at) - middle,
+        };
+        let mut alike = DMatrix::<f64>::zeros(count, 7);
+        for by in 0..7 {
+            for photo in 0..photos {
+                for axis in 0..3 {
+                    alike[(photo * 6 + 3 + axis, by)] = similarity(photo, by)[axis];
+                    if let Some(turn) = by.checked_sub(3).filter(|turn| *turn < 3) {
+                        let axes = model.photos[photo].pose.rotation;
+                        alike[(photo * 6 + axis, by)] = axes.col(axis)[turn];
+                    }
+                }
+            }
+            for point in 0..points {
+                for axis in 0..3 {
+                    alike[(lens_at + 8 + point * 3 + axis, by)] =
+                        similarity(photos + point, by)[axis];
                 }
             }
         }
+        let mut weights = DMatrix::<f64>::zeros(count, count);
+        for point in 0..points {
+            let at = lens_at + 8 + point * 3;
+            let own = jacobian.columns(at, 3);
+            let weight = (own.transpose() * own)
+                .try_inverse()
+                .unwrap()
+                .trace()
+                .recip();
+            for axis in 0..3 {
+                weights[(at + axis, at + axis)] = weight;
+            }
+        }
+        let fit = (alike.transpose() * &weights * &alike)
+            .try_inverse()
+            .unwrap()
+            * alike.transpose()
+            * &weights;
+        let off = DMatrix::identity(count, count) - &alike * fit;
+        let covariance = &off * world * off.transpose();
+        let mut left = 0.0;
+        for (photo, (center, turn)) in found.poses.iter().enumerate() {
+            // Given the lens: the inverse of the pose's part of the inverse.
+            let own = (photo * 6..photo * 6 + 6).chain(lens_at..lens_at + 8);
+            let own: Vec<usize> = own.collect();
+            let with_lens = covariance.select_rows(&own).select_columns(&own);
+            let given = with_lens.clone().try_inverse().unwrap();
+            let given = given
+                .view((0, 0), (6, 6))
+                .into_owned()
+                .try_inverse()
+                .unwrap();
+            for axis in 0..3 {
+                for (part, at) in [(turn[axis], axis), (center[axis], axis + 3)] {
+                    let expected = given[(at, at)].sqrt();
+                    assert!((part / expected - 1.0).abs() < 1e-4, "{part} {expected}");
+                }
+            }
+            // Of the logarithm of focal length over depth: all there is, less what there is for a given lens.
+            let pose = &model.photos[photo].pose;
+            let seen = model
+                .observations
+                .iter()
+                .filter(|seen| seen.photo as usize == photo);
+            let depths: Vec<f64> = seen
+                .map(|seen| {
+                    pose.camera_from_world(model.cloud.points[seen.point as usize])
+                        .z
+                })
+                .collect();
+            let depth = depths.iter().sum::<f64>() / depths.len() as f64;
+            let mut by = DMatrix::<f64>::zeros(14, 1);
+            for axis in 0..3 {
+                by[(3 + axis, 0)] = pose.rotation.z_axis[axis] / depth;
+            }
+            let own = by.rows(0, 6);
+            let given = (own.transpose() * given * own)[(0, 0)];
+            by[(6, 0)] = 2001.0_f64.recip();
+            by[(7, 0)] = 2001.0_f64.recip();
+            left += (by.transpose() * with_lens * &by)[(0, 0)] - given;
+        }
+        let expected = (left / photos as f64).sqrt();
+        let part = found.focal_in_scales[0];
+        assert!((part / expected - 1.0).abs() < 1e-4, "{part} {expected}");
+        // Photos from above: a longer lens means a greater height, and the scales stay.
+        assert!(part < 0.3 * found.focal[0], "{part} {}", found.focal[0]);
         // All residuals are 0.8 px long.
         let free = rows - photos * 6 - points * 3;
         let expected = (0.64 * model.observations.len() as f64 / free as f64).sqrt();
         assert!((found.pixel - expected).abs() < 1e-9, "{}", found.pixel);
-        let lens = photos * 6;
+        let lens = lens_at;
         let both = covariance[(lens, lens)]
             + covariance[(lens + 1, lens + 1)]
             + 2.0 * covariance[(lens, lens + 1)];
@@ -413,11 +661,38 @@ mod tests {
         assert!(found.focal[0] < 0.03);
     }
 
-    /// Without known centres there is no world to be sure in.
+    /// The centre of a photo, or the point behind the photos.
+    fn position(model: &Reconstruction, at: usize) -> DVec3 {
+        match at.checked_sub(model.photos.len()) {
+            None => model.photos[at].pose.center,
+            Some(point) => model.cloud.points[point],
+        }
+    }
+
+    /// Receivers that are off by metres, or none at all, leave the cameras where they are to the pile.
     #[test]
-    fn two_centres_are_too_few() {
-        let centers = [Some(DVec3::ONE), Some(DVec3::ONE), None, None, None].to_vec();
-        let lenses = vec![[1.0; LENS]];
-        assert_eq!(deviations(&model(), &Known { centers, lenses }), None);
+    fn where_the_world_is_does_not_matter() {
+        let model = model();
+        let of = |center: Option<DVec3>| {
+            let known = Known {
+                centers: vec![center; 5],
+                lenses: vec![[30.0, 30.03, 6.4, 6.4, 1.0, 1.0, 0.01, 0.01]],
+            };
+            deviations(&model, &known).unwrap()
+        };
+        let [metres, none] = [of(Some(DVec3::new(3.0, 3.0, 8.0))), of(None)];
+        for ((center, turn), (other, other_turn)) in metres.poses.iter().zip(&none.poses) {
+            // 30 units from the pile, with 40 points that are off by a pixel.
+            assert!(center.z < 0.1 && center.max_element() < 0.3, "{center}");
+            assert!(turn.max_element() < 0.01, "{turn}");
+            assert!(
+                (center.length() / other.length() - 1.0).abs() < 0.02,
+                "{other}"
+            );
+            assert!(
+                (turn.length() / other_turn.length() - 1.0).abs() < 0.02,
+                "{other_turn}"
+            );
+        }
     }
 }

@@ -70,7 +70,7 @@ pub(crate) fn flight_files(
     let mut warnings = Vec::new();
     if sure.is_none() {
         warnings.push(
-            "it is not known how sure the poses are: too few photos say where they were taken and how well"
+            "it is not known how sure the poses are: too many photos, or nothing that several see"
                 .to_owned(),
         );
     }
@@ -113,8 +113,13 @@ pub(crate) fn flight_files(
     settings.errors.world_scale = placed.scale_error.map(stated_percent);
     let focal = sure.as_ref().and_then(|sure| {
         let cameras = 0..model.cameras.len();
-        let found = cameras
-            .filter_map(|camera| found_focal(sure, photos.camera_of(&model, camera), camera));
+        let found = cameras.filter_map(|camera| {
+            found_focal(
+                &sure.focal_in_scales,
+                photos.camera_of(&model, camera),
+                camera,
+            )
+        });
         found.reduce(f64::max)
     });
     settings.errors.focal = focal.map(stated_percent);
@@ -141,15 +146,15 @@ pub(crate) fn stated(sure: &Deviations, photo: usize) -> StatedDeviations {
     }
 }
 
-/// Standard deviation of the focal length of a model's camera, a part of it; `expected` is what was known of it
+/// Of the standard deviations of cameras' focal lengths that of this camera; `expected` is what was known of it
 /// before. `None` for a given calibration, which is not found: how sure it is, is for whoever gave it to say.
 pub(crate) fn found_focal(
-    sure: &Deviations,
+    deviations: &[f64],
     expected: Option<&SurveyCamera>,
     camera: usize,
 ) -> Option<f64> {
     expected.filter(|expected| !expected.is_given)?;
-    sure.focal.get(camera).copied()
+    deviations.get(camera).copied()
 }
 
 fn surface(cloud: &Cloud, placed: &Georeferenced) -> Result<(&'static str, Vec<u8>), String> {

@@ -50,7 +50,9 @@ pub(crate) fn report(of: &ReportOf<'_>) -> String {
     });
     let cameras = model.cameras.iter().enumerate().map(|(number, camera)| {
         let expected = of.photos.camera_of(model, number);
-        let focal = of.sure.and_then(|sure| found_focal(sure, expected, number));
+        let focal = of
+            .sure
+            .and_then(|sure| found_focal(&sure.focal, expected, number));
         SolvedCamera {
             camera,
             focal_percent: focal.map(|focal| focal * 100.0),
