@@ -54,7 +54,7 @@ fn published(text: &str) -> Result<(usize, f64), String> {
 }
 
 pub(super) fn anova(arguments: &AnovaArguments) -> Result<Answer, String> {
-    let outputs = arguments.answer.output.outputs(&arguments.file)?;
+    let outputs = arguments.answer.outputs(&arguments.file)?;
     let (report, warnings) = report(arguments)?;
     let text = arguments.answer.text(
         &report,

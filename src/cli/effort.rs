@@ -20,7 +20,7 @@ pub(super) struct EffortArguments {
 }
 
 pub(super) fn effort(arguments: &EffortArguments) -> Result<Answer, String> {
-    let outputs = arguments.answer.output.outputs([&arguments.file])?;
+    let outputs = arguments.answer.outputs([&arguments.file])?;
     let (effort, warnings) = read_effort_table(&arguments.file).map_err(|e| e.to_string())?;
     let text = arguments.answer.text(
         &effort,

@@ -323,7 +323,7 @@ fn window(flight: Vec<PathBuf>) -> ExitCode {
 }
 
 fn scales(arguments: &ScalesArguments, progress: &Progress) -> Result<Answer, String> {
-    let mut outputs = arguments.answer.output.outputs(arguments.flight.files())?;
+    let mut outputs = arguments.answer.outputs(arguments.flight.files())?;
     let (flight, memory) = (&arguments.flight, &arguments.memory);
     let (opened, (text, notes)) = memory.with_flight(flight, false, progress, |opened| {
         outputs.read(&opened.read)?;

@@ -48,10 +48,29 @@ pub(super) struct AnswerArguments {
     #[arg(long, value_enum)]
     format: Option<ScalesFormat>,
     #[command(flatten)]
-    pub(super) output: OutputArguments,
+    output: OutputArguments,
 }
 
 impl AnswerArguments {
+    /// The outputs of a command that reads these files or folders.
+    pub(super) fn outputs<P: AsRef<Path>>(
+        &self,
+        inputs: impl IntoIterator<Item = P>,
+    ) -> Result<Outputs<'_>, String> {
+        let file = self.output.output.as_deref();
+        let of_name = file.and_then(|file| Some((file, file.extension()?.to_string_lossy())));
+        match of_name {
+            Some((file, ending)) if self.format.is_none() && !is_known(&ending) => {
+                let fault = Fault::new(
+                    format!("nothing is written as .{ending} here"),
+                    "end the name in .csv, .json or .txt (a table for people), or say --format",
+                );
+                Err(FileError::new(file, fault).to_string())
+            }
+            _ => self.output.outputs(inputs),
+        }
+    }
+
     /// The chosen format, or what the file's name says: a table in a .csv is a table that no program reads.
     fn format(&self) -> ScalesFormat {
         let file = self.output.output.as_deref();
@@ -95,6 +114,11 @@ impl AnswerArguments {
             false => left,
         })
     }
+}
+
+/// Whether a file's ending says what is in it.
+fn is_known(ending: &str) -> bool {
+    matches!(ending.to_lowercase().as_str(), "csv" | "json" | "txt")
 }
 
 /// The files that a command writes.

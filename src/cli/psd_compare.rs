@@ -84,7 +84,7 @@ pub(super) fn compare_shifts(
     if let Some(report) = &arguments.report {
         check_report_name(report)?;
     }
-    let mut outputs = fitting.answer.output.outputs(arguments.table.files())?;
+    let mut outputs = fitting.answer.outputs(arguments.table.files())?;
     for path in fitting.figure.iter().chain(&arguments.report) {
         outputs = outputs.and(path, Kind::Result)?;
     }

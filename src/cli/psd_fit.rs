@@ -45,7 +45,7 @@ pub(super) fn fit(arguments: &FitArguments, progress: &Progress) -> Result<Answe
     let fitting = &arguments.fitting;
     let formats = figure_formats(&fitting.figure)?;
     let path = &arguments.file;
-    let mut outputs = fitting.answer.output.outputs([path])?;
+    let mut outputs = fitting.answer.outputs([path])?;
     for figure in &fitting.figure {
         outputs = outputs.and(figure, Kind::Result)?;
     }

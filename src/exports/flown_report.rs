@@ -33,6 +33,9 @@ impl FlownReport<'_> {
     }
 }
 
+/// A photo that is turned by more was not meant to be this one, degrees.
+const ELSEWHERE: f64 = 30.0;
+
 /// The photos and the whole as text.
 pub fn flown_table(report: &FlownReport<'_>) -> String {
     let FlownReport { flight, unit, .. } = report;
@@ -103,6 +106,15 @@ pub fn flown_warnings(report: &FlownReport<'_>) -> Vec<String> {
             "most planned photos were not taken: look whether this flight is of that mission"
                 .to_owned(),
         );
+    }
+    let turned = report.rows().filter_map(|(_, found)| found);
+    let turned = turned.filter(|(_, residual)| residual.turn > ELSEWHERE);
+    let (turned, taken) = (turned.count(), report.planned.len() - missing.len());
+    if 2 * turned > taken {
+        said.push(format!(
+            "{turned} of {taken} photos look more than {ELSEWHERE}° away from where they were to look: \
+             look whether this flight is of that mission"
+        ));
     }
     let unplanned = report.flown.unplanned.iter();
     let unplanned: Vec<String> = unplanned

@@ -5,7 +5,9 @@ use std::collections::HashMap;
 use super::ReportObject;
 use crate::fault::{Fault, first_names};
 use crate::flight::{Doubt, PhotoReview, Review, ScaleObject};
-use crate::scale::{EdgeScales, FittedScale, ImageKind, ScaleEstimate, ScalePair, Uncertainty};
+use crate::scale::{
+    EdgeScales, ErrorSource, FittedScale, ImageKind, ScaleEstimate, ScalePair, Uncertainty,
+};
 use crate::units::LengthUnit;
 
 /// The scales of a review's photos, or of some of them, in a unit.
@@ -124,7 +126,11 @@ impl<'a> ScaleReport<'a> {
             let Some(verdict) = photo.settled().filter(|_| !photo.doubts.is_empty()) else {
                 return notes(line);
             };
-            let (verdict, reasons) = (verdict.to_string(), photo.reasons().join("; "));
+            let reasons: Vec<String> = without_unit(photo.reasons()).collect();
+            let (verdict, reasons) = (verdict.to_string(), reasons.join("; "));
+            if reasons.is_empty() {
+                return None;
+            }
             // That there is no scale is verdict and reason.
             Some(match reasons.starts_with(&verdict) {
                 true => reasons,
@@ -150,6 +156,19 @@ impl<'a> ScaleReport<'a> {
                  the photos do (for one, survey photos around the pile as well)"
             )
         })
+    }
+
+    /// What no 95 % interval of a photo or more counts, because nobody states it; `None` where all is counted.
+    pub fn not_counted(&self) -> Option<String> {
+        let lines = self.lines().filter(|line| line.interval_percent().is_some());
+        let of_photos: Vec<Vec<ErrorSource>> = lines
+            .filter_map(|line| Some(line.uncertainty()?.not_counted(line.photo.pair).collect()))
+            .collect();
+        let missing = ErrorSource::ALL
+            .into_iter()
+            .filter(|source| of_photos.iter().any(|of| of.contains(source)));
+        let names: Vec<&str> = missing.map(ErrorSource::as_str).collect();
+        (!names.is_empty()).then(|| names.join(", "))
     }
 
     /// A sentence a photo that has one; one of all photos where more than a few have the same.
@@ -193,9 +212,15 @@ impl<'a> ScaleReport<'a> {
     }
 }
 
+/// That the model has no unit is said once, of the flight.
+fn without_unit(sentences: Vec<String>) -> impl Iterator<Item = String> {
+    let of_unit = Doubt::UnitUnknown.to_string();
+    sentences.into_iter().filter(move |said| *said != of_unit)
+}
+
 /// What fell back or failed, in one sentence; `None` where nothing did.
 fn notes(line: &PhotoLine<'_>) -> Option<String> {
-    let notes = line.photo.notes();
+    let notes: Vec<String> = without_unit(line.photo.notes()).collect();
     (!notes.is_empty()).then(|| notes.join("; "))
 }
 

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::photo_columns::PHOTO_COLUMNS;
 use super::scale_report::ScaleReport;
+use crate::flight::Doubt;
 use crate::scale::ImageKind;
 
 /// The report as aligned text: six significant digits, notes below.
@@ -13,10 +14,19 @@ pub fn scales_table(report: &ScaleReport<'_>) -> String {
         ImageKind::AsShot => "photos as shot",
     };
     let mut text = format!(
-        "{}: scales of the {image} in pixels per {}\n\n",
+        "{}: scales of the {image} in pixels per {}\n",
         report.flight(),
         report.unit()
     );
+    if !report.unit_known() {
+        let _ = writeln!(
+            text,
+            "{} (the numbers are as if that unit were {})",
+            Doubt::UnitUnknown,
+            report.world_unit()
+        );
+    }
+    text.push('\n');
     let columns = || PHOTO_COLUMNS.iter().filter(|column| column.table.is_some());
     let head = columns().filter_map(|column| column.table.map(str::to_owned));
     let mut rows: Vec<Vec<String>> = vec![head.collect()];
@@ -47,6 +57,12 @@ pub fn scales_table(report: &ScaleReport<'_>) -> String {
         text.push_str(
             "\n95 % ±: how sure the line is that goes to Split-Desktop; off line: how far single pixels are from it\n",
         );
+        if let Some(not_counted) = report.not_counted() {
+            let _ = writeln!(
+                text,
+                "not counted in it, because nobody states how sure it is: {not_counted} ([uncertainty] in flight.toml, or the settings in the window)"
+            );
+        }
     }
     let below = report.reasons();
     if !below.is_empty() {

@@ -5,6 +5,9 @@ use std::fmt;
 use super::PhotoReview;
 use crate::scale::{CornerOutcome, EdgeScales};
 
+/// A smaller difference is written as none.
+const LEAST_PERCENT: f64 = 0.05;
+
 /// How the corners' scale differs from the best line, at the end where it differs most.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Difference {
@@ -73,7 +76,10 @@ impl PhotoReview<'_> {
                     Some(ends) => (ends.low..=ends.high).contains(&line),
                     None => (corners? / line - 1.0).abs() < 0.005,
                 };
-                (!within).then_some((at_top, (corners? / line - 1.0) * 100.0))
+                let percent = (corners? / line - 1.0) * 100.0;
+                // Of a plane the interval has no width, and what is left is how numbers are rounded.
+                let is_seen = percent.abs() >= LEAST_PERCENT;
+                (is_seen && !within).then_some((at_top, percent))
             });
         let (at_top, percent) = differing.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
         Some(Difference {

@@ -60,7 +60,7 @@ impl Plane {
         line.extend(polygon.corners().first());
         let rim = Profile::along(surface, &line)?;
         if rim.covered() < LEAST_RIM {
-            return Err(SurveyError::RimNotCovered(100.0 * rim.covered()));
+            return Err(SurveyError::RimNotCovered((100.0 * rim.covered()).max(0.0)));
         }
         let Some(start) = rim.points().next().map(|first| first.point) else {
             return Err(SurveyError::RimNotCovered(0.0));

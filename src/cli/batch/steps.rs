@@ -168,7 +168,7 @@ pub(super) fn make(
                 if made.review.is_none() {
                     made.review = Some(review_of_scales(flight, opened, progress)?);
                 }
-                let outputs = arguments.answer.output.outputs(arguments.flight.files())?;
+                let outputs = arguments.answer.outputs(arguments.flight.files())?;
                 if let Some(review) = &made.review {
                     made.warnings = deliver_scales(&arguments, outputs, opened, review)?.warnings;
                 }

@@ -16,7 +16,7 @@ use crate::opening::{self, GeoreferenceRequest, Georeferenced, KnownDistance, Kn
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct GeoreferenceArguments {
-    /// A reconstruction in a frame of its own: an NVM file, a COLMAP folder, ...
+    /// A reconstruction in a frame of its own: an NVM file, a COLMAP folder, ...; or a flight that was made of one.
     reconstruction: PathBuf,
     /// The folder of the photos: their own positions, where no list is given, and their sizes.
     #[arg(long, value_name = "FOLDER")]
@@ -65,8 +65,12 @@ pub(in crate::cli) fn georeference(
     arguments: &GeoreferenceArguments,
     progress: &Progress,
 ) -> Result<Answer, String> {
+    let behind = opening::behind_flight(&arguments.reconstruction);
+    let behind = behind.as_ref();
+    let of_flight = behind.and_then(|behind| behind.photos.as_ref());
+    let photos = arguments.photos.as_ref().or(of_flight);
     let request = GeoreferenceRequest {
-        photos: arguments.photos.clone(),
+        photos: photos.cloned(),
         positions: arguments.positions.clone(),
         control_points: arguments.gcp.clone(),
         marked: None,
@@ -74,7 +78,7 @@ pub(in crate::cli) fn georeference(
         crs: arguments.crs.clone(),
         level: arguments.level,
     };
-    let path = &arguments.reconstruction;
+    let path = behind.map_or(&arguments.reconstruction, |behind| &behind.reconstruction);
     let named = [
         Some(path),
         request.positions.as_ref(),
@@ -94,8 +98,9 @@ pub(in crate::cli) fn georeference(
         opening::georeference(path, &request, progress).map_err(|error| error.to_string())?;
     outputs.read(&Inputs::default().with_opened(&recording.files()))?;
     if let Some(target) = &arguments.output {
-        let text = result
-            .flight_text(target, path, arguments.photos.as_deref(), None)
+        let name = behind.and_then(|behind| behind.name.as_deref());
+        let photos = photos.map(PathBuf::as_path);
+        let text = opening::flight_text_of(Some(&result), name, target, path, photos, None)
             .map_err(|error| error.to_string())?;
         outputs.write(target, text.as_bytes(), Kind::Flight)?;
     }

@@ -35,7 +35,7 @@ pub(in crate::cli) fn profile(
     arguments: &ProfileArguments,
     progress: &Progress,
 ) -> Result<Answer, String> {
-    let mut outputs = arguments.answer.output.outputs(arguments.flight.files())?;
+    let mut outputs = arguments.answer.outputs(arguments.flight.files())?;
     let (line, mut warnings) = match (&arguments.line, arguments.from, arguments.to) {
         (Some(line), ..) => places(line)?,
         (None, from, to) => (from.into_iter().chain(to).collect(), Vec::new()),

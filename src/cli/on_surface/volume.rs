@@ -61,7 +61,7 @@ pub(in crate::cli) fn volume(
         _ => None,
     };
     let inputs = arguments.flight.files().chain(base_file);
-    let mut outputs = arguments.answer.output.outputs(inputs)?;
+    let mut outputs = arguments.answer.outputs(inputs)?;
     let (corners, mut warnings) = places(&arguments.polygon)?;
     let polygon = Polygon::new(&corners).map_err(|error| format!("polygon: {error}"))?;
     let opened = arguments.flight.open_to_measure(progress)?;

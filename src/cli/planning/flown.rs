@@ -41,7 +41,7 @@ pub(in crate::cli) fn flown(
     progress: &Progress,
 ) -> Result<Answer, String> {
     let inputs = arguments.flight.files().chain([&arguments.mission]);
-    let mut outputs = arguments.answer.output.outputs(inputs)?;
+    let mut outputs = arguments.answer.outputs(inputs)?;
     let mut formats = Vec::new();
     for path in &arguments.figure {
         let format = DrawingFormat::of(path);

@@ -215,7 +215,7 @@ pub(in crate::cli) fn plan(
     let areas = arguments.area.iter().chain(&arguments.keep_out);
     let areas = areas.map(PathBuf::from).collect::<Vec<_>>();
     let inputs = arguments.flight.files().chain(&arguments.camera);
-    let mut outputs = arguments.answer.output.outputs(inputs.chain(&areas))?;
+    let mut outputs = arguments.answer.outputs(inputs.chain(&areas))?;
     for path in &arguments.mission {
         // Known before the work: nothing is written where one of them cannot be.
         MissionFormat::of(path)

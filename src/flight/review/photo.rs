@@ -210,7 +210,10 @@ impl<'a> PhotoReview<'a> {
         }
         match self.outcome {
             Outcome::Trouble(trouble) => notes.push(trouble.clone()),
-            Outcome::Scale(scale) => notes.extend(scale.notes(self.unit.symbol())),
+            Outcome::Scale(scale) => notes.extend(scale.notes(match self.unit_known {
+                true => self.unit.symbol(),
+                false => "of the model's own units",
+            })),
         }
         let said = |doubt: &&Doubt| {
             doubt.is_of_the_pile()

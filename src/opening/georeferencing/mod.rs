@@ -10,10 +10,12 @@ mod distances;
 mod flight_text;
 mod list_world;
 mod marks;
+mod of_flight;
 mod photo_names;
 
 pub use self::control_file::{control_file, control_text, read_control};
 pub use self::flight_text::flight_text_of;
+pub use self::of_flight::{BehindFlight, behind_flight};
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;

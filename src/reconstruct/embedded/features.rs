@@ -58,7 +58,11 @@ pub(super) fn find(
     let mut left_out = Vec::new();
     let mut unwritten = 0;
     for (number, photo) in photos.photos.iter().enumerate() {
-        progress.advance(number as u64, photos.photos.len() as u64)?;
+        let going_on = progress.advance(number as u64, photos.photos.len() as u64);
+        if going_on.is_err() && unwritten > 0 {
+            keep(store, kept)?;
+        }
+        going_on?;
         let mut leave_out = |why: String| {
             left_out.push(LeftOut {
                 photo: photo.name.clone(),

@@ -67,8 +67,16 @@ fn before(to: &Path) -> Result<Option<String>, Fault> {
         Ok(text) => text,
     };
     let is_ours = FlightFile::parse(&text).is_ok_and(|flight| {
-        flight.photo_source() == PhotoSource::Poses("poses.csv")
-            && matches!(flight.surface(), Some("pile.laz" | "pile.ply"))
+        match flight.photo_source() {
+            PhotoSource::Poses("poses.csv") => {
+                matches!(flight.surface(), Some("pile.laz" | "pile.ply"))
+            }
+            // Of a model that is not in the world.
+            PhotoSource::Reconstruction(MODEL, None) => {
+                matches!(flight.surface(), None | Some("pile.ply"))
+            }
+            _ => false,
+        }
     });
     match is_ours {
         true => Ok(Some(text)),

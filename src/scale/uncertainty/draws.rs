@@ -92,7 +92,8 @@ pub(super) fn normal_interval(mean: f64, deviation: f64, estimate: f64) -> Inter
     let (low, high) = ends(normal.cdf(estimate));
     Interval {
         standard_error: deviation,
-        low: normal.inverse_cdf(low).min(estimate),
+        // No scale is below zero, whatever a normal distribution says of it.
+        low: normal.inverse_cdf(low).max(0.0).min(estimate),
         high: normal.inverse_cdf(high).max(estimate),
     }
 }
