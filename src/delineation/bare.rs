@@ -12,7 +12,7 @@ const CELLS: usize = 32;
 const LARGE: f64 = 0.1;
 
 /// That one piece without any fragment takes much of the photo.
-pub fn bare(labels: &LabelImage) -> Option<String> {
+pub(crate) fn bare(labels: &LabelImage) -> Option<String> {
     (largest_bare(labels) > LARGE).then(|| {
         "one piece of more than a tenth of the photo is without any fragment, and counts as fines; where it is floor and not fines, \
          exclude it (in the window, page Fragments)"

@@ -38,7 +38,6 @@ mod transposed;
 pub mod tree;
 mod votes;
 
-pub use bare::bare;
 pub use classical::Classical;
 pub use delineating::{Delineated, delineate, delineated, least_across, leave_out};
 pub use engine::{Engine, Outlined};

@@ -160,7 +160,9 @@ impl<'a> ScaleReport<'a> {
 
     /// What no 95 % interval of a photo or more counts, because nobody states it; `None` where all is counted.
     pub fn not_counted(&self) -> Option<String> {
-        let lines = self.lines().filter(|line| line.interval_percent().is_some());
+        let lines = self
+            .lines()
+            .filter(|line| line.interval_percent().is_some());
         let of_photos: Vec<Vec<ErrorSource>> = lines
             .filter_map(|line| Some(line.uncertainty()?.not_counted(line.photo.pair).collect()))
             .collect();

@@ -234,6 +234,16 @@ fn up(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
             );
             of(item, Health::Bad, format!("{name}?"), says).with(Remedy::TurnUp(axis))
         }
+        None if matches!(
+            stated.reconstruction,
+            Some(FlightReconstruction { in_world: None, .. })
+        ) =>
+        {
+            let says = "The reconstruction is in a frame of its own: which way is up was taken from its cameras and \
+                        points, or from the gimbals' angles."
+                .to_owned();
+            of(item, Health::Unknown, "taken", says)
+        }
         None if review.count() == 0 => {
             let says = "z is taken to be up: there are no cameras to say otherwise.".to_owned();
             of(item, Health::Unknown, "z", says)

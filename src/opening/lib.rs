@@ -49,9 +49,9 @@ pub use dropped::Dropped;
 pub use evidence::{Colours, compare_all_colours, compare_colours, look_up};
 pub use flown::{ComparedFlight, FlightOfMission, compare_flown};
 pub use georeferencing::{
-    BehindFlight, GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind, LengthResidual,
-    PositionResidual, behind_flight, control_file, control_text, flight_text_of, georeference,
-    georeference_flight, georeference_model, read_control,
+    BehindFlight, GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, KnownKind,
+    LengthResidual, PositionResidual, behind_flight, control_file, control_text, flight_text_of,
+    georeference, georeference_flight, georeference_model, read_control,
 };
 pub use health::{Health, HealthFinding, HealthItem, Remedy, StatedOfFlight, flight_health};
 pub use in_part::{Memory, half_of_the_machines, memory_in_words, memory_size};

@@ -14,6 +14,8 @@ pub struct MeasuredFragments {
     pub by_mass: Result<ByMass, Fault>,
     /// The 95 % intervals of its P20, P50 and P80.
     pub intervals: Vec<SizeInterval>,
+    /// What is to be said of the outlines, one sentence each.
+    pub notes: Vec<String>,
 }
 
 impl MeasuredFragments {

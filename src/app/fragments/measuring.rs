@@ -66,6 +66,7 @@ impl State {
             let percents = SizeInterval::PERCENTS;
             let intervals = intervals(&[(&measured, steps)], doubts, &percents).unwrap_or_default();
             let measured = MeasuredFragments {
+                notes: measured.notes(&labels),
                 photo: measured,
                 by_mass,
                 intervals,

@@ -32,9 +32,10 @@ use fragscale_fragmentation::SizeDistribution;
 use glam::DVec2;
 
 use self::counted::Counted;
+use crate::bare::bare;
 use crate::delineating::LEAST_PIXELS_ACROSS;
 use crate::engine::Engine;
-use crate::labels::{FINES, LabelImage};
+use crate::labels::{FINES, LabelImage, NOT_ROCK};
 use crate::measures::{Fragment, Measures};
 use crate::outlined_by::OutlinedBy;
 
@@ -107,7 +108,7 @@ fn is_speck(fragment: &Fragment) -> bool {
 
 impl PhotoFragments {
     /// That there are outlines too small for the limit, where people and other tools made some.
-    pub fn specks(&self) -> Option<String> {
+    fn specks(&self) -> Option<String> {
         let is_below = |of: &&Fragment| {
             let size = of.world.filter(|_| !of.is_cut).map(|of| of.sieve_size);
             is_speck(of) && size.is_some_and(|size| size < self.limit)
@@ -122,7 +123,7 @@ impl PhotoFragments {
     }
 
     /// That the largest one seems to be a ball, which nobody traced as a scale object.
-    pub fn ball(&self) -> Option<String> {
+    fn ball(&self) -> Option<String> {
         let whole = self.fragments.iter().filter(|of| !of.is_cut);
         let mut whole: Vec<&Measures> = whole.filter_map(|of| of.world.as_ref()).collect();
         whole.sort_by(|a, b| b.sieve_size.total_cmp(&a.sieve_size));
@@ -136,6 +137,30 @@ impl PhotoFragments {
              object, or exclude it (in the window)"
                 .to_owned()
         })
+    }
+
+    /// That less of it is outlined than not.
+    fn little(&self, labels: &LabelImage) -> Option<String> {
+        let of =
+            |wanted: fn(u32) -> bool| labels.labels.iter().filter(|label| wanted(**label)).count();
+        let fines = of(|label| label == FINES);
+        let rock = of(|label| label != FINES && label != NOT_ROCK);
+        (rock > 0 && fines > rock).then(|| {
+            format!(
+                "only {:.0} % of it is outlined: where the rest is no fines (grass, floor, other things), its sizes say nothing; \
+                 exclude that, or leave the photo out",
+                100.0 * rock as f64 / (fines + rock) as f64
+            )
+        })
+    }
+
+    /// What is to be said of a photo's outlines, one sentence each.
+    pub fn notes(&self, labels: &LabelImage) -> Vec<String> {
+        let little = self.little(labels);
+        // That is more than a large piece of it.
+        let bare = if little.is_none() { bare(labels) } else { None };
+        let notes = [self.specks(), self.ball(), bare, little];
+        notes.into_iter().flatten().collect()
     }
 
     /// The same without any fragment.

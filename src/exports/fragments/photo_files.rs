@@ -7,7 +7,7 @@ use image::RgbImage;
 use super::{WorldOutlines, labels_png, outlines_png, world_geojson};
 use crate::delineation::mass::PhotoFragments;
 use crate::delineation::measures::SieveShape;
-use crate::delineation::{LabelImage, OutlinedBy, bare, photo};
+use crate::delineation::{LabelImage, OutlinedBy, photo};
 use crate::fault::Fault;
 use crate::flight::Flight;
 use crate::jobs::Progress;
@@ -69,10 +69,7 @@ impl PhotoOutlined<'_> {
         let fragments = photo::fragments(self.labels, &field, self.shape, least);
         Ok(OutlinedFiles {
             bytes: self.bytes(&posed.name, &field, &fragments, places, units)?,
-            notes: [fragments.specks(), fragments.ball(), bare(self.labels)]
-                .into_iter()
-                .flatten()
-                .collect(),
+            notes: fragments.notes(self.labels),
             fragments,
         })
     }

@@ -57,7 +57,7 @@ pub fn profile_table(report: &ProfileReport<'_>) -> String {
             _ => ["toe after", "angle of repose after", "crest to toe after"],
         };
         rows.push((toe, place(&face.toe)));
-        rows.push((angle, repose(face, &unit)));
+        rows.push((angle, repose(face, profile.length, &unit)));
         let height = coordinate(face.height());
         rows.push((
             overall,
@@ -75,11 +75,19 @@ pub fn profile_table(report: &ProfileReport<'_>) -> String {
     text
 }
 
-fn repose(face: &Face, unit: &str) -> String {
+/// A stretch of less of the line is a stone's side, no slope of the pile.
+const LEAST_STRETCH: f64 = 0.05;
+
+fn repose(face: &Face, length: f64, unit: &str) -> String {
     match (face.repose, face.fitted) {
         (Some(repose), Some([from, to])) => {
+            let is_stone = (to - from).abs() < LEAST_STRETCH * length;
             let [from, to] = [from, to].map(coordinate);
-            format!("{repose:.1}°, from {from} to {to} {unit} along the line")
+            let doubt = match is_stone {
+                true => ": a stone's side rather than a slope, the stretch is so short",
+                false => "",
+            };
+            format!("{repose:.1}°, from {from} to {to} {unit} along the line{doubt}")
         }
         _ => "none: holes in the surface".to_owned(),
     }

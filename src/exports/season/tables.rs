@@ -121,6 +121,8 @@ pub fn size_in_words(size: Option<FoundSize>) -> Option<String> {
     } = size?;
     Some(match (low, high) {
         (Some(low), Some(high)) => with_interval(size?, low, high),
+        // The lower end lies below what the photos show.
+        (None, Some(_)) => format!("{}, may be less", significant_digits(size?, 2)),
         _ => significant_digits(size?, 2),
     })
 }

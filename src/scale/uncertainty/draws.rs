@@ -80,8 +80,17 @@ pub(super) fn interval_of(mut draws: Vec<f64>, estimate: f64) -> Interval {
     }
 }
 
+/// [`normal_interval`] of a scale: none is below zero, whatever a normal distribution says of it.
+pub(super) fn interval_of_scale(mean: f64, deviation: f64, scale: f64) -> Interval {
+    let interval = normal_interval(mean, deviation, scale);
+    Interval {
+        low: interval.low.max(0.0).min(scale),
+        ..interval
+    }
+}
+
 /// The same of a normal quantity.
-pub(super) fn normal_interval(mean: f64, deviation: f64, estimate: f64) -> Interval {
+fn normal_interval(mean: f64, deviation: f64, estimate: f64) -> Interval {
     let Ok(normal) = Normal::new(mean, deviation) else {
         return Interval {
             standard_error: 0.0,
@@ -92,8 +101,7 @@ pub(super) fn normal_interval(mean: f64, deviation: f64, estimate: f64) -> Inter
     let (low, high) = ends(normal.cdf(estimate));
     Interval {
         standard_error: deviation,
-        // No scale is below zero, whatever a normal distribution says of it.
-        low: normal.inverse_cdf(low).max(0.0).min(estimate),
+        low: normal.inverse_cdf(low).min(estimate),
         high: normal.inverse_cdf(high).max(estimate),
     }
 }

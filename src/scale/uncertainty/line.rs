@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::bridges::Bridged;
-use super::draws::normal_interval;
+use super::draws::interval_of_scale;
 use super::holes::of_holes;
 use super::moved::of_moves;
 use super::surface_error::{DepthError, root_mean_square};
@@ -132,7 +132,7 @@ impl LineEnd {
     fn interval(&self) -> Interval {
         let squares: f64 = self.parts.iter().flatten().map(|part| part * part).sum();
         let mean = self.scale * (1.0 - self.too_large);
-        normal_interval(mean, self.scale.abs() * squares.sqrt(), self.scale)
+        interval_of_scale(mean, self.scale.abs() * squares.sqrt(), self.scale)
     }
 }
 

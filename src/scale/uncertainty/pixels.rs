@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use super::Interval;
-use super::draws::normal_interval;
+use super::draws::interval_of_scale;
 use super::surface_error::{DepthErrors, LEAST_POINTS, plane_of, root_mean_square};
 use super::unseen::Unseen;
 use crate::camera::Camera;
@@ -100,7 +100,7 @@ impl PixelErrors {
         let parts = [of_angle, of_position, of_focal, of_world, of_surface];
         let share = parts.iter().flatten().sum::<f64>().sqrt();
         let too_large = self.unseen.bias * roughness.unwrap_or(0.0);
-        Some(normal_interval(
+        Some(interval_of_scale(
             scale * (1.0 - too_large),
             scale * share,
             scale,

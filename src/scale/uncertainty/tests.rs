@@ -90,6 +90,48 @@ fn assert_near(found: f64, expected: f64, share: f64) {
     );
 }
 
+/// A height of 10 that is off by 8 says nothing: the scale lies anywhere above zero.
+#[test]
+fn no_scale_is_below_zero() {
+    let surface = surface(|_, _, _| 0.0);
+    let (camera, pose) = (camera(Distortion::None), nadir(10.0));
+    let errors = StatedErrors {
+        pose: PoseErrors {
+            position: Some(DVec3::new(0.0, 0.0, 8.0)),
+            angle: None,
+        },
+        ..StatedErrors::default()
+    };
+    let image = ImageKind::Undistorted;
+    let found = compute(&surface, &camera, &pose, image, errors);
+    let top = found.uncertainty.unwrap().fitted_top.unwrap();
+    assert_eq!(top.low, 0.0);
+    assert!(top.high > 200.0, "{top:?}");
+}
+
+/// A pile that ends within the photo, whose corners are taken on the ground: nobody knows how far that is from
+/// what they would have met.
+#[test]
+fn corners_on_the_ground_have_no_errors() {
+    let surface = surface(|x, y, uniform| match x.abs() < 5.6 && y.abs() < 3.2 {
+        true => 0.01 * uniform,
+        false => f64::NAN,
+    });
+    let (camera, pose) = (camera(Distortion::None), nadir(10.0));
+    let errors = StatedErrors {
+        focal: Some(0.5),
+        world_scale: Some(0.1),
+        ..StatedErrors::default()
+    };
+    let image = ImageKind::Undistorted;
+    let found = compute(&surface, &camera, &pose, image, errors);
+    assert!(found.scale.scale.top.is_some());
+    let uncertainty = found.uncertainty.unwrap();
+    assert_eq!((uncertainty.top, uncertainty.left), (None, None));
+    assert_eq!(uncertainty.corner_parts_percent, [None; 4]);
+    assert!(uncertainty.fitted_top.is_some());
+}
+
 /// From 10 straight down onto a level plane the scale is f / Z: a height that is off by 0.1 (the
 /// standard deviation) is 1 %, a focal length or a world off by 0.5 % is that. Turned by w about its x
 /// axis the photo's scale changes by the share w·y at y above its middle: here 0.36.

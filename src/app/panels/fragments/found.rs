@@ -240,6 +240,10 @@ fn all(
     ui.strong("This photo, by mass");
     ui.horizontal_wrapped(|ui| take_along(state, ui, commands));
     pairs("fragments by mass", rows, ui);
+    for note in &measured.notes {
+        let note = egui::RichText::new(note).color(ui.visuals().warn_fg_color);
+        ui.add(egui::Label::new(note).wrap());
+    }
 }
 
 /// What is done with them.

@@ -21,13 +21,21 @@ pub fn health(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let mut findings: Vec<&HealthFinding> = open.health.iter().collect();
     findings.sort_by_key(grave);
     ui.horizontal_wrapped(|ui| {
+        // What mends two things is offered once.
+        let mut offered = Vec::new();
         for finding in findings {
-            item(state, finding, ui, commands);
+            item(state, finding, &mut offered, ui, commands);
         }
     });
 }
 
-fn item(state: &State, finding: &HealthFinding, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+fn item(
+    state: &State,
+    finding: &HealthFinding,
+    offered: &mut Vec<&'static str>,
+    ui: &mut egui::Ui,
+    commands: &mut Vec<Command>,
+) {
     let HealthFinding {
         item,
         health,
@@ -54,7 +62,14 @@ fn item(state: &State, finding: &HealthFinding, ui: &mut egui::Ui, commands: &mu
         egui::WidgetInfo::labeled(egui::Role::Status, true, label)
     });
     label.on_hover_text(says);
-    if let Some(offer) = remedy.and_then(|remedy| Offer::of(state, remedy)) {
+    let mut is_new = |label: &'static str| {
+        let is_new = !offered.contains(&label);
+        offered.push(label);
+        is_new
+    };
+    if let Some(offer) = remedy.and_then(|remedy| Offer::of(state, remedy))
+        && is_new(offer.name)
+    {
         let button = ui.small_button(offer.name);
         button.widget_info(|| {
             let label = format!("{}: {}", name(*item), offer.name);
@@ -70,6 +85,7 @@ fn item(state: &State, finding: &HealthFinding, ui: &mut egui::Ui, commands: &mu
     if is_of_place
         && *health == Health::Bad
         && let Some(command) = (action.command)(state)
+        && is_new(action.label)
     {
         let button = ui.small_button(action.label);
         button.widget_info(|| {

@@ -72,6 +72,21 @@ impl Columns {
         widths
     }
 
+    /// Whether the column of this kind is wholly in sight of a table that is not moved aside.
+    pub(super) fn is_in_sight(&self, kind: ColumnKind, widths: &[f32], ui: &egui::Ui) -> bool {
+        let Some(place) = self.all.iter().position(|column| column.kind == kind) else {
+            return false;
+        };
+        let gap = ui.spacing().item_spacing.x;
+        let right = CHECK
+            + widths
+                .iter()
+                .take(place + 1)
+                .map(|width| gap + width)
+                .sum::<f32>();
+        right <= ui.available_width() + 0.5
+    }
+
     /// Where the photos' names are.
     fn name(&self) -> Option<usize> {
         let is_name = |column: &&PhotoColumn| column.kind == ColumnKind::Name;

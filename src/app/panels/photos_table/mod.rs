@@ -24,6 +24,9 @@ use columns::{CHECK, Columns, WITH_THUMBNAIL};
 /// The height of the headings, which two lines fit into.
 const HEADER: f32 = 36.0;
 
+/// As wide as a verdict's sign and the gap behind it.
+const SIGN_AND_GAP: &str = "⚠ ";
+
 /// The height of a row, which a thumbnail fits into.
 const ROW: f32 = 34.0;
 
@@ -56,6 +59,7 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
     let mut columns = Columns::of((open.number, state.preferences.unit().symbol()), ui);
     let widths = columns.widths(ui.available_width(), ui.spacing().item_spacing.x);
     let seen = columns.seen();
+    let verdict_in_sight = columns.is_in_sight(ColumnKind::Verdict, &widths, ui);
     let selected_row = open
         .selected
         .and_then(|photo| open.table.shown.iter().position(|&shown| shown == photo));
@@ -122,10 +126,16 @@ fn table(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
                             thumbnail(open, photo, ui);
                         }
                         match column.kind {
-                            ColumnKind::Verdict => verdict(line.photo, ui),
+                            ColumnKind::Verdict => verdict(line.photo, false, ui),
                             ColumnKind::Name | ColumnKind::Text => {
                                 let text = column.short_value(&line);
-                                columns.note(place, &text, ui);
+                                if column.kind == ColumnKind::Name && !verdict_in_sight {
+                                    // In a narrow list the verdict goes last.
+                                    columns.note(place, &format!("{SIGN_AND_GAP}{text}"), ui);
+                                    verdict(line.photo, true, ui);
+                                } else {
+                                    columns.note(place, &text, ui);
+                                }
                                 names::name(ui, &text);
                             }
                             kind => {
@@ -267,12 +277,17 @@ fn thumbnail(open: &OpenFlight, photo: usize, ui: &mut egui::Ui) {
     }
 }
 
-fn verdict(photo: PhotoReview<'_>, ui: &mut egui::Ui) {
+/// The verdict, or its sign alone.
+fn verdict(photo: PhotoReview<'_>, is_sign: bool, ui: &mut egui::Ui) {
     let Some(verdict) = photo.settled() else {
         ui.weak("…").on_hover_text("Not looked at yet");
         return;
     };
-    let words = format!("{} {verdict}", verdict_sign(verdict));
+    let sign = verdict_sign(verdict);
+    let words = match is_sign {
+        true => sign.to_owned(),
+        false => format!("{sign} {verdict}"),
+    };
     let words = egui::RichText::new(words).color(verdict_color(verdict, ui.visuals()));
     let label = ui.add(egui::Label::new(words).selectable(false).truncate());
     let reasons = photo.reasons_and_decision();
