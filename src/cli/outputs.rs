@@ -60,7 +60,7 @@ impl AnswerArguments {
         let file = self.output.output.as_deref();
         let of_name = file.and_then(|file| Some((file, file.extension()?.to_string_lossy())));
         match of_name {
-            Some((file, ending)) if self.format.is_none() && !is_known(&ending) => {
+            Some((file, ending)) if self.format.is_none() && is_another(&ending) => {
                 let fault = Fault::new(
                     format!("nothing is written as .{ending} here"),
                     "end the name in .csv, .json or .txt (a table for people), or say --format",
@@ -116,9 +116,11 @@ impl AnswerArguments {
     }
 }
 
-/// Whether a file's ending says what is in it.
-fn is_known(ending: &str) -> bool {
-    matches!(ending.to_lowercase().as_str(), "csv" | "json" | "txt")
+/// Whether a program that a file's ending calls would find what it does not read.
+fn is_another(ending: &str) -> bool {
+    let ending = ending.to_lowercase();
+    let others = ["xlsx", "xls", "ods", "tsv", "xml", "html", "pdf"];
+    others.contains(&ending.as_str())
 }
 
 /// The files that a command writes.

@@ -167,6 +167,29 @@ fn request(photos: &Path, to: &Path) -> Request {
     }
 }
 
+/// Stopped after the first photos were looked at, their features are kept for the next run.
+#[test]
+fn interrupted_features_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let to = folder.path().join("flight");
+    let progress = Progress::default();
+    let watch = progress.clone();
+    let stop = std::thread::spawn(move || {
+        let is_going = || {
+            let (stage, share) = watch.snapshot();
+            stage.starts_with("finding features") && share > 0.0
+        };
+        while !is_going() {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        watch.cancel();
+    });
+    let stopped = reconstruct(&request(photos(), &to), &Embedded::default(), &progress);
+    stop.join().unwrap();
+    assert!(stopped.is_err());
+    assert!(to.join("unfinished/features.bin").exists());
+}
+
 /// Paused while the model grows nothing goes on; then the same comes out to the bit, whoever looks on.
 #[test]
 fn paused_and_shown_the_same_comes_out() {
@@ -589,6 +612,10 @@ fn models_without_places_are_upright() {
             false => "up is taken to be across the points",
         };
         assert!(said.contains(by) && said.contains("no unit"), "{said}");
+        // The same command again finds its own flight.
+        let again = request(&photos, &to);
+        let again = reconstruct(&again, &Embedded::default(), &Progress::default());
+        assert_eq!(again.unwrap().registered, made.registered);
         let model = crate::formats::read_project(&to.join("reconstruction"), &Progress::default());
         for photo in &model.unwrap().reconstruction.photos {
             let number = photo.name.as_bytes()[4] - b'1';

@@ -232,6 +232,14 @@ fn the_output_file_is_whole_or_not_there() {
             .expect("written")
             .starts_with("photo,")
     );
+    // No spreadsheet opens a table for people.
+    let book = folder.path().join("scales.xlsx");
+    let refused = error_of(&["scales", path, "-o", book.to_str().expect("UTF-8")]);
+    assert!(
+        refused.contains("nothing is written as .xlsx here; end the name in .csv"),
+        "{refused}"
+    );
+    assert!(!book.exists());
     // A run that fails leaves what was there, and nothing beside it.
     edit(&folder, "poses.csv", "83,1.2", "83,east");
     let before = fs::read_dir(folder.path()).expect("a folder").count();

@@ -58,6 +58,50 @@ fn known_positions_give_scales_in_metres() {
     }
 }
 
+/// What `reconstruct` leaves of photos without places: a flight without a unit, and its model beside it. Its numbers
+/// are called no scales, once; and the flight is taken where its model is meant.
+#[test]
+fn a_flight_without_a_unit_is_brought_to_the_world() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let beside = folder.path().join("reconstruction");
+    fs::create_dir(&beside).expect("a folder");
+    model(&beside);
+    let flight = "format = 1\nname = \"North face\"\n[world]\nunit = \"unknown\"\n[photos]\nreconstruction = \"reconstruction\"\n";
+    fs::write(folder.path().join("flight.toml"), flight).expect("written");
+    let output = fragscale(&["scales", text(folder.path())]);
+    let table = String::from_utf8(output.stdout).expect("UTF-8");
+    let notes = String::from_utf8(output.stderr).expect("UTF-8");
+    let says = "in a frame of its own, whose unit nobody states";
+    assert_eq!(table.matches(says).count(), 1, "{table}");
+    assert!(table.contains("as if that unit were m"), "{table}");
+    assert_eq!(notes.matches(says).count(), 1, "{notes}");
+
+    let list = folder.path().join("list.csv");
+    fs::write(&list, positions()).expect("written");
+    let world = folder.path().join("world.toml");
+    let more = ["--positions", text(&list), "-o", text(&world)];
+    stdout_of(&command(folder.path(), &more));
+    let written = fs::read_to_string(&world).expect("a flight");
+    assert!(written.contains("name = \"North face\""), "{written}");
+    assert!(
+        written.contains("reconstruction = \"reconstruction\""),
+        "{written}"
+    );
+    let scales = scales_json(&world, &[]);
+    let top = scale(&scales["photos"][0], "top").expect("a scale");
+    assert!((top - 1.0 / 3.0).abs() < 1e-6, "{top}");
+    // A flight with nothing behind it is still none.
+    let alone = folder.path().join("alone.toml");
+    fs::write(
+        &alone,
+        flight.replace("\"reconstruction\"\n", "\"nowhere\"\n"),
+    )
+    .expect("written");
+    let error = fragscale(&["georeference", text(&alone), "--positions", text(&list)]);
+    let error = String::from_utf8(error.stderr).expect("UTF-8");
+    assert!(error.contains("alone.toml"), "{error}");
+}
+
 #[test]
 fn the_table_and_the_errors_are_lines() {
     let folder = tempfile::tempdir().expect("a folder");

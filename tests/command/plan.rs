@@ -339,6 +339,32 @@ fn what_was_flown_is_compared_with_its_mission() {
         );
         assert!(flown["shared"].as_f64().unwrap() > 0.9, "{flown}");
     }
+    assert!(!notes.contains("look more than 30°"), "{notes}");
+    let other = folder.path().join("other");
+    fs::create_dir(&other).unwrap();
+    for file in fs::read_dir(folder.path()).unwrap().map(Result::unwrap) {
+        if file.file_type().unwrap().is_file() {
+            fs::copy(file.path(), other.join(file.file_name())).unwrap();
+        }
+    }
+    // The same places, looking the other way.
+    let poses = fs::read_to_string(other.join("poses.csv")).unwrap();
+    let mut lines = poses.lines();
+    let mut turned = format!("{}\n", lines.next().unwrap());
+    for line in lines {
+        let (before, pan) = line.rsplit_once(',').unwrap();
+        let (before, _) = before.rsplit_once(',').unwrap();
+        let pan: f64 = pan.parse().unwrap();
+        turned += &format!("{before},50,{}\n", pan + 180.0);
+    }
+    fs::write(other.join("poses.csv"), turned).unwrap();
+    let flight_of_another = other.join("flight.toml").display().to_string();
+    let place = ["--take-off", "450020,5400020"];
+    let arguments = ["flown", &flight_of_another, "--mission", &mission];
+    let output = fragscale(&[&arguments[..], &place].concat());
+    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    let says = "photos look more than 30° away from where they were to look";
+    assert!(notes.contains(says), "{notes}");
     // In a picture the photo that was not taken is red; without the mission nothing is.
     #[cfg(feature = "render")]
     {

@@ -437,6 +437,28 @@ pub(crate) mod tests {
         }
     }
 
+    /// Of four pixels one is rock, one no rock: less than half is outlined; of three it is half.
+    #[test]
+    fn little_of_a_photo_is_said() {
+        let photo = PhotoFragments {
+            fragments: Vec::new(),
+            frame: DVec2::ONE,
+            fines: 0.0,
+            limit: 0.0,
+        };
+        let said = |labels: &[u32]| {
+            photo.little(&LabelImage {
+                width: labels.len(),
+                height: 1,
+                labels: labels.to_vec(),
+            })
+        };
+        let little = said(&[1, NOT_ROCK, FINES, FINES]).unwrap();
+        assert!(little.contains("only 33 % of it is outlined"), "{little}");
+        assert_eq!(said(&[1, NOT_ROCK, FINES]), None);
+        assert_eq!(said(&[FINES, FINES]), None);
+    }
+
     /// A circle of twice the next is taken for a ball; a square one, a larger next one and a cut one are not.
     #[test]
     fn a_ball_is_round_and_alone() {
