@@ -84,6 +84,9 @@ use viewport::Viewport;
 /// Under which name eframe keeps the preferences.
 const PREFERENCES: &str = "preferences";
 
+/// A window of less has room for a pile between its panels only where they give way, points.
+const NARROW: f32 = 1000.0;
+
 /// The window's contents.
 pub struct App {
     state: State,
@@ -230,14 +233,17 @@ impl eframe::App for App {
         } else if state.open.is_some() {
             // However narrow the window is, a part of it is left for the viewport: a third of it at first.
             let width = ui.available_width();
+            // A narrow window has panels of its own: a wide one gets its own back. In it they take less.
+            let is_narrow = width < NARROW;
+            let most = if is_narrow { 0.34 } else { 0.4 };
             let marks = |open: &OpenFlight| open.control.is_on && state.page == Page::Pile;
             let is_marking = state.open.as_deref().is_some_and(marks);
             if state.preferences.left_open {
-                egui::Panel::left("photos")
+                egui::Panel::left(("photos", is_narrow))
                     .resizable(true)
                     .default_size((width * 0.36).clamp(180.0, 500.0))
                     .min_size(180.0)
-                    .max_size((width * 0.4).max(180.0))
+                    .max_size((width * most).max(180.0))
                     .show(ui, |ui| match state.page {
                         Page::Plan => panels::asked_of_plan(state, ui, out),
                         _ if is_marking => panels::control_points(state, ui, out),
@@ -247,11 +253,11 @@ impl eframe::App for App {
             if state.preferences.right_open {
                 self.inspector.crops = self.viewport.crops(state, ui);
                 let inspector = &mut self.inspector;
-                egui::Panel::right("inspector")
+                egui::Panel::right(("inspector", is_narrow))
                     .resizable(true)
                     .default_size((width * 0.32).clamp(220.0, 330.0))
                     .min_size(220.0)
-                    .max_size((width * 0.4).max(220.0))
+                    .max_size((width * most).max(220.0))
                     .show(ui, |ui| match state.page {
                         Page::Plan => panels::planned_photos(state, ui, out),
                         Page::Fragments => panels::fragments(state, ui, out),
