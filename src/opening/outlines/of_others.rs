@@ -204,11 +204,8 @@ impl OutlinesOfOthers {
                 let mut candidates = candidates(files, name);
                 let path = candidates.next().ok_or_else(|| {
                     let what = format!("there are no outlines of it in {}", self.path.display());
-                    let remedy = format!(
-                        "put them there, named as the photo ({}_labels.png)",
-                        stem(name)
-                    );
-                    Fault::new(what, remedy)
+                    // The same of all photos: it is said once.
+                    Fault::new(what, "put them there, named as the photo (NAME_labels.png)")
                 })?;
                 passed_over = candidates.next();
                 read = MaskFile::read(path).map_err(|error| named(path, error.fault))?;

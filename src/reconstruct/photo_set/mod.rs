@@ -12,7 +12,7 @@ use image::RgbImage;
 use self::in_world::World;
 use self::twins::Twins;
 use crate::camera::{Camera, Distortion};
-use crate::fault::Fault;
+use crate::fault::{Fault, by_cause};
 use crate::files::{FileError, read_bytes};
 use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
 use crate::formats::{PhotoCameras, Reconstruction, expected_deviation, photos_in};
@@ -124,6 +124,8 @@ pub struct PhotoSet {
     pub origin: DVec3,
     /// How many photos the folder has.
     pub count: usize,
+    /// What their headers leave in doubt, a sentence a cause.
+    pub warnings: Vec<String>,
 }
 
 /// The focal length that is tried where nothing is known of it, in parts of the longer side: between that
@@ -192,6 +194,11 @@ impl PhotoSet {
             let remedy = "add photos that overlap, or name the folder in which they lie";
             return Err(at(Fault::new(what, remedy)));
         }
+        let doubts = read.iter().flat_map(|(name, _, metadata)| {
+            let warnings = metadata.warnings.iter();
+            warnings.map(|warning| (name.as_str(), warning.clone()))
+        });
+        let warnings = by_cause(doubts, "photos");
         let world = World::of(crs, read.iter().map(|(.., metadata)| metadata)).map_err(at)?;
         let mut cameras = Cameras::default();
         let photos: Vec<SurveyPhoto> = read
@@ -220,6 +227,7 @@ impl PhotoSet {
             left_out,
             origin: world.map_or(DVec3::ZERO, |world| world.origin),
             count: files.len(),
+            warnings,
         })
     }
 }

@@ -55,7 +55,7 @@ pub(crate) fn write(
     sparse.left_out = left_out;
     let model = folder.write_model(&sparse)?;
     let read = read_project(&model, progress)?.reconstruction;
-    let mut warnings = Vec::new();
+    let mut warnings = photos.warnings.clone();
     let dense = match &request.dense {
         None => None,
         Some(options) => {

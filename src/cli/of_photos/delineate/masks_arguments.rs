@@ -67,12 +67,9 @@ pub(super) fn with_outlines(
     let (with, without): (Vec<usize>, Vec<usize>) = chosen
         .iter()
         .partition(|index| others.is_of(&photos[**index].name));
-    if with.is_empty() {
-        return (chosen, Vec::new());
-    }
     let mut said = Vec::new();
     let names: Vec<&str> = photos.iter().map(|photo| photo.name.as_str()).collect();
-    if !without.is_empty() {
+    if !with.is_empty() && !without.is_empty() {
         said.push(format!(
             "{} of {} photos have no outlines among those of --masks, and are left out: {}",
             without.len(),
@@ -89,5 +86,5 @@ pub(super) fn with_outlines(
             first_names(&of_none)
         ));
     }
-    (with, said)
+    (if with.is_empty() { chosen } else { with }, said)
 }
