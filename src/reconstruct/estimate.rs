@@ -91,6 +91,7 @@ mod tests {
             distortion: Distortion::None,
         };
         PhotoSet {
+            warnings: Vec::new(),
             photos: (0..count).map(photo).collect(),
             cameras: vec![SurveyCamera {
                 camera,

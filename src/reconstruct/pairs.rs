@@ -105,6 +105,7 @@ mod tests {
             gimbal: Some(DMat3::from_cols(DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z)),
         };
         PhotoSet {
+            warnings: Vec::new(),
             photos: places.iter().enumerate().map(photo).collect(),
             cameras: Vec::new(),
             left_out: Vec::new(),

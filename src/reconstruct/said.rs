@@ -178,6 +178,7 @@ mod tests {
     fn cameras_and_places_are_said() {
         let rtk = Some(Some(DVec3::new(0.015, 0.012, 0.025)));
         let mut set = PhotoSet {
+            warnings: Vec::new(),
             photos: vec![
                 photo(0, rtk),
                 photo(0, rtk),

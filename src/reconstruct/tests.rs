@@ -167,6 +167,19 @@ fn request(photos: &Path, to: &Path) -> Request {
     }
 }
 
+/// Three of these four photos were turned in another program, which their headers tell.
+#[test]
+fn doubts_of_the_headers_are_said() {
+    let Some(folder) = fragscale_test_data::shared_data("odm-brighton-0") else {
+        return;
+    };
+    let photos = PhotoSet::read(&folder.join("images"), None, &Progress::default()).unwrap();
+    let said = photos.warnings.join("; ");
+    let says =
+        "3 photos (DJI_0027.JPG, DJI_0028.JPG, DJI_0029.JPG): it was last written by 'Microsoft";
+    assert!(said.contains(says), "{said}");
+}
+
 /// Stopped after the first photos were looked at, their features are kept for the next run.
 #[test]
 fn interrupted_features_are_kept() {

@@ -99,6 +99,7 @@ fn photos(folder: &Path) -> PhotoSet {
         is_given: false,
     };
     PhotoSet {
+        warnings: Vec::new(),
         photos: [("a.png", 0), ("c.png", 0), ("d.png", 1)].map(photo).into(),
         cameras: vec![stated(Some(0.02)), stated(None)],
         left_out: Vec::new(),

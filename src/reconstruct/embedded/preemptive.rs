@@ -146,6 +146,7 @@ mod tests {
             store.set_descriptors(id, descriptors);
         }
         let set = |place: Option<Place>| PhotoSet {
+            warnings: Vec::new(),
             photos: (0..COUNT)
                 .map(|number| SurveyPhoto {
                     name: number.to_string(),
