@@ -257,7 +257,8 @@ impl eframe::App for App {
                     .resizable(true)
                     .default_size((width * 0.32).clamp(220.0, 330.0))
                     .min_size(220.0)
-                    .max_size((width * most).max(220.0))
+                    // Its pages' names are wider than its least size.
+                    .max_size((width * most).max(256.0))
                     .show(ui, |ui| match state.page {
                         Page::Plan => panels::planned_photos(state, ui, out),
                         Page::Fragments => panels::fragments(state, ui, out),
