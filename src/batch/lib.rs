@@ -37,7 +37,7 @@ use fragscale_opening as opening;
 
 pub use asked::{Asked, AskedStep, Step, StepOption};
 pub use record::{Record, remove_unfinished_below, remove_what_is_left};
-pub use results::{ResultsFolder, of_other_flights, write_results};
+pub use results::{ResultsFolder, notes_on_results, write_results};
 pub use running::{BatchOptions, Ended, Event, FLIGHT_COMMAND, Outcome, run};
 pub use season::{Found, Season, SeasonFlight};
 pub use told::{FlightDone, FlightTold, SaidLine};

@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::exports::{self, SeasonReport, SeasonRow};
 use crate::fault::Fault;
 use crate::files::{self, FileError, Inputs, Kind, cannot_be};
+use crate::flight::Date;
 use crate::record;
 use crate::units::LengthUnit;
 
@@ -52,8 +53,33 @@ impl ResultsFolder {
     }
 }
 
+/// What is to be said of the results in a folder, one sentence each.
+pub fn notes_on_results(to: &Path, rows: &[SeasonRow]) -> Vec<String> {
+    let of_days = rows.iter().filter_map(of_another_day);
+    of_other_flights(to, rows)
+        .into_iter()
+        .chain(of_days)
+        .collect()
+}
+
+/// That a blast is called by another day than it stands at: cameras' clocks go wrong.
+fn of_another_day(row: &SeasonRow) -> Option<String> {
+    let date = row.date?;
+    let bytes = row.blast.as_bytes();
+    let named: Date = bytes
+        .windows(10)
+        .find_map(|part| std::str::from_utf8(part).ok()?.parse().ok())?;
+    (named != date).then(|| {
+        format!(
+            "{}: it stands at {date}, as the clock of its camera or the season's file says; where that is wrong, give its date in \
+             the season's file",
+            row.blast
+        )
+    })
+}
+
 /// That results of other flights lie in the folder: of one that was renamed or taken away, or of another season's.
-pub fn of_other_flights(to: &Path, rows: &[SeasonRow]) -> Option<String> {
+fn of_other_flights(to: &Path, rows: &[SeasonRow]) -> Option<String> {
     let is_other = |name: &String| {
         to.join(name).join(record::NAME).is_file() && rows.iter().all(|row| row.results != *name)
     };
@@ -83,7 +109,7 @@ pub fn write_results(
     mut notes: Vec<String>,
     force: bool,
 ) -> Result<String, FileError> {
-    notes.extend(of_other_flights(to, &rows));
+    notes.extend(notes_on_results(to, &rows));
     let mut report = SeasonReport {
         name,
         unit,
@@ -109,4 +135,26 @@ pub fn write_results(
             .map_err(|fault| FileError::new(&path, fault))?;
     }
     Ok(exports::season_table(&report))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_blast_of_another_day_is_named() {
+        let row = |blast: &str, date: Option<&str>| SeasonRow {
+            blast: blast.to_owned(),
+            date: date.map(|date| date.parse().unwrap()),
+            flight: String::new(),
+            results: String::new(),
+            findings: None,
+            error: None,
+        };
+        let said = of_another_day(&row("pit 2026-05-08 north", Some("2013-03-04"))).unwrap();
+        assert!(said.contains("stands at 2013-03-04"), "{said}");
+        assert_eq!(of_another_day(&row("2026-05-08", Some("2026-05-08"))), None);
+        assert_eq!(of_another_day(&row("2026-05-08", None)), None);
+        assert_eq!(of_another_day(&row("Süd 7", Some("2013-03-04"))), None);
+    }
 }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::arguments::{BatchArguments, BatchFormat, Refused};
 use crate::batch::{
     Arrivals, BatchOptions, Ended, Event, Outcome, ResultsFolder, Season, SeasonFlight, Seen,
-    of_other_flights, run, write_results,
+    notes_on_results, run, write_results,
 };
 use crate::cli::{fail, interrupt, print, say};
 use crate::exports::{SeasonRow, season_json_line, size_text};
@@ -108,7 +108,7 @@ impl Batch {
         let [done, as_before, failed] =
             [Outcome::Done, Outcome::AsBefore, Outcome::Failed].map(count);
         let rows: Vec<SeasonRow> = ended.into_iter().map(|ended| ended.row).collect();
-        if let Some(note) = of_other_flights(to, &rows) {
+        for note in notes_on_results(to, &rows) {
             say(&format!("warning: {}", one_line(&note)));
         }
         let table = self.write(rows, found.notes)?;
