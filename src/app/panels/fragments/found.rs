@@ -93,7 +93,7 @@ fn selected(
             (
                 "Delete",
                 FragmentStep::Delete,
-                "It is no fragment: its pixels are fines (Delete)",
+                "It is no fragment: its pixels are fines (Delete). A ball or a machine is no rock at all: exclude its area",
             ),
         ] {
             let button = ui.button(name).on_hover_text(hover);

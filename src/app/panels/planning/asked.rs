@@ -185,7 +185,7 @@ fn fields(state: &State, open: &OpenFlight, asked: &mut AskedPlan, ui: &mut Ui) 
         choice("Camera", &mut asked.drone, &drones, ui);
         let known = Positioning::ALL.map(|by| (by, by.title(), by.explained()));
         choice("Positioning", &mut asked.positioning, &known, ui);
-        let hover = "How near the drone may come to the surface, and to what it keeps out of";
+        let hover = "How near the drone may come to the surface, and to what it keeps out of: 5 m, or half of the photos' distance where they are nearer (a lab)";
         if let Some(near) = number("Clearance", hover, asked.clearance, lengths, ui) {
             asked.clearance = near.max(parts.unit.metres().recip() * 0.01);
         }
