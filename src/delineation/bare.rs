@@ -15,7 +15,7 @@ const LARGE: f64 = 0.1;
 pub(crate) fn bare(labels: &LabelImage) -> Option<String> {
     (largest_bare(labels) > LARGE).then(|| {
         "one piece of more than a tenth of the photo is without any fragment, and counts as fines; where it is floor and not fines, \
-         exclude it (in the window, page Fragments)"
+         exclude it on the window's page Fragments"
             .to_owned()
     })
 }
