@@ -71,12 +71,12 @@ impl PhotoReview<'_> {
         let differing = ends
             .into_iter()
             .filter_map(|(at_top, corners, line, interval)| {
+                let percent = (corners? / line - 1.0) * 100.0;
                 // Without an interval (a corner on the ground) by anything that one would see.
                 let within = match interval {
                     Some(ends) => (ends.low..=ends.high).contains(&line),
-                    None => (corners? / line - 1.0).abs() < 0.005,
+                    None => percent.abs() < 0.5,
                 };
-                let percent = (corners? / line - 1.0) * 100.0;
                 // Of a plane the interval has no width, and what is left is how numbers are rounded.
                 let is_seen = percent.abs() >= LEAST_PERCENT;
                 (is_seen && !within).then_some((at_top, percent))

@@ -37,7 +37,7 @@ use fragscale_fragmentation as fragmentation;
 pub use areas::{areas, holds_areas, read_areas};
 pub use candidates::{Candidate, candidates};
 pub use clouds::{CloudFile, CloudPiece, CloudPieces};
-pub use detect::{CloudFormat, FAILED, Kind, UNFINISHED, detect};
+pub use detect::{CloudFormat, FAILED, Kind, MODEL, UNFINISHED, detect};
 pub use files::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use masks::{MaskFile, Masks, OutlinedPhoto, read_masks};
 pub use missions::{MissionFile, read_mission};

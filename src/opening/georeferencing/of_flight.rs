@@ -1,10 +1,10 @@
 //! The reconstruction behind a flight that is given in its place: `fragscale reconstruct` writes a flight with the
 //! model beside it, and that is what an engineer has.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::flight::{FlightFile, PhotoSource};
+use crate::formats::{Kind, MODEL, detect, read_text};
 use crate::origin::folder_of;
 
 /// What a flight says of the reconstruction that it is made of.
@@ -18,23 +18,16 @@ pub struct BehindFlight {
     pub photos: Option<PathBuf>,
 }
 
-/// Where `reconstruct` puts its model.
-const BESIDE: &str = "reconstruction";
-
 /// Of a flight.toml or the folder in which it lies; `None` where there is none, or nothing behind it.
 pub fn behind_flight(path: &Path) -> Option<BehindFlight> {
-    let file = match path.is_dir() {
-        true => path.join("flight.toml"),
-        false => path.to_owned(),
-    };
-    if file.extension().is_none_or(|ending| ending != "toml") {
+    let Ok(Kind::Flight(file)) = detect(path) else {
         return None;
-    }
-    let flight = FlightFile::parse(&fs::read_to_string(&file).ok()?).ok()?;
+    };
+    let flight = FlightFile::parse(&read_text(&file).ok()?).ok()?;
     let folder = folder_of(&file);
     let reconstruction = match flight.photo_source() {
         PhotoSource::Reconstruction(named, _) => folder.join(named),
-        PhotoSource::Poses(_) => folder.join(BESIDE),
+        PhotoSource::Poses(_) => folder.join(MODEL),
     };
     reconstruction.exists().then(|| BehindFlight {
         reconstruction,

@@ -12,7 +12,7 @@ use image::RgbImage;
 use self::in_world::World;
 use self::twins::Twins;
 use crate::camera::{Camera, Distortion};
-use crate::fault::{Fault, by_cause};
+use crate::fault::Fault;
 use crate::files::{FileError, read_bytes};
 use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
 use crate::formats::{PhotoCameras, Reconstruction, expected_deviation, photos_in};
@@ -194,11 +194,10 @@ impl PhotoSet {
             let remedy = "add photos that overlap, or name the folder in which they lie";
             return Err(at(Fault::new(what, remedy)));
         }
-        let doubts = read.iter().flat_map(|(name, _, metadata)| {
-            let warnings = metadata.warnings.iter();
-            warnings.map(|warning| (name.as_str(), warning.clone()))
-        });
-        let warnings = by_cause(doubts, "photos");
+        let headers = read
+            .iter()
+            .map(|(name, _, metadata)| (name.as_str(), metadata));
+        let warnings = photo_metadata::warnings_of(headers);
         let world = World::of(crs, read.iter().map(|(.., metadata)| metadata)).map_err(at)?;
         let mut cameras = Cameras::default();
         let photos: Vec<SurveyPhoto> = read

@@ -9,13 +9,12 @@ use crate::engine::{Engine, Sparse};
 use crate::fault::Fault;
 use crate::files::{self, FileError, Inputs, Kind};
 use crate::flight::{FlightFile, PhotoSource};
-use crate::formats::{FAILED, UNFINISHED};
+use crate::formats::{FAILED, MODEL, UNFINISHED};
 use crate::kept_model::{files_of, keep, kept_in};
 use crate::photo_set::PhotoSet;
 use crate::written::cannot;
 
 pub(super) const FLIGHT: &str = "flight.toml";
-const MODEL: &str = "reconstruction";
 /// What a finished model is of, beside it.
 const OF: &str = "photos.txt";
 const ANOTHER: &str = "name a new folder";

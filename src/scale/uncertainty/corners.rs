@@ -166,8 +166,8 @@ impl CornerDraws {
             let ends =
                 [(&mut top, scale.top), (&mut bottom, scale.bottom)].map(|(drawn, scale)| {
                     drawn.sort_unstable_by(f64::total_cmp);
-                    let is_drawn = !drawn.is_empty();
-                    is_drawn.then(|| Some(deviation(drawn) / scale?))?
+                    let scale = scale.filter(|_| !drawn.is_empty())?;
+                    Some(deviation(drawn) / scale)
                 });
             let squares: Vec<f64> = ends
                 .into_iter()

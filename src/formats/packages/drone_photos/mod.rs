@@ -155,7 +155,10 @@ pub(crate) fn read(path: &Path, progress: &Progress) -> Result<Project, FileErro
     warnings.extend(left_out.sentences(files.len()));
     warnings.extend(cameras.warnings(&posed));
     warnings.extend(of_places(&posed));
-    warnings.extend(of_photos(&photos));
+    let said = photos
+        .iter()
+        .map(|(name, metadata)| (name.as_str(), metadata));
+    warnings.extend(photo_metadata::warnings_of(said));
     reconstruction.errors.focal = cameras.largest_error().map(|error| error * 100.0);
     reconstruction.cameras = cameras.into_cameras();
     reconstruction.warnings = warnings;
@@ -297,24 +300,6 @@ fn range(values: &[f64]) -> Option<(f64, f64)> {
     let first = *values.first()?;
     let wider = |(low, high): (f64, f64), &value: &f64| (low.min(value), high.max(value));
     Some(values.iter().fold((first, first), wider))
-}
-
-/// The photos' own warnings, each said once with the photos that it is about.
-fn of_photos(photos: &[(String, PhotoMetadata)]) -> Vec<String> {
-    let mut by_warning: BTreeMap<&str, Vec<String>> = BTreeMap::new();
-    for (name, metadata) in photos {
-        for warning in &metadata.warnings {
-            by_warning.entry(warning).or_default().push(name.clone());
-        }
-    }
-    let sentence = |(warning, photos): (&str, Vec<String>)| {
-        format!(
-            "{} photos ({}): {warning}",
-            photos.len(),
-            first_names(&photos)
-        )
-    };
-    by_warning.into_iter().map(sentence).collect()
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ use glam::{DMat3, DVec3};
 pub use focal::{FocalCandidate, FocalSource};
 
 use crate::camera::Pose;
-use crate::fault::Fault;
+use crate::fault::{Fault, by_cause};
 use crate::files::{FileError, open_file};
 use crate::geodesy::Geographic;
 use crate::photos::photo_size;
@@ -232,6 +232,17 @@ pub fn read(mut input: impl BufRead + Seek) -> Result<PhotoMetadata, Fault> {
         focal,
         warnings,
     })
+}
+
+/// What photos' headers leave in doubt, a sentence a cause with the photos that it is about.
+pub fn warnings_of<'a>(
+    photos: impl IntoIterator<Item = (&'a str, &'a PhotoMetadata)>,
+) -> Vec<String> {
+    let of_each = photos.into_iter().flat_map(|(name, metadata)| {
+        let warnings = metadata.warnings.iter();
+        warnings.map(move |warning| (name, warning.clone()))
+    });
+    by_cause(of_each, "photos")
 }
 
 /// Whether a program is one in which people turn photos. Measured: three of the four photos in
