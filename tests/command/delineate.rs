@@ -422,7 +422,7 @@ fn a_network_of_the_users() {
         path("theirs.onnx"),
     )
     .expect("a copy");
-    let described = "model = 'theirs.onnx'\n[input]\nnormalize = 'photo'\ntile = 1152\nmargin = 48\nmultiple = 16\nsizes = [1, 2, 4]\n\
+    let described = "model = 'theirs.onnx'\n[input]\nnormalize = 'photo'\ntile = 1152\nmargin = 64\nmultiple = 32\nsizes = [1, 2, 4]\n\
         [[output]]\nis = 'border'\n[[output]]\nis = 'inside'\nchannel = 1\n[[output]]\nis = 'middle'\nchannel = 2\n";
     fs::write(path("theirs.toml"), described).expect("a description");
     let run = |engine: &str, to: &str| {

@@ -74,7 +74,7 @@ fn maps_by_their_formula() {
 /// Our own network, described as if it were a stranger's, sees the same as the engine that it is of.
 #[test]
 fn ours_as_if_it_were_theirs() {
-    let text = "model = 'fragments.onnx'\n[input]\nnormalize = 'photo'\ntile = 1152\nmargin = 48\nmultiple = 16\nsizes = [1, 2, 4]\n\
+    let text = "model = 'fragments.onnx'\n[input]\nnormalize = 'photo'\ntile = 1152\nmargin = 64\nmultiple = 32\nsizes = [1, 2, 4]\n\
         [[output]]\nis = 'border'\n[[output]]\nis = 'inside'\nchannel = 1\n[[output]]\nis = 'middle'\nchannel = 2\n";
     let ours = named(OURS, text).unwrap();
     let photo = photo(403, 388);

@@ -212,6 +212,10 @@ def taken(linear, draw):
     around = F.interpolate(blurred(coarse, draw.uniform(0.6, 3.1), 9), size=(size, size), mode="bilinear")
     evened = (image * (draw.uniform(0.35, 0.65) / (around + 0.05)) ** draw.uniform(0.3, 1.0)).clamp(0, 1)
     image = torch.where(draw.happens(0.15) > 0, evened, image)
+    # Stretched until its darkest and brightest are cut off.
+    steep = torch.where(draw.happens(0.2) > 0, draw.uniform(1.0, 2.5), 1.0)
+    middle = image.mean((1, 2, 3), keepdim=True)
+    image = (middle + steep * (image - middle)).clamp(0, 1)
     gray = image.mean(1, keepdim=True)
     colour = torch.where(draw.happens(0.5) > 0, draw.uniform(0.3, 2.2), 1.0) * (1 - draw.happens(0.3))
     image = gray + (image - gray) * colour

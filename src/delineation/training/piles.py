@@ -5,7 +5,8 @@
 The pile is a height over the photo's plane: broken stones are the least of a few slanted planes, pebbles are
 superellipsoids, blocks are turned cuboids with bevels, whose two or three faces one sees differently lit, as a photo aslant
 into a muckpile does; each is laid on what lies there, and what is highest is seen. So sizes can span 1 to 50, small
-stones lie on large blocks, stones lie deep in fines, and a photo takes two seconds. Light: a sun or lamp with
+stones lie on large blocks, stones lie deep in fines or, in an old gravel, in a lumpy matrix that meets them without
+a gap, blasted faces are rough, and a photo takes two seconds. Light: a sun or lamp with
 shadows cast over the height, and what comes from all around, less where it is narrow. What happens to surfaces
 (joints, mud, dust) and what a camera does is left to train.py, which draws it anew each time.
 
@@ -109,6 +110,9 @@ def pile(rng, side):
     height, label = ground.copy(), np.zeros((side, side), np.int32)
     relief = fractal(rng, TILE, rng.uniform(15, 120), rng.uniform(0.6, 1.2))
     rough = 0.03 * rng.random() ** 2
+    # Blasted faces are as rough as a small stone is high, down to single pixels.
+    harsh = fractal(rng, TILE, rng.uniform(4, 30), rng.uniform(0.2, 0.9)) * rng.choice([0.0, rng.uniform(0.1, 0.8)], p=[0.5, 0.5])
+    cemented = rng.random() < 0.3
     for number, size in enumerate(sizes, 1):
         reach = int(0.72 * size) + 2
         cx, cy = rng.uniform(-0.1 * side, 1.1 * side, 2)
@@ -124,6 +128,8 @@ def pile(rng, side):
             continue
         a, b = rng.integers(0, TILE - side, 2) if side < TILE else (0, 0)
         own = own + rough * size * relief[a:a + side, b:b + side][y0:y1, x0:x1]
+        if kind != "pebble":
+            own = own + min(1.0, size / 40) * harsh[a:a + side, b:b + side][y0:y1, x0:x1]
         below = height[y0:y1, x0:x1]
         # It lies on what is below it, deeper where that is soft or leaves room.
         rests = np.quantile(below[solid], rng.uniform(0.3, 0.95)) - rng.uniform(0.0, 0.25) * size
@@ -133,9 +139,13 @@ def pile(rng, side):
         below[seen] = top[seen]
         label[y0:y1, x0:x1][seen] = number
     # Fines fill up to a level that comes and goes.
-    level = np.quantile(height, rng.uniform(0.0, 0.5) ** 1.5) + fractal(rng, TILE, rng.uniform(80, 500), 0.9)[:side, :side] * typical * rng.uniform(0.02, 0.25)
+    level = np.quantile(height, rng.uniform(0.2, 0.7) if cemented else rng.uniform(0.0, 0.5) ** 1.5)
+    level = level + fractal(rng, TILE, rng.uniform(80, 500), 0.9)[:side, :side] * typical * rng.uniform(0.02, 0.25)
     gritty = fractal(rng, TILE, rng.uniform(4, 30), rng.uniform(0.2, 0.9))[:side, :side] * rng.uniform(0.05, 0.6)
-    if rng.random() < 0.65:
+    if cemented:
+        lumps = fractal(rng, TILE, rng.uniform(0.3, 1.5) * typical + 8, rng.uniform(0.3, 0.9))[:side, :side]
+        gritty = 2 * gritty + lumps * rng.uniform(0.01, 0.06) * (typical + 10)
+    if cemented or rng.random() < 0.65:
         fines = level + gritty
         covered = fines > height
         height[covered] = fines[covered]

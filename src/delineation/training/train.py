@@ -11,7 +11,7 @@ world is used: the labels of simulated photos are exact, and their licence is ou
 anew for every step (patches.py). Everything follows from the seed and the number of steps; on another machine the weights
 differ in their last digits, and where a time ends the training in more.
 
-The network is a U-Net of five levels. In: RGB, less the photo's mean, over its standard deviation (both over all
+The network is a U-Net of six levels. In: RGB, less the photo's mean, over its standard deviation (both over all
 pixels and channels). Out, each between 0 and 1:
 
 - border: a pixel beside another fragment or what is none;
@@ -36,7 +36,8 @@ from PIL import Image
 from patches import SIZES, Photos, normalised, patches, targets
 
 SIDE = 256
-CHANNELS = [12, 24, 40, 56, 80]
+# Of each level.
+CHANNELS = "12,24,40,64,96,144"
 # Border, rock, middle, size, right, down.
 KINDS = 6
 
@@ -54,9 +55,9 @@ class Block(nn.Module):
 
 
 class Net(nn.Module):
-    def __init__(self):
+    def __init__(self, channels):
         super().__init__()
-        c = CHANNELS
+        c = self.channels = channels
         self.down = nn.ModuleList([Block(before, after) for before, after in zip([3] + c, c)])
         self.up = nn.ModuleList([Block(c[i] + c[i + 1], c[i]) for i in reversed(range(len(c) - 1))])
         self.head = nn.Conv2d(c[0], KINDS, 1)
@@ -174,14 +175,14 @@ def write_onnx(net, path):
         return f"r{n}"
 
     x, seen = "photo", []
-    for level in range(len(CHANNELS)):
+    for level in range(len(net.channels)):
         if level:
             nodes.append(helper.make_node("MaxPool", [x], [f"p{level}"], kernel_shape=[2, 2], strides=[2, 2]))
             x = f"p{level}"
         x = conv(conv(x))
         seen.append(x)
     weights.append(numpy_helper.from_array(np.array([1, 1, 2, 2], np.float32), "twice"))
-    for level in reversed(range(len(CHANNELS) - 1)):
+    for level in reversed(range(len(net.channels) - 1)):
         nodes.append(helper.make_node("Resize", [x, "", "twice"], [f"u{level}"], mode="nearest", coordinate_transformation_mode="asymmetric", nearest_mode="floor"))
         nodes.append(helper.make_node("Concat", [seen[level], f"u{level}"], [f"j{level}"], axis=1))
         x = conv(conv(f"j{level}"))
@@ -207,6 +208,7 @@ def main():
     ask.add_argument("--minutes", type=float, help="ends after so many minutes, however many steps that are")
     ask.add_argument("--batch", type=int, default=6)
     ask.add_argument("--seed", type=int, default=1)
+    ask.add_argument("--channels", default=CHANNELS)
     ask.add_argument("--from", dest="before", help="goes on from these weights")
     ask.add_argument("--rate", type=float, default=4e-3, help="the most that a step changes")
     ask.add_argument("--patches", type=int, help="no training: write so many patches of TRAIN to the folder")
@@ -229,7 +231,7 @@ def main():
     start = time.time()
     train, valid = Photos(ask.train, device), Photos(ask.valid, device)
     # Half as long as with the channels apart, on a processor.
-    net = Net().to(device, memory_format=torch.channels_last)
+    net = Net([int(many) for many in ask.channels.split(",")]).to(device, memory_format=torch.channels_last)
     count = sum(p.numel() for p in net.parameters())
     say(f"{len(train)} photos, {len(valid)} to look at, read in {time.time() - start:.0f} s; {count} weights; seed {ask.seed}, patches of {SIDE} pixels, {ask.batch} a step; {device.type}, torch {torch.__version__}")
     held = [drawn(valid, ask.seed + 1000, step, 6, ask.hard) for step in range(16)]
