@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! open         the flight of a flight.toml, a package's folder, or loose files
+//! covariance   how sure poses and lenses of a reconstruction are
 //! areas        outlines and places, typed or in a file
 //! dropped      which of several files is what
 //! meant        which flight is meant by a folder above it
@@ -18,6 +19,7 @@
 //! ```
 
 mod areas;
+mod covariance;
 mod dropped;
 mod evidence;
 mod flight_poses;
@@ -45,6 +47,7 @@ use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
 
 pub use areas::{Areas, places};
+pub use covariance::{Deviations, Known, deviations, lens_deviations};
 pub use dropped::Dropped;
 pub use evidence::{Colours, compare_all_colours, compare_colours, look_up};
 pub use flown::{ComparedFlight, FlightOfMission, compare_flown};

@@ -14,7 +14,6 @@
 //! quality      how much time the cloud may take
 //! estimate     about how long all takes
 //! dense_cloud  the dense cloud of a model
-//! covariance   how sure poses and lenses are
 //! written      the folder that comes out, and where it goes if nobody says otherwise
 //! said         what is said of the photos, and of what came out
 //! ```
@@ -34,7 +33,6 @@ mod card;
 #[path = "no_card.rs"]
 mod card;
 mod colmap;
-mod covariance;
 mod dense_cloud;
 mod embedded;
 mod engine;

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::{fragscale, scale, scales_json, stdout_of};
+use fragscale_test_data::shared_data;
 use own_frame::{CENTERS, model, positions};
 use serde_json::Value;
 
@@ -151,4 +152,32 @@ fn the_rotations_standard_error_is_in_degrees() {
     assert!((degrees - 1.335_715).abs() < 1e-5, "{degrees}");
     // Lengths do not suffer from it.
     assert!(said["scale_standard_error"].as_f64().expect("a number") < 1e-9);
+}
+
+/// COLMAP states nothing of how sure it is; what its photos see does, and the flight counts it.
+#[test]
+fn a_models_own_errors_are_counted() {
+    let Some(model) = shared_data("sceaux-colmap/txt") else {
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let flight = folder.path().join("world.toml");
+    let more = ["--distance", "0,0,0 1,0,0 2.5", "-o", text(&flight)];
+    let table = stdout_of(&command(&model, &more));
+    assert!(table.contains("poses: ± 0.00"), "{table}");
+    let scales = scales_json(&flight, &[]);
+    let counted = scales["photos"].as_array().expect("photos").iter();
+    let counted: Vec<&Value> = counted
+        .map(|photo| &photo["uncertainty"])
+        .filter(|of| !of.is_null())
+        .collect();
+    assert!(!counted.is_empty());
+    for of in counted {
+        // One distance that nothing checks.
+        assert_eq!(of["not_counted"], serde_json::json!(["world"]));
+        for part in ["pose", "lens"] {
+            let percent = of["parts_percent"][part].as_f64().expect("a number");
+            assert!((0.003..0.3).contains(&percent), "{part} {percent}");
+        }
+    }
 }

@@ -165,6 +165,9 @@ fn table(result: &Georeferenced) -> String {
     if let Some(degrees) = result.rotation_error_degrees {
         text += &format!("least sure rotation: ± {degrees:.3} degrees (standard error)\n");
     }
+    if let Some(errors) = result.errors_in_words() {
+        text += &format!("poses: {errors}\n");
+    }
     let crs = result
         .crs
         .as_deref()
@@ -217,6 +220,9 @@ fn value(result: &Georeferenced) -> Value {
         "scale_standard_error": result.scale_error,
         "scale_interval_95": result.scale_interval,
         "rotation_standard_error_degrees": result.rotation_error_degrees,
+        "position_standard_error": result.errors.pose.position.map(|axes| axes.to_array()),
+        "angle_standard_error_degrees": result.errors.pose.angle.map(|axes| axes.to_array()),
+        "focal_standard_error_percent": result.errors.focal,
         "rms": result.rms,
         "positions": positions.collect::<Vec<_>>(),
         "distances": lengths.collect::<Vec<_>>(),

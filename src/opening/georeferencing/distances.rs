@@ -9,6 +9,7 @@ use crate::fault::Fault;
 use crate::formats::Reconstruction;
 use crate::geometry::Similarity;
 use crate::georeference::{levelled, scale_of_lengths};
+use crate::scale::StatedErrors;
 use crate::units::LengthUnit;
 
 /// Fits the scale to `distances`; `warnings` are what was said before.
@@ -88,6 +89,7 @@ pub(super) fn by_distances(
         scale_error: found.scale_error,
         scale_interval: found.scale_interval,
         rotation_error_degrees: None,
+        errors: StatedErrors::default(),
         warnings,
     })
 }

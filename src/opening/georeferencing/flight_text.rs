@@ -28,7 +28,7 @@ impl Georeferenced {
 }
 
 /// The text of a flight.toml at `target` with the reconstruction in `reconstruction`, its paths relative to
-/// `target`, and the standard error of the scale where there is one. The sixteen numbers of the transform
+/// `target`, and the standard errors of the scale, poses and focal length where they are known. The sixteen numbers of the transform
 /// read back to the bit. A `surface` is taken as it is: it has to be in the world already. Not `placed`, the
 /// flight has no unit. Without a `name` it has the reconstruction's.
 ///
@@ -76,7 +76,7 @@ pub fn flight_text_of(
     };
     let errors = StatedErrors {
         world_scale: placed.and_then(|placed| placed.scale_error.map(stated_percent)),
-        ..StatedErrors::default()
+        ..placed.map_or_else(StatedErrors::default, |placed| placed.errors)
     };
     let usual = FlightSettings::default();
     let settings = FlightSettings {

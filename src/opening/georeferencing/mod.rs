@@ -10,6 +10,7 @@ mod distances;
 mod flight_text;
 mod list_world;
 mod marks;
+mod model_errors;
 mod of_flight;
 mod photo_names;
 
@@ -36,6 +37,7 @@ use crate::formats::{PosedPhoto, Reconstruction, Sizes, read_project};
 use crate::geometry::Similarity;
 use crate::georeference::{Pair, fit};
 use crate::jobs::Progress;
+use crate::scale::StatedErrors;
 use crate::units::LengthUnit;
 
 /// What is known about a reconstruction's place in the world.
@@ -163,6 +165,9 @@ pub struct Georeferenced {
     pub scale_interval: Option<f64>,
     /// The standard error, in degrees, of the rotation about the long axis of the positions.
     pub rotation_error_degrees: Option<f64>,
+    /// How sure poses and focal length are, where the model's package does not say it and [`georeference`] can: of photos to
+    /// the pile, whatever place both have in the world, whose scale is not in it.
+    pub errors: StatedErrors,
     /// What was assumed or left out, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -203,7 +208,14 @@ pub fn georeference(
         )));
     }
     progress.stage("fitting");
-    georeference_model(path, &project.reconstruction, &request)
+    let mut result = georeference_model(path, &project.reconstruction, &request)?;
+    progress.stage("how sure the poses are");
+    let photos = request.photos.as_deref();
+    match model_errors::of_model(project.reconstruction, photos, &result.similarity) {
+        Ok(errors) => result.errors = errors,
+        Err(unknown) => result.warnings.push(unknown),
+    }
+    Ok(result)
 }
 
 /// The same of a reconstruction in a frame of its own that was read from `path`.
@@ -518,6 +530,7 @@ fn by_positions(known: &[Known], points_decide: bool) -> Result<Georeferenced, F
         scale_error: Some(found.scale_error),
         scale_interval: Some(found.scale_interval),
         rotation_error_degrees: Some(found.rotation_error.to_degrees()),
+        errors: StatedErrors::default(),
         warnings: Vec::new(),
     })
 }

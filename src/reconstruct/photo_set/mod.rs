@@ -17,6 +17,7 @@ use crate::files::{FileError, read_bytes};
 use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
 use crate::formats::{PhotoCameras, Reconstruction, expected_deviation, photos_in};
 use crate::jobs::Progress;
+use crate::opening::lens_deviations;
 use crate::picture;
 
 /// A photo to be reconstructed.
@@ -70,31 +71,16 @@ pub struct SurveyCamera {
 }
 
 impl SurveyCamera {
-    /// Its lens as it is expected: fx fy cx cy k1 k2 p1 p2 of OpenCV's model, each with a standard deviation.
-    ///
-    /// A survey seen straight down says little of a focal length and less of the principal point, which turns with
-    /// the tangential coefficients: of four photos of a real survey all were free to go, 2 degrees off what the whole
-    /// survey says. So the principal point is within 1 % of the middle and the tangential coefficients within
-    /// 0.002, as those of drones are; a focal length that nobody states is free, and so are the radial ones.
+    /// Its lens as it is expected: fx fy cx cy k1 k2 p1 p2 of OpenCV's model, each with a standard deviation. A focal
+    /// length that nobody states is free.
     pub(crate) fn expected(&self) -> ([f64; 8], [f64; 8]) {
         let camera = &self.camera;
         let [k1, k2, p1, p2, ..] = match &camera.distortion {
             Distortion::Brown(brown) => brown.coefficients(),
             _ => [0.0; 8],
         };
-        let focal = self.focal_error.unwrap_or(1.0);
-        let middle = 0.005 * f64::from(camera.width.max(camera.height));
         let kept = if self.is_given { 1e-6 } else { 1.0 };
-        let deviations = [
-            focal * camera.fx,
-            focal * camera.fy,
-            middle,
-            middle,
-            0.3,
-            0.3,
-            0.001,
-            0.001,
-        ];
+        let deviations = lens_deviations(camera, self.focal_error.unwrap_or(1.0));
         (
             [camera.fx, camera.fy, camera.cx, camera.cy, k1, k2, p1, p2],
             deviations.map(|deviation| kept * deviation),

@@ -4,14 +4,13 @@
 use std::borrow::Cow;
 
 use crate::camera::Camera;
-use crate::covariance::{Deviations, Known, deviations};
 use crate::dense_cloud::DenseCloud;
 use crate::exports::{PoseRow, StatedDeviations, laz, ply, poses_csv};
 use crate::fault::Fault;
 use crate::flight::{FlightFile, FlightSettings, PosesFlight};
 use crate::formats::Reconstruction;
 use crate::numbers::{four_digits, stated_percent};
-use crate::opening::Georeferenced;
+use crate::opening::{Deviations, Georeferenced, Known, deviations};
 use crate::photo_set::{PhotoSet, SurveyCamera};
 use crate::surface::Cloud;
 

@@ -2,12 +2,11 @@
 
 use super::flight_files::{found_focal, stated};
 use crate::Reconstructed;
-use crate::covariance::Deviations;
 use crate::exports::{
     OffReceiver, ReconstructionReport, SeenPoint, SolvedCamera, SolvedPhoto, reconstruction_report,
 };
 use crate::formats::Reconstruction;
-use crate::opening::PositionResidual;
+use crate::opening::{Deviations, PositionResidual};
 use crate::photo_set::PhotoSet;
 use crate::said::facts;
 

@@ -327,6 +327,9 @@ fn result(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mut Vec<Command>
             "{used} of {all} positions used, RMS {rms:.3} {unit}"
         ));
     }
+    if let Some(errors) = fitted.errors_in_words() {
+        ui.label(format!("Poses: {errors}"));
+    }
     let crs = fitted.crs.as_deref().map_or_else(
         || "local, no coordinate system".to_owned(),
         |crs| crs.chars().take(60).collect(),

@@ -3,7 +3,8 @@ use crate::formats::PosedPhoto;
 use crate::surface::Cloud;
 use fragscale_core::split_mix::SplitMix;
 
-fn model() -> Reconstruction {
+/// Five photos of 40 points, seen 0.8 px off.
+pub(crate) fn model() -> Reconstruction {
     let mut random = SplitMix(5);
     let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
     let lens = Brown::new([-0.05, 0.02, 1e-3, -5e-4, 0.0, 0.0, 0.0, 0.0]);

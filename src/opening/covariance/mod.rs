@@ -17,6 +17,8 @@
 
 mod datum;
 
+use std::collections::HashSet;
+
 use glam::{DMat3, DVec2, DVec3};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -26,29 +28,49 @@ use crate::camera::{Brown, Camera, Distortion, Pose};
 use crate::formats::{Observation, Reconstruction};
 
 /// What receivers and makers say.
-pub(crate) struct Known {
+pub struct Known {
     /// Of each photo of the reconstruction: standard deviations of its centre, units of the world.
-    pub(crate) centers: Vec<Option<DVec3>>,
+    pub centers: Vec<Option<DVec3>>,
     /// Of each camera: standard deviations that its lens has without any photo, fx fy cx cy k1 k2 p1 p2.
-    pub(crate) lenses: Vec<[f64; LENS]>,
+    pub lenses: Vec<[f64; LENS]>,
 }
 
 /// Standard deviations.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Deviations {
+pub struct Deviations {
     /// Of each photo as it stands to the points, for a given lens: its centre, units of the world, and rotations about its
     /// camera axes, radians.
-    pub(crate) poses: Vec<(DVec3, DVec3)>,
+    pub poses: Vec<(DVec3, DVec3)>,
     /// Of each camera's focal length, a part of it.
-    pub(crate) focal: Vec<f64>,
+    pub focal: Vec<f64>,
     /// How much of that is left in the scales of its photos, whose poses go with it, a part of them.
-    pub(crate) focal_in_scales: Vec<f64>,
+    pub focal_in_scales: Vec<f64>,
     /// Of where a photo sees a point, pixels along each axis.
-    pub(crate) pixel: f64,
+    pub pixel: f64,
+}
+
+/// What a lens's fx, fy, cx, cy, k1, k2, p1, p2 may be off without any photo, standard deviations; of its `focal` length so large
+/// a part.
+///
+/// A survey seen straight down says little of a focal length and less of the principal point, which turns with
+/// the tangential coefficients: of four photos of a real survey all were free to go, 2 degrees off what the whole
+/// survey says. So the principal point is within 1 % of the middle and the tangential coefficients within
+/// 0.002, as those of drones are; the radial ones are free.
+pub fn lens_deviations(camera: &Camera, focal: f64) -> [f64; LENS] {
+    let longer = match camera.width.max(camera.height) {
+        // Of a package that writes no sizes.
+        0 => camera.fx,
+        longer => f64::from(longer),
+    };
+    let middle = 0.005 * longer;
+    let [fx, fy] = [camera.fx, camera.fy].map(|length| focal * length);
+    [fx, fy, middle, middle, 0.3, 0.3, 0.001, 0.001]
 }
 
 /// Photos beyond which the matrix is not made.
 const MOST_PHOTOS: usize = 1000;
+/// Points that are 10 000 times less sure along one direction than along another (here: its square) say nothing.
+const LEAST_STRENGTH: f64 = 1e-8;
 /// Points whose blocks lie in memory together.
 const AT_ONCE: usize = 4096;
 /// Numbers of a pose, and of a lens.
@@ -59,7 +81,7 @@ const LEAST_KNOWN: usize = 3;
 const LOOSELY: f64 = 100.0;
 
 /// Of a reconstruction; `None` where nothing was observed, or where it has too many photos.
-pub(crate) fn deviations(model: &Reconstruction, known: &Known) -> Option<Deviations> {
+pub fn deviations(model: &Reconstruction, known: &Known) -> Option<Deviations> {
     let photos = model.photos.len();
     if photos > MOST_PHOTOS || model.observations.is_empty() {
         return None;
@@ -193,16 +215,11 @@ fn inverse(mut matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
 /// the numbers when the unknowns are taken off. Engines take away what lies pixels off, so that it is a
 /// sum over good matches, long tails and all: a median would say half of it.
 fn pixel_deviation(model: &Reconstruction) -> Option<f64> {
-    let squares: Vec<f64> = model
-        .observations
-        .iter()
-        .filter_map(|seen| {
-            let (camera, pose, point) = of(model, seen);
-            let pixel = camera.pixel_as_shot(pose.camera_from_world(point))?;
-            Some(pixel.distance_squared(seen.pixel))
-        })
-        .collect();
-    let unknown = model.photos.len() * POSE + model.cloud.points.len() * 3;
+    let off = model.observations.iter();
+    let off = off.filter_map(|seen| model.reprojection_px(seen));
+    let squares: Vec<f64> = off.map(|off| off * off).collect();
+    let points: HashSet<u32> = model.observations.iter().map(|seen| seen.point).collect();
+    let unknown = model.photos.len() * POSE + points.len() * 3;
     let free = (2 * squares.len())
         .checked_sub(unknown)
         .filter(|&free| free > 0)?;
@@ -271,7 +288,13 @@ fn block(model: &Reconstruction, seen: &[&Observation]) -> Option<Block> {
         }
     }
     let across = jacobian.tr_mul(&of_point);
-    let own = of_point.tr_mul(&of_point).try_inverse()?;
+    let normal_of_point = of_point.tr_mul(&of_point);
+    let strengths = normal_of_point.symmetric_eigenvalues();
+    // Photos that look along one line, or one that shows the point twice.
+    if strengths.min() < LEAST_STRENGTH * strengths.max() {
+        return None;
+    }
+    let own = normal_of_point.try_inverse()?;
     let by_unknowns = -&own * across.transpose();
     let normal = jacobian.tr_mul(&jacobian) + across * &by_unknowns;
     let (_, _, at) = of(model, seen.first()?);
@@ -326,6 +349,22 @@ fn by_lens(camera: &Camera, at: DVec3) -> Option<[DVec2; LENS]> {
         let pixel = |step: f64| changed(camera, place, step).pixel_as_shot(at);
         all[place] = (pixel(step)? - pixel(-step)?) / (2.0 * step);
     }
+    if !matches!(camera.distortion, Distortion::None | Distortion::Brown(_)) {
+        // Another model's lens is off by the same terms.
+        let focal = DVec2::new(camera.fx, camera.fy);
+        let plane = (camera.pixel_as_shot(at)? - DVec2::new(camera.cx, camera.cy)) / focal;
+        let (far, across) = (plane.length_squared(), 2.0 * plane.x * plane.y);
+        let tangential = |along: f64| far + 2.0 * along * along;
+        let terms = [
+            plane * far,
+            plane * far * far,
+            DVec2::new(across, tangential(plane.y)),
+            DVec2::new(tangential(plane.x), across),
+        ];
+        for (by, term) in all.iter_mut().skip(4).zip(terms) {
+            *by = term * focal;
+        }
+    }
     Some(all)
 }
 
@@ -349,4 +388,4 @@ fn changed(camera: &Camera, place: usize, step: f64) -> Camera {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -1,0 +1,221 @@
+//! How sure the poses and lenses of a model are whose package does not say it: by what its photos see of its points
+//! ([`crate::covariance`]). A flight.toml has one value for all photos: their root mean square.
+
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::Georeferenced;
+use crate::covariance::{Known, deviations, lens_deviations};
+use crate::formats::Reconstruction;
+use crate::formats::photos::photo_folder::PhotoFolder;
+use crate::geometry::{Similarity, median};
+use crate::numbers::{four_digits, stated_percent};
+use crate::scale::{PoseErrors, StatedErrors};
+
+/// What lies so many medians off is another point. Of errors of measurement alone none in 10^10 does.
+const MOST_MEDIANS: f64 = 6.0;
+
+/// Of a model that `to_world` brings to the world, in the world's unit; empty where its package states them. The error is
+/// why they are not known, as a sentence. `photos` have the sizes where the package has none.
+pub(super) fn of_model(
+    mut model: Reconstruction,
+    photos: Option<&Path>,
+    to_world: &Similarity,
+) -> Result<StatedErrors, String> {
+    let is_stated = |errors: PoseErrors| errors != PoseErrors::default();
+    if (model.pose_errors.iter()).any(|stated| is_stated(stated.errors())) {
+        return Ok(StatedErrors::default());
+    }
+    let unknown = |why: &str| {
+        format!(
+            "it is not known how sure the poses and the focal length are: {why}; so intervals do not count it"
+        )
+    };
+    if model.observations.is_empty() {
+        return Err(unknown("the model keeps nothing of what its photos see"));
+    }
+    if !model.sizes.are_known() {
+        let photos = PhotoFolder::new(photos);
+        let names: Vec<(usize, String)> = (model.photos.iter())
+            .map(|photo| (photo.camera, photo.name.clone()))
+            .collect();
+        model.set_sizes(|camera| {
+            let its = names.iter().filter(|(of, _)| *of == camera);
+            its.filter_map(|(_, name)| photos.size_of(name)?.ok())
+                .next()
+        });
+    }
+    if !take_off_wrong_matches(&mut model) {
+        return Err(unknown(
+            "the sizes of its photos are not known (give their folder)",
+        ));
+    }
+    model.transform(to_world);
+    let photos = model.photos.len();
+    let known = Known {
+        centers: vec![None; photos],
+        // Whether a calibration was given to the package, its files do not say.
+        lenses: (model.cameras.iter())
+            .map(|camera| lens_deviations(camera, 1.0))
+            .collect(),
+    };
+    let sure = deviations(&model, &known)
+        .ok_or_else(|| unknown("too many photos, or nothing that several see"))?;
+    let mean_square = |of: fn(&(DVec3, DVec3)) -> DVec3| -> DVec3 {
+        let sum: DVec3 = sure.poses.iter().map(|pose| of(pose) * of(pose)).sum();
+        let root = (sum / photos.max(1) as f64).to_array().map(f64::sqrt);
+        DVec3::from_array(root)
+    };
+    let rounded = |axes: DVec3| Some(DVec3::from_array(axes.to_array().map(four_digits)));
+    let focal = sure.focal_in_scales.iter().copied().reduce(f64::max);
+    Ok(StatedErrors {
+        pose: PoseErrors {
+            position: rounded(mean_square(|pose| pose.0)),
+            angle: rounded(mean_square(|pose| pose.1).map(f64::to_degrees)),
+        },
+        focal: focal
+            .filter(|_| model.errors.focal.is_none())
+            .map(stated_percent),
+        ..StatedErrors::default()
+    })
+}
+
+/// Packages keep what lies far off: no error of measurement, but of another point. False where nobody can say how far it is.
+fn take_off_wrong_matches(model: &mut Reconstruction) -> bool {
+    if model.median_reprojection_px().is_none() {
+        return false;
+    }
+    let off: Vec<Option<f64>> = (model.observations.iter())
+        .map(|seen| model.reprojection_px(seen))
+        .collect();
+    let most = median(&mut off.iter().copied().flatten().collect::<Vec<f64>>());
+    let most = most.map_or(0.0, |median| MOST_MEDIANS * median);
+    let mut off = off.into_iter();
+    (model.observations).retain(|_| off.next().flatten().is_some_and(|off| off <= most));
+    let mut times_seen = vec![0; model.cloud.points.len()];
+    for seen in &model.observations {
+        times_seen[seen.point as usize] += 1;
+    }
+    // What one photo sees is nowhere.
+    (model.observations).retain(|seen| times_seen[seen.point as usize] > 1);
+    true
+}
+
+impl Georeferenced {
+    /// Its [`errors`](Georeferenced::errors), as a line; `None` where they are not known.
+    pub fn errors_in_words(&self) -> Option<String> {
+        let two_digits = |value: f64| format!("{value:.1e}").parse::<f64>().unwrap_or(value);
+        let axes = |axes: DVec3| {
+            axes.to_array()
+                .map(|value| two_digits(value).to_string())
+                .join(", ")
+        };
+        let (position, angle) = (self.errors.pose.position?, self.errors.pose.angle?);
+        let focal = self.errors.focal.map_or_else(String::new, |focal| {
+            format!(
+                "; the focal length leaves ± {} % in the scales",
+                two_digits(focal)
+            )
+        });
+        Some(format!(
+            "± {} {} to the pile, ± {} degrees{focal} (standard errors, by what the photos see)",
+            axes(position),
+            self.unit,
+            axes(angle),
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DMat3, DVec2};
+
+    use super::*;
+    use crate::covariance::tests::model;
+    use crate::formats::{Observation, PoseCovariance, Sizes};
+
+    fn known_sizes() -> Reconstruction {
+        Reconstruction {
+            sizes: Sizes::Known,
+            ..model()
+        }
+    }
+
+    fn as_large(scale: f64) -> Similarity {
+        Similarity::new(scale, DMat3::IDENTITY, DVec3::new(4e5, 5e6, 100.0))
+    }
+
+    /// In the world's unit, and what it says of the scales has none.
+    #[test]
+    fn errors_are_in_the_world() {
+        let own = of_model(known_sizes(), None, &as_large(1.0)).unwrap();
+        let world = of_model(known_sizes(), None, &as_large(2.0)).unwrap();
+        let ratio = world.pose.position.unwrap() / own.pose.position.unwrap();
+        assert!((ratio - 2.0).abs().max_element() < 2e-3, "{ratio}");
+        let ratio = world.pose.angle.unwrap() / own.pose.angle.unwrap();
+        assert!((ratio - 1.0).abs().max_element() < 2e-3, "{ratio}");
+        assert!((world.focal.unwrap() / own.focal.unwrap() - 1.0).abs() < 2e-3);
+        assert_eq!(own.world_scale, None);
+        // By hand: a photo sees 40 points 0.8 px off from 30 units with 1000 px of focal length; a camera alone, over
+        // points that are known, would be 0.8 / √2 · 30 / 1000 / √40 = 0.0027 to the side. Points and lens are not known.
+        let position = own.pose.position.unwrap();
+        assert!(
+            position.min_element() > 0.0027 && position.max_element() < 0.3,
+            "{position}"
+        );
+    }
+
+    /// A wrong match, or what one photo shows alone, changes nothing.
+    #[test]
+    fn wrong_matches_do_not_count() {
+        let right = of_model(known_sizes(), None, &as_large(2.0)).unwrap();
+        let mut more = known_sizes();
+        more.cloud.points.push(DVec3::new(1.0, 1.0, 1.0));
+        let wrong = |photo, point, pixel| Observation {
+            photo,
+            point,
+            pixel,
+        };
+        more.observations
+            .push(wrong(0, 40, DVec2::new(640.0, 360.0)));
+        more.observations.push(wrong(2, 7, DVec2::new(9.0, 700.0)));
+        let found = of_model(more, None, &as_large(2.0)).unwrap();
+        // The point that one photo sees has a place among the others for the datum alone.
+        let ratio = found.pose.position.unwrap() / right.pose.position.unwrap();
+        assert!((ratio - 1.0).abs().max_element() < 0.03, "{ratio}");
+    }
+
+    #[test]
+    fn what_the_package_states_stays() {
+        let mut stated = known_sizes();
+        stated.pose_errors = vec![PoseCovariance::default(); 5];
+        assert!(
+            of_model(stated.clone(), None, &as_large(2.0))
+                .unwrap()
+                .focal
+                .is_some()
+        );
+        stated.pose_errors[3] = PoseCovariance::of_deviations(None, Some(DVec3::splat(0.1)));
+        let found = of_model(stated, None, &as_large(2.0)).unwrap();
+        assert_eq!(found, StatedErrors::default());
+        let mut focal = known_sizes();
+        focal.errors.focal = Some(0.2);
+        assert_eq!(of_model(focal, None, &as_large(2.0)).unwrap().focal, None);
+    }
+
+    #[test]
+    fn what_cannot_be_known_is_said() {
+        let nothing = Reconstruction {
+            observations: Vec::new(),
+            ..known_sizes()
+        };
+        let said = of_model(nothing, None, &as_large(2.0)).unwrap_err();
+        assert!(
+            said.contains("keeps nothing of what its photos see"),
+            "{said}"
+        );
+        let said = of_model(model(), None, &as_large(2.0)).unwrap_err();
+        assert!(said.contains("sizes of its photos are not known"), "{said}");
+    }
+}
