@@ -414,7 +414,7 @@ fn the_step_engine_from_end_to_end() {
     let run = |name: &str, steps: &str| {
         let to = folder.path().join(name);
         let rest = ["--engine", "learned", "--steps", steps];
-        let done = delineated("IMG_0005.jpg", &to.to_string_lossy(), &rest);
+        let done = delineated("IMG_0001.jpg", &to.to_string_lossy(), &rest);
         assert!(done.status.success());
         let curve = columns(
             &to.join("distribution.csv"),
@@ -428,7 +428,7 @@ fn the_step_engine_from_end_to_end() {
         // The ball of these photos, which no scale object traces.
         let said = String::from_utf8_lossy(&done.stderr);
         assert!(
-            said.contains("IMG_0005.jpg: its largest fragment is a circle"),
+            said.contains("IMG_0001.jpg: its largest fragment is a circle"),
             "{said}"
         );
         (
