@@ -68,7 +68,7 @@ pub(super) fn by_distances(
         if request.level {
             "the scale is known, not the place: up is across the plane of the reconstruction's points, and north is not known"
         } else {
-            "the scale is known, not the place: the axes stay as the package left them, and z may not be up (--level turns it up)"
+            "the scale is known, not the place: the axes stay as the package left them, and z may not be up (level it by the ground: --level)"
         }
         .to_owned(),
     );

@@ -25,6 +25,8 @@ use photo_lines::ink;
 
 /// Points of the user interface between furniture and the picture's edge.
 const MARGIN: f64 = 18.0;
+/// Letters that stand over the middle of a scale bar of any length.
+const MOST_OVER_THE_MIDDLE: usize = 8;
 /// Length of an axis in points.
 const AXIS: f64 = 30.0;
 const AXES: [(&str, DVec3, [u8; 3]); 3] = [
@@ -116,10 +118,16 @@ pub(crate) fn labels(view: &View, show: &Show, size: DVec2) -> Vec<Label> {
     if show.scale_bar
         && let Some((bar, [from, to])) = scale_bar_ends(view, show, size)
     {
+        let text = format!("{} {}", bar.length, show.lengths_in);
+        // "2 units of the file" over a short bar would reach beyond the picture.
+        let (at, anchor) = match text.chars().count() > MOST_OVER_THE_MIDDLE {
+            true => (to, Anchor::BottomRight),
+            false => ((from + to) * 0.5, Anchor::BottomMiddle),
+        };
         labels.push(Label {
-            at: (from + to) * 0.5 - DVec2::Y * 5.0 * show.pixels_per_point,
-            text: format!("{} {}", bar.length, show.lengths_in),
-            anchor: Anchor::BottomMiddle,
+            at: at - DVec2::Y * 5.0 * show.pixels_per_point,
+            text,
+            anchor,
             color: ink(show),
         });
     }
