@@ -4,8 +4,8 @@
 
 Of each seed a flight is made (`fragscale sample`), outlined by the learned engine and once more by its true outlines (`--masks`), and
 P20, P50 and P80 of all photos are held against its sieve curve. A row of each goes to standard output, the summary behind it to
-standard error. The factor of the step engine is the mean of labs and muckpiles of the seeds 501 to 510, before it: P50 and P80
-4.7 and 5.2 % too large (labs), 2.8 and 3.5 % (muckpiles). Nothing was fitted to seeds from 600 on. Needs Python alone.
+standard error. The factor of the step engine is the mean of labs and muckpiles of the seeds 501 to 506, before it: P50 and P80
+0.6 % too small and 2.4 % too large (labs), 0.3 and 2.7 % too large (muckpiles). Nothing was fitted to seeds from 600 on. Needs Python alone.
 """
 
 import csv
