@@ -35,7 +35,8 @@ pub(super) struct SampleArguments {
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
     ring: u32,
     /// Add the overlapping photos of a mapping flight, and let all photos say where they were taken, as
-    /// such a receiver does: for `fragscale reconstruct`.
+    /// such a receiver does: for `fragscale reconstruct`. About a hundred photos, some seconds each; outdoors alone (muckpile,
+    /// stockpile, bench).
     #[arg(long, value_enum, value_name = "RECEIVER")]
     survey: Option<SampleReceiver>,
     /// Leave out the photos and their label images.

@@ -11,13 +11,46 @@ const CELLS: usize = 32;
 /// From this share of the photo on a piece is worth a word.
 const LARGE: f64 = 0.1;
 
-/// That one piece without any fragment takes much of the photo.
+/// That one piece without any fragment takes much of the photo, or is larger than any fragment: as a ball is that an engine
+/// rightly takes for no rock.
 pub(crate) fn bare(labels: &LabelImage) -> Option<String> {
-    (largest_bare(labels) > LARGE).then(|| {
+    let said = if largest_bare(labels) > LARGE {
         "one piece of more than a tenth of the photo is without any fragment, and counts as fines; where it is floor and not fines, \
          exclude it on the window's page Fragments"
-            .to_owned()
+    } else if largest_square(labels) > largest_across(labels) {
+        "one piece without any fragment is larger than the largest fragment, and counts as fines; where it is a ball, floor or \
+         another thing, exclude it on the window's page Fragments"
+    } else {
+        return None;
+    };
+    Some(said.to_owned())
+}
+
+/// The diameter of the circle with the largest fragment's area, pixels; infinite where there is none.
+fn largest_across(labels: &LabelImage) -> f64 {
+    let areas = labels.areas();
+    let largest = areas.iter().skip(1).copied().max();
+    largest.map_or(f64::INFINITY, |pixels| {
+        2.0 * (pixels as f64 / std::f64::consts::PI).sqrt()
     })
+}
+
+/// The side of the largest square in which every pixel is fines, pixels.
+fn largest_square(labels: &LabelImage) -> f64 {
+    // Of each column the side of the square that ends there: in the row above, then in this one.
+    let mut above = vec![0_usize; labels.width + 1];
+    let mut most = 0;
+    for pixels in labels.labels.chunks_exact(labels.width.max(1)) {
+        let mut here = vec![0; labels.width + 1];
+        for (column, label) in pixels.iter().enumerate() {
+            if *label == FINES {
+                here[column + 1] = 1 + here[column].min(above[column]).min(above[column + 1]);
+                most = most.max(here[column + 1]);
+            }
+        }
+        above = here;
+    }
+    most as f64
 }
 
 /// The share of the photo that its largest piece of cells takes of which every pixel is fines.
@@ -72,6 +105,23 @@ mod tests {
         assert!((share - 11.0 / 32.0).abs() < 1e-9, "{share}");
         assert!(bare(&floor_to(110, FINES)).is_some());
         assert_eq!(largest_bare(&floor_to(0, FINES)), 0.0);
+        // A ball of 40 pixels among fragments of 10; one of the pixels of a fragment is none.
+        let with_ball = |across: i32| {
+            let mut labels = floor_to(0, FINES);
+            for (place, label) in labels.labels.iter_mut().enumerate() {
+                let (x, y) = (place as i32 % 320 - 150, place as i32 / 320 - 90);
+                if 4 * (x * x + y * y) < across * across {
+                    *label = FINES;
+                }
+            }
+            labels
+        };
+        // Sides of the squares within: 40 / √2, and the gaps' two pixels beside it.
+        let side = largest_square(&with_ball(40));
+        assert!((27.0..=32.0).contains(&side), "{side}");
+        let said = bare(&with_ball(40)).unwrap();
+        assert!(said.contains("larger than the largest fragment"), "{said}");
+        assert_eq!(bare(&with_ball(8)), None);
         // What was excluded is no fines.
         assert_eq!(bare(&floor_to(110, NOT_ROCK)), None);
     }

@@ -180,7 +180,7 @@ fn fill(
     if options.survey.is_some() {
         if recipe.epsg.is_none() {
             let what = "there is no receiver's position without a coordinate system";
-            let remedy = "leave --survey out, or choose a place outdoors and not --at-origin";
+            let remedy = "choose a preset outdoors (muckpile, stockpile, bench) without --at-origin, or leave --survey out";
             return Err(Fault::new(what, remedy));
         }
         shots.extend(

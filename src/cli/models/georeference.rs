@@ -12,6 +12,7 @@ use crate::fault::Fault;
 use crate::files::{Inputs, Kind, Recording};
 use crate::formats::FileError;
 use crate::jobs::Progress;
+use crate::numbers::significant_digits;
 use crate::opening::{self, GeoreferenceRequest, Georeferenced, KnownDistance, KnownKind};
 
 #[derive(Debug, Args)]
@@ -150,7 +151,7 @@ fn table(result: &Georeferenced) -> String {
     }
     text += &format!(
         "scale: {} {unit} to one of the reconstruction's units",
-        result.similarity.scale
+        significant_digits(result.similarity.scale, 9)
     );
     match (result.scale_error, result.scale_interval) {
         (Some(error), Some(interval)) => {

@@ -22,8 +22,6 @@ pub(super) struct Shared {
     /// ... and what the points' own errors have in it, for a deviation of a pixel of 1.
     own: DMatrix<f64>,
     middle: DVec3,
-    /// How far points are from their middle, root mean square.
-    pub(super) reach: f64,
 }
 
 impl Shared {
@@ -31,7 +29,6 @@ impl Shared {
         let points = &model.cloud.points;
         let count = points.len().max(1) as f64;
         let middle = points.iter().sum::<DVec3>() / count;
-        let squares = points.iter().map(|point| point.distance_squared(middle));
         let mut of_similarity = DMatrix::zeros(size, SIMILARITY);
         for (number, photo) in model.photos.iter().enumerate() {
             let camera_from_world = photo.pose.rotation.transpose();
@@ -52,8 +49,22 @@ impl Shared {
             by_unknowns: DMatrix::zeros(SIMILARITY, size),
             own: DMatrix::zeros(SIMILARITY, SIMILARITY),
             middle,
-            reach: (squares.sum::<f64>() / count).sqrt(),
         }
+    }
+
+    /// Holds a model of which nobody says where it is: seven directions that the normal equations leave open are known as
+    /// well as others are, each unknown counted by its own. So the inverse has most digits.
+    pub(super) fn hold(&self, normal: &mut DMatrix<f64>) {
+        let own = normal.diagonal().map(f64::sqrt);
+        let mut open = self.of_similarity.clone();
+        for mut of_column in open.column_iter_mut() {
+            of_column.component_mul_assign(&own);
+        }
+        let mut held = open.qr().q();
+        for mut of_column in held.column_iter_mut() {
+            of_column.component_mul_assign(&own);
+        }
+        normal.gemm(1.0, &held, &held.transpose(), 1.0);
     }
 
     pub(super) fn count(&mut self, block: &Block) {

@@ -76,9 +76,9 @@ const AT_ONCE: usize = 4096;
 /// Numbers of a pose, and of a lens.
 const POSE: usize = 6;
 const LENS: usize = 8;
-/// Fewer known centres do not say where the model is; then all are held within so many of its sizes, for an inverse to be.
+/// Fewer known centres do not say where the model is; then it is held for an inverse to be, which nothing is left of when the
+/// datum is taken off.
 const LEAST_KNOWN: usize = 3;
-const LOOSELY: f64 = 100.0;
 
 /// Of a reconstruction; `None` where nothing was observed, or where it has too many photos.
 pub fn deviations(model: &Reconstruction, known: &Known) -> Option<Deviations> {
@@ -104,15 +104,15 @@ pub fn deviations(model: &Reconstruction, known: &Known) -> Option<Deviations> {
         }
     }
     normal /= pixel * pixel;
-    let is_loose = known.centers.iter().flatten().count() < LEAST_KNOWN;
-    for (photo, center) in known.centers.iter().enumerate() {
-        let loose = is_loose.then(|| DVec3::splat(LOOSELY * shared.reach));
-        let Some(center) = center.or(loose) else {
-            continue;
-        };
-        for axis in 0..3 {
-            let at = photo * POSE + 3 + axis;
-            normal[(at, at)] += center[axis].max(1e-9).powi(-2);
+    if known.centers.iter().flatten().count() < LEAST_KNOWN {
+        shared.hold(&mut normal);
+    } else {
+        for (photo, center) in known.centers.iter().enumerate() {
+            let axes = center.iter().flat_map(DVec3::to_array).enumerate();
+            for (axis, deviation) in axes {
+                let at = photo * POSE + 3 + axis;
+                normal[(at, at)] += deviation.max(1e-9).powi(-2);
+            }
         }
     }
     for (number, lens) in known.lenses.iter().enumerate() {

@@ -1,5 +1,6 @@
 use super::*;
 use crate::formats::PosedPhoto;
+use crate::geometry::Similarity;
 use crate::surface::Cloud;
 use fragscale_core::split_mix::SplitMix;
 
@@ -258,5 +259,39 @@ fn where_the_world_is_does_not_matter() {
             (turn.length() / other_turn.length() - 1.0).abs() < 0.02,
             "{other_turn}"
         );
+    }
+}
+
+/// A model that nobody has placed is as sure of itself wherever and however large it is: its matrix has seven directions
+/// that nothing holds, and held too loosely, an inverse was there or not by the last digit.
+#[test]
+fn a_free_model_is_as_sure_anywhere() {
+    let lens = [1000.0, 1001.0, 6.4, 6.4, 0.3, 0.3, 0.001, 0.001];
+    let known = Known {
+        centers: vec![None; 5],
+        lenses: vec![lens],
+    };
+    let here = deviations(&model(), &known).unwrap();
+    let mut random = SplitMix(8);
+    let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    for _ in 0..60 {
+        let scale = 10.0_f64.powf(uniform() * 6.0 - 3.0);
+        let turn = DMat3::from_rotation_z(6.0 * uniform()) * DMat3::from_rotation_x(uniform());
+        let shift = DVec3::new(5e5 * uniform(), 5e6 * uniform(), 1e3 * uniform());
+        // As far away as digits of so small a model allow.
+        let shift = shift * scale.min(1.0);
+        let mut there = model();
+        there.transform(&Similarity::new(scale, turn, shift));
+        let there = deviations(&there, &known).unwrap();
+        let focal = there.focal_in_scales[0] / here.focal_in_scales[0];
+        assert!((focal - 1.0).abs() < 1e-3, "{scale}: {focal}");
+        for ((center, turn), (own, own_turn)) in there.poses.iter().zip(&here.poses) {
+            let center = center.length() / (scale * own.length());
+            let turn = turn.length() / own_turn.length();
+            assert!(
+                (center - 1.0).abs() < 1e-3 && (turn - 1.0).abs() < 1e-3,
+                "{scale}: {center} {turn}"
+            );
+        }
     }
 }

@@ -30,6 +30,7 @@ use crate::control::ControlList;
 use crate::fault::Fault;
 use crate::files::FileError;
 use crate::flight::Flight;
+use crate::formats::photos::photo_folder::PhotoFolder;
 use crate::formats::poses::position_list::{
     NamedPosition, PositionList, positions_of_photos, read_control_points, read_positions,
 };
@@ -194,12 +195,19 @@ pub fn georeference(
 ) -> Result<Georeferenced, FileError> {
     progress.stage(format!("reading {}", path.display()));
     let project = read_project(path, progress)?;
-    let photos = request.photos.clone().or(project.photos);
+    let named = request.photos.clone();
+    let photos = named.clone().or(project.photos);
     let request = GeoreferenceRequest {
         photos,
         ..request.clone()
     };
     let at = |fault| FileError::new(path, fault);
+    if let Some(folder) = &named {
+        let photos = project.reconstruction.photos.iter();
+        let names: Vec<&str> = photos.map(|photo| photo.name.as_str()).collect();
+        let checked = PhotoFolder::new(Some(folder)).check(&names);
+        checked.map_err(|fault| FileError::new(folder, fault))?;
+    }
     if let Some(crs) = &project.reconstruction.crs {
         let crs = crs.split(['[', ',']).next().unwrap_or_default();
         return Err(at(Fault::new(
@@ -314,6 +322,9 @@ pub fn georeference_model(
         warnings
             .push("the control points decide; the photos' positions are only compared".to_owned());
     }
+    if request.level {
+        warnings.push("--level is for distances: the known positions say where up is".to_owned());
+    }
     result.heights = Some(world.heights().to_owned());
     result.crs = world.name().map(str::to_owned);
     result.unit = world.unit();
@@ -325,9 +336,11 @@ pub fn georeference_model(
         .filter(|p| !p.used && (p.kind == KnownKind::ControlPoint) == points.is_some());
     let outliers = far.count();
     if outliers > 0 {
-        warnings.push(format!(
-            "{outliers} known positions do not agree with the others and were left out of the fit"
-        ));
+        let do_not = match outliers {
+            1 => "1 known position does not agree with the others and was",
+            _ => &format!("{outliers} known positions do not agree with the others and were"),
+        };
+        warnings.push(format!("{do_not} left out of the fit"));
     }
     if let Some(degrees) = result
         .rotation_error_degrees

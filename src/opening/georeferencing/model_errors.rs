@@ -1,14 +1,15 @@
 //! How sure the poses and lenses of a model are whose package does not say it: by what its photos see of its points
 //! ([`crate::covariance`]). A flight.toml has one value for all photos: their root mean square.
 
+use std::collections::HashSet;
 use std::path::Path;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::Georeferenced;
 use crate::covariance::{Known, deviations, lens_deviations};
-use crate::formats::Reconstruction;
 use crate::formats::photos::photo_folder::PhotoFolder;
+use crate::formats::{Origin, Reconstruction};
 use crate::geometry::{Similarity, median};
 use crate::numbers::{four_digits, stated_percent};
 use crate::scale::{PoseErrors, StatedErrors};
@@ -50,6 +51,14 @@ pub(super) fn of_model(
         return Err(unknown(
             "the sizes of its photos are not known (give their folder)",
         ));
+    }
+    if let Some(photo) = other_size(&model) {
+        return Err(unknown(&format!(
+            "the model has image points outside of '{photo}', so its photos were of another size"
+        )));
+    }
+    if let Some(photo) = blind(&model) {
+        return Err(unknown(&format!("'{photo}' shows none of its points")));
     }
     model.transform(to_world);
     let photos = model.photos.len();
@@ -102,6 +111,33 @@ fn take_off_wrong_matches(model: &mut Reconstruction) -> bool {
     true
 }
 
+/// A photo that the model's image points reach beyond: one is a lens's bend, a tenth of them are none.
+fn other_size(model: &Reconstruction) -> Option<&str> {
+    let mut outside = vec![[0, 0]; model.photos.len()];
+    for seen in &model.observations {
+        let count = &mut outside[seen.photo as usize];
+        let camera = &model.cameras[model.photos[seen.photo as usize].camera];
+        let side = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+        let off = match model.observed_from {
+            Origin::Corner => seen.pixel - side / 2.0,
+            Origin::Middle => seen.pixel,
+        };
+        count[0] += usize::from(off.abs().cmpgt(side / 2.0).any());
+        count[1] += 1;
+    }
+    let mut photos = model.photos.iter().zip(outside);
+    let found = photos.find(|(_, [outside, all])| 10 * outside > *all);
+    found.map(|(photo, _)| photo.name.as_str())
+}
+
+/// A photo of which no image point is left.
+fn blind(model: &Reconstruction) -> Option<&str> {
+    let seeing: HashSet<u32> = model.observations.iter().map(|seen| seen.photo).collect();
+    let mut photos = (0..).zip(&model.photos);
+    let found = photos.find(|(number, _)| !seeing.contains(number));
+    found.map(|(_, photo)| photo.name.as_str())
+}
+
 impl Georeferenced {
     /// Its [`errors`](Georeferenced::errors), as a line; `None` where they are not known.
     pub fn errors_in_words(&self) -> Option<String> {
@@ -119,7 +155,7 @@ impl Georeferenced {
             )
         });
         Some(format!(
-            "± {} {} to the pile, ± {} degrees{focal} (standard errors, by what the photos see)",
+            "± {} {} along x, y, z to the pile, ± {} degrees about the camera's axes{focal} (standard errors, means of the photos)",
             axes(position),
             self.unit,
             axes(angle),
@@ -129,7 +165,7 @@ impl Georeferenced {
 
 #[cfg(test)]
 mod tests {
-    use glam::{DMat3, DVec2};
+    use glam::DMat3;
 
     use super::*;
     use crate::covariance::tests::model;
@@ -215,6 +251,15 @@ mod tests {
             said.contains("keeps nothing of what its photos see"),
             "{said}"
         );
+        let mut half = known_sizes();
+        half.cameras[0].width /= 2;
+        half.cameras[0].height /= 2;
+        let said = of_model(half, None, &as_large(2.0)).unwrap_err();
+        assert!(said.contains("were of another size"), "{said}");
+        let mut blind = known_sizes();
+        blind.observations.retain(|seen| seen.photo != 3);
+        let said = of_model(blind, None, &as_large(2.0)).unwrap_err();
+        assert!(said.contains("'3.jpg' shows none"), "{said}");
         let said = of_model(model(), None, &as_large(2.0)).unwrap_err();
         assert!(said.contains("sizes of its photos are not known"), "{said}");
     }
