@@ -106,10 +106,10 @@ mod tests {
         assert!(bare(&floor_to(110, FINES)).is_some());
         assert_eq!(largest_bare(&floor_to(0, FINES)), 0.0);
         // A ball of 40 pixels among fragments of 10; one of the pixels of a fragment is none.
-        let with_ball = |across: i32| {
+        let with_ball = |across: usize| {
             let mut labels = floor_to(0, FINES);
             for (place, label) in labels.labels.iter_mut().enumerate() {
-                let (x, y) = (place as i32 % 320 - 150, place as i32 / 320 - 90);
+                let (x, y) = ((place % 320).abs_diff(150), (place / 320).abs_diff(90));
                 if 4 * (x * x + y * y) < across * across {
                     *label = FINES;
                 }
