@@ -19,7 +19,7 @@
 //! ```
 
 mod areas;
-mod covariance;
+pub mod covariance;
 mod dropped;
 mod evidence;
 mod flight_poses;
@@ -47,7 +47,6 @@ use fragscale_formats as formats;
 use fragscale_fragmentation as fragmentation;
 
 pub use areas::{Areas, places};
-pub use covariance::{Deviations, Known, deviations, lens_deviations};
 pub use dropped::Dropped;
 pub use evidence::{Colours, compare_all_colours, compare_colours, look_up};
 pub use flown::{ComparedFlight, FlightOfMission, compare_flown};

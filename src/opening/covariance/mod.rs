@@ -68,7 +68,7 @@ pub fn lens_deviations(camera: &Camera, focal: f64) -> [f64; LENS] {
 }
 
 /// Photos beyond which the matrix is not made.
-const MOST_PHOTOS: usize = 1000;
+pub(crate) const MOST_PHOTOS: usize = 1000;
 /// Points that are 10 000 times less sure along one direction than along another (here: its square) say nothing.
 const LEAST_STRENGTH: f64 = 1e-8;
 /// Points whose blocks lie in memory together.

@@ -7,11 +7,11 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 
 use super::Georeferenced;
-use crate::covariance::{Known, deviations, lens_deviations};
+use crate::covariance::{Known, MOST_PHOTOS, deviations, lens_deviations};
 use crate::formats::photos::photo_folder::PhotoFolder;
 use crate::formats::{Origin, Reconstruction};
 use crate::geometry::{Similarity, median};
-use crate::numbers::{four_digits, stated_percent};
+use crate::numbers::{four_digits, significant_digits, stated_percent};
 use crate::scale::{PoseErrors, StatedErrors};
 
 /// What lies so many medians off is another point. Of errors of measurement alone none in 10^10 does.
@@ -69,8 +69,12 @@ pub(super) fn of_model(
             .map(|camera| lens_deviations(camera, 1.0))
             .collect(),
     };
-    let sure = deviations(&model, &known)
-        .ok_or_else(|| unknown("too many photos, or nothing that several see"))?;
+    let Some(sure) = deviations(&model, &known) else {
+        return Err(unknown(&match photos > MOST_PHOTOS {
+            true => format!("it has more than {MOST_PHOTOS} photos"),
+            false => "its points do not hold its photos together".to_owned(),
+        }));
+    };
     let mean_square = |of: fn(&(DVec3, DVec3)) -> DVec3| -> DVec3 {
         let sum: DVec3 = sure.poses.iter().map(|pose| of(pose) * of(pose)).sum();
         let root = (sum / photos.max(1) as f64).to_array().map(f64::sqrt);
@@ -141,17 +145,15 @@ fn blind(model: &Reconstruction) -> Option<&str> {
 impl Georeferenced {
     /// Its [`errors`](Georeferenced::errors), as a line; `None` where they are not known.
     pub fn errors_in_words(&self) -> Option<String> {
-        let two_digits = |value: f64| format!("{value:.1e}").parse::<f64>().unwrap_or(value);
         let axes = |axes: DVec3| {
-            axes.to_array()
-                .map(|value| two_digits(value).to_string())
-                .join(", ")
+            let each = axes.to_array();
+            each.map(|value| significant_digits(value, 2)).join(", ")
         };
         let (position, angle) = (self.errors.pose.position?, self.errors.pose.angle?);
         let focal = self.errors.focal.map_or_else(String::new, |focal| {
             format!(
                 "; the focal length leaves ± {} % in the scales",
-                two_digits(focal)
+                significant_digits(focal, 2)
             )
         });
         Some(format!(

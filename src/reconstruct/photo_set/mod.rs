@@ -17,7 +17,7 @@ use crate::files::{FileError, read_bytes};
 use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
 use crate::formats::{PhotoCameras, Reconstruction, expected_deviation, photos_in};
 use crate::jobs::Progress;
-use crate::opening::lens_deviations;
+use crate::opening::covariance::lens_deviations;
 use crate::picture;
 
 /// A photo to be reconstructed.

@@ -10,7 +10,8 @@ use crate::fault::Fault;
 use crate::flight::{FlightFile, FlightSettings, PosesFlight};
 use crate::formats::Reconstruction;
 use crate::numbers::{four_digits, stated_percent};
-use crate::opening::{Deviations, Georeferenced, Known, deviations};
+use crate::opening::Georeferenced;
+use crate::opening::covariance::{Deviations, Known, deviations};
 use crate::photo_set::{PhotoSet, SurveyCamera};
 use crate::surface::Cloud;
 

@@ -6,7 +6,8 @@ use crate::exports::{
     OffReceiver, ReconstructionReport, SeenPoint, SolvedCamera, SolvedPhoto, reconstruction_report,
 };
 use crate::formats::Reconstruction;
-use crate::opening::{Deviations, PositionResidual};
+use crate::opening::PositionResidual;
+use crate::opening::covariance::Deviations;
 use crate::photo_set::PhotoSet;
 use crate::said::facts;
 
