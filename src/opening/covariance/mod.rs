@@ -9,7 +9,7 @@
 //! a base station in the wrong place move all alike and are not in it.
 //!
 //! A scale hangs on where a camera stands to the pile, not on where both are in the world: what moves, turns and
-//! stretches both alike is taken off ([`datum`]; how sure the length of the world's unit is, is stated apart). And where a longer
+//! stretches both alike is taken off (`datum.rs`; how sure the length of the world's unit is, is stated apart). And where a longer
 //! focal length comes with a higher camera, the photos' scales stay: poses are stated as they are for a given
 //! lens, and of the focal length besides how much of it is left in the scales.
 //!
