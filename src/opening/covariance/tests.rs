@@ -1,4 +1,5 @@
 use super::*;
+use crate::camera::VisualSfm;
 use crate::formats::PosedPhoto;
 use crate::geometry::Similarity;
 use crate::surface::Cloud;
@@ -292,6 +293,26 @@ fn a_free_model_is_as_sure_anywhere() {
                 (center - 1.0).abs() < 1e-3 && (turn - 1.0).abs() < 1e-3,
                 "{scale}: {center} {turn}"
             );
+        }
+    }
+}
+
+/// A lens of another model that bends nothing is off by Brown's terms as a pinhole is, whose derivatives are differences.
+#[test]
+fn lenses_of_other_models_are_off_by_the_same_terms() {
+    let pinhole = Camera {
+        distortion: Distortion::None,
+        ..model().cameras[0].clone()
+    };
+    let other = Camera {
+        distortion: Distortion::VisualSfm(VisualSfm { k: 0.0 }),
+        ..pinhole.clone()
+    };
+    for at in [DVec3::new(9.0, -7.0, 30.0), DVec3::new(-2.0, -8.0, 25.0)] {
+        let (differences, terms) = (by_lens(&pinhole, at).unwrap(), by_lens(&other, at).unwrap());
+        for (difference, term) in differences.into_iter().zip(terms) {
+            let off = difference.distance(term) / term.length().max(1.0);
+            assert!(off < 1e-6, "{difference} {term}");
         }
     }
 }

@@ -195,13 +195,27 @@ mod tests {
         assert!((ratio - 1.0).abs().max_element() < 2e-3, "{ratio}");
         assert!((world.focal.unwrap() / own.focal.unwrap() - 1.0).abs() < 2e-3);
         assert_eq!(own.world_scale, None);
-        // By hand: a photo sees 40 points 0.8 px off from 30 units with 1000 px of focal length; a camera alone, over
-        // points that are known, would be 0.8 / √2 · 30 / 1000 / √40 = 0.0027 to the side. Points and lens are not known.
-        let position = own.pose.position.unwrap();
-        assert!(
-            position.min_element() > 0.0027 && position.max_element() < 0.3,
-            "{position}"
-        );
+        // What the covariance says of each photo, its lens as free as any.
+        let lens = [1000.0, 1001.0, 6.4, 6.4, 0.3, 0.3, 0.001, 0.001];
+        let known = Known {
+            centers: vec![None; 5],
+            lenses: vec![lens],
+        };
+        let each = deviations(&model(), &known).unwrap();
+        for axis in 0..3 {
+            let mean = |square: fn(&(DVec3, DVec3), usize) -> f64| {
+                let sum: f64 = each.poses.iter().map(|pose| square(pose, axis)).sum();
+                (sum / 5.0).sqrt()
+            };
+            let position = mean(|pose, axis| pose.0[axis].powi(2));
+            let angle = mean(|pose, axis| pose.1[axis].powi(2)) * 57.295_78;
+            let stated = own.pose.position.unwrap()[axis] / position;
+            assert!((stated - 1.0).abs() < 1e-3, "{stated}");
+            let stated = own.pose.angle.unwrap()[axis] / angle;
+            assert!((stated - 1.0).abs() < 1e-3, "{stated}");
+        }
+        let stated = own.focal.unwrap() / (100.0 * each.focal_in_scales[0]);
+        assert!((stated - 1.0).abs() < 1e-3, "{stated}");
     }
 
     /// A wrong match, or what one photo shows alone, changes nothing.
