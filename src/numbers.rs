@@ -85,7 +85,13 @@ pub fn stated_percent(relative: f64) -> f64 {
 
 /// A number rounded to four digits: more is no standard error known.
 pub fn four_digits(number: f64) -> f64 {
-    format!("{number:.3e}").parse().unwrap_or(number)
+    to_digits(number, 4)
+}
+
+/// A number rounded to so many digits, one at least.
+pub fn to_digits(number: f64, digits: usize) -> f64 {
+    let decimals = digits.saturating_sub(1);
+    format!("{number:.decimals$e}").parse().unwrap_or(number)
 }
 
 /// The largest of 1, 2 and 5 times a power of ten that is no larger than `most`, without the noise of

@@ -4,6 +4,7 @@
 //! than it is. So it is said.
 
 use crate::labels::{FINES, LabelImage};
+use crate::measures::circle_diameter;
 use crate::tree::around;
 
 /// Cells of the photo's longer side: what is between fragments has no cell to itself.
@@ -28,27 +29,25 @@ pub(crate) fn bare(labels: &LabelImage) -> Option<String> {
 
 /// The diameter of the circle with the largest fragment's area, pixels; infinite where there is none.
 fn largest_across(labels: &LabelImage) -> f64 {
-    let areas = labels.areas();
-    let largest = areas.iter().skip(1).copied().max();
-    largest.map_or(f64::INFINITY, |pixels| {
-        2.0 * (pixels as f64 / std::f64::consts::PI).sqrt()
-    })
+    let largest = labels.areas().into_iter().skip(1).max();
+    largest.map_or(f64::INFINITY, |pixels| circle_diameter(pixels as f64))
 }
 
 /// The side of the largest square in which every pixel is fines, pixels.
 fn largest_square(labels: &LabelImage) -> f64 {
     // Of each column the side of the square that ends there: in the row above, then in this one.
     let mut above = vec![0_usize; labels.width + 1];
+    let mut here = above.clone();
     let mut most = 0;
     for pixels in labels.labels.chunks_exact(labels.width.max(1)) {
-        let mut here = vec![0; labels.width + 1];
         for (column, label) in pixels.iter().enumerate() {
-            if *label == FINES {
-                here[column + 1] = 1 + here[column].min(above[column]).min(above[column + 1]);
-                most = most.max(here[column + 1]);
-            }
+            here[column + 1] = match *label == FINES {
+                true => 1 + here[column].min(above[column]).min(above[column + 1]),
+                false => 0,
+            };
+            most = most.max(here[column + 1]);
         }
-        above = here;
+        std::mem::swap(&mut above, &mut here);
     }
     most as f64
 }

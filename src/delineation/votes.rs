@@ -8,6 +8,8 @@
 
 use glam::DVec2;
 
+use crate::measures::circle_diameter;
+
 /// The votes of all pixels, row by row from the top left.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Votes {
@@ -67,7 +69,7 @@ impl VoteSums {
         if self.way_squared == 0.0 {
             return None;
         }
-        let diameter = (area * 4.0 / std::f64::consts::PI).sqrt();
+        let diameter = circle_diameter(area);
         let size = self.size / area;
         let spread = (self.size_squared / area - size * size).max(0.0).sqrt();
         let middle = place / area;

@@ -181,3 +181,36 @@ fn a_models_own_errors_are_counted() {
         }
     }
 }
+
+/// A folder of others' photos is refused before a flight is written that could not be opened; and --level is for distances.
+#[test]
+fn what_does_not_belong_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    model(folder.path());
+    let [list, flight, others] =
+        ["list.csv", "world.toml", "others"].map(|name| folder.path().join(name));
+    fs::write(&list, positions()).expect("written");
+    fs::create_dir(&others).expect("a folder");
+    fs::write(others.join("holiday.jpg"), "").expect("written");
+    let known = ["--positions", text(&list), "-o", text(&flight)];
+    for (photos, why) in [
+        (&others, "none of the flight's 5 photos"),
+        (&flight, "no such folder"),
+    ] {
+        let refused = fragscale(&command(
+            folder.path(),
+            &[&known[..], &["--photos", text(photos)]].concat(),
+        ));
+        assert_eq!(refused.status.code(), Some(1));
+        let error = String::from_utf8(refused.stderr).expect("UTF-8");
+        assert!(error.contains(why) && error.lines().count() == 1, "{error}");
+        assert!(!flight.exists());
+    }
+    let done = fragscale(&command(
+        folder.path(),
+        &[&known[..], &["--level"]].concat(),
+    ));
+    assert!(done.status.success());
+    let said = String::from_utf8(done.stderr).expect("UTF-8");
+    assert!(said.contains("--level is for distances"), "{said}");
+}

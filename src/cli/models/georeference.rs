@@ -12,6 +12,7 @@ use crate::fault::Fault;
 use crate::files::{Inputs, Kind, Recording};
 use crate::formats::FileError;
 use crate::jobs::Progress;
+use crate::numbers::to_digits;
 use crate::opening::{self, GeoreferenceRequest, Georeferenced, KnownDistance, KnownKind};
 
 #[derive(Debug, Args)]
@@ -148,10 +149,11 @@ fn table(result: &Georeferenced) -> String {
         let (used, all) = (result.used(), result.positions.len());
         text += &format!("{used} of {all} positions used, RMS {rms:.3} {unit}\n");
     }
-    // Nine digits: the file has them all.
-    let scale = result.similarity.scale;
-    let scale: f64 = format!("{scale:.8e}").parse().unwrap_or(scale);
-    text += &format!("scale: {scale} {unit} to one of the reconstruction's units");
+    text += &format!(
+        "scale: {} {unit} to one of the reconstruction's units",
+        // The file has them all.
+        to_digits(result.similarity.scale, 9)
+    );
     match (result.scale_error, result.scale_interval) {
         (Some(error), Some(interval)) => {
             text += &format!(

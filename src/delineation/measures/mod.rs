@@ -149,6 +149,11 @@ fn stands_out(heights: &mut [f32]) -> f64 {
     f64::from(*height)
 }
 
+/// The diameter of the circle with this area.
+pub(crate) fn circle_diameter(area: f64) -> f64 {
+    (4.0 * area / std::f64::consts::PI).sqrt()
+}
+
 /// The area on the surface that a pixel shows, from where its neighbours' rays meet; `None` where they do not,
 /// or where the surface breaks off between them.
 fn on_surface(field: &ScaleField, x: u32, y: u32) -> Option<f64> {
@@ -206,7 +211,7 @@ impl Sums {
             let scale = (met / self.area).sqrt();
             // What is off the surface is as the rest.
             let (area, surface_area) = (self.area / known, self.surface_area / known);
-            let diameter = (4.0 * area / std::f64::consts::PI).sqrt();
+            let diameter = circle_diameter(area);
             let widths = widths(&hull).map(|width| width / scale);
             let rectangle = rectangle(&hull).map(|side| side / scale);
             Measures {

@@ -17,8 +17,6 @@
 
 mod datum;
 
-use std::collections::HashSet;
-
 use glam::{DMat3, DVec2, DVec3};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -57,12 +55,7 @@ pub struct Deviations {
 /// survey says. So the principal point is within 1 % of the middle and the tangential coefficients within
 /// 0.002, as those of drones are; the radial ones are free.
 pub fn lens_deviations(camera: &Camera, focal: f64) -> [f64; LENS] {
-    let longer = match camera.width.max(camera.height) {
-        // Of a package that writes no sizes.
-        0 => camera.fx,
-        longer => f64::from(longer),
-    };
-    let middle = 0.005 * longer;
+    let middle = 0.005 * f64::from(camera.width.max(camera.height));
     let [fx, fy] = [camera.fx, camera.fy].map(|length| focal * length);
     [fx, fy, middle, middle, 0.3, 0.3, 0.001, 0.001]
 }
@@ -86,10 +79,10 @@ pub fn deviations(model: &Reconstruction, known: &Known) -> Option<Deviations> {
     if photos > MOST_PHOTOS || model.observations.is_empty() {
         return None;
     }
-    let pixel = pixel_deviation(model)?;
+    let points = by_point(model);
+    let pixel = pixel_deviation(model, &points)?;
     let size = photos * POSE + model.cameras.len() * LENS;
     let mut normal = DMatrix::<f64>::zeros(size, size);
-    let points = by_point(model);
     let mut shared = Shared::new(model, size);
     for some in points.chunks(AT_ONCE) {
         let blocks = some.par_iter().filter_map(|seen| block(model, seen));
@@ -214,11 +207,10 @@ fn inverse(mut matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
 /// Standard deviation of an observation along an axis: the root of the sum of squares over what is left of
 /// the numbers when the unknowns are taken off. Engines take away what lies pixels off, so that it is a
 /// sum over good matches, long tails and all: a median would say half of it.
-fn pixel_deviation(model: &Reconstruction) -> Option<f64> {
-    let off = model.observations.iter();
+fn pixel_deviation(model: &Reconstruction, points: &[Vec<&Observation>]) -> Option<f64> {
+    let off = points.iter().flatten();
     let off = off.filter_map(|seen| model.reprojection_px(seen));
     let squares: Vec<f64> = off.map(|off| off * off).collect();
-    let points: HashSet<u32> = model.observations.iter().map(|seen| seen.point).collect();
     let unknown = model.photos.len() * POSE + points.len() * 3;
     let free = (2 * squares.len())
         .checked_sub(unknown)
@@ -246,7 +238,8 @@ struct Block {
     own: DMatrix<f64>,
 }
 
-/// The observations of each point, in the points' order: sums are the same on every run.
+/// The observations of each point that is seen more than once, in the points' order: sums are the same on every run. What
+/// is seen once is nowhere, and its residual says nothing.
 fn by_point(model: &Reconstruction) -> Vec<Vec<&Observation>> {
     let mut points = vec![Vec::new(); model.cloud.points.len()];
     for seen in &model.observations {
@@ -254,6 +247,7 @@ fn by_point(model: &Reconstruction) -> Vec<Vec<&Observation>> {
             point.push(seen);
         }
     }
+    points.retain(|seen| seen.len() > 1);
     points
 }
 

@@ -195,19 +195,18 @@ pub fn georeference(
 ) -> Result<Georeferenced, FileError> {
     progress.stage(format!("reading {}", path.display()));
     let project = read_project(path, progress)?;
-    let named = request.photos.clone();
-    let photos = named.clone().or(project.photos);
-    let request = GeoreferenceRequest {
-        photos,
-        ..request.clone()
-    };
-    let at = |fault| FileError::new(path, fault);
-    if let Some(folder) = &named {
+    if let Some(folder) = &request.photos {
         let photos = project.reconstruction.photos.iter();
         let names: Vec<&str> = photos.map(|photo| photo.name.as_str()).collect();
         let checked = PhotoFolder::new(Some(folder)).check(&names);
         checked.map_err(|fault| FileError::new(folder, fault))?;
     }
+    let photos = request.photos.clone().or(project.photos);
+    let request = GeoreferenceRequest {
+        photos,
+        ..request.clone()
+    };
+    let at = |fault| FileError::new(path, fault);
     if let Some(crs) = &project.reconstruction.crs {
         let crs = crs.split(['[', ',']).next().unwrap_or_default();
         return Err(at(Fault::new(

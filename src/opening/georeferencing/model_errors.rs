@@ -1,7 +1,6 @@
 //! How sure the poses and lenses of a model are whose package does not say it: by what its photos see of its points
 //! ([`crate::covariance`]). A flight.toml has one value for all photos: their root mean square.
 
-use std::collections::HashSet;
 use std::path::Path;
 
 use glam::{DVec2, DVec3};
@@ -10,8 +9,9 @@ use super::Georeferenced;
 use crate::covariance::{Known, MOST_PHOTOS, deviations, lens_deviations};
 use crate::formats::photos::photo_folder::PhotoFolder;
 use crate::formats::{Origin, Reconstruction};
-use crate::geometry::{Similarity, median};
+use crate::geometry::Similarity;
 use crate::numbers::{four_digits, significant_digits, stated_percent};
+use crate::photo_files::set_sizes_from_files;
 use crate::scale::{PoseErrors, StatedErrors};
 
 /// What lies so many medians off is another point. Of errors of measurement alone none in 10^10 does.
@@ -37,28 +37,14 @@ pub(super) fn of_model(
         return Err(unknown("the model keeps nothing of what its photos see"));
     }
     if !model.sizes.are_known() {
-        let photos = PhotoFolder::new(photos);
-        let names: Vec<(usize, String)> = (model.photos.iter())
-            .map(|photo| (photo.camera, photo.name.clone()))
-            .collect();
-        model.set_sizes(|camera| {
-            let its = names.iter().filter(|(of, _)| *of == camera);
-            its.filter_map(|(_, name)| photos.size_of(name)?.ok())
-                .next()
-        });
+        // Which photos are left out for it is said where the flight is opened.
+        let (photos, mut left_out) = (PhotoFolder::new(photos), Vec::new());
+        set_sizes_from_files(&mut model, &photos, |_| None, &mut left_out)
+            .map_err(|_| unknown("the sizes of its photos are not known (give their folder)"))?;
     }
-    if !take_off_wrong_matches(&mut model) {
-        return Err(unknown(
-            "the sizes of its photos are not known (give their folder)",
-        ));
-    }
-    if let Some(photo) = other_size(&model) {
-        return Err(unknown(&format!(
-            "the model has image points outside of '{photo}', so its photos were of another size"
-        )));
-    }
-    if let Some(photo) = blind(&model) {
-        return Err(unknown(&format!("'{photo}' shows none of its points")));
+    take_off_wrong_matches(&mut model);
+    if let Some(why) = of_other_photos(&model) {
+        return Err(unknown(&why));
     }
     model.transform(to_world);
     let photos = model.photos.len();
@@ -75,17 +61,16 @@ pub(super) fn of_model(
             false => "its points do not hold its photos together".to_owned(),
         }));
     };
-    let mean_square = |of: fn(&(DVec3, DVec3)) -> DVec3| -> DVec3 {
-        let sum: DVec3 = sure.poses.iter().map(|pose| of(pose) * of(pose)).sum();
-        let root = (sum / photos.max(1) as f64).to_array().map(f64::sqrt);
-        DVec3::from_array(root)
+    let root = |squares: DVec3| {
+        let mean = (squares / photos as f64).to_array();
+        Some(DVec3::from_array(mean.map(|mean| four_digits(mean.sqrt()))))
     };
-    let rounded = |axes: DVec3| Some(DVec3::from_array(axes.to_array().map(four_digits)));
+    let degrees = sure.poses.iter().map(|(_, turn)| turn.map(f64::to_degrees));
     let focal = sure.focal_in_scales.iter().copied().reduce(f64::max);
     Ok(StatedErrors {
         pose: PoseErrors {
-            position: rounded(mean_square(|pose| pose.0)),
-            angle: rounded(mean_square(|pose| pose.1).map(f64::to_degrees)),
+            position: root(sure.poses.iter().map(|(center, _)| center * center).sum()),
+            angle: root(degrees.map(|turn| turn * turn).sum()),
         },
         focal: focal
             .filter(|_| model.errors.focal.is_none())
@@ -94,52 +79,41 @@ pub(super) fn of_model(
     })
 }
 
-/// Packages keep what lies far off: no error of measurement, but of another point. False where nobody can say how far it is.
-fn take_off_wrong_matches(model: &mut Reconstruction) -> bool {
-    if model.median_reprojection_px().is_none() {
-        return false;
-    }
-    let off: Vec<Option<f64>> = (model.observations.iter())
-        .map(|seen| model.reprojection_px(seen))
-        .collect();
-    let most = median(&mut off.iter().copied().flatten().collect::<Vec<f64>>());
-    let most = most.map_or(0.0, |median| MOST_MEDIANS * median);
-    let mut off = off.into_iter();
-    (model.observations).retain(|_| off.next().flatten().is_some_and(|off| off <= most));
-    let mut times_seen = vec![0; model.cloud.points.len()];
-    for seen in &model.observations {
-        times_seen[seen.point as usize] += 1;
-    }
-    // What one photo sees is nowhere.
-    (model.observations).retain(|seen| times_seen[seen.point as usize] > 1);
-    true
+/// Packages keep what lies far off: no error of measurement, but of another point.
+fn take_off_wrong_matches(model: &mut Reconstruction) {
+    let most = MOST_MEDIANS * model.median_reprojection_px().unwrap_or_default();
+    let mut kept = std::mem::take(&mut model.observations);
+    kept.retain(|seen| model.reprojection_px(seen).is_some_and(|off| off <= most));
+    model.observations = kept;
 }
 
-/// A photo that the model's image points reach beyond: one is a lens's bend, a tenth of them are none.
-fn other_size(model: &Reconstruction) -> Option<&str> {
-    let mut outside = vec![[0, 0]; model.photos.len()];
+/// That a photo is not the one that the model is of: image points lie beyond it (a few may, by a lens's bend), or it has
+/// none.
+fn of_other_photos(model: &Reconstruction) -> Option<String> {
+    let mut counts = vec![[0, 0]; model.photos.len()];
     for seen in &model.observations {
-        let count = &mut outside[seen.photo as usize];
+        let [outside, all] = &mut counts[seen.photo as usize];
         let camera = &model.cameras[model.photos[seen.photo as usize].camera];
-        let side = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+        let half = DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
         let off = match model.observed_from {
-            Origin::Corner => seen.pixel - side / 2.0,
+            Origin::Corner => seen.pixel - half,
             Origin::Middle => seen.pixel,
         };
-        count[0] += usize::from(off.abs().cmpgt(side / 2.0).any());
-        count[1] += 1;
+        *outside += usize::from(off.abs().cmpgt(half).any());
+        *all += 1;
     }
-    let mut photos = model.photos.iter().zip(outside);
-    let found = photos.find(|(_, [outside, all])| 10 * outside > *all);
-    found.map(|(photo, _)| photo.name.as_str())
-}
-
-/// A photo of which no image point is left.
-fn blind(model: &Reconstruction) -> Option<&str> {
-    let seeing: HashSet<u32> = model.observations.iter().map(|seen| seen.photo).collect();
-    let mut photos = (0..).zip(&model.photos);
-    let found = photos.find(|(number, _)| !seeing.contains(number));
-    found.map(|(_, photo)| photo.name.as_str())
+    let mut photos = model.photos.iter().zip(counts);
+    photos.find_map(|(photo, [outside, all])| {
+        let name = &photo.name;
+        if all == 0 {
+            return Some(format!("'{name}' shows none of its points"));
+        }
+        (10 * outside > all).then(|| {
+            format!(
+                "the model has image points outside of '{name}', so its photos were of another size"
+            )
+        })
+    })
 }
 
 impl Georeferenced {

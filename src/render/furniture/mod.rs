@@ -210,4 +210,34 @@ mod tests {
             }
         }
     }
+
+    /// Long words over a short bar end where the bar does, short ones stand over its middle.
+    #[test]
+    fn the_scale_bars_words_stay_in_the_picture() {
+        let size = DVec2::new(600.0, 400.0);
+        let view = View {
+            eye: DVec3::ZERO,
+            world_from_view: DMat3::IDENTITY,
+            projection: Projection::Orthographic { height: 55.0 },
+            focus: 37.0,
+        };
+        for (lengths_in, ends_there) in [("m", false), ("units of the file", true)] {
+            let show = Show {
+                axes: false,
+                lengths_in,
+                ..Show::default()
+            };
+            let (_, [from, to]) = scale_bar_ends(&view, &show, size).unwrap();
+            let labels = labels(&view, &show, size);
+            let words = labels
+                .iter()
+                .find(|label| label.text.ends_with(lengths_in))
+                .unwrap();
+            let (at, anchor) = match ends_there {
+                true => (to.x, Anchor::BottomRight),
+                false => ((from.x + to.x) / 2.0, Anchor::BottomMiddle),
+            };
+            assert_eq!((words.at.x, words.anchor), (at, anchor), "{lengths_in}");
+        }
+    }
 }
