@@ -56,6 +56,8 @@ use crate::units::LengthUnit;
 
 /// Work that is over sooner shows no progress bar.
 const QUICK: Duration = Duration::from_millis(500);
+/// Where nobody looks at a bar, so often a line says how far it is.
+const LOGGED: Duration = Duration::from_secs(60);
 
 /// Image scales for blast fragmentation photos, from a drone flight's point cloud.
 #[derive(Debug, Parser)]
@@ -457,30 +459,58 @@ fn in_words(value: &Value) -> String {
     }
 }
 
-/// Runs the work on a thread of its own, with a progress bar on a terminal where it takes long.
+/// Runs the work on a thread of its own, with a progress bar on a terminal where it takes long, and a line now and then in a
+/// file.
 fn run_with_progress<T: Send + 'static>(
     work: impl FnOnce(&Progress) -> Result<T, String> + Send + 'static,
 ) -> Result<T, String> {
     let job = Job::start("work", work).map_err(|fault| fault.to_string())?;
     interrupt::stops(job.progress());
-    if io::stderr().is_terminal() {
-        let began = Instant::now();
-        let mut bar = None;
-        while !job.is_finished() {
-            std::thread::sleep(Duration::from_millis(50));
-            if began.elapsed() > QUICK {
-                let bar = bar.get_or_insert_with(new_bar);
-                let (sentence, fraction) = job.progress().snapshot();
-                bar.set_message(sentence);
-                // `as` saturates.
-                bar.set_position((fraction * 1000.0) as u64);
-            }
-        }
-        if let Some(bar) = bar {
-            bar.finish_and_clear();
-        }
+    match io::stderr().is_terminal() {
+        true => show_progress(&job),
+        false => log_progress(&job),
     }
     job.finish().map_err(|fault| fault.to_string())?
+}
+
+fn show_progress<T: Send + 'static>(job: &Job<T>) {
+    let began = Instant::now();
+    let mut bar = None;
+    while !job.is_finished() {
+        std::thread::sleep(Duration::from_millis(50));
+        if began.elapsed() > QUICK {
+            let bar = bar.get_or_insert_with(new_bar);
+            let (sentence, fraction) = job.progress().snapshot();
+            bar.set_message(sentence);
+            // `as` saturates.
+            bar.set_position((fraction * 1000.0) as u64);
+        }
+    }
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+}
+
+/// A line after each [`LOGGED`]: of work of hours a log says how far it is.
+fn log_progress<T: Send + 'static>(job: &Job<T>) {
+    let began = Instant::now();
+    let mut due = LOGGED;
+    while !job.is_finished() {
+        // Short work is not kept waiting.
+        let look =
+            (began.elapsed() / 16).clamp(Duration::from_millis(1), Duration::from_millis(500));
+        std::thread::sleep(look);
+        if began.elapsed() > due {
+            due += LOGGED;
+            let (sentence, fraction) = job.progress().snapshot();
+            let percent = match fraction.is_finite() {
+                true => format!(" {:.0} %", 100.0 * fraction),
+                false => String::new(),
+            };
+            let minutes = began.elapsed().as_secs() / 60;
+            say(&format!("after {minutes} min: {sentence}{percent}"));
+        }
+    }
 }
 
 fn new_bar() -> ProgressBar {

@@ -25,11 +25,7 @@ impl Placed {
     pub fn then(before: Option<&Self>, next: &Similarity, crs: Option<String>) -> Self {
         let transform = match before.and_then(Self::similarity) {
             None => *next,
-            Some(before) => Similarity::new(
-                next.scale * before.scale,
-                next.rotation * before.rotation,
-                next.apply(before.translation),
-            ),
+            Some(before) => next.after(&before),
         };
         Self {
             transform: Box::new(transform.to_row_major()),

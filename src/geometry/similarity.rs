@@ -101,6 +101,16 @@ impl Similarity {
         })
     }
 
+    /// `first`, then this one.
+    #[must_use]
+    pub fn after(&self, first: &Self) -> Self {
+        Self::new(
+            self.scale * first.scale,
+            self.rotation * first.rotation,
+            self.apply(first.translation),
+        )
+    }
+
     /// Where a point of the source lies in the target.
     pub fn apply(&self, point: DVec3) -> DVec3 {
         self.linear * point + self.translation

@@ -7,12 +7,15 @@ use fragscale::flight::{Flight, FlightFile, FlightSettings, Placed};
 use fragscale::geometry::Similarity;
 use fragscale::jobs::Progress;
 use fragscale::opening::{
-    GeoreferenceRequest, OpenOptions, Opened, control_file, control_text, georeference_flight,
-    open_flight,
+    GeoreferenceRequest, OpenOptions, Opened, control_file, control_text, georeference,
+    georeference_flight, open_flight,
 };
+use fragscale::scale::StatedErrors;
 use fragscale::units::LengthUnit;
 use glam::{DMat3, DVec2, DVec3, EulerRot};
 use tempfile::TempDir;
+
+use fragscale_test_data::shared_data;
 
 use crate::common::stdout_of;
 
@@ -138,6 +141,51 @@ fn true_marks_give_the_known_similarity() {
             assert!(off < relative * extent, "{off:e}");
         }
         assert_eq!(found.used(), 5);
+    }
+}
+
+/// A model of a package that does not say how sure its poses are: clicked points bring it to the world with the same errors
+/// as a list of where its cameras are does.
+#[test]
+fn the_errors_of_a_model_are_those_of_the_command() {
+    let Some(colmap) = shared_data("sceaux-colmap/bin") else {
+        return;
+    };
+    let opened = open(&colmap);
+    let flight = &opened.flight;
+    let behind = &opened.reconstruction.as_ref().expect("a model").path;
+    let marked = list(Some("EPSG:32632"), &points(flight, 5));
+    let mut clicked = georeference_flight(&colmap, flight, &request(marked)).unwrap();
+    assert_eq!(clicked.errors_in_words(), None);
+    let photos = shared_data("sceaux-images");
+    let progress = Progress::default();
+    clicked
+        .look_up_errors(flight, behind, photos.as_deref(), &progress)
+        .unwrap();
+    let folder = tempfile::tempdir().expect("a folder");
+    let centers = folder.path().join("centers.csv");
+    let mut text = "# crs: EPSG:32632\nphoto,x,y,z\n".to_owned();
+    for photo in &flight.parts().photos {
+        let DVec3 { x, y, z } = truth().apply(photo.pose.center);
+        text += &format!("{},{x:?},{y:?},{z:?}\n", photo.name);
+    }
+    std::fs::write(&centers, text).expect("written");
+    let listed = GeoreferenceRequest {
+        positions: Some(centers),
+        photos,
+        ..GeoreferenceRequest::default()
+    };
+    let listed = georeference(&colmap, &listed, &progress).unwrap();
+    let [clicked, listed] = [clicked, listed].map(|found| found.errors);
+    let axes = |errors: StatedErrors| {
+        let [position, angle] = [errors.pose.position, errors.pose.angle].map(Option::unwrap);
+        [position, angle, DVec3::splat(errors.focal.unwrap())]
+    };
+    for (one, other) in axes(clicked).into_iter().zip(axes(listed)) {
+        assert!(
+            (one / other - 1.0).abs().max_element() < 1e-3,
+            "{one} {other}"
+        );
     }
 }
 

@@ -1,11 +1,12 @@
 //! What commands do to the control points.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::finding::{Basis, Found};
 use super::{Applied, ControlStep};
 use crate::control::{ControlList, ControlPoint, ScaleBar};
 use crate::fault::one_line;
+use crate::files::FileError;
 use crate::flight::{FlightSettings, Placed, moved_errors};
 use crate::jobs::Progress;
 use crate::numbers::stated_percent;
@@ -13,7 +14,7 @@ use crate::open_flight::OpenFlight;
 use crate::open_flight::tracing::rounded;
 use crate::opening::{GeoreferenceRequest, Georeferenced, georeference_flight, read_control};
 use crate::photo_view::Middle;
-use crate::scale::{Ground, StatedErrors};
+use crate::scale::{Ground, PoseErrors, StatedErrors};
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 use crate::units::LengthUnit;
@@ -126,9 +127,23 @@ impl State {
             ..GeoreferenceRequest::default()
         };
         let (flight, file) = (open.flight().clone(), open.files.origin.file().to_owned());
+        // Where nobody says how sure its poses are, its model may.
+        let is_stated = open.settings().errors.pose != PoseErrors::default();
+        let behind = open.files.reconstruction.as_ref();
+        let behind = behind
+            .filter(|_| !is_stated)
+            .map(|behind| behind.path.clone());
+        let photos = open.files.origin.photo_folder().map(Path::to_owned);
         let work = move |progress: &Progress| {
             progress.stage("fitting");
-            georeference_flight(&file, &flight, &request).map_err(|error| error.fault.to_string())
+            let mut found = georeference_flight(&file, &flight, &request)?;
+            if let Some(model) = behind {
+                found.look_up_errors(&flight, &model, photos.as_deref(), progress)?;
+            }
+            Ok(found)
+        };
+        let work = move |progress: &Progress| {
+            work(progress).map_err(|error: FileError| error.fault.to_string())
         };
         self.start(Task::CONTROL, work, |state, found| match found {
             Ok(found) => state.take_control(found),
@@ -306,7 +321,11 @@ impl OpenFlight {
         settings.unit = found.unit;
         settings.unit_known = true;
         settings.errors = StatedErrors {
-            pose: moved_errors(settings.errors.pose, by),
+            pose: match found.errors.pose == PoseErrors::default() {
+                true => moved_errors(settings.errors.pose, by),
+                false => found.errors.pose,
+            },
+            focal: settings.errors.focal.or(found.errors.focal),
             surface: settings.errors.surface.map(|error| error * by.scale),
             world_scale: found.scale_error.map(stated_percent),
             ..settings.errors

@@ -18,8 +18,12 @@ const UNITS: [LengthUnit; 5] = [
     LengthUnit::Foot,
 ];
 
+/// A bar that is narrower, points, says less.
+const NARROW: f32 = 1280.0;
+
 /// Draws the tool bar.
 pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let is_narrow = ui.available_width() < NARROW;
     ui.horizontal_wrapped(|ui| {
         pages(state, ui, commands);
         ui.separator();
@@ -46,7 +50,11 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             action_button(state, action, text, ui, commands);
         }
         ui.separator();
-        ui.label("Scales in px per");
+        // Export stays in the first row of a window that is not wide.
+        ui.label(match is_narrow {
+            true => "px per",
+            false => "Scales in px per",
+        });
         for unit in UNITS {
             let chosen = state.preferences.unit() == unit;
             let button = ui.selectable_label(chosen, unit.symbol());

@@ -166,8 +166,8 @@ pub struct Georeferenced {
     pub scale_interval: Option<f64>,
     /// The standard error, in degrees, of the rotation about the long axis of the positions.
     pub rotation_error_degrees: Option<f64>,
-    /// How sure poses and focal length are, where the model's package does not say it and [`georeference`] can: of photos to
-    /// the pile, whatever place both have in the world, whose scale is not in it.
+    /// How sure poses and focal length are, where the model's package does not say it and [`georeference`] or
+    /// [`look_up_errors`](Georeferenced::look_up_errors) can: of photos to the pile, whatever place both have in the world, whose scale is not in it.
     pub errors: StatedErrors,
     /// What was assumed or left out, one sentence each.
     pub warnings: Vec<String>,
@@ -216,12 +216,10 @@ pub fn georeference(
     }
     progress.stage("fitting");
     let mut result = georeference_model(path, &project.reconstruction, &request)?;
-    progress.stage("how sure the poses are");
+    progress.stage(model_errors::STAGE);
     let photos = request.photos.as_deref();
-    match model_errors::of_model(project.reconstruction, photos, &result.similarity) {
-        Ok(errors) => result.errors = errors,
-        Err(unknown) => result.warnings.push(unknown),
-    }
+    let found = model_errors::of_model(project.reconstruction, photos, &result.similarity);
+    result.take_errors(found);
     Ok(result)
 }
 

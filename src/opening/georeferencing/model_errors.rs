@@ -6,16 +6,23 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 
 use super::Georeferenced;
+use crate::camera::Pose;
 use crate::covariance::{Known, MOST_PHOTOS, deviations, lens_deviations};
+use crate::flight::Flight;
 use crate::formats::photos::photo_folder::PhotoFolder;
-use crate::formats::{Origin, Reconstruction};
+use crate::formats::{FileError, Origin, Reconstruction, read_project};
 use crate::geometry::Similarity;
+use crate::jobs::Progress;
 use crate::numbers::{four_digits, significant_digits, stated_percent};
 use crate::photo_files::set_sizes_from_files;
 use crate::scale::{PoseErrors, StatedErrors};
 
 /// What lies so many medians off is another point. Of errors of measurement alone none in 10^10 does.
 const MOST_MEDIANS: f64 = 6.0;
+/// Centres that are moved alike are apart by rounding alone, in parts of how far they spread.
+const SAME: f64 = 1e-6;
+/// What takes so long.
+pub(super) const STAGE: &str = "how sure the poses are";
 
 /// Of a model that `to_world` brings to the world, in the world's unit; empty where its package states them. The error is
 /// why they are not known, as a sentence. `photos` have the sizes where the package has none.
@@ -79,6 +86,40 @@ pub(super) fn of_model(
     })
 }
 
+/// From a model to where its named poses were moved; the error is a sentence.
+fn to_moved<'a>(
+    model: &Reconstruction,
+    moved: impl Iterator<Item = (&'a str, Pose)>,
+) -> Result<Similarity, String> {
+    let both = moved.filter_map(|(name, pose)| {
+        let own = model.photos.iter().find(|own| own.name == name)?;
+        Some((own.pose, pose))
+    });
+    let both: Vec<(Pose, Pose)> = both.collect();
+    let unknown = || {
+        "it is not known how sure the poses are: the flight's are not those of its model".to_owned()
+    };
+    let (first, last) = both.first().ok_or_else(unknown)?;
+    let count = both.len() as f64;
+    let middle =
+        |center: fn(&(Pose, Pose)) -> DVec3| both.iter().map(center).sum::<DVec3>() / count;
+    let [from, to] = [
+        middle(|(own, _)| own.center),
+        middle(|(_, moved)| moved.center),
+    ];
+    let far = |square: &dyn Fn(&(Pose, Pose)) -> f64| both.iter().map(square).sum::<f64>().sqrt();
+    let [extent, moved] = [
+        far(&|(own, _)| own.center.distance_squared(from)),
+        far(&|(_, moved)| moved.center.distance_squared(to)),
+    ];
+    let (scale, rotation) = (moved / extent, last.rotation * first.rotation.transpose());
+    let similarity = Similarity::new(scale, rotation, to - rotation * from * scale);
+    let off = far(&|(own, moved)| similarity.apply(own.center).distance_squared(moved.center));
+    (off <= SAME * moved)
+        .then_some(similarity)
+        .ok_or_else(unknown)
+}
+
 /// Packages keep what lies far off: no error of measurement, but of another point.
 fn take_off_wrong_matches(model: &mut Reconstruction) {
     let most = MOST_MEDIANS * model.median_reprojection_px().unwrap_or_default();
@@ -117,6 +158,37 @@ fn of_other_photos(model: &Reconstruction) -> Option<String> {
 }
 
 impl Georeferenced {
+    /// Looks up its [`errors`](Georeferenced::errors) where it is of a flight whose poses are of this reconstruction, or warns
+    /// that they are not known. `photos` have the sizes where the package has none.
+    ///
+    /// # Errors
+    /// Where the reconstruction cannot be read.
+    pub fn look_up_errors(
+        &mut self,
+        flight: &Flight,
+        reconstruction: &Path,
+        photos: Option<&Path>,
+        progress: &Progress,
+    ) -> Result<(), FileError> {
+        progress.stage(format!("reading {}", reconstruction.display()));
+        let model = read_project(reconstruction, progress)?.reconstruction;
+        progress.stage(STAGE);
+        let photos_of_flight = flight.parts().photos.iter();
+        let moved = photos_of_flight.map(|photo| (photo.name.as_str(), photo.pose));
+        let known = to_moved(&model, moved)
+            .and_then(|moved| of_model(model, photos, &self.similarity.after(&moved)));
+        self.take_errors(known);
+        Ok(())
+    }
+
+    /// What was found of its errors, or why nothing was.
+    pub(super) fn take_errors(&mut self, found: Result<StatedErrors, String>) {
+        match found {
+            Ok(errors) => self.errors = errors,
+            Err(unknown) => self.warnings.push(unknown),
+        }
+    }
+
     /// Its [`errors`](Georeferenced::errors), as a line; `None` where they are not known.
     pub fn errors_in_words(&self) -> Option<String> {
         let axes = |axes: DVec3| {
@@ -190,6 +262,36 @@ mod tests {
         }
         let stated = own.focal.unwrap() / (100.0 * each.focal_in_scales[0]);
         assert!((stated - 1.0).abs() < 1e-3, "{stated}");
+    }
+
+    /// What a flight was moved by is found; poses of another model were not moved alike.
+    #[test]
+    fn the_way_of_moved_poses() {
+        let rotation = DMat3::from_rotation_z(0.4) * DMat3::from_rotation_x(-2.0);
+        let way = Similarity::new(7.0, rotation, DVec3::new(4e5, -6.0, 70.0));
+        let mut moved = model();
+        moved.transform(&way);
+        let of = |model: &Reconstruction| {
+            let photos = model.photos.iter().skip(1);
+            let poses = photos.map(|photo| (photo.name.clone(), photo.pose));
+            poses.collect::<Vec<_>>()
+        };
+        let way_to = |poses: Vec<(String, Pose)>| {
+            let poses = poses.iter().map(|(name, pose)| (name.as_str(), *pose));
+            to_moved(&model(), poses)
+        };
+        let found = way_to(of(&moved)).unwrap();
+        assert!((found.scale / 7.0 - 1.0).abs() < 1e-9);
+        for point in model().cloud.points {
+            assert!(found.apply(point).distance(way.apply(point)) < 1e-7);
+        }
+        moved.photos[3].pose.center += DVec3::X;
+        assert!(
+            way_to(of(&moved))
+                .unwrap_err()
+                .contains("not those of its model")
+        );
+        assert!(way_to(Vec::new()).is_err());
     }
 
     /// A wrong match, or what one photo shows alone, changes nothing.

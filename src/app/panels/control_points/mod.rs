@@ -147,6 +147,9 @@ fn result(found: &Georeferenced, ui: &mut egui::Ui) {
         let (used, all) = (found.used(), found.positions.len());
         ui.label(format!("{used} of {all} points used, RMS {rms:.3} {unit}"));
     }
+    if let Some(errors) = found.errors_in_words() {
+        ui.label(format!("Poses: {errors}"));
+    }
     for warning in &found.warnings {
         ui.colored_label(ui.visuals().warn_fg_color, format!("⚠ {warning}"));
     }
