@@ -6,9 +6,7 @@ The pile is a height over the photo's plane: broken stones are the least of a fe
 superellipsoids, blocks are turned cuboids with bevels, whose two or three faces one sees differently lit, as a photo aslant
 into a muckpile does; each is laid on what lies there, and what is highest is seen. So sizes can span 1 to 50, small
 stones lie on large blocks, stones lie deep in fines or, in an old gravel, in a lumpy matrix that meets them without
-a gap, blasted faces are rough, and a photo takes two seconds. A quarter of the piles is a river's gravel: pebbles of
-many rocks and of all sizes, each with a texture of its own, most in a matrix of grains; a quarter is blasted rubble:
-blocks and broken stones from a few pixels to half the photo. Light: a sun or lamp with
+a gap, blasted faces are rough, and a photo takes two seconds. Light: a sun or lamp with
 shadows cast over the height, and what comes from all around, less where it is narrow. What happens to surfaces
 (joints, mud, dust) and what a camera does is left to train.py, which draws it anew each time.
 
@@ -68,10 +66,6 @@ def body(rng, size, kind, xs, ys):
     half = 0.5 * size
     thick = rng.uniform(0.3, 0.8) * narrow
     if kind == "pebble":
-        # None is quite an ellipse.
-        angle = np.arctan2(y, x)
-        bent = 1 + sum(rng.normal(0, 0.06) * np.cos(k * angle + rng.uniform(0, 2 * np.pi)) for k in (2, 3, 4))
-        x, y = x / bent, y / bent
         power = rng.uniform(1.9, 3.2)
         inside = 1 - (np.abs(x / half) ** power + np.abs(y / half) ** power)
         return np.where(inside > 0, thick * half * np.sqrt(np.maximum(inside, 0)) + 0.02 * half, -1.0)
@@ -91,9 +85,8 @@ def body(rng, size, kind, xs, ys):
     return height
 
 
-def pile(rng, side, kind_of_pile):
-    """Heights and labels."""
-    river, rubble = kind_of_pile == "river", kind_of_pile == "rubble"
+def pile(rng, side):
+    """Heights and labels, and the slope of the surfaces' own relief."""
     typical = 10 ** rng.uniform(0.95, 2.15)
     least = max(5.0, typical * rng.uniform(0.15, 0.6))
     most = min(0.8 * side, max(typical * 10 ** rng.uniform(0.1, 0.9), 1.3 * least))
@@ -102,11 +95,6 @@ def pile(rng, side, kind_of_pile):
     pebbles = rng.choice([0.0, 1.0, rng.random()], p=[0.5, 0.3, 0.2])
     blocks = rng.choice([0.0, 1.0, rng.random()], p=[0.4, 0.35, 0.25])
     cover = rng.uniform(0.8, 4.5)
-    if river or rubble:
-        least, most = rng.uniform(5, 12), side * rng.uniform(0.15, 0.6)
-        steep, typical = rng.uniform(1.8, 2.8), rng.uniform(15, 60)
-        pebbles = 0.95 if river else 0.0
-        blocks = rng.uniform(0, 0.8)
     sizes, area = [], 0.0
     while area < cover * side * side and len(sizes) < 6000:
         u = rng.random()
@@ -124,7 +112,7 @@ def pile(rng, side, kind_of_pile):
     rough = 0.03 * rng.random() ** 2
     # Blasted faces are as rough as a small stone is high, down to single pixels.
     harsh = fractal(rng, TILE, rng.uniform(4, 30), rng.uniform(0.2, 0.9)) * rng.choice([0.0, rng.uniform(0.1, 0.8)], p=[0.5, 0.5])
-    cemented = rng.random() < (0.6 if river else 0.3)
+    cemented = rng.random() < 0.3
     for number, size in enumerate(sizes, 1):
         reach = int(0.72 * size) + 2
         cx, cy = rng.uniform(-0.1 * side, 1.1 * side, 2)
@@ -162,7 +150,7 @@ def pile(rng, side, kind_of_pile):
         covered = fines > height
         height[covered] = fines[covered]
         label[covered] = 0
-    return height, label
+    return height, label, typical
 
 
 def shadows(height, towards, elevation, side):
@@ -183,8 +171,7 @@ def shadows(height, towards, elevation, side):
 
 def photo(rng, side):
     room = 64
-    kind = rng.choice(["any", "river", "rubble"], p=[0.5, 0.25, 0.25])
-    height, label = pile(rng, side + 2 * room, kind)
+    height, label, typical = pile(rng, side + 2 * room)
     full = side + 2 * room
     gy, gx = np.gradient(ndimage.gaussian_filter(height, 0.5))
     normal = np.stack([-gx, -gy, np.ones_like(gx)], 2)
@@ -203,8 +190,6 @@ def photo(rng, side):
     main, variety = tint(rng), rng.random() ** 2
     bright = 10 ** rng.uniform(-1.0, -0.35)
     spread = rng.uniform(0.03, 0.5)
-    if kind == "river":
-        variety, spread = rng.uniform(0.3, 1.0), rng.uniform(0.25, 0.7)
     tints = np.stack([main * (1 - variety * u) + tint(rng) * variety * u for u in rng.random(min(count, 64))])
     tints = tints[rng.integers(len(tints), size=count)] * bright * np.exp(rng.normal(0, spread, count))[:, None]
     albedo = tints[label]
@@ -218,18 +203,12 @@ def photo(rng, side):
     if rng.random() < 0.4:
         vein = fractal(rng, TILE, rng.uniform(30, 150), 0.9)[at]
         texture = texture + rng.choice([-0.6, 0.6]) * np.exp(-(vein / rng.uniform(0.02, 0.08)) ** 2) * (rng.random(count) < 0.3)[label]
-    # Each has as much of it as its rock has, or all the same.
-    texture = texture * np.minimum(np.exp(rng.choice([0.0, 0.8]) * rng.normal(size=count)), 2.5)[label]
     albedo = albedo * np.exp(texture)[..., None]
     fines = label == 0
     own = main if rng.random() < 0.6 else tint(rng)
     pale = bright * np.exp(rng.uniform(-0.7, 0.9))
     sand = np.exp(rng.uniform(0.05, 0.4) * fractal(rng, TILE, rng.uniform(2.5, 20), -0.3)[:full, :full] + rng.uniform(0, 0.35) * fractal(rng, TILE, 200, 0.8)[:full, :full])
-    # Grains of several rocks, or of one.
-    grain = rng.uniform(2.5, 9)
-    grains = np.stack([fractal(rng, TILE, grain, -0.4)[:full, :full] for _ in range(3)], 2)
-    sand = sand[..., None] * np.exp(rng.choice([0.0, rng.uniform(0.05, 0.3)]) * grains)
-    albedo[fines] = (own * pale * sand)[fines]
+    albedo[fines] = (own * pale * sand[..., None])[fines]
     # Dust on what looks up.
     dust = rng.random() ** 2 * np.clip((normal[..., 2] - 0.6) / 0.4, 0, 1) * np.clip(0.6 + 0.5 * fractal(rng, TILE, 100, 0.7)[:full, :full], 0, 1)
     albedo = albedo * (1 - dust[..., None]) + dust[..., None] * own * pale
