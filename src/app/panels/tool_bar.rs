@@ -4,6 +4,7 @@ use super::verdict::{verdict_color, verdict_sign};
 use crate::actions;
 use crate::command::Command;
 use crate::flight::Verdict;
+use crate::names;
 use crate::open_flight::OpenFlight;
 use crate::size_distributions::Page;
 use crate::state::State;
@@ -51,10 +52,10 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         }
         ui.separator();
         // Export stays in the first row of a window that is not wide.
-        ui.label(match is_narrow {
+        ui.label(names::unbroken(match is_narrow {
             true => "px per",
             false => "Scales in px per",
-        });
+        }));
         for unit in UNITS {
             let chosen = state.preferences.unit() == unit;
             let button = ui.selectable_label(chosen, unit.symbol());
