@@ -3,6 +3,10 @@
 /// A number with at least so many significant digits, without an exponent, for people to read and
 /// type.
 pub fn significant_digits(number: f64, digits: u8) -> String {
+    // It has none.
+    if number == 0.0 {
+        return "0".to_owned();
+    }
     let exponent = number.abs().log10().floor();
     let decimals = (f64::from(digits) - 1.0 - exponent).clamp(0.0, 12.0);
     let decimals = if decimals.is_nan() { 0.0 } else { decimals };

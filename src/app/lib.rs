@@ -85,7 +85,7 @@ use viewport::Viewport;
 const PREFERENCES: &str = "preferences";
 
 /// A window of less has room for a pile between its panels only where they give way, points.
-const NARROW: f32 = 1000.0;
+pub(crate) const NARROW: f32 = 1000.0;
 
 /// The window's contents.
 pub struct App {

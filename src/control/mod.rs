@@ -55,13 +55,18 @@ impl ControlPoint {
 pub struct ScaleBar {
     /// The names of its two points.
     pub ends: [String; 2],
-    /// Above 0, in `unit`.
+    /// In `unit`; 0 until somebody has said it.
     pub length: f64,
     /// Of its length.
     pub unit: LengthUnit,
 }
 
 impl ScaleBar {
+    /// Whether somebody has said how long it is.
+    pub fn is_known(&self) -> bool {
+        self.length > 0.0
+    }
+
     /// Its length in metres.
     pub fn metres(&self) -> f64 {
         self.length * self.unit.metres()

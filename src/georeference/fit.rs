@@ -44,7 +44,7 @@ const FINALISTS: usize = 10;
 /// deviation): 5 degrees. More, and they lie on a line.
 const LARGEST_ROTATION_ERROR: f64 = 0.087_266_462_6;
 /// Relative standard error of a scale beyond which there is no scale.
-const LARGEST_SCALE_ERROR: f64 = 0.1;
+pub(super) const LARGEST_SCALE_ERROR: f64 = 0.1;
 
 /// One position in both frames.
 #[derive(Debug, Clone, Copy, PartialEq)]

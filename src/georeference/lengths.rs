@@ -1,5 +1,6 @@
 //! The scale alone, from known distances.
 
+use super::fit::LARGEST_SCALE_ERROR;
 use super::student::t95;
 use crate::fault::Fault;
 
@@ -19,7 +20,7 @@ pub struct LengthsFit {
 /// the variance sum((d - s l)²) / (n - 1) / sum(l²).
 ///
 /// # Errors
-/// No length, or one that is not above 0.
+/// No length, one that is not above 0, or lengths that contradict each other.
 pub fn scale_of_lengths(lengths: &[(f64, f64)]) -> Result<LengthsFit, Fault> {
     let is_length = |length: f64| length > 0.0 && length.is_finite();
     if lengths.is_empty() || !lengths.iter().all(|(l, d)| is_length(*l) && is_length(*d)) {
@@ -33,6 +34,15 @@ pub fn scale_of_lengths(lengths: &[(f64, f64)]) -> Result<LengthsFit, Fault> {
     let free = lengths.len() - 1;
     let off: f64 = lengths.iter().map(|(l, d)| (d - scale * l).powi(2)).sum();
     let scale_error = (free > 0).then(|| (off / free as f64 / squares).sqrt() / scale);
+    if let Some(error) = scale_error.filter(|error| *error > LARGEST_SCALE_ERROR) {
+        return Err(Fault::new(
+            format!(
+                "the known distances contradict each other: together they give the scale to {:.0} % only",
+                error * 100.0
+            ),
+            "look which one is of other points, or was measured wrongly",
+        ));
+    }
     Ok(LengthsFit {
         scale,
         scale_error,
@@ -63,5 +73,8 @@ mod tests {
         assert!(scale_of_lengths(&[]).is_err());
         assert!(scale_of_lengths(&[(0.0, 5.0)]).is_err());
         assert!(scale_of_lengths(&[(1.0, f64::NAN)]).is_err());
+        // 20 m and 90 m of nearly the same length: the scale is 5.5 and 64 % off for each.
+        let fault = scale_of_lengths(&[(10.0, 20.0), (10.2, 90.0)]).unwrap_err();
+        assert!(fault.what.contains("contradict each other"), "{fault}");
     }
 }

@@ -87,7 +87,10 @@ pub(crate) fn set_sizes_from_files(
         });
         sizes.push(size);
         if let (None, Some(photo)) = (size, first) {
-            let why = why.unwrap_or_else(|| "there is no such image file".to_owned());
+            let why = why.unwrap_or_else(|| match folder.folder {
+                Some(folder) => format!("there is no such image file in {}", folder.display()),
+                None => "there is no such image file".to_owned(),
+            });
             left_out.push((photo, why));
         }
     }
@@ -97,7 +100,7 @@ pub(crate) fn set_sizes_from_files(
             format!(
                 "the image size of '{photo}' is not known: this package writes none, and its file does not tell it ({why})"
             ),
-            "give [photos] folder, or a [[camera]] table with width and height, in a flight.toml",
+            "give the folder of its photos (--photo-folder, or [photos] folder in a flight.toml), or a [[camera]] table with width and height there",
         )
         .for_want_of(Lacking::Photos));
     }

@@ -33,8 +33,8 @@ struct Sample {
 }
 
 impl FittedScale {
-    /// The best line through a field; `None` where less than half of it is covered, or fewer than two
-    /// of its rows have points.
+    /// The best line through a field; `None` where less than half of it is covered, fewer than two
+    /// of its rows have points, or the line falls to 0 within the image: that is no scale.
     pub fn of(field: &ScaleField) -> Option<Self> {
         let grid = field.grid;
         let middle = |place: u32, count: u32| (f64::from(place) + 0.5) / f64::from(count);
@@ -55,7 +55,7 @@ impl FittedScale {
         if covered < LEAST_COVERED || rows_with_points < 2 {
             return None;
         }
-        Some(Self::through(&samples, covered))
+        Some(Self::through(&samples, covered)).filter(|line| line.top.min(line.bottom) > 0.0)
     }
 
     /// By least squares around the means, where products lose nothing.

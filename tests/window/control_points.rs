@@ -270,6 +270,11 @@ fn scale_bars_alone_give_the_unit() {
     }
     desk.click(Role::Button, "Add scale bar");
     assert!(desk.says("of the reconstruction's units"));
+    // Nobody has said yet how long it is.
+    assert!(desk.says("Type how long the scale bar is in truth."));
+    desk.fill("Length of scale bar 1", "2,5");
+    assert_eq!(desk.open().control_list().bars[0].length, 2.5);
+    assert!(!desk.says("Type how long the scale bar is in truth."));
     let feet = POINTS[0].distance(POINTS[1]) * 3.0 / LengthUnit::Foot.metres();
     step(
         &mut desk,

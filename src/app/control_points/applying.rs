@@ -9,7 +9,6 @@ use crate::fault::one_line;
 use crate::files::FileError;
 use crate::flight::{FlightSettings, Placed, moved_errors};
 use crate::jobs::Progress;
-use crate::numbers::stated_percent;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::tracing::rounded;
 use crate::opening::{GeoreferenceRequest, Georeferenced, georeference_flight, read_control};
@@ -283,7 +282,7 @@ impl OpenFlight {
                 let first = names.len().saturating_sub(2);
                 list.bars.push(ScaleBar {
                     ends: [end(first), end(first + 1)],
-                    length: 1.0,
+                    length: 0.0,
                     unit: LengthUnit::Metre,
                 });
             }
@@ -327,7 +326,7 @@ impl OpenFlight {
             },
             focal: settings.errors.focal.or(found.errors.focal),
             surface: settings.errors.surface.map(|error| error * by.scale),
-            world_scale: found.scale_error.map(stated_percent),
+            world_scale: found.stated_world_scale(),
             ..settings.errors
         };
         for length in [
@@ -358,8 +357,11 @@ impl OpenFlight {
             return None;
         }
         let is_end = |name: &String| found.iter().any(|point| point.name == *name);
-        let has_bar = list.bars.iter().any(|bar| bar.ends.iter().all(is_end));
+        let mut bars = list.bars.iter().filter(|bar| bar.ends.iter().all(is_end));
+        let is_marked = bars.clone().next().is_some();
+        let has_bar = bars.any(ScaleBar::is_known);
         match (has_bar, &self.files.crs) {
+            (false, _) if is_marked => Some("Type how long the scale bar is in truth.".to_owned()),
             (true, None) => None,
             (true, Some(crs)) => Some(format!(
                 "The flight is in {crs} already, where a scale bar alone only compares: mark three surveyed points \

@@ -17,9 +17,13 @@ pub(super) fn number_field(
     if !suffix.is_empty() {
         ui.label(suffix);
     }
-    // A decimal comma is what half of the world types.
-    let number: f64 = typed?.trim().replace(',', ".").parse().ok()?;
-    (number.is_finite() && number != value).then_some(number)
+    number_of(&typed?).filter(|number| *number != value)
+}
+
+/// What was typed, if it is a number: a decimal comma is what half of the world types.
+pub(super) fn number_of(typed: &str) -> Option<f64> {
+    let number = typed.trim().replace(',', ".").parse();
+    number.ok().filter(|number: &f64| number.is_finite())
 }
 
 /// Draws a field for a text; returns what was typed once the field is left.

@@ -123,7 +123,8 @@ fn table(report: &FitReport, curve: &FittedCurve) -> String {
         significant(fit.r_squared, 6),
         fit.degrees_of_freedom,
     );
-    let confidence = format!("{} % from", trimmed(100.0 * report.level, 6));
+    // A fit knows its own points, neither a method's errors nor what it does not see.
+    let confidence = format!("fit's {} % from", trimmed(100.0 * report.level, 6));
     let mut sizes = vec![row(&[
         "passing".to_owned(),
         "size".to_owned(),

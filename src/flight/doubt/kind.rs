@@ -4,11 +4,12 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 26] = [
+const KINDS: [&str; 27] = [
     "no-scale",
     "off-surface",
     "no-point",
     "no-fit",
+    "no-line",
     "ratio",
     "sideways",
     "long-triangle",
@@ -53,6 +54,7 @@ impl Doubt {
             Self::OffSurface(_) => "off-surface",
             Self::NoPoint(_) => "no-point",
             Self::NoFit { .. } => "no-fit",
+            Self::NoLine => "no-line",
             Self::Ratio { .. } => "ratio",
             Self::Sideways { .. } => "sideways",
             Self::LongTriangle { .. } => "long-triangle",

@@ -24,6 +24,8 @@ pub enum Doubt {
         /// The share of the photo that shows the surface.
         covered: f64,
     },
+    /// The best line falls to 0 within the photo: that is no scale.
+    NoLine,
     /// Top and bottom differ too much.
     Ratio {
         /// The larger over the smaller.
@@ -236,6 +238,10 @@ impl fmt::Display for Doubt {
                 "no point on the surface or the ground plane: {}",
                 names(corners)
             ),
+            Self::NoLine => f.write_str(
+                "no fitted scale: the best line through the scales of its pixels falls to 0 within the photo, whose near and far parts are too \
+                 different for a line; what the corners say stands beside it",
+            ),
             Self::NoFit { covered } => {
                 let (covered, least) = apart(covered * 100.0, LEAST_COVERED * 100.0, 0);
                 write!(
@@ -377,7 +383,7 @@ impl fmt::Display for Doubt {
             ),
             Self::OtherColours { correlation, points } => write!(
                 f,
-                "its colours do not match those of the surface where its pose says (r = {correlation:.2} at {points} points; a right pose gives over 0.5): check its pose, its camera, whether it is this photo and this surface"
+                "its colours do not match those of the surface where its pose says (r = {correlation:.2} at {points} points; a right pose gives about 0.5 and more): check its pose, its camera, whether it is this photo and this surface"
             ),
             Self::Flipped {
                 correlation,

@@ -59,7 +59,7 @@ impl Doubt {
                 OnPhoto::Corners(corners.clone()),
                 InView::Corners(corners.clone()),
             ),
-            Self::NoFit { .. } | Self::NotPlane { .. } | Self::OffLine { .. } => {
+            Self::NoFit { .. } | Self::NoLine | Self::NotPlane { .. } | Self::OffLine { .. } => {
                 (OnPhoto::Field, InView::Footprint)
             }
             Self::Ratio { .. } | Self::WideInterval { .. } => {

@@ -218,7 +218,7 @@ impl<'a> PhotoReview<'a> {
         let said = |doubt: &&Doubt| {
             doubt.is_of_the_pile()
                 || doubt.is_of_the_number() && **doubt != Doubt::UnitUnknown
-                || matches!(doubt, Doubt::NoFit { .. })
+                || matches!(doubt, Doubt::NoFit { .. } | Doubt::NoLine)
         };
         notes.extend(self.doubts.iter().filter(said).map(Doubt::to_string));
         notes

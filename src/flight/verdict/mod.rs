@@ -11,7 +11,9 @@ use std::fmt;
 pub use limits::Limits;
 
 use crate::flight::{Decision, DecisionKind, Doubt, Evidence, Outcome, PhotoFileState};
-use crate::scale::{CornerName, CornerOutcome, EdgeScales, FieldFacts, ScalePair, ViewFacts};
+use crate::scale::{
+    CornerName, CornerOutcome, EdgeScales, FieldFacts, LEAST_COVERED, ScalePair, ViewFacts,
+};
 use crate::units::LengthUnit;
 
 /// What to do with a photo's scale.
@@ -151,11 +153,21 @@ pub(super) fn judge(facts: &Facts<'_>, limits: &Limits) -> Judged {
                 ScalePair::Fitted => {
                     if let Some(field) = field.filter(|field| field.fitted.is_none()) {
                         let covered = field.covered;
-                        doubts.insert(0, Doubt::NoFit { covered });
+                        let why = match covered < LEAST_COVERED {
+                            true => Doubt::NoFit { covered },
+                            false => Doubt::NoLine,
+                        };
+                        doubts.insert(0, why);
                         verdict = Verdict::NoScale;
                     }
                 }
             }
+            // Of what goes to Split-Desktop.
+            let line = field.and_then(|field| field.fitted);
+            let [top, bottom] = match (pair, line) {
+                (ScalePair::Fitted, Some(line)) => [Some(line.top), Some(line.bottom)],
+                _ => [top, bottom],
+            };
             let limit = limits.top_bottom_ratio;
             if let Some(ratio) = ratio(top, bottom).filter(|&ratio| ratio > limit) {
                 doubts.push(Doubt::Ratio { ratio, limit });

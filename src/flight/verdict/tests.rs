@@ -280,6 +280,16 @@ fn the_field_is_judged_for_the_pair_in_use() {
     assert_eq!(both.map(|pair| doubts(&noisy_corners, pair).len()), [0, 1]);
     assert_eq!(doubts(&noisy_corners, ScalePair::Corners), wide);
     assert_eq!(doubts(&field(1.0, 26.0, 1.0), ScalePair::Fitted), wide);
+    // The corners of this photo have one scale; its line has not.
+    let mut steep = field(1.0, 1.0, 1.0);
+    steep.fitted = steep.fitted.map(|line| FittedScale {
+        bottom: 1450.0,
+        ..line
+    });
+    let limit = limits().top_bottom_ratio;
+    let ratio = [Doubt::Ratio { ratio: 14.5, limit }];
+    assert_eq!(doubts(&steep, ScalePair::Fitted), ratio);
+    assert_eq!(doubts(&steep, ScalePair::Corners), []);
 }
 
 #[test]
@@ -365,6 +375,12 @@ fn without_the_pair_in_use_there_is_no_scale() {
     assert_eq!(of(&good(), Fitted, None), (Trust, vec![]));
     let expected = (NoScale, vec![no_fit.clone()]);
     assert_eq!(of(&good(), Fitted, hidden.clone()), expected);
+    let below_zero = FieldFacts {
+        fitted: None,
+        ..field(0.97)
+    };
+    let expected = (NoScale, vec![Doubt::NoLine]);
+    assert_eq!(of(&good(), Fitted, Some(below_zero)), expected);
     let expected = (Check, vec![no_point.clone()]);
     assert_eq!(of(&no_corners, Fitted, seen.clone()), expected);
     let expected = (NoScale, vec![no_point.clone()]);

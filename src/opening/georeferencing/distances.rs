@@ -68,7 +68,7 @@ pub(super) fn by_distances(
         if request.level {
             "the scale is known, not the place: up is across the plane of the reconstruction's points, and north is not known"
         } else {
-            "the scale is known, not the place: the axes stay as the package left them, and z may not be up (level it by the ground: --level)"
+            "the scale is known, not the place: the axes stay as the package left them, and z may not be up (the ground can level it: --level, in the window \"Level by the ground\")"
         }
         .to_owned(),
     );
@@ -105,6 +105,9 @@ pub(super) fn of_bars(
     for bar in bars {
         let [from, to] = &bar.ends;
         match bar.ends.iter().find(|end| !is_found(end)) {
+            None if !bar.is_known() => warnings.push(format!(
+                "the scale bar from '{from}' to '{to}' is left out: nobody has said how long it is"
+            )),
             None => known.push(KnownDistance {
                 ends: KnownEnds::Names(from.clone(), to.clone()),
                 metres: bar.metres(),

@@ -7,7 +7,6 @@ use super::Georeferenced;
 use crate::fault::Fault;
 use crate::flight::{FlightFile, FlightSettings, ReconstructionFlight};
 use crate::formats::FileError;
-use crate::numbers::stated_percent;
 use crate::origin::{folder_of, path_from, real};
 use crate::scale::StatedErrors;
 
@@ -75,7 +74,7 @@ pub fn flight_text_of(
         crs: placed.and_then(|placed| placed.crs.as_deref()),
     };
     let errors = StatedErrors {
-        world_scale: placed.and_then(|placed| placed.scale_error.map(stated_percent)),
+        world_scale: placed.and_then(Georeferenced::stated_world_scale),
         ..placed.map_or_else(StatedErrors::default, |placed| placed.errors)
     };
     let usual = FlightSettings::default();

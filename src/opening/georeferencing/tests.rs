@@ -344,7 +344,8 @@ fn what_is_refused() {
 }
 
 /// Lengths of 1 that are 2 and 2.02 m: the scale is 2.01, and 0.01 m its standard deviation from two
-/// numbers and its standard error from two lengths of 1: sqrt(2 · 0.01² / 1 / 2) / 2.01 = 0.4975 %.
+/// numbers and its standard error from two lengths of 1: sqrt(2 · 0.01² / 1 / 2) / 2.01 = 0.4975 %. With one degree of
+/// freedom half its 95 % interval is 12.7062 of them (Student's table), which a normal deviation of 12.7062 / 1.95996 has.
 /// One length says nothing of it.
 #[test]
 fn the_flight_says_how_sure_the_scale_is() {
@@ -364,7 +365,7 @@ fn the_flight_says_how_sure_the_scale_is() {
         FlightFile::parse(&text.unwrap()).unwrap().errors()
     };
     let both = stated(&["0,0,0 1,0,0 2", "0,0,0 0,1,0 2.02"]);
-    assert_eq!(both.world_scale, Some(0.4975));
+    assert_eq!(both.world_scale, Some(3.225));
     assert_eq!(stated(&["0,0,0 1,0,0 2"]), Default::default());
 }
 

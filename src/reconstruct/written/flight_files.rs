@@ -110,7 +110,7 @@ pub(crate) fn flight_files(
         unit_known: true,
         ..FlightSettings::default()
     };
-    settings.errors.world_scale = placed.scale_error.map(stated_percent);
+    settings.errors.world_scale = placed.stated_world_scale();
     let focal = sure.as_ref().and_then(|sure| {
         let cameras = 0..model.cameras.len();
         let found = cameras.filter_map(|camera| {

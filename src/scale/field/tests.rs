@@ -300,6 +300,39 @@ fn half_a_photo_is_the_least() {
     assert_eq!(fit(-80.0), None);
 }
 
+/// A bench in the lower quarter of the photo, ten times as near as its floor: s = 1 above, 10 below. The best line through that is
+/// 10.125 v - 1.8125 of v from 0 to 1, by hand: below 0 at the top, and no scale.
+#[test]
+fn a_line_below_zero_is_no_scale() {
+    let camera = camera(Distortion::None);
+    let fit = |bench: f64| {
+        let half = 0.5 * f64::from(camera.height) / camera.fy;
+        let points = [
+            (-0.5 * half, bench),
+            (-90.0, bench),
+            (-0.49 * half, 0.0),
+            (90.0, 0.0),
+        ];
+        let points = points
+            .iter()
+            .flat_map(|&(y, z)| [-90.0, 90.0].map(|x| DVec3::new(x, y, z)));
+        let surface = Surface::new(Cloud {
+            points: points.collect(),
+            ..Cloud::default()
+        })
+        .unwrap();
+        let pose = Pose::from_tilt_pan(DVec3::new(0.0, 0.0, 10.0), [90.0, 0.0]);
+        let grid = FieldGrid::of_fit(&camera);
+        let image = ImageKind::Undistorted;
+        let field =
+            ScaleField::compute(&camera, &pose, image, grid, &surface, &Progress::default());
+        FittedScale::of(&field.unwrap())
+    };
+    assert_eq!(fit(9.0), None);
+    // Half as high it is one: s = 1 and 20 / 11.
+    assert!(fit(4.5).is_some_and(|line| line.top > 0.0 && line.bottom > line.top));
+}
+
 /// The contract's round(64·H/W), halves up, at least 2.
 #[test]
 fn rows_of_the_grid() {

@@ -5,7 +5,7 @@ use crate::control::ScaleBar;
 use crate::control_points::ControlStep;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
-use crate::panels::field::{combo_box, number_field};
+use crate::panels::field::{combo_box, number_field, number_of, text_field};
 use crate::units::LengthUnit;
 
 /// Draws them.
@@ -29,7 +29,12 @@ pub(super) fn bars(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Comm
             }
             let label = format!("Length of scale bar {number}");
             let hover = "How long it is in truth";
-            if let Some(length) = number_field(ui, &label, hover, bar.length, "") {
+            // Empty until somebody types it: a length that stands there already is taken for true.
+            let typed = match bar.is_known() {
+                true => number_field(ui, &label, hover, bar.length, ""),
+                false => text_field(ui, &label, hover, "", 90.0).and_then(|text| number_of(&text)),
+            };
+            if let Some(length) = typed {
                 next.length = length;
             }
             unit_of(&mut next, &format!("Unit of scale bar {number}"), ui);
@@ -45,7 +50,7 @@ pub(super) fn bars(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Comm
         });
         measured(open, bar, ui);
         if next != *bar {
-            let is_bar = next.length > 0.0 && next.ends[0] != next.ends[1];
+            let is_bar = next.length >= 0.0 && next.ends[0] != next.ends[1];
             commands.push(match is_bar {
                 true => Command::Control(ControlStep::Bar(place, next)),
                 false => Command::Report(format!(
@@ -93,6 +98,10 @@ fn measured(open: &OpenFlight, bar: &ScaleBar, ui: &mut egui::Ui) {
     if !parts.unit_known {
         let length = significant_digits(length, 5);
         ui.weak(format!("{length} of the reconstruction's units"));
+        return;
+    }
+    if !bar.is_known() {
+        ui.weak("Type how long it is in truth.");
         return;
     }
     let here = length * parts.unit.metres() / bar.unit.metres();

@@ -24,12 +24,16 @@ mod welcome;
 pub(super) use asking::{add_distributions, add_effort, save_figure, save_report};
 pub(super) use paste::paste;
 
+use crate::NARROW;
 use crate::command::Command;
 use crate::state::State;
 
 /// Draws the page.
 pub fn size_distributions(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let width = ui.available_width();
+    // As on the other pages a narrow window has panels of its own, and a third of it is left for the plot.
+    let is_narrow = width < NARROW;
+    let [left, right] = if is_narrow { [0.33; 2] } else { [0.4, 0.5] };
     if state.distributions.sources().is_empty() {
         egui::CentralPanel::default_margins().show(ui, |ui| {
             super::notice(state, ui, commands);
@@ -38,11 +42,11 @@ pub fn size_distributions(state: &State, ui: &mut egui::Ui, commands: &mut Vec<C
         return;
     }
     if state.preferences.left_open {
-        egui::Panel::left("distributions")
+        egui::Panel::left(("distributions", is_narrow))
             .resizable(true)
             .default_size(270.0)
             .min_size(180.0)
-            .max_size((width * 0.4).max(180.0))
+            .max_size((width * left).max(180.0))
             .show(ui, |ui| {
                 egui::ScrollArea::vertical()
                     .auto_shrink(false)
@@ -56,11 +60,11 @@ pub fn size_distributions(state: &State, ui: &mut egui::Ui, commands: &mut Vec<C
             });
     }
     if state.preferences.right_open {
-        egui::Panel::right("distribution results")
+        egui::Panel::right(("distribution results", is_narrow))
             .resizable(true)
             .default_size((width * 0.34).clamp(260.0, 420.0))
             .min_size(220.0)
-            .max_size((width * 0.5).max(220.0))
+            .max_size((width * right).max(220.0))
             .show(ui, |ui| results::results(state, ui, commands));
     }
     egui::CentralPanel::default_margins().show(ui, |ui| {

@@ -18,7 +18,7 @@ pub fn control_list_text(list: &ControlList, name_of: impl Fn(&str) -> String) -
         // Writing to a String cannot fail.
         let _ = write_point(&mut text, point, &name_of);
     }
-    for bar in &list.bars {
+    for bar in list.bars.iter().filter(|bar| bar.is_known()) {
         let [from, to] = &bar.ends;
         let (length, unit) = (bar.length, bar.unit);
         let _ = writeln!(text, "{OWN}bar\t{from}\t{to}\t{length}\t{unit}");

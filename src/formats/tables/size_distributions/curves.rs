@@ -175,10 +175,11 @@ pub(super) fn finish(
         let top = distribution.points().last().map_or(0.0, |point| point[1]);
         let signed = curve.points.iter().any(|point| point.percent_sign);
         if (0.5..=1.0).contains(&top) && !signed {
-            repairs.said.push(format!(
-                "{} ends at {top} %: if that is a share of 1, write it in percent",
-                named(&curve.labels, "the curve")
-            ));
+            // No curve of a whole sample does; and what is made of it would be a hundred times too coarse.
+            let name = named(&curve.labels, "the curve");
+            let what = format!("{name} ends at {top} %, as a share of 1 does, beside percents");
+            let remedy = "write it in percent; if it is percent, with % signs";
+            return Err(Fault::at(curve.line, what, remedy));
         }
         set.curves.push(LabelledDistribution {
             labels: curve.labels,
@@ -267,7 +268,7 @@ fn unit_of_sizes(
         (None, Some(first), None) => first,
         (None, None, _) => {
             repairs.said.push(
-                "no unit is stated: sizes are taken for mm (state it with --size-unit)".to_owned(),
+                "no unit is stated: sizes are taken for mm (state it in the name of their column, or by --size-unit)".to_owned(),
             );
             SizeUnit {
                 unit: LengthUnit::Millimetre,

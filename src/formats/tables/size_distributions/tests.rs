@@ -243,7 +243,9 @@ fn units_of_sizes() {
     let (_, _, said) = unit("size,passing\n1,10\n2,20\n");
     assert_eq!(
         said,
-        ["no unit is stated: sizes are taken for mm (state it with --size-unit)"]
+        [
+            "no unit is stated: sizes are taken for mm (state it in the name of their column, or by --size-unit)"
+        ]
     );
     // Units behind the sizes, and a column's unit before the user's.
     let (set, _) = read("size,passing\n500 µm,10\n2 mm,20\n1 cm,30\n");
@@ -363,12 +365,8 @@ fn repairs_are_said() {
     // A percent sign, a curve of some percent and one that ends low are no shares.
     assert_eq!(points("size_mm,passing\n1,0.2%\n2,0.9 %\n")[1], [2.0, 0.9]);
     assert_eq!(points("size_mm,passing\n1,0.2\n2,0.4\n")[1], [2.0, 0.4]);
-    let (set, said) = read("size_mm,a,b\n1,0.2,20\n2,1,40\n");
-    assert_eq!(set.curves[0].distribution.points()[1], [2.0, 1.0]);
-    assert_eq!(
-        said,
-        ["'a' ends at 1 %: if that is a share of 1, write it in percent"]
-    );
+    let signed = points("size_mm,a,b\n1,0.2%,20%\n2,1%,40%\n");
+    assert_eq!(signed[1], [2.0, 1.0]);
 }
 
 #[test]
