@@ -365,8 +365,8 @@ fn repairs_are_said() {
     // A percent sign, a curve of some percent and one that ends low are no shares.
     assert_eq!(points("size_mm,passing\n1,0.2%\n2,0.9 %\n")[1], [2.0, 0.9]);
     assert_eq!(points("size_mm,passing\n1,0.2\n2,0.4\n")[1], [2.0, 0.4]);
-    let signed = points("size_mm,a,b\n1,0.2%,20%\n2,1%,40%\n");
-    assert_eq!(signed[1], [2.0, 1.0]);
+    let (signed, _) = read("size_mm,a,b\n1,0.2%,20%\n2,1%,40%\n");
+    assert_eq!(signed.curves[0].distribution.points()[1], [2.0, 1.0]);
 }
 
 #[test]
@@ -382,6 +382,11 @@ fn bad_points_have_a_line_and_a_remedy() {
             "size_mm,passing,trial\n10,50,1\n20,104,1\n",
             3,
             "'1': 104 % passing at size 20 mm is not in 0 to 100 %; give cumulative percent passing",
+        ),
+        (
+            "size_mm,a,b\n10,0.2,20\n20,1,40\n",
+            1,
+            "'a' ends at 1 %, as a share of 1 does, beside percents; write it in percent; if it is percent, with % signs",
         ),
         (
             "size_mm,passing\n10,-1\n20,40\n",
