@@ -197,7 +197,7 @@ fn the_table_is_filtered_by_text_and_by_verdict() {
     assert!(trusted.len() > 5, "{trusted:?}");
     desk.click(Role::Tab, "Limits");
     desk.fill("Top and bottom scale differ more than", "1.1");
-    let mut doubted: Vec<String> = scales()
+    let mut doubted: Vec<String> = fitted()
         .into_iter()
         .filter(|(_, [top, bottom])| (bottom / top).max(top / bottom) > 1.1)
         .map(|(photo, _)| photo)

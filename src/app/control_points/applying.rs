@@ -327,7 +327,6 @@ impl OpenFlight {
             focal: settings.errors.focal.or(found.errors.focal),
             surface: settings.errors.surface.map(|error| error * by.scale),
             world_scale: found.stated_world_scale(),
-            ..settings.errors
         };
         for length in [
             &mut settings.surface.max_edge,

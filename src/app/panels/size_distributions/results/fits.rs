@@ -40,9 +40,7 @@ pub(super) fn fits(computed: &Computed, ui: &mut egui::Ui, commands: &mut Vec<Co
     percentiles.column("Curve", "Method, trial");
     // The difference may end in ...9999; seven digits are what a level has.
     let confidence = ((1.0 - settings.level) * 1e9).round() / 1e7;
-    let mut bands = Table::new(format!(
-        "Confidence bands of the fits alone, {confidence} %, {unit}"
-    ));
+    let mut bands = Table::new(format!("Bands of the fits alone, {confidence} %, {unit}"));
     bands.column("Curve", "Method, trial");
     for percent in PERCENTILES {
         percentiles.column(
