@@ -1,5 +1,8 @@
 //! Numbers for people: so many digits as they read and type, and round lengths.
 
+/// Half a 95 % interval in standard deviations of a normal distribution.
+pub const TO_95_PERCENT: f64 = 1.959_963_984_540_054;
+
 /// A number with at least so many significant digits, without an exponent, for people to read and
 /// type.
 pub fn significant_digits(number: f64, digits: u8) -> String {

@@ -10,9 +10,7 @@ use glam::{DMat3, DQuat, DVec3};
 use super::photo::PlannedPhoto;
 use super::terrain::Terrain;
 use crate::camera::{Camera, Pose};
-
-/// Standard errors to both sides that hold 95 of 100.
-const TO_95_PERCENT: f64 = 1.959_963_984_540_054;
+use crate::numbers::TO_95_PERCENT;
 
 /// How far a drone's pose is off its plan: standard errors.
 #[derive(Debug, Clone, Copy, PartialEq)]

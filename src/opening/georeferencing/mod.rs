@@ -38,7 +38,7 @@ use crate::formats::{PosedPhoto, Reconstruction, Sizes, read_project};
 use crate::geometry::Similarity;
 use crate::georeference::{Pair, fit};
 use crate::jobs::Progress;
-use crate::numbers::stated_percent;
+use crate::numbers::{TO_95_PERCENT, stated_percent};
 use crate::scale::StatedErrors;
 use crate::units::LengthUnit;
 
@@ -174,14 +174,11 @@ pub struct Georeferenced {
     pub warnings: Vec<String>,
 }
 
-/// Half a 95 % interval in standard deviations of a normal distribution.
-const HALF_OF_95: f64 = 1.959_963_985;
-
 impl Georeferenced {
     /// What a flight states of its world's scale, percent: the standard deviation that gives its 95 % interval. Of few positions
     /// or distances that is more than the standard error, which nobody knows well: of two distances 6.5 times.
     pub fn stated_world_scale(&self) -> Option<f64> {
-        Some(stated_percent(self.scale_interval? / HALF_OF_95))
+        Some(stated_percent(self.scale_interval? / TO_95_PERCENT))
     }
 
     /// How many known positions were used.
