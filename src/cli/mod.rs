@@ -474,18 +474,16 @@ fn run_with_progress<T: Send + 'static>(
 }
 
 fn show_progress<T: Send + 'static>(job: &Job<T>) {
-    let began = Instant::now();
     let mut bar = None;
-    while !job.is_finished() {
-        std::thread::sleep(Duration::from_millis(50));
-        if began.elapsed() > QUICK {
+    watch(job, |passed| {
+        if passed > QUICK {
             let bar = bar.get_or_insert_with(new_bar);
             let (sentence, fraction) = job.progress().snapshot();
             bar.set_message(sentence);
             // `as` saturates.
             bar.set_position((fraction * 1000.0) as u64);
         }
-    }
+    });
     if let Some(bar) = bar {
         bar.finish_and_clear();
     }
@@ -493,23 +491,32 @@ fn show_progress<T: Send + 'static>(job: &Job<T>) {
 
 /// A line after each [`LOGGED`]: of work of hours a log says how far it is.
 fn log_progress<T: Send + 'static>(job: &Job<T>) {
-    let began = Instant::now();
     let mut due = LOGGED;
+    watch(job, |passed| {
+        if passed > due {
+            due += LOGGED;
+            say(&logged(passed, job.progress().snapshot()));
+        }
+    });
+}
+
+/// What a log says of a stage after so long: its sentence and its fraction, NaN where that is not known.
+fn logged(passed: Duration, (sentence, fraction): (String, f64)) -> String {
+    let percent = match fraction.is_finite() {
+        true => format!(" {:.0} %", 100.0 * fraction),
+        false => String::new(),
+    };
+    format!("after {} min: {sentence}{percent}", passed.as_secs() / 60)
+}
+
+/// Looks at the work now and then until it is done, told how long it has taken.
+fn watch<T: Send + 'static>(job: &Job<T>, mut look: impl FnMut(Duration)) {
+    let began = Instant::now();
     while !job.is_finished() {
         // Short work is not kept waiting.
-        let look =
-            (began.elapsed() / 16).clamp(Duration::from_millis(1), Duration::from_millis(500));
-        std::thread::sleep(look);
-        if began.elapsed() > due {
-            due += LOGGED;
-            let (sentence, fraction) = job.progress().snapshot();
-            let percent = match fraction.is_finite() {
-                true => format!(" {:.0} %", 100.0 * fraction),
-                false => String::new(),
-            };
-            let minutes = began.elapsed().as_secs() / 60;
-            say(&format!("after {minutes} min: {sentence}{percent}"));
-        }
+        let pause = began.elapsed() / 16;
+        std::thread::sleep(pause.clamp(Duration::from_millis(1), Duration::from_millis(50)));
+        look(began.elapsed());
     }
 }
 
@@ -615,6 +622,18 @@ fn named_command() -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_log_says_how_far_work_is() {
+        let after = |seconds, fraction| {
+            logged(
+                Duration::from_secs(seconds),
+                ("matching".to_owned(), fraction),
+            )
+        };
+        assert_eq!(after(61, 0.416), "after 1 min: matching 42 %");
+        assert_eq!(after(7200, f64::NAN), "after 120 min: matching");
+    }
 
     #[test]
     fn usage_errors_are_one_line() {

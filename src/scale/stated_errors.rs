@@ -15,6 +15,11 @@ pub struct PoseErrors {
 }
 
 impl PoseErrors {
+    /// Whether somebody states any.
+    pub fn is_stated(self) -> bool {
+        self != Self::default()
+    }
+
     /// These, and where they say nothing, those.
     #[must_use]
     pub fn or(self, those: Self) -> Self {

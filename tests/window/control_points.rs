@@ -9,6 +9,7 @@ use fragscale::app::Command;
 use fragscale::app::control_points::{Applied, ControlStep};
 use fragscale::control::ScaleBar;
 use fragscale::units::LengthUnit;
+use fragscale_test_data::shared_data;
 use glam::{DVec2, DVec3};
 use tempfile::TempDir;
 
@@ -250,6 +251,11 @@ fn surveyed_points_bring_the_flight_to_the_world_and_back() {
         "json",
     ]);
     let said: serde_json::Value = serde_json::from_str(&said).expect("JSON");
+    // And how sure it says that is.
+    let interval = said["scale_interval_95"].as_f64().expect("a number");
+    let world = again.open().settings().errors.world_scale.expect("stated");
+    let stated = 100.0 * interval / 1.959_964;
+    assert!((world - stated).abs() <= 1e-3 * stated, "{world} {stated}");
     let ours = again.open().settings().placed.expect("placed").transform;
     for (ours, theirs) in ours.iter().zip(said["transform"].as_array().expect("16")) {
         let theirs = theirs.as_f64().expect("a number");
@@ -258,6 +264,85 @@ fn surveyed_points_bring_the_flight_to_the_world_and_back() {
             "{ours} {theirs}"
         );
     }
+}
+
+/// A package that does not say how sure its poses are: what its photos see does, as for the command, whose axes are the model's,
+/// too, and whose unit is another.
+#[test]
+fn a_placed_model_says_how_sure_its_poses_are() {
+    let Some(colmap) = shared_data("sceaux-colmap/bin") else {
+        return;
+    };
+    let mut desk = Desk::new(Some(&colmap));
+    desk.press(Modifiers::NONE, Key::G);
+    let flight = desk.open().flight().clone();
+    let shown = |photo: usize, point: DVec3| {
+        let posed = &flight.parts().photos[photo];
+        let camera = flight.camera(posed);
+        let pixel = camera.pixel_as_shot(posed.pose.camera_from_world(point))?;
+        camera.contains(pixel).then_some(pixel)
+    };
+    let vertices = flight.parts().surface.vertices();
+    let seen = vertices.filter_map(|point| Some([shown(0, point)?, shown(3, point)?]));
+    let seen: Vec<[DVec2; 2]> = seen.collect();
+    for (point, marks) in [seen[0], seen[seen.len() / 2]].into_iter().enumerate() {
+        step(&mut desk, ControlStep::Add);
+        for (photo, pixel) in [0, 3].into_iter().zip(marks) {
+            let pixel = Some(pixel);
+            step(
+                &mut desk,
+                ControlStep::Mark {
+                    point,
+                    photo,
+                    pixel,
+                },
+            );
+        }
+    }
+    step(&mut desk, ControlStep::AddBar);
+    desk.fill("Length of scale bar 1", "7,5");
+    desk.click(Role::Button, "Apply control points");
+    let settings = desk.open().settings();
+    let scale = settings
+        .placed
+        .expect("placed")
+        .similarity()
+        .expect("one")
+        .scale;
+    assert!(desk.says("m along x, y, z to the pile"));
+    let said = crate::common::stdout_of(&[
+        "georeference",
+        colmap.to_str().expect("UTF-8"),
+        "--distance",
+        "0,0,0 1,0,0 2.5",
+        "--format",
+        "json",
+    ]);
+    let said: serde_json::Value = serde_json::from_str(&said).expect("JSON");
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    let axes = |key: &str| DVec3::from([0, 1, 2].map(|axis| number(&said[key][axis])));
+    let errors = settings.errors;
+    for (ours, theirs) in [
+        (
+            errors.pose.position.expect("stated") / scale,
+            axes("position_standard_error") / 2.5,
+        ),
+        (
+            errors.pose.angle.expect("stated"),
+            axes("angle_standard_error_degrees"),
+        ),
+        (
+            DVec3::splat(errors.focal.expect("stated")),
+            DVec3::splat(number(&said["focal_standard_error_percent"])),
+        ),
+    ] {
+        assert!(
+            (ours / theirs - 1.0).abs().max_element() < 1e-3,
+            "{ours} {theirs}"
+        );
+    }
+    // One bar that nothing checks.
+    assert_eq!(errors.world_scale, None);
 }
 
 #[test]

@@ -6,14 +6,13 @@ use super::finding::{Basis, Found};
 use super::{Applied, ControlStep};
 use crate::control::{ControlList, ControlPoint, ScaleBar};
 use crate::fault::one_line;
-use crate::files::FileError;
 use crate::flight::{FlightSettings, Placed, moved_errors};
 use crate::jobs::Progress;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::tracing::rounded;
 use crate::opening::{GeoreferenceRequest, Georeferenced, georeference_flight, read_control};
 use crate::photo_view::Middle;
-use crate::scale::{Ground, PoseErrors, StatedErrors};
+use crate::scale::{Ground, StatedErrors};
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 use crate::units::LengthUnit;
@@ -127,22 +126,19 @@ impl State {
         };
         let (flight, file) = (open.flight().clone(), open.files.origin.file().to_owned());
         // Where nobody says how sure its poses are, its model may.
-        let is_stated = open.settings().errors.pose != PoseErrors::default();
-        let behind = open.files.reconstruction.as_ref();
-        let behind = behind
-            .filter(|_| !is_stated)
-            .map(|behind| behind.path.clone());
+        let is_stated = open.settings().errors.pose.is_stated();
+        let behind = open.files.reconstruction.as_ref().filter(|_| !is_stated);
+        let behind = behind.map(|behind| behind.path.clone());
         let photos = open.files.origin.photo_folder().map(Path::to_owned);
         let work = move |progress: &Progress| {
             progress.stage("fitting");
-            let mut found = georeference_flight(&file, &flight, &request)?;
-            if let Some(model) = behind {
-                found.look_up_errors(&flight, &model, photos.as_deref(), progress)?;
-            }
-            Ok(found)
-        };
-        let work = move |progress: &Progress| {
-            work(progress).map_err(|error: FileError| error.fault.to_string())
+            let found = georeference_flight(&file, &flight, &request).and_then(|mut found| {
+                if let Some(model) = behind {
+                    found.look_up_errors(&flight, &model, photos.as_deref(), progress)?;
+                }
+                Ok(found)
+            });
+            found.map_err(|error| error.fault.to_string())
         };
         self.start(Task::CONTROL, work, |state, found| match found {
             Ok(found) => state.take_control(found),
@@ -320,10 +316,7 @@ impl OpenFlight {
         settings.unit = found.unit;
         settings.unit_known = true;
         settings.errors = StatedErrors {
-            pose: match found.errors.pose == PoseErrors::default() {
-                true => moved_errors(settings.errors.pose, by),
-                false => found.errors.pose,
-            },
+            pose: (found.errors.pose).or(moved_errors(settings.errors.pose, by)),
             focal: settings.errors.focal.or(found.errors.focal),
             surface: settings.errors.surface.map(|error| error * by.scale),
             world_scale: found.stated_world_scale(),

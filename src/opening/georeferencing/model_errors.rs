@@ -31,8 +31,7 @@ pub(super) fn of_model(
     photos: Option<&Path>,
     to_world: &Similarity,
 ) -> Result<StatedErrors, String> {
-    let is_stated = |errors: PoseErrors| errors != PoseErrors::default();
-    if (model.pose_errors.iter()).any(|stated| is_stated(stated.errors())) {
+    if (model.pose_errors.iter()).any(|stated| stated.errors().is_stated()) {
         return Ok(StatedErrors::default());
     }
     let unknown = |why: &str| {

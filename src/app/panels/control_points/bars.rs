@@ -50,7 +50,9 @@ pub(super) fn bars(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Comm
         });
         measured(open, bar, ui);
         if next != *bar {
-            let is_bar = next.length >= 0.0 && next.ends[0] != next.ends[1];
+            // Its ends can be chosen before its length is typed.
+            let is_length = next.length > 0.0 || next.length == bar.length;
+            let is_bar = is_length && next.ends[0] != next.ends[1];
             commands.push(match is_bar {
                 true => Command::Control(ControlStep::Bar(place, next)),
                 false => Command::Report(format!(
