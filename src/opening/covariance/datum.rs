@@ -5,7 +5,8 @@
 use glam::DVec3;
 use nalgebra::DMatrix;
 
-use super::{Block, POSE, inverse};
+use super::inverse::small_inverse;
+use super::{Block, POSE};
 use crate::formats::Reconstruction;
 
 /// Numbers of a similarity: a shift, a turn, a stretch.
@@ -84,7 +85,7 @@ impl Shared {
 
     /// Makes of the covariance of the unknowns in the world that of the unknowns to the points.
     pub(super) fn take_off(&self, covariance: &mut DMatrix<f64>, pixel: f64) -> Option<()> {
-        let inverse = inverse(self.normal.clone())?;
+        let inverse = small_inverse(self.normal.clone())?;
         let similarity = &inverse * &self.by_unknowns;
         let own = &inverse * &self.own * &inverse * (pixel * pixel);
         let with = &*covariance * similarity.transpose();

@@ -5,6 +5,13 @@ use crate::geometry::Similarity;
 use crate::surface::Cloud;
 use fragscale_core::split_mix::SplitMix;
 
+/// What is found of a model that says enough.
+pub(crate) fn found(model: &Reconstruction, known: &Known) -> Deviations {
+    deviations(model, known, &Progress::default())
+        .unwrap()
+        .unwrap()
+}
+
 /// Five photos of 40 points, seen 0.8 px off.
 pub(crate) fn model() -> Reconstruction {
     let mut random = SplitMix(5);
@@ -72,7 +79,7 @@ fn deviations_are_those_of_the_whole_matrix() {
         centers: vec![Some(DVec3::new(0.02, 0.02, 0.04)); 5],
         lenses: vec![lens],
     };
-    let found = deviations(&model, &known).unwrap();
+    let found = found(&model, &known);
     let (photos, points) = (model.photos.len(), model.cloud.points.len());
     let count = photos * 6 + 8 + points * 3;
     let pixels = |moved: Option<(usize, f64)>| -> Vec<DVec2> {
@@ -245,7 +252,7 @@ fn where_the_world_is_does_not_matter() {
             centers: vec![center; 5],
             lenses: vec![[30.0, 30.03, 6.4, 6.4, 1.0, 1.0, 0.01, 0.01]],
         };
-        deviations(&model, &known).unwrap()
+        found(&model, &known)
     };
     let [metres, none] = [of(Some(DVec3::new(3.0, 3.0, 8.0))), of(None)];
     for ((center, turn), (other, other_turn)) in metres.poses.iter().zip(&none.poses) {
@@ -272,7 +279,7 @@ fn a_free_model_is_as_sure_anywhere() {
         centers: vec![None; 5],
         lenses: vec![lens],
     };
-    let here = deviations(&model(), &known).unwrap();
+    let here = found(&model(), &known);
     let mut random = SplitMix(8);
     let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
     for _ in 0..60 {
@@ -283,7 +290,7 @@ fn a_free_model_is_as_sure_anywhere() {
         let shift = shift * scale.min(1.0);
         let mut there = model();
         there.transform(&Similarity::new(scale, turn, shift));
-        let there = deviations(&there, &known).unwrap();
+        let there = found(&there, &known);
         let focal = there.focal_in_scales[0] / here.focal_in_scales[0];
         assert!((focal - 1.0).abs() < 1e-3, "{scale}: {focal}");
         for ((center, turn), (own, own_turn)) in there.poses.iter().zip(&here.poses) {

@@ -223,9 +223,9 @@ pub fn georeference(
     }
     progress.stage("fitting");
     let mut result = georeference_model(path, &project.reconstruction, &request)?;
-    progress.stage(model_errors::STAGE);
     let photos = request.photos.as_deref();
-    let found = model_errors::of_model(project.reconstruction, photos, &result.similarity);
+    let (model, placed) = (project.reconstruction, &result.similarity);
+    let found = model_errors::of_model(model, photos, placed, progress).map_err(at)?;
     result.take_errors(found);
     Ok(result)
 }

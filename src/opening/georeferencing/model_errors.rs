@@ -8,9 +8,10 @@ use glam::{DVec2, DVec3};
 use super::Georeferenced;
 use crate::camera::Pose;
 use crate::covariance::{Known, MOST_PHOTOS, deviations, lens_deviations};
+use crate::fault::Fault;
 use crate::flight::Flight;
 use crate::formats::photos::photo_folder::PhotoFolder;
-use crate::formats::{FileError, Origin, Reconstruction, read_project};
+use crate::formats::{Origin, Reconstruction, read_project};
 use crate::geometry::Similarity;
 use crate::jobs::Progress;
 use crate::numbers::{four_digits, significant_digits, stated_percent};
@@ -22,36 +23,61 @@ const MOST_MEDIANS: f64 = 6.0;
 /// Centres that are moved alike are apart by rounding alone, in parts of how far they spread.
 const SAME: f64 = 1e-6;
 /// What takes so long.
-pub(super) const STAGE: &str = "how sure the poses are";
+const STAGE: &str = "how sure the poses are";
 
-/// Of a model that `to_world` brings to the world, in the world's unit; empty where its package states them. The error is
-/// why they are not known, as a sentence. `photos` have the sizes where the package has none.
+/// Of a model that `to_world` brings to the world, in the world's unit; empty where its package states them; or why they
+/// are not known, as a sentence. `photos` have the sizes where the package has none.
+///
+/// # Errors
+/// Where it is cancelled.
 pub(super) fn of_model(
-    mut model: Reconstruction,
+    model: Reconstruction,
     photos: Option<&Path>,
     to_world: &Similarity,
-) -> Result<StatedErrors, String> {
+    progress: &Progress,
+) -> Result<Result<StatedErrors, String>, Fault> {
     if (model.pose_errors.iter()).any(|stated| stated.errors().is_stated()) {
-        return Ok(StatedErrors::default());
+        return Ok(Ok(StatedErrors::default()));
     }
-    let unknown = |why: &str| {
+    progress.stage(STAGE);
+    let found = match with_good_matches(model, photos) {
+        Ok(model) => of_matches(model, to_world, progress)?,
+        Err(why) => Err(why),
+    };
+    Ok(found.map_err(|why| {
         format!(
             "it is not known how sure the poses and the focal length are: {why}; so intervals do not count it"
         )
-    };
+    }))
+}
+
+/// The model with the sizes of its photos and without wrong matches, or why there is no such thing.
+fn with_good_matches(
+    mut model: Reconstruction,
+    photos: Option<&Path>,
+) -> Result<Reconstruction, String> {
     if model.observations.is_empty() {
-        return Err(unknown("the model keeps nothing of what its photos see"));
+        return Err("the model keeps nothing of what its photos see".to_owned());
     }
     if !model.sizes.are_known() {
         // Which photos are left out for it is said where the flight is opened.
         let (photos, mut left_out) = (PhotoFolder::new(photos), Vec::new());
         set_sizes_from_files(&mut model, &photos, |_| None, &mut left_out)
-            .map_err(|_| unknown("the sizes of its photos are not known (give their folder)"))?;
+            .map_err(|_| "the sizes of its photos are not known (give their folder)".to_owned())?;
     }
     take_off_wrong_matches(&mut model);
-    if let Some(why) = of_other_photos(&model) {
-        return Err(unknown(&why));
+    match of_other_photos(&model) {
+        Some(why) => Err(why),
+        None => Ok(model),
     }
+}
+
+/// By the covariance, or why there is none.
+fn of_matches(
+    mut model: Reconstruction,
+    to_world: &Similarity,
+    progress: &Progress,
+) -> Result<Result<StatedErrors, String>, Fault> {
     model.transform(to_world);
     let photos = model.photos.len();
     let known = Known {
@@ -61,8 +87,8 @@ pub(super) fn of_model(
             .map(|camera| lens_deviations(camera, 1.0))
             .collect(),
     };
-    let Some(sure) = deviations(&model, &known) else {
-        return Err(unknown(&match photos > MOST_PHOTOS {
+    let Some(sure) = deviations(&model, &known, progress)? else {
+        return Ok(Err(match photos > MOST_PHOTOS {
             true => format!("it has more than {MOST_PHOTOS} photos"),
             false => "its points do not hold its photos together".to_owned(),
         }));
@@ -73,7 +99,7 @@ pub(super) fn of_model(
     };
     let degrees = sure.poses.iter().map(|(_, turn)| turn.map(f64::to_degrees));
     let focal = sure.focal_in_scales.iter().copied().reduce(f64::max);
-    Ok(StatedErrors {
+    Ok(Ok(StatedErrors {
         pose: PoseErrors {
             position: root(sure.poses.iter().map(|(center, _)| center * center).sum()),
             angle: root(degrees.map(|turn| turn * turn).sum()),
@@ -82,7 +108,7 @@ pub(super) fn of_model(
             .filter(|_| model.errors.focal.is_none())
             .map(stated_percent),
         ..StatedErrors::default()
-    })
+    }))
 }
 
 /// From a model to where its named poses were moved; the error is a sentence.
@@ -161,22 +187,32 @@ impl Georeferenced {
     /// that they are not known. `photos` have the sizes where the package has none.
     ///
     /// # Errors
-    /// Where the reconstruction cannot be read.
+    /// Where it is cancelled.
     pub fn look_up_errors(
         &mut self,
         flight: &Flight,
         reconstruction: &Path,
         photos: Option<&Path>,
         progress: &Progress,
-    ) -> Result<(), FileError> {
+    ) -> Result<(), Fault> {
         progress.stage(format!("reading {}", reconstruction.display()));
-        let model = read_project(reconstruction, progress)?.reconstruction;
-        progress.stage(STAGE);
+        let read = read_project(reconstruction, progress);
+        progress.advance(1, 1)?;
         let photos_of_flight = flight.parts().photos.iter();
         let moved = photos_of_flight.map(|photo| (photo.name.as_str(), photo.pose));
-        let known = to_moved(&model, moved)
-            .and_then(|moved| of_model(model, photos, &self.similarity.after(&moved)));
-        self.take_errors(known);
+        let placed =
+            read.map_err(|error| format!("it is not known how sure the poses are: {error}"));
+        let placed = placed.and_then(|project| {
+            let model = project.reconstruction;
+            to_moved(&model, moved).map(|moved| (model, moved))
+        });
+        let found = match placed {
+            Ok((model, moved)) => {
+                of_model(model, photos, &self.similarity.after(&moved), progress)?
+            }
+            Err(unknown) => Err(unknown),
+        };
+        self.take_errors(found);
         Ok(())
     }
 
@@ -215,8 +251,16 @@ mod tests {
     use glam::DMat3;
 
     use super::*;
-    use crate::covariance::tests::model;
+    use crate::covariance::tests::{found, model};
     use crate::formats::{Observation, PoseCovariance, Sizes};
+
+    fn of(
+        model: Reconstruction,
+        photos: Option<&Path>,
+        to_world: &Similarity,
+    ) -> Result<StatedErrors, String> {
+        of_model(model, photos, to_world, &Progress::default()).unwrap()
+    }
 
     fn known_sizes() -> Reconstruction {
         Reconstruction {
@@ -232,8 +276,8 @@ mod tests {
     /// In the world's unit, and what it says of the scales has none.
     #[test]
     fn errors_are_in_the_world() {
-        let own = of_model(known_sizes(), None, &as_large(1.0)).unwrap();
-        let world = of_model(known_sizes(), None, &as_large(2.0)).unwrap();
+        let own = of(known_sizes(), None, &as_large(1.0)).unwrap();
+        let world = of(known_sizes(), None, &as_large(2.0)).unwrap();
         let ratio = world.pose.position.unwrap() / own.pose.position.unwrap();
         assert!((ratio - 2.0).abs().max_element() < 2e-3, "{ratio}");
         let ratio = world.pose.angle.unwrap() / own.pose.angle.unwrap();
@@ -246,7 +290,7 @@ mod tests {
             centers: vec![None; 5],
             lenses: vec![lens],
         };
-        let each = deviations(&model(), &known).unwrap();
+        let each = found(&model(), &known);
         for axis in 0..3 {
             let mean = |square: fn(&(DVec3, DVec3), usize) -> f64| {
                 let sum: f64 = each.poses.iter().map(|pose| square(pose, axis)).sum();
@@ -296,7 +340,7 @@ mod tests {
     /// A wrong match, or what one photo shows alone, changes nothing.
     #[test]
     fn wrong_matches_do_not_count() {
-        let right = of_model(known_sizes(), None, &as_large(2.0)).unwrap();
+        let right = of(known_sizes(), None, &as_large(2.0)).unwrap();
         let mut more = known_sizes();
         more.cloud.points.push(DVec3::new(1.0, 1.0, 1.0));
         let wrong = |photo, point, pixel| Observation {
@@ -307,7 +351,7 @@ mod tests {
         more.observations
             .push(wrong(0, 40, DVec2::new(640.0, 360.0)));
         more.observations.push(wrong(2, 7, DVec2::new(9.0, 700.0)));
-        let found = of_model(more, None, &as_large(2.0)).unwrap();
+        let found = of(more, None, &as_large(2.0)).unwrap();
         // The point that one photo sees has a place among the others for the datum alone.
         let ratio = found.pose.position.unwrap() / right.pose.position.unwrap();
         assert!((ratio - 1.0).abs().max_element() < 0.03, "{ratio}");
@@ -318,17 +362,17 @@ mod tests {
         let mut stated = known_sizes();
         stated.pose_errors = vec![PoseCovariance::default(); 5];
         assert!(
-            of_model(stated.clone(), None, &as_large(2.0))
+            of(stated.clone(), None, &as_large(2.0))
                 .unwrap()
                 .focal
                 .is_some()
         );
         stated.pose_errors[3] = PoseCovariance::of_deviations(None, Some(DVec3::splat(0.1)));
-        let found = of_model(stated, None, &as_large(2.0)).unwrap();
+        let found = of(stated, None, &as_large(2.0)).unwrap();
         assert_eq!(found, StatedErrors::default());
         let mut focal = known_sizes();
         focal.errors.focal = Some(0.2);
-        assert_eq!(of_model(focal, None, &as_large(2.0)).unwrap().focal, None);
+        assert_eq!(of(focal, None, &as_large(2.0)).unwrap().focal, None);
     }
 
     #[test]
@@ -337,7 +381,7 @@ mod tests {
             observations: Vec::new(),
             ..known_sizes()
         };
-        let said = of_model(nothing, None, &as_large(2.0)).unwrap_err();
+        let said = of(nothing, None, &as_large(2.0)).unwrap_err();
         assert!(
             said.contains("keeps nothing of what its photos see"),
             "{said}"
@@ -345,13 +389,13 @@ mod tests {
         let mut half = known_sizes();
         half.cameras[0].width /= 2;
         half.cameras[0].height /= 2;
-        let said = of_model(half, None, &as_large(2.0)).unwrap_err();
+        let said = of(half, None, &as_large(2.0)).unwrap_err();
         assert!(said.contains("were of another size"), "{said}");
         let mut blind = known_sizes();
         blind.observations.retain(|seen| seen.photo != 3);
-        let said = of_model(blind, None, &as_large(2.0)).unwrap_err();
+        let said = of(blind, None, &as_large(2.0)).unwrap_err();
         assert!(said.contains("'3.jpg' shows none"), "{said}");
-        let said = of_model(model(), None, &as_large(2.0)).unwrap_err();
+        let said = of(model(), None, &as_large(2.0)).unwrap_err();
         assert!(said.contains("sizes of its photos are not known"), "{said}");
     }
 }

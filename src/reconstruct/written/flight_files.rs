@@ -9,6 +9,7 @@ use crate::exports::{PoseRow, StatedDeviations, laz, ply, poses_csv};
 use crate::fault::Fault;
 use crate::flight::{FlightFile, FlightSettings, PosesFlight};
 use crate::formats::Reconstruction;
+use crate::jobs::Progress;
 use crate::numbers::{four_digits, stated_percent};
 use crate::opening::Georeferenced;
 use crate::opening::covariance::{Deviations, Known, deviations};
@@ -42,11 +43,12 @@ pub(crate) struct FlightOf<'a> {
 /// Of a model in its own frame, and its dense cloud if there is one.
 ///
 /// # Errors
-/// Where a number is not finite.
+/// Where a number is not finite, or where it is cancelled.
 pub(crate) fn flight_files(
     of: &FlightOf<'_>,
     mut model: Reconstruction,
     dense: Option<DenseCloud>,
+    progress: &Progress,
 ) -> Result<FlightFiles, Fault> {
     let FlightOf {
         name,
@@ -66,7 +68,7 @@ pub(crate) fn flight_files(
             .collect(),
         lenses: model.cameras.iter().enumerate().map(lens).collect(),
     };
-    let sure = deviations(&model, &known);
+    let sure = deviations(&model, &known, progress)?;
     let mut warnings = Vec::new();
     if sure.is_none() {
         warnings.push(

@@ -98,7 +98,7 @@ pub(crate) fn write(
                     placed: &placed,
                     photos,
                 };
-                flight_files(&of, read, dense)
+                flight_files(&of, read, dense, progress)
             };
             let made = to_photos
                 .and_then(of)
