@@ -71,6 +71,49 @@ fn a_map_agrees_with_the_scales() {
     );
 }
 
+/// Several by their names: into one folder, in the flight's order, each once.
+#[test]
+fn several_photos_are_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let to = folder.path().join("maps");
+    let flight = sample().to_string_lossy().into_owned();
+    let two = ["--photo", "IMG_0003.jpg", "--photo", "IMG_0001.jpg"];
+    let mut arguments = vec!["scale-map", flight.as_str()];
+    arguments.extend(two.iter().chain(&["--photo", "IMG_0003.jpg"]));
+    let to_text = to.to_string_lossy();
+    arguments.extend(["-o", &to_text]);
+    stdout_of(&arguments);
+    let files = fs::read_dir(&to).expect("a folder");
+    let mut files: Vec<String> = files
+        .map(|file| file.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    files.sort();
+    let both = ["IMG_0001", "IMG_0003"].map(|stem| ["png", "tif"].map(|of| (stem, of)));
+    let both = both.as_flattened().iter();
+    let expected: Vec<String> = both
+        .map(|(stem, of)| format!("{stem}_scale.{of}"))
+        .collect();
+    assert_eq!(files, expected);
+    arguments.extend(["-o", "second"]);
+    let error = error_of(&arguments);
+    assert!(
+        error.contains("several photos go into one folder"),
+        "{error}"
+    );
+    // One that is not there is an error also among others.
+    let error = error_of(&[
+        "rectify",
+        &flight,
+        "--photo",
+        "IMG_0001.jpg",
+        "--photo",
+        "none.jpg",
+        "--to",
+        &to_text,
+    ]);
+    assert!(error.contains("none.jpg"), "{error}");
+}
+
 #[test]
 fn what_cannot_be_mapped_is_said_in_a_line() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -284,4 +284,8 @@ fn only_reconstructions_are_georeferenced() {
     ask(&mut desk);
     assert!(desk.says("is in the world already: EPSG:32632 in its flight.toml"));
     assert!(!desk.shows(Role::Button, "Fit to what is known"));
+    // As the command takes the model behind a flight.
+    desk.click(Role::Button, "Open the reconstruction");
+    ask(&mut desk);
+    assert!(desk.shows(Role::Button, "Fit to what is known"));
 }

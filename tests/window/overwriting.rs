@@ -7,8 +7,8 @@ use std::path::Path;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use fragscale::app::Command;
-use fragscale::app::command::Choice;
 use fragscale::app::command::PictureRequest;
+use fragscale::app::command::{Asking, Choice};
 use fragscale::app::size_distributions::{DistributionCommand, Page};
 
 use crate::desk::{Desk, copy, flight};
@@ -101,6 +101,24 @@ fn a_flight_is_saved_over_no_file_that_it_was_read_from() {
     assert!(desk.says("There is a file already"));
     desk.click(Role::Button, "Replace it");
     assert!(desk.logged("flight.toml: saved"));
+}
+
+/// A path into a folder that is not there is mended where it was typed.
+#[test]
+fn a_missing_folder_is_said_where_the_path_is_typed() {
+    let folder = copy("tests/windrow");
+    let mut desk = Desk::new(Some(folder.path()));
+    let path = folder.path().join("new/saved.toml");
+    apply(&mut desk, Command::Ask(Some(Asking::SaveAs)));
+    desk.type_path(&path);
+    desk.press(Modifiers::NONE, Key::Enter);
+    assert!(desk.says("there is no folder"));
+    fs::create_dir(folder.path().join("new")).expect("a folder");
+    desk.node(Role::TextInput, "Path").click();
+    desk.settle();
+    desk.press(Modifiers::NONE, Key::Enter);
+    assert!(desk.logged("saved.toml: saved"));
+    assert!(path.is_file() && !desk.says("there is no folder"));
 }
 
 /// The folder of a reconstruction is read as a whole; a flight.toml in it is saved all the same.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::command::{Command, Dialog};
+use crate::files;
 use crate::state::State;
 use crate::typed::typed;
 
@@ -64,6 +65,35 @@ pub(super) fn taken_path(
     let path = typed(&path);
     let button = ui.add_enabled(path.is_some(), egui::Button::new(button));
     path.filter(|_| button.clicked() || entered)
+}
+
+/// The same for a file that is to be written: where its folder is not there, that is said below and the window stays.
+pub(super) fn path_to_write(
+    state: &State,
+    ui: &mut egui::Ui,
+    start: &Path,
+    browse: &[(&str, Dialog)],
+    button: &str,
+    commands: &mut Vec<Command>,
+) -> Option<PathBuf> {
+    let taken = taken_path(state, ui, start, browse, button, commands);
+    in_a_folder(ui, taken)
+}
+
+/// Of a path that was taken, unless its folder is not there: then it says so until another one is taken.
+pub(super) fn in_a_folder(ui: &mut egui::Ui, taken: Option<PathBuf>) -> Option<PathBuf> {
+    let id = ui.scope_id().with("no folder");
+    let taken = taken.and_then(|path| {
+        let has = files::has_folder(&path);
+        let why = has.as_ref().err().map(ToString::to_string);
+        ui.data_mut(|data| data.insert_temp(id, why.unwrap_or_default()));
+        has.ok().map(|()| path)
+    });
+    let why: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    if taken.is_none() && !why.is_empty() {
+        ui.colored_label(ui.visuals().error_fg_color, why);
+    }
+    taken
 }
 
 /// She asked for this window, so what she types or pastes next belongs into this field of it.

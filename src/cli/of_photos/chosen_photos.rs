@@ -13,12 +13,12 @@ use crate::jobs::Progress;
 #[derive(Debug, Clone, Args)]
 #[group(required = true, multiple = false)]
 pub(super) struct ChosenPhotos {
-    /// The photo, as the flight names it.
+    /// The photo, as the flight names it; once for each of several.
     #[arg(long, value_name = "NAME")]
-    photo: Option<String>,
+    photo: Vec<String>,
     /// All photos of the flight.
     #[arg(long)]
-    pub(super) all: bool,
+    all: bool,
 }
 
 /// Why a photo's files are not made.
@@ -82,13 +82,25 @@ impl NotDone {
 }
 
 impl ChosenPhotos {
-    /// That photo, or all of them.
-    pub(super) fn one_or_all(photo: Option<String>) -> Self {
-        let all = photo.is_none();
+    /// These photos; without a name all of them.
+    pub(super) fn named_or_all(photo: Vec<String>) -> Self {
+        let all = photo.is_empty();
         Self { photo, all }
     }
 
-    /// The places of the photos in the flight, whose lengths mean something.
+    /// Whether it is one photo, for which what cannot be done is an error.
+    pub(super) fn is_one(&self) -> bool {
+        let mut named = self.photo.iter();
+        let first = named.next();
+        !self.all && first.is_some_and(|first| named.all(|name| name == first))
+    }
+
+    /// Whether it is all of them, whatever they are.
+    pub(super) fn are_all(&self) -> bool {
+        self.all
+    }
+
+    /// The places of the photos in the flight, in its order, whose lengths mean something.
     ///
     /// # Errors
     /// Where there is no such photo, or the model is in a frame of its own.
@@ -99,13 +111,18 @@ impl ChosenPhotos {
                 "georeference it, or say the unit in a flight.toml ([world] unit)",
             ));
         }
-        match &self.photo {
-            Some(name) => Ok(vec![flight.photo_named(name)?]),
-            None => Ok((0..flight.parts().photos.len()).collect()),
+        if self.all {
+            return Ok((0..flight.parts().photos.len()).collect());
         }
+        let named = self.photo.iter().map(|name| flight.photo_named(name));
+        let mut named = named.collect::<Result<Vec<_>, _>>()?;
+        // In the flight's order, each once.
+        named.sort_unstable();
+        named.dedup();
+        Ok(named)
     }
 
-    /// Makes the files of each chosen photo by `make`, which gets the photo's place among them. Of all
+    /// Makes the files of each chosen photo by `make`, which gets the photo's place among them. Of several
     /// photos those that cannot be made are left out, and come back. `path` is the flight's.
     ///
     /// # Errors
@@ -127,7 +144,7 @@ impl ChosenPhotos {
             match make(place) {
                 Ok(()) => {}
                 Err(NotMade::File(error)) => return Err(error),
-                Err(NotMade::Photo(fault)) if progress.is_cancelled() || !self.all => {
+                Err(NotMade::Photo(fault)) if progress.is_cancelled() || self.is_one() => {
                     let what = format!("{name}: {}", fault.what);
                     return Err(in_flight(Fault::new(what, fault.remedy)));
                 }

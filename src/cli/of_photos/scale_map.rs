@@ -109,7 +109,7 @@ pub(in crate::cli) fn scale_map(
     progress: &Progress,
 ) -> Result<Answer, String> {
     let mut outputs = arguments.outputs();
-    if !arguments.photos.all {
+    if arguments.photos.is_one() {
         for path in &arguments.output {
             MapFormat::of(path)?;
             outputs = outputs.and(path, Kind::Result)?;
@@ -183,7 +183,7 @@ fn make_maps(
     let waiting = (planned.iter().enumerate()).filter(|(place, _)| !written.contains(place));
     let files = waiting.flat_map(|(_, planned)| &planned.files);
     outputs.check_all(files.map(|(path, _)| path.as_path()))?;
-    if arguments.photos.all {
+    if !arguments.photos.is_one() {
         apart_from_photos(&arguments.output[0], &opened.photo_files)
             .map_err(|error| error.to_string())?;
         outputs.make_folder(&arguments.output[0])?;
@@ -228,7 +228,7 @@ fn plan<'a>(
     chosen: &[usize],
 ) -> Result<Vec<Planned<'a>>, String> {
     let photos = &flight.parts().photos;
-    if !arguments.photos.all {
+    if arguments.photos.is_one() {
         let files = arguments.output.iter();
         let files = files.map(|path| Ok((path.clone(), MapFormat::of(path)?)));
         let files = files.collect::<Result<Vec<_>, String>>()?;
@@ -239,7 +239,10 @@ fn plan<'a>(
         return Ok(chosen.iter().map(one).collect());
     }
     let [folder] = &arguments.output[..] else {
-        let fault = Fault::new("maps of all photos go into one folder", "give one -o DIR");
+        let fault = Fault::new(
+            "maps of several photos go into one folder",
+            "give one -o DIR",
+        );
         return Err(FileError::new(&arguments.output[0], fault).to_string());
     };
     let stems = exports::photo_file_stems(flight);

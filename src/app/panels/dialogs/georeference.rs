@@ -9,7 +9,7 @@ use crate::numbers::significant_digits;
 use crate::open_flight::georeferencing::{GeoreferenceForm, KnownFrom, PathField};
 use crate::open_flight::{Measure, OpenFlight};
 use crate::opening::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds};
-use crate::panels::path_field::path_field;
+use crate::panels::path_field::{in_a_folder, path_field};
 use crate::state::State;
 use crate::tasks::Task;
 use crate::typed::typed;
@@ -26,7 +26,13 @@ pub(super) fn georeference(state: &State, ui: &mut egui::Ui, commands: &mut Vec<
     if let Some(said) = &reconstruction.in_world {
         let said: String = said.chars().take(80).collect();
         ui.label(format!("{path} is in the world already: {said}."));
-        ui.weak("To georeference a reconstruction anew, open its own file, not the flight.toml.");
+        if open.files.origin.flight_file().is_some() {
+            let button = ui.button("Open the reconstruction");
+            let hover = "Without this flight.toml, in its own frame: there it can be placed anew";
+            if button.on_hover_text(hover).clicked() {
+                commands.push(Command::OpenAlone(reconstruction.path.clone()));
+            }
+        }
         return;
     }
     let most = (ui.ctx().content_rect().height() - 90.0).max(200.0);
@@ -388,21 +394,19 @@ pub(super) fn save_georeferenced(state: &State, ui: &mut egui::Ui, commands: &mu
     let browse = [("Browse…", Dialog::new_file("Save flight", "flight.toml"))];
     let (path, entered) = path_field(state, ui, &start, &browse, commands);
     ui.separator();
+    let mut taken = None;
     ui.horizontal(|ui| {
-        let path = typed(&path);
-        let ready = path.is_some() && open.georeferencing.fitted().is_some();
-        let button = ui.add_enabled(ready, egui::Button::new("Save and open"));
-        if ready
-            && let Some(path) = path
-            && (button.clicked() || entered)
-        {
-            commands.push(Command::SaveGeoreferenced {
-                to: path.into(),
-                keep_surface,
-            });
-        }
+        let path = typed(&path).filter(|_| open.georeferencing.fitted().is_some());
+        let button = ui.add_enabled(path.is_some(), egui::Button::new("Save and open"));
+        taken = path.filter(|_| button.clicked() || entered);
         if ui.button("Back to the fit").clicked() {
             commands.push(Command::Ask(Some(Asking::Georeference)));
         }
     });
+    if let Some(path) = in_a_folder(ui, taken) {
+        commands.push(Command::SaveGeoreferenced {
+            to: path.into(),
+            keep_surface,
+        });
+    }
 }

@@ -20,7 +20,7 @@ use crate::command::{Answers, Asking, Command, Dialog, MeasuredTable, PictureReq
 use crate::map::MapCommand;
 use crate::names;
 use crate::open_flight::OpenFlight;
-use crate::panels::path_field::{path_field, taken_path};
+use crate::panels::path_field::{path_field, path_to_write, taken_path};
 use crate::panels::reconstruct_offer;
 use crate::panels::size_distributions::{
     add_distributions, add_effort, paste, save_figure, save_report,
@@ -322,7 +322,7 @@ fn save_as(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     );
     let start = proposed(open, None);
     let browse = [("Browse…", Dialog::new_file("Save flight", "flight.toml"))];
-    if let Some(path) = taken_path(state, ui, &start, &browse, "Save flight", commands) {
+    if let Some(path) = path_to_write(state, ui, &start, &browse, "Save flight", commands) {
         commands.push(Command::SaveAs(path.into()));
     }
 }
@@ -356,7 +356,7 @@ fn picture(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.data_mut(|data| data.insert_temp(id, options));
     let start = proposed(open, Some("figure.png"));
     let browse = [("Browse…", Dialog::new_file("Save picture", "figure.png"))];
-    if let Some(path) = taken_path(state, ui, &start, &browse, "Write picture", commands) {
+    if let Some(path) = path_to_write(state, ui, &start, &browse, "Write picture", commands) {
         commands.push(Command::Picture(PictureRequest {
             to: path.into(),
             size: [options.0, options.1],
@@ -389,7 +389,7 @@ fn map(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     }
     let start = proposed(open, Some("map.pdf"));
     let browse = [("Browse…", Dialog::new_file("Export map", "map.pdf"))];
-    if let Some(path) = taken_path(state, ui, &start, &browse, "Write map", commands) {
+    if let Some(path) = path_to_write(state, ui, &start, &browse, "Write map", commands) {
         let to = path.into();
         commands.push(Command::Map(MapCommand::Save { to, pixel }));
     }

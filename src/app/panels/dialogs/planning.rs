@@ -2,7 +2,7 @@
 
 use super::proposed;
 use crate::command::{Command, Dialog};
-use crate::panels::path_field::taken_path;
+use crate::panels::path_field::path_to_write;
 use crate::planning::PlanStep;
 use crate::state::State;
 
@@ -20,7 +20,7 @@ pub(super) fn mission(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
     }
     let start = proposed(open, Some("mission.kmz"));
     let browse = [("Browse…", Dialog::new_file("Save mission", "mission.kmz"))];
-    if let Some(path) = taken_path(state, ui, &start, &browse, "Write mission", commands) {
+    if let Some(path) = path_to_write(state, ui, &start, &browse, "Write mission", commands) {
         commands.push(Command::Plan(PlanStep::SaveMission(path.into())));
     }
 }
@@ -69,7 +69,7 @@ pub(super) fn plan_table(
     ui.label(what);
     let start = proposed(open, Some(name));
     let browse = [("Browse…", dialog)];
-    if let Some(path) = taken_path(state, ui, &start, &browse, write, commands) {
+    if let Some(path) = path_to_write(state, ui, &start, &browse, write, commands) {
         let to = path.into();
         commands.push(Command::Plan(match file {
             PlanFile::Table | PlanFile::Sheet => PlanStep::SaveTable(to),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::command::{Command, Dialog};
-use crate::panels::path_field::taken_path;
+use crate::panels::path_field::{path_to_write, taken_path};
 use crate::size_distributions::DistributionCommand;
 use crate::state::State;
 
@@ -49,7 +49,7 @@ pub(in crate::panels) fn save_figure(
         Dialog::new_file("Save figure", "size-distributions.svg"),
     )];
     let start = beside(state, "size-distributions.svg");
-    if let Some(path) = taken_path(state, ui, &start, &browse, "Write figure", commands) {
+    if let Some(path) = path_to_write(state, ui, &start, &browse, "Write figure", commands) {
         commands.push(Command::Distributions(DistributionCommand::SaveFigure(
             path.into(),
         )));
@@ -68,7 +68,7 @@ pub(in crate::panels) fn save_report(
         Dialog::new_file("Save report", "size-distributions.html"),
     )];
     let start = beside(state, "size-distributions.html");
-    if let Some(path) = taken_path(state, ui, &start, &browse, "Write report", commands) {
+    if let Some(path) = path_to_write(state, ui, &start, &browse, "Write report", commands) {
         commands.push(Command::Distributions(DistributionCommand::SaveReport(
             path.into(),
         )));

@@ -38,9 +38,9 @@ use crate::units::LengthUnit;
 pub(in crate::cli) struct DelineateArguments {
     #[command(flatten)]
     flight: FlightArguments,
-    /// One photo, as the flight names it; without it all photos.
+    /// A photo, as the flight names it; once for each of several, without it all photos.
     #[arg(long, value_name = "NAME")]
-    photo: Option<String>,
+    photo: Vec<String>,
     /// The folder to write to: of each photo its label image, its outlines over the photo and in the world (GeoJSON), then
     /// fragments.csv, distribution.csv, sizes.csv (P20, P50 and P80 with their 95 % intervals) and report.html. What was
     /// stopped goes on with the photos that are not done when it is started again.

@@ -46,10 +46,10 @@ impl Planned {
         apart_from_photos(to, &opened.photo_files).map_err(|error| error.to_string())?;
         let flight = &opened.flight;
         let in_flight = |fault| FileError::new(&arguments.flight.flight, fault).to_string();
-        let photos = ChosenPhotos::one_or_all(arguments.photo.clone());
+        let photos = ChosenPhotos::named_or_all(arguments.photo.clone());
         let mut chosen = photos.of(flight).map_err(in_flight)?;
         let mut warnings = Vec::new();
-        if let (Some(others), true) = (&outliners.others, photos.all) {
+        if let (Some(others), true) = (&outliners.others, photos.are_all()) {
             let (with, said) = with_outlines(others, chosen, flight);
             chosen = with;
             warnings.extend(said);
