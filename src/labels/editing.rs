@@ -104,8 +104,17 @@ impl Outlines {
 
     /// A fragment is none: its pixels become fines.
     pub fn delete(&self, number: u32) -> Change {
+        self.becomes(number, FINES)
+    }
+
+    /// A fragment is no rock: a ball, a machine.
+    pub fn no_rock(&self, number: u32) -> Change {
+        self.becomes(number, NOT_ROCK)
+    }
+
+    fn becomes(&self, number: u32, label: u32) -> Change {
         let mut painting = Painting::on(self.labels());
-        self.paint_over(&mut painting, number, FINES);
+        self.paint_over(&mut painting, number, label);
         self.painted(painting, &[number])
     }
 

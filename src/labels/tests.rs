@@ -137,6 +137,17 @@ fn what_was_looked_at_is_no_longer_doubtful() {
     let gone = after(&outlines, outlines.delete(1));
     assert_eq!(gone.doubtful(), [(2, 0.4)]);
     assert!(outlines.delete(7).is_nothing());
+    let ball = after(&outlines, outlines.no_rock(1));
+    assert_eq!(ball.doubtful(), [(2, 0.4)]);
+    assert_eq!(ball.labels().areas()[1..], gone.labels().areas()[1..]);
+    let out = |of: &Outlines| {
+        of.labels()
+            .labels
+            .iter()
+            .filter(|label| **label == NOT_ROCK)
+            .count()
+    };
+    assert_eq!(out(&ball) - out(&outlines), outlines.labels().areas()[1]);
 }
 
 #[test]
@@ -187,7 +198,8 @@ fn two_thousand_edits_are_undone() {
             4 => now.brush(&stroke[..2], unit() * 6.0),
             5 => now.exclude(&stroke, unit() < 0.7),
             6 => Ok(number.map_or_else(|| now.is_right(1), |number| now.is_right(number))),
-            _ => Ok(number.map_or_else(|| now.delete(1), |number| now.delete(number))),
+            _ if tried % 16 == 7 => Ok(now.no_rock(number.unwrap_or(1))),
+            _ => Ok(now.delete(number.unwrap_or(1))),
         };
         if let Ok(change) = change {
             editing.make(change);

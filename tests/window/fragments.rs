@@ -218,6 +218,26 @@ fn the_doubtful_ones_are_gone_through_with_keys() {
     let left = &outlines(&desk).doubtful;
     assert_eq!(left[..], doubtful[2..]);
     assert!(desk.says(&format!("{} fragments that nobody looked at", left.len())));
+    // A ball is no rock at all.
+    let out = |desk: &Desk| {
+        let labels = outlines(desk).now().labels().labels.clone();
+        labels
+            .into_iter()
+            .filter(|label| *label == NOT_ROCK)
+            .count()
+    };
+    let [(next, _), ..] = outlines(&desk).doubtful[..] else {
+        panic!("a doubtful one");
+    };
+    let (area, before) = (
+        outlines(&desk).now().labels().areas()[next as usize],
+        out(&desk),
+    );
+    desk.press(Modifiers::NONE, Key::N);
+    desk.press(Modifiers::COMMAND, Key::Delete);
+    assert_eq!(out(&desk), before + area);
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(out(&desk), before);
     // Coarser under the cursor, and finer.
     desk.harness
         .state_mut()

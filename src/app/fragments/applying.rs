@@ -150,6 +150,11 @@ impl Fragments {
                     self.change(photo, |now| Ok(now.delete(number)));
                 }
             }
+            FragmentStep::NoRock => {
+                if let Some(number) = self.selected.take() {
+                    self.change(photo, |now| Ok(now.no_rock(number)));
+                }
+            }
             FragmentStep::IsRight => {
                 let next = self.next_doubtful(photo);
                 if let Some(number) = self.selected {

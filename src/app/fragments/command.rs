@@ -41,6 +41,8 @@ pub enum FragmentStep {
     Show(u32),
     /// The selected fragment is none.
     Delete,
+    /// The selected fragment is no rock: neither fragment nor fines.
+    NoRock,
     /// The selected fragment is right as it is; on to the next doubtful one.
     IsRight,
     /// On to the most doubtful fragment behind the selected one.

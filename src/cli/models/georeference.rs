@@ -128,13 +128,14 @@ fn table(result: &Georeferenced) -> String {
             format!("length {unit}"),
         );
         for position in &result.positions {
-            let [east, north, up] = position.residual.to_array();
-            let length = position.residual.length();
+            let number = |number| result.residual_in_words(number);
+            let [east, north, up] = position.residual.to_array().map(number);
+            let length = number(position.residual.length());
             let used = if position.used { "used" } else { "not used" };
             let marks =
                 (position.marks_px).map_or_else(String::new, |px| format!(", marks {px:.2} px"));
             text += &format!(
-                "{:width$} {east:>10.3} {north:>10.3} {up:>10.3} {length:>10.3}  {used}{marks}\n",
+                "{:width$} {east:>10} {north:>10} {up:>10} {length:>10}  {used}{marks}\n",
                 position.name,
             );
         }
@@ -147,7 +148,8 @@ fn table(result: &Georeferenced) -> String {
     }
     if let Some(rms) = result.rms {
         let (used, all) = (result.used(), result.positions.len());
-        text += &format!("{used} of {all} positions used, RMS {rms:.3} {unit}\n");
+        let rms = result.residual_in_words(rms);
+        text += &format!("{used} of {all} positions used, RMS {rms} {unit}\n");
     }
     text += &format!(
         "scale: {} {unit} to one of the reconstruction's units",

@@ -181,6 +181,18 @@ impl Georeferenced {
         Some(stated_percent(self.scale_interval? / TO_95_PERCENT))
     }
 
+    /// A residual, or their mean, as text: with three decimals, and more where the mean has no two digits in them (a model on
+    /// a table).
+    pub fn residual_in_words(&self, residual: f64) -> String {
+        // What is less than a millionth is rounding.
+        let mean = self.rms.filter(|rms| *rms > 1e-6).unwrap_or(1.0);
+        let decimals = (1.0 - mean.log10().floor()).max(3.0);
+        let unit = 10.0_f64.powf(decimals);
+        // Plus zero: a residual of nothing has no sign.
+        let rounded = (residual * unit).round() / unit + 0.0;
+        format!("{rounded:.*}", decimals as usize)
+    }
+
     /// How many known positions were used.
     pub fn used(&self) -> usize {
         self.positions

@@ -441,6 +441,18 @@ fn sceaux_in_two_frames() {
         "{found:?}"
     );
     assert!((found.rms.unwrap() - 0.021_221).abs() < 1e-5, "{found:?}");
+    assert_eq!(found.residual_in_words(0.021_221), "0.021");
+    assert_eq!(found.residual_in_words(-0.000_4), "0.000");
+    let table = Georeferenced {
+        rms: Some(0.000_42),
+        ..found
+    };
+    assert_eq!(table.residual_in_words(0.000_42), "0.00042");
+    let exact = Georeferenced {
+        rms: Some(1e-12),
+        ..table
+    };
+    assert_eq!(exact.residual_in_words(1e-12), "0.000");
     // The camera axes were not given, and turn into the other's.
     let mut own = read_project(&nvm, &progress).unwrap().reconstruction;
     own.transform(&found.similarity);

@@ -143,9 +143,9 @@ fn result(found: &Georeferenced, ui: &mut egui::Ui) {
     ui.label(names::unbroken(&format!(
         "Applied: {scale} {unit} to a unit before{sure}"
     )));
-    if let Some(rms) = found.rms {
+    if let Some(rms) = found.rms.map(|rms| found.residual_in_words(rms)) {
         let (used, all) = (found.used(), found.positions.len());
-        ui.label(format!("{used} of {all} points used, RMS {rms:.3} {unit}"));
+        ui.label(format!("{used} of {all} points used, RMS {rms} {unit}"));
     }
     if let Some(errors) = found.errors_in_words() {
         ui.label(format!("Poses: {errors}"));

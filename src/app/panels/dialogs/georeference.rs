@@ -327,11 +327,9 @@ fn result(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mut Vec<Command>
             "Least sure rotation: ± {degrees:.3} degrees (standard error)"
         ));
     }
-    if let Some(rms) = fitted.rms {
+    if let Some(rms) = fitted.rms.map(|rms| fitted.residual_in_words(rms)) {
         let (used, all) = (fitted.used(), fitted.positions.len());
-        ui.label(format!(
-            "{used} of {all} positions used, RMS {rms:.3} {unit}"
-        ));
+        ui.label(format!("{used} of {all} positions used, RMS {rms} {unit}"));
     }
     if let Some(errors) = fitted.errors_in_words() {
         ui.label(format!("Poses: {errors}"));

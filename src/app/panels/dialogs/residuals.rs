@@ -69,7 +69,7 @@ pub(super) fn residuals(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mu
                 let Some(position) = rows.get(row.index()) else {
                     return;
                 };
-                let [name, numbers @ .., used] = cells(position);
+                let [name, numbers @ .., used] = cells(fitted, position);
                 row.col(|ui| {
                     names::name(ui, &name);
                 });
@@ -97,7 +97,7 @@ pub(super) fn residuals(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mu
     if copy.on_hover_text(hover).clicked() {
         let mut text = format!("position\tdE {unit}\tdN {unit}\tdU {unit}\tlength {unit}\tused\n");
         for position in rows {
-            text.push_str(&cells(position).join("\t"));
+            text.push_str(&cells(fitted, position).join("\t"));
             text.push('\n');
         }
         commands.push(Command::Copy(text));
@@ -105,10 +105,9 @@ pub(super) fn residuals(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mu
 }
 
 /// Name, east, north, up, length, used.
-fn cells(position: &PositionResidual) -> [String; 6] {
+fn cells(fitted: &Georeferenced, position: &PositionResidual) -> [String; 6] {
     let [east, north, up] = position.residual.to_array();
-    // Plus zero: a residual of nothing has no sign.
-    let number = |number: f64| format!("{:.4}", (number * 1e4).round() / 1e4 + 0.0);
+    let number = |number: f64| fitted.residual_in_words(number);
     let used = if position.used { "used" } else { "outlier" };
     let used = match position.marks_px {
         Some(px) => format!("{used}, marks {px:.2} px"),

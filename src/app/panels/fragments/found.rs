@@ -93,7 +93,12 @@ fn selected(
             (
                 "Delete",
                 FragmentStep::Delete,
-                "It is no fragment: its pixels are fines (Delete). A ball or a machine is no rock at all: exclude its area",
+                "It is no fragment: its pixels are fines (Delete)",
+            ),
+            (
+                "No rock",
+                FragmentStep::NoRock,
+                "A ball or a machine: neither a fragment nor fines (Ctrl+Delete)",
             ),
         ] {
             let button = ui.button(name).on_hover_text(hover);

@@ -179,6 +179,9 @@ pub(super) fn keys(ui: &Ui, commands: &mut Vec<Command>) {
     if ui.ctx().egui_wants_keyboard_input() {
         return;
     }
+    if ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Delete)) {
+        commands.push(Command::Fragments(FragmentStep::NoRock));
+    }
     // With Shift first: egui takes the first that fits.
     for (tool, _, modifiers, key, _) in TOOLS.into_iter().rev() {
         if ui.input_mut(|input| input.consume_key(modifiers, key)) {
