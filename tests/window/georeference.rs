@@ -77,7 +77,7 @@ fn a_list_of_positions_gives_the_scales_of_the_world() {
     assert_eq!(rows.len(), 5);
     assert_eq!(
         rows[0].1[1..],
-        ["0.0000"; 4]
+        ["0.000"; 4]
             .map(str::to_owned)
             .into_iter()
             .chain(["used".to_owned()])
