@@ -67,6 +67,7 @@ use fragscale_render as render;
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 pub use command::Command;
 pub use state::State;
@@ -178,6 +179,24 @@ impl App {
         }
     }
 
+    /// What is typed beside the fields of a small window is for none of what lies behind it: there a letter is a tool, and Delete
+    /// takes away.
+    fn keep_keys_from_behind(&self, context: &egui::Context) {
+        if self.state.asking.is_none() || context.egui_wants_keyboard_input() {
+            return;
+        }
+        context.input_mut(|input| {
+            input.events.retain(|event| match event {
+                egui::Event::Text(_) => false,
+                egui::Event::Key { key, modifiers, .. } => {
+                    modifiers.command
+                        || matches!(key, egui::Key::Tab | egui::Key::Escape | egui::Key::F1)
+                }
+                _ => true,
+            });
+        });
+    }
+
     fn hold_back_closing(&mut self, context: &egui::Context) {
         let closes = context.input(|input| input.viewport().close_requested());
         let loses = self.state.is_changed() || self.state.work.is_writing();
@@ -189,9 +208,12 @@ impl App {
 }
 
 impl eframe::App for App {
-    fn logic(&mut self, context: &egui::Context, _frame: &mut eframe::Frame) {
+    fn logic(&mut self, context: &egui::Context, frame: &mut eframe::Frame) {
         self.times.begin();
+        let last_frame = frame.info().cpu_usage.unwrap_or_default();
+        self.state.last_frame = Duration::from_secs_f32(last_frame);
         self.hold_back_closing(context);
+        self.keep_keys_from_behind(context);
         for command in actions::pressed(&self.state, context) {
             self.state.apply(command);
         }

@@ -1,6 +1,6 @@
 //! The folder of a season's results: whose it is, and its tables.
 
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::File;
 use std::path::Path;
 
 use crate::exports::{self, SeasonReport, SeasonRow};
@@ -37,18 +37,13 @@ impl ResultsFolder {
             let remedy = "choose a new folder, or one of an earlier batch";
             return Err(FileError::new(to, Fault::new(what, remedy)));
         }
-        let mut options = OpenOptions::new();
-        let options = options.create(true).append(true);
-        let lock = options.open(&path).map_err(cannot)?;
-        match lock.try_lock() {
-            Ok(()) => Ok(Self { _lock: lock }),
-            Err(TryLockError::WouldBlock) => {
+        match files::lock(&path).map_err(cannot)? {
+            Some(lock) => Ok(Self { _lock: lock }),
+            None => {
                 let what = "another batch is at work in it";
                 let fault = Fault::new(what, "wait for its end, or choose another folder");
                 Err(FileError::new(to, fault))
             }
-            // Some shared disks know no locks; the flights' files are whole even so.
-            Err(TryLockError::Error(_)) => Ok(Self { _lock: lock }),
         }
     }
 }

@@ -16,6 +16,7 @@ mod atomic;
 mod input;
 mod inputs;
 mod last_segment;
+mod lock;
 mod marks;
 mod overwrite;
 mod recording;
@@ -28,6 +29,7 @@ pub use input::{
 };
 pub use inputs::{Inputs, is_same_file};
 pub use last_segment::last_segment;
+pub use lock::lock;
 pub use marks::{
     CHECK_MARK, FAILED_MARK, FLIGHT_MARK, HTML_MARK, KMZ_MARK, Kind, LITCHI_MARK, PDF_MARK,
     SVG_MARK, WAYPOINTS_MARK, WORLD_FILE_MARK, is_own_result, marked_png,

@@ -11,7 +11,7 @@
 //! lock         held by the run that works here
 //! ```
 
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +21,7 @@ use crate::client::unwritten;
 use crate::fault::Fault;
 use crate::files::{self, FileError, Inputs, Kind};
 use crate::formats::UNFINISHED;
+use crate::reconstruct::{empty_work, lock_work};
 
 /// A task that a run has begun.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -61,21 +62,7 @@ impl Place {
         let of = to.join(UNFINISHED);
         let work = of.parent().unwrap_or(to).to_owned();
         let is_new = !to.exists();
-        fs::create_dir_all(&work).map_err(|error| unwritten(&work, &error))?;
-        let path = work.join("lock");
-        let lock = File::create(&path).map_err(|error| unwritten(&path, &error))?;
-        match lock.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                let fault = Fault::new(
-                    "another run works in this folder",
-                    "wait until it has ended, or name a new folder",
-                );
-                return Err(FileError::new(to, fault));
-            }
-            // A file system without locks.
-            Err(TryLockError::Error(_)) => {}
-        }
+        let lock = lock_work(to, &work)?;
         let place = Self {
             to: to.to_owned(),
             work,
@@ -88,28 +75,9 @@ impl Place {
         if is_same {
             return Ok((place, None, before));
         }
-        place.empty()?;
+        empty_work(&place.work).map_err(|error| unwritten(&place.work, &error))?;
         place.write("photos.txt", told.as_bytes())?;
         Ok((place, before, None))
-    }
-
-    /// Throws away what lies in the folder of unfinished work.
-    fn empty(&self) -> Result<(), FileError> {
-        let failed = |error: std::io::Error| unwritten(&self.work, &error);
-        for entry in fs::read_dir(&self.work).map_err(failed)? {
-            let path = entry.map_err(failed)?.path();
-            if path.ends_with("lock") {
-                continue;
-            }
-            let is_folder = fs::symlink_metadata(&path).is_ok_and(|entry| entry.is_dir());
-            let removed = if is_folder {
-                fs::remove_dir_all(&path)
-            } else {
-                fs::remove_file(&path)
-            };
-            removed.map_err(failed)?;
-        }
-        Ok(())
     }
 
     /// A file of unfinished work.

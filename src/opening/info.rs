@@ -264,7 +264,8 @@ fn flight_info(flight: &Flight, warnings: &[String]) -> Value {
     json!({
         "kind": "flight",
         "flight": parts.name,
-        "world_unit": parts.unit.symbol(),
+        // Of a model in a frame of its own nobody knows it.
+        "world_unit": parts.unit_known.then(|| parts.unit.symbol()),
         "image": image,
         "surface_vertices": parts.surface.vertices().len(),
         "cameras": parts.cameras.iter().map(camera_value).collect::<Vec<_>>(),

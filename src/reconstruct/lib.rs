@@ -65,7 +65,9 @@ pub use self::estimate::{about, processor_seconds};
 pub use self::photo_set::{LeftOut, PhotoSet, SurveyPhoto};
 pub use self::quality::Quality;
 pub use self::said::{found, left_out, summary};
-pub use self::written::{check_new_folder, may_be_made, name_of, proposed_folder};
+pub use self::written::{
+    check_new_folder, empty_work, lock_work, may_be_made, name_of, proposed_folder,
+};
 
 use self::files::FileError;
 use self::formats::read_camera;
@@ -164,7 +166,7 @@ pub fn reconstruct(
     }
     let (sparse, goes_on) = kept_or_found.map_err(at)?;
     let found = (engine.name(), sparse, goes_on);
-    written::write(request, &folder, &photos, found, progress)
+    written::write(request, &mut folder, &photos, found, progress)
 }
 
 #[cfg(test)]

@@ -589,6 +589,42 @@ fn a_given_calibration_is_kept() {
     }
 }
 
+/// One photo lies turned among the others, as viewers leave them, and does not say its focal length any more: its lens is found as
+/// the others' is. Held at a guess, it would bend them.
+#[test]
+fn the_lens_of_a_turned_photo_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let (all, to) = (folder.path().join("photos"), folder.path().join("flight"));
+    fs::create_dir(&all).unwrap();
+    for number in 1..=9 {
+        let name = format!("IMG_{number}.jpg");
+        fs::copy(photos().join(&name), all.join(&name)).unwrap();
+    }
+    let pose = &poses()[4];
+    let turned = image::imageops::rotate90(&photo(pose, 1));
+    let silent = PhotoMetadata {
+        focal_length_35mm: None,
+        dji: None,
+        ..metadata(Some(pose))
+    };
+    fs::write(all.join("IMG_5.jpg"), jpeg(&turned, 92, &silent).unwrap()).unwrap();
+    let made = reconstruct(
+        &request(&all, &to),
+        &Embedded::default(),
+        &Progress::default(),
+    );
+    let made = made.unwrap();
+    assert_eq!(made.registered, 9);
+    let opened = open_flight(&made.flight, &OpenOptions::default(), &Progress::default()).unwrap();
+    let cameras = &opened.flight.parts().cameras;
+    assert_eq!(cameras.len(), 2);
+    for lens in cameras {
+        let off = (lens.fx / camera().fx - 1.0).abs();
+        let most = if lens.width == 640 { 0.003 } else { 0.01 };
+        assert!(off < most, "{} x {}: {}", lens.width, lens.height, lens.fx);
+    }
+}
+
 /// Without places a model stands upright: by the gimbals' angles, and without them by its points. The rock's waves
 /// are 1.2 m high, and what five photos show of them is 25 m wide: so much is their plane aslant.
 #[test]

@@ -28,6 +28,7 @@ mod survey;
 mod tool_bar;
 mod verdict;
 mod view_buttons;
+mod working;
 
 pub use control_points::control as control_points;
 pub use corner_loupe::Crops;

@@ -5,6 +5,7 @@ use crate::actions;
 use crate::command::{Asking, Command};
 use crate::from_photos::FromPhotosStep;
 use crate::names;
+use crate::panels::working::working;
 use crate::size_distributions::Page;
 use crate::state::State;
 
@@ -61,7 +62,7 @@ pub fn start_page(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>)
             ui.weak("or tables of size distributions (CSV)");
             if state.is_opening() {
                 ui.add_space(14.0);
-                ui.spinner();
+                working(ui);
             }
             ui.add_space(18.0);
             if !state.preferences.recent.is_empty() {

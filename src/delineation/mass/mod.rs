@@ -330,6 +330,23 @@ impl Steps {
         fines: 0.0,
     };
 
+    /// Which they are, in their order: "edges, pores and fines".
+    pub fn in_words(&self) -> String {
+        let all = [
+            (Step::Edges, "edges"),
+            (Step::Engine, "engine"),
+            (Step::Pores, "pores"),
+            (Step::Fines, "fines"),
+        ];
+        let taken = all.into_iter().filter(|(step, _)| self.takes(*step));
+        let names: Vec<&str> = taken.map(|(_, name)| name).collect();
+        match names.split_last() {
+            None => "none".to_owned(),
+            Some((only, [])) => (*only).to_owned(),
+            Some((last, others)) => format!("{} and {last}", others.join(", ")),
+        }
+    }
+
     /// Whether a step is among them.
     fn takes(&self, step: Step) -> bool {
         match step {

@@ -27,7 +27,7 @@ use self::list_world::ListWorld;
 use self::marks::MarkedPoint;
 use self::photo_names::PhotoNames;
 use crate::control::ControlList;
-use crate::fault::Fault;
+use crate::fault::{Fault, first_names};
 use crate::files::FileError;
 use crate::flight::Flight;
 use crate::formats::photos::photo_folder::PhotoFolder;
@@ -350,20 +350,22 @@ pub fn georeference_model(
         .positions
         .iter()
         .filter(|p| !p.used && (p.kind == KnownKind::ControlPoint) == points.is_some());
-    let outliers = far.count();
-    if outliers > 0 {
-        let do_not = match outliers {
+    let outliers: Vec<&str> = far.map(|position| position.name.as_str()).collect();
+    if !outliers.is_empty() {
+        let do_not = match outliers.len() {
             1 => "1 known position does not agree with the others and was",
-            _ => &format!("{outliers} known positions do not agree with the others and were"),
+            count => &format!("{count} known positions do not agree with the others and were"),
         };
-        warnings.push(format!("{do_not} left out of the fit"));
+        let names = first_names(&outliers);
+        warnings.push(format!("{do_not} left out of the fit: {names}"));
     }
     if let Some(degrees) = result
         .rotation_error_degrees
         .filter(|degrees| *degrees > 1.0)
     {
         warnings.push(format!(
-            "the positions lie nearly on a line: the rotation about it is known to {degrees:.1} degrees only"
+            "the positions hold the least sure rotation to {degrees:.1} degrees only: they lie nearly on a line, or close together for how \
+             well they are known"
         ));
     }
     if result.used() == 3 {

@@ -10,7 +10,8 @@ use super::{Whose, failed, not_waited_for};
 use crate::fault::Fault;
 use crate::jobs::Progress;
 
-/// Photos of a camera from which on its lens is adjusted: before, poses take up what is the lens's.
+/// Photos of a camera from which on lenses are adjusted: before, poses take up what is the lens's. From then on those of
+/// fewer photos are, too (one that lies turned among the others): held at what is only guessed, they would bend the model.
 const PHOTOS_OF_A_LENS: usize = 4;
 
 /// Pixels that a point may lie from where a photo sees it.
@@ -50,9 +51,9 @@ pub(crate) fn adjust(
         }
     }
     let few = of_camera
-        .into_iter()
-        .filter(|&(_, photos)| photos < PHOTOS_OF_A_LENS)
-        .map(|(camera, _)| camera);
+        .values()
+        .all(|&photos| photos < PHOTOS_OF_A_LENS)
+        .then(|| of_camera.keys().copied());
     // A calibration that is given, once pixels are those of its pinhole.
     let given = what.whose.cameras().map(|(camera, _)| camera);
     let given = given.filter(|&camera| {
@@ -67,7 +68,7 @@ pub(crate) fn adjust(
         refine_focal_length: !is_local,
         refine_principal_point: !is_local,
         refine_extra_params: !is_local,
-        constant_cameras: few.chain(given).collect(),
+        constant_cameras: few.into_iter().flatten().chain(given).collect(),
         intrinsics_priors: lenses.collect(),
         position_priors: what.places,
         images: what.images,

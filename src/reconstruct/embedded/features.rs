@@ -124,9 +124,11 @@ pub(super) fn keep(store: &FeatureStore, kept: &Path) -> Result<(), Fault> {
         let what = format!("{} cannot be written ({why})", kept.display());
         Fault::new(what, "make room on the disk")
     };
-    store
-        .save(&part)
-        .map_err(|error| cannot(error.to_string()))?;
+    store.save(&part).map_err(|error| {
+        // Its own words are Korean; the system's are below them.
+        let of_system = std::error::Error::source(&error);
+        cannot(of_system.map_or("of unknown cause".to_owned(), ToString::to_string))
+    })?;
     std::fs::rename(&part, kept).map_err(|error| cannot(error.to_string()))
 }
 

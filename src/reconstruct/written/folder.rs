@@ -1,7 +1,7 @@
 //! The folder that a reconstruction comes out in: which one may be, what lies in it when the work begins again,
 //! and how its files are written.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -13,6 +13,7 @@ use crate::formats::{FAILED, MODEL, UNFINISHED};
 use crate::kept_model::{files_of, keep, kept_in};
 use crate::photo_set::PhotoSet;
 use crate::written::cannot;
+use crate::written::work_folder::{empty_work, lock_work};
 
 pub(super) const FLIGHT: &str = "flight.toml";
 /// What a finished model is of, beside it.
@@ -30,6 +31,8 @@ pub(crate) struct Folder {
     of: String,
     /// The flight.toml that is there, where the same photos are reconstructed once more.
     before: Option<String>,
+    /// Keeps other runs out.
+    lock: Option<File>,
 }
 
 /// A flight may be made in a folder that is to be made, is empty, or is that of a run that did not end.
@@ -103,15 +106,16 @@ pub(crate) fn folder(to: &Path, photos: &Path) -> Result<Folder, FileError> {
         read,
         of: String::new(),
         before,
+        lock: None,
     })
 }
 
 impl Folder {
-    /// Makes the folder; throws unfinished work away that is of other photos, or of another engine's. Where the
+    /// Makes the folder and keeps other runs out of it; throws unfinished work away that is of other photos, or of another engine's. Where the
     /// flight is finished and of these photos, its model is taken.
     ///
     /// # Errors
-    /// Where the folder cannot be written, or holds a flight of other photos.
+    /// Where the folder cannot be written, another run works in it, or it holds a flight of other photos.
     pub(crate) fn go_on_with(
         &mut self,
         photos: &PhotoSet,
@@ -133,11 +137,9 @@ impl Folder {
             let what = "there is a flight in it already, of other photos or by another engine";
             return Err(FileError::new(&self.path, Fault::new(what, ANOTHER)));
         }
+        self.lock = Some(lock_work(&self.path, &self.work)?);
         if !is_same(&of) {
-            if self.work.exists() {
-                fs::remove_dir_all(&self.work).map_err(written)?;
-            }
-            fs::create_dir_all(&self.work).map_err(written)?;
+            empty_work(&self.work).map_err(written)?;
             if let Some(sparse) = self.before.as_ref().and_then(|_| kept_in(&model)) {
                 keep(&self.work, &sparse).map_err(|fault| FileError::new(&self.work, fault))?;
             }
@@ -149,6 +151,13 @@ impl Folder {
         }
         self.of = text;
         Ok(())
+    }
+
+    /// Takes the unfinished work away, once the flight is whole.
+    pub(super) fn throw_work_away(&mut self) {
+        self.lock = None;
+        // What is left over harms nobody.
+        let _ = fs::remove_dir_all(&self.work);
     }
 
     /// Notes why the photos could not be reconstructed, for whoever opens the folder: the same photos once more

@@ -5,9 +5,11 @@ mod flight_files;
 mod folder;
 mod proposed;
 mod report;
+mod work_folder;
 
 pub(crate) use self::folder::{Folder, folder};
 pub use self::proposed::{check_new_folder, may_be_made, name_of, proposed_folder};
+pub use self::work_folder::{empty_work, lock_work};
 
 use std::fs;
 use std::io;
@@ -41,7 +43,7 @@ fn cannot(what: &str, error: &io::Error) -> Fault {
 /// Where the folder cannot be written or a photo not be read, or the work was cancelled.
 pub(crate) fn write(
     request: &Request,
-    folder: &Folder,
+    folder: &mut Folder,
     photos: &PhotoSet,
     (engine, mut sparse, goes_on): (String, Sparse, bool),
     progress: &Progress,
@@ -167,7 +169,6 @@ pub(crate) fn write(
     for (name, bytes) in &files {
         folder.write(&folder.path.join(name), bytes)?;
     }
-    // The flight is whole: what is left over harms nobody.
-    let _ = fs::remove_dir_all(&folder.work);
+    folder.throw_work_away();
     Ok(made)
 }

@@ -16,6 +16,7 @@ use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::opening::Georeferenced;
 use crate::panels::field::hinted_field;
+use crate::panels::working::working;
 use crate::state::State;
 use crate::tasks::Task;
 
@@ -111,7 +112,7 @@ fn apply(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
             commands.push(Command::Control(ControlStep::Apply));
         }
         if runs {
-            ui.spinner();
+            working(ui);
         }
     });
     if let Some(lacks) = lacks {

@@ -10,6 +10,7 @@ use crate::open_flight::georeferencing::{GeoreferenceForm, KnownFrom, PathField}
 use crate::open_flight::{Measure, OpenFlight};
 use crate::opening::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds};
 use crate::panels::path_field::{in_a_folder, path_field};
+use crate::panels::working::working;
 use crate::state::State;
 use crate::tasks::Task;
 use crate::typed::typed;
@@ -236,7 +237,7 @@ fn fit(
     let running = |&(task, _): &(Task, _)| task == Task::GEOREFERENCE;
     if let Some((_, (sentence, _))) = state.work.running().find(running) {
         ui.horizontal(|ui| {
-            ui.spinner();
+            working(ui);
             ui.label(sentence);
             let stop = ui.button("Stop fitting");
             if stop.on_hover_text("Give this fit up").clicked() {

@@ -7,6 +7,7 @@ use super::places::places;
 use crate::command::{Answers, Asking, Command, Dialog};
 use crate::open_flight::OpenFlight;
 use crate::panels::field::{combo_box, hinted_field, number_field};
+use crate::panels::working::working;
 use crate::plan::{Drone, Flying, MOST_SPEED, Pattern, Positioning, Purpose, Size};
 use crate::planning::{AskedPlan, PlanStep};
 use crate::state::State;
@@ -89,7 +90,7 @@ fn compare(state: &State, open: &OpenFlight, ui: &mut Ui, commands: &mut Vec<Com
             commands.push(Command::Browse(dialog));
         }
         if running {
-            ui.spinner();
+            working(ui);
         }
     });
     let hover = "The path of a mission's file, with Enter";

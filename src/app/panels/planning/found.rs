@@ -6,6 +6,7 @@ use crate::command::Command;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::panels::rows::pairs;
+use crate::panels::working::working;
 use crate::planning::PlanStep;
 use crate::state::State;
 use crate::tasks::Task;
@@ -25,7 +26,7 @@ pub(super) fn found(state: &State, open: &OpenFlight, ui: &mut Ui, commands: &mu
         return;
     } else if state.work.is_running(Task::PLAN) {
         ui.horizontal(|ui| {
-            ui.spinner();
+            working(ui);
             ui.label("Planning…");
             if ui.button("Cancel").on_hover_text("Stop planning").clicked() {
                 commands.push(Command::Cancel(Task::PLAN));

@@ -3,6 +3,7 @@
 use crate::command::Command;
 use crate::panels::field::combo_box;
 use crate::panels::path_field::takes_the_keys_at_first;
+use crate::panels::working::working;
 use crate::size_distributions::{DistributionCommand, PasteForm};
 use crate::state::State;
 use crate::tasks::work::Task;
@@ -81,7 +82,7 @@ pub(in crate::panels) fn paste(state: &State, ui: &mut egui::Ui, commands: &mut 
             commands.push(Command::Distributions(DistributionCommand::Paste));
         }
         if state.work.is_running(Task::READ_DISTRIBUTIONS) {
-            ui.spinner();
+            working(ui);
         }
     });
 }

@@ -13,6 +13,7 @@ use crate::command::Command;
 use crate::exports::{Dash, FigureStyle, Marker};
 use crate::fragmentation::Labels;
 use crate::names;
+use crate::panels::working::working;
 use crate::size_distributions::drawing::{Area, Drawing, MethodDrawing};
 use crate::size_distributions::{Computed, DistributionCommand, PlotOf};
 use crate::state::State;
@@ -55,7 +56,7 @@ pub(super) fn plot(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>
                     }
                 }
                 None => {
-                    ui.spinner();
+                    working(ui);
                     ui.weak("Computing; what is shown is the result before");
                 }
             }

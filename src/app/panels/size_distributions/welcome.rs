@@ -2,6 +2,7 @@
 
 use crate::actions;
 use crate::command::Command;
+use crate::panels::working::working;
 use crate::state::State;
 
 /// Draws the page without data.
@@ -37,7 +38,7 @@ pub(super) fn welcome(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
                 .is_running(crate::tasks::work::Task::READ_DISTRIBUTIONS)
             {
                 ui.add_space(14.0);
-                ui.spinner();
+                working(ui);
             }
         });
     });

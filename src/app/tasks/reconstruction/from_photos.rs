@@ -164,7 +164,7 @@ impl State {
         }
         // Of its own: a cancelled run may still have something to show.
         self.from_photos.grown = Default::default();
-        let (grown, context) = (self.from_photos.grown.clone(), self.context.clone());
+        let grown = self.from_photos.grown.clone();
         let work = move |progress: &Progress| {
             let _writes = alone(&writing, &request.to, progress)?;
             // (Drivers take a while to say what there is.)
@@ -175,7 +175,6 @@ impl State {
                     // Who draws a picture now takes the next model.
                     if let Ok(mut grown) = grown.try_lock() {
                         *grown = Some(growth);
-                        context.request_repaint();
                     }
                 });
                 let engine = Embedded {

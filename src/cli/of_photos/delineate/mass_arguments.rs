@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 
 use crate::delineation::mass::{LOOSE, Step, WantedSteps};
 use crate::delineation::tail::Tail;
+use crate::exports::MeasuredPhoto;
 use crate::fault::Fault;
 use crate::formats::{DistributionColumns, FileError, read_bytes, size_distributions};
 use crate::units::LengthUnit;
@@ -102,6 +103,30 @@ impl MassArguments {
             named,
             porosity: self.porosity.unwrap_or(LOOSE),
         }
+    }
+
+    /// By which steps the sizes by mass of these photos follow from their outlines, a line for each way: without `--steps` they
+    /// are others for an engine's outlines than for those of people.
+    pub(super) fn steps_in_words(&self, photos: &[MeasuredPhoto<'_>]) -> String {
+        let wanted = self.steps();
+        let mut lines: Vec<String> = Vec::new();
+        for of in photos {
+            let steps = wanted.of(of.outlined).in_words();
+            let line = format!("steps to the mass ({}): {steps}\n", of.outlined.method());
+            if !lines.contains(&line) {
+                lines.push(line);
+            }
+        }
+        lines.concat()
+    }
+
+    /// That `--porosity` does nothing, where no photo takes the pores.
+    pub(super) fn not_taken(&self, photos: &[MeasuredPhoto<'_>]) -> Option<String> {
+        let wanted = self.steps();
+        let takes = |of: &MeasuredPhoto<'_>| wanted.of(of.outlined).pores.is_some();
+        (self.porosity.is_some() && !photos.iter().any(takes)).then(|| {
+            "--porosity does nothing: an engine's outlines are not taken by the step pores (--steps edges,pores,fines takes it)".to_owned()
+        })
     }
 
     /// The law of the fines, its sizes in the world's unit.

@@ -148,6 +148,7 @@ pub(in crate::cli) fn delineate_of(
             not_all = Some(Fault::new(what, format!("the first: {first}")));
         }
         warnings.extend(sizes.without.iter().cloned());
+        warnings.extend(arguments.mass.not_taken(&done));
         let law = arguments.mass.tail_in_words();
         let of_tables = FragmentTables {
             flight: &flight.parts().name,
@@ -162,7 +163,7 @@ pub(in crate::cli) fn delineate_of(
             outputs.write(path, &bytes, Kind::Result)?;
         }
         written.finish(&outputs)?;
-        text = sizes.words(world, unit);
+        text = sizes.words(world, unit) + &arguments.mass.steps_in_words(&done);
         of_all = sizes.of_all(world.in_units_of(unit));
     }
     warnings.extend(each.finished(is_whole));

@@ -25,6 +25,9 @@
 //! count their centre from the photo's and so do not say their size: CalibratedOpticalCenter beside
 //! them does.
 //!
+//! Of a photo that was turned since (its file has the sides of the camera's, swapped) 4 and 5 alone are used: which way it
+//! was turned, and with it the centre, nobody says.
+//!
 //! Pixels of 1 to 3 belong to the size that the camera wrote (EXIF's PixelXDimension); where the file
 //! has been reduced since, they are scaled.
 
@@ -54,6 +57,11 @@ pub enum FocalSource {
 }
 
 impl FocalSource {
+    /// Whether it is the lens's, with its centre in the middle and no distortion.
+    fn is_nominal(self) -> bool {
+        matches!(self, Self::FocalPlane | Self::FilmEquivalent)
+    }
+
     /// For messages.
     pub fn in_words(self) -> &'static str {
         match self {
@@ -113,6 +121,9 @@ pub(super) fn candidates(
     let mut candidates = Vec::new();
     for stated in all.into_iter().flatten() {
         let candidate = stated.candidate;
+        if frame.is_turned && !candidate.source.is_nominal() {
+            continue;
+        }
         let fitted = frame.fitted(&stated).and_then(|(fitted, fit)| {
             match frame.objection(&fitted, &fit, film.as_ref()) {
                 None => Ok((fitted, fit)),
@@ -168,6 +179,7 @@ impl Stated {
 struct Frame {
     written: (f64, f64),
     scale: f64,
+    is_turned: bool,
 }
 
 impl Frame {
@@ -177,13 +189,25 @@ impl Frame {
             return Some(Self {
                 written: (width, height),
                 scale: 1.0,
+                is_turned: false,
             });
         };
         let (w, h) = (f64::from(w), f64::from(h));
+        let turned = height / w;
+        if (h * turned - width).abs() <= 1.0_f64.max(turned) && w != h {
+            warnings.push(format!(
+                "the file is {width} x {height}, the camera wrote {w} x {h}: it was turned, so it counts as a camera of its own"
+            ));
+            return Some(Self {
+                written: (w, h),
+                scale: turned,
+                is_turned: true,
+            });
+        }
         let scale = width / w;
         if (h * scale - height).abs() > 1.0_f64.max(scale) {
             warnings.push(format!(
-                "the file is {width} x {height}, its EXIF says {w} x {h}: it was cut or turned, so no focal length is taken from its metadata"
+                "the file is {width} x {height}, its EXIF says {w} x {h}: it was cut, so no focal length is taken from its metadata"
             ));
             return None;
         }
@@ -193,6 +217,7 @@ impl Frame {
         Some(Self {
             written: (w, h),
             scale,
+            is_turned: false,
         })
     }
 
@@ -269,11 +294,16 @@ impl Frame {
     }
 
     fn in_file(&self, candidate: FocalCandidate) -> FocalCandidate {
+        let FocalCandidate { fx, fy, cx, cy, .. } = candidate;
+        let [fx, fy, cx, cy] = match self.is_turned {
+            true => [fy, fx, cy, cx],
+            false => [fx, fy, cx, cy],
+        };
         FocalCandidate {
-            fx: candidate.fx * self.scale,
-            fy: candidate.fy * self.scale,
-            cx: candidate.cx * self.scale,
-            cy: candidate.cy * self.scale,
+            fx: fx * self.scale,
+            fy: fy * self.scale,
+            cx: cx * self.scale,
+            cy: cy * self.scale,
             ..candidate
         }
     }

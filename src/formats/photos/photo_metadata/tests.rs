@@ -240,11 +240,17 @@ fn dewarp_data_of_a_phantom_4_rtk() {
     );
     let cut = photo(jpeg((2736, 1000), &size, &[&packet(0)]));
     assert_eq!(cut.focal, []);
-    assert!(
-        cut.warnings[0].contains("cut or turned"),
-        "{:?}",
-        cut.warnings
-    );
+    assert!(cut.warnings[0].contains("it was cut"), "{:?}", cut.warnings);
+    // Turned by a viewer: the calibration is of the upright photo, its nominal focal length of both.
+    let mut with_film = size.to_vec();
+    with_film.push(short(Tag::FocalLengthIn35mmFilm, 24));
+    let upright = photo(jpeg((2736, 1824), &with_film, &[]));
+    let turned = photo(jpeg((1824, 2736), &with_film, &[&packet(0)]));
+    let [of_upright, of_turned] = [&upright, &turned].map(|photo| &photo.focal[..]);
+    assert_eq!((of_upright.len(), of_turned.len()), (1, 1));
+    assert_eq!(of_turned[0].fx, of_upright[0].fx);
+    assert_eq!((of_turned[0].cx, of_turned[0].cy), (912.0, 1368.0));
+    assert!(turned.warnings[0].contains("it was turned"), "{turned:?}");
     for data in [
         "2018-03-13;1,2",
         ";",

@@ -46,7 +46,7 @@ pub(super) fn read(text: &str) -> Result<PositionList, Fault> {
             match Layout::of(comment.unwrap_or(line)) {
                 Some(found) => {
                     list.crs = found.crs(list.crs.take());
-                    list.warnings = found.warnings(list.crs.as_deref());
+                    list.warnings = found.warnings();
                     layout = Some(found);
                 }
                 None if comment.is_some() => {}
@@ -207,12 +207,8 @@ impl Layout {
         stated.or_else(|| self.is_degrees.then(|| "EPSG:4326".to_owned()))
     }
 
-    fn warnings(&self, crs: Option<&str>) -> Vec<String> {
+    fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
-        if crs.is_none() {
-            warnings
-                .push("the list states no coordinate system for its columns; give one".to_owned());
-        }
         let above_ellipsoid = self.place(Column::HeightAboveEllipsoid).is_some();
         if above_ellipsoid && self.place(Column::Height).is_some() {
             warnings
