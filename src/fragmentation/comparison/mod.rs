@@ -220,9 +220,11 @@ fn against(
         &reference.fit.curve,
         &options.percentiles,
         options.envelope_percent,
+        measured_by_both(&curve, reference),
     )?;
     let mut notes = Vec::new();
     notes.extend(partly_known(&curve));
+    notes.extend(not_measured(&curve, &shift));
     if shift.looks_like_scale {
         notes.push(format!(
             "'{method}': all percentiles are shifted by about {:+.1} % (spread {:.1} %), as an image \
@@ -239,6 +241,35 @@ fn against(
         shift,
         notes,
         curve,
+    })
+}
+
+/// The percents between which both were measured; of curves without a common percent an empty range.
+fn measured_by_both(curve: &MethodCurve, reference: &MethodCurve) -> [f64; 2] {
+    let [own, other] = [curve, reference].map(|of| {
+        let percents = of.known_to_all().map(|point| point.mean);
+        percents.fold(
+            [f64::INFINITY, f64::NEG_INFINITY],
+            |[low, high], percent| [low.min(percent), high.max(percent)],
+        )
+    });
+    [own[0].max(other[0]), own[1].min(other[1])]
+}
+
+/// Which percentiles are the functions' word.
+fn not_measured(curve: &MethodCurve, shift: &Shift) -> Option<String> {
+    let beyond = shift
+        .percentiles
+        .iter()
+        .filter(|percentile| !percentile.measured);
+    let names: Vec<String> = beyond.map(|of| format!("P{}", of.percent)).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "'{}': at {} not both were measured; their shifts are of the functions alone, and do not count in the mean shift where \
+             others do",
+            curve.method,
+            names.join(", ")
+        )
     })
 }
 

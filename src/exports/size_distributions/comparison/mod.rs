@@ -78,6 +78,7 @@ pub(super) mod test_comparison {
             },
             shift: Shift {
                 percentiles: vec![PercentileShift {
+                    measured: true,
                     percent: 50.0,
                     reference: 40.0,
                     size: 36.0,
