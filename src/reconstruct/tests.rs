@@ -732,13 +732,24 @@ fn folders_without_photos_that_overlap_are_refused() {
     // Which cannot be read is said.
     fs::write(photos.join("empty.jpg"), "").unwrap();
     refused("0 of its 1 photos can be read (empty.jpg: ");
-    fs::remove_file(photos.join("empty.jpg")).unwrap();
+    // As are the folders within that have some.
+    fs::create_dir_all(photos.join("day 2")).unwrap();
+    fs::rename(photos.join("empty.jpg"), photos.join("day 2/a.jpg")).unwrap();
+    refused("name one of its folders that have some: day 2");
     for (number, pose) in (1..4).zip(&poses()) {
         let name = format!("IMG_{number}.jpg");
         // Each of another place.
         write(&photos, &name, &photo(pose, 1000 * number), Some(pose));
     }
+    // Another run at work in the folder.
+    let work = to.join("unfinished");
+    let other = lock_work(&to, &work).unwrap();
+    refused("another run works in this folder");
+    drop(other);
     refused("show the same");
+    let set = PhotoSet::read(&photos, None, &Progress::default()).unwrap();
+    let said = set.warnings.join("; ");
+    assert!(said.contains("not taken (day 2)"), "{said}");
     if fragscale_test_data::program("colmap").is_some() {
         refused_by(&Colmap::on_path().unwrap(), "show the same");
     }

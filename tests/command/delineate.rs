@@ -35,6 +35,10 @@ fn a_photo_of_the_bundled_flight() {
         text.starts_with("photo ") && text.contains("P50 mm") && text.contains("all photos"),
         "{text}"
     );
+    assert!(
+        text.ends_with("steps to the mass (classical): edges, engine and fines\n"),
+        "{text}"
+    );
 
     let labels = image::open(to.join("IMG_0005_labels.png"))
         .expect("a label image")

@@ -42,6 +42,19 @@ fn outlines_of_other_tools() {
     let to = path("out");
     let text = run(&path("coco.json"), &to);
     assert!(text.contains("IMG_0005.jpg"), "{text}");
+    // By other steps than an engine's, and which photo they are of is said.
+    assert!(
+        text.ends_with("steps to the mass (masks): edges, pores and fines\n"),
+        "{text}"
+    );
+    let to_again = path("said");
+    let said = arguments(&path("coco.json"), &to_again);
+    let said = fragscale(&said.iter().map(String::as_str).collect::<Vec<_>>());
+    let said = String::from_utf8_lossy(&said.stderr).into_owned();
+    assert!(
+        said.contains("taken as outlines of the photo as shot"),
+        "{said}"
+    );
     let first = fs::read(Path::new(&to).join("IMG_0005_labels.png")).expect("labels");
     let labels = image::open(Path::new(&to).join("IMG_0005_labels.png"))
         .expect("labels")

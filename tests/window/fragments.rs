@@ -5,6 +5,7 @@ use std::fs;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
+use fragscale::app::command::Asking;
 use fragscale::app::fragments::{FragmentStep, PhotoOutlines};
 use fragscale::app::size_distributions::Page;
 use fragscale::app::{Command, photo_view::PhotoCommand};
@@ -218,6 +219,24 @@ fn the_doubtful_ones_are_gone_through_with_keys() {
     let left = &outlines(&desk).doubtful;
     assert_eq!(left[..], doubtful[2..]);
     assert!(desk.says(&format!("{} fragments that nobody looked at", left.len())));
+    // What is typed beside the fields of a small window is for none of it.
+    let before = outlines(&desk).now().clone();
+    desk.harness
+        .state_mut()
+        .apply(Command::Ask(Some(Asking::FromPhotos)));
+    desk.harness.run();
+    desk.harness.state().state().context.memory_mut(|memory| {
+        if let Some(field) = memory.focused() {
+            memory.surrender_focus(field);
+        }
+    });
+    desk.harness.run();
+    for key in [Key::N, Key::O, Key::Delete, Key::Enter] {
+        desk.press(Modifiers::NONE, key);
+    }
+    assert!(outlines(&desk).now() == &before);
+    assert_eq!(desk.open().fragments.selected, None);
+    desk.press(Modifiers::NONE, Key::Escape);
     // A ball is no rock at all.
     let out = |desk: &Desk| {
         let labels = outlines(desk).now().labels().labels.clone();

@@ -229,10 +229,11 @@ impl OutlinesOfOthers {
             None => file.is_own(),
         };
         if self.of.is_none() {
-            masks.notes.push(match is_undistorted {
-                true => "fragscale's own outlines: taken as those of the undistorted photo".to_owned(),
-                false => "taken as outlines of the photo as the camera took it (--masks-of undistorted says otherwise)".to_owned(),
-            });
+            let note = match is_undistorted {
+                true => "fragscale's own outlines: taken as those of the undistorted photo",
+                false => "taken as outlines of the photo as shot, not of the undistorted one",
+            };
+            masks.notes.push(note.to_owned());
         }
         if !is_undistorted {
             masks.labels = picture::undistorted_labels(&masks.labels, camera);

@@ -12,10 +12,12 @@ use image::RgbImage;
 use self::in_world::World;
 use self::twins::Twins;
 use crate::camera::{Camera, Distortion};
-use crate::fault::Fault;
+use crate::fault::{Fault, first_names};
 use crate::files::{FileError, read_bytes};
 use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
-use crate::formats::{PhotoCameras, Reconstruction, expected_deviation, photos_in};
+use crate::formats::{
+    PhotoCameras, Reconstruction, expected_deviation, folders_of_photos, photos_in,
+};
 use crate::jobs::Progress;
 use crate::opening::covariance::lens_deviations;
 use crate::picture;
@@ -139,6 +141,7 @@ impl PhotoSet {
     pub fn read(folder: &Path, crs: Option<&str>, progress: &Progress) -> Result<Self, FileError> {
         let at = |fault| FileError::new(folder, fault);
         let files = photos_in(folder)?;
+        let below = folders_of_photos(folder);
         progress.stage(format!("reading the headers of {} photos", files.len()));
         let mut left_out = Vec::new();
         let mut read = Vec::new();
@@ -177,13 +180,23 @@ impl PhotoSet {
                 read.len(),
                 files.len()
             );
-            let remedy = "add photos that overlap, or name the folder in which they lie";
+            let remedy = match below.is_empty() {
+                true => "add photos that overlap, or name the folder in which they lie".to_owned(),
+                false => format!(
+                    "name one of its folders that have some: {}",
+                    first_names(&below)
+                ),
+            };
             return Err(at(Fault::new(what, remedy)));
         }
         let headers = read
             .iter()
             .map(|(name, _, metadata)| (name.as_str(), metadata));
-        let warnings = photo_metadata::warnings_of(headers);
+        let mut warnings = photo_metadata::warnings_of(headers);
+        if !below.is_empty() {
+            let names = first_names(&below);
+            warnings.push(format!("photos in folders within it are not taken ({names}): move them to the others, or name that folder"));
+        }
         let world = World::of(crs, read.iter().map(|(.., metadata)| metadata)).map_err(at)?;
         let mut cameras = Cameras::default();
         let photos: Vec<SurveyPhoto> = read

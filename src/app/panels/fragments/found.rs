@@ -15,8 +15,9 @@ use crate::tasks::Task;
 /// The height of a row of the doubtful ones.
 const ROW: f32 = 20.0;
 
-/// How much of the panel they take.
+/// How much of the panel they take; beside the measures of a selected one less, so that what all come to stays in sight.
 const ROWS: f32 = 160.0;
+const FEW_ROWS: f32 = 66.0;
 
 /// Draws all of it.
 pub(super) fn found(
@@ -170,9 +171,10 @@ fn doubtful(of: &PhotoOutlines, selected: Option<u32>, ui: &mut Ui, commands: &m
     if doubtful.is_empty() {
         return;
     }
+    let height = if selected.is_some() { FEW_ROWS } else { ROWS };
     let mut list = egui::ScrollArea::vertical()
         .id_salt("doubtful fragments")
-        .max_height(ROWS)
+        .max_height(height)
         .auto_shrink([false, true]);
     // Where another one is selected, the list goes to it.
     let id = ui.scope_id().with("doubtful fragment shown");
@@ -184,8 +186,8 @@ fn doubtful(of: &PhotoOutlines, selected: Option<u32>, ui: &mut Ui, commands: &m
     if let (true, Some(at)) = (before != Some(selected), at) {
         let row = ROW + ui.spacing().item_spacing.y;
         // No farther than to the last one, where it would spring back.
-        let most = (doubtful.len() as f32 * row - ROWS).max(0.0);
-        list = list.vertical_scroll_offset((at as f32 * row - ROWS / 2.0).clamp(0.0, most));
+        let most = (doubtful.len() as f32 * row - height).max(0.0);
+        list = list.vertical_scroll_offset((at as f32 * row - height / 2.0).clamp(0.0, most));
     }
     list.show_rows(ui, ROW, doubtful.len(), |ui, rows| {
         for (number, sure) in &doubtful[rows] {

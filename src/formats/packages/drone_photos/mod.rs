@@ -85,6 +85,21 @@ pub fn photos_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
     Ok(photos)
 }
 
+/// The folders within a folder that have photos of their own, by name, sorted.
+pub fn folders_of_photos(folder: &Path) -> Vec<String> {
+    let has_photo = |folder: &Path| {
+        let mut entries = fs::read_dir(folder).into_iter().flatten().flatten();
+        entries.any(|entry| is_photo(&entry.path()))
+    };
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let folders = entries.filter(|entry| entry.path().is_dir() && has_photo(&entry.path()));
+    let mut names: Vec<String> = folders
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
 /// Reads a folder of photos, or one photo.
 ///
 /// # Errors
