@@ -741,12 +741,12 @@ fn folders_without_photos_that_overlap_are_refused() {
         // Each of another place.
         write(&photos, &name, &photo(pose, 1000 * number), Some(pose));
     }
+    refused("show the same");
     // Another run at work in the folder.
     let work = to.join("unfinished");
     let other = lock_work(&to, &work).unwrap();
     refused("another run works in this folder");
     drop(other);
-    refused("show the same");
     let set = PhotoSet::read(&photos, None, &Progress::default()).unwrap();
     let said = set.warnings.join("; ");
     assert!(said.contains("not taken (day 2)"), "{said}");

@@ -36,7 +36,7 @@ fn a_photo_of_the_bundled_flight() {
         "{text}"
     );
     assert!(
-        text.ends_with("steps to the mass (classical): edges, engine and fines\n"),
+        text.ends_with("steps to the mass (classical): edges and fines\n"),
         "{text}"
     );
 

@@ -143,9 +143,10 @@ fn an_unknown_unit_is_said() {
         "{error}"
     );
     let flight = folder.path().join("unknown.toml");
-    let text = "format = 1\n[photos]\nreconstruction = \"model\"\n";
+    let text = "format = 1\n[world]\nunit = \"unknown\"\n[photos]\nreconstruction = \"model\"\n";
     fs::write(&flight, text).expect("a flight");
-    let info = stdout_of(&["info", &flight.to_string_lossy()]);
+    let flight = flight.to_string_lossy();
+    let info = stdout_of(&["info", &flight, "--format", "json"]);
     let info: serde_json::Value = serde_json::from_str(&info).expect("JSON");
     assert_eq!(info["world_unit"], serde_json::Value::Null);
     let said = stdout_of(&["map", &unknown, "-o", &svg]);
