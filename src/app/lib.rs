@@ -67,7 +67,6 @@ use fragscale_render as render;
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
 pub use command::Command;
 pub use state::State;
@@ -208,10 +207,8 @@ impl App {
 }
 
 impl eframe::App for App {
-    fn logic(&mut self, context: &egui::Context, frame: &mut eframe::Frame) {
+    fn logic(&mut self, context: &egui::Context, _frame: &mut eframe::Frame) {
         self.times.begin();
-        let last_frame = frame.info().cpu_usage.unwrap_or_default();
-        self.state.last_frame = Duration::from_secs_f32(last_frame);
         self.hold_back_closing(context);
         self.keep_keys_from_behind(context);
         for command in actions::pressed(&self.state, context) {

@@ -11,11 +11,12 @@ use crate::tasks::Task;
 /// Steps of jobs taken in one frame: uploading a thumbnail takes a fraction of a millisecond.
 const STEPS_A_FRAME: usize = 8;
 
-/// How long the window waits for its next frame while jobs run, which it then shows the progress of: often enough for a bar,
-/// and where frames are drawn by the processor, most of that is left to the jobs.
-fn pause_between_frames(last_frame: Duration) -> Duration {
-    (9 * last_frame).clamp(Duration::from_millis(100), Duration::from_secs(1))
-}
+/// Between two frames that show how far jobs are. Where the processor draws, a frame takes both cores of a small machine for a tenth
+/// of a second, and most of them is to be left to the jobs.
+const PAUSE: Duration = Duration::from_millis(100);
+const PAUSE_IN_SOFTWARE: Duration = Duration::from_millis(500);
+/// Nobody waits for a dialog's end; of what is paused what is in hand may still end.
+const LONG_PAUSE: Duration = Duration::from_secs(1);
 
 impl State {
     /// Takes what is there, and asks for another frame while something is under way.
@@ -59,11 +60,11 @@ impl State {
             let all = |is: &dyn Fn(Task) -> bool| self.work.running().all(|(task, _)| is(task));
             let only_dialog = all(&|task| task == Task::DIALOG);
             let are_paused = all(&|task| self.work.is_paused(task));
-            let pause = match only_dialog {
-                true => Duration::from_millis(500),
-                // What is in hand may still end.
-                false if are_paused => Duration::from_secs(1),
-                false => pause_between_frames(self.last_frame),
+            let in_software = self.gpu.as_ref().is_some_and(|gpu| gpu.software);
+            let pause = match in_software {
+                _ if only_dialog || are_paused => LONG_PAUSE,
+                true => PAUSE_IN_SOFTWARE,
+                false => PAUSE,
             };
             self.context.request_repaint_after(pause);
         }
@@ -78,17 +79,5 @@ impl State {
                 || open.photo_view.tiles.is_waiting()
         };
         self.work.is_idle() && !self.open.as_deref().is_some_and(waiting)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A tenth of the time is for drawing, between ten frames a second and one.
-    #[test]
-    fn slow_frames_are_drawn_less_often() {
-        let pause = |ms| pause_between_frames(Duration::from_millis(ms)).as_millis();
-        assert_eq!([0, 3, 50, 80, 400].map(pause), [100, 100, 450, 720, 1000]);
     }
 }

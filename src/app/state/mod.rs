@@ -7,7 +7,6 @@ pub mod layers;
 pub mod preferences;
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use crate::command::{Asking, Command, PictureRequest, Tab};
 use crate::fault::one_line;
@@ -93,8 +92,6 @@ pub enum Leaving {
 pub struct State {
     /// For clipboard, theme and window; also what wakes the window up.
     pub context: egui::Context,
-    /// What the last frame took of the window's processor.
-    pub last_frame: Duration,
     /// The window's graphics device, where there is one: jobs upload what the viewport draws.
     pub gpu: Option<Gpu>,
     /// Remembered from day to day.
@@ -151,7 +148,6 @@ impl State {
         let state = Self {
             work: Work::new(context.clone()),
             context,
-            last_frame: Duration::ZERO,
             gpu: None,
             preferences,
             open: None,

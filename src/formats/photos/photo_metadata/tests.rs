@@ -291,6 +291,21 @@ fn focal_length_by_the_sensor_and_by_film() {
         assert!((film.fx - 10.0 * 5000.0 / 1872.0_f64.sqrt()).abs() < 1e-9);
         assert!((film.relative_error - 0.08).abs() < 1e-12);
     }
+    // Turned since, of pixels that are not square: 100 of them a millimetre along the sensor's rows, 101 across.
+    let of_sensor = [
+        rationals(Tag::FocalLength, &[(100, 10)]),
+        rationals(Tag::FocalPlaneXResolution, &[(100, 1)]),
+        rationals(Tag::FocalPlaneYResolution, &[(101, 1)]),
+        short(Tag::FocalPlaneResolutionUnit, 4),
+        short(Tag::PixelXDimension, 4000),
+        short(Tag::PixelYDimension, 3000),
+    ];
+    let turned = photo(jpeg((3000, 4000), &of_sensor, &[]));
+    let [plane] = turned.focal.as_slice() else {
+        panic!("{:?}", turned.focal);
+    };
+    assert!((plane.fx - 1010.0).abs() < 1e-9 && (plane.fy - 1000.0).abs() < 1e-9);
+    assert_eq!((plane.cx, plane.cy), (1500.0, 2000.0));
     // Nothing known of the sensor: a denominator of 0.
     let unknown = photo(jpeg((4000, 3000), &fields(2, (0, 0)), &[]));
     assert_eq!(unknown.focal.len(), 1);
