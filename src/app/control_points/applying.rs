@@ -132,14 +132,13 @@ impl State {
         let photos = open.files.origin.photo_folder().map(Path::to_owned);
         let work = move |progress: &Progress| {
             progress.stage("fitting");
-            let found = georeference_flight(&file, &flight, &request).map_err(|error| error.fault);
-            let found = found.and_then(|mut found| {
+            let found = georeference_flight(&file, &flight, &request).and_then(|mut found| {
                 if let Some(model) = behind {
                     found.look_up_errors(&flight, &model, photos.as_deref(), progress)?;
                 }
                 Ok(found)
             });
-            found.map_err(|fault| fault.to_string())
+            found.map_err(|error| error.fault.to_string())
         };
         self.start(Task::CONTROL, work, |state, found| match found {
             Ok(found) => state.take_control(found),

@@ -11,7 +11,7 @@ use crate::covariance::{Known, MOST_PHOTOS, deviations, lens_deviations};
 use crate::fault::Fault;
 use crate::flight::Flight;
 use crate::formats::photos::photo_folder::PhotoFolder;
-use crate::formats::{Origin, Reconstruction, read_project};
+use crate::formats::{FileError, Origin, Reconstruction, read_project};
 use crate::geometry::Similarity;
 use crate::jobs::Progress;
 use crate::numbers::{four_digits, significant_digits, stated_percent};
@@ -187,29 +187,21 @@ impl Georeferenced {
     /// that they are not known. `photos` have the sizes where the package has none.
     ///
     /// # Errors
-    /// Where it is cancelled.
+    /// Where the reconstruction cannot be read, or it is cancelled.
     pub fn look_up_errors(
         &mut self,
         flight: &Flight,
         reconstruction: &Path,
         photos: Option<&Path>,
         progress: &Progress,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), FileError> {
         progress.stage(format!("reading {}", reconstruction.display()));
-        let read = read_project(reconstruction, progress);
-        progress.advance(1, 1)?;
+        let model = read_project(reconstruction, progress)?.reconstruction;
         let photos_of_flight = flight.parts().photos.iter();
         let moved = photos_of_flight.map(|photo| (photo.name.as_str(), photo.pose));
-        let placed =
-            read.map_err(|error| format!("it is not known how sure the poses are: {error}"));
-        let placed = placed.and_then(|project| {
-            let model = project.reconstruction;
-            to_moved(&model, moved).map(|moved| (model, moved))
-        });
-        let found = match placed {
-            Ok((model, moved)) => {
-                of_model(model, photos, &self.similarity.after(&moved), progress)?
-            }
+        let found = match to_moved(&model, moved) {
+            Ok(moved) => of_model(model, photos, &self.similarity.after(&moved), progress)
+                .map_err(|fault| FileError::new(reconstruction, fault))?,
             Err(unknown) => Err(unknown),
         };
         self.take_errors(found);
