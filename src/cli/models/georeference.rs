@@ -146,10 +146,8 @@ fn table(result: &Georeferenced) -> String {
             length.name, length.known, length.fitted
         );
     }
-    if let Some(rms) = result.rms {
-        let (used, all) = (result.used(), result.positions.len());
-        let rms = result.residual_in_words(rms);
-        text += &format!("{used} of {all} positions used, RMS {rms} {unit}\n");
+    if let Some(used) = result.used_in_words("positions") {
+        text += &format!("{used}\n");
     }
     text += &format!(
         "scale: {} {unit} to one of the reconstruction's units",

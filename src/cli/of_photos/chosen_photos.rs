@@ -92,7 +92,7 @@ impl ChosenPhotos {
     pub(super) fn is_one(&self) -> bool {
         let mut named = self.photo.iter();
         let first = named.next();
-        !self.all && first.is_some_and(|first| named.all(|name| name == first))
+        first.is_some_and(|first| named.all(|name| name == first))
     }
 
     /// Whether it is all of them, whatever they are.

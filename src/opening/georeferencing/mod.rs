@@ -193,6 +193,17 @@ impl Georeferenced {
         format!("{rounded:.*}", decimals as usize)
     }
 
+    /// How many of the known positions (`what` they are called) were used, and how far off they are in the mean; `None` with
+    /// distances.
+    pub fn used_in_words(&self, what: &str) -> Option<String> {
+        let rms = self.residual_in_words(self.rms?);
+        let (used, all) = (self.used(), self.positions.len());
+        Some(format!(
+            "{used} of {all} {what} used, RMS {rms} {}",
+            self.unit
+        ))
+    }
+
     /// How many known positions were used.
     pub fn used(&self) -> usize {
         self.positions

@@ -111,7 +111,8 @@ pub(crate) fn folder(to: &Path, photos: &Path) -> Result<Folder, FileError> {
 }
 
 impl Folder {
-    /// Makes the folder and keeps other runs out of it; throws unfinished work away that is of other photos, or of another engine's. Where the
+    /// Makes the folder and keeps other runs out of it; throws unfinished work away that is of other photos, or of
+    /// another engine's. Where the
     /// flight is finished and of these photos, its model is taken.
     ///
     /// # Errors

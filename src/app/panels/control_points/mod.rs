@@ -144,9 +144,8 @@ fn result(found: &Georeferenced, ui: &mut egui::Ui) {
     ui.label(names::unbroken(&format!(
         "Applied: {scale} {unit} to a unit before{sure}"
     )));
-    if let Some(rms) = found.rms.map(|rms| found.residual_in_words(rms)) {
-        let (used, all) = (found.used(), found.positions.len());
-        ui.label(format!("{used} of {all} points used, RMS {rms} {unit}"));
+    if let Some(used) = found.used_in_words("points") {
+        ui.label(used);
     }
     if let Some(errors) = found.errors_in_words() {
         ui.label(format!("Poses: {errors}"));

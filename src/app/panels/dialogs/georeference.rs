@@ -328,9 +328,8 @@ fn result(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mut Vec<Command>
             "Least sure rotation: ± {degrees:.3} degrees (standard error)"
         ));
     }
-    if let Some(rms) = fitted.rms.map(|rms| fitted.residual_in_words(rms)) {
-        let (used, all) = (fitted.used(), fitted.positions.len());
-        ui.label(format!("{used} of {all} positions used, RMS {rms} {unit}"));
+    if let Some(used) = fitted.used_in_words("positions") {
+        ui.label(used);
     }
     if let Some(errors) = fitted.errors_in_words() {
         ui.label(format!("Poses: {errors}"));

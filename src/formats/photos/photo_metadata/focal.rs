@@ -193,31 +193,36 @@ impl Frame {
             });
         };
         let (w, h) = (f64::from(w), f64::from(h));
-        let turned = height / w;
-        if (h * turned - width).abs() <= 1.0_f64.max(turned) && w != h {
-            warnings.push(format!(
-                "the file is {width} x {height}, the camera wrote {w} x {h}: it was turned, so it counts as a camera of its own"
-            ));
-            return Some(Self {
-                written: (w, h),
-                scale: turned,
-                is_turned: true,
-            });
-        }
-        let scale = width / w;
-        if (h * scale - height).abs() > 1.0_f64.max(scale) {
-            warnings.push(format!(
-                "the file is {width} x {height}, its EXIF says {w} x {h}: it was cut, so no focal length is taken from its metadata"
-            ));
-            return None;
-        }
-        warnings.push(format!(
-            "the file is {width} x {height}, the camera wrote {w} x {h}: its focal length is scaled"
-        ));
+        let fit = |width: f64, height: f64| {
+            let scale = width / w;
+            ((h * scale - height).abs() <= 1.0_f64.max(scale)).then_some(scale)
+        };
+        let sides = format!("the file is {width} x {height}");
+        let (scale, is_turned, said) = match (fit(width, height), fit(height, width)) {
+            (Some(scale), _) => (
+                scale,
+                false,
+                format!("{sides}, the camera wrote {w} x {h}: its focal length is scaled"),
+            ),
+            (None, Some(scale)) => (
+                scale,
+                true,
+                format!(
+                    "{sides}, the camera wrote {w} x {h}: it was turned, so it counts as a camera of its own"
+                ),
+            ),
+            (None, None) => {
+                warnings.push(format!(
+                    "{sides}, its EXIF says {w} x {h}: it was cut, so no focal length is taken from its metadata"
+                ));
+                return None;
+            }
+        };
+        warnings.push(said);
         Some(Self {
             written: (w, h),
             scale,
-            is_turned: false,
+            is_turned,
         })
     }
 
