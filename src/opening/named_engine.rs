@@ -22,9 +22,15 @@ pub fn read_named_engine(path: &Path) -> Result<NamedModel, FileError> {
     let bytes = read_small(path, LARGEST_DESCRIPTION, "description", remedy)?;
     let text = text_from_bytes(&bytes).map_err(at)?;
     let description = Description::read(text).map_err(at)?;
-    let model = path.with_file_name(&description.model);
-    let remedy = "give a smaller one";
-    let bytes = read_small(&model, LARGEST_MODEL, "model", remedy)?;
+    let network = |name: &str| {
+        let file = path.with_file_name(name);
+        let bytes = read_small(&file, LARGEST_MODEL, "model", "give a smaller one")?;
+        Ok((file, bytes))
+    };
+    let (model, bytes) = network(&description.model)?;
+    let decoder = description.decoder().map(network).transpose()?;
+    let decoder = decoder.map(|(_, bytes)| bytes);
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    NamedModel::new(bytes, description, &name).map_err(|fault| FileError::new(&model, fault))
+    NamedModel::new(bytes, decoder, description, &name)
+        .map_err(|fault| FileError::new(&model, fault))
 }

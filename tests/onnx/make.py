@@ -12,6 +12,10 @@ Each is a few hundred bytes. What they give is plain enough to be known without 
                     and a third one of 0.2
     numbers.onnx    bytes, channels last, any size: the gray value over 64 as the number of an instance
     yolo.onnx       floats, 64 x 64: three detections of two prototypes as YOLO's segmentation gives them
+    seen.onnx       floats, 64 x 64: the means of 4 x 4 pixels, as SAM's encoder calls what it saw
+    asked.onnx      a decoder in the form of Meta's: of four masks of 16 x 16 the second (score 0.95) is what has the colour
+                    of the place asked at; the first (0.99, for several points) and the third (0.5) are everything, the
+                    fourth (0.1) nothing; all wrong unless the labels are 1 and -1, the size 64 x 64 and there is no mask
     strange.onnx    an operator that nobody has
     two.onnx        two inputs
 """
@@ -102,6 +106,81 @@ save(
     [("x", F, [1, 3, 64, 64])],
     [("output0", F, [1, 7, 3]), ("output1", F, [1, 2, 16, 16])],
     [("d", detections), ("p", prototypes), ("zero", np.array(0, np.float32))],
+)
+
+save(
+    "seen",
+    [node("AveragePool", ["x"], ["image_embeddings"], kernel_shape=[4, 4], strides=[4, 4])],
+    [("x", F, [1, 3, 64, 64])],
+    [("image_embeddings", F, [1, 3, 16, 16])],
+)
+
+whole = lambda *values: np.array(values, np.int64)
+real = lambda *values: np.array(values, np.float32)
+save(
+    "asked",
+    [
+        # The place's pixel, of 16 x 16.
+        node("Gather", ["point_coords", "first"], ["place"], axis=1),
+        node("Div", ["place", "four"], ["parts"]),
+        node("Floor", ["parts"], ["cell"]),
+        node("Mul", ["cell", "steps"], ["walked"]),
+        node("ReduceSum", ["walked", "last_axis"], ["far"], keepdims=0),
+        node("Cast", ["far"], ["index"], to=TensorProto.INT64),
+        node("Reshape", ["index", "one"], ["at"]),
+        node("Reshape", ["image_embeddings", "flat"], ["colours"]),
+        node("Gather", ["colours", "at"], ["own"], axis=1),
+        node("Sub", ["colours", "own"], ["other"]),
+        node("Abs", ["other"], ["others"]),
+        node("ReduceSum", ["others", "first_axis"], ["differ"], keepdims=1),
+        node("Less", ["differ", "least"], ["same"]),
+        node("Where", ["same", "plus", "minus"], ["like"]),
+        node("Reshape", ["like", "square"], ["alike"]),
+        node("Mul", ["alike", "nothing"], ["zeros"]),
+        node("Add", ["zeros", "plus"], ["all"]),
+        node("Add", ["zeros", "minus"], ["none"]),
+        # How wrong the other inputs are, 0 where they are right.
+        node("Sub", ["point_labels", "labels"], ["l"]),
+        node("Sub", ["orig_im_size", "size"], ["s"]),
+        node("Abs", ["l"], ["la"]),
+        node("Abs", ["s"], ["sa"]),
+        node("ReduceMax", ["la"], ["lm"], keepdims=0),
+        node("ReduceMax", ["sa"], ["sm"], keepdims=0),
+        node("ReduceMax", ["mask_input"], ["mm"], keepdims=0),
+        node("ReduceMax", ["has_mask_input"], ["hm"], keepdims=0),
+        node("Sum", ["lm", "sm", "mm", "hm"], ["wrong"]),
+        node("Mul", ["wrong", "much"], ["very"]),
+        node("Concat", ["all", "alike", "all", "none"], ["four_masks"], axis=1),
+        node("Sub", ["four_masks", "very"], ["low_res_masks"]),
+        node("Sub", ["scores", "wrong"], ["iou_predictions"]),
+    ],
+    [
+        ("image_embeddings", F, [1, 3, 16, 16]),
+        ("point_coords", F, [1, "n", 2]),
+        ("point_labels", F, [1, "n"]),
+        ("mask_input", F, [1, 1, 64, 64]),
+        ("has_mask_input", F, [1]),
+        ("orig_im_size", F, [2]),
+    ],
+    [("low_res_masks", F, [1, 4, 16, 16]), ("iou_predictions", F, [1, 4])],
+    [
+        ("first", whole(0)),
+        ("one", whole(1)),
+        ("flat", whole(3, 256)),
+        ("square", whole(1, 1, 16, 16)),
+        ("first_axis", whole(0)),
+        ("last_axis", whole(-1)),
+        ("four", real(4)),
+        ("steps", real(1, 16)),
+        ("least", real(0.02)),
+        ("plus", real(1)),
+        ("minus", real(-1)),
+        ("nothing", real(0)),
+        ("much", real(100)),
+        ("labels", real(1, -1)),
+        ("size", real(64, 64)),
+        ("scores", np.array([[0.99, 0.95, 0.5, 0.1]], np.float32)),
+    ],
 )
 
 save(

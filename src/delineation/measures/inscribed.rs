@@ -6,7 +6,7 @@ use crate::labels::LabelImage;
 use crate::transposed::transposed;
 
 /// From the middle of each pixel to the outline of what it belongs to, pixels; the photo's edge is an outline.
-pub(super) fn distances(labels: &LabelImage) -> Vec<f64> {
+pub(crate) fn distances(labels: &LabelImage) -> Vec<f64> {
     let (width, height) = (labels.width, labels.height);
     let at = |x: usize, y: usize| labels.labels[y * width + x];
     // Squared distances to the nearest pixel that has another one beside it.

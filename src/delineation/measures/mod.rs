@@ -11,6 +11,7 @@ mod shape;
 use fragscale_core::scale::ScaleField;
 use glam::{DVec2, DVec3};
 
+pub(crate) use inscribed::distances as distances_within;
 pub use shape::SieveShape;
 
 use crate::hull::hull;
@@ -75,7 +76,7 @@ pub fn measured(labels: &LabelImage, field: &ScaleField, shape: SieveShape) -> V
     let mut sums = vec![Sums::default(); labels.fragments()];
     let (width, height) = (labels.width, labels.height);
     let at = |x: usize, y: usize| labels.labels[y * width + x];
-    let inside = inscribed::distances(labels);
+    let inside = distances_within(labels);
     for y in 0..height {
         for x in 0..width {
             let label = at(x, y);

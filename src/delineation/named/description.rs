@@ -26,15 +26,37 @@
 //!
 //! Maps: `border` of fragments, what lies `inside` them, how far in the `middle`, what is `fines`. Instances: `masks`
 //! with `scores`; a `labels` image of numbers; `detections` with `prototypes` as YOLO's segmentation gives them.
+//!
+//! In place of outputs, of a model that is asked for one fragment at a time (SAM), of which `model` is the encoder:
+//!
+//! ```toml
+//! [prompts]
+//! model = "decoder.onnx"           # beside this file
+//! from = "classical"               # or "learned": asked for where that engine outlines a fragment
+//! grid = 16                        # and where it does not, at so many places along a side of a tile; 0 for none
+//! masks = "pred_masks"             # its outputs, where they are not called as in the usual exports
+//! scores = "iou_scores"
+//! ```
 
 use fragscale_core::fault::Fault;
 use serde::Deserialize;
+
+use crate::classical::Classical;
+use crate::engine::Engine;
+use crate::engine_called;
 
 /// Sides of what a network sees at once, pixels.
 const SIDES: std::ops::RangeInclusive<usize> = 16..=4096;
 
 /// Where nothing is said and the model does not know.
 const TILE: usize = 1024;
+
+/// Where a model is asked on what another engine did not outline: places along a side of a tile. SAM's own generator takes
+/// 32 over a whole photo.
+const GRID: usize = 16;
+
+/// As dense as its masks have pixels.
+const MOST_GRID: usize = 256;
 
 /// A description, as it stands in the file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -48,6 +70,7 @@ pub struct Description {
     pub(super) input: InputEntry,
     #[serde(default)]
     pub(super) output: Vec<OutputEntry>,
+    pub(super) prompts: Option<PromptsEntry>,
     /// What a score must exceed for its fragment to count, 0 to 1.
     pub(super) least_score: Option<f64>,
     /// The share of what is not outlined that is fines, 0 to 1.
@@ -72,6 +95,37 @@ pub(super) struct InputEntry {
     pub(super) sizes: Option<Vec<f64>>,
     #[serde(default)]
     pub(super) whole: bool,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PromptsEntry {
+    pub(super) model: String,
+    from: Option<String>,
+    grid: Option<usize>,
+    pub(super) masks: Option<String>,
+    pub(super) scores: Option<String>,
+}
+
+impl PromptsEntry {
+    /// The engine whose outlines say where to ask.
+    ///
+    /// # Errors
+    /// Where there is none of that name.
+    pub(super) fn engine(&self) -> Result<&'static dyn Engine, Fault> {
+        let Some(name) = &self.from else {
+            return Ok(&Classical);
+        };
+        engine_called(name).ok_or_else(|| {
+            let what = format!("prompts are from \"{name}\", which is no engine");
+            Fault::new(what, "give \"classical\" or \"learned\"")
+        })
+    }
+
+    /// Places along a side of a tile.
+    pub(super) fn grid(&self) -> usize {
+        self.grid.unwrap_or(GRID)
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
@@ -196,11 +250,29 @@ impl Description {
             whole,
             ..
         } = &self.input;
-        if self.output.is_empty() {
-            return refuse(
-                "it does not say what the model gives".to_owned(),
-                "add [[output]] with is = \"border\", \"masks\" or another one",
-            );
+        match &self.prompts {
+            None if self.output.is_empty() => {
+                return refuse(
+                    "it does not say what the model gives".to_owned(),
+                    "add [[output]] with is = \"border\", \"masks\" or another one, or [prompts] with the decoder of a model like SAM",
+                );
+            }
+            Some(_) if !self.output.is_empty() => {
+                return refuse(
+                    "[prompts] stands beside [[output]]".to_owned(),
+                    "leave [[output]] out; masks and scores of [prompts] name the decoder's outputs",
+                );
+            }
+            Some(prompts) => {
+                prompts.engine()?;
+                if prompts.grid() > MOST_GRID {
+                    return refuse(
+                        format!("a grid of {} places along a tile", prompts.grid()),
+                        "give 256 at most; 0 asks only where the engine outlines",
+                    );
+                }
+            }
+            None => {}
         }
         for share in [self.least_score, self.fines_of_unfound]
             .into_iter()
@@ -245,6 +317,11 @@ impl Description {
             }
         }
         Ok(())
+    }
+
+    /// The decoder's file, relative to this one, of a model that is asked for one fragment at a time.
+    pub fn decoder(&self) -> Option<&str> {
+        self.prompts.as_ref().map(|prompts| prompts.model.as_str())
     }
 
     /// Side of what is seen at once, where the model does not know it.

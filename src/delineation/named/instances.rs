@@ -3,7 +3,7 @@
 //! A photo is seen in parts and sizes, and so a fragment more than once. One that reaches the edge of a part, where the
 //! photo goes on, is left to a part or a size that shows it whole. Of two that share more than half (of both together) the
 //! one with the greater score stays (non-maximum suppression). Where two still overlap, the smaller lies on top, as in
-//! masks of other tools.
+//! masks of other tools. What is asked place by place answers with heaps of fragments, too; those are left out.
 
 use std::ops::Range;
 
@@ -13,6 +13,12 @@ use crate::network::Part;
 
 /// Of both together.
 const SAME: f64 = 0.5;
+
+/// So many fragments within another one make it a heap; two may be the faces of one stone.
+const HEAP: usize = 3;
+
+/// Of a fragment's pixels that lie within another one.
+const WITHIN: f64 = 0.8;
 
 /// How often masks may cover a photo.
 const MOST_COVERS: usize = 100;
@@ -120,9 +126,8 @@ impl Instance {
 
     /// Whether it shares more than half of both together with another one.
     fn is_same(&self, other: &Self) -> bool {
-        let shared = |a: &Range<usize>, b: &Range<usize>| a.start.max(b.start)..a.end.min(b.end);
-        let columns = shared(&self.columns, &other.columns);
-        let rows = shared(&self.rows, &other.rows);
+        let columns = overlap(&self.columns, &other.columns);
+        let rows = overlap(&self.rows, &other.rows);
         // No more than what both extents share.
         let most = columns.len() * rows.len();
         let is_enough =
@@ -130,14 +135,24 @@ impl Instance {
         if !is_enough(most.min(self.pixels).min(other.pixels)) {
             return false;
         }
-        let both = rows.map(|y| {
+        is_enough(self.shared(other))
+    }
+
+    /// The pixels that both have.
+    fn shared(&self, other: &Self) -> usize {
+        let columns = overlap(&self.columns, &other.columns);
+        let both = overlap(&self.rows, &other.rows).map(|y| {
             let columns = columns.clone();
             columns
                 .filter(|x| self.is_at(*x, y) && other.is_at(*x, y))
                 .count()
         });
-        is_enough(both.sum())
+        both.sum()
     }
+}
+
+fn overlap(a: &Range<usize>, b: &Range<usize>) -> Range<usize> {
+    a.start.max(b.start)..a.end.min(b.end)
 }
 
 /// All fragments that were found, as long as they do not cover the photo too often.
@@ -153,6 +168,40 @@ impl Instances {
         self.bits += instance.is_in.len();
         self.found.push(instance);
         self.bits <= MOST_COVERS * pixels.max(1)
+    }
+
+    /// Whether it is there already, with at least its score.
+    pub(super) fn has_surer(&self, instance: &Instance) -> bool {
+        let mut found = self.found.iter();
+        found.any(|other| other.score >= instance.score && instance.is_same(other))
+    }
+
+    /// Leaves out what is no fragment but a heap of them: of which others, [`HEAP`] at least, cover more than half.
+    pub(super) fn leave_out_heaps(&mut self) {
+        let is_heap = |heap: &Instance| {
+            let others = self.found.iter();
+            let within = others.filter(|other| {
+                other.pixels < heap.pixels / 2
+                    && heap.shared(other) as f64 > WITHIN * other.pixels as f64
+            });
+            let within: Vec<&Instance> = within.collect();
+            let covered = |x: usize, y: usize| {
+                within.iter().any(|other| {
+                    other.columns.contains(&x) && other.rows.contains(&y) && other.is_at(x, y)
+                })
+            };
+            within.len() >= HEAP && {
+                let places = heap.rows.clone().flat_map(|y| {
+                    let columns = heap.columns.clone();
+                    columns.map(move |x| (x, y))
+                });
+                let own = places.filter(|(x, y)| heap.is_at(*x, *y));
+                own.filter(|(x, y)| covered(*x, *y)).count() * 2 > heap.pixels
+            }
+        };
+        let heaps: Vec<bool> = self.found.iter().map(is_heap).collect();
+        let mut is_heap = heaps.into_iter();
+        self.found.retain(|_| !is_heap.next().unwrap_or(false));
     }
 
     /// The label image, and the score of each fragment in the order of their numbers.

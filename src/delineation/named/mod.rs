@@ -4,10 +4,14 @@
 //! is grown. Instances are outlines as they are (`instances.rs`). Which score judges the tree's nodes follows from the
 //! maps: with border, inside and middle that of the learned engine, else that of the classical one, which needs a border
 //! alone. A model that gives what lies inside and no border has its border where it is not inside.
+//!
+//! A model in two files, an encoder and a decoder that is asked for one fragment at a time, gives instances, too
+//! (`prompted/`).
 
 mod description;
 mod instances;
 mod outputs;
+mod prompted;
 #[cfg(test)]
 mod tests;
 
@@ -17,7 +21,7 @@ use std::sync::LazyLock;
 use fragscale_core::fault::{Fault, one_line};
 use fragscale_core::jobs::Progress;
 use image::RgbImage;
-use rten::{DataType, Dimension, Model, NodeId, ValueOrView, ValueType};
+use rten::{DataType, Dimension, Model, NodeId, Value, ValueOrView, ValueType};
 
 pub use description::Description;
 
@@ -28,8 +32,9 @@ use crate::evidence::{Evidence, gray};
 use crate::learned::Learned;
 use crate::network::{self, Channels, Input, Layout, Normal, Part, Parts};
 use description::{ChannelsWord, LayoutWord, Meaning, OutputEntry};
-use instances::{Instances, Seen};
+use instances::{Instance, Instances, Seen};
 use outputs::{Mask, Numbers};
+use prompted::{Prompted, SeenAt};
 
 /// Of what a network calls a fragment: at least even odds.
 const LEAST_OF_INSTANCES: f64 = 0.5;
@@ -52,6 +57,8 @@ pub struct NamedModel {
     parts: Parts,
     /// The model's output of each entry of the description.
     outputs: Vec<NodeId>,
+    /// Of a model that is asked: its decoder. The model itself is the encoder then.
+    prompted: Option<Prompted>,
 }
 
 impl std::fmt::Debug for NamedModel {
@@ -63,28 +70,18 @@ impl std::fmt::Debug for NamedModel {
 }
 
 impl NamedModel {
-    /// From the bytes of an ONNX file and what is said of it. `name` is what it is called where the description does not
-    /// say.
+    /// From the bytes of an ONNX file and what is said of it, with those of its decoder where that is said
+    /// ([`Description::decoder`]). `name` is what it is called where the description does not say.
     ///
     /// # Errors
     /// What of the model cannot be run, or does not agree with the description. Its file is that of the model.
-    pub fn new(bytes: Vec<u8>, description: Description, name: &str) -> Result<Self, Fault> {
-        let loaded = catch_unwind(AssertUnwindSafe(|| Model::load(bytes)));
-        let model = match loaded {
-            Ok(Ok(model)) => model,
-            Ok(Err(error)) => {
-                let what = format!(
-                    "this model cannot be run ({})",
-                    one_line(&error.to_string())
-                );
-                let remedy = "export it as one ONNX file with other operators, or a lower opset";
-                return Err(Fault::new(what, remedy));
-            }
-            Err(_) => {
-                let what = "this is a broken ONNX model, or one that cannot be run";
-                return Err(Fault::new(what, "export it again"));
-            }
-        };
+    pub fn new(
+        bytes: Vec<u8>,
+        decoder: Option<Vec<u8>>,
+        description: Description,
+        name: &str,
+    ) -> Result<Self, Fault> {
+        let model = loaded(bytes, "model")?;
         let name = description
             .name
             .as_deref()
@@ -111,7 +108,16 @@ impl NamedModel {
             None => Normal::Given(normal),
         };
         let parts = parts_of(&description, &sides, layout, channels)?;
-        let outputs = outputs_of(&model, &description)?;
+        let (outputs, prompted) = match (&description.prompts, decoder) {
+            (None, _) => (outputs_of(&model, &description)?, None),
+            (Some(prompts), Some(bytes)) => {
+                (Vec::new(), Some(Prompted::new(bytes, &model, prompts)?))
+            }
+            (Some(prompts), None) => {
+                let what = format!("the decoder {} was not read", prompts.model);
+                return Err(Fault::new(what, "lay it beside the description"));
+            }
+        };
         Ok(Self {
             name,
             input: Input {
@@ -126,6 +132,7 @@ impl NamedModel {
             input_id,
             parts,
             outputs,
+            prompted,
         })
     }
 
@@ -139,7 +146,8 @@ impl NamedModel {
     }
 
     fn gives_maps(&self) -> bool {
-        self.description.output.iter().all(|of| of.is.is_map())
+        let mut outputs = self.description.output.iter();
+        self.prompted.is_none() && outputs.all(|of| of.is.is_map())
     }
 
     /// How many times smaller a photo is looked at, the least first.
@@ -153,28 +161,44 @@ impl NamedModel {
         sizes.unwrap_or_else(|| vec![1.0])
     }
 
-    /// All outputs of each part of a photo in one size, one part after the other.
+    /// The given outputs of each part of a photo in one size, one part after the other; `take` is told which of how many
+    /// it is.
     fn see(
         &self,
         photo: &RgbImage,
+        outputs: &[NodeId],
         progress: &Progress,
-        mut take: impl FnMut(&Part, &[Numbers]) -> Result<(), Fault>,
+        mut take: impl FnMut(&Part, [usize; 2], &[Value]) -> Result<(), Fault>,
     ) -> Result<(), Fault> {
         let (width, height) = (photo.width() as usize, photo.height() as usize);
         let parts = self.whole_or_parts(width, height);
         let normals = self.input.normals(photo);
-        let mut ids = self.outputs.clone();
-        ids.sort_unstable();
-        ids.dedup();
         for (number, part) in parts.iter().enumerate() {
             progress.advance(number as u64, parts.len() as u64)?;
             let tensor = self.input.tensor(photo, part, &normals);
             let tensor = tensor.ok_or_else(|| self.wrong("takes no such picture".to_owned()))?;
             let inputs = vec![(self.input_id, ValueOrView::from(tensor))];
-            let values = network::run(&self.model, inputs, &ids).map_err(|error| {
+            let values = network::run(&self.model, inputs, outputs).map_err(|error| {
                 let of = format!("{} x {} pixels", part.columns, part.rows);
                 self.wrong(format!("fails on {of} ({})", one_line(&error)))
             })?;
+            take(part, [number, parts.len()], &values)?;
+        }
+        Ok(())
+    }
+
+    /// What the description's outputs say of each part.
+    fn see_numbers(
+        &self,
+        photo: &RgbImage,
+        progress: &Progress,
+        mut take: impl FnMut(&Part, &[Numbers]) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        // Each once: two entries may be channels of one output.
+        let mut ids = self.outputs.clone();
+        ids.sort_unstable();
+        ids.dedup();
+        self.see(photo, &ids, progress, |part, _, values| {
             let numbers = self.entries().map(|(entry, id)| {
                 let place = ids.binary_search(&id).ok();
                 let value = place.and_then(|place| values.get(place));
@@ -183,9 +207,8 @@ impl NamedModel {
                     .ok_or_else(|| self.wrong(format!("gives no numbers for {}", entry.is.word())))
             });
             let numbers: Vec<Numbers> = numbers.collect::<Result<_, _>>()?;
-            take(part, &numbers)?;
-        }
-        Ok(())
+            take(part, &numbers)
+        })
     }
 
     /// A photo that is looked at whole is one part, whatever its shape is.
@@ -222,7 +245,7 @@ impl NamedModel {
         let (width, height) = (photo.width() as usize, photo.height() as usize);
         let kinds: Vec<Meaning> = self.kinds().collect();
         let mut maps = vec![vec![0.0; width * height]; kinds.len()];
-        self.see(photo, progress, |part, numbers| {
+        self.see_numbers(photo, progress, |part, numbers| {
             for (entry, of) in self.description.output.iter().zip(numbers) {
                 let seen = [part.columns, part.rows];
                 let pictures = of
@@ -288,26 +311,101 @@ impl NamedModel {
     fn instances(&self, photo: &RgbImage, progress: &Progress) -> Result<Outlined, Fault> {
         let full = [photo.width() as usize, photo.height() as usize];
         let mut all = Instances::default();
+        match &self.prompted {
+            Some(prompted) => self.ask(prompted, photo, &mut all, progress)?,
+            None => self.find(photo, &mut all, progress)?,
+        }
+        let (labels, sure) = all.painted(full[0], full[1]);
+        Ok(Outlined { labels, sure })
+    }
+
+    /// What the model gives one by one.
+    fn find(
+        &self,
+        photo: &RgbImage,
+        all: &mut Instances,
+        progress: &Progress,
+    ) -> Result<(), Fault> {
+        let full = [photo.width() as usize, photo.height() as usize];
         for by in self.sizes(photo.width(), photo.height()) {
             let sized = network::at_size(photo, by);
             let size = [sized.width() as usize, sized.height() as usize];
-            self.see(&sized, progress, |part, numbers| {
+            self.see_numbers(&sized, progress, |part, numbers| {
                 let seen = Seen { part, size, full };
                 let masks = self.masks(part, numbers)?;
                 for mask in masks.filter(|mask| mask.score >= self.least_score()) {
                     let mask = mask.enlarged([part.columns, part.rows]);
-                    let Some(instance) = seen.instance(&mask) else {
-                        continue;
-                    };
-                    if !all.add(instance, full[0] * full[1]) {
-                        return Err(self.wrong("covers the photo with too many masks".to_owned()));
+                    if let Some(instance) = seen.instance(&mask) {
+                        self.add(all, instance, full)?;
                     }
                 }
                 Ok(())
             })?;
         }
-        let (labels, sure) = all.painted(full[0], full[1]);
-        Ok(Outlined { labels, sure })
+        Ok(())
+    }
+
+    /// What the model answers where it is asked.
+    fn ask(
+        &self,
+        prompted: &Prompted,
+        photo: &RgbImage,
+        all: &mut Instances,
+        progress: &Progress,
+    ) -> Result<(), Fault> {
+        let full = [photo.width() as usize, photo.height() as usize];
+        let places = prompted.places(photo, progress)?;
+        let sizes = self.sizes(photo.width(), photo.height());
+        for (number, by) in sizes.iter().enumerate() {
+            let sized = network::at_size(photo, *by);
+            let size = [sized.width() as usize, sized.height() as usize];
+            self.see(
+                &sized,
+                prompted.takes(),
+                progress,
+                |part, [nth, parts], values| {
+                    let seen = Seen { part, size, full };
+                    let at = SeenAt {
+                        part,
+                        size,
+                        sizes: &sizes,
+                        number,
+                    };
+                    let places = places.in_part(at);
+                    let sides = [part.columns, part.rows];
+                    let count = places.len().max(1);
+                    let told = |asked: usize| {
+                        let done = nth * count + asked;
+                        progress.advance(done as u64, (parts * count) as u64)
+                    };
+                    let least = self.least_score();
+                    let decoder = &prompted.decoder;
+                    decoder.ask(values, &places, sides, least, told, |mask| {
+                        match seen.instance(mask) {
+                            // Many places lie in one fragment.
+                            Some(instance) if !all.has_surer(&instance) => {
+                                self.add(all, instance, full)
+                            }
+                            _ => Ok(()),
+                        }
+                    })
+                },
+            )?;
+        }
+        all.leave_out_heaps();
+        Ok(())
+    }
+
+    fn add(
+        &self,
+        all: &mut Instances,
+        instance: Instance,
+        [width, height]: [usize; 2],
+    ) -> Result<(), Fault> {
+        match all.add(instance, width * height) {
+            true => Ok(()),
+            false => Err(self.wrong("covers the photo with too many masks".to_owned())),
+        }
     }
 
     /// The masks of a part.
@@ -399,6 +497,7 @@ impl Engine for NamedModel {
 
     fn least_score(&self) -> f64 {
         let own = match (self.gives_maps(), self.judges_as_learned()) {
+            _ if self.prompted.is_some() => prompted::LEAST_SCORE,
             (false, _) => LEAST_OF_INSTANCES,
             (true, true) => Learned.least_score(),
             (true, false) => Classical.least_score(),
@@ -439,21 +538,43 @@ impl NamedModel {
     }
 }
 
+/// A model of the bytes of an ONNX file.
+fn loaded(bytes: Vec<u8>, word: &str) -> Result<Model, Fault> {
+    let loaded = catch_unwind(AssertUnwindSafe(|| Model::load(bytes)));
+    match loaded {
+        Ok(Ok(model)) => Ok(model),
+        Ok(Err(error)) => {
+            let what = format!(
+                "this {word} cannot be run ({})",
+                one_line(&error.to_string())
+            );
+            let remedy = "export it as one ONNX file with other operators, or a lower opset";
+            Err(Fault::new(what, remedy))
+        }
+        Err(_) => {
+            let what = format!("this {word} is a broken ONNX file, or one that cannot be run");
+            Err(Fault::new(what, "export it again"))
+        }
+    }
+}
+
+/// What inputs or outputs of a model are called.
+fn names_of(model: &Model, ids: &[NodeId]) -> Vec<String> {
+    let name = |id: &NodeId| {
+        let info = model.node_info(*id);
+        info.and_then(|info| info.name()).unwrap_or("?").to_owned()
+    };
+    ids.iter().map(name).collect()
+}
+
 /// The one input: its name in the graph, its sides where they are known, and whether it takes bytes.
 fn input_of(model: &Model) -> Result<(NodeId, Vec<Option<usize>>, bool), Fault> {
-    let named = |ids: &[NodeId]| -> String {
-        let names = ids.iter().map(|id| {
-            let info = model.node_info(*id);
-            info.and_then(|info| info.name()).unwrap_or("?").to_owned()
-        });
-        names.collect::<Vec<_>>().join(", ")
-    };
     let inputs = model.input_ids();
     let &[id] = inputs else {
         let what = format!(
             "the model takes {} inputs ({})",
             inputs.len(),
-            named(inputs)
+            names_of(model, inputs).join(", ")
         );
         let remedy = "export one that takes a picture alone";
         return Err(Fault::new(what, remedy));
@@ -518,10 +639,12 @@ fn parts_of(
         ));
     }
     let tile = description.tile();
-    let is_fixed = rows.is_some() || columns.is_some();
+    let knows_its_side = rows.is_some() || columns.is_some();
+    // What is asked has learned where things lie in a picture of one size.
+    let is_fixed = knows_its_side || description.prompts.is_some();
     let part = [columns.unwrap_or(tile), rows.unwrap_or(tile)];
     let said = description.input.tile;
-    if said.is_some_and(|said| is_fixed && part != [said; 2]) {
+    if said.is_some_and(|said| part != [said; 2]) {
         let what = format!(
             "the model takes {} x {} pixels, the description says {tile}",
             part[0], part[1]
@@ -556,13 +679,7 @@ fn parts_of(
 /// Which of the model's outputs each entry is.
 fn outputs_of(model: &Model, description: &Description) -> Result<Vec<NodeId>, Fault> {
     let ids = model.output_ids();
-    let name_of = |id: &NodeId| {
-        let info = model.node_info(*id);
-        info.and_then(|info| info.name())
-            .unwrap_or_default()
-            .to_owned()
-    };
-    let names: Vec<String> = ids.iter().map(name_of).collect();
+    let names = names_of(model, ids);
     let all = || names.join(", ");
     let entries = &description.output;
     let found = entries.iter().map(|entry| match &entry.name {
