@@ -310,12 +310,16 @@ impl State {
                     | Asking::CloudUse
                     | Asking::AddLayer
                     | Asking::Masks
+                    | Asking::Network
                     | Asking::ExportFragments
                     | Asking::ControlList
             )
         );
         if needs_flight && self.open.is_none() {
             return;
+        }
+        if asking == Some(Asking::Network) {
+            self.network.refused = None;
         }
         if let (Some(Asking::Masks), Some(open)) = (asking, &mut self.open) {
             open.fragments.masks_refused = None;

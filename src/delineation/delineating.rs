@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use fragscale_core::fault::Fault;
 use fragscale_core::jobs::Progress;
 use fragscale_core::labels::Outlines;
-use fragscale_core::picture::{edge_spread, full_width};
+use fragscale_core::picture::edge_spread;
 use image::RgbImage;
 
 use crate::choice::{chosen, labelled, scores};
@@ -15,10 +15,6 @@ use crate::labels::{FINES, LabelImage, NOT_ROCK};
 use crate::regions::Regions;
 use crate::tree::tree;
 
-/// Fragments narrower than this are fines: the diameter of the circle of as many pixels that the engine sees. An
-/// outline is known to about a pixel, so that of ten is measured to a fifth.
-pub(crate) const LEAST_PIXELS_ACROSS: f64 = 10.0;
-
 /// What an engine makes of a photo.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Delineated {
@@ -26,7 +22,7 @@ pub struct Delineated {
     pub outlines: Outlines,
     /// All regions that might have been one.
     pub regions: Regions,
-    /// How far the photo's edges are spread: see [`least_across`].
+    /// How far the photo's edges are spread: see [`Habits::least_across`](crate::Habits::least_across).
     pub spread: Option<f64>,
 }
 
@@ -60,7 +56,8 @@ pub fn delineated(
         }
     };
     let spread = edge_spread(photo);
-    let across = least_across(engine, photo.width(), photo.height(), spread);
+    let habits = engine.habits(photo.width(), photo.height());
+    let across = habits.least_across(spread);
     let least_area = std::f64::consts::PI / 4.0 * across * across;
     let numbers = without_small(&mut labels, least_area);
     let sure = numbers.iter().zip(sure);
@@ -86,17 +83,6 @@ pub fn delineate(
 ) -> Result<LabelImage, Fault> {
     let found = delineated(engine, photo, left_out, progress)?;
     Ok(found.outlines.into_labels())
-}
-
-/// The narrowest fragment that an engine outlines in a photo of that size whose edges are spread by a bell of deviation
-/// `spread` (pixels; `picture::edge_spread`): the diameter of the circle of as many pixels.
-///
-/// Pixels show detail of two pixels and no finer (Nyquist). Where edges are spread further than that, the bell's full width
-/// at half of its maximum stands for those two pixels.
-pub fn least_across(engine: &dyn Engine, width: u32, height: u32, spread: Option<f64>) -> f64 {
-    let seen = f64::from(engine.sees_every(width, height));
-    let shown = spread.map_or(0.0, |spread| full_width(spread) / 2.0);
-    LEAST_PIXELS_ACROSS * seen.max(shown)
 }
 
 /// What is left out is no rock.

@@ -1,12 +1,16 @@
 //! What finds the borders of fragments in a photo.
 
+use std::sync::Arc;
+
 use fragscale_core::fault::Fault;
 use fragscale_core::jobs::Progress;
 use image::RgbImage;
 
 use crate::choice::Scorer;
 use crate::evidence::Evidence;
+use crate::habits::Habits;
 use crate::labels::LabelImage;
+use crate::named::NamedModel;
 
 /// Fragments as an engine outlines them.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,32 +40,34 @@ pub trait Engine: Send + Sync {
         Ok(None)
     }
 
-    /// How many pixels of a photo of that size, along a side, are one to the engine: of a large photo it may look
-    /// at a smaller one.
-    fn sees_every(&self, _width: u32, _height: u32) -> u32 {
-        1
-    }
-
     /// What a score must exceed for its node to be a fragment. Lower finds more of them and more that are none.
     fn least_score(&self) -> f64;
 
-    /// How much of the area that it leaves without an outline is fines and not fragments that it did not find, as
-    /// measured on simulated piles.
-    fn fines_of_unfound(&self) -> f64;
-
-    /// How many times the sieves' its sizes are, as measured on simulated piles: what it joins and what it does not find makes
-    /// them too large.
-    fn sizes_off(&self) -> f64 {
-        1.0
-    }
-
-    /// The standard errors of all its sizes together, relative, and of [`Engine::fines_of_unfound`], as measured on
-    /// simulated piles.
-    fn doubts(&self) -> [f64; 2];
+    /// How it errs in a photo of that size.
+    fn habits(&self, width: u32, height: u32) -> Habits;
 
     /// What tells fragments from other regions by its evidence.
     ///
     /// # Errors
     /// Where its numbers cannot be read.
     fn scorer(&self) -> Result<&Scorer, Fault>;
+}
+
+/// An engine that is ready.
+#[derive(Clone)]
+pub enum ReadyEngine {
+    /// One that the program brings along.
+    BroughtAlong(&'static dyn Engine),
+    /// The user's.
+    Named(Arc<NamedModel>),
+}
+
+impl ReadyEngine {
+    /// The engine itself.
+    pub fn engine(&self) -> &dyn Engine {
+        match self {
+            Self::BroughtAlong(engine) => *engine,
+            Self::Named(model) => &**model,
+        }
+    }
 }

@@ -14,8 +14,6 @@ use fragscale_core::scale::{FieldGrid, ImageKind, Interval, ScaleField};
 use fragscale_core::units::LengthUnit;
 use image::RgbImage;
 
-use crate::delineating::least_across;
-use crate::engine::Engine;
 use crate::mass::PhotoFragments;
 use crate::measures::{SieveShape, measured};
 
@@ -83,18 +81,8 @@ pub fn field(flight: &Flight, photo: &Photo, progress: &Progress) -> Result<Scal
     flight.field(photo, ImageKind::Undistorted, grid, progress)
 }
 
-/// Nothing narrower is claimed of a photo whose edges are spread so far, pixels: what its engine outlines at least. `None` of what
-/// other tools and people outlined, where the smallest fragment itself is the limit.
-pub fn least_across_of(
-    engine: Option<&dyn Engine>,
-    labels: &LabelImage,
-    spread: Option<f64>,
-) -> Option<f64> {
-    let [width, height] = [labels.width, labels.height].map(|side| side as u32);
-    engine.map(|engine| least_across(engine, width, height, spread))
-}
-
-/// What a photo's fragments are; `least_across` is [`least_across_of`] it.
+/// What a photo's fragments are, of which the narrowest that is outlined is `least_across` pixels: [`Habits::least_across`](crate::Habits::least_across) of an
+/// engine, `None` of people and other tools.
 pub fn fragments(
     labels: &LabelImage,
     field: &ScaleField,

@@ -1,6 +1,7 @@
 //! What stands beside a label image that was saved to go on with: how sure its fragments are, and what it is of.
 //!
-//! A line of JSON: `{"outlines": photo, "engine": name, "lens": [[x, y] ...], "spread": pixels, "sure": {number: 0 to 1 ...}}`.
+//! A line of JSON: `{"outlines": photo, "engine": name, "lens": [[x, y] ...], "spread": pixels, "sure": {number: 0 to 1 ...}}`,
+//! and of an engine of the user's `"habits"`: how it errs, which the program does not know of it by its name.
 //! `lens` says where nine places of the undistorted photo lie in the photo as shot: outlines are of the undistorted
 //! one, and with another lens that is another picture. `spread` is how far the photo's edges are spread, null where that is
 //! not known.
@@ -12,6 +13,9 @@ use fragscale_core::fault::Fault;
 use glam::DVec2;
 use serde_json::{Value, json};
 
+use crate::engine_called;
+use crate::habits::{Habits, Outliner};
+
 /// How far a place may lie elsewhere in the photo, pixels: no fragment changes by it.
 const SAME_PLACE: f64 = 0.5;
 
@@ -21,11 +25,9 @@ pub struct SavedOutlines {
     /// As the flight names the photo.
     pub photo: String,
     /// What outlined it first.
-    pub engine: String,
+    pub by: Outliner,
     /// Where places of the undistorted photo lie in the photo as shot; NaN where nowhere.
     pub lens: Vec<DVec2>,
-    /// The deviation of the bell that spreads the photo's edges, pixels.
-    pub spread: Option<f64>,
     /// How sure the fragments are that nobody looked at, by number.
     pub sure: BTreeMap<u32, f64>,
 }
@@ -35,19 +37,20 @@ impl SavedOutlines {
     pub fn to_json(&self) -> String {
         let Self {
             photo,
-            engine,
+            by,
             lens,
-            spread,
             sure,
         } = self;
         let lens: Vec<Value> = lens.iter().map(|place| json!([place.x, place.y])).collect();
         // The order is that of the documentation, whatever the map of the library keeps.
+        let own = by.habits.filter(|_| engine_called(&by.engine).is_none());
+        let habits = own.map_or_else(String::new, |own| format!(",\"habits\":{}", own.to_json()));
         format!(
-            "{{\"outlines\":{},\"engine\":{},\"lens\":{},\"spread\":{},\"sure\":{}}}\n",
+            "{{\"outlines\":{},\"engine\":{},\"lens\":{},\"spread\":{},\"sure\":{}{habits}}}\n",
             json!(photo),
-            json!(engine),
+            json!(by.engine),
             json!(lens),
-            json!(spread),
+            json!(by.spread),
             json!(sure)
         )
     }
@@ -78,9 +81,12 @@ impl SavedOutlines {
         });
         Ok(Self {
             photo: word("outlines").ok_or_else(none)?,
-            engine: word("engine").ok_or_else(none)?,
+            by: Outliner {
+                engine: word("engine").ok_or_else(none)?,
+                habits: value.get("habits").and_then(Habits::from_json),
+                spread: spread.filter(|spread| *spread >= 0.0),
+            },
             lens: lens.collect(),
-            spread: spread.filter(|spread| *spread >= 0.0),
             sure: sure.collect::<Option<_>>().ok_or_else(none)?,
         })
     }
@@ -114,6 +120,7 @@ mod tests {
     use fragscale_core::camera::{Brown, Distortion};
 
     use super::*;
+    use crate::{Classical, Engine};
 
     fn camera(distortion: Distortion) -> Camera {
         Camera {
@@ -134,9 +141,12 @@ mod tests {
         let pinhole = camera(Distortion::None);
         let saved = SavedOutlines {
             photo: "a \"b\"\\c.jpg".to_owned(),
-            engine: "learned".to_owned(),
+            by: Outliner {
+                engine: "mine".to_owned(),
+                habits: Some(Classical.habits(4000, 3000)),
+                spread: Some(0.75),
+            },
             lens: lens_of(&pinhole),
-            spread: Some(0.75),
             sure: BTreeMap::from([(1, 0.25), (70_000, 1.0)]),
         };
         assert_eq!(SavedOutlines::from_json(&saved.to_json()).unwrap(), saved);

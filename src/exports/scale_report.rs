@@ -158,6 +158,11 @@ impl<'a> ScaleReport<'a> {
         })
     }
 
+    /// How much of their 95 % intervals all photos share, in words; `None` where nobody states it.
+    pub fn shared(&self) -> Option<String> {
+        self.review.flight().errors_of_all().world_in_words()
+    }
+
     /// What no 95 % interval of a photo or more counts, because nobody states it; `None` where all is counted.
     pub fn not_counted(&self) -> Option<String> {
         let lines = self

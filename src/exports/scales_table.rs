@@ -57,6 +57,9 @@ pub fn scales_table(report: &ScaleReport<'_>) -> String {
         text.push_str(
             "\n95 % ±: how sure the line is that goes to Split-Desktop; off line: how far single pixels are from it\n",
         );
+        if let Some(shared) = report.shared() {
+            let _ = writeln!(text, "{shared}");
+        }
         if let Some(not_counted) = report.not_counted() {
             let _ = writeln!(
                 text,

@@ -340,4 +340,9 @@ impl Flight {
             .or(of_photo(photo.package_errors))
             .or(parts.package_errors)
     }
+
+    /// The same of what no photo has for itself.
+    pub fn errors_of_all(&self) -> StatedErrors {
+        self.parts.errors.or(self.parts.package_errors)
+    }
 }

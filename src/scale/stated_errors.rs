@@ -5,6 +5,8 @@
 
 use glam::DVec3;
 
+use crate::numbers::{TO_95_PERCENT, interval_percent};
+
 /// Standard deviations of one photo's pose; `None` where nobody states it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PoseErrors {
@@ -53,6 +55,22 @@ impl StatedErrors {
             surface: self.surface.or(those.surface),
             world_scale: self.world_scale.or(those.world_scale),
         }
+    }
+
+    /// Half of the 95 % interval that the world's length alone leaves in every scale, such as "3 %"; `None` where
+    /// nobody states an error of it.
+    pub fn world_percent(&self) -> Option<String> {
+        let half = self.world_scale? / 100.0 * TO_95_PERCENT;
+        interval_percent(1.0, 1.0 - half, 1.0 + half)
+    }
+
+    /// What [`Self::world_percent`] means for several photos.
+    pub fn world_in_words(&self) -> Option<String> {
+        let percent = self.world_percent()?;
+        Some(format!(
+            "± {percent} of it is the length of the flight's unit: all photos are off by that together, and more of \
+             them do not make it less"
+        ))
     }
 
     /// The first value that is no standard deviation (negative, or not finite), with its key in
@@ -128,6 +146,22 @@ mod tests {
         assert_eq!(both.pose.angle, Some(DVec3::splat(0.1)));
         assert_eq!((both.focal, both.surface), (Some(0.2), None));
         assert_eq!(both.world_scale, Some(0.0));
+    }
+
+    /// 1.959964 standard deviations, rounded as all percentages of intervals are.
+    #[test]
+    fn what_photos_share_is_told() {
+        let of = |world_scale| StatedErrors {
+            world_scale,
+            ..StatedErrors::default()
+        };
+        let percent = |world_scale| of(world_scale).world_percent();
+        assert_eq!(percent(Some(1.64)).as_deref(), Some("3 %"));
+        assert_eq!(percent(Some(0.5)).as_deref(), Some("1.0 %"));
+        assert_eq!(percent(Some(0.0)), None);
+        assert_eq!(percent(None), None);
+        let words = of(Some(1.64)).world_in_words().unwrap();
+        assert!(words.starts_with("± 3 % of it is the length"), "{words}");
     }
 
     #[test]

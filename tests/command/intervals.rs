@@ -227,6 +227,26 @@ fn brightons_lines_are_as_sure_as_what_is_seen() {
 
 /// The percentage of the table is half the width of the wider of the two intervals in the CSV, over its
 /// middle.
+/// The flight states 0.4 % of all lengths: half of a 95 % interval of 0.784 %, which its photos share. Of a flight that
+/// states nothing of its length nothing is said.
+#[test]
+fn what_all_photos_share_is_told() {
+    let fixture = |name: &str| {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+        root.join(name)
+            .join("flight.toml")
+            .to_string_lossy()
+            .into_owned()
+    };
+    let table = stdout_of(&["scales", &fixture("uncertainty-oblique-plane")]);
+    assert!(
+        table.contains("\n± 0.8 % of it is the length of the flight's unit: all photos"),
+        "{table}"
+    );
+    let table = stdout_of(&["scales", &fixture("colmap-text-points")]);
+    assert!(!table.contains("length of the flight's unit"), "{table}");
+}
+
 #[test]
 fn the_tables_percentage_is_that_of_the_csv() {
     let flight = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sample");

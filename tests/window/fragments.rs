@@ -6,7 +6,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
 use fragscale::app::command::Asking;
-use fragscale::app::fragments::{FragmentStep, PhotoOutlines};
+use fragscale::app::fragments::{EngineChoice, FragmentStep, PhotoOutlines};
 use fragscale::app::size_distributions::Page;
 use fragscale::app::{Command, photo_view::PhotoCommand};
 use fragscale::labels::{NOT_ROCK, Outlines};
@@ -178,7 +178,9 @@ fn undo_knows_what_outlined() {
     let learned = sizes(&desk);
     desk.harness
         .state_mut()
-        .apply(Command::Fragments(FragmentStep::Engine(1)));
+        .apply(Command::Fragments(FragmentStep::Engine(
+            EngineChoice::BroughtAlong(1),
+        )));
     desk.click(Role::Button, "Outline anew");
     assert_eq!(outlines(&desk).by().engine, "classical");
     assert!(sizes(&desk).0 != learned.0);
@@ -400,6 +402,62 @@ fn results_are_those_of_the_command() {
     desk.click(Role::Button, "Take the outlines");
     assert!(fragments(outlines(&desk).now()) > 500 && *outlines(&desk).now() != moved);
     assert!(!desk.shows(Role::Button, "Take the outlines"));
+}
+
+/// A network of hers is named in the window, outlines, and what it is said to leave goes into the numbers: the same after
+/// saving and opening again, where nobody has named it.
+#[test]
+fn a_network_of_hers() {
+    let folder = sample();
+    let file = folder.path().join("flight.toml");
+    let fixture =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/onnx/dark.onnx");
+    fs::copy(fixture, folder.path().join("dark.onnx")).unwrap();
+    let described = folder.path().join("mine.toml");
+    let maps = "model = 'dark.onnx'\nfines_of_unfound = 0.5\n[[output]]\nis = 'border'\n";
+    fs::write(&described, maps).unwrap();
+    let mut desk = Desk::new(Some(&file));
+    desk.click(Role::Tab, "Fragments");
+    desk.click(Role::ComboBox, "Engine");
+    desk.click(Role::Button, "Your network…");
+    // What cannot be taken is said where it was asked for.
+    desk.type_path(&folder.path().join("poses.csv"));
+    desk.click(Role::Button, "Take the network");
+    assert!(desk.shows(Role::Button, "Take the network") && desk.says("poses.csv"));
+    desk.type_path(&described);
+    desk.click(Role::Button, "Take the network");
+    assert!(!desk.shows(Role::Button, "Take the network"));
+    assert!(desk.logged("network mine: ready"));
+    desk.click(Role::Button, "Outline this photo");
+    assert_eq!(outlines(&desk).by().engine, "mine");
+    let habits = outlines(&desk).by().habits.expect("habits");
+    assert_eq!(habits.fines_of_unfound, 0.5);
+    let by_mass = |desk: &Desk| {
+        let measured = outlines(desk).measured().expect("measured");
+        let by_mass = measured.by_mass.as_ref().unwrap();
+        (
+            by_mass.curve.clone(),
+            by_mass.fines,
+            measured.intervals.clone(),
+        )
+    };
+    let first = by_mass(&desk);
+    // Half of what is not outlined, where other tools leave all of it.
+    let unfound = outlines(&desk)
+        .measured()
+        .unwrap()
+        .by_mass
+        .as_ref()
+        .unwrap()
+        .unfound;
+    assert!(unfound > 0.02, "{unfound}");
+    desk.press(Modifiers::COMMAND, Key::S);
+    let mut again = Desk::new(Some(&file));
+    again.click(Role::Tab, "Fragments");
+    assert_eq!(outlines(&again).by().habits, Some(habits));
+    assert!(by_mass(&again) == first);
+    // And the engine that is chosen there is one that comes along.
+    assert_eq!(again.open().fragments.engine, EngineChoice::default());
 }
 
 /// All photos that are not outlined yet, one after the other; what is outlined or saved stays.

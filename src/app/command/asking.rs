@@ -50,6 +50,8 @@ pub enum Asking {
     ControlList,
     /// Which file has the outlines of the selected photo.
     Masks,
+    /// Which file describes her network.
+    Network,
     /// Where the tables and the report of the fragments go.
     ExportFragments,
     /// Which cloud is drawn beside the surface.

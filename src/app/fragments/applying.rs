@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use glam::DVec2;
 
 use super::{FragmentStep, FragmentTool, Fragments};
-use crate::delineation::ENGINES;
 use crate::fault::Fault;
 use crate::labels::{Change, Outlines};
 use crate::open_flight::OpenFlight;
@@ -23,6 +22,7 @@ impl State {
             FragmentStep::Outline => self.outline_photo(),
             FragmentStep::OutlineAll => self.outline_all(),
             FragmentStep::Masks { path, of } => self.read_masks(path, of),
+            FragmentStep::Network(path) => self.read_network(path),
             FragmentStep::TakeDistribution => self.take_fragments_distribution(),
             FragmentStep::Export(to) => self.export_fragments(to),
             step => {
@@ -128,7 +128,7 @@ impl Fragments {
     fn step(&mut self, photo: usize, step: FragmentStep) {
         self.refused = None;
         match step {
-            FragmentStep::Engine(place) if place < ENGINES.len() => self.engine = place,
+            FragmentStep::Engine(engine) => self.engine = engine,
             FragmentStep::Tool(tool) => {
                 self.drawing.clear();
                 self.tool = tool;
@@ -169,7 +169,7 @@ impl Fragments {
             FragmentStep::Finer(at) => {
                 self.by_regions(photo, |regions, now| regions.finer(now, at))
             }
-            FragmentStep::Engine(_)
+            FragmentStep::Network(_)
             | FragmentStep::Outline
             | FragmentStep::OutlineAll
             | FragmentStep::Masks { .. }

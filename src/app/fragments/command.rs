@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use glam::DVec2;
 
+use super::EngineChoice;
 use crate::command::Destination;
 use crate::scale::ImageKind;
 
@@ -21,8 +22,10 @@ pub enum FragmentStep {
         /// Which photo they were outlined in; `None`: fragscale's own files in the undistorted one, all others as shot.
         of: Option<ImageKind>,
     },
-    /// The engine that does, by its place in `ENGINES`.
-    Engine(usize),
+    /// The engine that does.
+    Engine(EngineChoice),
+    /// Reads a network of hers that this file describes, which does from then on.
+    Network(PathBuf),
     /// What the mouse does from now on; what was drawn halfway is forgotten.
     Tool(FragmentTool),
     /// Half the width of the brush, pixels.

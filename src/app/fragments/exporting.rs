@@ -7,7 +7,7 @@ use super::FragmentStep;
 use crate::command::{Command, Destination};
 use crate::delineation::mass::WantedSteps;
 use crate::delineation::measures::SieveShape;
-use crate::delineation::{OutlinedBy, engine_called, photo};
+use crate::delineation::{OutlinedBy, Outliner, photo};
 use crate::exports::{
     self, FRAGMENT_TABLES, FragmentSizes, FragmentTables, MapPlaces, MassWay, MeasuredPhoto,
     PhotoOutlined,
@@ -33,8 +33,8 @@ impl Task {
 
 /// Where a photo's outlines are.
 enum Outlines {
-    /// On the screen: as they are now, what outlined them first, and how far the photo's edges are spread.
-    Now(LabelImage, String, Option<f64>),
+    /// On the screen: as they are now, and what outlined them first.
+    Now(LabelImage, Outliner),
     /// In files beside flight.toml.
     Saved([PathBuf; 2]),
 }
@@ -70,10 +70,7 @@ impl OpenFlight {
         stems
             .filter_map(|(index, stem)| {
                 let outlines = match self.fragments.of(index) {
-                    Some(of) => {
-                        let by = of.by();
-                        Outlines::Now(of.now().labels().clone(), by.engine.clone(), by.spread)
-                    }
+                    Some(of) => Outlines::Now(of.now().labels().clone(), of.by().clone()),
                     None => Outlines::Saved(saved_outlines(own?, &stem)?),
                 };
                 let file = self.files.photo_files.get(index).cloned();
@@ -246,21 +243,16 @@ impl Export {
         let pixels = read_photo(of.file.as_deref().ok_or_else(missing)?)?;
         let pixels = photo::undistorted(&pixels, camera).map_err(failed)?;
         let read;
-        let (labels, engine, spread, mut notes) = match &of.outlines {
-            Outlines::Now(labels, engine, spread) => (labels, engine, *spread, Vec::new()),
+        let (labels, by, mut notes) = match &of.outlines {
+            Outlines::Now(labels, by) => (labels, by, Vec::new()),
             Outlines::Saved(files) => {
                 read = read_outlines(files, &of.name, camera).map_err(|error| error.to_string())?;
-                (
-                    read.outlines.labels(),
-                    &read.engine,
-                    read.spread,
-                    read.notes.clone(),
-                )
+                (read.outlines.labels(), &read.by, read.notes.clone())
             }
         };
         // Of outlines of other tools nobody has measured it yet.
-        let spread = spread.or_else(|| edge_spread(&pixels));
-        let outlined = OutlinedBy::Saved(engine_called(engine).map(|engine| engine as _));
+        let spread = by.spread.or_else(|| edge_spread(&pixels));
+        let outlined = OutlinedBy::Saved(by.habits);
         let written = PhotoOutlined {
             flight: &self.flight,
             index: of.index,

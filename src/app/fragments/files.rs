@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Outliner, PhotoOutlines};
+use super::PhotoOutlines;
 use crate::delineation::saved::{SavedOutlines, lens_of};
 use crate::exports;
 use crate::files::{self, FileError, Inputs, Kind};
@@ -60,9 +60,8 @@ impl OpenFlight {
                 labels: (!of.is_nothing()).then(|| of.now().labels().clone()),
                 saved: SavedOutlines {
                     photo: self.name(*photo).to_owned(),
-                    engine: of.by().engine.clone(),
+                    by: of.by().clone(),
                     lens: lens_of(camera),
-                    spread: of.by().spread,
                     sure: of.now().all_sure().clone(),
                 },
             })
@@ -172,11 +171,7 @@ impl State {
         if let Some(open) = &mut self.open
             && open.number == number
         {
-            let by = Outliner {
-                engine: read.engine,
-                spread: read.spread,
-            };
-            let of = PhotoOutlines::saved(read.outlines, by);
+            let of = PhotoOutlines::saved(read.outlines, read.by);
             // What was outlined meanwhile stays.
             open.fragments.photos.entry(photo).or_insert(of);
         }

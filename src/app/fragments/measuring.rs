@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::MeasuredFragments;
+use crate::delineation;
 use crate::delineation::intervals::{Doubts, SizeInterval, intervals};
 use crate::delineation::mass::{Steps, by_mass};
 use crate::delineation::measures::SieveShape;
-use crate::delineation::{self, engine_called};
 use crate::exports;
 use crate::fault::Fault;
 use crate::formats::{self, DistributionColumns};
@@ -44,13 +44,13 @@ impl State {
         }
         let (number, revision) = (open.number, of.revision);
         let labels = of.now().labels().clone();
-        let (engine, spread) = (engine_called(&of.by().engine), of.by().spread);
+        let (habits, spread) = (of.by().habits, of.by().spread);
         let field = open.fragments.field.as_ref().filter(|(of, _)| *of == photo);
         let field = field.map(|(_, field)| field.clone());
         let flight = open.flight().clone();
         let reviewed = open.review.photo(photo);
         let scale = reviewed.and_then(|photo| delineation::photo::scale_error(&photo));
-        let doubts = Doubts::of(engine, scale);
+        let doubts = Doubts::of(habits, scale);
         let work = move |progress: &Progress| {
             progress.stage("measuring");
             let posed = &flight.parts().photos[photo];
@@ -58,10 +58,10 @@ impl State {
                 Some(field) => field,
                 None => Arc::new(delineation::photo::field(&flight, posed, progress)?),
             };
-            let least = delineation::photo::least_across_of(engine, &labels, spread);
+            let least = habits.map(|habits| habits.least_across(spread));
             let shape = SieveShape::Calibrated;
             let measured = delineation::photo::fragments(&labels, &field, shape, least);
-            let steps = Steps::of(engine);
+            let steps = Steps::of(habits);
             let by_mass = by_mass([(&measured, steps)]);
             let percents = SizeInterval::PERCENTS;
             let intervals = intervals(&[(&measured, steps)], doubts, &percents).unwrap_or_default();

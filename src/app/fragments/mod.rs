@@ -4,6 +4,7 @@
 //! command    what she does on the page
 //! applying   does that
 //! outlining  an engine's work, as a job
+//! network    a network of hers, read as a job
 //! measured   what the outlines come to
 //! measuring  measures them, as a job whenever they change
 //! files      saved beside flight.toml, and read from there
@@ -20,6 +21,7 @@ mod exporting;
 pub(crate) mod files;
 mod measured;
 mod measuring;
+mod network;
 mod outlining;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -27,8 +29,9 @@ use std::sync::Arc;
 
 pub use command::{FragmentStep, FragmentTool};
 pub use measured::MeasuredFragments;
+pub use network::Network;
 
-use crate::delineation::Regions;
+use crate::delineation::{Outliner, Regions};
 use crate::fault::Fault;
 use crate::labels::{Change, Editing, FINES, LabelImage, Outlines};
 use crate::scale::ScaleField;
@@ -56,15 +59,6 @@ pub struct PhotoOutlines {
     by: BTreeMap<u64, Outliner>,
     /// Whether nothing was outlined before the first change.
     from_nothing: bool,
-}
-
-/// What outlined a photo's fragments, before any correction.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Outliner {
-    /// As it is named in files.
-    pub engine: String,
-    /// How far the photo's edges are spread, pixels, where that is known.
-    pub spread: Option<f64>,
 }
 
 impl PhotoOutlines {
@@ -173,17 +167,33 @@ impl PhotoOutlines {
     }
 }
 
+/// An engine to outline with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EngineChoice {
+    /// One that the program brings along, by its place in `ENGINES`.
+    BroughtAlong(usize),
+    /// The network that she named last.
+    Named,
+}
+
+impl Default for EngineChoice {
+    fn default() -> Self {
+        Self::BroughtAlong(0)
+    }
+}
+
 /// Who outlined what nobody has.
 static NOBODY: Outliner = Outliner {
     engine: String::new(),
+    habits: None,
     spread: None,
 };
 
 /// The page of the fragments.
 #[derive(Default)]
 pub struct Fragments {
-    /// By its place in `ENGINES`: the one that outlines next.
-    pub engine: usize,
+    /// The engine that outlines next.
+    pub engine: EngineChoice,
     /// What the mouse does in the photo.
     pub tool: FragmentTool,
     /// Half the width of the brush, pixels of the photo; 0 is the usual one.

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::{Outliner, PhotoOutlines};
+use super::PhotoOutlines;
 use crate::command::Asking;
-use crate::delineation::{self, Delineated, ENGINES, Regions};
+use crate::delineation::{self, Delineated, Outliner, Regions};
 use crate::exports;
 use crate::fault::Fault;
 use crate::jobs::Progress;
@@ -67,19 +67,24 @@ impl State {
     }
 
     fn outline(&mut self, photo: usize) {
-        let Some(open) = &mut self.open else {
+        let choice = self.open.as_ref().map(|open| open.fragments.engine);
+        let engine = choice.and_then(|choice| self.engine(choice));
+        let (Some(open), Some(engine)) = (&mut self.open, engine) else {
             return;
         };
         let file = open.files.photo_files.get(photo).cloned();
         let path = file.unwrap_or_default().path;
         let (flight, settings) = (open.flight().clone(), open.settings());
-        let Some(engine) = ENGINES.get(open.fragments.engine).copied() else {
-            return;
-        };
         let number = open.number;
         let name = open.name(photo).to_owned();
         let said = name.clone();
         open.fragments.outlining = Some(photo);
+        let camera = flight.camera(&flight.parts().photos[photo]);
+        let mut by = Outliner {
+            engine: engine.engine().name().to_owned(),
+            habits: Some(engine.engine().habits(camera.width, camera.height)),
+            spread: None,
+        };
         let work = move |progress: &Progress| -> Result<Delineated, String> {
             let missing = || format!("the file of photo '{name}' is not there");
             let pixels = read_photo(&path.ok_or_else(missing)?)?;
@@ -90,6 +95,7 @@ impl State {
             drop(pixels);
             let left_out = delineation::photo::left_out(&settings, posed, camera);
             progress.stage("outlining");
+            let engine = engine.engine();
             delineation::delineated(engine, &image, &left_out, progress).map_err(of_photo)
         };
         self.start(Task::OUTLINE, work, move |state, found| {
@@ -100,14 +106,8 @@ impl State {
                         regions,
                         spread,
                     } = found;
-                    state.take_outlines(
-                        number,
-                        photo,
-                        outlines,
-                        Some(regions),
-                        spread,
-                        engine.name(),
-                    );
+                    by.spread = spread;
+                    state.take_outlines(number, photo, outlines, Some(regions), by);
                 }
                 Err(message) => state.say(Severity::Error, &message),
             }
@@ -143,7 +143,11 @@ impl State {
                 }
                 // A person or another tool looked at all of them.
                 let outlines = Outlines::new(labels, BTreeMap::new());
-                state.take_outlines(number, photo, outlines, None, None, MASKS);
+                let by = Outliner {
+                    engine: MASKS.to_owned(),
+                    ..Outliner::default()
+                };
+                state.take_outlines(number, photo, outlines, None, by);
                 if state.asking == Some(Asking::Masks) {
                     state.asking = None;
                 }
@@ -163,8 +167,7 @@ impl State {
         photo: usize,
         outlines: Outlines,
         regions: Option<Regions>,
-        spread: Option<f64>,
-        engine: &str,
+        by: Outliner,
     ) {
         let Some(open) = &mut self.open else {
             return;
@@ -178,10 +181,6 @@ impl State {
         }
         fragments.refused = None;
         let count = count(&outlines);
-        let by = Outliner {
-            engine: engine.to_owned(),
-            spread,
-        };
         match fragments.photos.get_mut(&photo) {
             Some(of) => of.outline_anew(&outlines, by),
             None => {

@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use crate::command::{Asking, Command, PictureRequest, Tab};
 use crate::fault::one_line;
 use crate::formats::Candidate;
+use crate::fragments::Network;
 use crate::from_photos::FromPhotos;
 use crate::open_flight::OpenFlight;
 use crate::opening::OpenOptions;
@@ -104,6 +105,8 @@ pub struct State {
     pub middle: Middle,
     /// The size distributions, with or without a flight.
     pub distributions: SizeDistributions,
+    /// The network of hers that can outline fragments.
+    pub network: Network,
     /// Jobs under way.
     pub work: Work<State>,
     /// What was said, oldest first.
@@ -154,6 +157,7 @@ impl State {
             page: Page::default(),
             middle: Middle::default(),
             distributions: SizeDistributions::default(),
+            network: Network::default(),
             log: Vec::new(),
             notice: None,
             tab: Tab::default(),

@@ -19,6 +19,7 @@ use rayon::prelude::*;
 use crate::choice::Scorer;
 use crate::engine::Engine;
 use crate::evidence::{Evidence, gray};
+use crate::habits::Habits;
 use crate::smoothing::smoothed_floats;
 
 static SCORER: LazyLock<Option<Scorer>> = LazyLock::new(|| {
@@ -36,15 +37,16 @@ impl Engine for Classical {
         0.1
     }
 
-    fn fines_of_unfound(&self) -> f64 {
-        // It joins fragments: its sizes are too large as it is (`develop masses`), and fewer fines would make
-        // them larger still.
-        1.0
-    }
-
-    fn doubts(&self) -> [f64; 2] {
-        // P50 of simulated piles is 15 to 27 % too large.
-        [0.2, 0.2]
+    fn habits(&self, _width: u32, _height: u32) -> Habits {
+        Habits {
+            sees_every: 1,
+            // It joins fragments: its sizes are too large as it is (`develop masses`), and fewer fines would make
+            // them larger still.
+            fines_of_unfound: 1.0,
+            sizes_off: 1.0,
+            // P50 of simulated piles is 15 to 27 % too large.
+            doubts: [0.2, 0.2],
+        }
     }
 
     fn scorer(&self) -> Result<&Scorer, Fault> {

@@ -20,6 +20,7 @@ use rten_tensor::{NdTensor, NdTensorView};
 use crate::choice::Scorer;
 use crate::engine::Engine;
 use crate::evidence::{Evidence, gray};
+use crate::habits::Habits;
 use crate::network::{self, Channels, Input, Normal, Parts};
 use crate::votes::{SIZE_OF_ONE, Votes};
 
@@ -72,6 +73,15 @@ static SCORER: LazyLock<Option<Scorer>> = LazyLock::new(|| {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Learned;
 
+/// Of a large photo it looks at a smaller one.
+fn sees_every(width: u32, height: u32) -> u32 {
+    let mut by = 1;
+    while u64::from(width / by) * u64::from(height / by) > MOST_PIXELS {
+        by *= 2;
+    }
+    by
+}
+
 impl Engine for Learned {
     fn name(&self) -> &'static str {
         "learned"
@@ -81,41 +91,30 @@ impl Engine for Learned {
         0.17
     }
 
-    fn fines_of_unfound(&self) -> f64 {
-        // 20.4 % of the mass passes the limit where 27.7 and 33.1 % of the area is left (`develop masses`, lab and
-        // muckpile of seed 2001).
-        0.67
-    }
-
-    fn sizes_off(&self) -> f64 {
-        // P50 and P80 of simulated flights are 0.6 % too small and 2.4 % too large (lab), 0.3 and 2.7 % too large (muckpile), each
-        // within 1.3 % (standard deviation; `benches/fragments_seeds.py`, seeds 501 to 506).
-        1.01
-    }
-
-    fn doubts(&self) -> [f64; 2] {
-        // Simulated piles differ by 2 % each way behind that. On photos of the world, five kinds of rock that people outlined, the
-        // median diameter by area is off by 8 % (root mean square; `develop score`), without the belt's, where small stones lie
-        // that nobody outlined.
-        [0.08, 0.15]
+    fn habits(&self, width: u32, height: u32) -> Habits {
+        Habits {
+            sees_every: sees_every(width, height),
+            // 20.4 % of the mass passes the limit where 27.7 and 33.1 % of the area is left (`develop masses`, lab and
+            // muckpile of seed 2001).
+            fines_of_unfound: 0.67,
+            // P50 and P80 of simulated flights are 0.6 % too small and 2.4 % too large (lab), 0.3 and 2.7 % too large
+            // (muckpile), each within 1.3 % (standard deviation; `benches/fragments_seeds.py`, seeds 501 to 506).
+            sizes_off: 1.01,
+            // Simulated piles differ by 2 % each way behind that. On photos of the world, five kinds of rock that people
+            // outlined, the median diameter by area is off by 8 % (root mean square; `develop score`), without the belt's,
+            // where small stones lie that nobody outlined.
+            doubts: [0.08, 0.15],
+        }
     }
 
     fn scorer(&self) -> Result<&Scorer, Fault> {
         Scorer::brought_along(SCORER.as_ref())
     }
 
-    fn sees_every(&self, width: u32, height: u32) -> u32 {
-        let mut by = 1;
-        while u64::from(width / by) * u64::from(height / by) > MOST_PIXELS {
-            by *= 2;
-        }
-        by
-    }
-
     fn look(&self, photo: &RgbImage, progress: &Progress) -> Result<Evidence, Fault> {
         let model = MODEL.as_ref().map_err(broken)?;
         let (width, height) = photo.dimensions();
-        let first = self.sees_every(width, height);
+        let first = sees_every(width, height);
         let sizes = SIZES
             .into_iter()
             .map(|by| by * first)

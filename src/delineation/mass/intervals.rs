@@ -8,7 +8,7 @@
 use fragscale_core::fault::Fault;
 use fragscale_core::scale::Draws;
 
-use crate::engine::Engine;
+use crate::habits::Habits;
 use crate::mass::{PhotoFragments, Steps, by_mass};
 
 /// Of outlines that are as right as they can be. Nobody knows a pile's porosity: by outlines of simulated piles a P50 is as it
@@ -38,8 +38,8 @@ pub struct Doubts {
 impl Doubts {
     /// Of what an engine outlined, `None` for other tools and people, in photos whose scale has this relative
     /// standard error.
-    pub fn of(engine: Option<&dyn Engine>, scale: Option<f64>) -> Self {
-        let [sizes, fines] = engine.map_or(OF_OTHERS, Engine::doubts);
+    pub fn of(engine: Option<Habits>, scale: Option<f64>) -> Self {
+        let [sizes, fines] = engine.map_or(OF_OTHERS, |habits| habits.doubts);
         Self {
             sizes,
             fines,

@@ -33,8 +33,7 @@ use glam::DVec2;
 
 use self::counted::Counted;
 use crate::bare::bare;
-use crate::delineating::LEAST_PIXELS_ACROSS;
-use crate::engine::Engine;
+use crate::habits::{Habits, LEAST_PIXELS_ACROSS};
 use crate::labels::{FINES, LabelImage, NOT_ROCK};
 use crate::measures::{Fragment, Measures};
 use crate::outlined_by::OutlinedBy;
@@ -201,12 +200,12 @@ impl Steps {
     /// The usual ones for what an engine outlined, or other tools and people (`None`). What these leave without an outline is
     /// fines. An engine does not find small fragments as often as large ones, which makes its sizes too large; without the pores
     /// they are too small, and the two make up for each other on simulated piles (README): so the pores are left out there.
-    pub fn of(engine: Option<&dyn Engine>) -> Self {
+    pub fn of(engine: Option<Habits>) -> Self {
         Self {
             edges: true,
-            engine: engine.map_or(1.0, Engine::sizes_off),
+            engine: engine.map_or(1.0, |habits| habits.sizes_off),
             pores: engine.is_none().then_some(LOOSE),
-            fines: engine.map_or(1.0, Engine::fines_of_unfound),
+            fines: engine.map_or(1.0, |habits| habits.fines_of_unfound),
         }
     }
 }
@@ -232,7 +231,7 @@ impl Default for WantedSteps {
 impl WantedSteps {
     /// Those for a photo that was outlined by this.
     pub fn of(&self, outlined: OutlinedBy<'_>) -> Steps {
-        let usual = Steps::of(outlined.engine());
+        let usual = Steps::of(outlined.habits());
         let Some(named) = &self.named else {
             return Steps {
                 pores: usual.pores.map(|_| self.porosity),

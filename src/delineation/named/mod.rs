@@ -29,6 +29,7 @@ use crate::choice::Scorer;
 use crate::classical::Classical;
 use crate::engine::{Engine, Outlined};
 use crate::evidence::{Evidence, gray};
+use crate::habits::Habits;
 use crate::learned::Learned;
 use crate::network::{self, Channels, Input, Layout, Normal, Part, Parts};
 use description::{ChannelsWord, LayoutWord, Meaning, OutputEntry};
@@ -489,12 +490,6 @@ impl Engine for NamedModel {
         }
     }
 
-    fn sees_every(&self, width: u32, height: u32) -> u32 {
-        let sizes = self.sizes(width, height);
-        // No more than 64, or of a photo of 2^32 pixels along a side.
-        sizes.first().map_or(1, |by| by.ceil() as u32)
-    }
-
     fn least_score(&self) -> f64 {
         let own = match (self.gives_maps(), self.judges_as_learned()) {
             _ if self.prompted.is_some() => prompted::LEAST_SCORE,
@@ -505,14 +500,16 @@ impl Engine for NamedModel {
         self.description.least_score.unwrap_or(own)
     }
 
-    fn fines_of_unfound(&self) -> f64 {
-        // Nobody measured it: as of other tools.
-        self.description.fines_of_unfound.unwrap_or(1.0)
-    }
-
-    fn doubts(&self) -> [f64; 2] {
-        // Nobody measured it: as the engine that is off most.
-        Classical.doubts()
+    fn habits(&self, width: u32, height: u32) -> Habits {
+        let sizes = self.sizes(width, height);
+        Habits {
+            // No more than 64, or of a photo of 2^32 pixels along a side.
+            sees_every: sizes.first().map_or(1, |by| by.ceil() as u32),
+            // Nobody measured it: what it leaves is fines, as of other tools; the rest as the engine that is off most.
+            fines_of_unfound: self.description.fines_of_unfound.unwrap_or(1.0),
+            sizes_off: 1.0,
+            ..Classical.habits(width, height)
+        }
     }
 
     fn scorer(&self) -> Result<&Scorer, Fault> {

@@ -134,7 +134,7 @@ fn masks_of_parts_and_of_the_whole() {
     let areas = outlined.labels.areas();
     // The large one reaches beyond the photo's lower edge; the small one lies on 16 by 16 of it.
     assert_eq!(areas[1..], [80 * 64 - 16 * 16, 32 * 32]);
-    assert_eq!(whole.sees_every(128, 96), 2);
+    assert_eq!(whole.habits(128, 96).sees_every, 2);
 }
 
 /// Bytes, channels last, numbers of instances.

@@ -65,7 +65,8 @@ impl PhotoOutlined<'_> {
     ) -> Result<OutlinedFiles, Fault> {
         let posed = &self.flight.parts().photos[self.index];
         let field = photo::field(self.flight, posed, progress)?;
-        let least = photo::least_across_of(self.by.engine(), self.labels, self.spread);
+        let habits = self.by.habits();
+        let least = habits.map(|habits| habits.least_across(self.spread));
         let fragments = photo::fragments(self.labels, &field, self.shape, least);
         Ok(OutlinedFiles {
             bytes: self.bytes(&posed.name, &field, &fragments, places, units)?,

@@ -237,7 +237,7 @@ fn row<'a>(
 ) -> Result<Row<'a>, Fault> {
     let doubts = done
         .iter()
-        .map(|of| Doubts::of(of.outlined.engine(), scale));
+        .map(|of| Doubts::of(of.outlined.habits(), scale));
     let doubts = doubts
         .reduce(Doubts::or_greater)
         .unwrap_or_else(|| Doubts::of(None, scale));

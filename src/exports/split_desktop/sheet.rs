@@ -206,8 +206,10 @@ fn meaning_of_intervals(report: &ScaleReport<'_>) -> String {
     let Some((_, percent)) = percents.max_by(|(a, _), (b, _)| a.total_cmp(b)) else {
         return String::new();
     };
+    let shared = report.shared();
+    let shared = shared.map_or_else(String::new, |shared| format!(" {shared}."));
     format!(
-        "<p>In 95 of 100 photos the true scale lies within the interval (&plusmn;), given the errors that are counted. \
+        "<p>In 95 of 100 photos the true scale lies within the interval (&plusmn;), given the errors that are counted.{shared} \
          All sizes move with the scale: at the widest interval here P80 is known to &plusmn; {percent} from the scale.</p>\n"
     )
 }

@@ -6,6 +6,7 @@ mod of_others;
 use std::path::{Path, PathBuf};
 
 use crate::camera::Camera;
+use crate::delineation::Outliner;
 use crate::delineation::saved::SavedOutlines;
 use crate::fault::Fault;
 use crate::formats::{FileError, OutlinedPhoto, read_bytes, read_masks};
@@ -21,10 +22,8 @@ const FOLDER: &str = "fragments";
 pub struct OutlinesRead {
     /// The fragments.
     pub outlines: Outlines,
-    /// What outlined them first.
-    pub engine: String,
-    /// How far the photo's edges are spread, pixels, where that is known.
-    pub spread: Option<f64>,
+    /// What outlined them first, and how it errs as far as that is known today.
+    pub by: Outliner,
     /// What was mended.
     pub notes: Vec<String>,
 }
@@ -71,8 +70,7 @@ pub fn read_outlines(
     let masks = read_masks(picture, &of)?;
     Ok(OutlinesRead {
         outlines: Outlines::new(masks.labels, saved.sure),
-        engine: saved.engine,
-        spread: saved.spread,
+        by: saved.by.of_today(camera.width, camera.height),
         notes: masks.notes,
     })
 }

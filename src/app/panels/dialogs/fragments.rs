@@ -70,6 +70,30 @@ pub(super) fn masks(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
     }
 }
 
+/// Which file describes the network.
+pub(super) fn network(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.label(
+        "The TOML file that describes an ONNX model of yours, which lies beside it: what it takes and gives (README, \"Your own \
+         network\"). It runs on this computer alone.",
+    );
+    let browse = [("File…", Dialog::file("Description of the network"))];
+    let path = taken_path(
+        state,
+        ui,
+        Path::new(""),
+        &browse,
+        "Take the network",
+        commands,
+    );
+    // It closes itself once it is read.
+    if let Some(path) = path {
+        commands.push(Command::Fragments(FragmentStep::Network(path.into())));
+    }
+    if let Some(message) = &state.network.refused {
+        ui.colored_label(ui.visuals().warn_fg_color, message);
+    }
+}
+
 /// Where tables, report and outlines go.
 pub(super) fn export_fragments(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let Some(open) = &state.open else {

@@ -31,7 +31,7 @@ use crate::units::LengthUnit;
 use choose::choose;
 use cloud_use::cloud_use;
 use control_list::control_list;
-use fragments::{export_fragments, masks};
+use fragments::{export_fragments, masks, network};
 use from_photos::from_photos;
 use georeference::{georeference, save_georeferenced};
 use planning::{PlanFile, mission, plan_table};
@@ -63,6 +63,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Asking::SaveReport => "Save report",
             Asking::ControlList => "Load control points",
             Asking::Masks => "Outlines of another tool",
+            Asking::Network => "A network of yours",
             Asking::ExportFragments => "Export fragments",
             Asking::AddLayer => "Add cloud as layer",
             Asking::CloudUse => "What is this cloud?",
@@ -110,6 +111,7 @@ pub fn ask(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                     Asking::SaveReport => save_report(state, ui, commands),
                     Asking::ControlList => control_list(state, ui, commands),
                     Asking::Masks => masks(state, ui, commands),
+                    Asking::Network => network(state, ui, commands),
                     Asking::ExportFragments => export_fragments(state, ui, commands),
                     Asking::AddLayer => add_layer(state, ui, commands),
                     Asking::CloudUse => cloud_use(state, ui, commands),

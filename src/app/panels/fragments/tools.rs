@@ -4,7 +4,7 @@ use egui::{Button, Key, Modifiers, Role, Ui, WidgetInfo};
 
 use crate::command::{Asking, Command};
 use crate::delineation::ENGINES;
-use crate::fragments::{FragmentStep, FragmentTool};
+use crate::fragments::{EngineChoice, FragmentStep, FragmentTool};
 use crate::open_flight::OpenFlight;
 use crate::panels::field::combo_box;
 use crate::state::State;
@@ -89,24 +89,39 @@ pub(super) fn tools(
     commands: &mut Vec<Command>,
 ) {
     let fragments = &open.fragments;
-    let mut ask = false;
+    let mut asked = None;
     let mut send = |step| commands.push(Command::Fragments(step));
     ui.horizontal_wrapped(|ui| {
-        let name = |place: usize| ENGINES.get(place).map_or("", |engine| engine.name());
-        let chosen = name(fragments.engine);
-        let hover = "What finds the borders: the learned engine is the better one, the classical one is faster";
-        let mut engine = fragments.engine;
+        let name = |engine: EngineChoice| match engine {
+            EngineChoice::Named => state.network.name(),
+            EngineChoice::BroughtAlong(place) => ENGINES.get(place).map(|engine| engine.name()),
+        };
+        // A network that is not read yet does not do.
+        let mut engine = match name(fragments.engine) {
+            Some(_) => fragments.engine,
+            None => EngineChoice::default(),
+        };
+        let before = engine;
+        let chosen = name(engine).unwrap_or_default();
+        let hover = "What finds the borders: the learned engine is the better one, the classical one is faster; or a network of yours";
+        let own = ENGINES.iter().enumerate();
+        let own = own.map(|(place, _)| EngineChoice::BroughtAlong(place));
         let combo = egui::ComboBox::from_id_salt("engine")
             .selected_text(chosen)
             .width(80.0)
             .show_ui(ui, |ui| {
-                for place in 0..ENGINES.len() {
-                    ui.selectable_value(&mut engine, place, name(place));
+                for choice in own.chain([EngineChoice::Named]) {
+                    if let Some(name) = name(choice) {
+                        ui.selectable_value(&mut engine, choice, name);
+                    }
+                }
+                if ui.selectable_label(false, "Your network…").clicked() {
+                    asked = Some(Asking::Network);
                 }
             });
         combo.response.widget_info(|| combo_box("Engine", chosen));
         combo.response.on_hover_text(hover);
-        if engine != fragments.engine {
+        if engine != before {
             send(FragmentStep::Engine(engine));
         }
         let runs = state.work.is_running(Task::OUTLINE);
@@ -139,7 +154,7 @@ pub(super) fn tools(
         let hover = "Take this photo's outlines from a label image (PNG, TIFF), COCO, LabelMe, CVAT or GeoJSON in pixels; such a \
                      file can also be dropped here. Undo brings back what is outlined now";
         if button.on_hover_text(hover).clicked() {
-            ask = true;
+            asked = Some(Asking::Masks);
         }
     });
     ui.horizontal_wrapped(|ui| {
@@ -166,8 +181,8 @@ pub(super) fn tools(
             send(FragmentStep::Brush(radius));
         }
     }
-    if ask {
-        commands.push(Command::Ask(Some(Asking::Masks)));
+    if asked.is_some() {
+        commands.push(Command::Ask(asked));
     }
     if let Some(fault) = &fragments.refused {
         ui.colored_label(ui.visuals().warn_fg_color, fault.to_string());

@@ -1,8 +1,9 @@
 //! `--engine`: one that the program brings along, or a model of the user's.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use crate::delineation::{Engine, Learned, NamedModel, engine_called};
+use crate::delineation::{Learned, ReadyEngine, engine_called};
 use crate::opening::read_named_engine;
 
 /// An engine, as it was named.
@@ -14,12 +15,6 @@ pub(super) enum ChosenEngine {
     Described(PathBuf),
     /// None: what was saved in the window.
     Saved,
-}
-
-/// An engine that is ready.
-pub(super) enum OpenEngine {
-    BroughtAlong(&'static dyn Engine),
-    Described(Box<NamedModel>),
 }
 
 impl ChosenEngine {
@@ -51,28 +46,19 @@ impl ChosenEngine {
     ///
     /// # Errors
     /// Where the user's cannot be taken.
-    pub(super) fn open(&self) -> Result<OpenEngine, String> {
+    pub(super) fn open(&self) -> Result<ReadyEngine, String> {
         match self {
             // Of a photo without saved outlines it is not asked.
-            Self::Saved => Ok(OpenEngine::BroughtAlong(&Learned)),
+            Self::Saved => Ok(ReadyEngine::BroughtAlong(&Learned)),
             Self::BroughtAlong(name) => {
                 let engine =
                     engine_called(name).ok_or_else(|| format!("there is no engine {name}"))?;
-                Ok(OpenEngine::BroughtAlong(engine))
+                Ok(ReadyEngine::BroughtAlong(engine))
             }
             Self::Described(path) => {
                 let model = read_named_engine(path).map_err(|error| error.to_string())?;
-                Ok(OpenEngine::Described(Box::new(model)))
+                Ok(ReadyEngine::Named(Arc::new(model)))
             }
-        }
-    }
-}
-
-impl OpenEngine {
-    pub(super) fn engine(&self) -> &dyn Engine {
-        match self {
-            Self::BroughtAlong(engine) => *engine,
-            Self::Described(model) => model.as_ref(),
         }
     }
 }

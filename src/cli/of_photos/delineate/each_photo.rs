@@ -146,11 +146,11 @@ impl<'a> EachPhoto<'a> {
                 for (path, bytes) in &files {
                     outputs.write(path, bytes, Kind::Result)?;
                 }
-                let engine = made.outlined.engine();
                 let kept = KeptPhoto {
                     fragments: made.fragments,
                     is_saved: matches!(made.outlined, OutlinedBy::Saved(_)),
-                    engine: engine.map_or_else(String::new, |of| of.name().to_owned()),
+                    engine: made.outlined.method().to_owned(),
+                    habits: made.outlined.habits(),
                     spread: made.spread,
                     notes: made.notes,
                 };

@@ -8,9 +8,7 @@ use super::DelineateArguments;
 use super::chosen_engine::ChosenEngine;
 use super::unfinished::KeptPhoto;
 use crate::delineation::mass::PhotoFragments;
-use crate::delineation::{
-    Engine, LabelImage, OutlinedBy, delineate as outline, engine_called, photo,
-};
+use crate::delineation::{Engine, LabelImage, OutlinedBy, delineate as outline, photo};
 use crate::exports::{MapPlaces, PhotoOutlined};
 use crate::fault::Fault;
 use crate::jobs::Progress;
@@ -115,7 +113,7 @@ impl<'a> Maker<'a> {
             let read = read_outlines(&files, &photo.name, camera);
             let read =
                 read.map_err(|error| Fault::new(error.to_string(), "or say --engine learned"))?;
-            let by = OutlinedBy::Saved(engine_called(&read.engine));
+            let by = OutlinedBy::Saved(read.by.habits);
             return Ok(Outlined {
                 labels: read.outlines.into_labels(),
                 by,
@@ -123,7 +121,7 @@ impl<'a> Maker<'a> {
                 notes: read.notes,
             });
         }
-        let by = OutlinedBy::Engine(self.engine);
+        let by = OutlinedBy::engine(self.engine, camera.width, camera.height);
         let labels = outline(self.engine, image, left_out, self.progress)?;
         Ok(Outlined {
             labels,
@@ -144,10 +142,12 @@ impl<'a> Maker<'a> {
     /// What outlined a photo that was kept; `None` where that is not known any more.
     pub(super) fn outlined_by(&self, kept: &KeptPhoto) -> Option<OutlinedBy<'_>> {
         match kept.is_saved {
-            true => Some(OutlinedBy::Saved(
-                engine_called(&kept.engine).map(|engine| engine as _),
-            )),
-            false => (kept.engine == self.engine.name()).then_some(OutlinedBy::Engine(self.engine)),
+            true => Some(OutlinedBy::Saved(kept.habits)),
+            false if kept.engine == self.engine.name() => Some(OutlinedBy::Engine {
+                name: self.engine.name(),
+                habits: kept.habits?,
+            }),
+            false => None,
         }
     }
 

@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 
 use super::DelineateArguments;
-use super::chosen_engine::{ChosenEngine, OpenEngine};
+use super::chosen_engine::ChosenEngine;
 use crate::cli::outputs::Outputs;
-use crate::delineation::{Engine, Learned};
+use crate::delineation::{Engine, Learned, ReadyEngine};
 use crate::files::Recording;
 use crate::opening::{Opened, OutlinesOfOthers};
 
 /// What outlines the fragments: looked at before the flight is opened, so that what is wrong is said at once.
 pub(in crate::cli) struct Outliners {
-    engine: Option<OpenEngine>,
+    engine: Option<ReadyEngine>,
     /// The files of the engine.
     pub(super) of_engine: Vec<PathBuf>,
     /// Outlines in place of an engine's.

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use crate::cli::outputs::Outputs;
+use crate::delineation::Habits;
 use crate::delineation::mass::PhotoFragments;
 use crate::exports::{sha256_of_bytes, sha256_of_file};
 use crate::files::{Kind, note_kept, read_bytes};
@@ -20,9 +21,10 @@ use crate::jobs::Progress;
 pub(super) struct KeptPhoto {
     /// What was measured.
     pub(super) fragments: PhotoFragments,
-    /// Whether its outlines were saved in the window, and the engine's name.
+    /// Whether its outlines were saved in the window, what outlined them now, and how that errs.
     pub(super) is_saved: bool,
     pub(super) engine: String,
+    pub(super) habits: Option<Habits>,
     /// How far its edges are spread, pixels.
     pub(super) spread: Option<f64>,
     /// What was mended or left out.
@@ -100,6 +102,7 @@ impl Unfinished {
             fragments: PhotoFragments::from_json(value.get("measured")?)?,
             is_saved: value.get("saved")?.as_bool()?,
             engine: word("engine")?,
+            habits: value.get("habits").and_then(Habits::from_json),
             spread: value.get("spread")?.as_u64().map(f64::from_bits),
             notes: notes.collect::<Option<_>>()?,
         };
@@ -132,6 +135,7 @@ impl Unfinished {
             "files": sums,
             "saved": of.is_saved,
             "engine": of.engine,
+            "habits": of.habits.map(|habits| habits.to_json()),
             "spread": of.spread.map(f64::to_bits),
             "notes": of.notes,
             "measured": of.fragments.to_json(),

@@ -7,7 +7,7 @@ use fragscale_core::jobs::Progress;
 use fragscale_core::picture;
 use fragscale_delineation::mass::{self, PhotoFragments, Steps};
 use fragscale_delineation::measures::{SieveShape, measured};
-use fragscale_delineation::{Engine, delineate, least_across};
+use fragscale_delineation::{Engine, delineate};
 use fragscale_opening::{OpenOptions, open_flight};
 
 use super::Failed;
@@ -37,12 +37,9 @@ pub(super) fn masses(engine: Option<&dyn Engine>, flights: &[&str]) -> Result<()
                     let is_ball: Vec<bool> = image.pixels().map(|pixel| is_ball(pixel.0)).collect();
                     (
                         delineate(engine, &image, &is_ball, &progress)?,
-                        least_across(
-                            engine,
-                            camera.width,
-                            camera.height,
-                            picture::edge_spread(&image),
-                        ),
+                        engine
+                            .habits(camera.width, camera.height)
+                            .least_across(picture::edge_spread(&image)),
                     )
                 }
             };
@@ -71,7 +68,8 @@ pub(super) fn masses(engine: Option<&dyn Engine>, flights: &[&str]) -> Result<()
                 Some(across),
             ));
         }
-        let fines = engine.map_or(1.0, Engine::fines_of_unfound);
+        // The same of photos of all sizes.
+        let fines = engine.map_or(1.0, |engine| engine.habits(1, 1).fines_of_unfound);
         let steps = Steps {
             fines,
             ..Steps::default()

@@ -1,0 +1,75 @@
+//! A network of hers, read as a job: its description with the files that this names.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::EngineChoice;
+use crate::command::Asking;
+use crate::delineation::{ENGINES, Engine, NamedModel, ReadyEngine};
+use crate::jobs::Progress;
+use crate::opening::read_named_engine;
+use crate::state::{Severity, State};
+use crate::tasks::Task;
+
+impl Task {
+    /// Reading a network of hers.
+    pub const READ_NETWORK: Self = Self::new("Reading a network");
+}
+
+/// The network that she named last; it stays while flights come and go.
+#[derive(Debug, Default)]
+pub struct Network {
+    model: Option<Arc<NamedModel>>,
+    /// Why the one that she named then was not taken.
+    pub refused: Option<String>,
+}
+
+impl Network {
+    /// What it is called, where there is one.
+    pub fn name(&self) -> Option<&str> {
+        self.model.as_ref().map(|model| model.name())
+    }
+}
+
+impl State {
+    /// The engine that is chosen; the first one where she has named no network.
+    pub(super) fn engine(&self, choice: EngineChoice) -> Option<ReadyEngine> {
+        let place = match (choice, &self.network.model) {
+            (EngineChoice::Named, Some(model)) => return Some(ReadyEngine::Named(model.clone())),
+            (EngineChoice::Named, None) => 0,
+            (EngineChoice::BroughtAlong(place), _) => place,
+        };
+        ENGINES.get(place).copied().map(ReadyEngine::BroughtAlong)
+    }
+
+    /// Reads the network that a file describes, and chooses it.
+    pub(super) fn read_network(&mut self, path: PathBuf) {
+        self.network.refused = None;
+        let work = move |progress: &Progress| {
+            progress.stage(format!("reading {}", file_name(&path)));
+            read_named_engine(&path).map_err(|error| error.to_string())
+        };
+        self.start(Task::READ_NETWORK, work, move |state, read| match read {
+            Ok(model) => {
+                let text = format!("network {}: ready to outline fragments", model.name());
+                state.say(Severity::Note, &text);
+                state.network.model = Some(Arc::new(model));
+                if let Some(open) = &mut state.open {
+                    open.fragments.engine = EngineChoice::Named;
+                }
+                if state.asking == Some(Asking::Network) {
+                    state.asking = None;
+                }
+            }
+            Err(message) => {
+                state.say(Severity::Error, &message);
+                state.network.refused = Some(message);
+            }
+        });
+    }
+}
+
+fn file_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    name.to_string_lossy().into_owned()
+}
