@@ -166,7 +166,7 @@ fn errors_are_typed_saved_and_undone() {
     ));
     assert!(desk.open().review.is_looked_at());
     // 0.3 % of all lengths is half of a 95 % interval of 0.588 %.
-    assert!(desk.says("all share ± 0.6 %"));
+    assert!(desk.says("all scales share ± 0.6 %"));
     // What is none is said, and changes nothing.
     desk.fill("Standard deviation of the surface", "-1");
     assert_eq!(errors(&desk), all);

@@ -229,7 +229,7 @@ fn filter(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         ui.add(egui::Label::new(egui::RichText::new(shown).weak()).extend());
         let errors = open.flight().errors_of_all();
         if let (Some(percent), Some(words)) = (errors.world_percent(), errors.world_in_words()) {
-            let shared = egui::RichText::new(format!("all share ± {percent}")).weak();
+            let shared = egui::RichText::new(format!("all scales share ± {percent}")).weak();
             let shared = ui.add(egui::Label::new(shared).extend());
             shared.on_hover_text(format!("Of each photo's 95 % interval, {words}"));
         }
