@@ -28,7 +28,7 @@ use nalgebra::DMatrix;
 /// Photos in rows of twenty from 30 m, straight down, each over the next by three quarters, with 60 new points each.
 fn survey(count: u32) -> Reconstruction {
     let mut random = SplitMix(16);
-    let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut uniform = move || random.unit();
     let camera = Camera {
         name: "c".to_owned(),
         width: 4000,

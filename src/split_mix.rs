@@ -19,6 +19,11 @@ impl SplitMix {
         self.0 = self.0.wrapping_add(Self::GOLDEN);
         spread(self.0)
     }
+
+    /// From 0 to below 1, a multiple of 2^-53: all that an `f64` there holds of the next 64 bits.
+    pub fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
 }
 
 /// The output function: a bijection that spreads every bit.
@@ -48,5 +53,14 @@ mod tests {
                 16_408_922_859_458_223_821_u64,
             ]
         );
+    }
+
+    /// The first of them over 2^64, to the last of 53 bits; the bits that do not fit are cut off.
+    #[test]
+    fn units_are_its_upper_bits() {
+        let unit = SplitMix(1_234_567).unit();
+        assert_eq!(unit, 0.350_079_542_021_408_1);
+        let of_two_to_64 = 6_457_827_717_110_365_317.0 / 18_446_744_073_709_551_616.0;
+        assert!(unit <= of_two_to_64 && of_two_to_64 - unit < 2.0_f64.powi(-53));
     }
 }

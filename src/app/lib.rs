@@ -181,7 +181,8 @@ impl App {
     /// What is typed beside the fields of a small window is for none of what lies behind it: there a letter is a tool, and Delete
     /// takes away.
     fn keep_keys_from_behind(&self, context: &egui::Context) {
-        if self.state.asking.is_none() || context.egui_wants_keyboard_input() {
+        let asks = self.state.asking.is_some() || self.state.held_back.is_some();
+        if !asks || context.egui_wants_keyboard_input() {
             return;
         }
         context.input_mut(|input| {

@@ -1,6 +1,6 @@
 //! A point from its marks in photos, and which mark is probably wrong.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
@@ -34,6 +34,8 @@ pub struct Located {
     /// How far from each mark the point projects, in pixels, in the order of the marks; `None` where the lens
     /// shows nothing at a mark.
     pub residuals_px: Vec<Option<f64>>,
+    /// The covariance of the point where each mark is off by a pixel (standard deviation, along columns and rows).
+    pub covariance: DMat3,
     /// The mark, by its place, without which the others agree: it is probably on another thing.
     pub suspect: Option<usize>,
 }
@@ -64,6 +66,7 @@ pub fn locate(views: &[MarkedView<'_>]) -> Result<Located, Fault> {
     Ok(Located {
         point: all.point,
         residuals_px,
+        covariance: all.covariance,
         suspect: suspect(views, &places, all.rms_px()),
     })
 }
@@ -111,8 +114,6 @@ fn suspect(views: &[MarkedView<'_>], places: &[(usize, DVec3)], rms_px: f64) -> 
 
 #[cfg(test)]
 mod tests {
-    use glam::DMat3;
-
     use super::*;
     use crate::control::test_camera::{brown, camera};
 

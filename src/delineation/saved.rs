@@ -163,7 +163,7 @@ mod tests {
         assert!(!saved.is_of(&camera(Distortion::Brown(brown))));
         // Earlier versions did not say it.
         let earlier = saved.to_json().replace("\"spread\":0.75,", "");
-        assert_eq!(SavedOutlines::from_json(&earlier).unwrap().spread, None);
+        assert_eq!(SavedOutlines::from_json(&earlier).unwrap().by.spread, None);
         for broken in ["", "{}", "{\"outlines\":1}", "[]"] {
             assert!(SavedOutlines::from_json(broken).is_err());
         }

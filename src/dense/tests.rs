@@ -49,7 +49,7 @@ impl Scene {
 /// A pattern without repetition within the scene, waves of 0.1 to 0.6.
 fn pattern(at: DVec3) -> f64 {
     let mut random = SplitMix(5);
-    let mut unit = || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut unit = || random.unit();
     let wave = |_: u32| {
         let (turn, length, shift) = (unit() * 6.3, 0.1 + 0.5 * unit(), unit() * 6.3);
         let along = at.x * turn.cos() + at.y * turn.sin() + 0.3 * at.z;
@@ -196,10 +196,7 @@ fn exact_maps(noise: f64) -> (Vec<View>, Vec<RgbImage>, InMemory) {
     let (views, photos) = views(Scene::Plane);
     let mut random = SplitMix(9);
     // Twelve uniform numbers less six: nearly a normal one.
-    let mut normal = || {
-        let unit = |random: &mut SplitMix| (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
-        (0..12).map(|_| unit(&mut random)).sum::<f64>() - 6.0
-    };
+    let mut normal = || (0..12).map(|_| random.unit()).sum::<f64>() - 6.0;
     let shelf = InMemory::default();
     for (which, view) in views.iter().enumerate() {
         let depth = |x: u32, y: u32| truth(Scene::Plane, view, x, y).1;

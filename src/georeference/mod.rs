@@ -14,7 +14,7 @@ mod triangulate;
 mod umeyama;
 
 pub use fit::{Fit, Pair, fit};
-pub use lengths::{LengthsFit, scale_of_lengths};
+pub use lengths::{KnownLength, LengthsFit, scale_of_lengths};
 pub use level::levelled;
 pub use triangulate::{Sight, Triangulated, triangulate};
 pub use umeyama::similarity_of;

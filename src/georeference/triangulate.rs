@@ -26,6 +26,8 @@ pub struct Triangulated {
     pub point: DVec3,
     /// How far from each mark the point projects, in pixels.
     pub residuals_px: Vec<f64>,
+    /// The covariance of the point where each mark is off by a pixel (standard deviation, along columns and rows).
+    pub covariance: DMat3,
 }
 
 impl Triangulated {
@@ -78,28 +80,28 @@ pub fn triangulate(
     };
     let squares = |offsets: &[DVec2]| offsets.iter().map(|o| o.length_squared()).sum::<f64>();
     let mut off = offsets(point).ok_or_else(behind)?;
-    let distance = point.distance(sights[0].origin);
-    for _ in 0..20 {
-        // Columns of the Jacobian by central differences.
-        let step = 1e-6 * distance;
+    // Columns of the Jacobian by central differences.
+    let step = 1e-6 * point.distance(sights[0].origin);
+    let columns = |point: DVec3| -> Option<[Vec<DVec2>; 3]> {
         let column = |axis: DVec3| -> Option<Vec<DVec2>> {
             let (up, down) = (offsets(point + axis * step)?, offsets(point - axis * step)?);
-            Some(
-                up.iter()
-                    .zip(&down)
-                    .map(|(a, b)| (*a - *b) / (2.0 * step))
-                    .collect(),
-            )
+            let pairs = up.iter().zip(&down);
+            Some(pairs.map(|(a, b)| (*a - *b) / (2.0 * step)).collect())
         };
-        let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(column);
-        let [Some(x), Some(y), Some(z)] = columns else {
+        Some([column(DVec3::X)?, column(DVec3::Y)?, column(DVec3::Z)?])
+    };
+    let dot = |a: &[DVec2], b: &[DVec2]| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum::<f64>();
+    let normal = |columns: &[Vec<DVec2>; 3]| {
+        let [x, y, z] = columns;
+        let row = |a: &[DVec2]| DVec3::new(dot(a, x), dot(a, y), dot(a, z));
+        DMat3::from_cols(row(x), row(y), row(z))
+    };
+    for _ in 0..20 {
+        let Some(columns) = columns(point) else {
             break;
         };
-        let dot = |a: &[DVec2], b: &[DVec2]| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum::<f64>();
-        let row = |a: &[DVec2]| DVec3::new(dot(a, &x), dot(a, &y), dot(a, &z));
-        let normal = DMat3::from_cols(row(&x), row(&y), row(&z));
-        let gradient = DVec3::new(dot(&x, &off), dot(&y, &off), dot(&z, &off));
-        let next = point - normal.inverse() * gradient;
+        let gradient = columns.each_ref().map(|column| dot(column, &off));
+        let next = point - normal(&columns).inverse() * DVec3::from(gradient);
         if !next.is_finite() {
             break;
         }
@@ -111,9 +113,11 @@ pub fn triangulate(
         }
         (point, off) = (next, next_off);
     }
+    let covariance = columns(point).map(|columns| normal(&columns).inverse());
     Ok(Triangulated {
         point,
         residuals_px: off.iter().map(|o| o.length()).collect(),
+        covariance: covariance.filter(|of| of.is_finite()).ok_or_else(behind)?,
     })
 }
 
@@ -189,6 +193,14 @@ mod tests {
         );
         assert!((found.residuals_px[0] - 0.5).abs() < 1e-6);
         assert!((found.rms_px() - 0.5).abs() < 1e-6);
+        // A pixel is 0.1 there, and two photos show it: 0.1² / 2 across. Along the view a pixel of either is
+        // 100² / (1000 · 10) = 1.
+        let expected = DMat3::from_diagonal(DVec3::new(0.005, 0.005, 0.5));
+        assert!(
+            found.covariance.abs_diff_eq(expected, 1e-4),
+            "{}",
+            found.covariance
+        );
     }
 
     #[test]

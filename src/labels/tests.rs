@@ -177,7 +177,7 @@ fn two_thousand_edits_are_undone() {
     let sure = (1..48).map(|number| (number, f64::from(number) / 48.0));
     let first = Outlines::new(labels, sure.collect());
     let mut editing = Editing::new(first.clone());
-    let mut unit = move || (random.next() >> 11) as f64 / (1u64 << 53) as f64;
+    let mut unit = move || random.unit();
     let mut tried = 0;
     while editing.changes() < 2000 {
         tried += 1;

@@ -37,7 +37,7 @@ fn camera() -> Camera {
 /// Nine photos from about 30 m, 3 by 3, that overlap by three quarters.
 fn poses() -> Vec<Pose> {
     let mut random = SplitMix(11);
-    let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+    let mut uniform = move || random.unit() - 0.5;
     (0..9)
         .map(|number| {
             let (column, row) = (f64::from(number % 3) - 1.0, f64::from(number / 3) - 1.0);

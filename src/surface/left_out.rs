@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn the_triangle_is_that_of_the_others() {
         let mut random = crate::split_mix::SplitMix(3);
-        let mut uniform = || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+        let mut uniform = || random.unit();
         let points: Vec<DVec3> = (0..300)
             .map(|_| DVec3::new(uniform() * 9.0, uniform() * 9.0, uniform()))
             .collect();

@@ -34,11 +34,6 @@ fn rectangle(low: [f64; 2], high: [f64; 2]) -> Polygon {
     Polygon::new(&corners.map(|[x, y]| at(x, y))).unwrap()
 }
 
-/// From 0 to below 1.
-fn unit(random: &mut SplitMix) -> f64 {
-    (random.next() >> 11) as f64 / (1_u64 << 53) as f64
-}
-
 fn near(found: f64, expected: f64, within: f64) {
     assert!((found - expected).abs() <= within, "{found} for {expected}");
 }
@@ -66,7 +61,7 @@ fn cone(radius: f64, height: f64, floor: f64) -> Surface {
 fn plane(reach: f64, count: usize, seed: u64, z: impl Fn(DVec2) -> f64) -> Surface {
     let mut random = SplitMix(seed);
     let mut places: Vec<DVec2> = (0..count)
-        .map(|_| DVec2::new(unit(&mut random), unit(&mut random)) * 2.0 * reach - reach)
+        .map(|_| DVec2::new(random.unit(), random.unit()) * 2.0 * reach - reach)
         .collect();
     for corner in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
         places.push(DVec2::from(corner) * reach);
@@ -109,7 +104,7 @@ fn every_crossed_edge_is_a_point() {
     let mut triangles = Vec::new();
     for y in 0..6_u32 {
         for x in 0..6_u32 {
-            points.push(DVec3::new(f64::from(x), f64::from(y), unit(&mut random)));
+            points.push(DVec3::new(f64::from(x), f64::from(y), random.unit()));
             if x < 5 && y < 5 {
                 let i = y * 6 + x;
                 triangles.extend([[i, i + 1, i + 7], [i, i + 7, i + 6]]);
@@ -377,7 +372,7 @@ fn between_two_surfaces() {
 fn parts_add_up() {
     let mut random = SplitMix(11);
     let places: Vec<DVec2> = (0..4000)
-        .map(|_| DVec2::new(unit(&mut random), unit(&mut random)) * 20.0 - 10.0)
+        .map(|_| DVec2::new(random.unit(), random.unit()) * 20.0 - 10.0)
         .collect();
     let surface = cloud((places.iter()).map(|p| p.extend((p.x * 0.7).sin() * (p.y * 0.4).cos())));
     let spokes: Vec<DVec2> = (0..24)

@@ -239,6 +239,17 @@ fn the_doubtful_ones_are_gone_through_with_keys() {
     assert!(outlines(&desk).now() == &before);
     assert_eq!(desk.open().fragments.selected, None);
     desk.press(Modifiers::NONE, Key::Escape);
+    // Nor where a question waits.
+    desk.harness.state_mut().apply(Command::Close);
+    desk.harness.run();
+    assert!(desk.harness.state().state().held_back.is_some());
+    for key in [Key::N, Key::O, Key::Delete] {
+        desk.press(Modifiers::NONE, key);
+    }
+    assert!(outlines(&desk).now() == &before);
+    assert_eq!(desk.open().fragments.selected, None);
+    desk.harness.state_mut().apply(Command::Keep);
+    desk.harness.run();
     // A ball is no rock at all.
     let out = |desk: &Desk| {
         let labels = outlines(desk).now().labels().labels.clone();

@@ -42,7 +42,7 @@ impl Dice {
     }
 
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+        low + (high - low) * self.0.unit()
     }
 
     fn coin(&mut self) -> bool {

@@ -154,16 +154,7 @@ fn table(result: &Georeferenced) -> String {
         // The file has them all.
         to_digits(result.similarity.scale, 9)
     );
-    match (result.scale_error, result.scale_interval) {
-        (Some(error), Some(interval)) => {
-            text += &format!(
-                ", ± {} (standard error), ± {} (95 %)\n",
-                percent(error),
-                percent(interval)
-            );
-        }
-        _ => text += ", from one distance that nothing checks\n",
-    }
+    text += &format!(", {}\n", result.scale_error_in_words());
     if let Some(degrees) = result.rotation_error_degrees {
         text += &format!("least sure rotation: ± {degrees:.3} degrees (standard error)\n");
     }
@@ -179,18 +170,6 @@ fn table(result: &Georeferenced) -> String {
         text += &format!("heights count from: {heights}\n");
     }
     text
-}
-
-/// Two digits that count.
-fn percent(share: f64) -> String {
-    let percent = share * 100.0;
-    match percent {
-        p if p >= 10.0 => format!("{p:.0} %"),
-        p if p >= 1.0 => format!("{p:.1} %"),
-        p if p >= 0.1 => format!("{p:.2} %"),
-        p if p >= 0.001 => format!("{p:.4} %"),
-        p => format!("{p:.1e} %"),
-    }
 }
 
 fn value(result: &Georeferenced) -> Value {

@@ -241,7 +241,7 @@ mod tests {
     #[test]
     fn tenths_are_those_of_the_fragments() {
         let mut random = SplitMix(7);
-        let mut unit = || (random.next() >> 11) as f64 / (1u64 << 53) as f64;
+        let mut unit = || random.unit();
         let fragments: Vec<[f64; 2]> = (0..1000)
             .map(|_| [10f64.powf(unit() * 1.3), unit()])
             .collect();
@@ -333,7 +333,7 @@ mod tests {
     #[test]
     fn what_is_seen_between_others() {
         let mut random = SplitMix(5);
-        let mut unit = || (random.next() >> 11) as f64 / (1u64 << 53) as f64;
+        let mut unit = || random.unit();
         let (side, deep) = (150.0, 15.0);
         let sizes: [f64; 2] = [1.0, 4.0];
         // Each class would fill a quarter if none overlapped.

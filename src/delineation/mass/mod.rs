@@ -528,7 +528,7 @@ pub(crate) mod tests {
     #[test]
     fn edges_do_not_hide_the_large() {
         let mut random = SplitMix(11);
-        let mut unit = || (random.next() >> 11) as f64 / (1u64 << 53) as f64;
+        let mut unit = || random.unit();
         let mut fragments = Vec::new();
         for number in 0..200_000 {
             // As many of 10 as of 40.

@@ -118,7 +118,7 @@ struct Noise(SplitMix);
 
 impl Noise {
     fn uniform(&mut self) -> f64 {
-        (self.0.next() >> 11) as f64 / (1u64 << 53) as f64
+        self.0.unit()
     }
 
     fn normal(&mut self) -> f64 {

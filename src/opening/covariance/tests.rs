@@ -15,7 +15,7 @@ pub(crate) fn found(model: &Reconstruction, known: &Known) -> Deviations {
 /// Five photos of 40 points, seen 0.8 px off.
 pub(crate) fn model() -> Reconstruction {
     let mut random = SplitMix(5);
-    let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+    let mut uniform = move || random.unit() - 0.5;
     let lens = Brown::new([-0.05, 0.02, 1e-3, -5e-4, 0.0, 0.0, 0.0, 0.0]);
     let camera = Camera {
         name: "c".to_owned(),
@@ -281,7 +281,7 @@ fn a_free_model_is_as_sure_anywhere() {
     };
     let here = found(&model(), &known);
     let mut random = SplitMix(8);
-    let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut uniform = move || random.unit();
     for _ in 0..60 {
         let scale = 10.0_f64.powf(uniform() * 6.0 - 3.0);
         let turn = DMat3::from_rotation_z(6.0 * uniform()) * DMat3::from_rotation_x(uniform());

@@ -4,13 +4,16 @@ use glam::{DMat3, DVec3};
 
 use super::marks::MarkedPoint;
 use super::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, LengthResidual};
-use crate::control::ScaleBar;
+use crate::control::{Located, ScaleBar};
 use crate::fault::Fault;
 use crate::formats::Reconstruction;
 use crate::geometry::Similarity;
-use crate::georeference::{levelled, scale_of_lengths};
+use crate::georeference::{KnownLength, levelled, scale_of_lengths};
 use crate::scale::StatedErrors;
 use crate::units::LengthUnit;
+
+/// Who clicks a mark does it to about a pixel.
+const LEAST_MARK_ERROR_PX: f64 = 1.0;
 
 /// Fits the scale to `distances`; `warnings` are what was said before.
 pub(super) fn by_distances(
@@ -28,28 +31,34 @@ pub(super) fn by_distances(
     }
     let point = |name: &String| {
         let found = marked.iter().find(|point| point.name == *name);
-        found.map(|point| point.found.point).ok_or_else(|| {
+        found.map(|point| &point.found).ok_or_else(|| {
             Fault::new(
                 format!("there is no triangulated control point '{name}' for a known distance"),
                 "give its marks in two photos (--gcp), or the point as x,y,z",
             )
         })
     };
+    let pixel = mark_error_px(marked);
     let mut lengths = Vec::new();
     for distance in distances {
-        let (name, a, b) = match &distance.ends {
+        let known = distance.metres;
+        lengths.push(match &distance.ends {
             KnownEnds::Points(a, b) => {
                 let shown = |p: &DVec3| format!("{},{},{}", p.x, p.y, p.z);
-                (format!("{} to {}", shown(a), shown(b)), *a, *b)
+                let length = KnownLength {
+                    found: a.distance(*b),
+                    deviation: None,
+                    known,
+                };
+                (format!("{} to {}", shown(a), shown(b)), length)
             }
-            KnownEnds::Names(a, b) => (format!("{a} to {b}"), point(a)?, point(b)?),
-        };
-        lengths.push((name, a.distance(b), distance.metres));
+            KnownEnds::Names(a, b) => (
+                format!("{a} to {b}"),
+                between(point(a)?, point(b)?, pixel, known),
+            ),
+        });
     }
-    let numbers: Vec<(f64, f64)> = lengths
-        .iter()
-        .map(|(_, length, known)| (*length, *known))
-        .collect();
+    let numbers: Vec<KnownLength> = lengths.iter().map(|(_, length)| *length).collect();
     let found = scale_of_lengths(&numbers)?;
     let rotation = match request.level {
         true => {
@@ -79,10 +88,10 @@ pub(super) fn by_distances(
         heights: None,
         positions: Vec::new(),
         lengths: (lengths.into_iter())
-            .map(|(name, length, known)| LengthResidual {
+            .map(|(name, length)| LengthResidual {
                 name,
-                known,
-                fitted: length * found.scale,
+                known: length.known,
+                fitted: length.found * found.scale,
             })
             .collect(),
         rms: None,
@@ -92,6 +101,27 @@ pub(super) fn by_distances(
         errors: StatedErrors::default(),
         warnings,
     })
+}
+
+/// A known distance between two points that are marked, `pixel` off in photos.
+fn between(a: &Located, b: &Located, pixel: f64, known: f64) -> KnownLength {
+    let apart = b.point - a.point;
+    let along = apart.normalize_or_zero();
+    let variance = along.dot((a.covariance + b.covariance) * along);
+    KnownLength {
+        found: apart.length(),
+        deviation: Some(pixel * variance.max(0.0).sqrt()),
+        known,
+    }
+}
+
+/// How far marks are off, pixels along columns and rows: as far as those of all points miss each other, and a pixel at least.
+fn mark_error_px(marked: &[MarkedPoint]) -> f64 {
+    let marks = marked.iter().flat_map(|point| &point.found.residuals_px);
+    let marks: Vec<f64> = marks.copied().flatten().collect();
+    let squares: f64 = marks.iter().map(|residual| residual * residual).sum();
+    let free = 2.0 * marks.len() as f64 - 3.0 * marked.len() as f64;
+    (squares / free.max(1.0)).sqrt().max(LEAST_MARK_ERROR_PX)
 }
 
 /// The scale bars whose two ends were found, as known distances; the others are said in `warnings`.

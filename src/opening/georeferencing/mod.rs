@@ -38,7 +38,7 @@ use crate::formats::{PosedPhoto, Reconstruction, Sizes, read_project};
 use crate::geometry::Similarity;
 use crate::georeference::{Pair, fit};
 use crate::jobs::Progress;
-use crate::numbers::{TO_95_PERCENT, stated_percent};
+use crate::numbers::{TO_95_PERCENT, significant_digits, stated_percent};
 use crate::scale::StatedErrors;
 use crate::units::LengthUnit;
 
@@ -161,7 +161,7 @@ pub struct Georeferenced {
     pub lengths: Vec<LengthResidual>,
     /// The root of the mean squared length of the used residuals, in the unit of the world.
     pub rms: Option<f64>,
-    /// The standard error of the scale, relative to it; `None` with one distance.
+    /// The standard error of the scale, relative to it; `None` with one distance between points that nobody marked.
     pub scale_error: Option<f64>,
     /// Half the width of its 95 % interval, relative to it.
     pub scale_interval: Option<f64>,
@@ -179,6 +179,24 @@ impl Georeferenced {
     /// or distances that is more than the standard error, which nobody knows well: of two distances 6.5 times.
     pub fn stated_world_scale(&self) -> Option<f64> {
         Some(stated_percent(self.scale_interval? / TO_95_PERCENT))
+    }
+
+    /// How sure the scale is, in words.
+    pub fn scale_error_in_words(&self) -> String {
+        let checks = self.positions.len() + self.lengths.len() > 1;
+        match (self.scale_error, self.scale_interval) {
+            (Some(error), Some(interval)) => format!(
+                "± {} (standard error), ± {} (95 %){}",
+                percent(error),
+                percent(interval),
+                if checks {
+                    ""
+                } else {
+                    ", by its marks alone: nothing checks the distance"
+                }
+            ),
+            _ => "from one distance that nothing checks".to_owned(),
+        }
     }
 
     /// A residual, or their mean, as text: with three decimals, and more where the mean has no two digits in them (a model on
@@ -210,6 +228,14 @@ impl Georeferenced {
             .iter()
             .filter(|position| position.used)
             .count()
+    }
+}
+
+/// Two digits that count; a fit to rounding is said to be one.
+fn percent(share: f64) -> String {
+    match share * 100.0 {
+        percent if percent < 1e-4 => "less than 0.0001 %".to_owned(),
+        percent => format!("{} %", significant_digits(percent, 2)),
     }
 }
 

@@ -9,7 +9,7 @@ const SIDE: usize = 400;
 /// gray values.
 fn polygons(deviation: f64) -> RgbImage {
     let mut random = SplitMix(5);
-    let mut unit = || (random.next() >> 11) as f64 / (1u64 << 53) as f64;
+    let mut unit = || random.unit();
     let fine = 4;
     let size = SIDE * fine;
     let mut values = vec![90.0; size * size];

@@ -18,7 +18,7 @@ struct Random(SplitMix);
 impl Random {
     /// From `low` to `high`.
     fn number(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.0.next() >> 11) as f64 / (1_u64 << 53) as f64
+        low + (high - low) * self.0.unit()
     }
 }
 

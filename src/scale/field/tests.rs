@@ -35,7 +35,7 @@ fn lenses() -> [Distortion; 3] {
 /// A rough pile of random points on `size` by `size` around the middle, in UTM coordinates.
 fn pile(seed: u64, count: u32, size: f64) -> Cloud {
     let mut random = SplitMix(seed);
-    let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut uniform = move || random.unit();
     let point = |_| {
         let (x, y) = ((uniform() - 0.5) * size, (uniform() - 0.5) * size);
         let z = 100.0 + (x * 0.9).sin() + (y * 1.3).cos() + uniform() * 0.7;
@@ -389,7 +389,7 @@ fn a_cancelled_field_says_so() {
 fn single_rays_meet_what_a_caster_meets() {
     let surface = Surface::new(pile(3, 3000, 40.0)).unwrap();
     let mut random = SplitMix(8);
-    let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+    let mut uniform = move || random.unit() - 0.5;
     let mut met = [0; 2];
     for tilt in [85.0, 40.0, 5.0] {
         let center = DVec3::new(500_000.0 + uniform(), 5_000_000.0 + uniform(), 108.0);

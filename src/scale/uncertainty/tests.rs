@@ -29,7 +29,7 @@ fn surface(height: impl Fn(f64, f64, f64) -> f64) -> Surface {
 /// So many of them; none where the height is no number.
 fn surface_of(count: usize, height: impl Fn(f64, f64, f64) -> f64) -> Surface {
     let mut random = SplitMix(5);
-    let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut uniform = move || random.unit();
     let points = (0..count).map(|_| {
         let (x, y) = ((uniform() - 0.5) * 40.0, (uniform() - 0.5) * 40.0);
         DVec3::new(x, y, height(x, y, uniform()))
@@ -595,7 +595,7 @@ fn a_pixel_is_as_rough_as_what_is_around_it() {
 #[test]
 fn a_bridge_counts_in_the_interval() {
     let mut random = SplitMix(9);
-    let mut uniform = move || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut uniform = move || random.unit();
     let mut points: Vec<DVec3> = (0..12_000)
         .map(|_| {
             DVec3::new(

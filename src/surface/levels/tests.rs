@@ -22,7 +22,7 @@ fn levels(points: Vec<DVec3>) -> Levels {
 /// Points of a square of `size`, with a seed.
 fn random(count: usize, size: f64, seed: u64) -> Vec<DVec3> {
     let mut random = SplitMix(seed);
-    let mut uniform = || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut uniform = || random.unit();
     let points = (0..count).map(|_| DVec3::new(uniform() * size, uniform() * size, uniform()));
     points.collect()
 }

@@ -10,7 +10,7 @@ struct Random(crate::split_mix::SplitMix);
 
 impl Random {
     fn uniform(&mut self) -> f64 {
-        (self.0.next() >> 11) as f64 / (1_u64 << 53) as f64
+        self.0.unit()
     }
 }
 

@@ -29,7 +29,7 @@ fn area(points: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
 #[test]
 fn tiles_make_the_whole_triangulation() {
     let mut random = crate::split_mix::SplitMix(7);
-    let mut uniform = || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut uniform = || random.unit();
     let mut points: Vec<DVec3> = (0..60_000)
         .map(|_| DVec3::new(uniform() * 100.0, uniform() * 100.0, 0.0))
         .filter(|p| (p.x - 40.0).abs() > 9.0 || (p.y - 60.0).abs() > 25.0)
@@ -68,7 +68,7 @@ fn what_is_seen_on_a_slope_is_there() {
 /// and upper side over the ground at its middle.
 fn look_into_boxes(ground: impl Fn(DVec2) -> f64, between: [f64; 2]) {
     let mut random = crate::split_mix::SplitMix(11);
-    let mut uniform = || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut uniform = || random.unit();
     let mut points: Vec<DVec3> = (0..60_000)
         .map(|_| {
             let place = DVec2::new(uniform(), uniform()) * 100.0;
@@ -171,7 +171,7 @@ proptest! {
 #[test]
 fn a_hole_elsewhere_is_not_looked_into() {
     let mut random = crate::split_mix::SplitMix(5);
-    let mut uniform = || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+    let mut uniform = || random.unit();
     let points: Vec<DVec3> = (0..200_000)
         .map(|_| DVec3::new(uniform(), uniform(), 0.0) * 100.0)
         .filter(|p| {

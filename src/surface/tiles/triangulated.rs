@@ -251,7 +251,7 @@ mod tests {
 
     fn random(count: usize) -> Vec<DVec2> {
         let mut random = crate::split_mix::SplitMix(5);
-        let mut uniform = || (random.next() >> 11) as f64 / (1_u64 << 53) as f64;
+        let mut uniform = || random.unit();
         (0..count)
             .map(|_| DVec2::new(uniform(), uniform()))
             .collect()

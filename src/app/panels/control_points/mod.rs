@@ -136,13 +136,9 @@ fn apply(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
 fn result(found: &Georeferenced, ui: &mut egui::Ui) {
     let unit = found.unit;
     let scale = significant_digits(found.similarity.scale, 6);
-    let sure = match found.scale_interval {
-        Some(interval) if interval < 1e-6 => ", sure to less than 0.0001 %".to_owned(),
-        Some(interval) => format!(" ± {} % (95 %)", significant_digits(interval * 100.0, 2)),
-        None => ", which nothing checks".to_owned(),
-    };
     ui.label(names::unbroken(&format!(
-        "Applied: {scale} {unit} to a unit before{sure}"
+        "Applied: {scale} {unit} to a unit before, {}",
+        found.scale_error_in_words()
     )));
     if let Some(used) = found.used_in_words("points") {
         ui.label(used);

@@ -311,18 +311,10 @@ fn request(form: &GeoreferenceForm) -> Result<GeoreferenceRequest, String> {
 fn result(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     let unit = fitted.unit;
     let scale = significant_digits(fitted.similarity.scale, 7);
-    let sure = match (fitted.scale_error, fitted.scale_interval) {
-        (Some(error), Some(interval)) => format!(
-            "± {} (standard error), ± {} (95 %)",
-            percent(error),
-            percent(interval)
-        ),
-        _ => "from one distance that nothing checks".to_owned(),
-    };
     ui.strong(format!(
         "Scale: {scale} {unit} to one of the reconstruction's units"
     ));
-    ui.label(sure);
+    ui.label(fitted.scale_error_in_words());
     if let Some(degrees) = fitted.rotation_error_degrees {
         ui.label(format!(
             "Least sure rotation: ± {degrees:.3} degrees (standard error)"
@@ -354,14 +346,6 @@ fn result(fitted: &Georeferenced, ui: &mut egui::Ui, commands: &mut Vec<Command>
     if !fitted.positions.is_empty() {
         ui.add_space(4.0);
         residuals(fitted, ui, commands);
-    }
-}
-
-/// Two digits that count; a fit to rounding is said to be one.
-fn percent(share: f64) -> String {
-    match share * 100.0 {
-        percent if percent < 1e-4 => "less than 0.0001 %".to_owned(),
-        percent => format!("{} %", significant_digits(percent, 2)),
     }
 }
 

@@ -14,8 +14,8 @@ use glam::DVec2;
 use rten::{DataType, Dimension, Model, NodeId, Value, ValueOrView, ValueType};
 
 use crate::named::description::PromptsEntry;
+use crate::named::model::{loaded, names_of};
 use crate::named::outputs::{Mask, Numbers};
-use crate::named::{loaded, names_of};
 use crate::network;
 
 /// Places in one run, of a decoder that takes many: its memory grows with them.

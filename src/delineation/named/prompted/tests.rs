@@ -7,7 +7,8 @@ use rten::{Value, ValueOrView};
 
 use super::*;
 use crate::labels::{FINES, LabelImage, NOT_ROCK};
-use crate::named::{Description, NamedModel, loaded};
+use crate::named::model::loaded;
+use crate::named::{Description, NamedModel};
 use crate::network;
 
 fn fixture(name: &str) -> Vec<u8> {
