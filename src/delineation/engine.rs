@@ -8,9 +8,9 @@ use image::RgbImage;
 
 use crate::choice::Scorer;
 use crate::evidence::Evidence;
-use crate::habits::Habits;
 use crate::labels::LabelImage;
 use crate::named::NamedModel;
+use crate::outlined_by::Habits;
 
 /// Fragments as an engine outlines them.
 #[derive(Debug, Clone, PartialEq)]

@@ -14,7 +14,7 @@ use glam::DVec2;
 use serde_json::{Value, json};
 
 use crate::engine_called;
-use crate::habits::{Habits, Outliner};
+use crate::outlined_by::{Habits, Outliner};
 
 /// How far a place may lie elsewhere in the photo, pixels: no fragment changes by it.
 const SAME_PLACE: f64 = 0.5;

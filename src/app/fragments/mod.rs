@@ -1,14 +1,15 @@
 //! The page of the fragments: those of the selected photo, outlined by an engine, corrected by hand, measured.
 //!
 //! ```text
-//! command    what she does on the page
-//! applying   does that
-//! outlining  an engine's work, as a job
-//! network    a network of hers, read as a job
-//! measured   what the outlines come to
-//! measuring  measures them, as a job whenever they change
-//! files      saved beside flight.toml, and read from there
-//! exporting  tables, report and outlines, as the command `delineate` writes them
+//! command        what she does on the page
+//! applying       does that
+//! engine_choice  which engine outlines next
+//! network        a network of hers, read as a job
+//! outlining      an engine's work, as a job
+//! measured       what the outlines come to
+//! measuring      measures them, as a job whenever they change
+//! files          saved beside flight.toml, and read from there
+//! exporting      tables, report and outlines, as the command `delineate` writes them
 //! ```
 //!
 //! Outlines are of the undistorted photo at its full size. A change is made at once and can be undone without
@@ -17,6 +18,7 @@
 
 mod applying;
 mod command;
+mod engine_choice;
 mod exporting;
 pub(crate) mod files;
 mod measured;
@@ -28,8 +30,8 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 pub use command::{FragmentStep, FragmentTool};
+pub use engine_choice::{EngineChoice, Network};
 pub use measured::MeasuredFragments;
-pub use network::Network;
 
 use crate::delineation::{Outliner, Regions};
 use crate::fault::Fault;
@@ -164,21 +166,6 @@ impl PhotoOutlines {
     fn changed(&mut self) {
         self.revision = self.made.last().copied().unwrap_or(0);
         self.doubtful = self.now().doubtful();
-    }
-}
-
-/// An engine to outline with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum EngineChoice {
-    /// One that the program brings along, by its place in `ENGINES`.
-    BroughtAlong(usize),
-    /// The network that she named last.
-    Named,
-}
-
-impl Default for EngineChoice {
-    fn default() -> Self {
-        Self::BroughtAlong(0)
     }
 }
 

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::EngineChoice;
+use super::engine_choice::EngineChoice;
 use crate::command::Asking;
-use crate::delineation::{ENGINES, Engine, NamedModel, ReadyEngine};
+use crate::delineation::Engine;
 use crate::jobs::Progress;
 use crate::opening::read_named_engine;
 use crate::state::{Severity, State};
@@ -16,32 +16,7 @@ impl Task {
     pub const READ_NETWORK: Self = Self::new("Reading a network");
 }
 
-/// The network that she named last; it stays while flights come and go.
-#[derive(Debug, Default)]
-pub struct Network {
-    model: Option<Arc<NamedModel>>,
-    /// Why the one that she named then was not taken.
-    pub refused: Option<String>,
-}
-
-impl Network {
-    /// What it is called, where there is one.
-    pub fn name(&self) -> Option<&str> {
-        self.model.as_ref().map(|model| model.name())
-    }
-}
-
 impl State {
-    /// The engine that is chosen; the first one where she has named no network.
-    pub(super) fn engine(&self, choice: EngineChoice) -> Option<ReadyEngine> {
-        let place = match (choice, &self.network.model) {
-            (EngineChoice::Named, Some(model)) => return Some(ReadyEngine::Named(model.clone())),
-            (EngineChoice::Named, None) => 0,
-            (EngineChoice::BroughtAlong(place), _) => place,
-        };
-        ENGINES.get(place).copied().map(ReadyEngine::BroughtAlong)
-    }
-
     /// Reads the network that a file describes, and chooses it.
     pub(super) fn read_network(&mut self, path: PathBuf) {
         self.network.refused = None;

@@ -67,9 +67,10 @@ impl State {
     }
 
     fn outline(&mut self, photo: usize) {
-        let choice = self.open.as_ref().map(|open| open.fragments.engine);
-        let engine = choice.and_then(|choice| self.engine(choice));
-        let (Some(open), Some(engine)) = (&mut self.open, engine) else {
+        let Some(open) = &mut self.open else {
+            return;
+        };
+        let Some(engine) = self.network.engine(open.fragments.engine) else {
             return;
         };
         let file = open.files.photo_files.get(photo).cloned();

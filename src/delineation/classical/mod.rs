@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use crate::choice::Scorer;
 use crate::engine::Engine;
 use crate::evidence::{Evidence, gray};
-use crate::habits::Habits;
+use crate::outlined_by::Habits;
 use crate::smoothing::smoothed_floats;
 
 static SCORER: LazyLock<Option<Scorer>> = LazyLock::new(|| {

@@ -20,8 +20,8 @@ use rten_tensor::{NdTensor, NdTensorView};
 use crate::choice::Scorer;
 use crate::engine::Engine;
 use crate::evidence::{Evidence, gray};
-use crate::habits::Habits;
 use crate::network::{self, Channels, Input, Normal, Parts};
+use crate::outlined_by::Habits;
 use crate::votes::{SIZE_OF_ONE, Votes};
 
 /// The network halves its picture five times, and wants sides that can be; it knows nothing of what lies beyond the

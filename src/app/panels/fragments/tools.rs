@@ -3,8 +3,7 @@
 use egui::{Button, Key, Modifiers, Role, Ui, WidgetInfo};
 
 use crate::command::{Asking, Command};
-use crate::delineation::ENGINES;
-use crate::fragments::{EngineChoice, FragmentStep, FragmentTool};
+use crate::fragments::{FragmentStep, FragmentTool};
 use crate::open_flight::OpenFlight;
 use crate::panels::field::combo_box;
 use crate::state::State;
@@ -92,28 +91,17 @@ pub(super) fn tools(
     let mut asked = None;
     let mut send = |step| commands.push(Command::Fragments(step));
     ui.horizontal_wrapped(|ui| {
-        let name = |engine: EngineChoice| match engine {
-            EngineChoice::Named => state.network.name(),
-            EngineChoice::BroughtAlong(place) => ENGINES.get(place).map(|engine| engine.name()),
-        };
-        // A network that is not read yet does not do.
-        let mut engine = match name(fragments.engine) {
-            Some(_) => fragments.engine,
-            None => EngineChoice::default(),
-        };
-        let before = engine;
-        let chosen = name(engine).unwrap_or_default();
+        let network = &state.network;
+        let before = network.known(fragments.engine);
+        let mut engine = before;
+        let chosen = network.name(engine);
         let hover = "What finds the borders: the learned engine is the better one, the classical one is faster; or a network of yours";
-        let own = ENGINES.iter().enumerate();
-        let own = own.map(|(place, _)| EngineChoice::BroughtAlong(place));
         let combo = egui::ComboBox::from_id_salt("engine")
             .selected_text(chosen)
             .width(80.0)
             .show_ui(ui, |ui| {
-                for choice in own.chain([EngineChoice::Named]) {
-                    if let Some(name) = name(choice) {
-                        ui.selectable_value(&mut engine, choice, name);
-                    }
+                for choice in network.choices() {
+                    ui.selectable_value(&mut engine, choice, network.name(choice));
                 }
                 if ui.selectable_label(false, "Your network…").clicked() {
                     asked = Some(Asking::Network);

@@ -77,51 +77,16 @@ impl Decoder {
         entry: &PromptsEntry,
     ) -> Result<Self, Fault> {
         let model = loaded(bytes, "decoder")?;
-        let seen = names_of(encoder, encoder.output_ids());
         let names = names_of(&model, model.input_ids());
-        let asks_many = names.iter().any(|name| name == "input_points");
-        // An encoder's only output need not be called as the decoder calls it.
-        let has_other_name = seen.len() == 1 && !names.contains(&seen[0]);
         let mut takes = Vec::new();
         let inputs = model.input_ids().iter().zip(&names).map(|(id, name)| {
-            let given = match name.as_str() {
-                "point_coords" | "input_points" => Given::Points,
-                "point_labels" | "input_labels" => Given::Labels,
-                "mask_input" => Given::NoMask,
-                "has_mask_input" => Given::HasNoMask,
-                "orig_im_size" => Given::Size,
-                _ => {
-                    let own = seen.iter().position(|own| own == name);
-                    let only = || (has_other_name && name.contains("embed")).then_some(0);
-                    let Some(place) = own.or_else(only) else {
-                        let what = format!(
-                            "the decoder takes \"{name}\", which the encoder does not give ({})",
-                            seen.join(", ")
-                        );
-                        let remedy =
-                            "export both of one model, the decoder for points without boxes";
-                        return Err(Fault::new(what, remedy));
-                    };
-                    takes.push(encoder.output_ids()[place]);
-                    Given::Seen(takes.len() - 1)
-                }
-            };
-            let is_whole = match model.node_info(*id).and_then(|info| info.dtype()) {
-                Some(ValueType::Tensor(DataType::Int32)) => true,
-                None | Some(ValueType::Tensor(DataType::Float)) => false,
-                Some(other) => {
-                    let what = format!("the decoder takes \"{name}\" as {other:?}");
-                    return Err(Fault::new(what, "export it with floats of 32 bits"));
-                }
-            };
-            let id = *id;
             Ok(Input {
-                id,
-                given,
-                is_whole,
+                id: *id,
+                given: given(name, &names, encoder, &mut takes)?,
+                is_whole: is_whole(&model, *id, name)?,
             })
         });
-        let inputs: Vec<Input> = inputs.collect::<Result<_, _>>()?;
+        let inputs: Vec<Input> = inputs.collect::<Result<_, Fault>>()?;
         for (given, word) in [(Given::Points, "points"), (Given::Labels, "their labels")] {
             if !inputs.iter().any(|input| input.given == given) {
                 let what = format!("the decoder takes no {word} ({})", names.join(", "));
@@ -130,38 +95,21 @@ impl Decoder {
             }
         }
         if takes.is_empty() {
-            let what = "the decoder takes nothing of what the encoder sees".to_owned();
+            let what = "the decoder takes nothing of what the encoder sees";
             return Err(Fault::new(what, "export both of one model"));
         }
-        let output = |said: Option<&String>, usual: &[&str], word: &str| {
-            let own = names_of(&model, model.output_ids());
-            let place = match said {
-                Some(said) => own.iter().position(|own| own == said),
-                None => usual
-                    .iter()
-                    .find_map(|name| own.iter().position(|own| own == name)),
-            };
-            place.map(|place| model.output_ids()[place]).ok_or_else(|| {
-                let called = said.map_or_else(|| word.to_owned(), |said| format!("\"{said}\""));
-                let what = format!("the decoder gives no {called}; it gives {}", own.join(", "));
-                Fault::new(
-                    what,
-                    "give the names of masks and scores under [prompts] in the description",
-                )
-            })
-        };
-        let masks = output(entry.masks.as_ref(), &MASKS, "masks")?;
-        let scores = output(entry.scores.as_ref(), &SCORES, "scores")?;
+        let masks = output(&model, entry.masks.as_ref(), &MASKS, "masks")?;
+        let scores = output(&model, entry.scores.as_ref(), &SCORES, "scores")?;
         if masks == scores {
             let what = "the decoder's masks and scores are the same output";
             return Err(Fault::new(what, "give each its own under [prompts]"));
         }
         Ok(Self {
+            asks_many: names.iter().any(|name| name == "input_points"),
             inputs,
             takes,
             masks,
             scores,
-            asks_many,
             model,
         })
     }
@@ -295,6 +243,72 @@ impl Decoder {
         let of = |side: usize| known(side).or_else(|| Some(4 * least?[side - 2]));
         Some(vec![1, 1, of(2)?, of(3)?])
     }
+}
+
+/// What an input of that name is given; an output of the encoder becomes one of those that are taken.
+fn given(
+    name: &str,
+    names: &[String],
+    encoder: &Model,
+    takes: &mut Vec<NodeId>,
+) -> Result<Given, Fault> {
+    Ok(match name {
+        "point_coords" | "input_points" => Given::Points,
+        "point_labels" | "input_labels" => Given::Labels,
+        "mask_input" => Given::NoMask,
+        "has_mask_input" => Given::HasNoMask,
+        "orig_im_size" => Given::Size,
+        _ => {
+            let outputs = names_of(encoder, encoder.output_ids());
+            let own = outputs.iter().position(|own| own == name);
+            // The only output of an encoder need not be called as the decoder calls it.
+            let is_only = outputs.len() == 1 && !names.contains(&outputs[0]) && takes.is_empty();
+            let only = || (is_only && name.contains("embed")).then_some(0);
+            let Some(place) = own.or_else(only) else {
+                let what = format!(
+                    "the decoder takes \"{name}\", which the encoder does not give ({})",
+                    outputs.join(", ")
+                );
+                let remedy = "export both of one model, the decoder for points without boxes";
+                return Err(Fault::new(what, remedy));
+            };
+            takes.push(encoder.output_ids()[place]);
+            Given::Seen(takes.len() - 1)
+        }
+    })
+}
+
+/// Whether an input takes whole numbers, and not floats.
+fn is_whole(model: &Model, id: NodeId, name: &str) -> Result<bool, Fault> {
+    match model.node_info(id).and_then(|info| info.dtype()) {
+        Some(ValueType::Tensor(DataType::Int32)) => Ok(true),
+        None | Some(ValueType::Tensor(DataType::Float)) => Ok(false),
+        Some(other) => {
+            let what = format!("the decoder takes \"{name}\" as {other:?}");
+            Err(Fault::new(what, "export it with floats of 32 bits"))
+        }
+    }
+}
+
+/// The output that the description names, or the one with a usual name.
+fn output(
+    model: &Model,
+    said: Option<&String>,
+    usual: &[&str],
+    word: &str,
+) -> Result<NodeId, Fault> {
+    let own = names_of(model, model.output_ids());
+    let at = |name: &str| own.iter().position(|own| own == name);
+    let place = match said {
+        Some(said) => at(said),
+        None => usual.iter().find_map(|name| at(name)),
+    };
+    place.map(|place| model.output_ids()[place]).ok_or_else(|| {
+        let called = said.map_or_else(|| word.to_owned(), |said| format!("\"{said}\""));
+        let what = format!("the decoder gives no {called}; it gives {}", own.join(", "));
+        let remedy = "give the names of masks and scores under [prompts] in the description";
+        Fault::new(what, remedy)
+    })
 }
 
 /// The best mask of each place, of numbers above 0 within it: several for each, all of one size, with as many scores.

@@ -1,7 +1,12 @@
 //! What outlined a photo's fragments.
 
+mod habits;
+
+pub use habits::{Habits, Outliner};
+
+pub(crate) use habits::LEAST_PIXELS_ACROSS;
+
 use crate::engine::Engine;
-use crate::habits::Habits;
 
 /// What outlined a photo's fragments.
 #[derive(Debug, Clone, Copy, PartialEq)]
