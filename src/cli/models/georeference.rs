@@ -42,8 +42,8 @@ pub(in crate::cli) struct GeoreferenceArguments {
     /// With --distance: turn the plane of the reconstruction's points level.
     #[arg(long, requires = "distance")]
     level: bool,
-    /// The coordinate system of the world, and of lists that state none: EPSG:n, WKT or a PROJ text;
-    /// without it that of the list, or the zone of UTM that the positions lie in.
+    /// The coordinate system of the world, and of lists that state none ("local" in the first line of OpenDroneMap's, or a table
+    /// without one): EPSG:n, WKT or a PROJ text; without it that of the list, or the zone of UTM that the positions lie in.
     #[arg(long, value_name = "CRS", allow_hyphen_values = true)]
     crs: Option<String>,
     /// How to write the residuals.

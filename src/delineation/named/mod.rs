@@ -35,7 +35,7 @@ use crate::outlined_by::Habits;
 use description::{ChannelsWord, LayoutWord, Meaning, OutputEntry};
 use instances::{Instance, Instances, Seen};
 use model::{input_of, loaded, outputs_of, parts_of};
-use outputs::{Mask, Numbers};
+use outputs::{Mask, Numbers, Pictures};
 use prompted::{Prompted, SeenAt};
 
 /// Of what a network calls a fragment: at least even odds.
@@ -232,6 +232,24 @@ impl NamedModel {
         )
     }
 
+    /// That an output gives the values that it is said to.
+    fn check_chances(
+        &self,
+        entry: &OutputEntry,
+        channel: usize,
+        of: &Numbers,
+        pictures: &Pictures,
+    ) -> Result<(), Fault> {
+        match of.no_chances(pictures, channel, entry.values) {
+            None => Ok(()),
+            Some((what, remedy)) => {
+                let (name, word) = (&self.name, entry.is.word());
+                let what = format!("{word} of the network {name} is {what}");
+                Err(Fault::new(what, remedy))
+            }
+        }
+    }
+
     fn wrong_shape(&self, meaning: Meaning, of: &Numbers, part: &Part) -> Fault {
         self.wrong(format!(
             "gives {} of {} for {} x {} pixels",
@@ -254,6 +272,7 @@ impl NamedModel {
                     .pictures(self.input.layout == Layout::ChannelsLast, seen)
                     .filter(|pictures| entry.channel < pictures.count)
                     .ok_or_else(|| self.wrong_shape(entry.is, of, part))?;
+                self.check_chances(entry, entry.channel, of, &pictures)?;
                 let chances = of.chances(&pictures, entry.channel, entry.values);
                 let from = (pictures.columns, pictures.rows);
                 let chances = match from == (part.columns, part.rows) {
@@ -358,6 +377,7 @@ impl NamedModel {
         let full = [photo.width() as usize, photo.height() as usize];
         let places = prompted.places(photo, progress)?;
         let sizes = self.sizes(photo.width(), photo.height());
+        let (mut asked, mut best) = (0, f64::NEG_INFINITY);
         for (number, by) in sizes.iter().enumerate() {
             let sized = network::at_size(photo, *by);
             let size = [sized.width() as usize, sized.height() as usize];
@@ -382,8 +402,13 @@ impl NamedModel {
                     };
                     let least = self.least_score();
                     let decoder = &prompted.decoder;
-                    decoder.ask(values, &places, sides, least, told, |mask| {
-                        match seen.instance(mask) {
+                    asked += places.len();
+                    decoder.ask(values, &places, sides, told, |mask| {
+                        best = best.max(mask.score);
+                        if mask.score < least {
+                            return Ok(());
+                        }
+                        match seen.instance(&mask.enlarged(sides)) {
                             // Many places lie in one fragment.
                             Some(instance) if !all.has_surer(&instance) => {
                                 self.add(all, instance, full)
@@ -393,6 +418,17 @@ impl NamedModel {
                     })
                 },
             )?;
+        }
+        let least = self.least_score();
+        if asked > 0 && best < least {
+            let name = &self.name;
+            let what = format!(
+                "the network {name}, asked at {asked} places, is sure of none: its best score is {best:.2}, and least_score {least}"
+            );
+            return Err(Fault::new(
+                what,
+                "set least_score lower in its description, or look whether mean, std and white are those that it was trained with",
+            ));
         }
         all.leave_out_heaps();
         Ok(())
@@ -458,6 +494,9 @@ impl NamedModel {
             return Err(self.wrong(what));
         }
         let values = entry.values;
+        for number in 0..pictures.count {
+            self.check_chances(entry, number, masks, &pictures)?;
+        }
         Ok(Box::new((0..pictures.count).map(move |number| {
             let score = scores.and_then(|scores| scores.values.get(number));
             Mask {

@@ -95,6 +95,49 @@ impl Numbers {
         self.values.get(place).copied().unwrap_or(0.0)
     }
 
+    /// Why one of its pictures cannot be what the description says: what it gives, and what to do.
+    pub(super) fn no_chances(
+        &self,
+        of: &Pictures,
+        channel: usize,
+        values: Values,
+    ) -> Option<(String, &'static str)> {
+        let at = |channel: usize, place: usize| self.at(of, channel, place);
+        let places = || 0..of.rows * of.columns;
+        let is_number = |channel: usize| places().all(|place| at(channel, place).is_finite());
+        let channels = match values {
+            Values::Softmax => 0..of.count,
+            _ => channel..channel + 1,
+        };
+        if !channels.clone().all(is_number) {
+            let what = "values that are no numbers (NaN, or infinite)".to_owned();
+            return Some((
+                what,
+                "look at the model, and at mean, std and white in its description",
+            ));
+        }
+        let most = match values {
+            Values::Logits => return None,
+            Values::Softmax if of.count == 1 => {
+                let what = "one channel alone, over which softmax is 1 everywhere".to_owned();
+                return Some((what, "say values = \"logits\" in the description"));
+            }
+            Values::Softmax => return None,
+            Values::Probability => 1.0,
+            Values::Bytes => 255.0,
+        };
+        let extent = places().map(|place| at(channel, place));
+        let (low, high) = extent.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        // Rounding, and upsampling by cubics, go a little beyond.
+        let beyond = 0.05 * most;
+        (low < -beyond || high > most + beyond).then(|| {
+            let what = format!("{low:.4} to {high:.4}, and not 0 to {most}");
+            (what, "say in the description which values they are: \"logits\", \"softmax\" or \"bytes\"")
+        })
+    }
+
     /// One of its pictures, as chances of 0 to 1, row by row.
     pub(super) fn chances(&self, of: &Pictures, channel: usize, values: Values) -> Vec<f32> {
         let at = |channel: usize, place: usize| self.at(of, channel, place);
@@ -336,6 +379,44 @@ mod tests {
         ] {
             assert_eq!(of(shape, is_last), None, "{shape:?}");
         }
+    }
+
+    /// As a newcomer found: logits that are not said to be some passed for chances, and took P80 half as large again.
+    #[test]
+    fn what_is_no_chance_is_said() {
+        let said = |shape: [usize; 3], values: &[f32], of: Values| {
+            let numbers = Numbers {
+                shape: shape.to_vec(),
+                values: values.to_vec(),
+            };
+            let pictures = numbers.pictures(false, [2, 1]).unwrap();
+            numbers.no_chances(&pictures, 0, of).map(|(what, _)| what)
+        };
+        let one = |values: [f32; 2], of| said([1, 1, 2], &values, of);
+        assert_eq!(one([0.0, 1.0], Values::Probability), None);
+        assert_eq!(one([-0.02, 1.01], Values::Probability), None);
+        let logits = one([-9.25, 9.5], Values::Probability).unwrap();
+        assert_eq!(logits, "-9.2500 to 9.5000, and not 0 to 1");
+        assert_eq!(one([-9.25, 9.5], Values::Logits), None);
+        assert_eq!(one([0.0, 255.0], Values::Bytes), None);
+        assert!(one([0.0, 300.0], Values::Bytes).is_some());
+        assert!(
+            one([0.5, f32::NAN], Values::Logits)
+                .unwrap()
+                .contains("NaN")
+        );
+        assert!(
+            one([0.5, 0.5], Values::Softmax)
+                .unwrap()
+                .contains("1 everywhere")
+        );
+        assert_eq!(
+            said([2, 1, 2], &[1.0, 2.0, 3.0, 4.0], Values::Softmax),
+            None
+        );
+        let other = [1.0, 2.0, f32::INFINITY, 4.0];
+        assert!(said([2, 1, 2], &other, Values::Softmax).is_some());
+        assert_eq!(said([2, 1, 2], &other, Values::Logits), None);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::marks::MarkedPoint;
+use super::marks::{MarkedPoint, mark_error_px};
 use super::{GeoreferenceRequest, Georeferenced, KnownDistance, KnownEnds, LengthResidual};
 use crate::control::{Located, ScaleBar};
 use crate::fault::Fault;
@@ -11,9 +11,6 @@ use crate::geometry::Similarity;
 use crate::georeference::{KnownLength, levelled, scale_of_lengths};
 use crate::scale::StatedErrors;
 use crate::units::LengthUnit;
-
-/// Who clicks a mark does it to about a pixel.
-const LEAST_MARK_ERROR_PX: f64 = 1.0;
 
 /// Fits the scale to `distances`; `warnings` are what was said before.
 pub(super) fn by_distances(
@@ -113,15 +110,6 @@ fn between(a: &Located, b: &Located, pixel: f64, known: f64) -> KnownLength {
         deviation: Some(pixel * variance.max(0.0).sqrt()),
         known,
     }
-}
-
-/// How far marks are off, pixels along columns and rows: as far as those of all points miss each other, and a pixel at least.
-fn mark_error_px(marked: &[MarkedPoint]) -> f64 {
-    let marks = marked.iter().flat_map(|point| &point.found.residuals_px);
-    let marks: Vec<f64> = marks.copied().flatten().collect();
-    let squares: f64 = marks.iter().map(|residual| residual * residual).sum();
-    let free = 2.0 * marks.len() as f64 - 3.0 * marked.len() as f64;
-    (squares / free.max(1.0)).sqrt().max(LEAST_MARK_ERROR_PX)
 }
 
 /// The scale bars whose two ends were found, as known distances; the others are said in `warnings`.

@@ -4,12 +4,23 @@ use std::path::Path;
 
 use glam::{DVec2, DVec3};
 
+use super::Georeferenced;
 use super::photo_names::PhotoNames;
 use crate::camera::{Camera, Pose};
 use crate::control::{ControlList, Located, MarkedView, POOR_PX, locate};
-use crate::fault::Fault;
+use crate::fault::{Fault, first_names};
 use crate::formats::Reconstruction;
 use crate::formats::photos::photo_folder::PhotoFolder;
+use crate::numbers::significant_digits;
+
+/// Who clicks a mark does it to about a pixel.
+const LEAST_MARK_ERROR_PX: f64 = 1.0;
+
+/// Surveyed points are known to about so much, metres: satellites with a base (RTK).
+const SURVEY_ERROR: f64 = 0.03;
+
+/// So many times what marks and survey allow is no accident.
+const CONTRADICTS: f64 = 5.0;
 
 /// A control point that was triangulated.
 #[derive(Debug, Clone)]
@@ -42,6 +53,19 @@ pub(super) fn triangulated(
         &listed,
     );
     let folder = PhotoFolder::new(folder);
+    let mut unknown: Vec<&str> = listed
+        .iter()
+        .copied()
+        .filter(|name| names.find(name).is_none())
+        .collect();
+    unknown.sort_unstable();
+    unknown.dedup();
+    if !unknown.is_empty() {
+        warnings.push(format!(
+            "marks in photos that the reconstruction does not have are left out: {}",
+            first_names(&unknown)
+        ));
+    }
     let mut found = Vec::new();
     for point in &points.points {
         let mut seen: Vec<(&str, Camera, Pose, DVec2)> = Vec::new();
@@ -100,6 +124,41 @@ pub(super) fn triangulated(
         ));
     }
     Ok(found)
+}
+
+/// How far marks are off, pixels along columns and rows: as far as those of all points miss each other, and a pixel at least.
+pub(super) fn mark_error_px(marked: &[MarkedPoint]) -> f64 {
+    let marks = marked.iter().flat_map(|point| &point.found.residuals_px);
+    let marks: Vec<f64> = marks.copied().flatten().collect();
+    let squares: f64 = marks.iter().map(|residual| residual * residual).sum();
+    let free = 2.0 * marks.len() as f64 - 3.0 * marked.len() as f64;
+    (squares / free.max(1.0)).sqrt().max(LEAST_MARK_ERROR_PX)
+}
+
+/// That the control points of a fit are off by much more than their marks and a survey allow; `None` where they are not.
+pub(super) fn contradiction(marked: &[MarkedPoint], fit: &Georeferenced) -> Option<String> {
+    let rms = fit.rms?;
+    let used = fit.positions.iter().filter(|position| position.used);
+    let used = used.filter_map(|position| marked.iter().find(|point| point.name == position.name));
+    let variances: Vec<f64> = used
+        .map(|point| {
+            let covariance = point.found.covariance;
+            covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z
+        })
+        .collect();
+    let mean = variances.iter().sum::<f64>() / variances.len() as f64;
+    let by_marks = mark_error_px(marked) * mean.sqrt() * fit.similarity.scale;
+    let allowed = by_marks.hypot(SURVEY_ERROR / fit.unit.metres());
+    // No number where no control point was used: then nothing is said.
+    (rms > CONTRADICTS * allowed).then(|| {
+        format!(
+            "the control points are {} {unit} off from where they were surveyed (RMS), where marks and survey allow {} {unit}: a typing error \
+             in one of them, heights in another unit, or a mark on another thing",
+            significant_digits(rms, 2),
+            significant_digits(allowed, 2),
+            unit = fit.unit
+        )
+    })
 }
 
 /// The camera of a photo, for the size of its file.

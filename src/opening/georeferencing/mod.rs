@@ -314,6 +314,17 @@ pub fn georeference_model(
         true if request.distances.is_empty() => &bars,
         _ => &request.distances,
     };
+    if !request.distances.is_empty() {
+        let others = match (surveyed, &request.positions) {
+            (LEAST_SURVEYED.., _) => Some("the surveyed control points"),
+            (_, Some(_)) => Some("the listed positions"),
+            _ if !reconstruction.measured_positions.is_empty() => Some("the photos' positions"),
+            _ => None,
+        };
+        warnings.extend(others.map(|others| {
+            format!("the known distance decides alone, and {others} are not used: leave --distance out to be placed by them")
+        }));
+    }
     if !distances.is_empty() {
         return distances::by_distances(reconstruction, request, distances, &marked, warnings)
             .map_err(|fault| FileError::new(path, fault));
@@ -396,15 +407,17 @@ pub fn georeference_model(
         let names = first_names(&outliers);
         warnings.push(format!("{do_not} left out of the fit: {names}"));
     }
+    let contradiction = marks::contradiction(&marked, &result);
     if let Some(degrees) = result
         .rotation_error_degrees
-        .filter(|degrees| *degrees > 1.0)
+        .filter(|degrees| *degrees > 1.0 && contradiction.is_none())
     {
         warnings.push(format!(
             "the positions hold the least sure rotation to {degrees:.1} degrees only: they lie nearly on a line, or close together for how \
              well they are known"
         ));
     }
+    warnings.extend(contradiction);
     if result.used() == 3 {
         warnings.push("three known positions check each other hardly at all".to_owned());
     }

@@ -265,6 +265,39 @@ fn control_points() {
     assert!(run(&request).unwrap_err().fault.what.contains("'p9'"));
 }
 
+/// Four points of which one is typed a metre off in height: a fit of seven numbers to twelve takes most of it up, and cannot tell
+/// which. And marks in a photo that is not there are named.
+#[test]
+fn points_that_contradict_each_other() {
+    let right = marks(&POINTS, "EPSG:32632");
+    let warnings = |text: &str| {
+        let list = List::new(text);
+        let request = GeoreferenceRequest {
+            control_points: Some(list.path()),
+            ..GeoreferenceRequest::default()
+        };
+        run(&request).unwrap().warnings.join("; ")
+    };
+    let said = warnings(&right);
+    assert!(
+        !said.contains("were surveyed (RMS)") && !said.contains("left out"),
+        "{said}"
+    );
+    let wrong = right.replace("6201305 413.5 ", "6201305 414.5 ");
+    assert_ne!(wrong, right);
+    let said = warnings(&wrong);
+    assert!(
+        said.contains("off from where they were surveyed (RMS)"),
+        "{said}"
+    );
+    assert!(!said.contains("nearly on a line"), "{said}");
+    let said = warnings(&format!("{right}435205 6201303 411 10 10 A99.jpg p1\n"));
+    assert!(
+        said.contains("does not have are left out: A99.jpg"),
+        "{said}"
+    );
+}
+
 /// A plane of points with some high above it, in a frame that stands on its head.
 #[test]
 fn a_distance_and_level() {

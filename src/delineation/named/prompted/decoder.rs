@@ -119,8 +119,8 @@ impl Decoder {
         &self.takes
     }
 
-    /// Asks at all places of a part of which the encoder's outputs are `seen`, and gives the best mask of each. Those
-    /// with a score below `least` are left out. Before each run `told` hears how many places were asked at.
+    /// Asks at all places of a part of which the encoder's outputs are `seen`, and gives the best mask of each, as
+    /// large as the decoder makes it. Before each run `told` hears how many places were asked at.
     ///
     /// # Errors
     /// What the decoder cannot take, or a form of its masks that is not known.
@@ -129,9 +129,8 @@ impl Decoder {
         seen: &[Value],
         places: &[DVec2],
         sides: [usize; 2],
-        least: f64,
         mut told: impl FnMut(usize) -> Result<(), Fault>,
-        mut take: impl FnMut(&Mask) -> Result<(), Fault>,
+        mut take: impl FnMut(Mask) -> Result<(), Fault>,
     ) -> Result<(), Fault> {
         let at_once = if self.asks_many { AT_ONCE } else { 1 };
         for (run, places) in places.chunks(at_once).enumerate() {
@@ -142,9 +141,7 @@ impl Decoder {
                 sides,
             };
             for mask in self.masks(&question)? {
-                if mask.score >= least {
-                    take(&mask.enlarged(sides))?;
-                }
+                take(mask)?;
             }
         }
         Ok(())

@@ -64,13 +64,11 @@ fn sam_answers_as_its_makers_code() {
         });
         let places: Vec<DVec2> = places.collect();
         let mut found = Vec::new();
-        let take = |mask: &crate::named::outputs::Mask| {
-            found.push((mask.score, mask.chances.clone()));
+        let take = |mask: crate::named::outputs::Mask| {
+            found.push((mask.score, mask.chances));
             Ok(())
         };
-        // At the masks' own size: nothing is enlarged.
-        let least = f64::NEG_INFINITY;
-        let asked = decoder.ask(&seen, &places, [16, 16], least, |_| Ok(()), take);
+        let asked = decoder.ask(&seen, &places, [64, 64], |_| Ok(()), take);
         asked.unwrap();
         assert_eq!(found.len(), 3, "{export}");
         for ((score, chances), answer) in found.iter().zip(answers) {
@@ -125,6 +123,23 @@ fn every_stone_is_found_once() {
         assert_eq!(labels.areas()[0], 7 * 5 * 24 * 24 - 35 * 252);
         assert_eq!(model.least_score(), LEAST_SCORE);
     }
+}
+
+/// Where no answer is sure enough it is said how sure the best one is; of the third mask's 0.5 nobody asks.
+#[test]
+fn sure_of_nothing() {
+    let text = "model = 'seen.onnx'\nname = 'asked'\nleast_score = 0.97\n[prompts]\nmodel = 'asked.onnx'\n";
+    let [model, decoder] = ["seen.onnx", "asked.onnx"].map(fixture);
+    let description = Description::read(text).unwrap();
+    let model = NamedModel::new(model, Some(decoder), description, "x").unwrap();
+    let fault = model
+        .outline(&stones(2, 2), &Progress::default())
+        .unwrap_err();
+    let said = fault.to_string();
+    assert!(
+        said.contains("places, is sure of none: its best score is 0.95, and least_score 0.97"),
+        "{said}"
+    );
 }
 
 fn rectangle(labels: &mut LabelImage, [x, y]: [usize; 2], [w, h]: [usize; 2], number: u32) {

@@ -226,7 +226,7 @@ impl Shape {
         if is_crs(first) {
             return Ok(Self::Crs(crs_from_text(first)));
         }
-        if first.trim() == gcp_list::NO_CRS {
+        if first.trim().eq_ignore_ascii_case(gcp_list::NO_CRS) {
             return Ok(Self::Crs(None));
         }
         Ok(Self::Table)

@@ -79,7 +79,7 @@ fn no_header(line: u64, text: &str) -> Fault {
     Fault::at(
         line,
         format!("no header line that names the columns, and no coordinate system: '{shown}'"),
-        "put a line like 'photo,longitude,latitude,height' first (or 'EPSG:n', for OpenDroneMap's lists)",
+        "put a line like 'photo,longitude,latitude,height' first (or 'EPSG:n' for OpenDroneMap's lists, 'local' where the survey has no coordinate system)",
     )
 }
 

@@ -86,7 +86,9 @@ impl Reader<'_> {
                 "fill it in, or leave the line out",
             ));
         }
-        let sieve_mm = sieve_mm(cell);
+        // A sieve that is called by a fraction is one of inches, whatever the column is of.
+        let in_inches = || cell.contains('/').then(|| format!("{cell} in"));
+        let sieve_mm = sieve_mm(cell).or_else(|| sieve_mm(&in_inches()?));
         let number = self
             .table
             .number_and_rest(row, column, &mut self.repairs.numbers);

@@ -297,6 +297,24 @@ fn sieves_by_name() {
         said,
         ["names of sieves are taken for the openings of ASTM E11"]
     );
+    // As laboratories write them below a column of inches.
+    let (set, _) = read("Sieve (in),% passing\n3/8,20\n1-1/2,50\n1 3/4,70\n3,90\n");
+    let points = set.curves[0].distribution.points();
+    let mm = points
+        .iter()
+        .map(|[size, _]| size * set.unit.metres() * 1e3);
+    for (mm, wanted) in mm.zip([9.5, 37.5, 45.0, 76.2]) {
+        assert!((mm - wanted).abs() < 1e-9, "{mm} {wanted}");
+    }
+    assert!(
+        fault("Sieve (in),% passing\n3/7,20\n1,50\n")
+            .1
+            .contains("'3/7'")
+    );
+    // As Excel writes it for itself.
+    let (set, said) = read("sep=;\nsize_mm;passing\n5;20\n10;90\n");
+    assert_eq!(set.curves[0].distribution.points()[1], [10.0, 90.0]);
+    assert!(said.is_empty(), "{said:?}");
     // Inches alone are inches.
     let (set, said) = read("Sieve,% passing\n1 in,50\n2 in,90\n");
     assert_eq!(set.unit, LengthUnit::Inch);

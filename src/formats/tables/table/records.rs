@@ -8,11 +8,14 @@ use crate::fault::Fault;
 /// More lines than anyone measures.
 const MOST_ROWS: usize = 500_000;
 
-/// Whether a line holds data or names: not empty, no comment. "#4" is a sieve's name.
+/// Whether a line holds data or names: not empty, no comment, and not what tells Excel the separator. "#4" is a sieve's name.
 fn counts(line: &&str) -> bool {
     let comment = line.strip_prefix('#');
     let comment = comment.is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()));
-    !line.trim().is_empty() && !comment
+    let of_excel = line.trim().trim_matches('"').to_lowercase();
+    let of_excel = of_excel.strip_prefix("sep=");
+    let of_excel = of_excel.is_some_and(|rest| rest.chars().count() <= 1);
+    !line.trim().is_empty() && !comment && !of_excel
 }
 
 /// The text with empty lines in place of those that do not count, so that lines keep their numbers.
