@@ -422,9 +422,12 @@ impl NamedModel {
         let least = self.least_score();
         if asked > 0 && best < least {
             let name = &self.name;
-            let what = format!(
-                "the network {name}, asked at {asked} places, is sure of none: its best score is {best:.2}, and least_score {least}"
-            );
+            let best = match best.is_finite() {
+                true => format!("its best score is {best:.2}, and least_score {least}"),
+                false => "none of its scores is a number".to_owned(),
+            };
+            let what =
+                format!("the network {name}, asked at {asked} places, is sure of none: {best}");
             return Err(Fault::new(
                 what,
                 "set least_score lower in its description, or look whether mean, std and white are those that it was trained with",

@@ -87,7 +87,7 @@ pub(super) fn network(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Comma
     );
     // It closes itself once it is read.
     if let Some(path) = path {
-        commands.push(Command::Fragments(FragmentStep::Network(path.into())));
+        commands.push(Command::Fragments(FragmentStep::Network(path)));
     }
     if let Some(message) = &state.network.refused {
         ui.colored_label(ui.visuals().warn_fg_color, message);

@@ -309,7 +309,7 @@ fn output(
 }
 
 /// The best mask of each place, of numbers above 0 within it: several for each, all of one size, with as many scores.
-/// Of four the first is meant for several points at once, and does not count.
+/// Of four the first is meant for several points at once, and does not count; nor does one whose score is no number.
 fn best(masks: &Numbers, scores: &Numbers, asked: usize) -> Option<Vec<Mask>> {
     let [.., rows, columns] = *masks.shape.as_slice() else {
         return None;
@@ -326,6 +326,7 @@ fn best(masks: &Numbers, scores: &Numbers, asked: usize) -> Option<Vec<Mask>> {
     let places = scores.values.chunks_exact(each).enumerate();
     let masks = places.filter_map(|(place, scores)| {
         let of_one = scores.iter().enumerate().skip(for_several);
+        let of_one = of_one.filter(|(_, score)| !score.is_nan());
         let (number, score) = of_one.max_by(|a, b| a.1.total_cmp(b.1))?;
         let first = (place * each + number) * pixels;
         let values = masks.values.get(first..first + pixels)?;
@@ -366,6 +367,9 @@ mod tests {
         assert_eq!(three.unwrap(), [(0.75, 2.5), (1.0, 10.5)]);
         let four = of(&[1, 4, 1, 3], &[1.0, 0.25, 0.5, 0.0], 1);
         assert_eq!(four.unwrap(), [(0.5, 6.5)]);
+        let some = of(&[1, 4, 1, 3], &[1.0, f32::NAN, 0.25, 0.0], 1);
+        assert_eq!(some.unwrap(), [(0.25, 6.5)]);
+        assert_eq!(of(&[1, 4, 1, 3], &[f32::NAN; 4], 1), Some(vec![]));
         assert_eq!(of(&[1, 4, 1, 3], &[1.0, 0.25, 0.5], 1), None);
         assert_eq!(of(&[1, 4, 1, 3], &[1.0; 4], 5), None);
         assert_eq!(of(&[12], &[1.0], 1), None);

@@ -299,7 +299,7 @@ impl<'a> Names<'a> {
                 "no column is called size among {}",
                 self.table.columns_in_words()
             ),
-            "name the column of sizes (--size)",
+            "call the column of sizes size in the first line (or name it by --size)",
         )
     }
 
@@ -449,7 +449,7 @@ impl<'a> Names<'a> {
                 "no column is called size or passing among {}",
                 self.table.columns_in_words()
             ),
-            "name the columns of sizes and of percent passing (--size, --passing)",
+            "call the columns size and passing in the first line (or name them by --size, --passing)",
         ))
     }
 }

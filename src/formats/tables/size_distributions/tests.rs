@@ -525,12 +525,12 @@ fn bad_tables_say_what_is_missing() {
         ),
         (
             "a,b\n1,2\n",
-            "no column is called size or passing among 'a', 'b'; name the columns of sizes and of percent \
-             passing (--size, --passing)",
+            "no column is called size or passing among 'a', 'b'; call the columns size and passing \
+             in the first line (or name them by --size, --passing)",
         ),
         (
             "grade,% passing\n1,2\n",
-            "no column is called size among 'grade', '% passing'; name the column of sizes (--size)",
+            "no column is called size among 'grade', '% passing'; call the column of sizes size in the first line (or name it by --size)",
         ),
         (
             "10,20\n20,40\n",
