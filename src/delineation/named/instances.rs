@@ -170,6 +170,11 @@ impl Instances {
         self.bits <= MOST_COVERS * pixels.max(1)
     }
 
+    /// Whether there is none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.found.is_empty()
+    }
+
     /// Whether it is there already, with at least its score.
     pub(super) fn has_surer(&self, instance: &Instance) -> bool {
         let mut found = self.found.iter();

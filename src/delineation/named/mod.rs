@@ -434,6 +434,16 @@ impl NamedModel {
             ));
         }
         all.leave_out_heaps();
+        if asked > 0 && all.is_empty() {
+            let name = &self.name;
+            let what = format!(
+                "the network {name}, asked at {asked} places, gave no mask that lies whole in a tile and is one fragment"
+            );
+            return Err(Fault::new(
+                what,
+                "give a larger margin or more sizes in its description, and look whether mean, std and white are those that it was trained with",
+            ));
+        }
         Ok(())
     }
 

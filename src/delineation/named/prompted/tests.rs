@@ -142,6 +142,22 @@ fn sure_of_nothing() {
     );
 }
 
+/// One colour goes on behind the edges of every part.
+#[test]
+fn nothing_is_whole() {
+    let text = "model = 'seen.onnx'\nname = 'asked'\n[input]\nmargin = 16\n[prompts]\nmodel = 'asked.onnx'\n";
+    let [model, decoder] = ["seen.onnx", "asked.onnx"].map(fixture);
+    let description = Description::read(text).unwrap();
+    let model = NamedModel::new(model, Some(decoder), description, "x").unwrap();
+    let gray = RgbImage::from_pixel(128, 128, Rgb([90; 3]));
+    let fault = model.outline(&gray, &Progress::default()).unwrap_err();
+    let said = fault.to_string();
+    assert!(
+        said.contains("gave no mask that lies whole in a tile"),
+        "{said}"
+    );
+}
+
 fn rectangle(labels: &mut LabelImage, [x, y]: [usize; 2], [w, h]: [usize; 2], number: u32) {
     for row in y..y + h {
         labels.labels[row * labels.width + x..][..w].fill(number);
