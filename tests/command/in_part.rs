@@ -20,7 +20,7 @@ fn in_part_every_digit_is_the_same() {
             seed,
             "--points",
             "60000",
-            "--no-labels",
+            "--no-photos",
         ]);
         let whole = stdout_of(&["scales", &flight, "--format", "json"]);
         let part = stdout_of(&["scales", &flight, "--format", "json", "--in-part"]);
