@@ -1,11 +1,12 @@
 //! A network of hers, read as a job: its description with the files that this names.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::engine_choice::EngineChoice;
 use crate::command::Asking;
 use crate::delineation::Engine;
+use crate::files::last_segment;
 use crate::jobs::Progress;
 use crate::opening::read_named_engine;
 use crate::state::{Severity, State};
@@ -21,7 +22,8 @@ impl State {
     pub(super) fn read_network(&mut self, path: PathBuf) {
         self.network.refused = None;
         let work = move |progress: &Progress| {
-            progress.stage(format!("reading {}", file_name(&path)));
+            let name = path.to_string_lossy();
+            progress.stage(format!("reading {}", last_segment(&name)));
             read_named_engine(&path).map_err(|error| error.to_string())
         };
         self.start(Task::READ_NETWORK, work, move |state, read| match read {
@@ -42,9 +44,4 @@ impl State {
             }
         });
     }
-}
-
-fn file_name(path: &Path) -> String {
-    let name = path.file_name().unwrap_or(path.as_os_str());
-    name.to_string_lossy().into_owned()
 }

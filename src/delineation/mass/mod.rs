@@ -35,8 +35,7 @@ use self::counted::Counted;
 use crate::bare::bare;
 use crate::labels::{FINES, LabelImage, NOT_ROCK};
 use crate::measures::{Fragment, Measures};
-use crate::outlined_by::OutlinedBy;
-use crate::outlined_by::{Habits, LEAST_PIXELS_ACROSS};
+use crate::outlined_by::{Habits, LEAST_PIXELS_ACROSS, OutlinedBy};
 
 /// The largest circle within the outline of a ball, over the circle of its area: 0.97 and more in the nine photos of the
 /// bundled flight, while no fragment among the largest 200 has over 0.93.

@@ -377,13 +377,14 @@ impl NamedModel {
         let full = [photo.width() as usize, photo.height() as usize];
         let places = prompted.places(photo, progress)?;
         let sizes = self.sizes(photo.width(), photo.height());
+        let least = self.least_score();
         let (mut asked, mut best) = (0, f64::NEG_INFINITY);
         for (number, by) in sizes.iter().enumerate() {
             let sized = network::at_size(photo, *by);
             let size = [sized.width() as usize, sized.height() as usize];
             self.see(
                 &sized,
-                prompted.takes(),
+                prompted.decoder.takes(),
                 progress,
                 |part, [nth, parts], values| {
                     let seen = Seen { part, size, full };
@@ -400,7 +401,6 @@ impl NamedModel {
                         let done = nth * count + asked;
                         progress.advance(done as u64, (parts * count) as u64)
                     };
-                    let least = self.least_score();
                     let decoder = &prompted.decoder;
                     asked += places.len();
                     decoder.ask(values, &places, sides, told, |mask| {
@@ -419,32 +419,39 @@ impl NamedModel {
                 },
             )?;
         }
+        all.leave_out_heaps();
+        match asked > 0 && all.is_empty() {
+            true => Err(self.found_nothing(asked, best)),
+            false => Ok(()),
+        }
+    }
+
+    /// Of a model that was asked at some places, and whose best score was this.
+    fn found_nothing(&self, asked: usize, best: f64) -> Fault {
         let least = self.least_score();
-        if asked > 0 && best < least {
-            let name = &self.name;
+        let trained = "whether mean, std and white are those that it was trained with";
+        let (what, remedy) = if best >= least {
+            (
+                " gave no mask that lies whole in a tile and is one fragment".to_owned(),
+                format!(
+                    "give a larger margin or more sizes in its description, and look {trained}"
+                ),
+            )
+        } else {
             let best = match best.is_finite() {
                 true => format!("its best score is {best:.2}, and least_score {least}"),
                 false => "none of its scores is a number".to_owned(),
             };
-            let what =
-                format!("the network {name}, asked at {asked} places, is sure of none: {best}");
-            return Err(Fault::new(
-                what,
-                "set least_score lower in its description, or look whether mean, std and white are those that it was trained with",
-            ));
-        }
-        all.leave_out_heaps();
-        if asked > 0 && all.is_empty() {
-            let name = &self.name;
-            let what = format!(
-                "the network {name}, asked at {asked} places, gave no mask that lies whole in a tile and is one fragment"
-            );
-            return Err(Fault::new(
-                what,
-                "give a larger margin or more sizes in its description, and look whether mean, std and white are those that it was trained with",
-            ));
-        }
-        Ok(())
+            (
+                format!(" is sure of none: {best}"),
+                format!("set least_score lower in its description, or look {trained}"),
+            )
+        };
+        let name = &self.name;
+        Fault::new(
+            format!("the network {name}, asked at {asked} places,{what}"),
+            remedy,
+        )
     }
 
     fn add(

@@ -9,9 +9,10 @@
 //! `has_mask_input` (an outline to begin from) are given as none, `orig_im_size` as the size of what was seen. All others
 //! are outputs of the encoder, by their names, or its only one.
 
-use fragscale_core::fault::Fault;
+use fragscale_core::fault::{Fault, one_line};
 use glam::DVec2;
 use rten::{DataType, Dimension, Model, NodeId, Value, ValueOrView, ValueType};
+use rten_tensor::Layout;
 
 use crate::named::description::PromptsEntry;
 use crate::named::model::{loaded, names_of};
@@ -115,7 +116,7 @@ impl Decoder {
     }
 
     /// The encoder's outputs that it takes.
-    pub(super) fn takes(&self) -> &[NodeId] {
+    pub(in crate::named) fn takes(&self) -> &[NodeId] {
         &self.takes
     }
 
@@ -164,12 +165,7 @@ impl Decoder {
         let inputs: Vec<_> = inputs.collect::<Result<_, _>>()?;
         let outputs = [self.masks, self.scores];
         let values = network::run(&self.model, inputs, &outputs);
-        let values = values.map_err(|error| {
-            wrong(format!(
-                "fails ({})",
-                fragscale_core::fault::one_line(&error)
-            ))
-        })?;
+        let values = values.map_err(|error| wrong(format!("fails ({})", one_line(&error))))?;
         let numbers: Option<Vec<Numbers>> = values.iter().map(Numbers::of).collect();
         let Some([masks, scores]) = numbers.as_deref() else {
             return Err(wrong("gives no numbers".to_owned()));
@@ -233,9 +229,8 @@ impl Decoder {
             Some(Dimension::Fixed(size)) => Some(*size),
             _ => None,
         };
-        let given = seen.iter().filter_map(Numbers::of);
-        let least = given
-            .filter_map(|given| <[usize; 2]>::try_from(given.shape.get(2..)?).ok())
+        let least = (seen.iter())
+            .filter_map(|seen| <[usize; 2]>::try_from(seen.shape().get(2..)?).ok())
             .min_by_key(|[rows, _]| *rows);
         let of = |side: usize| known(side).or_else(|| Some(4 * least?[side - 2]));
         Some(vec![1, 1, of(2)?, of(3)?])
@@ -351,6 +346,30 @@ mod tests {
             shape: shape.to_vec(),
             values: values.to_vec(),
         }
+    }
+
+    /// No mask is as large as the model says, or four times the smallest picture that the encoder gives (SAM 2 gives larger
+    /// ones, too), where the model does not say.
+    #[test]
+    fn the_size_of_no_mask() {
+        let folder =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fixtures/onnx");
+        let read = |name: &str| std::fs::read(folder.join(name)).unwrap();
+        let text = "model = 'e'\n[prompts]\nmodel = 'd'\n";
+        let description = crate::named::Description::read(text).unwrap();
+        let encoder = loaded(read("seen.onnx"), "model").unwrap();
+        let entry = description.prompts.as_ref().unwrap();
+        let decoder = Decoder::new(read("asked.onnx"), &encoder, entry).unwrap();
+        let seen = [[1, 2, 40, 40], [1, 2, 10, 12]].map(|shape| {
+            let count = shape.iter().product();
+            Value::from_shape(shape, vec![0.0f32; count]).unwrap()
+        });
+        let of = |given: Given| {
+            let input = decoder.inputs.iter().find(|input| input.given == given);
+            decoder.mask_shape(input.unwrap().id, &seen)
+        };
+        assert_eq!(of(Given::NoMask), Some(vec![1, 1, 64, 64]));
+        assert_eq!(of(Given::Size), Some(vec![1, 1, 40, 48]));
     }
 
     /// Of each place the mask with the best score; of four not the first. Other shapes are none.

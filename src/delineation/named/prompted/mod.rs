@@ -16,7 +16,7 @@ mod tests;
 use fragscale_core::fault::Fault;
 use fragscale_core::jobs::Progress;
 use image::RgbImage;
-use rten::{Model, NodeId};
+use rten::Model;
 
 pub(super) use decoder::Decoder;
 pub(super) use places::{Places, SeenAt};
@@ -49,11 +49,6 @@ impl Prompted {
             from: entry.engine()?,
             grid: entry.grid(),
         })
-    }
-
-    /// The encoder's outputs that the decoder takes.
-    pub(super) fn takes(&self) -> &[NodeId] {
-        self.decoder.takes()
     }
 
     /// Where to ask in a photo.

@@ -97,17 +97,24 @@ fn stones(columns: u32, rows: u32) -> RgbImage {
     })
 }
 
+/// The plain encoder and decoder of `tests/onnx/make.py`, described so.
+fn asked(described: &str) -> NamedModel {
+    let text = format!("model = 'seen.onnx'\nname = 'asked'\n{described}");
+    let description = Description::read(&text).unwrap();
+    assert_eq!(description.decoder(), Some("asked.onnx"));
+    let [model, decoder] = ["seen.onnx", "asked.onnx"].map(fixture);
+    NamedModel::new(model, Some(decoder), description, "x").unwrap()
+}
+
 /// Every stone is found once, wherever parts of the photo begin and end, and what is between them is none: it goes on
 /// behind each part's edge. Masks of a fourth of the pixels, that are 1 within and -1 without, leave out a pixel at each
 /// corner: there a bilinear value is 2 (0.625)^2 - 1.
 #[test]
 fn every_stone_is_found_once() {
-    let text = "model = 'seen.onnx'\nname = 'asked'\n[input]\nmargin = 16\n[prompts]\nmodel = 'asked.onnx'\n";
     for from in ["", "from = 'learned'\n"] {
-        let description = Description::read(&format!("{text}{from}")).unwrap();
-        assert_eq!(description.decoder(), Some("asked.onnx"));
-        let [model, decoder] = ["seen.onnx", "asked.onnx"].map(fixture);
-        let model = NamedModel::new(model, Some(decoder), description, "x").unwrap();
+        let model = asked(&format!(
+            "[input]\nmargin = 16\n[prompts]\nmodel = 'asked.onnx'\n{from}"
+        ));
         let photo = stones(7, 5);
         let progress = Progress::default();
         let outlined = model.outline(&photo, &progress).unwrap().unwrap();
@@ -128,10 +135,7 @@ fn every_stone_is_found_once() {
 /// Where no answer is sure enough it is said how sure the best one is; of the third mask's 0.5 nobody asks.
 #[test]
 fn sure_of_nothing() {
-    let text = "model = 'seen.onnx'\nname = 'asked'\nleast_score = 0.97\n[prompts]\nmodel = 'asked.onnx'\n";
-    let [model, decoder] = ["seen.onnx", "asked.onnx"].map(fixture);
-    let description = Description::read(text).unwrap();
-    let model = NamedModel::new(model, Some(decoder), description, "x").unwrap();
+    let model = asked("least_score = 0.97\n[prompts]\nmodel = 'asked.onnx'\n");
     let fault = model
         .outline(&stones(2, 2), &Progress::default())
         .unwrap_err();
@@ -145,10 +149,7 @@ fn sure_of_nothing() {
 /// One colour goes on behind the edges of every part.
 #[test]
 fn nothing_is_whole() {
-    let text = "model = 'seen.onnx'\nname = 'asked'\n[input]\nmargin = 16\n[prompts]\nmodel = 'asked.onnx'\n";
-    let [model, decoder] = ["seen.onnx", "asked.onnx"].map(fixture);
-    let description = Description::read(text).unwrap();
-    let model = NamedModel::new(model, Some(decoder), description, "x").unwrap();
+    let model = asked("[input]\nmargin = 16\n[prompts]\nmodel = 'asked.onnx'\n");
     let gray = RgbImage::from_pixel(128, 128, Rgb([90; 3]));
     let fault = model.outline(&gray, &Progress::default()).unwrap_err();
     let said = fault.to_string();
