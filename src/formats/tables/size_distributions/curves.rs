@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::names::{SizeText, SizeUnit};
+use super::retained::OnSieves;
 use crate::fault::Fault;
 use crate::fragmentation::{DistributionSet, LabelledDistribution, Labels, SizeDistribution};
 use crate::tables::table::NumberRepairs;
@@ -30,6 +31,8 @@ pub(super) struct RawCurve {
     /// Where it begins.
     pub(super) line: u64,
     pub(super) points: Vec<RawPoint>,
+    /// Where its points are of what stays on sieves, what else is said of that.
+    pub(super) sieves: Option<OnSieves>,
 }
 
 /// How often something was mended, and where first.
@@ -65,6 +68,7 @@ impl Count {
 pub(super) struct Repairs {
     pub(super) numbers: NumberRepairs,
     pans: Count,
+    totals: Count,
     zeros: Count,
     over: Count,
     falls: Count,
@@ -84,6 +88,11 @@ impl Repairs {
         self.pans.add(line);
     }
 
+    /// A line of sums was left out.
+    pub(super) fn total(&mut self, line: u64) {
+        self.totals.add(line);
+    }
+
     /// A line has the name of an earlier one.
     pub(super) fn same_name(&mut self, line: u64) {
         self.same_names.add(line);
@@ -97,6 +106,7 @@ impl Repairs {
     fn warnings(self) -> Vec<String> {
         let counted = [
             self.pans.say("the pan under the sieves has no size and is left out"),
+            self.totals.say("a line of sums is left out"),
             self.zeros.say("0 % passing a size of 0 says nothing and is left out"),
             self.empty.say("a line without a number is left out"),
             self.same_names
@@ -144,6 +154,12 @@ pub(super) fn finish(
     mut repairs: Repairs,
 ) -> Result<(DistributionSet, Vec<String>), Fault> {
     let (unit, size_of) = unit_of_sizes(&curves, reading, &mut repairs)?;
+    for curve in &mut curves {
+        if let Some(sieves) = curve.sieves {
+            let what = prefix(&curve.labels);
+            sieves.to_passing(curve, &size_of, (&what, &mut repairs.said))?;
+        }
+    }
     if are_shares(&curves) {
         repairs
             .said

@@ -1,7 +1,7 @@
 //! Which of the layouts a table has, told by the names of its columns.
 
 use super::DistributionColumns;
-use super::names::{PercentileColumn, Role, SizeText, SizeUnit, role};
+use super::names::{PercentileColumn, RetainedName, Role, SizeText, SizeUnit, role};
 use crate::fault::Fault;
 use crate::tables::table::{Table, key};
 
@@ -16,8 +16,21 @@ pub(super) enum Layout {
     },
     /// One column a curve.
     Wide { size: usize, unit: Option<SizeUnit> },
+    /// One line a sieve, with what stays on it.
+    Retained {
+        size: usize,
+        unit: Option<SizeUnit>,
+        retained: usize,
+        what: RetainedName,
+    },
     /// One line a curve, a column each size.
-    SizesAsColumns(Vec<(usize, SizeText)>),
+    SizesAsColumns {
+        sizes: Vec<(usize, SizeText)>,
+        /// Of sizes without one.
+        unit: Option<SizeUnit>,
+        /// The column that is called sizes, and names the curves.
+        names: Option<usize>,
+    },
     /// One line a curve, a column each percent.
     Percentiles {
         columns: Vec<(usize, f64)>,
@@ -138,8 +151,9 @@ impl Layout {
                     && coordinates == 0
                     && (0..table.header().len()).all(numeric)
             }
-            Ok(Self::SizesAsColumns(sizes)) => {
-                sizes.iter().filter(|size| with_unit(size)).count() >= 2
+            Ok(Self::Retained { .. }) => coordinates < 2,
+            Ok(Self::SizesAsColumns { sizes, unit, .. }) => {
+                unit.is_some() || sizes.iter().filter(|size| with_unit(size)).count() >= 2
             }
             Ok(Self::Percentiles { columns, .. }) => {
                 columns.len() >= 3 && !has_all(table, &["x", "y", "z"])
@@ -158,7 +172,7 @@ impl Layout {
             |name: &Option<String>| name.as_deref().map(|name| table.column(name)).transpose();
         match (named(&columns.size)?, named(&columns.passing)?) {
             (size, Some(passing)) => {
-                found.refuse_other_percents(&[passing])?;
+                found.refuse_classes(&[passing])?;
                 let size = match size {
                     Some(size) => size,
                     None => found.size(true)?.ok_or_else(|| found.no_sizes())?,
@@ -243,11 +257,46 @@ impl<'a> Names<'a> {
         }
     }
 
-    fn long(&self, size: usize, passing: usize) -> Layout {
-        Layout::Long {
-            size,
-            unit: self.unit(size),
-            passing,
+    /// A line a point, where that column is what passes or what stays.
+    fn long(&self, size: usize, column: usize) -> Layout {
+        let unit = self.unit(size);
+        match self.roles.get(column) {
+            Some(Role::Retained(what)) => Layout::Retained {
+                size,
+                unit,
+                retained: column,
+                what: *what,
+            },
+            _ => Layout::Long {
+                size,
+                unit,
+                passing: column,
+            },
+        }
+    }
+
+    /// The column of what stays on sieves: of several the one that needs the least made of it.
+    ///
+    /// # Errors
+    /// Where two are alike.
+    fn retained(&self) -> Result<Option<usize>, Fault> {
+        let mut columns: Vec<(RetainedName, usize)> = (self.roles.iter().enumerate())
+            .filter_map(|(column, role)| match role {
+                Role::Retained(what) => Some((*what, column)),
+                _ => None,
+            })
+            .collect();
+        columns.sort_unstable();
+        match columns[..] {
+            [(one, first), (two, second), ..] if one == two => {
+                let what = format!(
+                    "columns '{}' and '{}' may both be what stays on the sieves",
+                    self.table.name(first),
+                    self.table.name(second)
+                );
+                Err(self.fault(what, "name one of them (--passing)"))
+            }
+            _ => Ok(columns.first().map(|(_, column)| *column)),
         }
     }
 
@@ -255,7 +304,15 @@ impl<'a> Names<'a> {
         let others: Vec<usize> = (0..self.roles.len())
             .filter(|&column| column != size)
             .collect();
-        self.refuse_other_percents(&others)?;
+        self.refuse_classes(&others)?;
+        let stays = |column: &usize| matches!(self.roles.get(*column), Some(Role::Retained(_)));
+        if let Some(&column) = others.iter().find(|column| stays(column)) {
+            let name = self.table.name(column);
+            return Err(self.fault(
+                format!("column '{name}' is what stays on the sieves, beside others that are not"),
+                "leave it out, or name it alone (--passing)",
+            ));
+        }
         if others.is_empty() {
             return Err(self.fault(
                 format!("there is no column beside '{}'", self.table.name(size)),
@@ -268,26 +325,15 @@ impl<'a> Names<'a> {
         })
     }
 
-    /// Refuses percents that are not cumulative percent passing.
-    fn refuse_other_percents(&self, columns: &[usize]) -> Result<(), Fault> {
+    /// Refuses the percents of classes.
+    fn refuse_classes(&self, columns: &[usize]) -> Result<(), Fault> {
         for &column in columns {
             let name = self.table.name(column);
-            match self.roles.get(column) {
-                Some(Role::Retained) => {
-                    return Err(self.fault(
-                        format!("column '{name}' is percent retained, not passing"),
-                        "give cumulative percent passing: 100 less the cumulative percent retained",
-                    ));
-                }
-                Some(Role::NotCumulative) => {
-                    return Err(self.fault(
-                        format!(
-                            "column '{name}' is the percent of each size class, not cumulative"
-                        ),
-                        "give cumulative percent passing: the sum of all smaller classes",
-                    ));
-                }
-                _ => {}
+            if self.roles.get(column) == Some(&Role::NotCumulative) {
+                return Err(self.fault(
+                    format!("column '{name}' is the percent of each size class, not cumulative"),
+                    "give cumulative percent passing: the sum of all smaller classes",
+                ));
             }
         }
         Ok(())
@@ -308,13 +354,11 @@ impl<'a> Names<'a> {
         if let Some((_, column)) = self.percentiles.iter().find(|(column, _)| *column == size) {
             return self.percentiles_of(&column.set);
         }
-        let passing = self.with(|role| role == Role::Passing);
-        match passing
-            .into_iter()
-            .filter(|&column| column != size)
-            .collect::<Vec<_>>()[..]
-        {
-            [passing] => Ok(self.long(size, passing)),
+        let mut passing = self.with(|role| role == Role::Passing);
+        passing.retain(|&column| column != size);
+        match (&passing[..], self.retained()?) {
+            ([passing], _) => Ok(self.long(size, *passing)),
+            ([], Some(retained)) if retained != size => Ok(self.long(size, retained)),
             _ => self.wide(size),
         }
     }
@@ -366,7 +410,8 @@ impl<'a> Names<'a> {
         }
         let passing = self.with(|role| role == Role::Passing);
         let sets = self.percentile_sets();
-        let mut size = self.size(!passing.is_empty())?;
+        let retained = self.retained()?.filter(|_| passing.is_empty());
+        let mut size = self.size(!passing.is_empty() || retained.is_some())?;
         if passing.is_empty() && !sets.is_empty() {
             // A sample's size, or a coordinate.
             size = size.filter(|&column| matches!(self.roles.get(column), Some(Role::Size(_))));
@@ -377,6 +422,13 @@ impl<'a> Names<'a> {
         let with_unit = self.sizes.iter().filter(has_unit).count();
         // Bare numbers beside a column of sizes are the names of trials.
         let by_sizes = with_unit >= 2 || (size.is_none() && self.sizes.len() >= 2);
+        if let Some(names) = size.filter(|&size| passing.is_empty() && self.names_curves(size)) {
+            return Ok(Layout::SizesAsColumns {
+                sizes: self.sizes.clone(),
+                unit: self.unit(names),
+                names: Some(names),
+            });
+        }
         match (size, &passing[..], by_sizes, &sets[..]) {
             (Some(size), [passing], false, []) => Ok(self.long(size, *passing)),
             (Some(_), [_], ..) | (Some(_), _, true, _) | (_, _, true, [_, ..]) => {
@@ -388,8 +440,15 @@ impl<'a> Names<'a> {
                               passing (--size, --passing)";
                 Err(self.fault(what, remedy))
             }
-            (Some(size), ..) => self.wide(size),
-            (None, _, true, []) => Ok(Layout::SizesAsColumns(self.sizes.clone())),
+            (Some(size), ..) => match retained {
+                Some(retained) => Ok(self.long(size, retained)),
+                None => self.wide(size),
+            },
+            (None, _, true, []) => Ok(Layout::SizesAsColumns {
+                sizes: self.sizes.clone(),
+                unit: None,
+                names: None,
+            }),
             (None, _, false, [(_, set)]) => self.percentiles_of(set),
             (None, _, false, [(one, _), (two, _), ..]) => {
                 let name = |column: &usize| self.table.name(*column);
@@ -402,8 +461,18 @@ impl<'a> Names<'a> {
                 Err(self.fault(what, remedy))
             }
             (None, [_, ..], false, []) => Err(self.no_sizes()),
+            (None, [], false, []) if retained.is_some() => Err(self.no_sizes()),
             (None, [], false, []) => self.unnamed(),
         }
+    }
+
+    /// Whether the sizes stand in the first line, behind a column that is called so and names the curves.
+    fn names_curves(&self, size: usize) -> bool {
+        let is_size = |cell: &str| cell.is_empty() || SizeText::of_name(cell).is_some();
+        let mut rows = self.table.rows().iter();
+        self.sizes.len() >= 2
+            && self.sizes.len() + 1 == self.roles.len()
+            && rows.all(|row| !is_size(row.cell(size)))
     }
 
     /// The ways to read it, for the fault that there are two.
@@ -435,7 +504,7 @@ impl<'a> Names<'a> {
     /// The layout of a table whose names say nothing: a corner left empty is over the sizes.
     fn unnamed(&self) -> Result<Layout, Fault> {
         let all: Vec<usize> = (0..self.roles.len()).collect();
-        self.refuse_other_percents(&all)?;
+        self.refuse_classes(&all)?;
         if self
             .table
             .header()

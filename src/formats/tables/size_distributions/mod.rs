@@ -11,20 +11,21 @@
 //! 20;35,5;                               a cell may be empty
 //!
 //! photo,10 mm,20 mm,40 mm                one line a curve, a column each size
-//! a.jpg,12,35.5,100
+//! a.jpg,12,35.5,100                      (or "Sieve (mm),10,20,40" over "sieve A,12,35.5,100")
 //!
 //! label,D10,D50,D90                      one line a curve, a column each percent passing: D, P, x
 //! a.jpg,9,26,38                          or k; columns of one set end alike (D50_old is another
 //!                                        set), and those that end in psi or phi are logarithms
 //! ```
 //!
-//! - Percent passing is cumulative. Percent retained and percents of classes are refused. Where no
+//! - Percent passing is cumulative; percents of classes are refused. In the place of the percent passing may stand what
+//!   stays on the sieves, a laboratory's protocol (`retained`). Where no
 //!   percent of the table is above 1 and the largest is above 0.5, they are shares of 1.
 //! - The unit of sizes stands in the name of their column, or behind each size; else the user states
 //!   it; else it is mm. Micrometres are read into mm. Sizes may be called by ASTM E11's names of
 //!   sieves ("No. 4", "3/8 in."); where one is, "2 in." is the sieve of 50 mm too.
 //! - Mended, and said: decimal commas; passing up to 100.05 % and falls of up to 0.05 %, which rounding
-//!   explains; a line twice; a size of 0 that nothing passes; the pan under the sieves.
+//!   explains; lines of a title above the names; a line twice; a size of 0 that nothing passes; the pan under the sieves.
 //! - For the text itself see [`Table`].
 
 mod curves;
@@ -32,6 +33,7 @@ mod layout;
 mod names;
 mod point_weights;
 mod read;
+mod retained;
 #[cfg(test)]
 mod tests;
 
@@ -46,6 +48,12 @@ use crate::files::FileError;
 use crate::fragmentation::DistributionSet;
 use crate::tables::table::{Table, read_bounded};
 use crate::units::LengthUnit;
+
+/// How many lines may stand above the names of the columns.
+const MOST_TITLES: usize = 20;
+
+/// Within how many bytes the names are looked for.
+const START: usize = 16 << 10;
 
 /// Which columns hold what. What is not named is found by its name.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -73,8 +81,10 @@ pub(crate) fn is_table(start: &str, whole: bool) -> bool {
         true => Some(start),
         false => start.rfind('\n').and_then(|end| start.get(..end)),
     };
-    let table = complete.and_then(|text| Table::read(text).ok());
-    table.is_some_and(|table| Layout::is_sure(&table))
+    complete.is_some_and(|text| {
+        matches!(Table::read(text), Ok(table) if Layout::is_sure(&table))
+            || below_titles(text, &DistributionColumns::default()).is_some()
+    })
 }
 
 /// The fault of such a table where a flight is needed.
@@ -93,7 +103,49 @@ pub fn size_distributions(
     text: &str,
     columns: &DistributionColumns,
 ) -> Result<(DistributionSet, Vec<String>), Fault> {
-    read::read(&Table::read(text)?, columns)
+    let whole = Table::read(text);
+    // What is wrong with such a table, or where none is below, is said of the whole.
+    let sure = matches!(&whole, Ok(table) if Layout::is_sure(table));
+    let read = whole.and_then(|table| read::read(&table, Layout::of(&table, columns)?, columns));
+    if sure || read.is_ok() {
+        return read;
+    }
+    let Some(((layout, table), lines)) = below_titles(text, columns) else {
+        return read;
+    };
+    let (set, mut said) = read::read(&table, layout, columns)?;
+    let plural = if lines == 1 { "line" } else { "lines" };
+    let titles = format!("{lines} {plural} above the names of the columns are passed over");
+    said.insert(0, titles);
+    Ok((set, said))
+}
+
+/// The table below the title, the date, the name of the laboratory: from the first line on whose names say beyond doubt what the
+/// columns are, with how many lines are above it. `None` where there is none below the first [`MOST_TITLES`] lines.
+fn below_titles(text: &str, columns: &DistributionColumns) -> Option<((Layout, Table), usize)> {
+    // What the names mean is seen from the first lines below them.
+    let most = text.floor_char_boundary(START);
+    let start = match text.get(..most).filter(|_| most < text.len()) {
+        Some(start) => start.rfind('\n').and_then(|end| start.get(..end))?,
+        None => text,
+    };
+    let found = |text: &str| {
+        let table = Table::read(text).ok()?;
+        let layout = Layout::of(&table, columns).ok()?;
+        let sure = columns.size.is_some() || Layout::is_sure(&table);
+        sure.then_some((layout, table))
+    };
+    let titles = (1..=MOST_TITLES).find(|&lines| found(&without_first(start, lines)).is_some())?;
+    let above = text.lines().take(titles);
+    let above = above.filter(|line| !line.trim().is_empty()).count();
+    Some((found(&without_first(text, titles))?, above))
+}
+
+/// A text whose first lines are empty: those behind them keep their numbers.
+fn without_first(text: &str, lines: usize) -> String {
+    let ends = text.match_indices('\n').nth(lines.saturating_sub(1));
+    let rest = ends.and_then(|(at, _)| text.get(at + 1..));
+    "\n".repeat(lines) + rest.unwrap_or_default()
 }
 
 /// Reads size distributions from a file; see [`size_distributions`].

@@ -46,8 +46,8 @@ impl SizeUnit {
 pub(super) enum Role {
     /// Cumulative percent passing.
     Passing,
-    /// Percent retained.
-    Retained,
+    /// What stays on sieves.
+    Retained(RetainedName),
     /// Percent of each class of sizes.
     NotCumulative,
     /// Sizes, in a unit where the name states one.
@@ -64,6 +64,50 @@ pub(super) enum Role {
     Weight,
     /// Anything else.
     Other,
+}
+
+/// What the name of a column says of what stays on sieves, by what is to be chosen first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum RetainedName {
+    /// Percent on a sieve and all coarser ones.
+    CumulativePercent,
+    /// Percent on each sieve.
+    EachPercent,
+    /// Percent, of one sieve or of all down to it.
+    Percent,
+    /// Mass on each sieve.
+    Mass,
+    /// Mass on a sieve and all coarser ones.
+    CumulativeMass,
+    /// Percent or mass: it says neither.
+    Unsaid,
+}
+
+impl RetainedName {
+    fn of(words: &[String]) -> Self {
+        let any = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()));
+        let percent = any(&["percent", "pct", "percentage"]);
+        let mass = any(&[
+            "mass", "masses", "weight", "weights", "wt", "g", "kg", "t", "gram", "grams", "tonnes",
+            "lb", "lbs",
+        ]);
+        let cumulative = words.iter().any(|word| word.starts_with("cum"));
+        let each = any(&[
+            "each",
+            "individual",
+            "incremental",
+            "differential",
+            "partial",
+        ]);
+        match (percent, mass, cumulative) {
+            (true, _, true) => Self::CumulativePercent,
+            (true, _, false) if each => Self::EachPercent,
+            (true, _, false) => Self::Percent,
+            (false, true, false) => Self::Mass,
+            (false, true, true) => Self::CumulativeMass,
+            (false, false, _) => Self::Unsaid,
+        }
+    }
 }
 
 /// The words of a name in small letters: "PercentPassing", "percent_passing" and "% passing" are the
@@ -167,7 +211,7 @@ pub(super) fn role(name: &str) -> Role {
         return of_size_role(&words, unit);
     }
     if within(&["retained", "oversize", "coarser", "residue"]) {
-        return Role::Retained;
+        return Role::Retained(RetainedName::of(&words));
     }
     let single = [
         "individual",
@@ -301,8 +345,15 @@ impl SizeText {
     }
 }
 
-/// The opening of the sieve of ASTM E11 with that designation: "No. 4", "#4", "3/8 in.", "3/8\"".
+/// The opening of the sieve of ASTM E11 with that designation: "No. 4", "#4", "3/8 in.", "3/8\"". One that is called by
+/// a fraction is of inches, whatever else the table is of.
 pub(super) fn sieve_mm(name: &str) -> Option<f64> {
+    let in_inches = || name.contains('/').then(|| format!("{name} in"));
+    named_sieve_mm(name).or_else(|| named_sieve_mm(&in_inches()?))
+}
+
+/// As [`sieve_mm`], with the inches said.
+fn named_sieve_mm(name: &str) -> Option<f64> {
     let squeezed = |text: &str| -> String {
         let text = text.to_lowercase().replace('#', "no");
         let text = text.replace(['"', '″'], "in").replace("inch", "in");

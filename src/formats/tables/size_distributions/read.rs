@@ -6,6 +6,7 @@ use super::DistributionColumns;
 use super::curves::{RawCurve, RawPoint, Repairs, SizeReading, finish};
 use super::layout::{LabelColumns, Layout};
 use super::names::{SizeText, SizeUnit, sieve_mm};
+use super::retained::OnSieves;
 use crate::fault::Fault;
 use crate::fragmentation::{DistributionSet, Labels};
 use crate::tables::table::{Row, Table};
@@ -14,6 +15,7 @@ use crate::text::fields::shown;
 /// Reads the curves of a table.
 pub(super) fn read(
     table: &Table,
+    layout: Layout,
     columns: &DistributionColumns,
 ) -> Result<(DistributionSet, Vec<String>), Fault> {
     let mut reader = Reader {
@@ -21,7 +23,6 @@ pub(super) fn read(
         columns,
         repairs: Repairs::default(),
     };
-    let layout = Layout::of(table, columns)?;
     let mut reading = SizeReading {
         header: None,
         given: columns.unit,
@@ -34,13 +35,29 @@ pub(super) fn read(
             passing,
         } => {
             reading.header = unit;
-            reader.long(size, passing)?
+            reader.long(size, passing, None)?
+        }
+        Layout::Retained {
+            size,
+            unit,
+            retained,
+            what,
+        } => {
+            reading.header = unit;
+            reader.repairs.said.push(format!(
+                "what passes is computed from what stays on the sieves, column {}",
+                table.name(retained)
+            ));
+            reader.long(size, retained, Some(OnSieves::new(what)))?
         }
         Layout::Wide { size, unit } => {
             reading.header = unit;
             reader.wide(size)?
         }
-        Layout::SizesAsColumns(sizes) => reader.sizes_as_columns(&sizes)?,
+        Layout::SizesAsColumns { sizes, unit, names } => {
+            reading.header = unit;
+            reader.sizes_as_columns(&sizes, names)?
+        }
         Layout::Percentiles { columns, unit } => {
             reading.header = unit;
             reading.percentiles = true;
@@ -60,6 +77,21 @@ fn is_missing(cell: &str) -> bool {
     matches!(cell.as_str(), "" | "na" | "n/a" | "nan" | "-" | "–" | "—")
 }
 
+/// Whether a cell of sizes is the pan under the sieves.
+fn is_pan(cell: &str) -> bool {
+    let small = cell.to_lowercase();
+    let pans = ["pan", "receiver", "bottom", "tray"];
+    pans.iter().any(|pan| small.starts_with(pan))
+}
+
+/// Whether a cell of sizes is in front of the sum of all.
+fn is_total(cell: &str) -> bool {
+    let small = cell.to_lowercase();
+    ["total", "sum", "Σ"]
+        .iter()
+        .any(|total| small.starts_with(total))
+}
+
 struct Reader<'a> {
     table: &'a Table,
     columns: &'a DistributionColumns,
@@ -67,15 +99,15 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// A size in a cell; `None` for a sieve's pan.
+    /// A size in a cell; `None` for a sieve's pan and a line of sums.
     fn size(&mut self, row: &Row, column: usize) -> Result<Option<SizeText>, Fault> {
         let cell = row.cell(column);
-        let small = cell.to_lowercase();
-        if ["pan", "receiver", "bottom", "tray"]
-            .iter()
-            .any(|pan| small.starts_with(pan))
-        {
+        if is_pan(cell) {
             self.repairs.pan(row.line);
+            return Ok(None);
+        }
+        if is_total(cell) {
+            self.repairs.total(row.line);
             return Ok(None);
         }
         if is_missing(cell) {
@@ -86,9 +118,7 @@ impl Reader<'_> {
                 "fill it in, or leave the line out",
             ));
         }
-        // A sieve that is called by a fraction is one of inches, whatever the column is of.
-        let in_inches = || cell.contains('/').then(|| format!("{cell} in"));
-        let sieve_mm = sieve_mm(cell).or_else(|| sieve_mm(&in_inches()?));
+        let sieve_mm = sieve_mm(cell);
         let number = self
             .table
             .number_and_rest(row, column, &mut self.repairs.numbers);
@@ -165,18 +195,38 @@ impl Reader<'_> {
             .push(format!("columns that are not used: {names}{more}"));
     }
 
-    fn long(&mut self, size: usize, passing: usize) -> Result<Vec<RawCurve>, Fault> {
-        let labels = LabelColumns::of(self.table, self.columns, &[size, passing])?;
-        let used: Vec<usize> = labels.all().chain([size, passing]).collect();
+    /// A line a point: what passes, or what stays on the `sieves`.
+    fn long(
+        &mut self,
+        size_column: usize,
+        column: usize,
+        sieves: Option<OnSieves>,
+    ) -> Result<Vec<RawCurve>, Fault> {
+        let mut labels = LabelColumns::of(self.table, self.columns, &[size_column, column])?;
+        if sieves.is_some() && self.columns.weight.is_none() {
+            // A mass in a sieve's protocol is the sieve's.
+            labels.weight = None;
+        }
+        let used: Vec<usize> = labels.all().chain([size_column, column]).collect();
         self.say_unused(&used);
         let mut curves: Vec<RawCurve> = Vec::new();
         let mut places: HashMap<Labels, usize> = HashMap::new();
         for row in self.table.rows() {
-            let Some(size) = self.size(row, size)? else {
-                continue;
+            let size = row.cell(size_column);
+            let (pan, total) = (is_pan(size), is_total(size));
+            let size = match sieves.is_some() && (pan || total) {
+                true => None,
+                false => match self.size(row, size_column)? {
+                    Some(size) => Some(size),
+                    None => continue,
+                },
             };
-            let Some((percent, percent_sign)) = self.percent(row, passing)? else {
-                let what = format!("column {} is empty", self.table.name(passing));
+            let percent = self.percent(row, column)?;
+            if size.is_none() && percent.is_none() {
+                continue;
+            }
+            let Some((percent, percent_sign)) = percent else {
+                let what = format!("column {} is empty", self.table.name(column));
                 return Err(Fault::at(
                     row.line,
                     what,
@@ -191,6 +241,7 @@ impl Reader<'_> {
                     weight,
                     line: row.line,
                     points: Vec::new(),
+                    sieves,
                 });
             }
             let Some(curve) = curves.get_mut(place) else {
@@ -206,6 +257,20 @@ impl Reader<'_> {
                 return Err(Fault::at(row.line, what, "give a curve one weight"));
             }
             curve.weight = curve.weight.or(weight);
+            let Some(size) = size else {
+                let Some(sieves) = &mut curve.sieves else {
+                    continue;
+                };
+                let place = match total {
+                    true => &mut sieves.total,
+                    false => &mut sieves.pan,
+                };
+                if place.replace(percent).is_some() {
+                    let what = format!("'{}' is there twice", shown(row.cell(size_column)));
+                    return Err(Fault::at(row.line, what, "keep one, or name the curves"));
+                }
+                continue;
+            };
             curve.points.push(RawPoint {
                 line: row.line,
                 size,
@@ -226,6 +291,7 @@ impl Reader<'_> {
                     weight: None,
                     line: self.table.header_line(),
                     points: Vec::new(),
+                    sieves: None,
                 };
                 (column, curve)
             })
@@ -286,9 +352,14 @@ impl Reader<'_> {
         }
     }
 
-    fn sizes_as_columns(&mut self, sizes: &[(usize, SizeText)]) -> Result<Vec<RawCurve>, Fault> {
+    /// A line a curve, named in the column `names` where there is such a one.
+    fn sizes_as_columns(
+        &mut self,
+        sizes: &[(usize, SizeText)],
+        names: Option<usize>,
+    ) -> Result<Vec<RawCurve>, Fault> {
         let taken: Vec<usize> = sizes.iter().map(|(column, _)| *column).collect();
-        self.a_line_a_curve(&taken, |reader, row| {
+        self.a_line_a_curve(&taken, names, |reader, row| {
             let mut points = Vec::new();
             for &(column, size) in sizes.iter().take_while(|(column, _)| *column < row.len()) {
                 if let Some((percent, percent_sign)) = reader.percent(row, column)? {
@@ -306,7 +377,7 @@ impl Reader<'_> {
 
     fn percentiles(&mut self, columns: &[(usize, f64)]) -> Result<Vec<RawCurve>, Fault> {
         let taken: Vec<usize> = columns.iter().map(|(column, _)| *column).collect();
-        self.a_line_a_curve(&taken, |reader, row| {
+        self.a_line_a_curve(&taken, None, |reader, row| {
             let mut points = Vec::new();
             for &(column, percent) in columns.iter().take_while(|(column, _)| *column < row.len()) {
                 if is_missing(row.cell(column)) {
@@ -329,9 +400,11 @@ impl Reader<'_> {
     fn a_line_a_curve(
         &mut self,
         taken: &[usize],
+        names: Option<usize>,
         mut points_of: impl FnMut(&mut Self, &Row) -> Result<Vec<RawPoint>, Fault>,
     ) -> Result<Vec<RawCurve>, Fault> {
-        let labels = LabelColumns::of(self.table, self.columns, taken)?;
+        let mut labels = LabelColumns::of(self.table, self.columns, taken)?;
+        labels.method = labels.method.or(names);
         let used: Vec<usize> = labels.all().chain(taken.iter().copied()).collect();
         self.say_unused(&used);
         let nameless = [labels.method, labels.trial, labels.photo]
@@ -362,6 +435,7 @@ impl Reader<'_> {
                 weight: self.weight(row, labels)?,
                 line: row.line,
                 points,
+                sieves: None,
             });
         }
         Ok(curves)

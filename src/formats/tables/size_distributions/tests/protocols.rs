@@ -1,0 +1,210 @@
+//! What a laboratory's protocol says, by hand.
+
+use super::*;
+
+/// What passes, with what is said beside where it comes from.
+fn passing(text: &str) -> (Points, Vec<String>) {
+    let (set, mut said) = read(text);
+    assert_eq!(set.curves.len(), 1, "{text}");
+    let from = said.iter().position(|said| {
+        said.starts_with("what passes is computed from what stays on the sieves, column ")
+    });
+    said.remove(from.expect("it is said where the percents come from"));
+    (set.curves[0].distribution.points().to_vec(), said)
+}
+
+/// 50, 300, 250, 200 g of 1000 on the sieves and 200 in the pan: 95, 65, 40, 20 % pass.
+#[test]
+fn each_way_to_tell_what_stays_gives_what_passes() {
+    let wanted = [[10.0, 20.0], [20.0, 40.0], [40.0, 65.0], [80.0, 95.0]];
+    for text in [
+        // Mass with the pan, with the total, with both.
+        "Sieve (mm),Mass retained (g)\n80,50\n40,300\n20,250\n10,200\nPan,200\n",
+        "Sieve (mm),Weight retained\n10,200\n20,250\n40,300\n80,50\nTotal,1000\n",
+        "sieve_mm;retained_kg\n80;0,05\n40;0,3\n20;0,25\n10;0,2\npan;0,2\ntotal;1,0\n",
+        "Sieve (mm),Cum. mass retained (g)\n80,50\n40,350\n20,600\n10,800\npan,1000\n",
+        // Percents of each sieve: with the pan, by name, and as they fall.
+        "Sieve (mm),% retained\n80,5\n40,30\n20,25\n10,20\npan,20\n",
+        "Sieve (mm),Individual % retained\n80,5\n40,30\n20,25\n10,20\n",
+        "Sieve (mm),% retained\n80,5\n40,30\n20,25\n10,20\n",
+        "Sieve (mm),retained\n80,5 %\n40,30 %\n20,25 %\n10,20 %\n",
+        // Cumulative percents: by name, with the pan, and as they never fall.
+        "Sieve (mm),Cumulative % retained\n80,5\n40,35\n20,60\n10,80\n",
+        "Sieve (mm),% retained\n80,5\n40,35\n20,60\n10,80\npan,100\n",
+        "Sieve (mm),% retained\n80,5\n40,35\n20,60\n10,80\n",
+        // All columns of a protocol: the one that needs the least made of it.
+        "Sieve (mm),Mass retained (g),% retained,Cum. % retained\n80,50,5,5\n40,300,30,35\n20,250,25,60\n10,200,20,80\npan,200,20,100\n",
+    ] {
+        let (points, said) = passing(text);
+        assert_eq!(points.len(), 4, "{text}");
+        for (point, wanted) in points.iter().zip(wanted) {
+            assert_eq!(point[0], wanted[0], "{text}");
+            assert!((point[1] - wanted[1]).abs() < 1e-9, "{text}: {points:?}");
+        }
+        let unexpected = said.iter().find(|said| {
+            !said.contains("decimal commas") && !said.contains("columns that are not used")
+        });
+        assert_eq!(unexpected, None, "{text}");
+    }
+}
+
+#[test]
+fn what_passes_goes_before_what_stays() {
+    let text =
+        "Sieve (mm),Mass retained (g),% passing\n80,50,95\n40,300,60\npan,650,\nTotal,1000,\n";
+    let (set, said) = read(text);
+    assert_eq!(
+        set.curves[0].distribution.points(),
+        [[40.0, 60.0], [80.0, 95.0]]
+    );
+    assert_eq!(
+        said,
+        [
+            "columns that are not used: Mass retained (g)",
+            "the pan under the sieves has no size and is left out (line 4)",
+            "a line of sums is left out (line 5)",
+        ]
+    );
+}
+
+/// The total was weighed before: 2 of 1000 g are lost in sieving, which is usual; 20 are not.
+#[test]
+fn a_total_that_does_not_fit_is_said() {
+    let text =
+        |total: u32| format!("Sieve (mm),retained (g)\n80,98\n40,400\npan,500\ntotal,{total}\n");
+    let (points, said) = passing(&text(1000));
+    assert!(said.is_empty(), "{said:?}");
+    assert!((points[0][1] - 500.0 / 9.98).abs() < 1e-9);
+    assert_eq!(
+        passing(&text(1018)).1,
+        [
+            "sieves and pan add up to 998, the total says 1018: they are off by more than 0.3 % (ASTM C136); shares are of the sum"
+        ]
+    );
+}
+
+#[test]
+fn several_samples_are_told_apart_by_name() {
+    let text = "sample,sieve mm,% retained,mass\nA,40,10,1\nA,20,60,2\nA,pan,30,3\nB,40,0,4\nB,20,55,5\nB,pan,45,6\n";
+    let (set, _) = read(text);
+    assert_eq!(names(&set), ["||A", "||B"]);
+    // A sieve's mass is no weight of the curve.
+    assert_eq!(set.curves[0].weight, None);
+    assert_eq!(
+        set.curves[1].distribution.points(),
+        [[20.0, 45.0], [40.0, 100.0]]
+    );
+}
+
+#[test]
+fn what_nobody_can_know_is_refused() {
+    for (text, line, wanted) in [
+        (
+            "sieve_mm,mass retained\n40,300\n20,250\n",
+            2,
+            "nothing says how much passed the finest sieve; give what is in the pan in a line 'pan' (0 where nothing is), or the sum of all in a line 'total'",
+        ),
+        (
+            "sieve_mm,cum mass retained\n40,300\n20,550\n",
+            2,
+            "nothing says how much there was in all; give the sum of all in a line 'pan' or 'total'",
+        ),
+        (
+            "sieve_mm,retained\n40,300\n20,250\npan,50\n",
+            2,
+            "what is retained is percent or mass, which its column does not say; call the column 'retained %', 'cumulative retained %' or 'retained g'",
+        ),
+        (
+            "sieve_mm,% retained\n40,10\n20,20\n10,30\n",
+            2,
+            "percent retained is of each sieve (they add up to 60 %) or cumulative, which nothing says; call the column 'cumulative retained %', or give the line of the pan",
+        ),
+        (
+            "sieve_mm,each % retained\n40,10\n20,20\npan,30\n",
+            2,
+            "percents retained and the pan's add up to 60 %, not 100; correct them",
+        ),
+        (
+            "sieve_mm,retained g\n40,10\n20,-20\npan,30\n",
+            3,
+            "-20 is retained, less than nothing; correct it",
+        ),
+        (
+            "sieve_mm,retained g\n40,10\n20,20\ntotal,25\n",
+            3,
+            "30 is retained down to this sieve, of 25 in all; correct it",
+        ),
+        (
+            "sieve_mm,retained g\n40,0\n20,0\npan,0\n",
+            2,
+            "nothing was sieved: all masses are 0; correct them",
+        ),
+        (
+            "sieve_mm,retained g\n40,0\n20,0\npan,0\npan,1\n",
+            5,
+            "'pan' is there twice; keep one, or name the curves",
+        ),
+        (
+            "sieve_mm,retained A g,retained B g\n40,0,1\n20,0,2\n",
+            1,
+            "columns 'retained A g' and 'retained B g' may both be what stays on the sieves; name one of them (--passing)",
+        ),
+        (
+            "grade,retained g\n40,0\n20,0\n",
+            1,
+            "no column is called size among 'grade', 'retained g'; call the column of sizes size in the first line (or name it by --size)",
+        ),
+    ] {
+        assert_eq!(fault(text), (Some(line), wanted.to_owned()), "{text}");
+    }
+    // The one that is named is read.
+    let columns = DistributionColumns {
+        passing: Some("retained B g".to_owned()),
+        ..DistributionColumns::default()
+    };
+    let text = "sieve_mm,retained A g,retained B g\n40,0,1\n20,0,2\npan,5,1\n";
+    let (set, _) = size_distributions(text, &columns).unwrap();
+    assert_eq!(
+        set.curves[0].distribution.points(),
+        [[20.0, 25.0], [40.0, 75.0]]
+    );
+}
+
+/// Lines keep their numbers, and what has no table below is refused for what stands first.
+#[test]
+fn a_title_stands_above_the_names() {
+    let text = "Sieve analysis;;\nSample:;MP-3;\nDate;2026-03-01;\n\nSize (mm);% passing;\n40;100;\n20;55;\n";
+    let (set, said) = read(text);
+    assert_eq!(
+        set.curves[0].distribution.points(),
+        [[20.0, 55.0], [40.0, 100.0]]
+    );
+    assert_eq!(
+        said,
+        ["3 lines above the names of the columns are passed over"]
+    );
+    assert!(is_table(text, true));
+    let narrow = "Sieve analysis of MP-3\nsize_mm,percent_passing\n40,100\n20,abc\n";
+    assert_eq!(fault(narrow).0, Some(4));
+    assert_eq!(fault("Report\nno,table\n1,2\n").0, Some(1));
+    // Numbers are no names, whatever they look like below.
+    assert!(
+        fault("this,that,there\na.jpg,12,35\nb.jpg,13,40\n")
+            .1
+            .starts_with("no column is called")
+    );
+}
+
+/// Sizes in the first line, behind a column that is called so.
+#[test]
+fn sieves_may_stand_in_one_line() {
+    let text = "Sieve size (mm),80,40,20\n% passing,100,60,30\n";
+    assert_eq!(points(text), [[20.0, 30.0], [40.0, 60.0], [80.0, 100.0]]);
+    let text = "Sieve (in),3,1-1/2,3/4\nface A,100,60,30\nface B,100,70,35\n";
+    let (set, _) = read(text);
+    assert_eq!(set.unit, LengthUnit::Inch);
+    assert_eq!(names(&set), ["face A||", "face B||"]);
+    // Trials with numbers for names are columns of curves.
+    let (set, _) = read("size_mm,1,2\n10,20,30\n20,100,100\n");
+    assert_eq!(names(&set), ["1||", "2||"]);
+}
