@@ -46,10 +46,34 @@ pub(super) const OWN: &str = "#fragscale ";
 
 /// Reads a gcp_list.txt whose first line says `crs`.
 pub(super) fn read(text: &str, crs: Option<String>) -> Result<ControlPoints, Fault> {
+    read_lines(text, crs, true)
+}
+
+/// Reads one whose first line is a mark's: it lacks the one of the coordinate system, which the user may say.
+pub(super) fn read_bare(text: &str) -> Result<ControlPoints, Fault> {
+    read_lines(text, None, false)
+}
+
+/// Whether a line is the one of a mark: five numbers and a name, which a point with a colour is not.
+pub(super) fn is_mark(line: &str) -> bool {
+    let fields = split(line.trim());
+    fields.len() >= 6 && numbers_ahead(&fields) == 5
+}
+
+/// How many of the first fields are numbers.
+fn numbers_ahead(fields: &[String]) -> usize {
+    let numbers = fields
+        .iter()
+        .take_while(|field| field.parse::<f64>().is_ok());
+    numbers.count()
+}
+
+/// Reads a list, with a line of the coordinate system or without.
+fn read_lines(text: &str, crs: Option<String>, has_crs_line: bool) -> Result<ControlPoints, Fault> {
     let geographic = is_geographic(crs.as_deref());
     let mut points = Points::default();
     let mut bars = Vec::new();
-    let mut is_first = true;
+    let mut is_first = has_crs_line;
     for (line, number) in text.lines().zip(1..) {
         let line = line.trim();
         if let Some(own) = line.strip_prefix(OWN) {
@@ -69,10 +93,7 @@ pub(super) fn read(text: &str, crs: Option<String>) -> Result<ControlPoints, Fau
             }
             Ok(position)
         };
-        let numbers = fields
-            .iter()
-            .take_while(|field| field.parse::<f64>().is_ok());
-        match (fields.len(), numbers.count()) {
+        match (fields.len(), numbers_ahead(&fields)) {
             (6.., 5..) => {
                 let pixel = DVec2::new(
                     number_at(&fields, 3, "the pixel's x", number)?,

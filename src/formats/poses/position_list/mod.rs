@@ -140,6 +140,12 @@ fn positions_from_text(text: &str) -> Result<PositionList, Fault> {
     let list = match Shape::of(text)? {
         Shape::Mrk => mrk::read(text)?.positions(),
         Shape::Crs(crs) => geo_file::read(text, crs)?,
+        Shape::Marks => {
+            return Err(Fault::new(
+                "it holds marks of control points, not the positions of photos",
+                "give it as control points",
+            ));
+        }
         Shape::Table => table::read(text)?,
     };
     if list.positions.is_empty() {
@@ -161,6 +167,7 @@ fn control_points_from_text(text: &str) -> Result<ControlPoints, Fault> {
             ));
         }
         Shape::Crs(crs) => gcp_list::read(text, crs)?,
+        Shape::Marks => gcp_list::read_bare(text)?,
         Shape::Table => {
             let table = table::read(text)?;
             once_each(table.positions.iter().map(|point| point.name.as_str()))?;
@@ -213,6 +220,8 @@ enum Shape {
     Mrk,
     /// OpenDroneMap's, with the coordinate system of its first line.
     Crs(Option<String>),
+    /// OpenDroneMap's marks without that line.
+    Marks,
     Table,
 }
 
@@ -228,6 +237,11 @@ impl Shape {
         }
         if first.trim().eq_ignore_ascii_case(gcp_list::NO_CRS) {
             return Ok(Self::Crs(None));
+        }
+        let mut lines = text.lines().map(str::trim);
+        let first = lines.find(|line| !line.is_empty() && !line.starts_with('#'));
+        if first.is_some_and(gcp_list::is_mark) {
+            return Ok(Self::Marks);
         }
         Ok(Self::Table)
     }

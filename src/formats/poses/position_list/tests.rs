@@ -159,6 +159,25 @@ fn control_points_with_and_without_names() {
     assert!(control_points_from_text("EPSG:2180\n").is_err());
 }
 
+/// A list that lost its first line is read whole, without a coordinate system; a cloud with colours is no such list.
+#[test]
+fn marks_without_a_line_of_the_coordinate_system() {
+    let marks = "\n452272.3\t5411841.7\t315.6\t759.4\t280.1\tIMG_1.jpg\tP1\n\
+        452313.0\t5411841.1\t315.5\t760.4\t287.7\tIMG_2.jpg\tP2\n";
+    let bare = points(marks);
+    let whole = points(&format!("local{marks}"));
+    assert_eq!(bare.list, whole.list);
+    assert_eq!((bare.list.points.len(), bare.list.crs), (2, None));
+    let refused = control_points_from_text("1.5 2.5 3.5 200 100 50\n2.5 3.5 4.5 200 100 50\n");
+    assert!(refused.is_err());
+    assert!(
+        positions_from_text(marks)
+            .unwrap_err()
+            .what
+            .contains("marks of control points")
+    );
+}
+
 #[test]
 fn truncated_lists_end_in_words() {
     for text in [
