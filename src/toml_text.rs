@@ -66,6 +66,52 @@ fn tables_in<'a>(value: &'a Spanned<DeValue<'a>>) -> Vec<&'a DeTable<'a>> {
     }
 }
 
+/// The fault of a TOML text that does not hold what it must, with its line.
+pub fn toml_fault(text: &str, error: &toml::de::Error, remedy: &str) -> Fault {
+    let line = error.span().map_or(1, |span| line_of(text, span.start));
+    Fault::at(line, in_plain_words(error.message()), remedy)
+}
+
+/// What serde says of a value, without the names of Rust's types: an engineer knows numbers, texts and lists.
+pub fn in_plain_words(message: &str) -> String {
+    let kinds = [
+        ("floating point ", "the number "),
+        ("integer ", "the number "),
+        ("string ", "the text "),
+        ("boolean ", "the word "),
+        ("sequence", "a list"),
+        ("map", "a table"),
+        ("null", "null"),
+    ];
+    let wants = [
+        (
+            &["u8", "u16", "u32", "u64", "usize"][..],
+            "a whole number, 0 or more",
+        ),
+        (&["i8", "i16", "i32", "i64", "isize"][..], "a whole number"),
+        (&["f32", "f64"][..], "a number"),
+        (&["a boolean"][..], "true or false"),
+        (&["a string"][..], "a text"),
+        (&["a sequence"][..], "a list"),
+    ];
+    let said = ["invalid type: ", "invalid value: "]
+        .iter()
+        .find_map(|start| message.strip_prefix(start)?.rsplit_once(", expected "));
+    let Some((found, wanted)) = said else {
+        return message.to_owned();
+    };
+    let found = kinds.iter().find_map(|(kind, word)| {
+        let rest = found.strip_prefix(kind)?;
+        Some(format!("{word}{}", rest.replace('`', "")))
+    });
+    let wanted_words = wants.iter().find(|(types, _)| types.contains(&wanted));
+    let wanted_words = wanted_words.map_or(wanted, |(_, words)| words);
+    match found {
+        Some(found) => format!("{found} stands where {wanted_words} is expected"),
+        None => message.to_owned(),
+    }
+}
+
 fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     known
         .iter()
@@ -115,4 +161,79 @@ fn line_in(text: &str, table: &DeTable<'_>, key: &str) -> Option<u64> {
         .iter()
         .find(|(name, _)| name.get_ref() as &str == key)
         .map(|(name, _)| line_of(text, name.span().start))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, serde::Deserialize)]
+    #[allow(dead_code, reason = "only whether it can be read matters")]
+    struct Known {
+        count: Option<usize>,
+        size: Option<f64>,
+        names: Option<Vec<String>>,
+        on: Option<bool>,
+        pair: Option<[f64; 2]>,
+    }
+
+    #[test]
+    fn values_of_another_kind_are_told_in_plain_words() {
+        for (text, line, wanted) in [
+            (
+                "size = 1\ncount = 1.5",
+                2,
+                "the number 1.5 stands where a whole number, 0 or more is expected",
+            ),
+            (
+                "count = -1",
+                1,
+                "the number -1 stands where a whole number, 0 or more is expected",
+            ),
+            (
+                "count = \"a\"",
+                1,
+                "the text \"a\" stands where a whole number, 0 or more is expected",
+            ),
+            (
+                "size = \"2 m\"",
+                1,
+                "the text \"2 m\" stands where a number is expected",
+            ),
+            (
+                "names = 3",
+                1,
+                "the number 3 stands where a list is expected",
+            ),
+            (
+                "names = [true]",
+                1,
+                "the word true stands where a text is expected",
+            ),
+            (
+                "on = [1]",
+                1,
+                "a list stands where true or false is expected",
+            ),
+            (
+                "pair = 1",
+                1,
+                "the number 1 stands where an array of length 2 is expected",
+            ),
+        ] {
+            let error = toml::from_str::<Known>(text).unwrap_err();
+            let fault = toml_fault(text, &error, "correct it");
+            assert_eq!(
+                (fault.line, fault.what.as_str()),
+                (Some(line), wanted),
+                "{text}"
+            );
+        }
+        for other in [
+            "missing field `a`",
+            "invalid length 3, expected an array of length 2",
+        ] {
+            assert_eq!(in_plain_words(other), other);
+        }
+    }
 }

@@ -38,7 +38,7 @@ use super::{Season, Source};
 use crate::asked::{Asked, Step};
 use crate::fault::Fault;
 use crate::flight::Date;
-use crate::toml_text::{key_line, line_of, nth_key_line, refuse_unknown_keys};
+use crate::toml_text::{key_line, nth_key_line, refuse_unknown_keys, toml_fault};
 
 /// Every table with the keys that it may have.
 const KNOWN_KEYS: [(&str, &[&str]); 6] = [
@@ -97,12 +97,11 @@ struct FlightText {
 /// The season in the text of a file, which lies at `path`.
 pub(super) fn parse(text: &str, path: &Path) -> Result<Season, Fault> {
     let fault = |error: toml::de::Error| {
-        let line = error.span().map_or(1, |span| line_of(text, span.start));
         let remedy = match error.message() {
             "missing field `format`" => "write format = 1 above everything else",
             _ => "see README, A season of blasts",
         };
-        Fault::at(line, error.message(), remedy)
+        toml_fault(text, &error, remedy)
     };
     let table = DeTable::parse(text).map_err(fault)?;
     refuse_unknown_keys(&KNOWN_KEYS, text, table.get_ref())?;

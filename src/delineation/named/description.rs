@@ -39,6 +39,7 @@
 //! ```
 
 use fragscale_core::fault::Fault;
+use fragscale_core::toml_text::toml_fault;
 use serde::Deserialize;
 
 use crate::classical::Classical;
@@ -227,14 +228,7 @@ impl Description {
     pub fn read(text: &str) -> Result<Self, Fault> {
         let remedy = "see \"Your own network\" in README for its keys";
         let read: Result<Self, toml::de::Error> = toml::from_str(text);
-        let description = read.map_err(|error| {
-            let line = error.span().map_or(1, |span| {
-                let before = text.get(..span.start).unwrap_or_default();
-                before.matches('\n').count() as u64 + 1
-            });
-            let what = fragscale_core::fault::one_line(error.message());
-            Fault::at(line, what, remedy)
-        })?;
+        let description = read.map_err(|error| toml_fault(text, &error, remedy))?;
         description.check()?;
         Ok(description)
     }

@@ -26,7 +26,7 @@ use crate::fault::Fault;
 use crate::files::FLIGHT_MARK;
 use crate::scale::{Ground, ImageKind, ScalePair, StatedErrors};
 use crate::surface::{SurfaceOptions, UpAxis};
-use crate::toml_text::{key_line, line_of, nth_key_line, refuse_unknown_keys};
+use crate::toml_text::{key_line, nth_key_line, refuse_unknown_keys, toml_fault};
 use crate::units::LengthUnit;
 
 /// The text of a flight. Paths are relative to the file and stay text here.
@@ -237,12 +237,7 @@ impl FlightFile {
     /// one, or contradicts itself.
     pub fn parse(text: &str) -> Result<Self, Fault> {
         let fault = |error: toml::de::Error| {
-            let line = error.span().map_or(1, |span| line_of(text, span.start));
-            Fault::at(
-                line,
-                error.message(),
-                "see the flight file's format in README",
-            )
+            toml_fault(text, &error, "see the flight file's format in README")
         };
         let table = DeTable::parse(text).map_err(fault)?;
         refuse_unknown_keys(&KNOWN_KEYS, text, table.get_ref())?;
