@@ -11,6 +11,13 @@
 //! constants of `scale/uncertainty/` (`unseen.rs`, `bridges.rs`). The truth is the true mesh with the scale
 //! spheres that lie on it (the cloud has them, too), met from the true poses. With CACHE flights are kept there and
 //! made once; with PRESET there is no other.
+//!
+//! ```text
+//! cargo bench -p fragscale-sample --bench coverage -- of TRUE FLIGHT [TRUE FLIGHT ...]
+//! ```
+//!
+//! does the same of flights that are there, such as `reconstruct` makes: TRUE is the simulated one that the photos of FLIGHT
+//! are of (`sample --surface mesh`).
 
 #![allow(
     clippy::expect_used,
@@ -37,6 +44,25 @@ fn main() {
         .skip(1)
         .filter(|a| a != "--bench")
         .collect();
+    if let Some(("of", pairs)) = arguments
+        .split_first()
+        .map(|(first, rest)| (first.as_str(), rest))
+    {
+        for pair in pairs.chunks_exact(2) {
+            let [truth, flight] = [0, 1].map(|at| Path::new(&pair[at]));
+            let mut found = BTreeMap::new();
+            compare(
+                &opened(flight),
+                &true_scales(&opened(truth), truth),
+                "as it is",
+                &mut found,
+            );
+            for ((_, scale), found) in found {
+                println!("{:20} {scale:8} {}", flight.display(), summary(&found));
+            }
+        }
+        return;
+    }
     let flights: u64 = arguments
         .first()
         .map_or(1, |count| count.parse().expect("a count"));
@@ -133,59 +159,84 @@ fn one_flight(
             };
             make(&folder, &options, &Progress::default()).expect("a flight");
         }
-        let opened = open_flight(&folder, &OpenOptions::default(), &Progress::default());
-        (opened.expect("opened"), folder)
+        (opened(&folder), folder)
     };
     let (truth, folder) = open("mesh", true, DrawnErrors::default());
     let truth = true_scales(&truth, &folder);
     for (kind, mesh, errors) in kinds {
-        let (opened, _) = open(kind, mesh, errors);
-        let flight = &opened.flight;
-        let progress = Progress::default();
-        let outcomes = flight.scales(&progress).expect("scales");
-        let fields = flight.fields(&outcomes, &progress).expect("fields");
-        for ((outcome, field), truth) in outcomes.iter().zip(fields).zip(&truth) {
-            let (Some(scale), Some(field)) = (outcome.scale(), field) else {
-                continue;
-            };
-            let uncertainty = field.uncertainty.unwrap_or_default();
-            let mut add =
-                |what, estimate: Option<f64>, truth: Option<f64>, interval: Option<Interval>| {
-                    if let (Some(estimate), Some(truth)) = (estimate, truth) {
-                        found.entry((kind, what)).or_default().push(Found {
-                            off: estimate / truth - 1.0,
-                            interval: interval
-                                .map(|ends| (ends.low / truth - 1.0, ends.high / truth - 1.0)),
-                        });
-                    }
-                };
-            let (edges, u) = (&scale.scale, &uncertainty);
-            add("corners", edges.top, truth.0.top, u.top);
-            add("corners", edges.bottom, truth.0.bottom, u.bottom);
-            add("sides", edges.left, truth.0.left, u.left);
-            add("sides", edges.right, truth.0.right, u.right);
-            let (fitted, true_fit) = (field.fitted, truth.1);
-            add(
-                "fitted",
-                fitted.map(|f| f.top),
-                true_fit.map(|f| f.top),
-                u.fitted_top,
-            );
-            add(
-                "fitted",
-                fitted.map(|f| f.bottom),
-                true_fit.map(|f| f.bottom),
-                u.fitted_bottom,
-            );
-            // The paper's line, against what the photo's pixels say.
-            add("paper", edges.top, true_fit.map(|f| f.top), None);
-            add("paper", edges.bottom, true_fit.map(|f| f.bottom), None);
-        }
+        compare(&open(kind, mesh, errors).0, &truth, kind, found);
     }
 }
 
+fn opened(folder: &Path) -> Opened {
+    open_flight(folder, &OpenOptions::default(), &Progress::default()).expect("a flight")
+}
+
+/// A photo's name without the folders that it lies in.
+fn file_name(photo: &str) -> String {
+    photo.rsplit('/').next().unwrap_or(photo).to_owned()
+}
+
+/// What a flight says of its photos beside the truth.
+fn compare<'a>(
+    opened: &Opened,
+    truth: &TrueScales,
+    kind: &'a str,
+    found: &mut BTreeMap<(&'a str, &'static str), Vec<Found>>,
+) {
+    let flight = &opened.flight;
+    let progress = Progress::default();
+    let outcomes = flight.scales(&progress).expect("scales");
+    let fields = flight.fields(&outcomes, &progress).expect("fields");
+    let photos = flight.parts().photos.iter();
+    for ((photo, outcome), field) in photos.zip(&outcomes).zip(fields) {
+        let (Some(scale), Some(field)) = (outcome.scale(), field) else {
+            continue;
+        };
+        let Some((edges, line)) = truth.get(&file_name(&photo.name)) else {
+            continue;
+        };
+        let uncertainty = field.uncertainty.unwrap_or_default();
+        let mut add =
+            |what, estimate: Option<f64>, truth: Option<f64>, interval: Option<Interval>| {
+                if let (Some(estimate), Some(truth)) = (estimate, truth) {
+                    found.entry((kind, what)).or_default().push(Found {
+                        off: estimate / truth - 1.0,
+                        interval: interval
+                            .map(|ends| (ends.low / truth - 1.0, ends.high / truth - 1.0)),
+                    });
+                }
+            };
+        let (ours, u) = (&scale.scale, &uncertainty);
+        add("corners", ours.top, edges.top, u.top);
+        add("corners", ours.bottom, edges.bottom, u.bottom);
+        add("sides", ours.left, edges.left, u.left);
+        add("sides", ours.right, edges.right, u.right);
+        let fitted = |of: fn(&FittedScale) -> f64| field.fitted.as_ref().map(of);
+        let true_fit = |of: fn(&FittedScale) -> f64| line.as_ref().map(of);
+        add(
+            "fitted",
+            fitted(|f| f.top),
+            true_fit(|f| f.top),
+            u.fitted_top,
+        );
+        add(
+            "fitted",
+            fitted(|f| f.bottom),
+            true_fit(|f| f.bottom),
+            u.fitted_bottom,
+        );
+        // The paper's line, against what the photo's pixels say.
+        add("paper", ours.top, true_fit(|f| f.top), None);
+        add("paper", ours.bottom, true_fit(|f| f.bottom), None);
+    }
+}
+
+/// Edges and line of photos, by the names of their files.
+type TrueScales = BTreeMap<String, (EdgeScales, Option<FittedScale>)>;
+
 /// Edges and line of each photo on the true surface.
-fn true_scales(truth: &Opened, folder: &Path) -> Vec<(EdgeScales, Option<FittedScale>)> {
+fn true_scales(truth: &Opened, folder: &Path) -> TrueScales {
     let flight = &truth.flight;
     let surface = with_spheres(&flight.parts().surface, folder);
     let progress = Progress::default();
@@ -197,7 +248,8 @@ fn true_scales(truth: &Opened, folder: &Path) -> Vec<(EdgeScales, Option<FittedS
             let (image, grid) = (flight.parts().image, FieldGrid::of_fit(camera));
             let field = ScaleField::compute(camera, &photo.pose, image, grid, &surface, &progress);
             let edges = outcome.scale().map(|scale| scale.scale).unwrap_or_default();
-            (edges, FittedScale::of(&field.expect("a field")))
+            let line = FittedScale::of(&field.expect("a field"));
+            (file_name(&photo.name), (edges, line))
         })
         .collect()
 }

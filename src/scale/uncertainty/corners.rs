@@ -66,8 +66,8 @@ struct Around {
     depth: f64,
     /// The triangles near its ray, in camera axes; `None` where no ray will be cast.
     near: Option<Surface>,
-    /// How far places like those of the points around it are off, shares of the depth.
-    errors: Vec<f64>,
+    /// How far places like those of the points around it are off.
+    errors: ErrorsAround,
     /// By how much depths are too small there in the mean.
     unseen: f64,
 }
@@ -119,8 +119,8 @@ impl CornerDraws {
             let depth = distance * direction.z;
             let direction = direction / direction.z;
             let errors = match has.surface {
-                true => errors_around(corner.pixel, depths),
-                false => Vec::new(),
+                true => ErrorsAround::of(corner.pixel, depths),
+                false => ErrorsAround::default(),
             };
             let near = (has.pose || has.lens)
                 .then(|| triangles_near(photo, direction, depth, &shared, surface));
@@ -129,8 +129,8 @@ impl CornerDraws {
                 direction,
                 depth,
                 near: near.flatten(),
-                unseen: unseen.bias * root_mean_square_of(&errors),
-                errors: errors.iter().map(|error| error * unseen.wider()).collect(),
+                unseen: unseen.bias * errors.root_mean_square(),
+                errors: errors.times(unseen.wider()),
             })
         });
         let mut of_parts = |parts: Parts| -> [Vec<f64>; 4] {
@@ -199,22 +199,60 @@ impl CornerDraws {
     }
 }
 
-fn root_mean_square_of(errors: &[f64]) -> f64 {
-    let squares: f64 = errors.iter().map(|error| error * error).sum();
-    (squares / (errors.len() as f64).max(1.0)).sqrt()
+/// The depth errors of the points nearest to a corner, each as likely as the photo shows the triangles at it: a corner lies
+/// anywhere, and a sparse cloud has most of its points where there is most to recognize.
+#[derive(Debug, Default)]
+struct ErrorsAround {
+    /// Shares of the depth.
+    errors: Vec<f64>,
+    /// How much of the photo those up to each of them take.
+    areas: Vec<f64>,
 }
 
-/// The depth errors of the points nearest to a pixel.
-fn errors_around(pixel: DVec2, depths: &[DepthError]) -> Vec<f64> {
-    let mut nearest: Vec<(f64, f64)> = depths
-        .iter()
-        .map(|error| (error.pixel.distance_squared(pixel), error.relative))
-        .collect();
-    if nearest.len() > POINTS_AROUND {
-        nearest.select_nth_unstable_by(POINTS_AROUND, |a, b| a.0.total_cmp(&b.0));
-        nearest.truncate(POINTS_AROUND);
+impl ErrorsAround {
+    fn of(pixel: DVec2, depths: &[DepthError]) -> Self {
+        let mut nearest: Vec<(f64, DepthError)> = depths
+            .iter()
+            .map(|error| (error.pixel.distance_squared(pixel), *error))
+            .collect();
+        if nearest.len() > POINTS_AROUND {
+            nearest.select_nth_unstable_by(POINTS_AROUND, |a, b| a.0.total_cmp(&b.0));
+            nearest.truncate(POINTS_AROUND);
+        }
+        let mut around = Self::default();
+        let mut area = 0.0;
+        for (_, error) in nearest {
+            area += error.area;
+            around.errors.push(error.relative);
+            around.areas.push(area);
+        }
+        around
     }
-    nearest.into_iter().map(|(_, relative)| relative).collect()
+
+    fn times(mut self, factor: f64) -> Self {
+        self.errors.iter_mut().for_each(|error| *error *= factor);
+        self
+    }
+
+    fn root_mean_square(&self) -> f64 {
+        let before = std::iter::once(&0.0).chain(&self.areas);
+        let squares: f64 = (self.errors.iter().zip(&self.areas).zip(before))
+            .map(|((error, to), from)| error * error * (to - from))
+            .sum();
+        let all = self.areas.last().copied().unwrap_or(0.0);
+        if all > 0.0 {
+            (squares / all).sqrt()
+        } else {
+            0.0
+        }
+    }
+
+    /// One of them; `None` where there is none.
+    fn draw(&self, draws: &mut Draws) -> Option<f64> {
+        let at = draws.uniform() * self.areas.last()?;
+        let place = self.areas.partition_point(|to| *to <= at);
+        self.errors.get(place.min(self.errors.len() - 1)).copied()
+    }
 }
 
 /// The direction that a corner's ray has under drawn errors, in the camera axes that are written.
@@ -326,8 +364,9 @@ fn edges_under(
                 };
                 along = hit.t;
             }
-            if parts.surface && !corner.errors.is_empty() {
-                let error = corner.errors[draws.place(corner.errors.len())];
+            if parts.surface
+                && let Some(error) = corner.errors.draw(draws)
+            {
                 let stated = photo.errors.surface.unwrap_or(0.0) * draws.normal();
                 along = along * (1.0 + error + corner.unseen) + stated / direction.length();
             }
@@ -357,4 +396,32 @@ fn edges_under(
         true => Vec::new(),
         false => edge,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One point on one part of the photo, one on three; a third is too far away.
+    #[test]
+    fn a_corner_lies_on_what_takes_most_of_the_photo() {
+        let error = |x: f64, relative: f64, area: f64| DepthError {
+            pixel: DVec2::new(x, 0.0),
+            relative,
+            area,
+        };
+        let mut depths = vec![error(1.0, 0.01, 1.0), error(2.0, -0.02, 3.0)];
+        depths.extend((0..POINTS_AROUND).map(|_| error(100.0, 0.0, 0.0)));
+        depths.push(error(1e6, 5.0, 1e6));
+        let around = ErrorsAround::of(DVec2::ZERO, &depths).times(2.0);
+        assert!((around.root_mean_square() - (13e-4_f64).sqrt()).abs() < 1e-12);
+        let mut draws = Draws::new(1);
+        let drawn: Vec<f64> = (0..4000).filter_map(|_| around.draw(&mut draws)).collect();
+        let of_small = drawn.iter().filter(|error| **error == 0.02).count();
+        assert!(drawn.iter().all(|error| *error == 0.02 || *error == -0.04));
+        // A binomial number of 4000 with 1/4 has a deviation of 27.
+        assert!((900..1100).contains(&of_small), "{of_small}");
+        assert_eq!(ErrorsAround::default().draw(&mut draws), None);
+        assert_eq!(ErrorsAround::default().root_mean_square(), 0.0);
+    }
 }

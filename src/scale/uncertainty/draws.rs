@@ -24,7 +24,7 @@ impl Draws {
     }
 
     /// Between 0 and 1, neither of them.
-    fn uniform(&mut self) -> f64 {
+    pub(super) fn uniform(&mut self) -> f64 {
         ((self.bits.next() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
     }
 

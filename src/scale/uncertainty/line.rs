@@ -10,12 +10,15 @@ use super::bridges::Bridged;
 use super::draws::interval_of_scale;
 use super::holes::of_holes;
 use super::moved::of_moves;
-use super::surface_error::{DepthError, root_mean_square};
+use super::surface_error::{DepthError, effective_count, mean, root_mean_square};
 use super::unseen::Unseen;
 use super::{Interval, UncertainPhoto};
 use crate::camera::Camera;
 use crate::scale::field::ScaleField;
 use crate::scale::{FittedScale, ImageKind};
+
+/// How far the mean of the depth errors may be off itself: the points are left out, so it is that of a cloud with fewer.
+const OF_CUT: f64 = 0.5;
 
 /// How sure the top and the bottom of the best line are.
 pub(super) struct LineErrors {
@@ -60,7 +63,7 @@ impl LineErrors {
         let rotation = field.pose().rotation;
         let moved = of_moves(field, fitted, plane);
         let roughness = root_mean_square(depths);
-        let counted = depths.len() as f64;
+        let counted = effective_count(depths).max(1.0);
         let holes = of_holes(field, fitted);
         let too_large = unseen.of_line(field, fitted, depths);
         let end = |index: usize, scale: f64| {
@@ -87,10 +90,18 @@ impl LineErrors {
                 // The end of a line through independent values has four times the variance of their mean.
                 let seen = 2.0 * roughness / counted.sqrt();
                 let of_unseen = unseen.spread() * roughness;
+                let of_cut = OF_CUT * mean(depths).unwrap_or(0.0);
                 // Each point has its stated error, and the line is the mean of many.
                 let depth = 1.0 / plane.z.abs().max(f64::MIN_POSITIVE);
                 let stated = 2.0 * errors.surface.unwrap_or(0.0) / depth / counted.sqrt();
-                let parts = [seen, of_unseen, stated, holes[index], bridged.spread];
+                let parts = [
+                    seen,
+                    of_unseen,
+                    of_cut,
+                    stated,
+                    holes[index],
+                    bridged.spread,
+                ];
                 parts.iter().map(|part| part * part).sum::<f64>().sqrt()
             });
             LineEnd {

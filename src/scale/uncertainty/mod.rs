@@ -23,7 +23,7 @@ use self::corners::CornerDraws;
 pub use self::draws::Draws;
 use self::line::LineErrors;
 pub use self::pixels::PixelErrors;
-use self::surface_error::{DepthErrors, plane_of};
+use self::surface_error::{DepthErrors, plane_of, without_flying};
 use self::unseen::Unseen;
 use super::field::ScaleField;
 use super::{EdgeScales, FittedScale, PhotoScale, ScalePair, StatedErrors};
@@ -134,7 +134,13 @@ impl Uncertainty {
                 true => of_bridges(photo.field, fitted, plane),
                 false => Bridged::default(),
             };
-            LineErrors::new(photo, fitted, plane, &depths, (unseen, bridged))
+            LineErrors::new(
+                photo,
+                fitted,
+                plane,
+                &without_flying(&depths),
+                (unseen, bridged),
+            )
         });
         let line_parts = line.as_ref().map(LineErrors::parts_percent);
         let line_parts_percent = line_parts.unwrap_or_default();

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::Interval;
 use super::draws::interval_of_scale;
-use super::surface_error::{DepthErrors, LEAST_POINTS, plane_of, root_mean_square};
+use super::surface_error::{DepthError, DepthErrors, plane_of, root_mean_square};
 use super::unseen::Unseen;
 use crate::camera::Camera;
 use crate::scale::field::ScaleField;
@@ -39,18 +39,14 @@ impl PixelErrors {
         let (unseen, depths) = (Unseen::of(&errors), errors.each);
         let roughness = root_mean_square(&depths).map(|of_all| {
             let camera = field.camera();
-            let mut squares = vec![(0.0, 0_usize); ACROSS * rows(camera)];
+            let mut squares = vec![Vec::new(); ACROSS * rows(camera)];
             for error in &depths {
-                if let Some((sum, count)) = squares.get_mut(square(camera, error.pixel)) {
-                    *sum += error.relative * error.relative;
-                    *count += 1;
+                if let Some(within) = squares.get_mut(square(camera, error.pixel)) {
+                    within.push(*error);
                 }
             }
-            let of_square = |(sum, count): (f64, usize)| match count >= LEAST_POINTS {
-                true => (sum / count as f64).sqrt(),
-                false => of_all,
-            };
-            squares.into_iter().map(of_square).collect()
+            let of_square = |within: &Vec<DepthError>| root_mean_square(within).unwrap_or(of_all);
+            squares.iter().map(of_square).collect()
         });
         let is_stated = *stated
             != StatedErrors {

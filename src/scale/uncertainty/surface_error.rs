@@ -21,6 +21,10 @@ pub(super) const LEAST_POINTS: usize = 30;
 /// Of more points in a photo only so many tell of it.
 pub(super) const MOST_POINTS: usize = 4000;
 
+/// What is off by more than so many times what nine in ten points are off by at most is no surface: points that fly between
+/// pile and camera would make it say nothing of the others.
+const FLYING: f64 = 5.0;
+
 /// By how much of a cell the squares are shifted that points twice as far apart are chosen from.
 pub(super) const SHIFTED: [DVec2; 4] = [
     DVec2::ZERO,
@@ -29,10 +33,46 @@ pub(super) const SHIFTED: [DVec2; 4] = [
     DVec2::new(0.5, 0.5),
 ];
 
-/// The root mean square of depth errors; `None` where they are too few.
+/// The root mean square of depth errors over what the photo shows; `None` where they are too few.
 pub(super) fn root_mean_square(depths: &[DepthError]) -> Option<f64> {
-    let squares: f64 = depths.iter().map(|error| error.relative.powi(2)).sum();
-    (depths.len() >= LEAST_POINTS).then(|| (squares / depths.len() as f64).sqrt())
+    mean_of(depths, |error| error.relative.powi(2)).map(f64::sqrt)
+}
+
+/// The mean of depth errors over what the photo shows: where a sparse cloud cuts the tops of stones off, it is below 0.
+pub(super) fn mean(depths: &[DepthError]) -> Option<f64> {
+    mean_of(depths, |error| error.relative)
+}
+
+/// The mean over what the photo shows of something at each point.
+fn mean_of(depths: &[DepthError], of: impl Fn(&DepthError) -> f64) -> Option<f64> {
+    let all: f64 = depths.iter().map(|error| error.area).sum();
+    let sum: f64 = depths.iter().map(|error| error.area * of(error)).sum();
+    (depths.len() >= LEAST_POINTS && all > 0.0).then_some(sum / all)
+}
+
+/// As many points of equal areas would tell as much.
+pub(super) fn effective_count(depths: &[DepthError]) -> f64 {
+    let all: f64 = depths.iter().map(|error| error.area).sum();
+    let squares: f64 = depths.iter().map(|error| error.area.powi(2)).sum();
+    match squares > 0.0 {
+        true => all * all / squares,
+        false => 0.0,
+    }
+}
+
+/// Depth errors, those of flying points moved to where they begin: for what is said of a whole photo. What a corner hangs on may
+/// as well be the rim of a block.
+pub(super) fn without_flying(errors: &[DepthError]) -> Vec<DepthError> {
+    let mut sizes: Vec<f64> = errors.iter().map(|error| error.relative.abs()).collect();
+    let mut errors = errors.to_vec();
+    let place = sizes.len() * 9 / 10;
+    if place < sizes.len() {
+        let most = FLYING * *sizes.select_nth_unstable_by(place, f64::total_cmp).1;
+        for error in errors.iter_mut().filter(|_| most > 0.0) {
+            error.relative = error.relative.clamp(-most, most);
+        }
+    }
+    errors
 }
 
 /// The surface's error at one place of a photo.
@@ -42,6 +82,8 @@ pub(super) struct DepthError {
     pub(super) pixel: DVec2,
     /// The true depth over the predicted one, less 1: by so much scales are too large.
     pub(super) relative: f64,
+    /// How much of the photo the triangles at the point take: over the photo's plane, but for a factor of the whole photo.
+    pub(super) area: f64,
 }
 
 /// The plane that lies best through a photo's field, in camera axes: m·X = 1, so that the inverse of the
@@ -81,20 +123,22 @@ impl DepthErrors {
         let seen = Pyramid::of_image(camera, center, pose.rotation);
         let camera_from_local = pose.rotation.transpose();
         let up = camera_from_local * DVec3::Z;
-        let pixel_of = |point: DVec3| {
-            let pixel = field
-                .image()
-                .pixel(camera, camera_from_local * (point - center))?;
-            camera.contains(pixel).then_some(pixel)
+        let seen_at = |point: DVec3| {
+            let seen = camera_from_local * (point - center);
+            let pixel = field.image().pixel(camera, seen)?;
+            camera.contains(pixel).then_some((pixel, seen.z))
         };
         let error = |left_out: &LeftOut| {
             // m·(X - h up) = 1: moved up by h, the plane's depth along a ray grows by the share h m·up.
             let relative = -left_out.above * plane.dot(up);
             // A point high above its neighbours may lie where they predict nothing: at the camera.
             let predicted = (1.0 + relative).max(0.1);
+            let (pixel, depth) = seen_at(left_out.point)?;
             Some(DepthError {
-                pixel: pixel_of(left_out.point)?,
+                pixel,
                 relative: 1.0 / predicted - 1.0,
+                // A piece of the plane n·X = D takes D / (|n·up| z³) of the image plane for each of its area over (x, y).
+                area: left_out.star / depth.powi(3),
             })
         };
         // The field has triangulated what the photo sees, so nothing can fail here.
@@ -108,7 +152,7 @@ impl DepthErrors {
             };
         }
         let mut all: Vec<LeftOut> = left_out
-            .filter(|left_out| pixel_of(left_out.point).is_some())
+            .filter(|left_out| seen_at(left_out.point).is_some())
             .collect();
         let area: f64 = all.iter().map(|left_out| left_out.star / 3.0).sum();
         let side = |count: usize| (area / count.max(1) as f64).sqrt();
@@ -129,6 +173,101 @@ impl DepthErrors {
         Self {
             each: all.iter().filter_map(error).collect(),
             sparser: sparser.filter_map(|left_out| error(&left_out)).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{Camera, Distortion, Pose};
+    use crate::jobs::Progress;
+    use crate::scale::ImageKind;
+    use crate::scale::field::FieldGrid;
+    use crate::split_mix::SplitMix;
+    use crate::surface::Cloud;
+
+    fn errors(of: &[(f64, f64)]) -> Vec<DepthError> {
+        let error = |&(relative, area): &(f64, f64)| DepthError {
+            pixel: DVec2::ZERO,
+            relative,
+            area,
+        };
+        of.iter().map(error).collect()
+    }
+
+    /// A hundred points with 1 % on one part of the photo, fifty with 3 % on three: by hand.
+    #[test]
+    fn points_count_as_much_as_the_photo_shows_of_them() {
+        let mut some = vec![(-0.01, 0.01); 100];
+        some.extend([(0.03, 0.06); 50]);
+        let some = errors(&some);
+        assert!((mean(&some).unwrap() - 0.02).abs() < 1e-12);
+        assert!((root_mean_square(&some).unwrap() - 7e-4_f64.sqrt()).abs() < 1e-12);
+        assert!((effective_count(&some) - 16.0 / 0.19).abs() < 1e-9);
+        assert_eq!(mean(&some[..LEAST_POINTS - 1]), None);
+    }
+
+    #[test]
+    fn flying_points_are_brought_down() {
+        let mut some = vec![(0.01, 1.0); 97];
+        some.extend([(9.0, 1.0), (-0.9, 1.0), (-0.04, 1.0)]);
+        let found = without_flying(&errors(&some));
+        let last: Vec<f64> = found[96..].iter().map(|error| error.relative).collect();
+        assert_eq!(last, [0.01, 0.05, -0.05, -0.04]);
+        // Where nine in ten are sure, the tenth is no flying point.
+        some[..97].fill((0.0, 1.0));
+        assert_eq!(without_flying(&errors(&some)), errors(&some));
+    }
+
+    /// A plane seen from 10 above by a photo of 1.28 by 0.72 times its distance, its left half with a ninth of the points: each
+    /// triangle has three corners, so their areas are three times what the photo shows, over z³, half of it on either side.
+    #[test]
+    fn areas_add_up_to_the_photo() {
+        let mut random = SplitMix(3);
+        let mut points: Vec<DVec3> = (0..40_000)
+            .map(|_| {
+                DVec3::new(
+                    (random.unit() - 0.5) * 20.0,
+                    (random.unit() - 0.5) * 14.0,
+                    0.0,
+                )
+            })
+            .collect();
+        points.retain(|point| point.x > 0.0 || random.unit() < 1.0 / 9.0);
+        let surface = Surface::new(Cloud {
+            points,
+            ..Cloud::default()
+        })
+        .unwrap();
+        let camera = Camera {
+            name: String::new(),
+            width: 1280,
+            height: 720,
+            fx: 1000.0,
+            fy: 1000.0,
+            cx: 640.0,
+            cy: 360.0,
+            skew: 0.0,
+            distortion: Distortion::None,
+        };
+        let pose = Pose {
+            center: DVec3::new(0.0, 0.0, 10.0),
+            rotation: DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
+        };
+        let grid = FieldGrid::of_fit(&camera);
+        let image = ImageKind::Undistorted;
+        let field =
+            ScaleField::compute(&camera, &pose, image, grid, &surface, &Progress::default())
+                .unwrap();
+        let found = DepthErrors::of(&field, plane_of(&field).unwrap(), &surface).each;
+        let sum = |left: bool| -> f64 {
+            let of_side = found.iter().filter(|error| (error.pixel.x < 640.0) == left);
+            of_side.map(|error| error.area).sum()
+        };
+        let half = 3.0 * 12.8 * 7.2 / 2.0 / 1000.0;
+        for side in [sum(true), sum(false)] {
+            assert!((side / half - 1.0).abs() < 0.06, "{side} is not {half}");
         }
     }
 }
