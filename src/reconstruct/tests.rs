@@ -758,9 +758,45 @@ fn folders_without_photos_that_overlap_are_refused() {
     let other = lock_work(&to, &work).unwrap();
     refused("another run works in this folder");
     drop(other);
-    let set = PhotoSet::read(&photos, None, &Progress::default()).unwrap();
+    let read = |folder: &Path| PhotoSet::read(folder, None, &Progress::default());
+    let set = read(&photos).unwrap();
     let said = set.warnings.join("; ");
     assert!(said.contains("not taken (day 2)"), "{said}");
+    // Folders that a camera made are one flight, whatever their photos are called; others are asked for.
+    let card = folder.path().join("DCIM");
+    for within in ["100MEDIA", "101MEDIA"] {
+        fs::create_dir_all(card.join(within)).unwrap();
+        for (number, pose) in (1..3).zip(&poses()) {
+            let number = if within == "100MEDIA" {
+                number
+            } else {
+                number + 10
+            };
+            let name = format!("DJI_{}.jpg", number % 10);
+            write(
+                &card.join(within),
+                &name,
+                &photo(pose, 1000 * number),
+                Some(pose),
+            );
+        }
+    }
+    let set = read(&card).unwrap();
+    let names: Vec<&str> = set.photos.iter().map(|photo| photo.name.as_str()).collect();
+    let wanted = [
+        "100MEDIA/DJI_1.jpg",
+        "100MEDIA/DJI_2.jpg",
+        "101MEDIA/DJI_1.jpg",
+        "101MEDIA/DJI_2.jpg",
+    ];
+    assert_eq!((names, set.warnings), (wanted.to_vec(), Vec::new()));
+    fs::create_dir_all(card.join("labels")).unwrap();
+    fs::copy(&set.photos[0].path, card.join("labels/a.jpg")).unwrap();
+    let asked = read(&card).unwrap_err().to_string();
+    assert!(
+        asked.contains("name one of its folders that have some: 100MEDIA"),
+        "{asked}"
+    );
     if fragscale_test_data::program("colmap").is_some() {
         refused_by(&Colmap::on_path().unwrap(), "show the same");
     }

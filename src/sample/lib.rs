@@ -151,6 +151,9 @@ fn cannot_write(error: &io::Error) -> Fault {
     Fault::new(what, "choose a folder that may be written to")
 }
 
+/// Fewer points of a cloud show nothing of a pile.
+const LEAST_POINTS: usize = 100;
+
 /// The preset's recipe with what the user asks for.
 fn recipe(options: &SampleOptions) -> Result<Recipe, Fault> {
     let mut recipe = options.preset.recipe(options.lens)?;
@@ -162,6 +165,13 @@ fn recipe(options: &SampleOptions) -> Result<Recipe, Fault> {
         recipe.cloud.noise_px = noise;
     }
     if let Some(points) = options.points {
+        if points < LEAST_POINTS {
+            let what = format!("{points} points make no surface");
+            return Err(Fault::new(
+                what,
+                format!("ask for {LEAST_POINTS} at least (--points)"),
+            ));
+        }
         recipe.cloud.points = points;
     }
     Ok(recipe)

@@ -28,21 +28,25 @@ impl Called {
         let own: Vec<String> = photos.photos.iter().map(|of| of.name.clone()).collect();
         let has_blank = |name: &String| name.contains(char::is_whitespace);
         if !own.iter().any(has_blank) {
-            let parent = photos.photos.first().and_then(|photo| photo.path.parent());
-            let folder = parent.unwrap_or_else(|| Path::new(".")).to_owned();
+            // Names may begin with a folder's.
+            let above = photos.photos.first().and_then(|photo| {
+                photo
+                    .path
+                    .ancestors()
+                    .nth(1 + photo.name.matches('/').count())
+            });
+            let folder = above.unwrap_or_else(|| Path::new(".")).to_owned();
             return Ok(Self { names: own, folder });
         }
         let folder = work.join("photos");
         fs::create_dir_all(&folder).map_err(|error| cannot_write(&folder, &error))?;
-        let mut taken: HashSet<String> = own
-            .iter()
-            .filter(|name| !has_blank(name))
-            .cloned()
-            .collect();
-        let names = own.into_iter().map(|name| match has_blank(&name) {
-            false => name,
-            true => {
-                let mut name = name.replace(char::is_whitespace, "_");
+        // All lie in one folder then.
+        let is_kept = |name: &String| !has_blank(name) && !name.contains('/');
+        let mut taken: HashSet<String> = own.iter().filter(|name| is_kept(name)).cloned().collect();
+        let names = own.into_iter().map(|name| match is_kept(&name) {
+            true => name,
+            false => {
+                let mut name = name.replace(|c: char| c.is_whitespace() || c == '/', "_");
                 while !taken.insert(name.clone()) {
                     name.insert(0, '_');
                 }

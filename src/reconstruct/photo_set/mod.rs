@@ -25,7 +25,7 @@ use crate::picture;
 /// A photo to be reconstructed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurveyPhoto {
-    /// The file's name.
+    /// The file's name, behind that of a folder within and a slash where it lies in one.
     pub name: String,
     /// The file.
     pub path: PathBuf,
@@ -134,14 +134,20 @@ impl PhotoSet {
         self.cameras.get(self.named(&taken.name)?.camera)
     }
 
-    /// The photos that lie in a folder. `crs` is the world's, else the zone of UTM of the first place.
+    /// The photos that lie in a folder, or, where it has none, in those that a camera made in it. `crs` is the world's, else the zone of UTM of the first place.
     ///
     /// # Errors
     /// Where the folder cannot be read or has fewer than three photos, or the coordinate system is none.
     pub fn read(folder: &Path, crs: Option<&str>, progress: &Progress) -> Result<Self, FileError> {
         let at = |fault| FileError::new(folder, fault);
-        let files = photos_in(folder)?;
-        let below = folders_of_photos(folder);
+        let mut files = photos_in(folder)?;
+        let mut below = folders_of_photos(folder);
+        let by_camera = files.is_empty() && below.iter().all(|name| is_cameras_folder(name));
+        if by_camera {
+            for name in std::mem::take(&mut below) {
+                files.extend(photos_in(&folder.join(name))?);
+            }
+        }
         progress.stage(format!("reading the headers of {} photos", files.len()));
         let mut left_out = Vec::new();
         let mut read = Vec::new();
@@ -150,8 +156,11 @@ impl PhotoSet {
             progress
                 .advance(done as u64, files.len() as u64)
                 .map_err(at)?;
-            let name = path.file_name().unwrap_or_default();
-            let name = name.to_string_lossy().into_owned();
+            let within = path.strip_prefix(folder).unwrap_or(path).components();
+            let within: Vec<_> = within
+                .map(|part| part.as_os_str().to_string_lossy())
+                .collect();
+            let name = within.join("/");
             let metadata = photo_metadata::read_file(path);
             let both = metadata.and_then(|metadata| Ok((metadata, twins.same_as(path)?)));
             let why = match both {
@@ -228,6 +237,17 @@ impl PhotoSet {
             warnings,
         })
     }
+}
+
+/// Whether a folder is called as cameras call theirs: by three digits and five letters (the rule of memory cards, DCF 2.0: 100MEDIA), or as
+/// DJI's drones call those of a mission.
+fn is_cameras_folder(name: &str) -> bool {
+    let by_rule = name.len() == 8
+        && name.bytes().take(3).all(|byte| byte.is_ascii_digit())
+        && name
+            .bytes()
+            .all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+    by_rule || name.starts_with("DJI_")
 }
 
 /// The cameras found so far: those of which the photos state the focal length, then the others.
