@@ -42,13 +42,12 @@ pub use files::{FileError, open_file, read_bytes, read_text, text_from_bytes};
 pub use masks::{MaskFile, Masks, OutlinedPhoto, read_masks};
 pub use missions::{MissionFile, read_mission};
 pub use packages::Package;
-pub use packages::drone_photos::{
-    Cameras as PhotoCameras, expected_deviation, folders_of_photos, photos_in,
-};
+pub use packages::drone_photos::{Cameras as PhotoCameras, expected_deviation};
 pub use packages::pose_covariance::PoseCovariance;
 pub use packages::reconstruction::{
     ImageUnit, MeasuredPosition, Observation, Origin, PosedPhoto, Project, Reconstruction, Sizes,
 };
+pub use photos::photos_below::PhotosBelow;
 pub use poses::poses_csv::{PoseLine, PosesFile};
 pub use poses::position_list::{
     ControlPoints, NamedPosition, PositionList, control_list_text, positions_of_photos,

@@ -13,7 +13,8 @@ use crate::FileError;
 use crate::detect::DETECTED_BY;
 use crate::fault::Fault;
 use crate::jobs::Progress;
-use crate::packages::{self, LOOKED_AT, Package, colmap, drone_photos, odm, opensfm, pix4d};
+use crate::packages::{self, LOOKED_AT, Package, colmap, odm, opensfm, pix4d};
+use crate::photos::photos_below;
 
 /// How many folders below one are looked into, over both levels.
 const MOST_FOLDERS: usize = 200;
@@ -151,7 +152,7 @@ impl Contents {
 /// The reconstructions that lie as files in a folder, besides those that are `known`.
 fn in_files(folder: &Path, known: &[PathBuf]) -> Vec<(Package, PathBuf)> {
     let mut files = entries(folder);
-    files.retain(|path| path.is_file() && !drone_photos::is_photo(path));
+    files.retain(|path| path.is_file() && !photos_below::is_photo(path));
     files
         .into_iter()
         .take(LOOKED_AT)
@@ -301,7 +302,7 @@ fn photos_of(package: Package, path: &Path, left: &mut u64) -> Option<usize> {
         extension.eq_ignore_ascii_case("xmp")
     };
     match package {
-        Package::Photos if path.is_dir() => return Some(count(drone_photos::is_photo)),
+        Package::Photos if path.is_dir() => return Some(count(photos_below::is_photo)),
         Package::Photos => return Some(1),
         Package::RealityCaptureXmp => return Some(count(is_sidecar)),
         Package::Colmap => {
@@ -345,7 +346,7 @@ fn size(path: &Path, levels: usize, left: &mut usize) -> u64 {
     };
     if metadata.is_file() {
         let extension = path.extension().unwrap_or_default().to_string_lossy();
-        let is_left_out = drone_photos::is_photo(path)
+        let is_left_out = photos_below::is_photo(path)
             || NOT_READ
                 .iter()
                 .any(|end| extension.eq_ignore_ascii_case(end));
@@ -367,7 +368,7 @@ fn size(path: &Path, levels: usize, left: &mut usize) -> u64 {
         if *left == 0 {
             return u64::MAX;
         }
-        if drone_photos::is_photo(&entry) {
+        if photos_below::is_photo(&entry) {
             continue;
         }
         *left -= 1;

@@ -30,6 +30,7 @@ use self::reconstruction::{Project, Reconstruction};
 use crate::fault::Fault;
 use crate::files::{FileError, read_bytes, read_text};
 use crate::jobs::Progress;
+use crate::photos::photos_below;
 
 /// How many entries of a folder are looked at.
 pub(crate) const LOOKED_AT: usize = 200;
@@ -257,11 +258,11 @@ packages! {
         of_file: |file| {
             let mut magics = [&b"\xff\xd8\xff"[..], b"\x89PNG"].into_iter();
             let is_image = magics.any(|magic| file.bytes.starts_with(magic));
-            file.is(drone_photos::is_photo(file.path) && is_image)
+            file.is(photos_below::is_photo(file.path) && is_image)
         },
         of_folder: nothing,
         // Beside what a package made there are often its photos.
-        of_bare_folder: drone_photos::has_photos,
+        of_bare_folder: photos_below::has_photos,
         read: drone_photos::read,
     }
 }

@@ -4,3 +4,4 @@ pub mod image_names;
 pub mod photo_folder;
 pub mod photo_metadata;
 pub mod photo_size;
+pub mod photos_below;

@@ -15,9 +15,7 @@ use crate::camera::{Camera, Distortion};
 use crate::fault::{Fault, first_names};
 use crate::files::{FileError, read_bytes};
 use crate::formats::photos::photo_metadata::{self, PhotoMetadata};
-use crate::formats::{
-    PhotoCameras, Reconstruction, expected_deviation, folders_of_photos, photos_in,
-};
+use crate::formats::{PhotoCameras, PhotosBelow, Reconstruction, expected_deviation};
 use crate::jobs::Progress;
 use crate::opening::covariance::lens_deviations;
 use crate::picture;
@@ -140,32 +138,23 @@ impl PhotoSet {
     /// Where the folder cannot be read or has fewer than three photos, or the coordinate system is none.
     pub fn read(folder: &Path, crs: Option<&str>, progress: &Progress) -> Result<Self, FileError> {
         let at = |fault| FileError::new(folder, fault);
-        let mut files = photos_in(folder)?;
-        let mut below = folders_of_photos(folder);
-        let by_camera = files.is_empty() && below.iter().all(|name| is_cameras_folder(name));
-        if by_camera {
-            for name in std::mem::take(&mut below) {
-                files.extend(photos_in(&folder.join(name))?);
-            }
-        }
+        let PhotosBelow {
+            photos: files,
+            others: below,
+        } = PhotosBelow::read(folder)?;
         progress.stage(format!("reading the headers of {} photos", files.len()));
         let mut left_out = Vec::new();
         let mut read = Vec::new();
         let mut twins = Twins::default();
-        for (done, path) in files.iter().enumerate() {
+        for (done, (name, path)) in files.iter().enumerate() {
             progress
                 .advance(done as u64, files.len() as u64)
                 .map_err(at)?;
-            let within = path.strip_prefix(folder).unwrap_or(path).components();
-            let within: Vec<_> = within
-                .map(|part| part.as_os_str().to_string_lossy())
-                .collect();
-            let name = within.join("/");
             let metadata = photo_metadata::read_file(path);
             let both = metadata.and_then(|metadata| Ok((metadata, twins.same_as(path)?)));
             let why = match both {
                 Ok((metadata, None)) => {
-                    read.push((name, path, metadata));
+                    read.push((name.clone(), path, metadata));
                     continue;
                 }
                 Ok((_, Some(first))) => {
@@ -174,7 +163,10 @@ impl PhotoSet {
                 }
                 Err(error) => error.fault.what,
             };
-            left_out.push(LeftOut { photo: name, why });
+            left_out.push(LeftOut {
+                photo: name.clone(),
+                why,
+            });
         }
         if read.len() < 3 {
             let out = left_out.iter().take(3);
@@ -237,17 +229,6 @@ impl PhotoSet {
             warnings,
         })
     }
-}
-
-/// Whether a folder is called as cameras call theirs: by three digits and five letters (the rule of memory cards, DCF 2.0: 100MEDIA), or as
-/// DJI's drones call those of a mission.
-fn is_cameras_folder(name: &str) -> bool {
-    let by_rule = name.len() == 8
-        && name.bytes().take(3).all(|byte| byte.is_ascii_digit())
-        && name
-            .bytes()
-            .all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
-    by_rule || name.starts_with("DJI_")
 }
 
 /// The cameras found so far: those of which the photos state the focal length, then the others.

@@ -25,80 +25,24 @@ mod cameras;
 mod marks;
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::DVec3;
 
 use crate::fault::{Fault, first_names};
-use crate::files::{FileError, unreadable_folder};
+use crate::files::FileError;
 use crate::jobs::Progress;
 use crate::packages::pose_covariance::PoseCovariance;
 use crate::packages::reconstruction::{
     MeasuredPosition, PosedPhoto, Project, Reconstruction, Sizes,
 };
-use crate::photos::image_names::{Ending, is_ending};
 use crate::photos::photo_metadata::{self, Fix, HeightReference, MeasuredPlace, PhotoMetadata};
+use crate::photos::photos_below::photos_in;
 pub use cameras::Cameras;
 
 /// What photos without a cloud may become.
 const RECONSTRUCT: &str = "these are photos alone; where they overlap, 'fragscale reconstruct' or File > New from \
      photos… makes a flight of them";
-
-/// Whether a file is named like a photo.
-pub(crate) fn is_photo(path: &Path) -> bool {
-    let ending = path.extension().unwrap_or_default().to_string_lossy();
-    is_ending(&ending, Ending::Photo) && path.is_file()
-}
-
-/// Whether a folder has photos in it.
-pub(crate) fn has_photos(folder: &Path) -> bool {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    entries
-        .map(|entry| entry.path())
-        .any(|path| is_photo(&path))
-}
-
-/// The photos in a folder, by name.
-///
-/// # Errors
-/// Where it cannot be read.
-pub fn photos_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
-    let failed = |e: std::io::Error| {
-        let fault = match e.kind() {
-            std::io::ErrorKind::NotADirectory => Fault::new(
-                "a file, where a folder of photos is needed",
-                "name the folder that it lies in",
-            ),
-            _ => unreadable_folder(&e),
-        };
-        FileError::new(folder, fault)
-    };
-    let mut photos = Vec::new();
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        if is_photo(&path) {
-            photos.push(path);
-        }
-    }
-    photos.sort();
-    Ok(photos)
-}
-
-/// The folders within a folder that have photos of their own, by name, sorted.
-pub fn folders_of_photos(folder: &Path) -> Vec<String> {
-    let has_photo = |folder: &Path| {
-        let mut entries = fs::read_dir(folder).into_iter().flatten().flatten();
-        entries.any(|entry| is_photo(&entry.path()))
-    };
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let folders = entries.filter(|entry| entry.path().is_dir() && has_photo(&entry.path()));
-    let mut names: Vec<String> = folders
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .collect();
-    names.sort();
-    names
-}
 
 /// Reads a folder of photos, or one photo.
 ///

@@ -28,9 +28,9 @@ use glam::DVec3;
 use crate::control::{ControlList, ControlPoint};
 use crate::fault::{Fault, first_names};
 use crate::files::{FLIGHT_MARK, FileError, read_text};
-use crate::packages::drone_photos;
 use crate::packages::odm::crs_from_text;
 use crate::photos::photo_metadata;
+use crate::photos::photos_below::PhotosBelow;
 
 /// Where photos were taken, as a list beside them or their own headers say it.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -91,21 +91,19 @@ pub fn positions_of_photos(folder: &Path) -> Result<PositionList, FileError> {
         crs: Some("EPSG:4326".to_owned()),
         ..PositionList::default()
     };
-    let files = drone_photos::photos_in(folder)?;
+    let files = PhotosBelow::read(folder)?.photos;
     let mut references = BTreeSet::new();
     let mut without = Vec::new();
-    for file in &files {
-        let name = file.file_name().unwrap_or_default();
-        let name = name.to_string_lossy().into_owned();
+    for (name, file) in &files {
         let place = photo_metadata::read_file(file).ok();
         let place = place.and_then(|metadata| metadata.place);
         let Some((place, height)) = place.and_then(|place| Some((place, place.height?))) else {
-            without.push(name);
+            without.push(name.clone());
             continue;
         };
         references.insert(height);
         list.positions.push(NamedPosition {
-            name,
+            name: name.clone(),
             position: DVec3::new(
                 place.place.longitude,
                 place.place.latitude,

@@ -1,0 +1,151 @@
+//! The photos of a folder: those that lie in it, or, where it has none, those in the folders that a camera made in it
+//! (a drone begins a new one after 999 photos, and counts anew).
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::fault::Fault;
+use crate::files::{FileError, unreadable_folder};
+use crate::photos::image_names::{Ending, is_ending};
+
+/// What a folder has of photos.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct PhotosBelow {
+    /// Their names, behind a folder's and a slash where they lie in one, and their files, in that order.
+    pub photos: Vec<(String, PathBuf)>,
+    /// The folders within that have photos that are not among these, by name.
+    pub others: Vec<String>,
+}
+
+impl PhotosBelow {
+    /// Of a folder.
+    ///
+    /// # Errors
+    /// Where it, or one that a camera made in it, cannot be read.
+    pub fn read(folder: &Path) -> Result<Self, FileError> {
+        let named = |path: PathBuf, within: Option<&str>| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let name = match within {
+                Some(within) => format!("{within}/{name}"),
+                None => name.into_owned(),
+            };
+            (name, path)
+        };
+        let own = photos_in(folder)?;
+        let below = folders_of_photos(folder);
+        if !own.is_empty() || !below.iter().all(|name| is_cameras(name)) {
+            return Ok(Self {
+                photos: own.into_iter().map(|path| named(path, None)).collect(),
+                others: below,
+            });
+        }
+        let mut photos = Vec::new();
+        for within in &below {
+            let found = photos_in(&folder.join(within))?;
+            photos.extend(found.into_iter().map(|path| named(path, Some(within))));
+        }
+        Ok(Self {
+            photos,
+            others: Vec::new(),
+        })
+    }
+}
+
+/// Whether a file is named like a photo.
+pub(crate) fn is_photo(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    is_ending(&ending, Ending::Photo) && path.is_file()
+}
+
+/// Whether a folder has photos in it.
+pub(crate) fn has_photos(folder: &Path) -> bool {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries
+        .map(|entry| entry.path())
+        .any(|path| is_photo(&path))
+}
+
+/// The photos that lie in a folder itself, by name.
+///
+/// # Errors
+/// Where it cannot be read.
+pub(crate) fn photos_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
+    let failed = |e: std::io::Error| {
+        let fault = match e.kind() {
+            std::io::ErrorKind::NotADirectory => Fault::new(
+                "a file, where a folder of photos is needed",
+                "name the folder that it lies in",
+            ),
+            _ => unreadable_folder(&e),
+        };
+        FileError::new(folder, fault)
+    };
+    let mut photos = Vec::new();
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if is_photo(&path) {
+            photos.push(path);
+        }
+    }
+    photos.sort();
+    Ok(photos)
+}
+
+/// The folders within a folder that have photos of their own, by name, sorted.
+fn folders_of_photos(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let folders = entries.filter(|entry| entry.path().is_dir() && has_photos(&entry.path()));
+    let mut names: Vec<String> = folders
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+/// Whether a folder is called as cameras call theirs: by three digits and five letters (the rule of memory cards, DCF 2.0:
+/// 100MEDIA), or as DJI's drones call those of a mission.
+fn is_cameras(name: &str) -> bool {
+    let by_rule = name.len() == 8
+        && name.bytes().take(3).all(|byte| byte.is_ascii_digit())
+        && name
+            .bytes()
+            .all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+    by_rule || name.starts_with("DJI_")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_that_a_camera_made_are_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let add = |within: &str, name: &str| {
+            let within = folder.path().join(within);
+            fs::create_dir_all(&within).unwrap();
+            fs::write(within.join(name), "").unwrap();
+        };
+        let found = || {
+            let found = PhotosBelow::read(folder.path()).unwrap();
+            let names: Vec<String> = found.photos.into_iter().map(|(name, _)| name).collect();
+            (names.join(" "), found.others.join(" "))
+        };
+        let pair = |photos: &str, others: &str| (photos.to_owned(), others.to_owned());
+        assert_eq!(found(), pair("", ""));
+        add("101MEDIA", "DJI_0001.JPG");
+        add("100MEDIA", "DJI_0001.JPG");
+        add("100MEDIA", "DJI_0001.MOV");
+        add("DJI_202605011200_001", "a.jpg");
+        add("empty", "a.txt");
+        let all = "100MEDIA/DJI_0001.JPG 101MEDIA/DJI_0001.JPG DJI_202605011200_001/a.jpg";
+        assert_eq!(found(), pair(all, ""));
+        // Which of them are of the flight, nobody knows then.
+        add("labels", "a.png");
+        let others = "100MEDIA 101MEDIA DJI_202605011200_001 labels";
+        assert_eq!(found(), pair("", others));
+        add("", "own.jpg");
+        assert_eq!(found(), pair("own.jpg", others));
+        let file = PhotosBelow::read(&folder.path().join("own.jpg")).unwrap_err();
+        assert!(file.to_string().contains("a folder of photos is needed"));
+    }
+}
