@@ -86,7 +86,7 @@ pub fn in_plain_words(message: &str) -> String {
     let wants = [
         (
             &["u8", "u16", "u32", "u64", "usize"][..],
-            "a whole number, 0 or more",
+            "a whole number of 0 or more",
         ),
         (&["i8", "i16", "i32", "i64", "isize"][..], "a whole number"),
         (&["f32", "f64"][..], "a number"),
@@ -183,17 +183,17 @@ mod tests {
             (
                 "size = 1\ncount = 1.5",
                 2,
-                "the number 1.5 stands where a whole number, 0 or more is expected",
+                "the number 1.5 stands where a whole number of 0 or more is expected",
             ),
             (
                 "count = -1",
                 1,
-                "the number -1 stands where a whole number, 0 or more is expected",
+                "the number -1 stands where a whole number of 0 or more is expected",
             ),
             (
                 "count = \"a\"",
                 1,
-                "the text \"a\" stands where a whole number, 0 or more is expected",
+                "the text \"a\" stands where a whole number of 0 or more is expected",
             ),
             (
                 "size = \"2 m\"",

@@ -241,7 +241,11 @@ fn refused() {
         ("", 1, "model"),
         ("model = 'm'\nmodle = 3\n", 2, "modle"),
         ("model = 'm'\n\n[[output]]\nis = 'edge'\n", 4, "edge"),
-        ("model = 'm'\n[input]\ntile = 'x'\n", 3, "string"),
+        (
+            "model = 'm'\n[input]\ntile = 'x'\n",
+            3,
+            "the text \"x\" stands where a whole number",
+        ),
     ] {
         let fault = Description::read(text).unwrap_err();
         assert_eq!(fault.line, Some(line), "{fault}");

@@ -3,7 +3,7 @@
 //! A corner hangs on one place of a rough surface. Moved by a wrong pose or focal length its ray may meet
 //! another stone, and no derivative says so: so it is cast again, at the triangles around. What the
 //! surface adds at the place that it meets is drawn from how far the points around the corner lie from
-//! what their neighbours predict, each as likely: at a rim some of them are far.
+//! what their neighbours predict, each as likely as the photo shows of it: at a rim some of them are far.
 
 use glam::{DMat3, DVec2, DVec3};
 

@@ -2,6 +2,7 @@
 
 use super::DistributionColumns;
 use super::names::{PercentileColumn, RetainedName, Role, SizeText, SizeUnit, role};
+use super::retained::{is_pan, is_total};
 use crate::fault::Fault;
 use crate::tables::table::{Table, key};
 
@@ -329,6 +330,12 @@ impl<'a> Names<'a> {
     fn refuse_classes(&self, columns: &[usize]) -> Result<(), Fault> {
         for &column in columns {
             let name = self.table.name(column);
+            if self.roles.get(column) == Some(&Role::PassingMass) {
+                return Err(self.fault(
+                    format!("column '{name}' is the mass that passes, not percent"),
+                    "give percent passing: that mass over the mass of all, times 100",
+                ));
+            }
             if self.roles.get(column) == Some(&Role::NotCumulative) {
                 return Err(self.fault(
                     format!("column '{name}' is the percent of each size class, not cumulative"),
@@ -470,8 +477,14 @@ impl<'a> Names<'a> {
     fn names_curves(&self, size: usize) -> bool {
         let is_size = |cell: &str| cell.is_empty() || SizeText::of_name(cell).is_some();
         let mut rows = self.table.rows().iter();
+        // The pan and the sum of all may stand behind the sieves.
+        let others = self
+            .table
+            .header()
+            .iter()
+            .filter(|name| is_pan(name) || is_total(name));
         self.sizes.len() >= 2
-            && self.sizes.len() + 1 == self.roles.len()
+            && self.sizes.len() + 1 + others.count() == self.roles.len()
             && rows.all(|row| !is_size(row.cell(size)))
     }
 

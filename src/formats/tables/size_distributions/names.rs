@@ -46,6 +46,8 @@ impl SizeUnit {
 pub(super) enum Role {
     /// Cumulative percent passing.
     Passing,
+    /// Mass that passes: nobody says of how much.
+    PassingMass,
     /// What stays on sieves.
     Retained(RetainedName),
     /// Percent of each class of sizes.
@@ -75,7 +77,9 @@ pub(super) enum RetainedName {
     EachPercent,
     /// Percent, of one sieve or of all down to it.
     Percent,
-    /// Mass on each sieve.
+    /// Mass on each sieve, said so.
+    EachMass,
+    /// Mass, of one sieve or of all down to it.
     Mass,
     /// Mass on a sieve and all coarser ones.
     CumulativeMass,
@@ -87,10 +91,7 @@ impl RetainedName {
     fn of(words: &[String]) -> Self {
         let any = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()));
         let percent = any(&["percent", "pct", "percentage"]);
-        let mass = any(&[
-            "mass", "masses", "weight", "weights", "wt", "g", "kg", "t", "gram", "grams", "tonnes",
-            "lb", "lbs",
-        ]);
+        let mass = says_mass(words);
         let cumulative = words.iter().any(|word| word.starts_with("cum"));
         let each = any(&[
             "each",
@@ -103,11 +104,21 @@ impl RetainedName {
             (true, _, true) => Self::CumulativePercent,
             (true, _, false) if each => Self::EachPercent,
             (true, _, false) => Self::Percent,
+            (false, true, false) if each => Self::EachMass,
             (false, true, false) => Self::Mass,
             (false, true, true) => Self::CumulativeMass,
             (false, false, _) => Self::Unsaid,
         }
     }
+}
+
+/// Whether words speak of mass.
+fn says_mass(words: &[String]) -> bool {
+    let masses = [
+        "mass", "masses", "weight", "weights", "wt", "g", "kg", "t", "gram", "grams", "tonnes",
+        "lb", "lbs",
+    ];
+    words.iter().any(|word| masses.contains(&word.as_str()))
 }
 
 /// The words of a name in small letters: "PercentPassing", "percent_passing" and "% passing" are the
@@ -244,7 +255,10 @@ pub(super) fn role(name: &str) -> Role {
         || any(&["pass"])
         || cumulative.contains(&joined.as_str())
     {
-        return Role::Passing;
+        return match !percent && says_mass(&words) {
+            true => Role::PassingMass,
+            false => Role::Passing,
+        };
     }
     if within(&["fraction"]) {
         return Role::NotCumulative;
@@ -270,7 +284,10 @@ pub(super) fn role(name: &str) -> Role {
         "name",
     ];
     match joined.as_str() {
-        "sieve" | "sieves" | "screen" | "screens" | "x" | "d" => Role::PerhapsSize(unit),
+        "sieve" | "sieves" | "screen" | "screens" | "x" | "d" | "mesh" | "sievemesh" | "usmesh"
+        | "tylermesh" | "sieveno" | "sievenumber" | "screenno" | "screennumber" => {
+            Role::PerhapsSize(unit)
+        }
         "method" | "methods" | "technique" | "source" => Role::Method,
         "trial" | "trials" | "trialnumber" | "trialno" | "run" | "repetition" | "replicate"
         | "repeat" | "test" => Role::Trial,
@@ -280,6 +297,15 @@ pub(super) fn role(name: &str) -> Role {
             None => Role::Other,
         },
     }
+}
+
+/// Whether a column of sizes is called a mesh's or a sieve's number: bare numbers in it are names, no sizes.
+pub(super) fn holds_sieve_numbers(name: &str) -> bool {
+    let numbers = ["mesh", "no", "number", "nr"];
+    name.contains('#')
+        || words(name)
+            .iter()
+            .any(|word| numbers.contains(&word.as_str()))
 }
 
 /// A column of sizes that a percent passes: "D50", "P80 (mm)", "x50".

@@ -5,8 +5,8 @@ use std::collections::{HashMap, HashSet};
 use super::DistributionColumns;
 use super::curves::{RawCurve, RawPoint, Repairs, SizeReading, finish};
 use super::layout::{LabelColumns, Layout};
-use super::names::{SizeText, SizeUnit, sieve_mm};
-use super::retained::OnSieves;
+use super::names::{Role, SizeText, SizeUnit, holds_sieve_numbers, role, sieve_mm};
+use super::retained::{OnSieves, is_pan, is_total, is_washed};
 use crate::fault::Fault;
 use crate::fragmentation::{DistributionSet, Labels};
 use crate::tables::table::{Row, Table};
@@ -77,21 +77,6 @@ fn is_missing(cell: &str) -> bool {
     matches!(cell.as_str(), "" | "na" | "n/a" | "nan" | "-" | "–" | "—")
 }
 
-/// Whether a cell of sizes is the pan under the sieves.
-fn is_pan(cell: &str) -> bool {
-    let small = cell.to_lowercase();
-    let pans = ["pan", "receiver", "bottom", "tray"];
-    pans.iter().any(|pan| small.starts_with(pan))
-}
-
-/// Whether a cell of sizes is in front of the sum of all.
-fn is_total(cell: &str) -> bool {
-    let small = cell.to_lowercase();
-    ["total", "sum", "Σ"]
-        .iter()
-        .any(|total| small.starts_with(total))
-}
-
 struct Reader<'a> {
     table: &'a Table,
     columns: &'a DistributionColumns,
@@ -129,6 +114,13 @@ impl Reader<'_> {
             found => found?,
         };
         let number = match number {
+            Some((_, "")) if sieve_mm.is_none() && self.holds_sieve_numbers(column) => {
+                let what = format!("'{}' is the number of a sieve, no size", shown(cell));
+                let remedy = format!(
+                    "write 'No. {cell}' where it is one of ASTM E11, else its opening with a unit"
+                );
+                return Err(Fault::at(row.line, what, remedy));
+            }
             Some((number, "")) => Some((number, None)),
             Some((number, rest)) => match SizeUnit::of(rest) {
                 Some(unit) => Some((number, Some(unit))),
@@ -137,6 +129,11 @@ impl Reader<'_> {
             None => None,
         };
         Ok(Some(SizeText { number, sieve_mm }))
+    }
+
+    fn holds_sieve_numbers(&self, column: usize) -> bool {
+        let name = self.table.header().get(column);
+        name.is_some_and(|name| holds_sieve_numbers(name))
     }
 
     /// A percent in a cell, with whether a percent sign stands behind it; `None` where it is not known.
@@ -213,10 +210,21 @@ impl Reader<'_> {
         let mut places: HashMap<Labels, usize> = HashMap::new();
         for row in self.table.rows() {
             let size = row.cell(size_column);
-            let (pan, total) = (is_pan(size), is_total(size));
-            let size = match sieves.is_some() && (pan || total) {
+            let (washed, total) = (is_washed(size), is_total(size));
+            let pan = is_pan(size) || size.parse() == Ok(0.0);
+            let size = match sieves.is_some() && (washed || pan || total) {
                 true => None,
-                false => match self.size(row, size_column)? {
+                false => match self.size(row, size_column).map_err(|fault| {
+                    // A line that is left out of a protocol would be missing in its sum.
+                    let remedy = "give the opening of its sieve, or call it pan, washed or total";
+                    match sieves.is_some() && fault.what.ends_with("is not a number") {
+                        true => Fault {
+                            remedy: remedy.to_owned(),
+                            ..fault
+                        },
+                        false => fault,
+                    }
+                })? {
                     Some(size) => Some(size),
                     None => continue,
                 },
@@ -261,9 +269,10 @@ impl Reader<'_> {
                 let Some(sieves) = &mut curve.sieves else {
                     continue;
                 };
-                let place = match total {
-                    true => &mut sieves.total,
-                    false => &mut sieves.pan,
+                let place = match (total, washed) {
+                    (true, _) => &mut sieves.total,
+                    (false, true) => &mut sieves.washed,
+                    (false, false) => &mut sieves.pan,
                 };
                 if place.replace(percent).is_some() {
                     let what = format!("'{}' is there twice", shown(row.cell(size_column)));
@@ -360,6 +369,12 @@ impl Reader<'_> {
     ) -> Result<Vec<RawCurve>, Fault> {
         let taken: Vec<usize> = sizes.iter().map(|(column, _)| *column).collect();
         self.a_line_a_curve(&taken, names, |reader, row| {
+            let called = names.map(|column| row.cell(column)).unwrap_or_default();
+            if matches!(role(called), Role::Retained(_) | Role::PassingMass) {
+                let what = format!("line '{}' is no percent passing", shown(called));
+                let remedy = "give percent passing, or what stays on the sieves with a line for each of them";
+                return Err(Fault::at(row.line, what, remedy));
+            }
             let mut points = Vec::new();
             for &(column, size) in sizes.iter().take_while(|(column, _)| *column < row.len()) {
                 if let Some((percent, percent_sign)) = reader.percent(row, column)? {

@@ -4,7 +4,9 @@
 //! - Percent or mass of each sieve: what is on no sieve of that opening or a larger one passes, over the sum of all
 //!   sieves and the pan. Where no line says what is in the pan, percents leave it by what is missing to 100, and masses by
 //!   what is missing to the line of the total; where there is none, nobody knows how much passed the last sieve.
-//! - Cumulative mass retained: the same over the total, which is the pan's number or the total's.
+//!   What was washed out before counts with the pan.
+//! - Cumulative mass retained: the same over the total. A pan's line is the sum of all or its own, as the total says.
+//! - Mass that does not say which, and never falls towards finer sieves, is what its total says, else refused.
 //! - "% retained" that says neither is of each sieve where all and the pan are 100 %, and cumulative where the pan's is 100 %, or
 //!   where it never falls towards finer sieves and all are more than 100 %. Else it is refused.
 
@@ -18,12 +20,37 @@ const SUM_ROUNDING: f64 = 0.5;
 /// By how much a sample may be lighter or heavier after sieving than before (ASTM C136/C136M), a share of what it was before.
 const LOST: f64 = 0.003;
 
+/// Whether a cell of sizes is the pan under the sieves, or what passed the finest of them.
+pub(super) fn is_pan(cell: &str) -> bool {
+    let small = cell.to_lowercase();
+    let pans = ["pan", "receiver", "bottom", "tray", "<", "passing", "finer"];
+    pans.iter().any(|pan| small.starts_with(pan))
+}
+
+/// Whether a cell of sizes is in front of the sum of all.
+pub(super) fn is_total(cell: &str) -> bool {
+    let small = cell.to_lowercase();
+    ["total", "sum", "Σ"]
+        .iter()
+        .any(|total| small.starts_with(total))
+}
+
+/// Whether it is what was washed out before sieving: it passes all sieves, as what is in the pan (ASTM C117, C136).
+pub(super) fn is_washed(cell: &str) -> bool {
+    cell.to_lowercase().contains("wash")
+}
+
+/// A sum that is off the total by more is of something else, a share.
+const MUCH_LOST: f64 = 0.05;
+
 /// What stays on sieves, beside the points of its curve.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OnSieves {
     what: RetainedName,
     /// In the line of the pan.
     pub(super) pan: Option<f64>,
+    /// In the line of what was washed out.
+    pub(super) washed: Option<f64>,
     /// In the line of the total.
     pub(super) total: Option<f64>,
 }
@@ -41,6 +68,7 @@ impl OnSieves {
         Self {
             what,
             pan: None,
+            washed: None,
             total: None,
         }
     }
@@ -77,39 +105,52 @@ impl OnSieves {
                 "call the column 'retained %', 'cumulative retained %' or 'retained g'",
             );
         }
+        let each = on_sieves + self.pan.unwrap_or(0.0) + self.washed.unwrap_or(0.0);
         let kind = match self.what {
-            RetainedName::CumulativePercent | RetainedName::CumulativeMass => Kind::Cumulative,
-            RetainedName::EachPercent | RetainedName::Mass => Kind::Each,
-            RetainedName::Percent | RetainedName::Unsaid => match self.kind_of_percents(&amounts) {
-                Some(kind) => kind,
-                None => {
-                    return fault(
-                        format!(
-                            "percent retained is of each sieve (they add up to {} %) or cumulative, which nothing says",
-                            rounded(on_sieves + self.pan.unwrap_or(0.0))
-                        ),
-                        "call the column 'cumulative retained %', or give the line of the pan",
-                    );
-                }
-            },
+            RetainedName::CumulativePercent | RetainedName::CumulativeMass => {
+                Some(Kind::Cumulative)
+            }
+            RetainedName::EachPercent | RetainedName::EachMass => Some(Kind::Each),
+            _ if percents => self.kind_of_percents(&amounts),
+            _ => self.kind_of_masses(&amounts),
         };
+        let Some(kind) = kind else {
+            let unit = if percents { " %" } else { "" };
+            return fault(
+                format!(
+                    "what is retained is of each sieve (it adds up to {}{unit}) or cumulative, which nothing says",
+                    rounded(each)
+                ),
+                "say 'each' or 'cumulative' in the name of the column",
+            );
+        };
+        if let (Kind::Cumulative, Some(washed)) = (kind, self.washed) {
+            return fault(
+                format!("{washed} was washed out, beside what is cumulative"),
+                "give what is retained on each sieve",
+            );
+        }
         let whole = match (percents, kind) {
             (true, Kind::Cumulative) => 100.0,
-            (true, Kind::Each) => match self.pan {
-                None => 100.0,
-                Some(pan) if (on_sieves + pan - 100.0).abs() <= SUM_ROUNDING => on_sieves + pan,
-                Some(pan) => {
-                    return fault(
-                        format!(
-                            "percents retained and the pan's add up to {} %, not 100",
-                            rounded(on_sieves + pan)
-                        ),
-                        "correct them",
-                    );
-                }
-            },
+            (true, Kind::Each) if self.pan.is_none() && self.washed.is_none() => 100.0,
+            (true, Kind::Each) if is_near(each, 100.0, SUM_ROUNDING / 100.0) => each,
+            (true, Kind::Each) => {
+                let what = format!(
+                    "percents retained and the pan's add up to {} %, not 100",
+                    rounded(each)
+                );
+                return fault(what, "correct them");
+            }
             (false, Kind::Each) => match (self.pan, self.total) {
-                (Some(pan), _) => on_sieves + pan,
+                (Some(_), Some(total)) if !is_near(each, total, MUCH_LOST) => {
+                    let what = format!(
+                        "sieves and pan add up to {}, the total says {}",
+                        rounded(each),
+                        rounded(total)
+                    );
+                    return fault(what, "correct them");
+                }
+                (Some(_), _) => each,
                 (None, Some(total)) => total,
                 (None, None) => {
                     return fault(
@@ -118,12 +159,12 @@ impl OnSieves {
                     );
                 }
             },
-            (false, Kind::Cumulative) => match self.pan.or(self.total) {
+            (false, Kind::Cumulative) => match self.whole_of_cumulative(&amounts) {
                 Some(whole) => whole,
                 None => {
                     return fault(
-                        "nothing says how much there was in all".to_owned(),
-                        "give the sum of all in a line 'pan' or 'total'",
+                        "nothing says for sure how much there was in all".to_owned(),
+                        "give the sum of all in a line 'total': a pan's line may be its own mass as well",
                     );
                 }
             },
@@ -135,7 +176,7 @@ impl OnSieves {
             );
         }
         if let (false, Some(total), true) = (percents, self.total, self.pan.is_some())
-            && (total - whole).abs() > LOST * total
+            && !is_near(whole, total, LOST)
         {
             said.push(format!(
                 "{name}sieves and pan add up to {}, the total says {}: they are off by more than 0.3 % (ASTM C136); shares are of the sum",
@@ -168,17 +209,56 @@ impl OnSieves {
     /// What percents are, of sieves from the coarsest on; `None` where they may be both.
     fn kind_of_percents(self, amounts: &[f64]) -> Option<Kind> {
         let sum: f64 = amounts.iter().sum();
-        let falls = amounts.windows(2).any(|pair| pair[1] < pair[0]);
-        let is_whole = |sum: f64| (sum - 100.0).abs() <= SUM_ROUNDING;
+        let is_whole = |sum: f64| is_near(sum, 100.0, SUM_ROUNDING / 100.0);
         match self.pan {
-            Some(pan) if is_whole(sum + pan) => Some(Kind::Each),
-            Some(pan) if is_whole(pan) && !falls => Some(Kind::Cumulative),
+            Some(pan) if is_whole(sum + pan + self.washed.unwrap_or(0.0)) => Some(Kind::Each),
+            Some(pan) if is_whole(pan) && !falls(amounts) => Some(Kind::Cumulative),
             Some(_) => None,
-            None if falls => Some(Kind::Each),
+            None if falls(amounts) => Some(Kind::Each),
             None if sum > 100.0 + SUM_ROUNDING => Some(Kind::Cumulative),
             None => None,
         }
     }
+
+    /// What masses are; `None` where they may be both.
+    fn kind_of_masses(self, amounts: &[f64]) -> Option<Kind> {
+        let (sum, last) = (amounts.iter().sum::<f64>(), amounts.last().copied()?);
+        let (pan, washed) = (self.pan.unwrap_or(0.0), self.washed.unwrap_or(0.0));
+        let falls_at_last = self.pan.is_some_and(|pan| pan < last) && self.total.is_none();
+        if falls(amounts) || falls_at_last {
+            return Some(Kind::Each);
+        }
+        match self.total {
+            Some(total) if is_near(sum + pan + washed, total, MUCH_LOST) => Some(Kind::Each),
+            Some(total) if self.pan.is_none() => (last > total).then_some(Kind::Each),
+            Some(_) => self.whole_of_cumulative(amounts).map(|_| Kind::Cumulative),
+            // That the last sieve has all is no protocol: nothing says what passed.
+            None => self.pan.is_none().then_some(Kind::Each),
+        }
+    }
+
+    /// The mass of all, where masses are cumulative: a pan's line has the sum of all, or its own. `None` where that is not sure.
+    fn whole_of_cumulative(self, amounts: &[f64]) -> Option<f64> {
+        let last = amounts.last().copied()?;
+        match (self.pan, self.total) {
+            (None, total) => total,
+            (Some(pan), Some(total)) => {
+                let fits = is_near(pan, total, LOST) || is_near(last + pan, total, LOST);
+                fits.then_some(total)
+            }
+            (Some(pan), None) => (pan < last).then_some(last + pan),
+        }
+    }
+}
+
+/// Whether amounts fall somewhere from coarse to fine.
+fn falls(amounts: &[f64]) -> bool {
+    amounts.windows(2).any(|pair| pair[1] < pair[0])
+}
+
+/// Whether a sum is what it should be, up to that share of it.
+fn is_near(sum: f64, wanted: f64, share: f64) -> bool {
+    (sum - wanted).abs() <= share * wanted.abs()
 }
 
 /// A sum for a message: what adding leaves behind the fourth decimal tells nobody anything.

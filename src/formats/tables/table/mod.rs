@@ -35,6 +35,8 @@ pub struct Table {
     /// Whether some number is written with a comma, and some with a point, that can only be decimal.
     decimal_comma: bool,
     decimal_point: bool,
+    /// Whether fields are apart by semicolons, as where the comma is decimal.
+    semicolons: bool,
 }
 
 /// A line of a table, behind its header.
@@ -119,7 +121,9 @@ impl Table {
             return Err(Fault::at(line, what, "save it as CSV in UTF-8"));
         }
         let text = without_comments(text);
-        let mut records = match separator(&text) {
+        let found = separator(&text);
+        let semicolons = found == Some(';');
+        let mut records = match found {
             Some(separator) => separated_records(&text, separator)?,
             None => blank_records(&text)?,
         }
@@ -152,6 +156,7 @@ impl Table {
             rows,
             decimal_comma: false,
             decimal_point: false,
+            semicolons,
         };
         table.look_for_decimal_signs();
         Ok(table)
@@ -266,7 +271,10 @@ impl Table {
         let plain = "write decimals with a point, and nothing between thousands";
         let ambiguous = "may have a decimal sign or a separator of thousands";
         let parsed = match (number.matches(',').count(), number.matches('.').count()) {
-            (0, 1) if self.decimal_comma && may_be_thousands(number) => {
+            (0, 1)
+                if may_be_thousands(number)
+                    && (self.decimal_comma || self.has_hundreds(column)) =>
+            {
                 return fault(ambiguous, plain);
             }
             (0, 0 | 1) => number.parse::<f64>(),
@@ -302,6 +310,17 @@ impl Table {
     }
 
     /// Looks for numbers whose comma or point can only be decimal.
+    /// Whether a point may as well stand behind the thousands of a column: between semicolons, no point of the table is surely decimal, and there
+    /// are whole hundreds in the column.
+    fn has_hundreds(&self, column: usize) -> bool {
+        let hundreds = |row: &Row| {
+            row.cell(column)
+                .parse::<u32>()
+                .is_ok_and(|number| number >= 100)
+        };
+        self.semicolons && !self.decimal_point && self.rows.iter().any(hundreds)
+    }
+
     fn look_for_decimal_signs(&mut self) {
         for cell in self.rows.iter().flat_map(|row| row.cells.iter()) {
             let (number, _) = split_number(cell);

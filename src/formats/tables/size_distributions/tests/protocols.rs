@@ -22,7 +22,14 @@ fn each_way_to_tell_what_stays_gives_what_passes() {
         "Sieve (mm),Mass retained (g)\n80,50\n40,300\n20,250\n10,200\nPan,200\n",
         "Sieve (mm),Weight retained\n10,200\n20,250\n40,300\n80,50\nTotal,1000\n",
         "sieve_mm;retained_kg\n80;0,05\n40;0,3\n20;0,25\n10;0,2\npan;0,2\ntotal;1,0\n",
-        "Sieve (mm),Cum. mass retained (g)\n80,50\n40,350\n20,600\n10,800\npan,1000\n",
+        "Sieve (mm),Cum. mass retained (g)\n80,50\n40,350\n20,600\n10,800\npan,1000\ntotal,1000\n",
+        "Sieve (mm),Cum. mass retained (g)\n80,50\n40,350\n20,600\n10,800\npan,200\ntotal,1000\n",
+        "Sieve (mm),Cum. mass retained (g)\n80,50\n40,350\n20,600\n10,800\npan,200\n",
+        "Sieve (mm),Mass retained (g)\n80,50\n40,350\n20,600\n10,800\npan,1000\ntotal,1000\n",
+        // Washed out before, below the finest, and sieves without an opening.
+        "Sieve (mm),Mass retained (g)\n80,50\n40,300\n20,250\n10,200\nWashed fines,150\nPan,50\n",
+        "Sieve (mm),Mass retained (g)\n80,50\n40,300\n20,250\n10,200\n<10,200\n",
+        "Sieve (mm),Mass retained (g)\n80,50\n40,300\n20,250\n10,200\n0,200\n",
         // Percents of each sieve: with the pan, by name, and as they fall.
         "Sieve (mm),% retained\n80,5\n40,30\n20,25\n10,20\npan,20\n",
         "Sieve (mm),Individual % retained\n80,5\n40,30\n20,25\n10,20\n",
@@ -107,7 +114,7 @@ fn what_nobody_can_know_is_refused() {
         (
             "sieve_mm,cum mass retained\n40,300\n20,550\n",
             2,
-            "nothing says how much there was in all; give the sum of all in a line 'pan' or 'total'",
+            "nothing says for sure how much there was in all; give the sum of all in a line 'total': a pan's line may be its own mass as well",
         ),
         (
             "sieve_mm,retained\n40,300\n20,250\npan,50\n",
@@ -117,7 +124,7 @@ fn what_nobody_can_know_is_refused() {
         (
             "sieve_mm,% retained\n40,10\n20,20\n10,30\n",
             2,
-            "percent retained is of each sieve (they add up to 60 %) or cumulative, which nothing says; call the column 'cumulative retained %', or give the line of the pan",
+            "what is retained is of each sieve (it adds up to 60 %) or cumulative, which nothing says; say 'each' or 'cumulative' in the name of the column",
         ),
         (
             "sieve_mm,each % retained\n40,10\n20,20\npan,30\n",
@@ -125,17 +132,67 @@ fn what_nobody_can_know_is_refused() {
             "percents retained and the pan's add up to 60 %, not 100; correct them",
         ),
         (
+            "sieve_mm,retained g\n40,10\n20,5\nLoss,30\n",
+            4,
+            "column sieve_mm: 'Loss' is not a number; give the opening of its sieve, or call it pan, washed or total",
+        ),
+        (
             "sieve_mm,retained g\n40,10\n20,-20\npan,30\n",
             3,
             "-20 is retained, less than nothing; correct it",
         ),
         (
-            "sieve_mm,retained g\n40,10\n20,20\ntotal,25\n",
+            "sieve_mm,each retained g\n40,10\n20,20\ntotal,25\n",
             3,
             "30 is retained down to this sieve, of 25 in all; correct it",
         ),
         (
-            "sieve_mm,retained g\n40,0\n20,0\npan,0\n",
+            "sieve_mm,cum mass retained g\n100,0\n63,120\n40,460\n25,870\nPan,1130\n",
+            2,
+            "nothing says for sure how much there was in all; give the sum of all in a line 'total': a pan's line may be its own mass as well",
+        ),
+        (
+            "sieve_mm,mass retained g\n100,0\n63,120\n40,460\n25,870\nPan,1130\n",
+            2,
+            "what is retained is of each sieve (it adds up to 2580) or cumulative, which nothing says; say 'each' or 'cumulative' in the name of the column",
+        ),
+        (
+            "sieve_mm,mass retained g\n100,5\n63,120\n40,60\nPan,50\ntotal,2000\n",
+            2,
+            "sieves and pan add up to 235, the total says 2000; correct them",
+        ),
+        (
+            "sieve_mm,cum % retained\n100,5\n63,60\nwashed loss,50\n",
+            2,
+            "50 was washed out, beside what is cumulative; give what is retained on each sieve",
+        ),
+        (
+            "Sieve (mm),Passing (kg)\n100,20\n63,18.8\n",
+            1,
+            "column 'Passing (kg)' is the mass that passes, not percent; give percent passing: that mass over the mass of all, times 100",
+        ),
+        (
+            "Sieve size (mesh),Mass retained (g)\n4,20\n10,0\nPan,25\n",
+            2,
+            "'4' is the number of a sieve, no size; write 'No. 4' where it is one of ASTM E11, else its opening with a unit",
+        ),
+        (
+            "Sieve No.,% passing\n4,100\n10,50\n",
+            2,
+            "'4' is the number of a sieve, no size; write 'No. 4' where it is one of ASTM E11, else its opening with a unit",
+        ),
+        (
+            "Sieve (mm),100,63,40,Pan\nface A,100,60,30,\n% retained,40,30,20,10\n",
+            3,
+            "line '% retained' is no percent passing; give percent passing, or what stays on the sieves with a line for each of them",
+        ),
+        (
+            "Sieve (mm);retained (g)\n100;0\n63;980\n40;1.200\nPan;820\n",
+            4,
+            "column retained (g): '1.200' may have a decimal sign or a separator of thousands; write decimals with a point, and nothing between thousands",
+        ),
+        (
+            "sieve_mm,each retained g\n40,0\n20,0\npan,0\n",
             2,
             "nothing was sieved: all masses are 0; correct them",
         ),
