@@ -418,6 +418,7 @@ pub fn georeference_model(
         ));
     }
     warnings.extend(contradiction);
+    warnings.extend(marks::from_below(&marked, &reconstruction.photos, &result));
     if result.used() == 3 {
         warnings.push("three known positions check each other hardly at all".to_owned());
     }

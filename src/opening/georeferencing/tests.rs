@@ -265,6 +265,33 @@ fn control_points() {
     assert!(run(&request).unwrap_err().fault.what.contains("'p9'"));
 }
 
+/// Level points whose easting and northing are swapped fit as well turned over, all cameras under the ground.
+#[test]
+fn a_world_that_is_turned_over_is_said() {
+    let level = POINTS.map(|(name, at)| (name, at.with_z(411.0)));
+    let said = |text: &str| {
+        let list = List::new(text);
+        let request = GeoreferenceRequest {
+            control_points: Some(list.path()),
+            ..GeoreferenceRequest::default()
+        };
+        let found = run(&request).unwrap();
+        assert_eq!(found.used(), 4);
+        found.warnings.join("; ")
+    };
+    let right = marks(&level, "local");
+    let swapped: Vec<String> = (right.lines())
+        .map(|line| match line.split(' ').collect::<Vec<_>>()[..] {
+            [x, y, ref rest @ ..] => format!("{y} {x} {}", rest.join(" ")),
+            _ => line.to_owned(),
+        })
+        .collect();
+    let turned = "easting and northing are swapped";
+    assert!(!said(&right).contains(turned), "{}", said(&right));
+    let swapped = said(&swapped.join("\n"));
+    assert!(swapped.contains(turned), "{swapped}");
+}
+
 /// Four points of which one is typed a metre off in height: a fit of seven numbers to twelve takes most of it up, and cannot tell
 /// which. And marks in a photo that is not there are named.
 #[test]
