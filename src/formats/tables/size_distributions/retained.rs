@@ -10,7 +10,7 @@
 //! - "% retained" that says neither is of each sieve where all and the pan are 100 %, and cumulative where the pan's is 100 %, or
 //!   where it never falls towards finer sieves and all are more than 100 %. Else it is refused.
 
-use super::curves::RawCurve;
+use super::curves::{RawCurve, RawPoint};
 use super::names::{RetainedName, SizeText};
 use crate::fault::Fault;
 
@@ -19,6 +19,9 @@ const SUM_ROUNDING: f64 = 0.5;
 
 /// By how much a sample may be lighter or heavier after sieving than before (ASTM C136/C136M), a share of what it was before.
 const LOST: f64 = 0.003;
+
+/// A sum that is off the total by more is of something else, a share.
+const MUCH_LOST: f64 = 0.05;
 
 /// Whether a cell of sizes is the pan under the sieves, or what passed the finest of them.
 pub(super) fn is_pan(cell: &str) -> bool {
@@ -39,9 +42,6 @@ pub(super) fn is_total(cell: &str) -> bool {
 pub(super) fn is_washed(cell: &str) -> bool {
     cell.to_lowercase().contains("wash")
 }
-
-/// A sum that is off the total by more is of something else, a share.
-const MUCH_LOST: f64 = 0.05;
 
 /// What stays on sieves, beside the points of its curve.
 #[derive(Debug, Clone, Copy)]
@@ -87,7 +87,7 @@ impl OnSieves {
         let line = curve.line;
         let fault =
             |what: String, remedy: &str| Err(Fault::at(line, format!("{name}{what}"), remedy));
-        let size = |point: &super::curves::RawPoint| size_of(&point.size);
+        let size = |point: &RawPoint| size_of(&point.size);
         curve.points.sort_by(|a, b| size(b).total_cmp(&size(a)));
         if let Some(below) = curve.points.iter().find(|point| point.percent < 0.0) {
             let what = format!("{name}{} is retained, less than nothing", below.percent);
@@ -130,44 +130,9 @@ impl OnSieves {
                 "give what is retained on each sieve",
             );
         }
-        let whole = match (percents, kind) {
-            (true, Kind::Cumulative) => 100.0,
-            (true, Kind::Each) if self.pan.is_none() && self.washed.is_none() => 100.0,
-            (true, Kind::Each) if is_near(each, 100.0, SUM_ROUNDING / 100.0) => each,
-            (true, Kind::Each) => {
-                let what = format!(
-                    "percents retained and the pan's add up to {} %, not 100",
-                    rounded(each)
-                );
-                return fault(what, "correct them");
-            }
-            (false, Kind::Each) => match (self.pan, self.total) {
-                (Some(_), Some(total)) if !is_near(each, total, MUCH_LOST) => {
-                    let what = format!(
-                        "sieves and pan add up to {}, the total says {}",
-                        rounded(each),
-                        rounded(total)
-                    );
-                    return fault(what, "correct them");
-                }
-                (Some(_), _) => each,
-                (None, Some(total)) => total,
-                (None, None) => {
-                    return fault(
-                        "nothing says how much passed the finest sieve".to_owned(),
-                        "give what is in the pan in a line 'pan' (0 where nothing is), or the sum of all in a line 'total'",
-                    );
-                }
-            },
-            (false, Kind::Cumulative) => match self.whole_of_cumulative(&amounts) {
-                Some(whole) => whole,
-                None => {
-                    return fault(
-                        "nothing says for sure how much there was in all".to_owned(),
-                        "give the sum of all in a line 'total': a pan's line may be its own mass as well",
-                    );
-                }
-            },
+        let whole = match self.whole(percents, kind, &amounts, each) {
+            Ok(whole) => whole,
+            Err((what, remedy)) => return fault(what, remedy),
         };
         if whole.is_nan() || whole <= 0.0 {
             return fault(
@@ -204,6 +169,46 @@ impl OnSieves {
             point.percent_sign = true;
         }
         Ok(())
+    }
+
+    /// What all of the sample is, of which `each` is what sieves, pan and washing add up to; else what is wrong, and the remedy.
+    fn whole(
+        self,
+        percents: bool,
+        kind: Kind,
+        amounts: &[f64],
+        each: f64,
+    ) -> Result<f64, (String, &'static str)> {
+        let correct = |what: String| Err((what, "correct them"));
+        let has_fines = self.pan.is_some() || self.washed.is_some();
+        match (percents, kind) {
+            (true, Kind::Cumulative) => Ok(100.0),
+            (true, Kind::Each) if !has_fines => Ok(100.0),
+            (true, Kind::Each) if is_near(each, 100.0, SUM_ROUNDING / 100.0) => Ok(each),
+            (true, Kind::Each) => correct(format!(
+                "percents retained and the pan's add up to {} %, not 100",
+                rounded(each)
+            )),
+            (false, Kind::Each) => match (self.pan, self.total) {
+                (Some(_), Some(total)) if !is_near(each, total, MUCH_LOST) => correct(format!(
+                    "sieves and pan add up to {}, the total says {}",
+                    rounded(each),
+                    rounded(total)
+                )),
+                (Some(_), _) => Ok(each),
+                (None, Some(total)) => Ok(total),
+                (None, None) => Err((
+                    "nothing says how much passed the finest sieve".to_owned(),
+                    "give what is in the pan in a line 'pan' (0 where nothing is), or the sum of all in a line 'total'",
+                )),
+            },
+            (false, Kind::Cumulative) => self.whole_of_cumulative(amounts).ok_or_else(|| {
+                (
+                    "nothing says for sure how much there was in all".to_owned(),
+                    "give the sum of all in a line 'total': a pan's line may be its own mass as well",
+                )
+            }),
+        }
     }
 
     /// What percents are, of sieves from the coarsest on; `None` where they may be both.
