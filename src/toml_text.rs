@@ -73,7 +73,7 @@ pub fn toml_fault(text: &str, error: &toml::de::Error, remedy: &str) -> Fault {
 }
 
 /// What serde says of a value, without the names of Rust's types: an engineer knows numbers, texts and lists.
-pub fn in_plain_words(message: &str) -> String {
+fn in_plain_words(message: &str) -> String {
     let kinds = [
         ("floating point ", "the number "),
         ("integer ", "the number "),
@@ -81,7 +81,6 @@ pub fn in_plain_words(message: &str) -> String {
         ("boolean ", "the word "),
         ("sequence", "a list"),
         ("map", "a table"),
-        ("null", "null"),
     ];
     let wants = [
         (

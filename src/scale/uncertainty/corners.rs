@@ -8,7 +8,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::draws::{Draws, deviation, interval_of};
-use super::surface_error::{DepthError, LEAST_POINTS};
+use super::surface_error::{DepthError, LEAST_POINTS, root_mean_square};
 use super::unseen::Unseen;
 use super::{Interval, UncertainPhoto};
 use crate::geometry::Ray;
@@ -203,55 +203,44 @@ impl CornerDraws {
 /// anywhere, and a sparse cloud has most of its points where there is most to recognize.
 #[derive(Debug, Default)]
 struct ErrorsAround {
-    /// Shares of the depth.
-    errors: Vec<f64>,
+    errors: Vec<DepthError>,
     /// How much of the photo those up to each of them take.
     areas: Vec<f64>,
 }
 
 impl ErrorsAround {
     fn of(pixel: DVec2, depths: &[DepthError]) -> Self {
-        let mut nearest: Vec<(f64, DepthError)> = depths
-            .iter()
-            .map(|error| (error.pixel.distance_squared(pixel), *error))
-            .collect();
-        if nearest.len() > POINTS_AROUND {
-            nearest.select_nth_unstable_by(POINTS_AROUND, |a, b| a.0.total_cmp(&b.0));
-            nearest.truncate(POINTS_AROUND);
+        let mut errors = depths.to_vec();
+        if errors.len() > POINTS_AROUND {
+            let off = |error: &DepthError| error.pixel.distance_squared(pixel);
+            errors.select_nth_unstable_by(POINTS_AROUND, |a, b| off(a).total_cmp(&off(b)));
+            errors.truncate(POINTS_AROUND);
         }
-        let mut around = Self::default();
-        let mut area = 0.0;
-        for (_, error) in nearest {
-            area += error.area;
-            around.errors.push(error.relative);
-            around.areas.push(area);
-        }
-        around
+        let up_to = |all: &mut f64, error: &DepthError| {
+            *all += error.area;
+            Some(*all)
+        };
+        let areas = errors.iter().scan(0.0, up_to).collect();
+        Self { errors, areas }
     }
 
     fn times(mut self, factor: f64) -> Self {
-        self.errors.iter_mut().for_each(|error| *error *= factor);
+        self.errors
+            .iter_mut()
+            .for_each(|error| error.relative *= factor);
         self
     }
 
     fn root_mean_square(&self) -> f64 {
-        let before = std::iter::once(&0.0).chain(&self.areas);
-        let squares: f64 = (self.errors.iter().zip(&self.areas).zip(before))
-            .map(|((error, to), from)| error * error * (to - from))
-            .sum();
-        let all = self.areas.last().copied().unwrap_or(0.0);
-        if all > 0.0 {
-            (squares / all).sqrt()
-        } else {
-            0.0
-        }
+        root_mean_square(&self.errors).unwrap_or(0.0)
     }
 
     /// One of them; `None` where there is none.
     fn draw(&self, draws: &mut Draws) -> Option<f64> {
         let at = draws.uniform() * self.areas.last()?;
         let place = self.areas.partition_point(|to| *to <= at);
-        self.errors.get(place.min(self.errors.len() - 1)).copied()
+        let drawn = self.errors.get(place.min(self.errors.len() - 1));
+        drawn.map(|error| error.relative)
     }
 }
 

@@ -63,6 +63,7 @@ impl LineErrors {
         let rotation = field.pose().rotation;
         let moved = of_moves(field, fitted, plane);
         let roughness = root_mean_square(depths);
+        let of_cut = OF_CUT * mean(depths).unwrap_or(0.0);
         let counted = effective_count(depths).max(1.0);
         let holes = of_holes(field, fitted);
         let too_large = unseen.of_line(field, fitted, depths);
@@ -90,7 +91,6 @@ impl LineErrors {
                 // The end of a line through independent values has four times the variance of their mean.
                 let seen = 2.0 * roughness / counted.sqrt();
                 let of_unseen = unseen.spread() * roughness;
-                let of_cut = OF_CUT * mean(depths).unwrap_or(0.0);
                 // Each point has its stated error, and the line is the mean of many.
                 let depth = 1.0 / plane.z.abs().max(f64::MIN_POSITIVE);
                 let stated = 2.0 * errors.surface.unwrap_or(0.0) / depth / counted.sqrt();

@@ -180,10 +180,11 @@ impl DepthErrors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::{Camera, Distortion, Pose};
+    use crate::camera::Distortion;
     use crate::jobs::Progress;
     use crate::scale::ImageKind;
     use crate::scale::field::FieldGrid;
+    use crate::scale::uncertainty::tests::{camera, nadir};
     use crate::split_mix::SplitMix;
     use crate::surface::Cloud;
 
@@ -240,21 +241,7 @@ mod tests {
             ..Cloud::default()
         })
         .unwrap();
-        let camera = Camera {
-            name: String::new(),
-            width: 1280,
-            height: 720,
-            fx: 1000.0,
-            fy: 1000.0,
-            cx: 640.0,
-            cy: 360.0,
-            skew: 0.0,
-            distortion: Distortion::None,
-        };
-        let pose = Pose {
-            center: DVec3::new(0.0, 0.0, 10.0),
-            rotation: DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
-        };
+        let (camera, pose) = (camera(Distortion::None), nadir(10.0));
         let grid = FieldGrid::of_fit(&camera);
         let image = ImageKind::Undistorted;
         let field =

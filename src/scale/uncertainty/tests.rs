@@ -7,7 +7,7 @@ use crate::scale::{FieldGrid, Ground, GroundFinder, ImageKind, PoseErrors};
 use crate::split_mix::SplitMix;
 use crate::surface::Cloud;
 
-fn camera(distortion: Distortion) -> Camera {
+pub(super) fn camera(distortion: Distortion) -> Camera {
     Camera {
         name: String::new(),
         width: 1280,
@@ -42,7 +42,7 @@ fn surface_of(count: usize, height: impl Fn(f64, f64, f64) -> f64) -> Surface {
     .unwrap()
 }
 
-fn nadir(height: f64) -> Pose {
+pub(super) fn nadir(height: f64) -> Pose {
     Pose {
         center: DVec3::new(0.0, 0.0, height),
         rotation: DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),

@@ -138,11 +138,17 @@ fn growth(errors: &DepthErrors) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec2;
+    use glam::{DVec2, DVec3};
 
     use super::*;
+    use crate::camera::Distortion;
+    use crate::jobs::Progress;
     use crate::scale::Draws;
+    use crate::scale::ImageKind;
+    use crate::scale::field::FieldGrid;
     use crate::scale::uncertainty::surface_error::LEAST_POINTS;
+    use crate::scale::uncertainty::tests::{camera, nadir};
+    use crate::surface::{Cloud, Surface};
 
     /// So many normal errors of that standard deviation.
     fn errors(count: usize, deviation: f64) -> Vec<DepthError> {
@@ -192,5 +198,37 @@ mod tests {
             sparser: errors(400, 0.0),
         };
         assert_eq!(Unseen::of(&plane).bias, 0.0);
+    }
+
+    /// Points that stick out by 1 % of the depth cut scales by as much; gaps of half the roughness take half of it back.
+    #[test]
+    fn what_is_cut_off_the_tops_makes_scales_too_small() {
+        let plane = Surface::new(Cloud {
+            points: [(-20.0, -20.0), (20.0, -20.0), (20.0, 20.0), (-20.0, 20.0)]
+                .map(|(x, y)| DVec3::new(x, y, 0.0))
+                .to_vec(),
+            ..Cloud::default()
+        })
+        .unwrap();
+        let (camera, pose) = (camera(Distortion::None), nadir(10.0));
+        let (grid, image) = (FieldGrid::of_fit(&camera), ImageKind::Undistorted);
+        let progress = Progress::default();
+        let field = ScaleField::compute(&camera, &pose, image, grid, &plane, &progress).unwrap();
+        let fitted = FittedScale::of(&field).unwrap();
+        let above = vec![
+            DepthError {
+                pixel: DVec2::new(640.0, 360.0),
+                relative: -0.01,
+                area: 1.0,
+            };
+            LEAST_POINTS
+        ];
+        for (bias, wanted) in [(0.0, -0.01), (0.5, -0.005)] {
+            let found = Unseen { bias }.of_line(&field, &fitted, &above);
+            assert!(
+                found.iter().all(|share| (share - wanted).abs() < 1e-12),
+                "{found:?}"
+            );
+        }
     }
 }

@@ -44,16 +44,6 @@ pub(super) const NO_CRS: &str = "local";
 /// How lines begin that are comments to other programs, with what they are of behind it.
 pub(super) const OWN: &str = "#fragscale ";
 
-/// Reads a gcp_list.txt whose first line says `crs`.
-pub(super) fn read(text: &str, crs: Option<String>) -> Result<ControlPoints, Fault> {
-    read_lines(text, crs, true)
-}
-
-/// Reads one whose first line is a mark's: it lacks the one of the coordinate system, which the user may say.
-pub(super) fn read_bare(text: &str) -> Result<ControlPoints, Fault> {
-    read_lines(text, None, false)
-}
-
 /// Whether a line is the one of a mark: five numbers and a name, which a point with a colour is not.
 pub(super) fn is_mark(line: &str) -> bool {
     let fields = split(line.trim());
@@ -68,19 +58,22 @@ fn numbers_ahead(fields: &[String]) -> usize {
     numbers.count()
 }
 
-/// Reads a list, with a line of the coordinate system or without.
-fn read_lines(text: &str, crs: Option<String>, has_crs_line: bool) -> Result<ControlPoints, Fault> {
+/// Reads a gcp_list.txt whose first line says `crs`, or is a mark's: then the user may say it.
+pub(super) fn read(text: &str, crs: Option<String>) -> Result<ControlPoints, Fault> {
     let geographic = is_geographic(crs.as_deref());
     let mut points = Points::default();
     let mut bars = Vec::new();
-    let mut is_first = has_crs_line;
+    let mut is_first = true;
     for (line, number) in text.lines().zip(1..) {
         let line = line.trim();
         if let Some(own) = line.strip_prefix(OWN) {
             points.add_own(own, number, &mut bars)?;
             continue;
         }
-        if line.is_empty() || line.starts_with('#') || std::mem::take(&mut is_first) {
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        if std::mem::take(&mut is_first) && !is_mark(line) {
             continue;
         }
         let fields = split(line);

@@ -165,7 +165,7 @@ fn control_points_from_text(text: &str) -> Result<ControlPoints, Fault> {
             ));
         }
         Shape::Crs(crs) => gcp_list::read(text, crs)?,
-        Shape::Marks => gcp_list::read_bare(text)?,
+        Shape::Marks => gcp_list::read(text, None)?,
         Shape::Table => {
             let table = table::read(text)?;
             once_each(table.positions.iter().map(|point| point.name.as_str()))?;

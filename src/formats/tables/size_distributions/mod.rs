@@ -104,16 +104,18 @@ pub fn size_distributions(
     columns: &DistributionColumns,
 ) -> Result<(DistributionSet, Vec<String>), Fault> {
     let whole = Table::read(text);
+    let read = match &whole {
+        Ok(table) => read::read(table, columns),
+        Err(fault) => Err(fault.clone()),
+    };
     // What is wrong with such a table, or where none is below, is said of the whole.
-    let sure = matches!(&whole, Ok(table) if Layout::is_sure(table));
-    let read = whole.and_then(|table| read::read(&table, Layout::of(&table, columns)?, columns));
-    if sure || read.is_ok() {
+    if read.is_ok() || whole.is_ok_and(|table| Layout::is_sure(&table)) {
         return read;
     }
-    let Some(((layout, table), lines)) = below_titles(text, columns) else {
+    let Some((table, lines)) = below_titles(text, columns) else {
         return read;
     };
-    let (set, mut said) = read::read(&table, layout, columns)?;
+    let (set, mut said) = read::read(&table, columns)?;
     let plural = if lines == 1 { "line" } else { "lines" };
     let titles = format!("{lines} {plural} above the names of the columns are passed over");
     said.insert(0, titles);
@@ -122,7 +124,7 @@ pub fn size_distributions(
 
 /// The table below the title, the date, the name of the laboratory: from the first line on whose names say beyond doubt what the
 /// columns are, with how many lines are above it. `None` where there is none below the first [`MOST_TITLES`] lines.
-fn below_titles(text: &str, columns: &DistributionColumns) -> Option<((Layout, Table), usize)> {
+fn below_titles(text: &str, columns: &DistributionColumns) -> Option<(Table, usize)> {
     // What the names mean is seen from the first lines below them.
     let most = text.floor_char_boundary(START);
     let start = match text.get(..most).filter(|_| most < text.len()) {
@@ -131,9 +133,8 @@ fn below_titles(text: &str, columns: &DistributionColumns) -> Option<((Layout, T
     };
     let found = |text: &str| {
         let table = Table::read(text).ok()?;
-        let layout = Layout::of(&table, columns).ok()?;
-        let sure = columns.size.is_some() || Layout::is_sure(&table);
-        sure.then_some((layout, table))
+        let is_named = || columns.size.is_some() && Layout::of(&table, columns).is_ok();
+        (Layout::is_sure(&table) || is_named()).then_some(table)
     };
     let titles = (1..=MOST_TITLES).find(|&lines| found(&without_first(start, lines)).is_some())?;
     let above = text.lines().take(titles);

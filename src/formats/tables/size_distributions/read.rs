@@ -15,14 +15,17 @@ use crate::text::fields::shown;
 /// Reads the curves of a table.
 pub(super) fn read(
     table: &Table,
-    layout: Layout,
     columns: &DistributionColumns,
 ) -> Result<(DistributionSet, Vec<String>), Fault> {
     let mut reader = Reader {
         table,
         columns,
+        holds_sieve_numbers: (table.header().iter())
+            .map(|name| holds_sieve_numbers(name))
+            .collect(),
         repairs: Repairs::default(),
     };
+    let layout = Layout::of(table, columns)?;
     let mut reading = SizeReading {
         header: None,
         given: columns.unit,
@@ -80,6 +83,8 @@ fn is_missing(cell: &str) -> bool {
 struct Reader<'a> {
     table: &'a Table,
     columns: &'a DistributionColumns,
+    /// Of each column.
+    holds_sieve_numbers: Vec<bool>,
     repairs: Repairs,
 }
 
@@ -114,7 +119,9 @@ impl Reader<'_> {
             found => found?,
         };
         let number = match number {
-            Some((_, "")) if sieve_mm.is_none() && self.holds_sieve_numbers(column) => {
+            Some((_, ""))
+                if sieve_mm.is_none() && self.holds_sieve_numbers.get(column) == Some(&true) =>
+            {
                 let what = format!("'{}' is the number of a sieve, no size", shown(cell));
                 let remedy = format!(
                     "write 'No. {cell}' where it is one of ASTM E11, else its opening with a unit"
@@ -129,11 +136,6 @@ impl Reader<'_> {
             None => None,
         };
         Ok(Some(SizeText { number, sieve_mm }))
-    }
-
-    fn holds_sieve_numbers(&self, column: usize) -> bool {
-        let name = self.table.header().get(column);
-        name.is_some_and(|name| holds_sieve_numbers(name))
     }
 
     /// A percent in a cell, with whether a percent sign stands behind it; `None` where it is not known.
@@ -369,8 +371,9 @@ impl Reader<'_> {
     ) -> Result<Vec<RawCurve>, Fault> {
         let taken: Vec<usize> = sizes.iter().map(|(column, _)| *column).collect();
         self.a_line_a_curve(&taken, names, |reader, row| {
-            let called = names.map(|column| row.cell(column)).unwrap_or_default();
-            if matches!(role(called), Role::Retained(_) | Role::PassingMass) {
+            if let Some(called) = names.map(|column| row.cell(column))
+                && matches!(role(called), Role::Retained(_) | Role::PassingMass)
+            {
                 let what = format!("line '{}' is no percent passing", shown(called));
                 let remedy = "give percent passing, or what stays on the sieves with a line for each of them";
                 return Err(Fault::at(row.line, what, remedy));

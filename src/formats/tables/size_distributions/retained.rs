@@ -33,7 +33,7 @@ pub(super) fn is_pan(cell: &str) -> bool {
 /// Whether a cell of sizes is in front of the sum of all.
 pub(super) fn is_total(cell: &str) -> bool {
     let small = cell.to_lowercase();
-    ["total", "sum", "Σ"]
+    ["total", "sum", "σ"]
         .iter()
         .any(|total| small.starts_with(total))
 }

@@ -35,8 +35,9 @@ pub struct Table {
     /// Whether some number is written with a comma, and some with a point, that can only be decimal.
     decimal_comma: bool,
     decimal_point: bool,
-    /// Whether fields are apart by semicolons, as where the comma is decimal.
-    semicolons: bool,
+    /// Of each column, whether a point in it may as well stand behind thousands: between semicolons, where no point of the
+    /// table is surely decimal, and with whole hundreds in the column. Empty where no column is such a one.
+    maybe_thousands: Vec<bool>,
 }
 
 /// A line of a table, behind its header.
@@ -156,9 +157,12 @@ impl Table {
             rows,
             decimal_comma: false,
             decimal_point: false,
-            semicolons,
+            maybe_thousands: Vec::new(),
         };
         table.look_for_decimal_signs();
+        if semicolons && !table.decimal_point {
+            table.look_for_hundreds();
+        }
         Ok(table)
     }
 
@@ -273,7 +277,7 @@ impl Table {
         let parsed = match (number.matches(',').count(), number.matches('.').count()) {
             (0, 1)
                 if may_be_thousands(number)
-                    && (self.decimal_comma || self.has_hundreds(column)) =>
+                    && (self.decimal_comma || self.maybe_thousands.get(column) == Some(&true)) =>
             {
                 return fault(ambiguous, plain);
             }
@@ -310,15 +314,14 @@ impl Table {
     }
 
     /// Looks for numbers whose comma or point can only be decimal.
-    /// Whether a point may as well stand behind the thousands of a column: between semicolons, no point of the table is surely decimal, and there
-    /// are whole hundreds in the column.
-    fn has_hundreds(&self, column: usize) -> bool {
-        let hundreds = |row: &Row| {
-            row.cell(column)
-                .parse::<u32>()
-                .is_ok_and(|number| number >= 100)
-        };
-        self.semicolons && !self.decimal_point && self.rows.iter().any(hundreds)
+    fn look_for_hundreds(&mut self) {
+        let is_hundreds = |cell: &str| cell.parse::<u32>().is_ok_and(|number| number >= 100);
+        self.maybe_thousands = vec![false; self.header.len()];
+        for row in &self.rows {
+            for (maybe, cell) in self.maybe_thousands.iter_mut().zip(&row.cells) {
+                *maybe |= is_hundreds(cell);
+            }
+        }
     }
 
     fn look_for_decimal_signs(&mut self) {

@@ -21,6 +21,7 @@ fn each_way_to_tell_what_stays_gives_what_passes() {
         // Mass with the pan, with the total, with both.
         "Sieve (mm),Mass retained (g)\n80,50\n40,300\n20,250\n10,200\nPan,200\n",
         "Sieve (mm),Weight retained\n10,200\n20,250\n40,300\n80,50\nTotal,1000\n",
+        "Sieve (mm),Weight retained\n10,200\n20,250\n40,300\n80,50\nΣ,1000\n",
         "sieve_mm;retained_kg\n80;0,05\n40;0,3\n20;0,25\n10;0,2\npan;0,2\ntotal;1,0\n",
         "Sieve (mm),Cum. mass retained (g)\n80,50\n40,350\n20,600\n10,800\npan,1000\ntotal,1000\n",
         "Sieve (mm),Cum. mass retained (g)\n80,50\n40,350\n20,600\n10,800\npan,200\ntotal,1000\n",
