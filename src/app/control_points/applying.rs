@@ -119,6 +119,7 @@ impl State {
         };
         open.control.applied = None;
         let request = GeoreferenceRequest {
+            photos: open.files.origin.photo_folder().map(Path::to_owned),
             marked: Some(open.control_list().clone()),
             crs: open.files.crs.clone(),
             level: open.control.level,
@@ -129,7 +130,7 @@ impl State {
         let is_stated = open.settings().errors.pose.is_stated();
         let behind = open.files.reconstruction.as_ref().filter(|_| !is_stated);
         let behind = behind.map(|behind| behind.path.clone());
-        let photos = open.files.origin.photo_folder().map(Path::to_owned);
+        let photos = request.photos.clone();
         let work = move |progress: &Progress| {
             progress.stage("fitting");
             let found = georeference_flight(&file, &flight, &request).and_then(|mut found| {

@@ -13,6 +13,7 @@ mod marks;
 mod model_errors;
 mod of_flight;
 mod photo_names;
+mod receivers;
 
 pub use self::control_file::{control_file, control_text, read_control};
 pub use self::flight_text::flight_text_of;
@@ -32,7 +33,7 @@ use crate::files::FileError;
 use crate::flight::Flight;
 use crate::formats::photos::photo_folder::PhotoFolder;
 use crate::formats::poses::position_list::{
-    NamedPosition, PositionList, positions_of_photos, read_control_points, read_positions,
+    NamedPosition, PositionList, read_control_points, read_positions,
 };
 use crate::formats::{PosedPhoto, Reconstruction, Sizes, read_project};
 use crate::geometry::Similarity;
@@ -288,7 +289,6 @@ pub fn georeference_model(
     reconstruction: &Reconstruction,
     request: &GeoreferenceRequest,
 ) -> Result<Georeferenced, FileError> {
-    let from_photos = request.photos.is_some() && reconstruction.measured_positions.is_empty();
     let mut warnings = reconstruction.warnings.clone();
     let points = match (&request.marked, &request.control_points) {
         (Some(marked), _) => Some(marked.clone()),
@@ -329,9 +329,13 @@ pub fn georeference_model(
         return distances::by_distances(reconstruction, request, distances, &marked, warnings)
             .map_err(|fault| FileError::new(path, fault));
     }
-    let positions = match &request.positions {
-        Some(list) => Some((list.clone(), read_positions(list)?)),
-        None => of_receivers(path, reconstruction, from_photos, request)?,
+    let positions = match (&request.positions, &points) {
+        (Some(list), _) => Some((list.clone(), read_positions(list)?)),
+        (None, None) => receivers::positions(path, reconstruction, request.photos.as_deref())?,
+        // Nobody asked for the photos' own: those that the package kept are compared, where the points' world has a place on
+        // the Earth.
+        (None, Some(points)) => (points.crs.as_ref().or(request.crs.as_ref()))
+            .and_then(|_| receivers::kept(path, reconstruction)),
     };
     let blamed = (request.control_points.as_ref())
         .or(positions.as_ref().map(|(list, _)| list))
@@ -419,6 +423,15 @@ pub fn georeference_model(
     }
     warnings.extend(contradiction);
     warnings.extend(marks::from_below(&marked, &reconstruction.photos, &result));
+    if points.is_some() || request.positions.is_some() {
+        let photos = request.photos.as_deref();
+        warnings.extend(receivers::elsewhere(
+            reconstruction,
+            photos,
+            &world,
+            &result,
+        ));
+    }
     if result.used() == 3 {
         warnings.push("three known positions check each other hardly at all".to_owned());
     }
@@ -452,44 +465,6 @@ pub fn georeference_flight(
         reconstruction.cloud.points = parts.surface.vertices().collect();
     }
     georeference_model(file, &reconstruction, request)
-}
-
-/// The positions in the photos themselves, or those that the package kept of them.
-fn of_receivers(
-    path: &Path,
-    reconstruction: &Reconstruction,
-    from_photos: bool,
-    request: &GeoreferenceRequest,
-) -> Result<Option<(PathBuf, PositionList)>, FileError> {
-    if !reconstruction.measured_positions.is_empty() {
-        let of_photo = |measured: &crate::formats::MeasuredPosition| {
-            let place = measured.position;
-            NamedPosition {
-                name: measured.photo.clone(),
-                position: DVec3::new(place.longitude, place.latitude, place.height),
-                accuracy: None,
-            }
-        };
-        let list = PositionList {
-            crs: Some("EPSG:4326".to_owned()),
-            positions: reconstruction
-                .measured_positions
-                .iter()
-                .map(of_photo)
-                .collect(),
-            warnings: Vec::new(),
-        };
-        return Ok(Some((path.to_owned(), list)));
-    }
-    // With control points nobody asked for the photos' own.
-    let Some(folder) = request.photos.as_ref().filter(|_| from_photos) else {
-        return Ok(None);
-    };
-    if request.control_points.is_some() {
-        return Ok(None);
-    }
-    let list = positions_of_photos(folder)?;
-    Ok(Some((folder.clone(), list)))
 }
 
 /// A position that is known in both frames.

@@ -6,7 +6,7 @@ use glam::{DMat3, EulerRot};
 use super::*;
 use crate::camera::{Camera, Distortion, Pose};
 use crate::flight::FlightFile;
-use crate::formats::{PosedPhoto, Sizes};
+use crate::formats::{MeasuredPosition, PosedPhoto, Sizes};
 use crate::geodesy::Crs;
 use fragscale_test_data::shared_data;
 
@@ -263,6 +263,40 @@ fn control_points() {
         ..request
     };
     assert!(run(&request).unwrap_err().fault.what.contains("'p9'"));
+}
+
+/// A list in the next zone of UTM fits as well: only the photos' own receivers tell that the world is another place.
+#[test]
+fn a_list_of_another_place_is_said() {
+    let utm = Crs::understand("EPSG:32632").unwrap();
+    let mut reconstruction = reconstruction();
+    // As EPSG:32632 itself says it: 8.0 degrees east.
+    reconstruction.measured_positions = (reconstruction.photos.iter().zip(centers()))
+        .map(|(photo, center)| MeasuredPosition {
+            photo: photo.name.clone(),
+            position: utm.to_geographic(center).unwrap(),
+        })
+        .collect();
+    let said = |crs: &str| {
+        let list = List::new(&marks(&POINTS, crs));
+        let request = GeoreferenceRequest {
+            control_points: Some(list.path()),
+            ..GeoreferenceRequest::default()
+        };
+        let found = georeference_model(Path::new("model"), &reconstruction, &request);
+        found.unwrap().warnings.join("; ")
+    };
+    let right = said("EPSG:32632");
+    assert!(!right.contains("receivers"), "{right}");
+    // 6 degrees of longitude further, at 55.95 degrees north: 374 km of the parallel.
+    let zone = said("EPSG:32633");
+    assert!(
+        zone.contains("come to lie 37") && zone.contains("km away from where their own receivers"),
+        "{zone}"
+    );
+    // Without a system there is nothing to compare.
+    let local = said("local");
+    assert!(!local.contains("receivers"), "{local}");
 }
 
 /// Level points whose easting and northing are swapped fit as well turned over, all cameras under the ground.

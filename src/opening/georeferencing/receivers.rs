@@ -1,0 +1,106 @@
+//! Where the photos' own receivers put them: what a reconstruction is placed by where nothing else is given, and a check
+//! of the list that is.
+
+use std::path::{Path, PathBuf};
+
+use glam::{DVec2, DVec3};
+
+use super::Georeferenced;
+use super::list_world::ListWorld;
+use super::photo_names::PhotoNames;
+use crate::files::FileError;
+use crate::formats::poses::position_list::{NamedPosition, PositionList, positions_of_photos};
+use crate::formats::{MeasuredPosition, Reconstruction};
+use crate::geometry::median;
+use crate::numbers::significant_digits;
+
+/// Metres. A receiver without corrections is right to a tenth of this under open sky, and still to it beside a face;
+/// zones of UTM, datums and swapped columns put a place further off, by kilometres mostly.
+const FURTHER_THAN_A_RECEIVER: f64 = 100.0;
+
+/// Positions with the file or folder that they are of: those that the package kept, else those in the photos themselves.
+pub(super) fn positions(
+    model: &Path,
+    reconstruction: &Reconstruction,
+    photos: Option<&Path>,
+) -> Result<Option<(PathBuf, PositionList)>, FileError> {
+    if let Some(kept) = kept(model, reconstruction) {
+        return Ok(Some(kept));
+    }
+    let Some(folder) = photos else {
+        return Ok(None);
+    };
+    Ok(Some((folder.to_owned(), positions_of_photos(folder)?)))
+}
+
+/// Those that the package kept.
+pub(super) fn kept(
+    model: &Path,
+    reconstruction: &Reconstruction,
+) -> Option<(PathBuf, PositionList)> {
+    let measured = &reconstruction.measured_positions;
+    let of_photo = |measured: &MeasuredPosition| {
+        let place = measured.position;
+        NamedPosition {
+            name: measured.photo.clone(),
+            position: DVec3::new(place.longitude, place.latitude, place.height),
+            accuracy: None,
+        }
+    };
+    let list = || PositionList {
+        crs: Some("EPSG:4326".to_owned()),
+        positions: measured.iter().map(of_photo).collect(),
+        warnings: Vec::new(),
+    };
+    (!measured.is_empty()).then(|| (model.to_owned(), list()))
+}
+
+/// That a list brings the photos to another place than their own receivers say they were at; `None` where those say nothing,
+/// and in a local world.
+pub(super) fn elsewhere(
+    reconstruction: &Reconstruction,
+    photos: Option<&Path>,
+    world: &ListWorld,
+    fit: &Georeferenced,
+) -> Option<String> {
+    // Photos that say nothing are no fault here: a list was given.
+    let (_, receivers) = positions(Path::new(""), reconstruction, photos).ok()??;
+    let crs = world.name()?;
+    let of_receivers = world.with_list(receivers.crs.as_deref(), None).ok()?;
+    let listed: Vec<&str> = (receivers.positions.iter())
+        .map(|position| position.name.as_str())
+        .collect();
+    let names = PhotoNames::new(
+        reconstruction
+            .photos
+            .iter()
+            .map(|photo| photo.name.as_str()),
+        &listed,
+    );
+    let unit = world.unit().metres();
+    let off = |position: &NamedPosition| {
+        let photo = reconstruction.photos.get(names.find(&position.name)?)?;
+        let placed = fit.similarity.apply(photo.pose.center);
+        let stated = of_receivers.of(position.position);
+        // Heights count from whatever each likes.
+        let metres =
+            stated.map(|stated| DVec2::distance(stated.truncate(), placed.truncate()) * unit);
+        // What has no place in the system at all is far off.
+        Some((metres.unwrap_or(f64::INFINITY), position.position))
+    };
+    let off: Vec<(f64, DVec3)> = receivers.positions.iter().filter_map(off).collect();
+    let metres = median(&mut off.iter().map(|(metres, _)| *metres).collect::<Vec<f64>>())?;
+    let (_, place) = off.first()?;
+    (metres > FURTHER_THAN_A_RECEIVER).then(|| {
+        let far = match metres {
+            metres if metres.is_infinite() => "somewhere else".to_owned(),
+            metres if metres < 1000.0 => format!("{metres:.0} m away"),
+            metres => format!("{} km away", significant_digits(metres / 1000.0, 3)),
+        };
+        format!(
+            "the photos come to lie {far} from where their own receivers put them (latitude {:.4}, longitude {:.4}): the known positions are in \
+             another coordinate system than {crs}, or of another place",
+            place.y, place.x
+        )
+    })
+}
