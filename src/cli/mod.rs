@@ -591,6 +591,19 @@ fn folder_called_like_a_command() -> Option<String> {
     })
 }
 
+/// What Rust says of a text that is no number, and what we do.
+const NO_NUMBERS: [(&str, &str); 6] = [
+    ("invalid float literal", "not a number"),
+    ("cannot parse float from empty string", "no number"),
+    (
+        "invalid digit found in string",
+        "not a whole number from 0 on",
+    ),
+    ("cannot parse integer from empty string", "no number"),
+    ("number too large to fit in target type", "too large"),
+    ("number too small to fit in target type", "too small"),
+];
+
 /// clap explains over several lines; here the first, with its tip, and where to read more.
 fn usage_in_one_line(text: &str) -> String {
     let lines: Vec<&str> = text
@@ -600,7 +613,12 @@ fn usage_in_one_line(text: &str) -> String {
         // Said once, behind it.
         .filter(|line| !line.is_empty() && !line.starts_with("For more information"))
         .collect();
-    let what = lines.join(", ").replace(":, ", ": ");
+    let mut what = lines.join(", ").replace(":, ", ": ");
+    for (of_rust, plain) in NO_NUMBERS {
+        if let Some(before) = what.strip_suffix(of_rust) {
+            what = format!("{before}{plain}");
+        }
+    }
     let what = what.strip_prefix("error: ").unwrap_or(&what).to_owned();
     let name: OsString = std::env::args_os().next().unwrap_or_default();
     let name = Path::new(&name).file_name().map_or_else(
@@ -642,6 +660,19 @@ mod tests {
         assert!(!line.contains('\n'));
         assert!(line.contains("'km'"), "{line}");
         assert_eq!(line.matches("--help").count(), 1, "{line}");
+        let refused = |option: [&str; 2]| {
+            let words = ["fragscale", "sample", "a"].into_iter().chain(option);
+            usage_in_one_line(&Arguments::try_parse_from(words).unwrap_err().to_string())
+        };
+        let line = refused(["--seed", "abc"]);
+        assert!(
+            line.starts_with(
+                "invalid value 'abc' for '--seed <SEED>': not a whole number from 0 on; see"
+            ),
+            "{line}"
+        );
+        let line = refused(["--seed", "99999999999999999999"]);
+        assert!(line.contains(": too large; see"), "{line}");
     }
 
     #[test]

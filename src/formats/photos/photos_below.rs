@@ -32,22 +32,15 @@ impl PhotosBelow {
             (name, path)
         };
         let own = photos_in(folder)?;
-        let below = folders_of_photos(folder);
-        if !own.is_empty() || !below.iter().all(|name| is_cameras(name)) {
-            return Ok(Self {
-                photos: own.into_iter().map(|path| named(path, None)).collect(),
-                others: below,
-            });
-        }
-        let mut photos = Vec::new();
-        for within in &below {
+        let (cameras, others): (Vec<String>, Vec<String>) = folders_of_photos(folder)
+            .into_iter()
+            .partition(|name| own.is_empty() && is_cameras(name));
+        let mut photos: Vec<_> = own.into_iter().map(|path| named(path, None)).collect();
+        for within in &cameras {
             let found = photos_in(&folder.join(within))?;
             photos.extend(found.into_iter().map(|path| named(path, Some(within))));
         }
-        Ok(Self {
-            photos,
-            others: Vec::new(),
-        })
+        Ok(Self { photos, others })
     }
 }
 
@@ -139,10 +132,10 @@ mod tests {
         add("empty", "a.txt");
         let all = "100MEDIA/DJI_0001.JPG 101MEDIA/DJI_0001.JPG DJI_202605011200_001/a.jpg";
         assert_eq!(found(), pair(all, ""));
-        // Which of them are of the flight, nobody knows then.
+        // What else lies on a card is named.
         add("labels", "a.png");
+        assert_eq!(found(), pair(all, "labels"));
         let others = "100MEDIA 101MEDIA DJI_202605011200_001 labels";
-        assert_eq!(found(), pair("", others));
         add("", "own.jpg");
         assert_eq!(found(), pair("own.jpg", others));
         let file = PhotosBelow::read(&folder.path().join("own.jpg")).unwrap_err();

@@ -26,7 +26,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use crate::control::{ControlList, ControlPoint};
-use crate::fault::{Fault, first_names};
+use crate::fault::{Fault, first_names, one_line};
 use crate::files::{FLIGHT_MARK, FileError, read_text};
 use crate::packages::odm::crs_from_text;
 use crate::photos::photo_metadata;
@@ -167,6 +167,7 @@ fn control_points_from_text(text: &str) -> Result<ControlPoints, Fault> {
         Shape::Crs(crs) => gcp_list::read(text, crs)?,
         Shape::Marks => gcp_list::read(text, None)?,
         Shape::Table => {
+            marks_below(text)?;
             let table = table::read(text)?;
             once_each(table.positions.iter().map(|point| point.name.as_str()))?;
             let point = |point: NamedPosition| ControlPoint {
@@ -196,6 +197,27 @@ fn control_points_from_text(text: &str) -> Result<ControlPoints, Fault> {
         ));
     }
     Ok(list)
+}
+
+/// Marks below a first line that is none and names no system that we know: whether it is the title of columns or another
+/// program's word for a system is not for us to say.
+fn marks_below(text: &str) -> Result<(), Fault> {
+    let lines = text.lines().map(str::trim).zip(1..);
+    let mut lines = lines.filter(|(line, _)| !line.is_empty() && !line.starts_with('#'));
+    let (Some((first, number)), Some((second, _))) = (lines.next(), lines.next()) else {
+        return Ok(());
+    };
+    if !gcp_list::is_mark(second) {
+        return Ok(());
+    }
+    Err(Fault::at(
+        number,
+        format!(
+            "the marks' first line, '{}', names no coordinate system",
+            one_line(first)
+        ),
+        "write EPSG: and its number there, or LOCAL",
+    ))
 }
 
 /// A name that stands twice is a fault: which of the two holds is not for us to say.

@@ -168,6 +168,15 @@ fn marks_without_a_line_of_the_coordinate_system() {
     let whole = points(&format!("local{marks}"));
     assert_eq!(bare.list, whole.list);
     assert_eq!((bare.list.points.len(), bare.list.crs), (2, None));
+    // A first line that we do not know may be a system's name.
+    let titled = control_points_from_text(&format!("easting northing height px py photo{marks}"));
+    let titled = titled.unwrap_err();
+    assert_eq!(titled.line, Some(1));
+    assert!(
+        titled
+            .what
+            .contains("'easting northing height px py photo', names no coordinate system")
+    );
     let refused = control_points_from_text("1.5 2.5 3.5 200 100 50\n2.5 3.5 4.5 200 100 50\n");
     assert!(refused.is_err());
     assert!(
