@@ -32,9 +32,7 @@ use crate::fault::{Fault, first_names};
 use crate::files::FileError;
 use crate::flight::Flight;
 use crate::formats::photos::photo_folder::PhotoFolder;
-use crate::formats::poses::position_list::{
-    NamedPosition, PositionList, read_control_points, read_positions,
-};
+use crate::formats::poses::position_list::{PositionList, read_control_points, read_positions};
 use crate::formats::{PosedPhoto, Reconstruction, Sizes, read_project};
 use crate::geometry::Similarity;
 use crate::georeference::{Pair, fit};
