@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::date::Date;
 use super::doubt::kind::{kind_named, nearest_kind};
 use super::{Doubt, Flight};
-use crate::fault::{Fault, one_line};
+use crate::fault::{Fault, first_names, one_line};
 
 /// What is to be done with a photo, whatever the program says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,6 +107,38 @@ impl Flight {
                 Fault::new(what, fault.remedy).to_string()
             })
             .collect()
+    }
+
+    /// The chosen photos (places in the flight) without those that a decision leaves out, and a sentence that names these.
+    ///
+    /// # Errors
+    /// Where all of them are left out.
+    pub fn without_left_out(
+        &self,
+        chosen: Vec<usize>,
+        decisions: &[Decision],
+    ) -> Result<(Vec<usize>, Option<String>), Fault> {
+        let name = |index: usize| self.parts().photos[index].name.as_str();
+        let is_out = |index: &usize| {
+            let mut of_photo = decisions.iter().filter(|of| of.photo == name(*index));
+            of_photo.any(|of| of.kind == DecisionKind::LeftOut)
+        };
+        let (out, kept): (Vec<usize>, Vec<usize>) = chosen.into_iter().partition(is_out);
+        if out.is_empty() {
+            return Ok((kept, None));
+        }
+        let names: Vec<&str> = out.iter().map(|index| name(*index)).collect();
+        let names = first_names(&names);
+        if kept.is_empty() {
+            let what = format!("the review leaves all of these photos out: {names}");
+            return Err(Fault::new(what, "take one along again, or name it"));
+        }
+        let said = format!(
+            "the review leaves {} out of {}: {names}",
+            out.len(),
+            out.len() + kept.len()
+        );
+        Ok((kept, Some(said)))
     }
 }
 

@@ -8,6 +8,7 @@
 //! - How sure its points are is one number (`Fused::deviation`): the root mean square, for the intervals of
 //!   scales draw one error of one width at every corner, and the variance is what adds up. It is what matching
 //!   leaves, and what errs alike in all photos ([`ALIKE`]); poses and lens are counted apart.
+//! - Last it is held against the sparse cloud (`held_dense`).
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,6 +23,7 @@ use crate::dense::{
 use crate::engine::Workplace;
 use crate::fault::{Fault, first_names};
 use crate::formats::{Reconstruction, read_bytes};
+use crate::held_dense::held;
 use crate::jobs::Progress;
 use crate::photo_set::PhotoSet;
 use crate::picture;
@@ -116,6 +118,8 @@ pub(crate) fn dense_cloud(
         colors: fused.colors,
         triangles: Vec::new(),
     };
+    progress.stage("holding the dense cloud against the sparse one");
+    let (cloud, ..) = held(cloud, &model.cloud);
     Ok((Some(DenseCloud { cloud, deviation }), warnings))
 }
 

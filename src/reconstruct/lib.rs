@@ -38,6 +38,7 @@ mod embedded;
 mod engine;
 mod engine_name;
 mod estimate;
+mod held_dense;
 mod kept_model;
 mod pairs;
 mod photo_set;

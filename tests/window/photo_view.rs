@@ -14,6 +14,26 @@ fn place(desk: &Desk) -> Rect {
     desk.node(Role::Image, &name).rect()
 }
 
+/// Where the photo has no room for the mark of a corner, the window lives on: at 500 x 350, below a tall log, at 200 %.
+#[test]
+fn a_photo_without_room_is_no_end() {
+    for (key, zoom) in [(Key::B, 1.0), (Key::P, 1.0), (Key::B, 2.0), (Key::P, 2.0)] {
+        let mut desk = Desk::new(Some(&flight("assets/sample")));
+        desk.harness.ctx.set_zoom_factor(zoom);
+        desk.press(Modifiers::NONE, key);
+        desk.press(Modifiers::COMMAND, Key::L);
+        let sizes = [(900, 600), (500, 350), (450, 300), (400, 250), (320, 200)];
+        for (width, height) in sizes {
+            desk.harness
+                .set_size(vec2(width as f32, height as f32) / zoom);
+            desk.settle();
+        }
+        desk.harness.set_size(vec2(1280.0, 720.0));
+        desk.settle();
+        assert!(place(&desk).width() > 100.0);
+    }
+}
+
 /// The pixel of the image that is under a place of the screen, one pixel a point.
 fn pixel_under(desk: &Desk, at: Pos2) -> DVec2 {
     let frame = place(desk);

@@ -62,12 +62,13 @@ struct Written {
 }
 
 impl OpenFlight {
-    /// The photos that are outlined, on the screen or in files.
-    fn outlined(&self) -> Vec<Outlined> {
+    /// Those of the photos that are outlined, on the screen or in files.
+    fn outlined(&self, photos: &[usize]) -> Vec<Outlined> {
         let own = self.files.origin.flight_file();
         let stems = exports::photo_file_stems(self.flight());
         let stems = stems.into_iter().enumerate();
         stems
+            .filter(|(index, _)| photos.contains(index))
             .filter_map(|(index, stem)| {
                 let outlines = match self.fragments.of(index) {
                     Some(of) => Outlines::Now(of.now().labels().clone(), of.by().clone()),
@@ -96,9 +97,18 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let outlined = open.outlined();
         let parts = open.flight().parts();
-        let count = parts.photos.len();
+        let all: Vec<usize> = (0..parts.photos.len()).collect();
+        let decisions = open.settings().decisions;
+        let (photos, left_out) = match open.flight().without_left_out(all, &decisions) {
+            Ok(found) => found,
+            Err(fault) => {
+                self.say(Severity::Error, &fault.to_string());
+                return;
+            }
+        };
+        let count = photos.len();
+        let outlined = open.outlined(&photos);
         let refused = match (parts.unit_known, outlined.is_empty()) {
             (false, _) => Some(
                 "the model is in a frame of its own, whose unit nobody states: georeference it first".to_owned(),
@@ -117,7 +127,7 @@ impl State {
         let photos = photos.flat_map(|of| exports::outlined_files(&folder, &of.stem));
         let tables = FRAGMENT_TABLES.map(|name| folder.join(name));
         let paths: Vec<PathBuf> = photos.chain(tables).collect();
-        let mut warnings: Vec<String> = Vec::new();
+        let mut warnings: Vec<String> = left_out.into_iter().collect();
         if outlined.len() < count {
             warnings.push(format!(
                 "{} of {count} photos are not outlined, and are left out",

@@ -3,6 +3,7 @@
 pub(crate) mod cloud_file;
 pub(crate) mod e57;
 pub(crate) mod ept;
+mod geo_keys;
 pub(crate) mod geotiff;
 pub(crate) mod gltf;
 pub(crate) mod las;

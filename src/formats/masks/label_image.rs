@@ -6,6 +6,7 @@
 //!   negative numbers. In 8 bits every number is a fragment's.
 //! - A picture of another program with one number alone is a mask: each of its regions that touch by sides is
 //!   a fragment. So says a note.
+//! - Many more regions than numbers are refused: numbers that several fragments share are of no fragment.
 //! - A picture of colours whose three parts are the same is one of gray. Others are refused: colours are no
 //!   numbers.
 
@@ -20,6 +21,11 @@ use crate::fault::Fault;
 use crate::labels::{FINES, LabelImage, NOT_ROCK};
 use crate::raster::{Compression, TiffFile};
 use crate::text::notes::Notes;
+
+/// Fragments that lie behind others are in two pieces or more, and edges leave single pixels: of what people and other programs
+/// outlined, and of simulated photos, there are up to 1.4 regions a number.
+const MOST_PIECES: usize = 2;
+const FEW_PIECES: usize = 20;
 
 const REMEDY: &str = "export it again, as a label image of 16 bits";
 
@@ -43,12 +49,24 @@ pub(super) fn read(bytes: &[u8], photo: &OutlinedPhoto<'_>, is_own: bool) -> Res
         true => png(bytes, photo)?,
         false => tiff(bytes, photo, &mut notes)?,
     };
-    if !is_own && let Some(number) = only_number(&labels) {
-        let parts = separated(&mut labels);
-        if parts > 1 {
-            notes.say(format!(
-                "it has one number alone ({number}): each of its {parts} regions that touch no other is taken for a fragment"
-            ));
+    if !is_own {
+        let (found, parts) = regions(&labels);
+        match numbers(&labels)[..] {
+            [number] if parts > 1 => {
+                notes.say(format!(
+                    "it has one number alone ({number}): each of its {parts} regions that touch no other is taken for a fragment"
+                ));
+                labels.labels = found;
+            }
+            ref several if parts as usize > MOST_PIECES * several.len() + FEW_PIECES => {
+                let what = format!(
+                    "its {} numbers lie in {parts} separate regions, where each is to be one fragment's: fragments share them, as where \
+                     they were cut to 8 bits, mixed by a smooth change of size, or say what a pixel is of",
+                    several.len()
+                );
+                return Err(Fault::new(what, REMEDY));
+            }
+            _ => {}
         }
     }
     if labels.fragments() == 0 {
@@ -190,32 +208,23 @@ fn of_number(value: f64, bits: u16) -> Option<u32> {
     }
 }
 
-/// The number of a picture that knows one alone.
-fn only_number(labels: &LabelImage) -> Option<u32> {
-    let is_fragment = |label: &&u32| **label != FINES && **label != NOT_ROCK;
-    let mut fragments = labels.labels.iter().filter(is_fragment);
-    let first = *fragments.next()?;
-    fragments.all(|label| *label == first).then_some(first)
-}
-
-/// Numbers the regions of fragments anew, each whose pixels touch by their sides; returns how many they are.
-fn separated(labels: &mut LabelImage) -> u32 {
-    // Numbers that are still to be given are marked by one that none has.
-    const WAITS: u32 = NOT_ROCK - 1;
+/// The regions of fragments, each of pixels of one number that touch by their sides, numbered from 1; and how many they are.
+fn regions(labels: &LabelImage) -> (Vec<u32>, u32) {
     let (width, height) = (labels.width, labels.height);
-    for label in &mut labels.labels {
-        if *label != FINES && *label != NOT_ROCK {
-            *label = WAITS;
-        }
-    }
+    let numbers = &labels.labels;
+    let is_fragment = |label: u32| label != FINES && label != NOT_ROCK;
+    // What is none keeps its number.
+    let mut found: Vec<u32> = (numbers.iter())
+        .map(|label| if is_fragment(*label) { FINES } else { *label })
+        .collect();
     let mut count = 0;
     let mut edge = Vec::new();
-    for start in 0..labels.labels.len() {
-        if labels.labels[start] != WAITS {
+    for start in 0..numbers.len() {
+        if found[start] != FINES || !is_fragment(numbers[start]) {
             continue;
         }
         count += 1;
-        labels.labels[start] = count;
+        found[start] = count;
         edge.push(start);
         while let Some(at) = edge.pop() {
             let (x, y) = (at % width, at / width);
@@ -226,12 +235,21 @@ fn separated(labels: &mut LabelImage) -> u32 {
                 (y + 1 < height).then_some(at + width),
             ];
             for next in beside.into_iter().flatten() {
-                if labels.labels[next] == WAITS {
-                    labels.labels[next] = count;
+                if found[next] == FINES && numbers[next] == numbers[start] {
+                    found[next] = count;
                     edge.push(next);
                 }
             }
         }
     }
-    count
+    (found, count)
+}
+
+/// The numbers of fragments, each once.
+fn numbers(labels: &LabelImage) -> Vec<u32> {
+    let mut numbers: Vec<u32> = labels.labels.clone();
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers.retain(|label| *label != FINES && *label != NOT_ROCK);
+    numbers
 }

@@ -3,7 +3,7 @@
 use egui::{Color32, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::{DVec2, DVec3};
 
-use super::inspector::draw_corner;
+use super::inspector::{CORNER_ROOM, draw_corner, nearest_inside};
 use crate::command::Command;
 use crate::corner_loupe::{CROP, CornerTriangle};
 use crate::flight::{Doubt, PhotoReview};
@@ -148,10 +148,9 @@ pub(super) fn clicked(
     let at = response
         .interact_pointer_pos()
         .filter(|_| response.clicked())?;
-    let inside = frame.shrink(7.0);
     let corners = photo.scale_to_type()?.corners.iter();
     let near = corners.filter_map(|corner| {
-        let marker = to_screen(corner.pixel)?.clamp(inside.min, inside.max);
+        let marker = nearest_inside(frame, CORNER_ROOM, to_screen(corner.pixel)?);
         (marker.distance(at) <= 9.0).then_some((corner.name, marker.distance(at)))
     });
     let nearest = near.min_by(|a, b| a.1.total_cmp(&b.1))?;

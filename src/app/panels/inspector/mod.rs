@@ -232,8 +232,7 @@ impl Inspector {
                 draw_bar(&painter, frame, &bar, &to_screen);
             }
             for corner in &scale.corners {
-                let at = to_screen(corner.pixel)
-                    .clamp(frame.min + vec2(7.0, 7.0), frame.max - vec2(7.0, 7.0));
+                let at = nearest_inside(frame, CORNER_ROOM, to_screen(corner.pixel));
                 draw_corner(&painter, at, &corner.outcome);
             }
         }
@@ -352,6 +351,19 @@ pub(super) fn draw_bar(
     painter.galley(place.min, galley, Color32::WHITE);
 }
 
+/// How far from a frame's edges a corner's mark stays.
+pub(super) const CORNER_ROOM: f32 = 7.0;
+
+/// The place that is nearest to `at` in a frame, `room` from its edges; in a frame that has no such place its middle.
+pub(super) fn nearest_inside(frame: Rect, room: f32, at: Pos2) -> Pos2 {
+    let inside = frame.shrink2(Vec2::splat(room).min(frame.size() / 2.0));
+    // Never turned round, as what is shrunk by more than half of it would be: a frame may be smaller than a mark.
+    match inside.is_negative() {
+        true => frame.center(),
+        false => inside.clamp(at),
+    }
+}
+
 /// A disc for a corner on the surface, a triangle for one on the ground, a cross for none.
 pub(super) fn draw_corner(painter: &egui::Painter, at: Pos2, outcome: &CornerOutcome) {
     let outline = Stroke::new(1.5, Color32::from_black_alpha(200));
@@ -377,5 +389,26 @@ pub(super) fn draw_corner(painter: &egui::Painter, at: Pos2, outcome: &CornerOut
                 );
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mark_has_a_place_in_every_frame() {
+        let far = pos2(-100.0, 400.0);
+        let of = |width: f32, height: f32| {
+            nearest_inside(
+                Rect::from_min_size(pos2(10.0, 20.0), vec2(width, height)),
+                7.0,
+                far,
+            )
+        };
+        assert_eq!(of(100.0, 50.0), pos2(17.0, 63.0));
+        assert_eq!(of(14.0, 50.0), pos2(17.0, 63.0));
+        assert_eq!(of(6.0, 0.0), pos2(13.0, 20.0));
+        assert_eq!(of(-14.0, 50.0), pos2(3.0, 63.0));
     }
 }

@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::DVec2;
 
-use super::{Inspector, PhotoPlace, draw_bar, draw_corner, message, tint};
+use super::{Inspector, PhotoPlace, draw_bar, draw_corner, message, nearest_inside, tint};
 use crate::flight::{OnPhoto, PhotoReview};
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
@@ -75,9 +75,8 @@ impl Inspector {
         match on_photo {
             OnPhoto::Nothing => {}
             OnPhoto::Corners(names) => {
-                let inside = place.shrink(9.0);
                 for corner in scale.into_iter().flat_map(|scale| &scale.corners) {
-                    let at = to_screen(corner.pixel).clamp(inside.min, inside.max);
+                    let at = nearest_inside(place, 9.0, to_screen(corner.pixel));
                     draw_corner(&painter, at, &corner.outcome);
                     if names.contains(&corner.name) {
                         mark(&painter, at, place, corner);

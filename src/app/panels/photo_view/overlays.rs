@@ -4,7 +4,7 @@
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, vec2};
 use glam::DVec2;
 
-use super::{PhotoPlace, Tint, draw_bar, draw_corner};
+use super::{CORNER_ROOM, PhotoPlace, Tint, draw_bar, draw_corner, nearest_inside};
 use crate::flight::PhotoReview;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::tint::PhotoTint;
@@ -132,7 +132,7 @@ pub(super) fn draw(
                 continue;
             };
             if frame.expand(4.0).contains(at) {
-                let inside = at.clamp(frame.min + vec2(7.0, 7.0), frame.max - vec2(7.0, 7.0));
+                let inside = nearest_inside(frame, CORNER_ROOM, at);
                 draw_corner(painter, inside, &corner.outcome);
                 if has_room {
                     name(painter, frame, inside, corner);

@@ -49,6 +49,14 @@ impl Planned {
         let photos = ChosenPhotos::named_or_all(arguments.photo.clone());
         let mut chosen = photos.of(flight).map_err(in_flight)?;
         let mut warnings = Vec::new();
+        if photos.are_all() {
+            let decisions = &opened.settings.decisions;
+            let (with, said) = flight
+                .without_left_out(chosen, decisions)
+                .map_err(in_flight)?;
+            chosen = with;
+            warnings.extend(said);
+        }
         if let (Some(others), true) = (&outliners.others, photos.are_all()) {
             let (with, said) = with_outlines(others, chosen, flight);
             chosen = with;

@@ -7,20 +7,14 @@ use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
 use crate::clouds::cloud_file::CloudFile;
+use crate::clouds::geo_keys::{
+    GEODETIC_CRS, LINEAR_UNITS, MODEL_TYPE, PROJECTED_CRS, RASTER_TYPE, StatedHeights,
+    USER_DEFINED, VERTICAL_CRS, VERTICAL_UNITS, metres_of_code,
+};
 use crate::fault::Fault;
 
-/// Keys of the directory.
-const MODEL_TYPE: u16 = 1024;
-const RASTER_TYPE: u16 = 1025;
-const GEODETIC_CRS: u16 = 2048;
-const PROJECTED_CRS: u16 = 3072;
-const LINEAR_UNITS: u16 = 3076;
-const VERTICAL_UNITS: u16 = 4099;
 /// What people call the system; the second for the projected one alone.
 const CITATIONS: [u16; 2] = [3073, 1026];
-
-/// A code of a key: user-defined, by other keys.
-const USER_DEFINED: u16 = 32_767;
 
 /// From cells to the world.
 #[derive(Debug, PartialEq)]
@@ -31,6 +25,8 @@ pub(super) struct Georeference {
     to_next_row: DVec2,
     /// Where in a cell its value belongs: its middle, or the raster's own corner point.
     within_cell: f64,
+    /// What the keys say of heights.
+    pub(super) heights: StatedHeights,
 }
 
 impl Georeference {
@@ -89,6 +85,7 @@ impl Georeference {
             } else {
                 0.5
             },
+            heights: keys.heights(),
         };
         let finite = origin.is_finite() && along_row.is_finite() && to_next_row.is_finite();
         if !finite || along_row.perp_dot(to_next_row) == 0.0 {
@@ -165,6 +162,15 @@ impl Keys {
         })
     }
 
+    fn heights(&self) -> StatedHeights {
+        let unit = |key| self.short(key).and_then(metres_of_code);
+        StatedHeights {
+            system: self.short(VERTICAL_CRS),
+            unit: unit(VERTICAL_UNITS),
+            flat_unit: unit(LINEAR_UNITS),
+        }
+    }
+
     /// Says what is known of the coordinate system.
     fn tell(&self, file: &mut CloudFile) -> Result<(), Fault> {
         let model = self.short(MODEL_TYPE);
@@ -191,19 +197,6 @@ impl Keys {
             Some(code) => file.crs = Some(format!("EPSG:{code}")),
         }
         file.set_geographic(geographic);
-        let unit = |key| match self.short(key)? {
-            9001 => Some("m"),
-            9002 => Some("ft"),
-            9003 => Some("us-ft"),
-            _ => None,
-        };
-        if let (Some(flat), Some(up)) = (unit(LINEAR_UNITS), unit(VERTICAL_UNITS))
-            && flat != up
-        {
-            file.warnings.push(format!(
-                "its x and y are in {flat}, its elevations in {up}: bring them to one unit"
-            ));
-        }
         Ok(())
     }
 }

@@ -9,7 +9,7 @@
 //! - GDAL_NODATA (42113) is the value of cells without an elevation; so is NaN, a tile that is not
 //!   stored, and where nothing is declared, -9999, -32767, -32768 and what lies beyond 1e30. So is a
 //!   cell that a mask in the file leaves out (a directory of NewSubfileType 4, as GDAL writes it).
-//! - GDAL_METADATA (42112) may have a scale and an offset for the values.
+//! - GDAL_METADATA (42112) may have a scale and an offset for the values, and their unit.
 //! - Of larger rasters than [`MOST_CELLS`] only every n-th cell is taken, and a warning says so.
 //! - A picture, georeferenced or not, is refused. One band of bytes may be either: it is read, and a
 //!   warning says what it may be.
@@ -23,6 +23,7 @@ use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
 use crate::clouds::cloud_file::CloudFile;
+use crate::clouds::geo_keys::{StatedHeights, metres_of_words};
 use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::raster::{Compression, Layout, TiffFile};
@@ -63,7 +64,15 @@ pub(crate) fn read(
             "export it as GeoTIFF",
         ));
     };
-    let cells = Cells::of(&mut tiff, layout)?;
+    let mut cells = Cells::of(&mut tiff, layout)?;
+    let heights = StatedHeights {
+        // GDAL writes both, and reads this one first.
+        unit: cells.metadata.unit.or(georeference.heights.unit),
+        ..georeference.heights
+    };
+    let factor = heights.tell(&mut file);
+    cells.metadata.scale *= factor;
+    cells.metadata.offset *= factor;
     if cells.number == Number::U8 {
         let what = "its elevations are whole numbers from 0 to 255, as grey pictures have them: make sure that it is no shaded relief and no orthophoto";
         file.warnings.push(what.to_owned());
@@ -130,8 +139,7 @@ struct Cells {
     mask: Option<Layout>,
     /// Declared by the file.
     no_data: Option<f64>,
-    scale: f64,
-    offset: f64,
+    metadata: Metadata,
 }
 
 impl Cells {
@@ -150,7 +158,7 @@ impl Cells {
         let no_data = text(tiff.tags(), Tag::GdalNodata);
         let no_data = no_data.and_then(|text| text.trim_matches(['\0', ' ']).parse().ok());
         let metadata = text(tiff.tags(), Tag::from_u16_exhaustive(GDAL_METADATA));
-        let (scale, offset) = scale_and_offset(&metadata.unwrap_or_default());
+        let metadata = Metadata::of(&metadata.unwrap_or_default());
         let mask = tiff.mask(&layout);
         if let Some(mask) = &mask
             && (mask.chunk != layout.chunk || mask.samples != 1 || !matches!(mask.bits, 1 | 8))
@@ -165,8 +173,7 @@ impl Cells {
             number,
             mask,
             no_data,
-            scale,
-            offset,
+            metadata,
         })
     }
 
@@ -178,7 +185,7 @@ impl Cells {
             None => [-9999.0, -32_767.0, -32_768.0].contains(&value),
         };
         let is_number = value.is_finite() && value.abs() < 1e30;
-        (is_number && !missing).then_some(value * self.scale + self.offset)
+        (is_number && !missing).then_some(value * self.metadata.scale + self.metadata.offset)
     }
 
     /// Hands over every `step`th cell: column, row, elevation.
@@ -239,19 +246,37 @@ fn text<R: Read + Seek>(tags: &mut Decoder<R>, tag: Tag) -> Option<String> {
     tags.find_tag(tag).ok()??.into_string().ok()
 }
 
-/// `<GDALMetadata><Item name="SCALE" sample="0" role="scale">0.01</Item> ...`
-fn scale_and_offset(metadata: &str) -> (f64, f64) {
-    let document = xml_document::parse(metadata.trim_end_matches('\0'));
-    let role = |role: &str| {
-        let document = document.as_ref().ok()?;
-        let item = document.descendants().find(|node| {
-            node.attribute("role") == Some(role)
-                && matches!(node.attribute("sample"), None | Some("0"))
-        })?;
-        let number: f64 = item.text()?.trim().parse().ok()?;
-        number.is_finite().then_some(number)
-    };
-    (role("scale").unwrap_or(1.0), role("offset").unwrap_or(0.0))
+/// What GDAL's metadata say of the first band.
+#[derive(Debug, PartialEq)]
+struct Metadata {
+    scale: f64,
+    offset: f64,
+    /// Metres in the unit of the elevations.
+    unit: Option<f64>,
+}
+
+impl Metadata {
+    /// `<GDALMetadata><Item name="SCALE" sample="0" role="scale">0.01</Item> ...`
+    fn of(text: &str) -> Self {
+        let document = xml_document::parse(text.trim_end_matches('\0'));
+        let role = |role: &str| {
+            let document = document.as_ref().ok()?;
+            let item = document.descendants().find(|node| {
+                node.attribute("role") == Some(role)
+                    && matches!(node.attribute("sample"), None | Some("0"))
+            })?;
+            item.text()
+        };
+        let number = |name: &str| {
+            let number: f64 = role(name)?.trim().parse().ok()?;
+            number.is_finite().then_some(number)
+        };
+        Self {
+            scale: number("scale").unwrap_or(1.0),
+            offset: number("offset").unwrap_or(0.0),
+            unit: role("unittype").and_then(metres_of_words),
+        }
+    }
 }
 
 #[cfg(test)]

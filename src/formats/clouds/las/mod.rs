@@ -6,7 +6,7 @@
 //! - Colours are 16 bits wide; many programs write 8-bit values into them all the same, which shows
 //!   in the largest value.
 //! - The coordinate system stands in a variable length record: WKT (OGC 01-009), or GeoTIFF keys, of
-//!   which 3072 (projected) or 2048 (geographic) hold an EPSG code.
+//!   which 3072 (projected) or 2048 (geographic) hold an EPSG code, and 4096 and 4099 that of heights (`geo_keys`).
 //!
 //! Decoding is done by the las crate, in portions, after [`claims`] has held the header against the
 //! file, so that a header that claims too much ends in an error instead of in memory. Its decompressor asserts on damaged data; that panic is caught here
@@ -20,10 +20,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use glam::DVec3;
 use las::PointDataBuilder;
+use las::crs::GeoTiffData;
 
 use claims::WithCount;
 
 use crate::clouds::cloud_file::{CloudFile, counts_degrees, first_not_finite};
+use crate::clouds::geo_keys::{
+    GEODETIC_CRS, LINEAR_UNITS, MODEL_TYPE, PROJECTED_CRS, StatedHeights, VERTICAL_CRS,
+    VERTICAL_UNITS, code, metres_of_code,
+};
 use crate::clouds::pieces::copc;
 use crate::fault::Fault;
 use crate::jobs::Progress;
@@ -88,12 +93,7 @@ fn decode(
     };
     let mut reader = las::Reader::new(input).map_err(broken)?;
     let total = reader.header().number_of_points();
-    let mut file = CloudFile {
-        crs: crs(reader.header()),
-        ..CloudFile::default()
-    };
-    let in_degrees = is_geographic(file.crs.as_deref(), reader.header());
-    file.set_geographic(in_degrees);
+    let (mut file, heights) = stated(reader.header());
     let mut portion = PointDataBuilder::new().for_header(reader.header()).build();
     let portion_size = PORTION.min(PORTION_BYTES / portion.record_len().max(1) as u64);
     let mut colors = Colors::default();
@@ -112,7 +112,7 @@ fn decode(
         let coordinates = portion.x().zip(portion.y()).zip(portion.z());
         file.cloud
             .points
-            .extend(coordinates.map(|((x, y), z)| DVec3::new(x, y, z)));
+            .extend(coordinates.map(|((x, y), z)| DVec3::new(x, y, z * heights)));
         if let Some(wide) = portion.rgb() {
             colors.extend(wide.map(|(r, g, b)| [r, g, b]));
         }
@@ -155,38 +155,57 @@ impl Colors {
     }
 }
 
-/// The coordinate system as "EPSG:n" or WKT.
-pub(super) fn crs(header: &las::Header) -> Option<String> {
-    if let Some(wkt) = header.get_wkt_crs_bytes() {
-        let text = String::from_utf8_lossy(wkt);
-        let text = text.trim_matches(|c: char| c == '\0' || c.is_whitespace());
-        if !text.is_empty() {
-            return Some(text.to_owned());
-        }
-    }
-    let keys = header.get_geotiff_crs().ok()??;
-    // 32767 means "defined by other keys", 0 undefined.
-    let code = |key: Option<u16>| key.filter(|&code| code != 0 && code != 32_767);
-    let projected = keys.get_projected_crs_geo_key_value();
-    let code = match code(projected) {
-        // The base of a projection that is defined by parameters is not its own system.
-        None if projected.is_none() || keys.get_gt_model_type_geo_key_value() == Some(2) => {
-            code(keys.get_geodetic_crs_geo_key_value())?
-        }
-        of_projection => of_projection?,
+/// A file without points that has the coordinate system which a header states, and what its heights are to be multiplied by to
+/// count in the unit of that.
+pub(super) fn stated(header: &las::Header) -> (CloudFile, f64) {
+    let mut file = CloudFile::default();
+    let keys = header.get_geotiff_crs().ok().flatten();
+    let number = |key: u16| {
+        let entries = keys.as_ref()?.entries.iter();
+        let found = entries.filter(|entry| entry.id == key);
+        let values = found.filter_map(|entry| match entry.data {
+            GeoTiffData::U16(value) => Some(value),
+            _ => None,
+        });
+        values.last()
     };
-    Some(format!("EPSG:{code}"))
+    if let Some(wkt) = wkt(header) {
+        file.crs = Some(wkt);
+    } else {
+        let projected = number(PROJECTED_CRS);
+        let code = match code(projected) {
+            // The base of a projection that is defined by parameters is not its own system.
+            None if projected.is_none() || number(MODEL_TYPE) == Some(2) => {
+                code(number(GEODETIC_CRS))
+            }
+            of_projection => of_projection,
+        };
+        file.crs = code.map(|code| format!("EPSG:{code}"));
+    }
+    let in_degrees = match &file.crs {
+        Some(crs) => counts_degrees(crs),
+        None => number(MODEL_TYPE) == Some(2),
+    };
+    file.set_geographic(in_degrees);
+    // A WKT says itself what heights are.
+    let is_code = |crs: &String| crs.starts_with("EPSG:");
+    if file.crs.as_ref().is_some_and(|crs| !is_code(crs)) {
+        return (file, 1.0);
+    }
+    let unit = |key| number(key).and_then(metres_of_code);
+    let heights = StatedHeights {
+        system: number(VERTICAL_CRS),
+        unit: unit(VERTICAL_UNITS),
+        flat_unit: unit(LINEAR_UNITS),
+    };
+    let factor = heights.tell(&mut file);
+    (file, factor)
 }
 
-pub(super) fn is_geographic(crs: Option<&str>, header: &las::Header) -> bool {
-    match crs {
-        Some(crs) => counts_degrees(crs),
-        None => {
-            let keys = header.get_geotiff_crs().ok().flatten();
-            // GTModelTypeGeoKey 2: a geographic system.
-            keys.is_some_and(|k| k.get_gt_model_type_geo_key_value() == Some(2))
-        }
-    }
+fn wkt(header: &las::Header) -> Option<String> {
+    let text = String::from_utf8_lossy(header.get_wkt_crs_bytes()?);
+    let text = text.trim_matches(|c: char| c == '\0' || c.is_whitespace());
+    (!text.is_empty()).then(|| text.to_owned())
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use las::{LazParallelism, PointData, PointDataBuilder, ReaderOptions};
 use laz::record::{LayeredPointRecordDecompressor, RecordDecompressor};
 
 use super::claims::check;
-use super::{Colors, is_geographic};
+use super::{Colors, stated};
 use crate::clouds::cloud_file::CloudFile;
 use crate::jobs::Progress;
 
@@ -36,7 +36,8 @@ const LARGEST_PAGE: u64 = 16 << 20;
 /// More points than this are no node of an octree.
 const LARGEST_NODE: i32 = 10_000_000;
 
-/// A sample of a file's points, with how many it has in all; `None` where it has few, where it is of degrees,
+/// A sample of a file's points, with how many it has in all; `None` where it has few, where it is of degrees or
+/// its heights are in another unit,
 /// where there are none, and where something is wrong with the file: reading it whole will say so.
 pub(crate) fn read_sample(
     input: impl Read + Seek + Send + Sync + 'static,
@@ -60,8 +61,8 @@ fn sample(
     if total < SAMPLED_FROM {
         return None;
     }
-    let crs = super::crs(&header);
-    if is_geographic(crs.as_deref(), &header) {
+    let (stated, heights) = stated(&header);
+    if stated.geographic || heights != 1.0 {
         return None;
     }
     let mut taken = Taken::new(&header);

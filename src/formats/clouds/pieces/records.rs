@@ -10,8 +10,7 @@ use laz::laszip::ChunkTable;
 
 use super::layout::{Layout, bounds_of, read_at};
 use super::{CloudPiece, CloudPieces, Place, Source, copc};
-use crate::clouds::cloud_file::CloudFile;
-use crate::clouds::las::{claims, crs, is_geographic};
+use crate::clouds::las::{claims, stated};
 use crate::fault::Fault;
 use crate::files::open_file;
 
@@ -31,18 +30,17 @@ fn unreadable(error: impl std::fmt::Display) -> Fault {
     Fault::new(format!("it cannot be read as LAS or LAZ ({error})"), REMEDY)
 }
 
-/// Opens it; `None` where it is compressed all in one.
+/// Opens it; `None` where it is compressed all in one, and where its heights have to be brought to another unit.
 pub(super) fn open(path: &Path) -> Result<Option<CloudPieces>, Fault> {
     let mut file = open_file(path).map_err(|error| error.fault)?;
     let mut input = BufReader::new(&mut file);
     let count = claims::check(&mut input)?;
     let header = las::Header::new(claims::WithCount::new(&mut input, count.found));
     let header = header.map_err(unreadable)?;
-    let mut stated = CloudFile {
-        crs: crs(&header),
-        ..CloudFile::default()
-    };
-    stated.set_geographic(is_geographic(stated.crs.as_deref(), &header));
+    let (mut stated, heights) = stated(&header);
+    if heights != 1.0 {
+        return Ok(None);
+    }
     if let Some(warning) = count.warning() {
         stated.warnings.push(warning);
     }
