@@ -132,7 +132,7 @@ impl State {
     }
 
     /// Holds back what would replace something: her answer sends it again, and it may.
-    fn ask_to_replace(
+    pub(crate) fn ask_to_replace(
         &mut self,
         to: &Destination,
         there: String,

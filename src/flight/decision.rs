@@ -246,6 +246,34 @@ mod tests {
     }
 
     #[test]
+    fn what_is_left_out_counts_nowhere() {
+        let mut parts = crate::flight::tests::flight().parts().clone();
+        let mut second = parts.photos[0].clone();
+        second.name = "b.jpg".to_owned();
+        parts.photos.push(second);
+        let flight = Flight::new(parts).unwrap();
+        let names: Vec<String> = (flight.parts().photos.iter())
+            .map(|photo| photo.name.clone())
+            .collect();
+        let all: Vec<usize> = (0..names.len()).collect();
+        let of = |kind, photos: &[String]| -> Vec<Decision> {
+            let photos = photos.iter();
+            photos
+                .map(|photo| Decision::new(photo, kind, &[]))
+                .collect()
+        };
+        let accepted = of(DecisionKind::Accepted, &names);
+        let kept = flight.without_left_out(all.clone(), &accepted).unwrap();
+        assert_eq!(kept, (all.clone(), None));
+        let first = of(DecisionKind::LeftOut, &names[..1]);
+        let (kept, said) = flight.without_left_out(all.clone(), &first).unwrap();
+        assert_eq!(kept, all[1..]);
+        assert!(said.unwrap().ends_with(&names[0]));
+        let none = flight.without_left_out(all, &of(DecisionKind::LeftOut, &names));
+        assert!(none.unwrap_err().what.starts_with("the review leaves all"));
+    }
+
+    #[test]
     fn a_decision_is_a_sentence() {
         let mut decision = Decision::new("a", DecisionKind::Accepted, &[]);
         assert_eq!(decision.to_string(), "checked, accepted");

@@ -23,7 +23,7 @@ fn camera() -> Camera {
 }
 
 /// One photo straight down from 10 above a level lattice of 2 on [-20, 20]².
-fn flight() -> Flight {
+pub(super) fn flight() -> Flight {
     let at = |i: i32| f64::from(i) * 2.0;
     let points = (-10..=10)
         .flat_map(|i| (-10..=10).map(move |j| DVec3::new(at(i), at(j), 0.0)))

@@ -30,6 +30,32 @@ fn names(folder: &Path) -> BTreeSet<String> {
         .collect()
 }
 
+/// A drive that was unplugged takes no pictures of an earlier export with it.
+#[test]
+fn photos_that_are_gone_leave_the_earlier_pictures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    crate::desk::copy_files("assets/sample", folder.path());
+    crate::desk::copy_files("assets/sample/photos", &folder.path().join("photos"));
+    let to = folder.path().join("export");
+    let mut desk = Desk::new(Some(folder.path()));
+    let export = |desk: &mut Desk| {
+        desk.click(Role::Button, "Export chosen photos");
+        desk.type_path(&to);
+        desk.click(Role::Button, "Export now");
+    };
+    export(&mut desk);
+    let pictures = names(&to.join("photos"));
+    assert!(!pictures.is_empty());
+    fs::rename(folder.path().join("photos"), folder.path().join("away")).expect("moved");
+    export(&mut desk);
+    assert!(
+        desk.logged("the photos' files are gone"),
+        "{:?}",
+        desk.harness.state().state().log
+    );
+    assert_eq!(names(&to.join("photos")), pictures);
+}
+
 #[test]
 fn the_chosen_photos_are_exported_as_the_command_exports_them() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -103,6 +103,46 @@ fn a_flight_is_saved_over_no_file_that_it_was_read_from() {
     assert!(desk.logged("flight.toml: saved"));
 }
 
+/// What another window or an editor has changed meanwhile goes only when she says so.
+#[test]
+fn a_flight_that_others_changed_is_asked_for() {
+    let folder = copy("tests/windrow");
+    let own = folder.path().join("flight.toml");
+    let mut desk = Desk::new(Some(folder.path()));
+    let change = |desk: &mut Desk, ground: &str| {
+        desk.click(Role::Tab, "Flight");
+        desk.fill("Ground elevation", ground);
+        desk.press(Modifiers::COMMAND, Key::S);
+    };
+    let by_others = |text: &str| {
+        let before = fs::read_to_string(&own).expect("the flight");
+        fs::write(&own, before + text).expect("written");
+    };
+    change(&mut desk, "0.5");
+    assert!(desk.logged("flight.toml: saved"));
+    // Its own save is nobody else's.
+    change(&mut desk, "0.25");
+    assert!(desk.harness.state().state().held_back.is_none());
+    by_others("\n[[review]]\nphoto = \"a.jpg\"\ndecision = \"left-out\"\n");
+    change(&mut desk, "0.75");
+    assert!(
+        desk.says("was changed since it was read here"),
+        "{:?}",
+        desk.texts()
+    );
+    desk.click(Role::Button, "Keep the file");
+    let text = fs::read_to_string(&own).expect("the flight");
+    assert!(
+        text.contains("left-out") && text.contains("ground = 0.25"),
+        "{text}"
+    );
+    desk.press(Modifiers::COMMAND, Key::S);
+    desk.click(Role::Button, "Replace it");
+    let text = fs::read_to_string(&own).expect("the flight");
+    assert!(text.contains("ground = 0.75"), "{text}");
+    assert!(!desk.harness.state().state().is_changed());
+}
+
 /// A path into a folder that is not there is mended where it was typed.
 #[test]
 fn a_missing_folder_is_said_where_the_path_is_typed() {

@@ -172,6 +172,12 @@ pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
             && context.input_mut(|input| input.consume_shortcut(&shortcut))
         {
             commands.push(command);
+            // The letter of a key that brings the cursor into a field is no part of what is written there.
+            context.input_mut(|input| {
+                input
+                    .events
+                    .retain(|event| !matches!(event, egui::Event::Text(_)));
+            });
         }
     }
     commands

@@ -10,7 +10,7 @@ use crate::formats;
 use crate::jobs::Progress;
 use crate::labels::LabelImage;
 use crate::open_flight::OpenFlight;
-use crate::opening::{OutlinesRead, outline_files, read_outlines, saved_outlines};
+use crate::opening::{OutlinesRead, control_file, outline_files, read_outlines, saved_outlines};
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 
@@ -25,7 +25,7 @@ pub(crate) struct OutlinesToSave {
     pub photo: usize,
     /// Which of its revisions.
     pub revision: u64,
-    files: [PathBuf; 2],
+    pub(crate) files: [PathBuf; 2],
     /// `None` where what the files hold is undone.
     labels: Option<LabelImage>,
     saved: SavedOutlines,
@@ -74,6 +74,24 @@ impl OpenFlight {
             Some(OutlinesToCopy { from, to })
         });
         (to_save.collect(), to_copy.collect())
+    }
+
+    /// Notes the files of the flight, which was just saved, as they stand now.
+    pub(crate) fn note_saved(&mut self) {
+        let Some(own) = self.files.origin.flight_file() else {
+            return;
+        };
+        let stems = exports::photo_file_stems(self.flight());
+        let photos = self.fragments.photos.keys();
+        let outlines = photos.filter_map(|photo| stems.get(*photo));
+        let outlines = outlines.flat_map(|stem| outline_files(own, stem));
+        let written: Vec<PathBuf> = [own.to_owned(), control_file(own)]
+            .into_iter()
+            .chain(outlines)
+            .collect();
+        for path in &written {
+            self.files.stood.note(path);
+        }
     }
 }
 
@@ -149,7 +167,11 @@ impl State {
             return;
         };
         let stems = exports::photo_file_stems(open.flight());
-        let files = stems.get(photo).and_then(|stem| saved_outlines(own, stem));
+        let stem = stems.get(photo);
+        for path in stem.into_iter().flat_map(|stem| outline_files(own, stem)) {
+            open.files.stood.note(&path);
+        }
+        let files = stem.and_then(|stem| saved_outlines(own, stem));
         let Some(files) = files else {
             return;
         };

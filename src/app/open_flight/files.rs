@@ -5,9 +5,12 @@ use std::sync::Arc;
 
 use crate::files::Inputs;
 use crate::flight::FlightSettings;
-use crate::opening::{FlightOrigin, FlightReconstruction, OpenOptions, Opened, PhotoFile};
+use crate::opening::{
+    FlightOrigin, FlightReconstruction, OpenOptions, Opened, PhotoFile, control_file,
+};
 use crate::state::bundled::sample_flight;
 use crate::surface::UpAxis;
+use crate::tasks::stood::Stood;
 
 /// The files of a flight.
 #[derive(Debug)]
@@ -38,6 +41,8 @@ pub struct FlightFiles {
     pub bundled: bool,
     /// The settings in its flight.toml.
     pub saved: FlightSettings,
+    /// The files that saving writes, as they were read or saved last.
+    pub stood: Stood,
 }
 
 impl FlightFiles {
@@ -50,6 +55,11 @@ impl FlightFiles {
         // They are in a file of their own.
         saved.control.clone_from(&opened.settings.control);
         let bundled = is_bundled(&opened.origin.suggested_file());
+        let mut stood = Stood::default();
+        if let Some(own) = opened.origin.flight_file() {
+            stood.note(own);
+            stood.note(&control_file(own));
+        }
         Self {
             path,
             options,
@@ -64,6 +74,7 @@ impl FlightFiles {
             reconstruction: opened.reconstruction,
             bundled,
             saved,
+            stood,
         }
     }
 }

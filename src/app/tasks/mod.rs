@@ -13,6 +13,7 @@ pub mod picture;
 pub mod reconstruction;
 pub mod saving;
 pub mod scale_objects;
+pub(crate) mod stood;
 pub mod tint;
 pub mod work;
 

@@ -8,7 +8,7 @@ use crate::files::{self, Kind};
 use crate::flight::FlightSettings;
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::{FlightOrigin, OpenOptions};
+use crate::opening::{FlightOrigin, OpenOptions, control_file};
 use crate::state::{Severity, State};
 
 impl Task {
@@ -41,7 +41,9 @@ impl State {
         let own = self.open.as_ref().filter(|open| !open.files.bundled);
         let own = own.and_then(|open| open.files.origin.flight_file());
         if own.is_some_and(|own| files::is_same_file(own, &to.path)) {
-            self.start_saving(to.path, true);
+            if to.replace || !self.asks_for_changed(&to) {
+                self.start_saving(to.path, true);
+            }
             return;
         }
         let read = self.read_beside(&to.path);
@@ -51,6 +53,28 @@ impl State {
             // Not saved, and nothing to answer.
             self.after_saving = None;
         }
+    }
+
+    /// Asks, where another window or program has changed what saving would write since it was read; whether it does.
+    fn asks_for_changed(&mut self, to: &Destination) -> bool {
+        let Some(open) = &self.open else {
+            return false;
+        };
+        let path = open.files.origin.flight_file().unwrap_or(&to.path);
+        let (outlines, _) = open.outlines_to_save(path);
+        let list = open.control_to_save(path).map(|_| control_file(path));
+        let beside = outlines.iter().flat_map(|of| &of.files).chain(&list);
+        let paths = [path].into_iter().chain(beside.map(PathBuf::as_path));
+        let changed = open.files.stood.changed(paths);
+        let Some(changed) = changed.map(|path| path.display().to_string()) else {
+            return false;
+        };
+        let there = format!(
+            "{changed} was changed since it was read here, by another window or program: what was changed there would be lost. (To keep \
+             both, save under another name.)"
+        );
+        self.ask_to_replace(to, there, Command::SaveAs);
+        true
     }
 
     /// Writes flight.toml; with `replace` over a file that is there.
@@ -138,6 +162,7 @@ impl State {
             }
             open.files.origin = origin;
             open.files.saved = settings;
+            open.note_saved();
         }
         let changed = self.open.as_ref().is_some_and(|open| open.is_changed());
         match self.after_saving.take() {

@@ -150,6 +150,7 @@ pub fn export_for_split_desktop(
             "select at least one",
         )));
     }
+    still_there(request, &chosen).map_err(at_dir)?;
     let objects = objects::of_photos(request).map_err(at_dir)?;
     let mut pictures = plan::pictures(request, &objects);
     let footprints = Footprints::new(request);
@@ -245,6 +246,23 @@ pub fn export_for_split_desktop(
     folder.remove_others(&kept, progress)?;
     progress.advance(1, 1).map_err(at_dir)?;
     Ok(summary)
+}
+
+/// Refuses where all files of photos that a flight had are gone, as with a drive that was unplugged: pictures of an earlier export
+/// would go with them, and none would come.
+fn still_there(request: &ExportRequest<'_>, chosen: &[usize]) -> Result<(), Fault> {
+    let of_photo = |index: &usize| request.from.photo_files.get(*index)?.as_ref();
+    let files: Vec<&PathBuf> = chosen.iter().filter_map(of_photo).collect();
+    match files.first() {
+        Some(first) if !files.iter().any(|file| file.exists()) => Err(Fault::new(
+            format!(
+                "the photos' files are gone since the flight was opened ({} is not there)",
+                first.display()
+            ),
+            "bring them back, or open the flight again to export the scales alone",
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// What became of a photo's pictures.

@@ -4,7 +4,8 @@
 //! - One point a line; empty lines and lines that begin with `#` or `//` are passed over, but the
 //!   first line, or the first behind such marks, may name the columns.
 //! - The separator is found on the first line of numbers: comma, semicolon, tab or spaces. With
-//!   semicolons the decimal sign may be a comma.
+//!   semicolons the decimal sign may be a comma; between commas it may not, and what looks like it is refused.
+//! - A height of -9999, -32767 or -32768 stands for none, as in GDAL's grids: such points are left out, which is said.
 //! - Without names the columns are x y z, and where six or more stand and the next three are whole
 //!   numbers from 0 to 255, red green blue. With names they are found by name: x, y, z (also
 //!   easting, northing, elevation, height, altitude, or shorter; a unit may follow in brackets), red, green,
@@ -37,6 +38,8 @@ pub(crate) fn read(
     let mut file = CloudFile::default();
     let mut named: Option<Columns> = None;
     let mut layout: Option<(Separator, Columns)> = None;
+    let mut names = None;
+    let (mut looked_at, mut without_height) = (0, 0_u64);
     let mut fields = Vec::new();
     loop {
         if lines.line().is_multiple_of(65_536) {
@@ -68,6 +71,9 @@ pub(crate) fn read(
                             None => unknown_columns(line_number, text),
                         });
                     }
+                    if columns.is_some() {
+                        names = Some(separator.split(text).len());
+                    }
                     named = columns.or(named);
                     continue;
                 }
@@ -91,6 +97,23 @@ pub(crate) fn read(
                 "give x, y and z on every line",
             ));
         };
+        if separator == Separator::Comma && looked_at < LOOKED_AT {
+            looked_at += 1;
+            if are_decimal_commas(text, names) {
+                return Err(Fault::at(
+                    line_number,
+                    format!(
+                        "'{}' may be numbers with decimal commas between commas",
+                        shown(text)
+                    ),
+                    "write decimal points, or semicolons between the numbers",
+                ));
+            }
+        }
+        if NO_HEIGHT.contains(&position.z) {
+            without_height += 1;
+            continue;
+        }
         if !position.is_finite() {
             return Err(Fault::at(
                 line_number,
@@ -104,7 +127,39 @@ pub(crate) fn read(
     if file.cloud.points.is_empty() {
         return Err(Fault::new("it has no points", "give lines with x, y and z"));
     }
+    if without_height > 0 {
+        file.warnings.push(format!(
+            "{without_height} points have a height of -9999 or the like, which stands for none, and are left out"
+        ));
+    }
     Ok(file)
+}
+
+/// Heights that stand for none.
+const NO_HEIGHT: [f64; 3] = [-9999.0, -32_767.0, -32_768.0];
+
+/// So many lines tell whether commas are decimal signs.
+const LOOKED_AT: u32 = 1000;
+
+/// Whether the commas of a line separate the places behind a decimal sign from those before it: twice as many numbers as there
+/// are names, or six whole ones of which every other begins with a zero that a whole number would not.
+fn are_decimal_commas(line: &str, names: Option<usize>) -> bool {
+    let fields: Vec<&str> = line.split(',').map(str::trim).collect();
+    let is_whole = |field: &&str| {
+        let digits = field.strip_prefix('-').unwrap_or(field);
+        !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
+    };
+    if !fields.iter().all(is_whole) {
+        return false;
+    }
+    if let Some(names) = names {
+        return fields.len() == 2 * names;
+    }
+    let behind = fields.iter().skip(1).step_by(2);
+    fields.len() == 6
+        && behind
+            .into_iter()
+            .any(|part| part.len() > 1 && part.starts_with('0'))
 }
 
 fn not_a_number(line: u64, word: &str) -> Fault {
@@ -346,6 +401,39 @@ mod tests {
         assert!(colors("1 2 3 0.1 0.9 0\n").is_empty());
         assert_eq!(colors("x,y,z,blue,green,red\n1,2,3,4,5,6\n"), [[6, 5, 4]]);
         assert_eq!(colors("//X Y Z Rf Gf Bf\n1 2 3 1 0.5 0\n"), [[255, 128, 0]]);
+    }
+
+    #[test]
+    fn decimal_commas_between_commas_are_refused() {
+        let refused = |text: &str| {
+            let fault = read_text(text).unwrap_err();
+            assert!(
+                fault.what.contains("may be numbers with decimal commas"),
+                "{fault}"
+            );
+            fault.line
+        };
+        assert_eq!(
+            refused("451902,101,5410899,112,90,103\n451902,5,5410899,002,90,3\n"),
+            Some(2)
+        );
+        assert_eq!(refused("x,y,z\n1,5,2,5,3,5\n"), Some(2));
+        // Colours are whole, too.
+        assert_eq!(
+            points("451902,5410899,90,12,0,255\n"),
+            [DVec3::new(451_902.0, 5_410_899.0, 90.0)]
+        );
+    }
+
+    #[test]
+    fn heights_that_stand_for_none_are_left_out() {
+        let file = read_text("1 2 3\n1 3 -9999\n2 2 -32768\n2 3 4\n").unwrap();
+        assert_eq!(file.cloud.points.len(), 2);
+        assert!(
+            file.warnings[0].starts_with("2 points have a height of -9999"),
+            "{:?}",
+            file.warnings
+        );
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Poses and positions in lists.
 
+mod odd_angles;
 pub(crate) mod poses_csv;
 pub(crate) mod poses_opk;
 pub mod position_list;

@@ -12,6 +12,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
+use super::odd_angles::OddAngles;
 use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::files::text_from_bytes;
@@ -79,8 +80,9 @@ pub(crate) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
     };
     let mut seen: HashMap<String, u64> = HashMap::new();
     let mut repairs = NumberRepairs::default();
+    let mut odd = OddAngles::default();
     for row in table.rows() {
-        let line = columns.line(&table, row, &mut repairs)?;
+        let line = columns.line(&table, row, &mut repairs, &mut odd)?;
         if let Some(first) = seen.insert(line.photo.clone(), line.line) {
             return Err(Fault::at(
                 line.line,
@@ -97,6 +99,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
         return Err(Fault::new("it has no photos", "give a line for each photo"));
     }
     file.warnings.extend(repairs.warnings());
+    file.warnings.extend(odd.warnings());
     Ok(file)
 }
 
@@ -218,6 +221,7 @@ impl Columns {
         table: &Table,
         row: &Row,
         repairs: &mut NumberRepairs,
+        odd: &mut OddAngles,
     ) -> Result<PoseLine, Fault> {
         let line = row.line;
         let empty = |name: &str| Fault::at(line, format!("column {name} is empty"), "fill it in");
@@ -233,6 +237,10 @@ impl Columns {
             .zip(self.orientation)
             .map(|(&column, name)| number(column, name))
             .collect::<Result<Vec<f64>, Fault>>()?;
+        match self.orientation[0] {
+            "qx" => odd.quaternion(line, &angles),
+            _ => odd.angles(&angles),
+        }
         let pose = match (self.orientation[0], &angles[..]) {
             ("qx", &[qx, qy, qz, qw]) => {
                 Pose::from_quaternion(center, [qx, qy, qz, qw]).map_err(|error| {

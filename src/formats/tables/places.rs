@@ -35,7 +35,15 @@ pub fn read_places(path: &Path) -> Result<(Vec<DVec2>, Vec<String>), FileError> 
 /// # Errors
 /// With the line and the remedy.
 pub fn places(text: &str) -> Result<(Vec<DVec2>, Vec<String>), Fault> {
+    if text.trim_start().starts_with(['{', '<']) {
+        let what = "it is GeoJSON or XML, whose corners are degrees";
+        return Err(Fault::new(
+            what,
+            "give x and y in the flight's world, a place a line",
+        ));
+    }
     let numbers = Numbers::of(text);
+    let mut counts = Counts::default();
     let mut columns: Option<[usize; 2]> = None;
     let mut places = Vec::new();
     for (line, text) in (1_u64..).zip(text.lines()) {
@@ -49,6 +57,7 @@ pub fn places(text: &str) -> Result<(Vec<DVec2>, Vec<String>), Fault> {
             None => match header(&fields) {
                 Some(found) => {
                     columns = Some(found);
+                    counts.is_broken = true;
                     continue;
                 }
                 None => *columns.insert([0, 1]),
@@ -59,12 +68,42 @@ pub fn places(text: &str) -> Result<(Vec<DVec2>, Vec<String>), Fault> {
                 .map_err(|what| Fault::at(line, format!("{name} {what}"), REMEDY)),
             None => Err(Fault::at(line, format!("there is no {name}"), REMEDY)),
         };
-        places.push(DVec2::new(number(x, "x")?, number(y, "y")?));
+        let place = DVec2::new(number(x, "x")?, number(y, "y")?);
+        counts.add(place.x, fields.len());
+        places.push(place);
+    }
+    if counts.are_numbers_of_lines() {
+        return Err(Fault::new(
+            "its first column counts the lines: which of the others are x and y, nothing says",
+            "name the columns in a first line: number,x,y",
+        ));
     }
     if places.is_empty() {
         return Err(Fault::new("there is no place in it", REMEDY));
     }
     Ok((places, numbers.warnings()))
+}
+
+/// Whether a first column that nobody names counts the lines, from 0 or 1, beside two others.
+#[derive(Default)]
+struct Counts {
+    first: Option<f64>,
+    lines: usize,
+    /// It does not, or the columns are named.
+    is_broken: bool,
+}
+
+impl Counts {
+    fn add(&mut self, number: f64, fields: usize) {
+        let first = *self.first.get_or_insert(number);
+        let counts = number == first + self.lines as f64 && [0.0, 1.0].contains(&first);
+        self.is_broken |= !counts || fields < 3;
+        self.lines += 1;
+    }
+
+    fn are_numbers_of_lines(&self) -> bool {
+        self.lines >= 3 && !self.is_broken
+    }
 }
 
 /// Where x and y stand, of a line of names.
@@ -126,6 +165,29 @@ mod tests {
         assert_eq!(fault.what, "y is 'wall', not a finite number");
         assert_eq!(places("1\n").unwrap_err().what, "there is no y");
         assert!(places("# nothing\n").is_err());
+        assert!(
+            places("{\"type\": 1}")
+                .unwrap_err()
+                .what
+                .contains("GeoJSON")
+        );
+    }
+
+    #[test]
+    fn numbers_of_lines_are_no_eastings() {
+        let fault = places("1,-15,-15\n2,15,-15\n3,15,15\n4,-15,15\n").unwrap_err();
+        assert!(
+            fault.what.starts_with("its first column counts the lines"),
+            "{fault}"
+        );
+        // Named, or with nothing beside x and y, or too few to count.
+        for text in [
+            "x,y,z\n1,5,0\n2,6,0\n3,1,0\n",
+            "1,5\n2,6\n3,1\n",
+            "1,5,0\n2,6,0\n",
+        ] {
+            assert!(places(text).is_ok(), "{text}");
+        }
     }
 
     #[test]

@@ -161,7 +161,27 @@ fn coordinate_systems() {
 
     tags.keys = vec![[1024, 0, 1, 1], [3076, 0, 1, 9001], [4099, 0, 1, 9003]];
     let file = read_bytes(&written::<Gray32Float>(3, &CELLS, &tags)).unwrap();
-    assert!(file.warnings[0].contains("elevations in us-ft"));
+    assert!(file.warnings[0].contains("heights are in us-ft, not in m"));
+    // CELLS begin with 1: 1200/3937 m.
+    let foot = 1200.0 / 3937.0;
+    assert!((file.cloud.points[0].z - foot).abs() < 1e-12);
+
+    // NAVD88 in feet over UTM, and by GDAL's word, which goes before the key.
+    tags.keys = vec![[1024, 0, 1, 1], [3072, 0, 1, 32_630], [4096, 0, 1, 6360]];
+    let file = read_bytes(&written::<Gray32Float>(3, &CELLS, &tags)).unwrap();
+    assert_eq!(file.crs.as_deref(), Some("EPSG:32630+6360"));
+    assert_eq!(file.cloud.points[0].z, 1.0);
+    tags.keys = vec![[1024, 0, 1, 1], [3072, 0, 1, 32_630], [4099, 0, 1, 9001]];
+    tags.metadata = Some(
+        "<GDALMetadata><Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">cm</Item></GDALMetadata>",
+    );
+    let file = read_bytes(&written::<Gray32Float>(3, &CELLS, &tags)).unwrap();
+    assert!(
+        (file.cloud.points[0].z - 0.01).abs() < 1e-15,
+        "{:?}",
+        file.warnings
+    );
+    tags.metadata = None;
 
     tags.keys = vec![[1024, 0, 1, 3]];
     assert!(read_bytes(&written::<Gray32Float>(3, &CELLS, &tags)).is_err());

@@ -258,6 +258,49 @@ mod tests {
         read(Cursor::new(bytes), &Progress::default())
     }
 
+    /// UTM with heights in feet, by the key of their unit and by that of their system; California in feet with heights in metres.
+    #[test]
+    fn heights_in_another_unit() {
+        let with_keys = |keys: &[[u16; 4]]| {
+            let mut builder = Builder::from((1, 2));
+            let mut data: Vec<u16> = vec![1, 1, 0, keys.len() as u16];
+            data.extend(keys.iter().flatten());
+            builder.vlrs.push(las::Vlr {
+                user_id: "LASF_Projection".to_owned(),
+                record_id: 34_735,
+                description: String::new(),
+                data: data
+                    .iter()
+                    .flat_map(|number| number.to_le_bytes())
+                    .collect(),
+            });
+            let header = builder.into_header().unwrap();
+            let mut writer = Writer::new(Cursor::new(Vec::new()), header).unwrap();
+            for (x, z) in [(0.0, 100.0), (1.0, 200.0), (2.0, 300.0)] {
+                let (x, y) = (500_000.0 + x, 1_000_000.0 + x * x);
+                let point = Point {
+                    x,
+                    y,
+                    z,
+                    ..Point::default()
+                };
+                writer.write_point(point).unwrap();
+            }
+            let bytes = writer.into_inner().unwrap().into_inner();
+            let file = read_bytes(bytes).unwrap();
+            (file.cloud.points[0].z, file.crs.unwrap_or_default())
+        };
+        let system = |code: u16| [3072, 0, 1, code];
+        let (z, crs) = with_keys(&[[1024, 0, 1, 1], system(32_633), [4099, 0, 1, 9003]]);
+        assert!((z - 100.0 * 1200.0 / 3937.0).abs() < 1e-9, "{z}");
+        assert_eq!(crs, "EPSG:32633");
+        let (z, crs) = with_keys(&[[1024, 0, 1, 1], system(32_633), [4096, 0, 1, 6360]]);
+        // The way to the world knows it of the system.
+        assert_eq!((z, crs.as_str()), (100.0, "EPSG:32633+6360"));
+        let metres = [system(2226), [4096, 0, 1, 5703], [4099, 0, 1, 9001]];
+        assert_eq!(with_keys(&metres), (100.0, "EPSG:2226+5703".to_owned()));
+    }
+
     #[test]
     fn every_point_format_without_waveforms() {
         for compressed in [false, true] {

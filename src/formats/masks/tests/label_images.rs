@@ -60,6 +60,38 @@ fn regions_of_a_mask_are_fragments() {
     assert!(empty.labels.labels.iter().all(|label| *label == FINES));
 }
 
+/// Numbers that fragments share, as in 8 bits, are of no fragment; a few pieces behind other stones are.
+#[test]
+fn numbers_that_many_regions_share_are_refused() {
+    // A chequer of 12 x 12 squares of 2 x 2, every third of a square's number the same.
+    let shared = |numbers: u32| -> Vec<u8> {
+        let image = ImageBuffer::<Luma<u16>, _>::from_fn(24, 24, |x, y| {
+            let (column, row) = (x / 2, y / 2);
+            let is_square = (column + row) % 2 == 0;
+            let number = (row * 12 + column) / 2 % numbers + 1;
+            Luma([if is_square { number as u16 } else { 0 }])
+        });
+        png(image)
+    };
+    let read = |bytes: Vec<u8>| {
+        let photo = crate::masks::OutlinedPhoto {
+            width: 24,
+            height: 24,
+            ..super::PHOTO
+        };
+        MaskFile::from_bytes(bytes).unwrap().of_photo(&photo)
+    };
+    assert_eq!(read(shared(72)).unwrap().labels.fragments(), 72);
+    assert_eq!(read(shared(36)).unwrap().labels.fragments(), 36);
+    let fault = read(shared(20)).unwrap_err();
+    assert!(
+        fault
+            .what
+            .starts_with("its 20 numbers lie in 72 separate regions"),
+        "{fault}"
+    );
+}
+
 /// The bytes of hexadecimal digits.
 pub(super) fn bytes_of(digits: &str) -> Vec<u8> {
     let pairs = digits.as_bytes().chunks_exact(2);

@@ -36,6 +36,7 @@ use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::files::text_from_bytes;
 use crate::geodesy::Crs;
+use crate::poses::odd_angles::OddAngles;
 use crate::poses::poses_csv::{PoseLine, PosesFile};
 use crate::scale::PoseErrors;
 use crate::text::fields::shown;
@@ -76,6 +77,7 @@ pub(crate) fn read_table(bytes: &[u8], system: Option<&str>) -> Result<PosesFile
     let mut header = None;
     let mut list = List::default();
     let numbers = Numbers::of(text);
+    let mut odd = OddAngles::default();
     for (line, text) in (1..).zip(text.lines()) {
         if text.trim().is_empty() {
             continue;
@@ -125,6 +127,7 @@ pub(crate) fn read_table(bytes: &[u8], system: Option<&str>) -> Result<PosesFile
         };
         let center = DVec3::new(number(1)?, number(2)?, number(3)?);
         let turned = [number(4)?, number(5)?, number(6)?];
+        odd.angles(&turned);
         let camera = camera.and_then(|column| fields.get(column));
         list.add(PoseLine {
             photo: field(0)?.clone(),
@@ -137,6 +140,7 @@ pub(crate) fn read_table(bytes: &[u8], system: Option<&str>) -> Result<PosesFile
     let header = header.unwrap_or(SILENT);
     let mut file = list.finish(header.in_degrees.then(|| DEGREES.to_owned()))?;
     file.warnings = numbers.warnings();
+    file.warnings.extend(odd.warnings());
     if header.angles == Angles::OfBody && !header.in_degrees {
         turn_to_the_map(&mut file, system)?;
     }

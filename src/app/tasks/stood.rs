@@ -1,0 +1,63 @@
+//! How files stood when they were read for what is on the screen, or saved from it: another window, another program or a
+//! person may have changed them since.
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// When a file was last changed, and how long it was; `None` where there was none.
+type Stamp = Option<(Option<SystemTime>, u64)>;
+
+/// Files as they stood.
+#[derive(Debug, Clone, Default)]
+pub struct Stood(HashMap<PathBuf, Stamp>);
+
+fn stamp(path: &Path) -> Stamp {
+    let there = fs::metadata(path).ok()?;
+    Some((there.modified().ok(), there.len()))
+}
+
+impl Stood {
+    /// A file as it stands now, or that there is none.
+    pub(crate) fn note(&mut self, path: &Path) {
+        self.0.insert(path.to_owned(), stamp(path));
+    }
+
+    /// The first of these files that is not what it was; of a file that was never noted nothing is known.
+    pub(crate) fn changed<'a>(
+        &self,
+        mut paths: impl Iterator<Item = &'a Path>,
+    ) -> Option<&'a Path> {
+        paths.find(|path| {
+            let stood = self.0.get(*path);
+            stood.is_some_and(|stood| *stood != stamp(path))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_others_change_is_seen() {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b, c] = ["a", "b", "c"].map(|name| folder.path().join(name));
+        fs::write(&a, "1").unwrap();
+        let mut stood = Stood::default();
+        for path in [&a, &b] {
+            stood.note(path);
+        }
+        let all = || [&a, &b, &c].into_iter().map(PathBuf::as_path);
+        fs::write(&c, "new").unwrap();
+        assert_eq!(stood.changed(all()), None);
+        fs::write(&b, "made since").unwrap();
+        assert_eq!(stood.changed(all()), Some(b.as_path()));
+        stood.note(&b);
+        fs::write(&a, "longer").unwrap();
+        assert_eq!(stood.changed(all()), Some(a.as_path()));
+        fs::remove_file(&a).unwrap();
+        assert_eq!(stood.changed(all()), Some(a.as_path()));
+    }
+}
