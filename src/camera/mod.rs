@@ -9,6 +9,7 @@ mod growing;
 mod not_invertible;
 mod polynomial;
 mod pose;
+mod strange;
 mod visualsfm;
 
 use glam::{DVec2, DVec3};

@@ -290,7 +290,8 @@ fn exif(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
     let is_of_metadata = |doubt: &Doubt| {
         matches!(
             doubt,
-            Doubt::SeveralDevices { .. }
+            Doubt::StrangeCamera { .. }
+                | Doubt::SeveralDevices { .. }
                 | Doubt::OtherDevice { .. }
                 | Doubt::FocalLength { .. }
                 | Doubt::FlyingHeight { .. }

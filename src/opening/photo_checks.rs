@@ -55,10 +55,10 @@ pub(crate) fn photo_checks(flight: &Flight, files: &[PhotoFile]) -> (Vec<Finding
         looked_at: described.len(),
         telling: described.iter().filter(|(.., m)| tells(m)).count(),
     };
-    if described.is_empty() {
-        return (Vec::new(), metadata);
-    }
     let mut findings = check_cameras(flight, &described);
+    if described.is_empty() {
+        return (findings, metadata);
+    }
     findings.extend(check_distances(flight, &described));
     (findings, metadata)
 }
@@ -81,6 +81,12 @@ fn check_cameras(flight: &Flight, described: &[Described<'_>]) -> Vec<Finding> {
             "" => "the camera".to_owned(),
             name => format!("camera '{name}'"),
         };
+        if let Some(why) = camera.strange() {
+            found(Doubt::StrangeCamera {
+                camera: name.clone(),
+                why,
+            });
+        }
         let devices: BTreeSet<(String, String)> = of_camera
             .clone()
             .filter_map(|m| Some((m.make.clone().unwrap_or_default(), m.model.clone()?)))

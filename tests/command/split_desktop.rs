@@ -142,6 +142,46 @@ fn exif(bytes: &[u8]) -> Vec<(exif::Tag, exif::In, String)> {
     fields.collect()
 }
 
+/// A photo that viewers are told to turn: top and bottom stay those of its pixels, and no viewer turns what is exported.
+#[test]
+fn a_photo_to_be_turned_is_said_and_exported_as_it_lies() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["flight.toml", "poses.csv", "pile.ply", "ost.yaml"] {
+        fs::copy(sample().join(name), folder.path().join(name)).expect("a copy");
+    }
+    let photos = folder.path().join("photos");
+    fs::create_dir(&photos).expect("a folder");
+    let shot = image::open(sample().join("photos/IMG_0001.jpg")).expect("a photo");
+    let mut writer = exif::experimental::Writer::new();
+    let turned = exif::Field {
+        tag: exif::Tag::Orientation,
+        ifd_num: exif::In::PRIMARY,
+        value: exif::Value::Short(vec![3]),
+    };
+    writer.push_field(&turned);
+    let mut header = Cursor::new(Vec::new());
+    writer.write(&mut header, false).expect("EXIF");
+    let header = header.into_inner();
+    let format = fragscale::picture::PhotoFormat::Jpeg;
+    let bytes = fragscale::picture::encode(&shot.to_rgb8(), format, 95, Some(&header), None);
+    fs::write(photos.join("IMG_0001.jpg"), bytes.expect("a JPEG")).expect("written");
+    let to = folder.path().join("export");
+    let flight = folder.path().join("flight.toml");
+    let [flight, to_text] = [&flight, &to].map(|path| path.to_str().expect("UTF-8"));
+    let output = crate::common::fragscale(&["export", flight, "--to", to_text]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("to show it turned (orientation 3)"), "{said}");
+    let made = fs::read(to.join("photos/IMG_0001.jpg")).expect("exported");
+    let fields = exif(&made);
+    let orientation = fields
+        .iter()
+        .find(|(tag, ..)| *tag == exif::Tag::Orientation);
+    assert!(
+        orientation.expect("kept").2.contains("row 0 at top"),
+        "{fields:?}"
+    );
+}
+
 /// The command as a user gives it, and everything that it wrote.
 #[test]
 fn the_sample_is_exported_and_reads_back() {

@@ -78,12 +78,18 @@ pub fn profile_table(report: &ProfileReport<'_>) -> String {
 /// A stretch of less of the line is a stone's side, no slope of the pile.
 const LEAST_STRETCH: f64 = 0.05;
 
+/// Whether the angle of repose of a face is that of a stone's side, on a profile of that length.
+pub fn is_of_a_stone(face: &Face, length: f64) -> bool {
+    let stretch = |[from, to]: [f64; 2]| (to - from).abs();
+    face.fitted
+        .is_some_and(|fitted| stretch(fitted) < LEAST_STRETCH * length)
+}
+
 fn repose(face: &Face, length: f64, unit: &str) -> String {
     match (face.repose, face.fitted) {
         (Some(repose), Some([from, to])) => {
-            let is_stone = (to - from).abs() < LEAST_STRETCH * length;
             let [from, to] = [from, to].map(coordinate);
-            let doubt = match is_stone {
+            let doubt = match is_of_a_stone(face, length) {
                 true => ": a stone's side rather than a slope, the stretch is so short",
                 false => "",
             };

@@ -404,9 +404,14 @@ fn one_photo(
         Ok(doubt) => doubt,
         Err(fault) => return Ok(Done::Damaged(fault)),
     };
+    let doubts = doubt
+        .into_iter()
+        .chain(pictures::doubt_about_turning(&bytes));
+    let doubts: Vec<String> = doubts.collect();
+    let said = |doubts: Vec<String>| (!doubts.is_empty()).then(|| doubts.join("; "));
     let Some(photo) = photo else {
         lock(work).folder.keep(&names.all());
-        return Ok(Done::Kept(doubt));
+        return Ok(Done::Kept(said(doubts)));
     };
     // Before the photo's memory is given away; without it the others are of use all the same.
     let made = rectified::files(request, index, names, &photo.image, objects, progress);
@@ -419,8 +424,7 @@ fn one_photo(
     };
     // What is said of them is said again by the next export: it makes them again.
     let fingerprint = of_rectified.is_none().then_some(fingerprint);
-    let doubts: Vec<String> = doubt.into_iter().chain(of_rectified).collect();
-    let doubt = (!doubts.is_empty()).then(|| doubts.join("; "));
+    let doubt = said(doubts.into_iter().chain(of_rectified).collect());
     let mut files = match source.make(photo, bytes) {
         Ok(files) => files,
         Err(fault) => return Ok(Done::Not(format!("no pictures: {fault}"))),

@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use glam::DVec2;
+use image::metadata::Orientation;
 use serde_json::json;
 
 use super::checksum;
@@ -27,7 +28,7 @@ const OVERLAY_SIDE: u32 = 1600;
 const THUMBNAIL_SIDE: u32 = 480;
 
 /// Raised when the same inputs are to give other pictures.
-const PICTURES_VERSION: u32 = 5;
+const PICTURES_VERSION: u32 = 6;
 
 /// What the pictures of a photo depend on.
 pub(super) struct PictureSource<'a> {
@@ -86,8 +87,8 @@ impl PictureSource<'_> {
     }
 
     /// The files, with their names below the exported folder, of a photo and its file's bytes. The photo as shot is the file as it
-    /// is, where nothing is painted over; else it has, as an undistorted one has, the format, the EXIF and the colour profile of its file. (An EXIF
-    /// orientation stays what it was, as the pixels do.)
+    /// is, where nothing is painted over; else it has, as an undistorted one has, the format, the EXIF and the colour profile of its file, but for
+    /// EXIF's mark to turn it: top and bottom are those of the pixels as they lie.
     ///
     /// # Errors
     /// Where the photo is of another size than its camera.
@@ -133,15 +134,28 @@ impl PictureSource<'_> {
             ImageKind::Undistorted => picture::undistorted(&photo.image, self.camera, u32::MAX),
         };
         picture::paint_regions(&mut image, &self.left_out);
+        let mut exif = photo.exif;
+        if let Some(exif) = &mut exif {
+            let _ = Orientation::remove_from_exif_chunk(exif);
+        }
         let bytes = picture::encode(
             &image,
             photo.format,
             PHOTO_QUALITY,
-            photo.exif.as_deref(),
+            exif.as_deref(),
             photo.icc.as_deref(),
         )?;
         Ok((image, bytes))
     }
+}
+
+/// That a program which follows a photo's EXIF shows another edge at the top than the sheet calls so.
+pub(super) fn doubt_about_turning(bytes: &[u8]) -> Option<String> {
+    let orientation = picture::turned_in_exif(bytes)?;
+    Some(format!(
+        "its EXIF says to show it turned (orientation {orientation}): top and bottom here are those of its pixels as they lie in the file, and \
+         exported pictures are not turned"
+    ))
 }
 
 /// What the photo's EXIF says against its size: `Ok` with a doubt where it was made smaller or turned.

@@ -4,7 +4,7 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 27] = [
+const KINDS: [&str; 28] = [
     "no-scale",
     "off-surface",
     "no-point",
@@ -25,6 +25,7 @@ const KINDS: [&str; 27] = [
     "file-size",
     "far-from-surface",
     "under-surface",
+    "strange-camera",
     "several-devices",
     "other-device",
     "focal-length",
@@ -70,6 +71,7 @@ impl Doubt {
             Self::FileSize { .. } => "file-size",
             Self::FarFromSurface { .. } => "far-from-surface",
             Self::UnderSurface => "under-surface",
+            Self::StrangeCamera { .. } => "strange-camera",
             Self::SeveralDevices { .. } => "several-devices",
             Self::OtherDevice { .. } => "other-device",
             Self::FocalLength { .. } => "focal-length",

@@ -122,6 +122,13 @@ pub enum Doubt {
     },
     /// The camera stands under the surface.
     UnderSurface,
+    /// Its camera's intrinsics are none that a lens has.
+    StrangeCamera {
+        /// What the flight calls the camera.
+        camera: String,
+        /// In words.
+        why: String,
+    },
     /// Its camera stands for photos of several devices.
     SeveralDevices {
         /// What the flight calls the camera.
@@ -346,6 +353,7 @@ impl fmt::Display for Doubt {
             Self::UnderSurface => f.write_str(
                 "taken from under the surface: check which axis is up, the heights' datum and the poses' convention",
             ),
+            Self::StrangeCamera { camera, why } => write!(f, "{camera}: {why}"),
             Self::SeveralDevices { camera, devices } => write!(
                 f,
                 "{camera} stands for photos of {} devices ({}): give each its own calibration",

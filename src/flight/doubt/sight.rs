@@ -81,6 +81,7 @@ impl Doubt {
             | Self::ReducedPhotos { .. }
             | Self::FileUnreadable(_)
             | Self::FileSize { .. }
+            | Self::StrangeCamera { .. }
             | Self::SeveralDevices { .. }
             | Self::OtherDevice { .. }
             | Self::FocalLength { .. } => (OnPhoto::Nothing, InView::Footprint),

@@ -4,7 +4,7 @@ use egui_plot::{AxisHints, Line, Plot, PlotPoints, Points};
 
 use super::{copy, numbers, save};
 use crate::command::{Command, MeasuredTable};
-use crate::exports::{ProfileReport, profile_csv, profile_table};
+use crate::exports::{ProfileReport, is_of_a_stone, profile_csv, profile_table};
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::Drawn;
 
@@ -68,9 +68,13 @@ pub(super) fn profile(
     for ([toe, angle], face) in names.into_iter().zip(&faces) {
         if let Some(face) = face {
             rows.push((toe, height(face.toe.point.z)));
+            let doubt = match is_of_a_stone(face, profile.length) {
+                true => " (a stone's side)",
+                false => "",
+            };
             let repose = face
                 .repose
-                .map_or_else(|| "holes".to_owned(), |a| format!("{a:.1}°"));
+                .map_or_else(|| "holes".to_owned(), |a| format!("{a:.1}°{doubt}"));
             rows.push((angle, repose));
         }
     }

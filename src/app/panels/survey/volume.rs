@@ -7,6 +7,7 @@ use crate::names;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::survey::{BaseChoice, Drawn, SurveyStep};
+use crate::survey::BaseFound;
 
 pub(super) fn volume(
     open: &OpenFlight,
@@ -90,6 +91,14 @@ pub(super) fn volume(
         volume,
         base: base.as_deref(),
     };
+    if let BaseFound::Rim(_) = volume.base {
+        ui.add(
+            egui::Label::new(
+                egui::RichText::new(format!("Over {}.", report.base_in_words())).weak(),
+            )
+            .wrap(),
+        );
+    }
     let mut text = volume_table(&report);
     text += "\nx,y\n";
     for corner in &drawn.points {

@@ -11,6 +11,8 @@ pub(super) struct Document {
     pub(super) asset: Asset,
     #[serde(default)]
     pub(super) extensions_required: Vec<String>,
+    #[serde(default)]
+    pub(super) extensions_used: Vec<String>,
     pub(super) scene: Option<usize>,
     #[serde(default)]
     pub(super) scenes: Vec<Scene>,

@@ -242,6 +242,17 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
 
 /// Looks and lights do not change where things are.
 fn check_extensions(document: &Document) -> Result<(), Fault> {
+    // Used, though not required: without it all is somewhere else.
+    if document
+        .extensions_used
+        .iter()
+        .any(|name| name == "CESIUM_RTC")
+    {
+        return Err(Fault::new(
+            "its coordinates count from a place that an extension names (CESIUM_RTC), which is not read",
+            "export it with the offset as a node's translation",
+        ));
+    }
     for name in &document.extensions_required {
         let harmless = [
             "KHR_materials_",

@@ -244,6 +244,8 @@ fn what_is_not_known_is_refused_in_words() {
         let fault = changed(|d| d["extensionsRequired"] = json!([name])).unwrap_err();
         assert!(fault.what.contains(what), "{fault}");
     }
+    let fault = changed(|d| d["extensionsUsed"] = json!(["CESIUM_RTC"])).unwrap_err();
+    assert!(fault.what.contains("CESIUM_RTC"), "{fault}");
     let fault = changed(|d| d["asset"]["version"] = json!("1.0")).unwrap_err();
     assert!(fault.what.contains("glTF 1.0"), "{fault}");
 }

@@ -1,5 +1,6 @@
-//! The size that a photo's EXIF says it has, against the size that it has (Exif 2.32: PixelXDimension
-//! and PixelYDimension; `ImageWidth` and `ImageLength`, which phones write in their place).
+//! What a photo's EXIF says of its pixels: how they are to be turned (Exif 2.32: Orientation), and the size that it says they
+//! have, against the size that they have (PixelXDimension and PixelYDimension; `ImageWidth` and `ImageLength`, which phones write
+//! in their place).
 //!
 //! Cameras write the size of the pixels. Where the two differ the photo was saved again by a program
 //! that left the EXIF as it was: made smaller, turned, or cropped. Then the camera's numbers may be for
@@ -7,7 +8,7 @@
 
 use std::io::Cursor;
 
-use exif::{In, Reader, Tag};
+use exif::{Exif, In, Reader, Tag};
 
 /// What the EXIF says, where the pixels are of another size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,11 +26,7 @@ pub struct SizeInExif {
 /// Compares the EXIF of a photo's file with the size of its pixels. `None` where both are the same or
 /// the file does not say.
 pub fn size_in_exif(file: &[u8], (width, height): (u32, u32)) -> Option<SizeInExif> {
-    let exif = Reader::new()
-        .continue_on_error(true)
-        .read_from_container(&mut Cursor::new(file))
-        .or_else(|error| error.distill_partial_result(|_| {}))
-        .ok()?;
+    let exif = exif_of(file)?;
     let number = |tag| exif.get_field(tag, In::PRIMARY)?.value.get_uint(0);
     let pair = |across, down| Some((number(across)?, number(down)?));
     let said = pair(Tag::PixelXDimension, Tag::PixelYDimension)
@@ -41,6 +38,24 @@ pub fn size_in_exif(file: &[u8], (width, height): (u32, u32)) -> Option<SizeInEx
         same_shape: is_same_shape(said, (width, height)),
         turned: is_same_shape((said.1, said.0), (width, height)),
     })
+}
+
+/// The mark of how a photo is to be turned or mirrored to be looked at (EXIF's Orientation, 2 to 8); `None` where it is to be shown
+/// as its pixels lie.
+pub fn turned_in_exif(file: &[u8]) -> Option<u32> {
+    let orientation = exif_of(file)?
+        .get_field(Tag::Orientation, In::PRIMARY)?
+        .value
+        .get_uint(0)?;
+    (2..=8).contains(&orientation).then_some(orientation)
+}
+
+fn exif_of(file: &[u8]) -> Option<Exif> {
+    let read = Reader::new()
+        .continue_on_error(true)
+        .read_from_container(&mut Cursor::new(file));
+    read.or_else(|error| error.distill_partial_result(|_| {}))
+        .ok()
 }
 
 /// Whether one is the other made larger, within a pixel of the smaller.
@@ -102,6 +117,19 @@ mod tests {
         let phone = said((3072, 1728), (Tag::ImageWidth, Tag::ImageLength));
         assert!(!phone.unwrap().same_shape);
         assert_eq!(size_in_exif(b"no photo", (64, 48)), None);
+    }
+
+    #[test]
+    fn what_exif_says_of_turning() {
+        let of = |orientation| {
+            let tags = (Tag::Orientation, Tag::PixelYDimension);
+            turned_in_exif(&photo((orientation, 48), tags))
+        };
+        assert_eq!(
+            [0, 1, 3, 6, 8, 9].map(of),
+            [None, None, Some(3), Some(6), Some(8), None]
+        );
+        assert_eq!(turned_in_exif(b"no photo"), None);
     }
 
     #[test]
