@@ -134,6 +134,18 @@ pub enum Size {
 }
 
 impl Size {
+    /// The same where lengths count in a unit that is so many of the one before.
+    #[must_use]
+    pub fn in_unit_of(self, before: f64) -> Self {
+        match self {
+            Self::Scale { pixels, within } => Self::Scale {
+                pixels: pixels * before,
+                within: within.map(|within| within * before),
+            },
+            Self::Distance(distance) => Self::Distance(distance / before),
+        }
+    }
+
     /// This scale, pixels per world unit, within what is usual.
     pub fn scale(pixels: f64) -> Self {
         Self::Scale {

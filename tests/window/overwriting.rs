@@ -108,6 +108,9 @@ fn a_flight_is_saved_over_no_file_that_it_was_read_from() {
 fn a_flight_that_others_changed_is_asked_for() {
     let folder = copy("tests/windrow");
     let own = folder.path().join("flight.toml");
+    let text = fs::read_to_string(&own).expect("the flight");
+    let text = text.replace("ground = \"auto\"", "ground = 0.125");
+    fs::write(&own, text).expect("written");
     let mut desk = Desk::new(Some(folder.path()));
     let change = |desk: &mut Desk, ground: &str| {
         desk.click(Role::Tab, "Flight");

@@ -73,6 +73,28 @@ fn drag(desk: &mut Desk, from: Pos2, to: Pos2) {
     desk.settle();
 }
 
+/// Another unit of the flight changes what its coordinates mean, not what was asked of the plan.
+#[test]
+fn what_was_asked_in_metres_stays_so_long_in_feet() {
+    let mut desk = Desk::new(Some(&crate::desk::flight("assets/sample")));
+    desk.press(Modifiers::COMMAND, Key::Num4);
+    let before = desk.open().planning.now().expect("a wish").clone();
+    desk.press(Modifiers::COMMAND, Key::Num1);
+    desk.click(Role::Tab, "Flight");
+    desk.click(Role::ComboBox, "Unit of the world's coordinates");
+    desk.click(Role::Button, "ft");
+    desk.press(Modifiers::COMMAND, Key::Num4);
+    let planning = &desk.open().planning;
+    let now = planning.now().expect("a wish").clone();
+    assert!((now.clearance * 0.3048 / before.clearance - 1.0).abs() < 1e-9);
+    let pixels = |size: &Size| match size {
+        Size::Scale { pixels, .. } => *pixels,
+        Size::Distance(_) => f64::NAN,
+    };
+    assert!((pixels(&now.size) / 0.3048 / pixels(&before.size) - 1.0).abs() < 1e-9);
+    assert!(planning.is_of_now() || planning.refused().is_some());
+}
+
 /// The bundled lab is flown from half a metre, where the usual clearance of 5 m would refuse every photo.
 #[test]
 fn a_lab_begins_with_a_clearance_that_fits() {

@@ -42,8 +42,15 @@ fn doubtful_photos_are_reviewed_with_keys_alone() {
     assert!(desk.says(&format!("1 of {count}")), "{:?}", desk.texts());
 
     // Accepted with a note, all by keys: the letter of the key comes as a text, too, in the same frame.
-    desk.harness.key_press(Key::W);
-    desk.harness.event(Event::Text("w".to_owned()));
+    let pressed = Event::Key {
+        key: Key::W,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: NONE,
+    };
+    let events = &mut desk.harness.input_mut().events;
+    events.extend([pressed, Event::Text("w".to_owned())]);
     desk.settle();
     desk.harness.event(Event::Text("level toe".to_owned()));
     desk.settle();

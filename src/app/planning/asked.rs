@@ -92,6 +92,20 @@ impl AskedPlan {
         }
     }
 
+    /// The same wish where lengths count in a unit that is so many of the one before: the world's coordinates are what they were.
+    #[must_use]
+    pub(super) fn in_unit_of(&self, before: f64) -> Self {
+        Self {
+            size: self.size.in_unit_of(before),
+            survey: SurveyWish {
+                size: self.survey.size.map(|size| size.in_unit_of(before)),
+                ..self.survey
+            },
+            clearance: self.clearance / before,
+            ..self.clone()
+        }
+    }
+
     /// The same without what was changed by hand, and without what only the way depends on.
     pub(super) fn base(&self) -> Self {
         Self {

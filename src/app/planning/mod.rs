@@ -75,6 +75,18 @@ impl Planning {
         made.is_some() && made == self.now()
     }
 
+    /// Takes that the flight's lengths count in another unit, so many of the one before: what was asked stays as long as it is, and the
+    /// plan that was made is none of it.
+    pub(crate) fn take_unit(&mut self, before: f64) {
+        let Some(now) = self.now().map(|now| now.in_unit_of(before)) else {
+            return;
+        };
+        *self = Self {
+            asked: Some(History::new(now)),
+            ..Self::default()
+        };
+    }
+
     /// Why nothing can be made of what is asked for now.
     pub fn refused(&self) -> Option<&str> {
         let (asked, why) = self.refused.as_ref()?;

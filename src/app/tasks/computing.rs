@@ -147,6 +147,7 @@ impl State {
         let before = open.flight().parts();
         let after = flight.parts();
         let other_image = before.image != after.image;
+        let unit = after.unit.in_units_of(before.unit);
         // Of one reading of the file the points are the same.
         let other_surface = before.surface.max_edge() != after.surface.max_edge();
         let said_before = &open.review.looked_up().warnings;
@@ -157,6 +158,10 @@ impl State {
             .map(|(warning, _)| warning)
             .collect();
         open.take_scales(flight, outcomes, looked_up, settings);
+        if unit != 1.0 {
+            open.planning.take_unit(unit);
+            self.work.cancel(Task::PLAN);
+        }
         for warning in new {
             self.say(Severity::Warning, &warning);
         }

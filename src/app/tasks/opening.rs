@@ -236,6 +236,8 @@ impl OpenFlight {
         self.files.opened_file.clone_from(&before.files.opened_file);
         self.files.read.extend(&before.files.read);
         self.files.bundled = before.files.bundled;
+        // The settings are those of before, whoever changed the file meanwhile.
+        self.files.stood = before.files.stood.clone();
         self.colors.keep_limits(&before.colors);
         // Brought to another place by control points, what was clicked and looked at is elsewhere.
         if self.computed.placed == before.computed.placed {
