@@ -329,6 +329,27 @@ fn its_curve_stands_beside_the_sieves() {
         sources[0].set.curves[0].labels.method,
         "fragscale (learned)"
     );
+    // Of outlines that were changed since it says so, until they are what they were.
+    desk.settle();
+    assert!(!desk.says("have changed since"));
+    let go = |desk: &mut Desk, page: Page| {
+        desk.harness.state_mut().apply(Command::Page(page));
+        desk.settle();
+    };
+    go(&mut desk, Page::Fragments);
+    desk.press(Modifiers::NONE, Key::N);
+    desk.press(Modifiers::NONE, Key::Delete);
+    assert_eq!(outlines(&desk).editing.changes(), 2);
+    go(&mut desk, Page::SizeDistributions);
+    assert!(
+        desk.says("have changed since: send it again"),
+        "{:?}",
+        desk.texts()
+    );
+    go(&mut desk, Page::Fragments);
+    desk.press(Modifiers::COMMAND, Key::Z);
+    go(&mut desk, Page::SizeDistributions);
+    assert!(!desk.says("have changed since"));
 }
 
 /// What the window writes of outlines that were corrected is what the command writes of the same when they are saved; before

@@ -12,7 +12,7 @@ use crate::fault::Fault;
 use crate::formats::{self, DistributionColumns};
 use crate::jobs::Progress;
 use crate::scale::ScaleField;
-use crate::size_distributions::{Page, Source};
+use crate::size_distributions::{OfFragments, Page, Source};
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 
@@ -122,6 +122,25 @@ impl State {
             path: None,
             set,
             warnings,
+            fragments: Some(OfFragments {
+                flight: open.files.origin.file().to_owned(),
+                photo,
+                revision: of.revision,
+                unit: world,
+            }),
         })
+    }
+
+    /// Whether a curve is of outlines, or of a unit, that the flight on the screen does not have any more; of another flight's nothing
+    /// is known.
+    pub fn is_outdated(&self, source: &Source) -> bool {
+        let (Some(made_of), Some(open)) = (&source.fragments, &self.open) else {
+            return false;
+        };
+        let of = open.fragments.of(made_of.photo);
+        made_of.flight == open.files.origin.file()
+            && of.is_some_and(|of| {
+                of.revision != made_of.revision || open.flight().parts().unit != made_of.unit
+            })
     }
 }

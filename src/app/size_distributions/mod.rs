@@ -28,7 +28,7 @@ use std::sync::Arc;
 pub use command::DistributionCommand;
 pub use computing::Computed;
 pub use measured::{EffortFile, MeasuredStep};
-pub use source::Source;
+pub use source::{OfFragments, Source};
 
 use crate::fragmentation::{AnalysisOptions, Labels, Model, SieveSeries, Weighting};
 use crate::state::history::History;

@@ -58,6 +58,7 @@ fn pasted(form: &PasteForm, number: usize) -> Result<Source, String> {
         path: None,
         set,
         warnings,
+        fragments: None,
     };
     let typed = |text: &str, other: &str| match text.trim() {
         "" => other.to_owned(),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::fault::Fault;
 use crate::fragmentation::DistributionSet;
+use crate::units::LengthUnit;
 
 /// Size distributions that were added together.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +18,21 @@ pub struct Source {
     pub set: DistributionSet,
     /// What was noticed while reading.
     pub warnings: Vec<String>,
+    /// What it was made of, where it is of a photo's fragments.
+    pub fragments: Option<OfFragments>,
+}
+
+/// What a curve of fragments was made of: when it is another one, so is the curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OfFragments {
+    /// The flight's file.
+    pub flight: PathBuf,
+    /// By its place in the flight.
+    pub photo: usize,
+    /// Of its outlines.
+    pub revision: u64,
+    /// Of the world's lengths.
+    pub unit: LengthUnit,
 }
 
 impl Source {
@@ -33,6 +49,7 @@ impl Source {
             path: Some(path.to_owned()),
             set,
             warnings,
+            fragments: None,
         }
     }
 

@@ -7,6 +7,9 @@ use crate::panels::tool_bar::action_button;
 use crate::size_distributions::DistributionCommand;
 use crate::state::State;
 
+/// What is said of a curve of fragments that are others now.
+const OUTDATED: &str = "the outlines, or the flight's unit, have changed since: send it again";
+
 /// Draws the list of files and tables, with what was noticed while reading them.
 pub(super) fn files(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     for (place, source) in state.distributions.sources().iter().enumerate() {
@@ -26,7 +29,9 @@ pub(super) fn files(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command
             name.on_hover_text(path.as_deref().unwrap_or("A table that was pasted"));
         });
         ui.horizontal_wrapped(|ui| ui.weak(counted));
-        for warning in &source.warnings {
+        let outdated = state.is_outdated(source).then_some(OUTDATED);
+        let warnings = source.warnings.iter().map(String::as_str);
+        for warning in warnings.chain(outdated) {
             let text = egui::RichText::new(format!("⚠ {warning}"));
             let text = text.color(ui.visuals().warn_fg_color).small();
             ui.add(egui::Label::new(text).wrap());
