@@ -6,8 +6,8 @@ use crate::dense::Quality as Depths;
 /// What an engineer chooses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Quality {
-    /// The sparse cloud: the points that the photos' places were found with. The default, for its intervals
-    /// hold the truth; those of fitted scales over a dense cloud do not yet (README).
+    /// The sparse cloud: the points that the photos' places were found with. The default, for it costs nothing and its fitted
+    /// scales are as good as those of a dense one (README).
     #[default]
     Fast,
     /// A dense cloud from photos of at most 3 megapixels, to which larger ones are reduced.
@@ -47,8 +47,7 @@ impl Quality {
             Self::Normal => {
                 "A dense cloud, from photos of at most 3 megapixels (larger ones are halved until they fit). \
                  About ten seconds a megapixel of each photo more on two cores, and 35 MB of it on the disk while it runs. \
-                 With plenty of overlap corners are surer than in the sparse one; with little it can be worse, and \
-                 intervals of fitted scales are too narrow yet"
+                 For volumes and for looking at it; corners of benches are surer than in the sparse one, fitted scales are not"
             }
             Self::Best => {
                 "A dense cloud from all pixels. The same as normal for photos of up to 3 megapixels, four times \

@@ -24,14 +24,15 @@ impl Stood {
         self.0.insert(path.to_owned(), stamp(path));
     }
 
-    /// The first of these files that is not what it was; of a file that was never noted nothing is known.
+    /// The first of these files that is not what it was: of a file that was never noted nothing is known, and in one that is gone
+    /// nothing can be lost.
     pub(crate) fn changed<'a>(
         &self,
         mut paths: impl Iterator<Item = &'a Path>,
     ) -> Option<&'a Path> {
         paths.find(|path| {
-            let stood = self.0.get(*path);
-            stood.is_some_and(|stood| *stood != stamp(path))
+            let now = stamp(path);
+            now.is_some() && self.0.get(*path).is_some_and(|stood| *stood != now)
         })
     }
 }
@@ -58,6 +59,6 @@ mod tests {
         fs::write(&a, "longer").unwrap();
         assert_eq!(stood.changed(all()), Some(a.as_path()));
         fs::remove_file(&a).unwrap();
-        assert_eq!(stood.changed(all()), Some(a.as_path()));
+        assert_eq!(stood.changed(all()), None);
     }
 }
