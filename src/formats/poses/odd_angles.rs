@@ -89,7 +89,7 @@ mod tests {
         let mut odd = OddAngles::default();
         odd.quaternion(2, &[0.5, 0.5, 0.5, 0.502]);
         assert_eq!(odd.warnings(), Vec::<String>::new());
-        odd.quaternion(3, &[0.7071, 0.0, 0.0, 0.0]);
+        odd.quaternion(3, &[0.7, 0.0, 0.1, 0.0]);
         odd.quaternion(4, &[0.9, 0.3, 0.0, 0.0]);
         let said = odd.warnings().join("; ");
         assert!(said.contains("line 3 has the length 0.707"), "{said}");

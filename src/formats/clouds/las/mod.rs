@@ -161,13 +161,11 @@ pub(super) fn stated(header: &las::Header) -> (CloudFile, f64) {
     let mut file = CloudFile::default();
     let keys = header.get_geotiff_crs().ok().flatten();
     let number = |key: u16| {
-        let entries = keys.as_ref()?.entries.iter();
-        let found = entries.filter(|entry| entry.id == key);
-        let values = found.filter_map(|entry| match entry.data {
-            GeoTiffData::U16(value) => Some(value),
+        let mut entries = keys.as_ref()?.entries.iter();
+        entries.find_map(|entry| match entry.data {
+            GeoTiffData::U16(value) if entry.id == key => Some(value),
             _ => None,
-        });
-        values.last()
+        })
     };
     if let Some(wkt) = wkt(header) {
         file.crs = Some(wkt);
