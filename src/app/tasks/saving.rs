@@ -108,9 +108,9 @@ impl State {
             match saved {
                 Ok(()) => match beside() {
                     Ok(outlines) => Ok((origin.saved_at(&path), settings, outlines)),
-                    Err(error) => Err(error.to_string()),
+                    Err(error) => Err((error.to_string(), Some(path))),
                 },
-                Err(error) => Err(error.to_string()),
+                Err(error) => Err((error.to_string(), None)),
             }
         };
         self.start(Task::SAVE, work, move |state, saved| match saved {
@@ -121,7 +121,14 @@ impl State {
                 }
                 state.take_saved(&flight, origin, settings);
             }
-            Err(message) => {
+            Err((message, written)) => {
+                // What was written before it failed nobody else has changed.
+                if state.is_on_screen(&flight)
+                    && let (Some(open), Some(written)) = (&mut state.open, written)
+                {
+                    open.files.stood.note(&written);
+                    open.files.stood.note(&control_file(&written));
+                }
                 state.after_saving = None;
                 state.say(Severity::Error, &message);
             }
