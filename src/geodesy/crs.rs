@@ -175,6 +175,11 @@ impl Crs {
             .unwrap_or("not said")
     }
 
+    /// Whether it says what its heights count from.
+    pub fn states_heights(&self) -> bool {
+        self.definition.heights.name.is_some()
+    }
+
     /// The place of a point; z becomes the height in metres, and counts from what it counted from.
     /// `None` where the point is not finite, or lies where the projection does not hold.
     pub fn to_geographic(&self, point: DVec3) -> Option<Geographic> {

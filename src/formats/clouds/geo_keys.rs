@@ -37,9 +37,10 @@ impl StatedHeights {
     pub(super) fn tell(self, file: &mut CloudFile) -> f64 {
         let understood = |text: &str| Crs::understand(text).ok();
         let mut crs = file.crs.as_deref().and_then(understood);
-        let system = code(self.system);
+        // GeoTIFF 1.0 had codes of its own for ellipsoids and datums, which EPSG gave to others.
+        let system = code(self.system).filter(|code| !(5001..=5106).contains(code));
         if let (Some(flat), Some(code)) = (&file.crs, system)
-            && crs.as_ref().is_some_and(|crs| crs.heights() == NOT_SAID)
+            && crs.as_ref().is_some_and(|crs| !crs.states_heights())
             && flat.starts_with("EPSG:")
         {
             let both = format!("{flat}+{code}");
@@ -74,9 +75,6 @@ impl StatedHeights {
         factor
     }
 }
-
-/// As [`Crs::heights`] says it.
-const NOT_SAID: &str = "not said";
 
 fn in_words(metres: f64) -> String {
     match LengthUnit::of_metres(metres) {
@@ -146,6 +144,7 @@ mod tests {
             ("EPSG:7415", 5703),
             ("EPSG:32633", 32_767),
             ("EPSG:32633", 0),
+            ("EPSG:32633", 5030),
         ] {
             assert_eq!(told(Some(crs), of(code)).0.as_deref(), Some(crs));
         }

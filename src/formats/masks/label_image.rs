@@ -10,6 +10,7 @@
 //! - A picture of colours whose three parts are the same is one of gray. Others are refused: colours are no
 //!   numbers.
 
+use std::collections::BTreeSet;
 use std::io::Cursor;
 
 use image::codecs::png::PngDecoder;
@@ -247,9 +248,15 @@ fn regions(labels: &LabelImage) -> (Vec<u32>, u32) {
 
 /// The numbers of fragments, each once.
 fn numbers(labels: &LabelImage) -> Vec<u32> {
-    let mut numbers: Vec<u32> = labels.labels.clone();
-    numbers.sort_unstable();
-    numbers.dedup();
-    numbers.retain(|label| *label != FINES && *label != NOT_ROCK);
-    numbers
+    let mut numbers = BTreeSet::new();
+    let mut before = FINES;
+    for label in &labels.labels {
+        // Most pixels are of the same as the one before.
+        if *label != before {
+            before = *label;
+            numbers.insert(before);
+        }
+    }
+    let is_fragment = |label: &u32| *label != FINES && *label != NOT_ROCK;
+    numbers.into_iter().filter(is_fragment).collect()
 }

@@ -73,7 +73,7 @@ impl ListWorld {
             }
             if let Some(list) = &list
                 && list.heights() != crs.heights()
-                && crs.heights() != NOT_SAID
+                && crs.states_heights()
             {
                 warnings.push(format!(
                     "heights are carried over as they are: they count from {} ({})",
@@ -115,9 +115,9 @@ impl ListWorld {
 
     /// What heights count from: what the list's do.
     pub(super) fn heights(&self) -> &str {
-        let list = self.list.as_ref().map_or(NOT_SAID, Crs::heights);
-        let own = self.crs.as_ref().map_or(NOT_SAID, Crs::heights);
-        if list == NOT_SAID { own } else { list }
+        let mut systems = [&self.list, &self.crs].into_iter().flatten();
+        let states = systems.find(|system| system.states_heights());
+        states.map_or("not said", Crs::heights)
     }
 
     /// A position of the list in the world.
@@ -147,9 +147,6 @@ impl ListWorld {
         Ok(point.with_z(point.z * up))
     }
 }
-
-/// As [`Crs::heights`] says it.
-const NOT_SAID: &str = "not said";
 
 /// The middle of a list's positions on the Earth.
 fn middle_of(list: &Crs, positions: &[DVec3]) -> Result<Geographic, Fault> {
