@@ -112,6 +112,25 @@ fn volumes_over_a_level_the_rim_and_a_cloud() {
         assert!((number(&found["surface_area"]) - sloped).abs() < 1e-6);
         assert!((number(&found["covered"]) - 1.0).abs() < 1e-9);
     }
+    // A base of another place is blamed, not the polygon.
+    let elsewhere = folder.path().join("elsewhere.xyz");
+    let beside = "500010 5000000 1\n500016 5000000 1\n500010 5000006 1\n500016 5000006 1\n";
+    fs::write(&elsewhere, beside).expect("it is written");
+    let [cloud_text, polygon_text] = [text(&cloud), text(&polygon)];
+    let base = ["--base", text(&elsewhere)];
+    let output = fragscale(&[
+        "volume",
+        cloud_text,
+        "--polygon",
+        polygon_text,
+        base[0],
+        base[1],
+    ]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        said.contains("elsewhere.xyz: it lies beside the polygon"),
+        "{said}"
+    );
     // Half of it lies beside the cloud: that is said, and not counted.
     let output = fragscale(&[
         "volume",

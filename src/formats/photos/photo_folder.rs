@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use super::image_names::{is_image, readable};
 use super::photo_size;
-use crate::fault::Fault;
+use super::photos_below::folders_of_photos;
+use crate::fault::{Fault, first_names};
 use crate::files::{last_segment, open_file, unreadable_folder};
 use crate::packages::reconstruction::Reconstruction;
 
@@ -90,12 +91,17 @@ impl<'a> PhotoFolder<'a> {
         there.sort_unstable();
         let images = there.len();
         there.truncate(SHOWN);
-        let there = match images {
-            0 => "no images".to_owned(),
-            n => format!("{n} images ({}, ...)", there.join(", ")),
+        let within = folders_of_photos(folder);
+        let there = match (images, within.is_empty()) {
+            (0, true) => "no images, and so".to_owned(),
+            (0, false) => format!(
+                "no images itself (but folders within it: {}), and",
+                first_names(&within)
+            ),
+            (n, _) => format!("{n} images ({}, ...), but", there.join(", ")),
         };
         refuse(format!(
-            "it holds {there}, but none of the flight's {} photos ({}, ...)",
+            "it holds {there} none of the flight's {} photos ({}, ...)",
             photos.len(),
             photos
                 .iter()

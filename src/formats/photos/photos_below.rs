@@ -85,7 +85,7 @@ pub(crate) fn photos_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
 }
 
 /// The folders within a folder that have photos of their own, by name, sorted.
-fn folders_of_photos(folder: &Path) -> Vec<String> {
+pub(crate) fn folders_of_photos(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let folders = entries.filter(|entry| entry.path().is_dir() && has_photos(&entry.path()));
     let mut names: Vec<String> = folders
