@@ -258,8 +258,15 @@ impl eframe::App for App {
             let most = if is_narrow { 0.34 } else { 0.4 };
             let marks = |open: &OpenFlight| open.control.is_on && state.page == Page::Pile;
             let is_marking = state.open.as_deref().is_some_and(marks);
+            // Each page has panels of its own: what fits one is no width for the others.
+            let [left, right] = match state.page {
+                Page::Plan => ["asked of the plan", "planned photos"],
+                Page::Fragments => ["photos", "fragments"],
+                _ if is_marking => ["control points", "inspector"],
+                _ => ["photos", "inspector"],
+            };
             if state.preferences.left_open {
-                egui::Panel::left(("photos", is_narrow))
+                egui::Panel::left((left, is_narrow))
                     .resizable(true)
                     .default_size((width * 0.36).clamp(180.0, 500.0))
                     .min_size(180.0)
@@ -273,7 +280,7 @@ impl eframe::App for App {
             if state.preferences.right_open {
                 self.inspector.crops = self.viewport.crops(state, ui);
                 let inspector = &mut self.inspector;
-                egui::Panel::right(("inspector", is_narrow))
+                egui::Panel::right((right, is_narrow))
                     .resizable(true)
                     .default_size((width * 0.32).clamp(220.0, 330.0))
                     .min_size(220.0)
@@ -290,8 +297,8 @@ impl eframe::App for App {
                 // Below each other where there is more height than width.
                 let rest = ui.available_size();
                 let (panel, length) = match rest.x >= rest.y {
-                    true => (egui::Panel::right("photo beside"), rest.x),
-                    false => (egui::Panel::bottom("photo below"), rest.y),
+                    true => (egui::Panel::right(("photo beside", is_narrow)), rest.x),
+                    false => (egui::Panel::bottom(("photo below", is_narrow)), rest.y),
                 };
                 panel
                     .resizable(true)
