@@ -47,7 +47,7 @@ impl Quality {
             Self::Normal => {
                 "A dense cloud, from photos of at most 3 megapixels (larger ones are halved until they fit). \
                  About ten seconds a megapixel of each photo more on two cores, and 35 MB of it on the disk while it runs. \
-                 For volumes and for looking at it; corners of benches are surer than in the sparse one, fitted scales are not"
+                 For volumes and for looking at it; corners are a little surer than in the sparse one, fitted scales are not"
             }
             Self::Best => {
                 "A dense cloud from all pixels. The same as normal for photos of up to 3 megapixels, four times \
