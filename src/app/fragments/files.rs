@@ -10,7 +10,7 @@ use crate::formats;
 use crate::jobs::Progress;
 use crate::labels::LabelImage;
 use crate::open_flight::OpenFlight;
-use crate::opening::{OutlinesRead, control_file, outline_files, read_outlines, saved_outlines};
+use crate::opening::{OutlinesRead, outline_files, read_outlines, saved_outlines};
 use crate::state::{Severity, State};
 use crate::tasks::Task;
 
@@ -85,11 +85,10 @@ impl OpenFlight {
         let photos = self.fragments.photos.keys();
         let outlines = photos.filter_map(|photo| stems.get(*photo));
         let outlines = outlines.flat_map(|stem| outline_files(own, stem));
-        let written: Vec<PathBuf> = [own.to_owned(), control_file(own)]
-            .into_iter()
-            .chain(outlines)
-            .collect();
-        for path in &written {
+        let outlines: Vec<PathBuf> = outlines.collect();
+        let own = own.to_owned();
+        self.files.stood.note_flight(&own);
+        for path in &outlines {
             self.files.stood.note(path);
         }
     }

@@ -5,9 +5,7 @@ use std::sync::Arc;
 
 use crate::files::Inputs;
 use crate::flight::FlightSettings;
-use crate::opening::{
-    FlightOrigin, FlightReconstruction, OpenOptions, Opened, PhotoFile, control_file,
-};
+use crate::opening::{FlightOrigin, FlightReconstruction, OpenOptions, Opened, PhotoFile};
 use crate::state::bundled::sample_flight;
 use crate::surface::UpAxis;
 use crate::tasks::stood::Stood;
@@ -57,8 +55,7 @@ impl FlightFiles {
         let bundled = is_bundled(&opened.origin.suggested_file());
         let mut stood = Stood::default();
         if let Some(own) = opened.origin.flight_file() {
-            stood.note(own);
-            stood.note(&control_file(own));
+            stood.note_flight(own);
         }
         Self {
             path,

@@ -126,8 +126,7 @@ impl State {
                 if state.is_on_screen(&flight)
                     && let (Some(open), Some(written)) = (&mut state.open, written)
                 {
-                    open.files.stood.note(&written);
-                    open.files.stood.note(&control_file(&written));
+                    open.files.stood.note_flight(&written);
                 }
                 state.after_saving = None;
                 state.say(Severity::Error, &message);

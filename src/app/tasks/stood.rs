@@ -6,6 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use crate::opening::control_file;
+
 /// When a file was last changed, and how long it was; `None` where there was none.
 type Stamp = Option<(Option<SystemTime>, u64)>;
 
@@ -22,6 +24,12 @@ impl Stood {
     /// A file as it stands now, or that there is none.
     pub(crate) fn note(&mut self, path: &Path) {
         self.0.insert(path.to_owned(), stamp(path));
+    }
+
+    /// The same of a flight.toml and of its control points.
+    pub(crate) fn note_flight(&mut self, file: &Path) {
+        self.note(file);
+        self.note(&control_file(file));
     }
 
     /// The first of these files that is not what it was: of a file that was never noted nothing is known, and in one that is gone

@@ -91,8 +91,10 @@ pub(in crate::cli) fn volume(
     let volume = survey::volume(&parts.surface, &polygon, base).map_err(|e| e.to_string())?;
     if volume.covered <= 0.0 {
         // Over the other surface alone, if it is not the polygon that lies beside the flight's.
-        let own = survey::volume(&parts.surface, &polygon, Base::Rim);
-        if let (Some(base), true) = (base_file, own.is_ok_and(|own| own.covered > 0.0)) {
+        if let Some(base) = base_file
+            && survey::volume(&parts.surface, &polygon, Base::Rim)
+                .is_ok_and(|own| own.covered > 0.0)
+        {
             let what = "it lies beside the polygon, or has a hole there";
             let remedy = "give a surface of the same place, in the same coordinates";
             return Err(FileError::new(base, Fault::new(what, remedy)).to_string());

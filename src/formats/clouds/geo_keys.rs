@@ -8,9 +8,9 @@ pub(super) const MODEL_TYPE: u16 = 1024;
 pub(super) const RASTER_TYPE: u16 = 1025;
 pub(super) const GEODETIC_CRS: u16 = 2048;
 pub(super) const PROJECTED_CRS: u16 = 3072;
-pub(super) const LINEAR_UNITS: u16 = 3076;
-pub(super) const VERTICAL_CRS: u16 = 4096;
-pub(super) const VERTICAL_UNITS: u16 = 4099;
+const LINEAR_UNITS: u16 = 3076;
+const VERTICAL_CRS: u16 = 4096;
+const VERTICAL_UNITS: u16 = 4099;
 
 /// A code of a key: defined by other keys.
 pub(super) const USER_DEFINED: u16 = 32_767;
@@ -32,6 +32,16 @@ pub(super) struct StatedHeights {
 }
 
 impl StatedHeights {
+    /// Of a directory that has this whole number for a key.
+    pub(super) fn of(number: impl Fn(u16) -> Option<u16>) -> Self {
+        let unit = |key| number(key).and_then(metres_of_code);
+        Self {
+            system: number(VERTICAL_CRS),
+            unit: unit(VERTICAL_UNITS),
+            flat_unit: unit(LINEAR_UNITS),
+        }
+    }
+
     /// Adds the vertical system to that of the file, and returns what heights are to be multiplied by so that they count in the
     /// unit that the file's system has for them, or, without one, in that of x and y. What it does is said among the file's warnings.
     pub(super) fn tell(self, file: &mut CloudFile) -> f64 {
@@ -84,7 +94,7 @@ fn in_words(metres: f64) -> String {
 }
 
 /// Metres in EPSG's unit of that code, as far as heights are given in it; `None` for others.
-pub(super) fn metres_of_code(code: u16) -> Option<f64> {
+fn metres_of_code(code: u16) -> Option<f64> {
     let unit = match code {
         9001 => LengthUnit::Metre,
         9002 => LengthUnit::Foot,

@@ -421,14 +421,14 @@ pub fn georeference_model(
     }
     warnings.extend(contradiction);
     warnings.extend(marks::from_below(&marked, &reconstruction.photos, &result));
-    if points.is_some() || request.positions.is_some() {
-        let photos = request.photos.as_deref();
-        warnings.extend(receivers::elsewhere(
-            reconstruction,
-            photos,
-            &world,
-            &result,
-        ));
+    // In a local world there is nothing to compare, and no photo is looked into.
+    if result.crs.is_some() && (points.is_some() || request.positions.is_some()) {
+        let own = receivers::positions(path, reconstruction, request.photos.as_deref());
+        // Photos that say nothing are no fault here: a list was given.
+        let own = own.ok().flatten();
+        warnings.extend(
+            own.and_then(|(_, own)| receivers::elsewhere(reconstruction, &own, &world, &result)),
+        );
     }
     if result.used() == 3 {
         warnings.push("three known positions check each other hardly at all".to_owned());

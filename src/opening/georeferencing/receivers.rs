@@ -55,16 +55,14 @@ pub(super) fn kept(
     (!measured.is_empty()).then(|| (model.to_owned(), list()))
 }
 
-/// That a list brings the photos to another place than their own receivers say they were at; `None` where those say nothing,
-/// and in a local world.
+/// That a list brings the photos to another place than their own receivers say they were at; `None` in a
+/// local world.
 pub(super) fn elsewhere(
     reconstruction: &Reconstruction,
-    photos: Option<&Path>,
+    receivers: &PositionList,
     world: &ListWorld,
     fit: &Georeferenced,
 ) -> Option<String> {
-    // Photos that say nothing are no fault here: a list was given.
-    let (_, receivers) = positions(Path::new(""), reconstruction, photos).ok()??;
     let crs = world.name()?;
     let of_receivers = world.with_list(receivers.crs.as_deref(), None).ok()?;
     let listed: Vec<&str> = (receivers.positions.iter())

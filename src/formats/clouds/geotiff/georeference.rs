@@ -8,8 +8,7 @@ use tiff::tags::Tag;
 
 use crate::clouds::cloud_file::CloudFile;
 use crate::clouds::geo_keys::{
-    GEODETIC_CRS, LINEAR_UNITS, MODEL_TYPE, PROJECTED_CRS, RASTER_TYPE, StatedHeights,
-    USER_DEFINED, VERTICAL_CRS, VERTICAL_UNITS, metres_of_code,
+    GEODETIC_CRS, MODEL_TYPE, PROJECTED_CRS, RASTER_TYPE, StatedHeights, USER_DEFINED,
 };
 use crate::fault::Fault;
 
@@ -85,7 +84,7 @@ impl Georeference {
             } else {
                 0.5
             },
-            heights: keys.heights(),
+            heights: StatedHeights::of(|key| keys.short(key)),
         };
         let finite = origin.is_finite() && along_row.is_finite() && to_next_row.is_finite();
         if !finite || along_row.perp_dot(to_next_row) == 0.0 {
@@ -160,15 +159,6 @@ impl Keys {
             let text = self.ascii.get(begin..begin + usize::from(count))?;
             Some(text.trim_matches(|c: char| c == '|' || c == '\0' || c.is_whitespace()))
         })
-    }
-
-    fn heights(&self) -> StatedHeights {
-        let unit = |key| self.short(key).and_then(metres_of_code);
-        StatedHeights {
-            system: self.short(VERTICAL_CRS),
-            unit: unit(VERTICAL_UNITS),
-            flat_unit: unit(LINEAR_UNITS),
-        }
     }
 
     /// Says what is known of the coordinate system.

@@ -25,10 +25,7 @@ use las::crs::GeoTiffData;
 use claims::WithCount;
 
 use crate::clouds::cloud_file::{CloudFile, counts_degrees, first_not_finite};
-use crate::clouds::geo_keys::{
-    GEODETIC_CRS, LINEAR_UNITS, MODEL_TYPE, PROJECTED_CRS, StatedHeights, VERTICAL_CRS,
-    VERTICAL_UNITS, code, metres_of_code,
-};
+use crate::clouds::geo_keys::{GEODETIC_CRS, MODEL_TYPE, PROJECTED_CRS, StatedHeights, code};
 use crate::clouds::pieces::copc;
 use crate::fault::Fault;
 use crate::jobs::Progress;
@@ -190,13 +187,7 @@ pub(super) fn stated(header: &las::Header) -> (CloudFile, f64) {
     if file.crs.as_ref().is_some_and(|crs| !is_code(crs)) {
         return (file, 1.0);
     }
-    let unit = |key| number(key).and_then(metres_of_code);
-    let heights = StatedHeights {
-        system: number(VERTICAL_CRS),
-        unit: unit(VERTICAL_UNITS),
-        flat_unit: unit(LINEAR_UNITS),
-    };
-    let factor = heights.tell(&mut file);
+    let factor = StatedHeights::of(number).tell(&mut file);
     (file, factor)
 }
 
