@@ -92,6 +92,11 @@ impl fmt::Display for Decision {
     }
 }
 
+/// What was decided of a photo: the first that names it.
+pub(super) fn of_photo<'a>(decisions: &'a [Decision], photo: &str) -> Option<&'a Decision> {
+    decisions.iter().find(|decision| decision.photo == photo)
+}
+
 impl Flight {
     /// A sentence for each decision about a photo that the flight does not have.
     pub fn decisions_without_photo(&self, decisions: &[Decision]) -> Vec<String> {
@@ -120,8 +125,7 @@ impl Flight {
     ) -> Result<(Vec<usize>, Option<String>), Fault> {
         let name = |index: usize| self.parts().photos[index].name.as_str();
         let is_out = |index: &usize| {
-            let mut of_photo = decisions.iter().filter(|of| of.photo == name(*index));
-            of_photo.any(|of| of.kind == DecisionKind::LeftOut)
+            of_photo(decisions, name(*index)).is_some_and(|of| of.kind == DecisionKind::LeftOut)
         };
         let (out, kept): (Vec<usize>, Vec<usize>) = chosen.into_iter().partition(is_out);
         if out.is_empty() {

@@ -119,7 +119,7 @@ pub(crate) fn dense_cloud(
         triangles: Vec::new(),
     };
     progress.stage("holding the dense cloud against the sparse one");
-    let (cloud, ..) = held(cloud, &model.cloud);
+    let cloud = held(cloud, &model.cloud, progress)?;
     Ok((Some(DenseCloud { cloud, deviation }), warnings))
 }
 

@@ -15,7 +15,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rstar::RTree;
 
+use crate::fault::Fault;
 use crate::geometry::median;
+use crate::jobs::Progress;
 use crate::surface::Cloud;
 
 /// Sparse points that a dense one is held against.
@@ -27,8 +29,25 @@ const GAP: f64 = 3.0;
 /// So many dense points tell of their spacing.
 const LOOKED_AT: usize = 20_000;
 
-/// The dense cloud without what flies, and with sparse points where it has none; z is up. How many were left out, and how many joined.
-pub(crate) fn held(dense: Cloud, sparse: &Cloud) -> (Cloud, usize, usize) {
+/// Points between two looks whether the work was cancelled.
+const AT_ONCE: usize = 100_000;
+
+/// The dense cloud without what flies, and with sparse points where it has none; z is up.
+///
+/// # Errors
+/// Where the work was cancelled.
+pub(crate) fn held(dense: Cloud, sparse: &Cloud, progress: &Progress) -> Result<Cloud, Fault> {
+    let mut cloud = without_flying(dense, sparse, progress)?;
+    for place in joining(&cloud, sparse) {
+        cloud.points.push(sparse.points[place]);
+        if let (false, Some(color)) = (cloud.colors.is_empty(), sparse.colors.get(place)) {
+            cloud.colors.push(*color);
+        }
+    }
+    Ok(cloud)
+}
+
+fn without_flying(dense: Cloud, sparse: &Cloud, progress: &Progress) -> Result<Cloud, Fault> {
     let flat = |point: &DVec3| [point.x, point.y];
     // The height goes along by the point's place.
     let around = RTree::bulk_load(
@@ -54,18 +73,12 @@ pub(crate) fn held(dense: Cloud, sparse: &Cloud) -> (Cloud, usize, usize) {
         let (farthest, off) = against(point, 0);
         off <= farthest && farthest <= far
     };
-    let keeps: Vec<bool> = dense.points.par_iter().map(is_held).collect();
-    let left_out = keeps.iter().filter(|keeps| !**keeps).count();
-    let mut cloud = only(dense, &keeps);
-    let joining = joining(&cloud, sparse);
-    let joined = joining.len();
-    for place in joining {
-        cloud.points.push(sparse.points[place]);
-        if let (false, Some(color)) = (cloud.colors.is_empty(), sparse.colors.get(place)) {
-            cloud.colors.push(*color);
-        }
+    let mut keeps: Vec<bool> = Vec::with_capacity(dense.points.len());
+    for points in dense.points.chunks(AT_ONCE) {
+        progress.advance(keeps.len() as u64, dense.points.len() as u64)?;
+        keeps.par_extend(points.par_iter().map(is_held));
     }
-    (cloud, left_out, joined)
+    Ok(only(dense, &keeps))
 }
 
 type Placed = rstar::primitives::GeomWithData<[f64; 2], f64>;
@@ -147,8 +160,11 @@ mod tests {
             dense.points.push(point);
             dense.colors.push([200, 0, 0]);
         }
-        let (cloud, left_out, joined) = held(dense, &sparse);
-        assert_eq!(left_out, 4);
+        let all = dense.points.len();
+        let kept = without_flying(dense, &sparse, &Progress::default()).unwrap();
+        assert_eq!(all - kept.points.len(), 4);
+        let joined = joining(&kept, &sparse).len();
+        let cloud = held(kept, &sparse, &Progress::default()).unwrap();
         for (point, stays) in more {
             assert_eq!(cloud.points.contains(&point), stays, "{point}");
         }
@@ -157,6 +173,9 @@ mod tests {
         assert_eq!(joined, sparse.points.iter().filter(outside).count());
         assert_eq!(cloud.points.len(), own + 2 + joined);
         assert_eq!(cloud.colors.len(), cloud.points.len());
+        let stopped = Progress::default();
+        stopped.cancel();
+        assert!(held(cloud, &sparse, &stopped).is_err());
     }
 
     #[test]
@@ -166,13 +185,16 @@ mod tests {
             colors: Vec::new(),
             ..slope(0.0, 20.0, 0.5)
         };
-        let (cloud, ..) = held(slope(3.0, 17.0, 0.1), &bare);
+        let held =
+            |dense: Cloud, sparse: &Cloud| held(dense, sparse, &Progress::default()).unwrap();
+        let cloud = held(slope(3.0, 17.0, 0.1), &bare);
         assert_eq!(cloud.points.len(), slope(3.0, 17.0, 0.1).points.len());
         let dense = Cloud {
             colors: Vec::new(),
             ..slope(3.0, 17.0, 0.1)
         };
-        let (cloud, _, joined) = held(dense, &sparse);
-        assert!(cloud.colors.is_empty() && joined > 0);
+        let own = dense.points.len();
+        let cloud = held(dense, &sparse);
+        assert!(cloud.colors.is_empty() && cloud.points.len() > own);
     }
 }

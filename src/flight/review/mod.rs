@@ -10,6 +10,7 @@ mod photo;
 use std::sync::Arc;
 
 use crate::fault::Fault;
+use crate::flight::decision::of_photo;
 use crate::flight::verdict::{Facts, Judged, judge};
 use crate::flight::{
     ColoursFound, Decision, Evidence, Flight, Limits, LookedUp, Outcome, PhotoFileState, Verdict,
@@ -176,10 +177,11 @@ impl Review {
     /// taken. Decisions change no reason for doubt.
     pub fn take_decisions(&mut self, decisions: &[Decision]) {
         let photos = self.flight.parts().photos.iter();
-        let of = |name: &str| decisions.iter().find(|decision| decision.photo == name);
         self.decisions = match decisions.is_empty() {
             true => Vec::new(),
-            false => photos.map(|photo| of(&photo.name).cloned()).collect(),
+            false => photos
+                .map(|photo| of_photo(decisions, &photo.name).cloned())
+                .collect(),
         };
     }
 
