@@ -292,6 +292,22 @@ mod tests {
         files
     }
 
+    /// A camera that no lens has speaks against all its photos, where no file can be read, too.
+    #[test]
+    fn a_strange_camera_needs_no_file() {
+        let mut parts = flight("c", 5000.0, LengthUnit::Metre).parts().clone();
+        let found = |parts: &FlightParts| {
+            let files = [PhotoFile::default(), PhotoFile::default()];
+            photo_checks(&Flight::new(parts.clone()).unwrap(), &files).0
+        };
+        assert_eq!(found(&parts), Vec::new());
+        (parts.cameras[0].cx, parts.cameras[0].cy) = (-2.75, 1.75);
+        let against = found(&parts);
+        assert_eq!(against.len(), 1);
+        let (doubt, photos) = &against[0];
+        assert_eq!((doubt.kind(), &photos[..]), ("strange-camera", &[0, 1][..]));
+    }
+
     #[test]
     fn contradictions_are_said_with_their_numbers() {
         let folder = tempfile::tempdir().unwrap();

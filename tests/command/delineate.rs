@@ -10,6 +10,59 @@ fn sample() -> String {
     folder.to_string_lossy().into_owned()
 }
 
+/// What the review leaves out counts in no sizes; named, it is taken all the same.
+#[test]
+fn photos_that_are_left_out_count_nowhere() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let from = Path::new(&sample()).to_owned();
+    let mut text = fs::read_to_string(from.join("flight.toml")).expect("the flight");
+    for number in 1..=8 {
+        text +=
+            &format!("\n[[review]]\nphoto = \"IMG_000{number}.jpg\"\ndecision = \"left-out\"\n");
+    }
+    for name in ["poses.csv", "pile.ply", "ost.yaml"] {
+        fs::copy(from.join(name), folder.path().join(name)).expect("a copy");
+    }
+    fs::create_dir(folder.path().join("photos")).expect("a folder");
+    for number in 1..=9 {
+        let name = format!("photos/IMG_000{number}.jpg");
+        fs::copy(from.join(&name), folder.path().join(&name)).expect("a copy");
+    }
+    let flight = folder.path().join("flight.toml");
+    fs::write(&flight, text).expect("written");
+    let outlined = |more: &[&str], name: &str| -> Vec<String> {
+        let to = folder.path().join(name);
+        let [flight, to_text] = [&flight, &to].map(|path| path.to_str().expect("UTF-8"));
+        let arguments = [
+            "delineate",
+            flight,
+            "--engine",
+            "classical",
+            "--to",
+            to_text,
+        ];
+        let output = crate::common::fragscale(&[&arguments, more].concat());
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(
+            said.contains("the review leaves 8 out of 9"),
+            more.is_empty(),
+            "{said}"
+        );
+        let sizes = fs::read_to_string(to.join("sizes.csv")).expect("sizes");
+        let photos = sizes.lines().skip(1).filter(|line| line.starts_with("IMG"));
+        // A line a percentile.
+        let mut photos: Vec<String> = photos.map(|line| line.chars().take(12).collect()).collect();
+        photos.dedup();
+        photos
+    };
+    assert_eq!(outlined(&[], "all"), ["IMG_0009.jpg"]);
+    assert_eq!(
+        outlined(&["--photo", "IMG_0004.jpg"], "one"),
+        ["IMG_0004.jpg"]
+    );
+}
+
 /// Label image, outlines, measures and curve of one photo agree with each other, and about with what the lab is
 /// made of; a second run writes the same, and writes over its own files alone.
 #[test]
