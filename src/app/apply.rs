@@ -146,6 +146,8 @@ impl State {
             Command::Undo if self.page == Page::Fragments => self.undo_fragments(false),
             Command::Redo if self.page == Page::Fragments => self.undo_fragments(true),
             Command::Undo => {
+                // What was wrong with the step that is taken back is no matter any more; the log keeps it.
+                self.notice = None;
                 self.undo_picks_or_settings(History::undo, History::undo, History::undo);
                 // Else the last word at the foot of the window may be "saved".
                 self.say(Severity::Note, "undone");

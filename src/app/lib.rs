@@ -87,6 +87,9 @@ const PREFERENCES: &str = "preferences";
 /// A window of less has room for a pile between its panels only where they give way, points.
 pub(crate) const NARROW: f32 = 1000.0;
 
+/// A window of less has no room between both panels, points.
+const BOTH: f32 = 560.0;
+
 /// The window's contents.
 pub struct App {
     state: State,
@@ -265,7 +268,9 @@ impl eframe::App for App {
                 _ if is_marking => ["control points", "inspector"],
                 _ => ["photos", "inspector"],
             };
-            if state.preferences.left_open {
+            // Where both leave nothing between them the left one waits until the right one is closed.
+            let both_fit = width >= BOTH || !state.preferences.right_open;
+            if state.preferences.left_open && both_fit {
                 egui::Panel::left((left, is_narrow))
                     .resizable(true)
                     .default_size((width * 0.36).clamp(180.0, 500.0))

@@ -65,4 +65,4 @@ pub use tables::size_distributions::{
     DistributionColumns, PointWeights, read_point_weights, read_size_distributions,
     size_distributions,
 };
-pub use tables::table::{NumberRepairs, Row, Table};
+pub use tables::table::{NumberRepairs, Row, Table, may_be_thousands};

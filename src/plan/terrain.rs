@@ -23,8 +23,10 @@ const LEAST_COVERED: f64 = 0.3;
 #[derive(Debug, Clone)]
 pub struct Terrain {
     raster: MapRaster,
-    /// World z, row by row; NaN where there is no surface.
+    /// World z at the pixels' middles, row by row; NaN where there is no surface.
     heights: Arc<[f64]>,
+    /// The highest in each pixel, for what must not be flown into may be thinner: poles, wires, walls.
+    tops: Arc<[f64]>,
     /// A height near all others, so that sums of differences lose nothing.
     base: f64,
     /// What was looked at for it.
@@ -95,6 +97,7 @@ impl Terrain {
         Ok(Self {
             base: first.unwrap_or(0.0),
             heights: heights.into(),
+            tops: tiles.tops(&raster).into(),
             tiles: Arc::new(tiles),
             raster,
         })
@@ -112,8 +115,12 @@ impl Terrain {
 
     /// The middle of a pixel in the world, on the surface; `None` where there is none.
     pub fn point(&self, column: u32, row: u32) -> Option<DVec3> {
+        self.point_of(&self.heights, [column, row])
+    }
+
+    fn point_of(&self, heights: &[f64], [column, row]: [u32; 2]) -> Option<DVec3> {
         let place = row as usize * self.raster.columns as usize + column as usize;
-        let height = self.heights.get(place).copied()?;
+        let height = heights.get(place).copied()?;
         let middle = DVec2::new(f64::from(column), f64::from(row)) + 0.5;
         let place = self.raster.world_from_pixel(middle);
         (!height.is_nan()).then(|| place.extend(height))
@@ -140,6 +147,17 @@ impl Terrain {
 
     /// The pixels with heights whose middles lie at most `reach` from a place along both axes.
     pub(super) fn around(&self, place: DVec2, reach: f64) -> impl Iterator<Item = DVec3> {
+        let places = self.pixels_around(place, reach);
+        places.filter_map(|[column, row]| self.point(column, row))
+    }
+
+    /// The tops of pixels whose middles lie at most `reach` from a place along both axes.
+    fn tops_around(&self, place: DVec2, reach: f64) -> impl Iterator<Item = DVec3> {
+        let places = self.pixels_around(place, reach);
+        places.filter_map(|place| self.point_of(&self.tops, place))
+    }
+
+    fn pixels_around(&self, place: DVec2, reach: f64) -> impl Iterator<Item = [u32; 2]> + use<> {
         let corner = |sign: f64| {
             let at = self
                 .raster
@@ -153,8 +171,7 @@ impl Terrain {
             first..((to[i] - 0.5).floor() + 1.0).clamp(0.0, f64::from(count)) as u32
         };
         let (columns, rows) = (range(0, self.raster.columns), range(1, self.raster.rows));
-        rows.flat_map(move |row| columns.clone().map(move |column| (column, row)))
-            .filter_map(|(column, row)| self.point(column, row))
+        rows.flat_map(move |row| columns.clone().map(move |column| [column, row]))
     }
 
     /// The plane through the surface around a place, by least squares in z over a square window of this side: what
@@ -187,11 +204,11 @@ impl Terrain {
     }
 
     /// How far a point in the air is from the ground, where that is nearer than `within`; else that. The ground is solid
-    /// from each pixel's height downwards, so that the face of a wall between two pixels is as near as the wall; pixels
+    /// from the highest of each pixel downwards, so that the face of a wall between two pixels is as near as the wall; pixels
     /// count as near as their nearest corner.
     pub fn clearance(&self, point: DVec3, within: f64) -> f64 {
         let corner = self.raster.pixel * FRAC_1_SQRT_2;
-        self.around(point.truncate(), within + corner)
+        self.tops_around(point.truncate(), within + corner)
             .map(|top| {
                 let beside = (top.truncate().distance(point.truncate()) - corner).max(0.0);
                 beside.hypot((point.z - top.z).max(0.0))
@@ -232,27 +249,30 @@ impl Terrain {
 
     /// The highest of the surface within `reach` of the line between two places; `None` where there is none.
     pub fn highest_along(&self, from: DVec2, to: DVec2, reach: f64) -> Option<f64> {
-        self.steps(from, to, reach)
-            .flat_map(|place| self.around(place, reach))
-            .map(|point| point.z)
-            .reduce(f64::max)
+        let reach = reach + self.raster.pixel * FRAC_1_SQRT_2;
+        // What is seen from one look reaches to the next.
+        along(
+            from.extend(0.0),
+            to.extend(0.0),
+            (reach / 2.0).max(self.raster.pixel),
+        )
+        .flat_map(|place| self.tops_around(place.truncate(), reach))
+        .map(|point| point.z)
+        .reduce(f64::max)
     }
 
     /// Whether a straight leg is nearer than `clearance` to the surface anywhere.
     pub fn is_leg_near(&self, from: DVec3, to: DVec3, clearance: f64) -> bool {
-        let count = (from.distance(to) / self.step(clearance)).ceil().max(1.0);
-        let at = |step: f64| from.lerp(to, step / count);
-        // `as` saturates; legs are kilometres at most.
-        (0..=count as u64).any(|step| self.is_near(at(step as f64), clearance))
+        // A pole midway between two looks that just do not see it is nearer to the leg by a 512th of the clearance, which
+        // the corners of pixels are good for.
+        along(from, to, (clearance / 8.0).max(self.raster.pixel))
+            .any(|place| self.is_near(place, clearance))
     }
+}
 
-    /// How far apart a leg is looked at: no spike of a pixel slips between.
-    fn step(&self, clearance: f64) -> f64 {
-        (clearance / 2.0).max(self.raster.pixel)
-    }
-
-    fn steps(&self, from: DVec2, to: DVec2, reach: f64) -> impl Iterator<Item = DVec2> {
-        let count = (from.distance(to) / self.step(reach)).ceil().max(1.0);
-        (0..=count as u64).map(move |step| from.lerp(to, step as f64 / count))
-    }
+/// Places from one to the other, at most so far apart.
+fn along(from: DVec3, to: DVec3, step: f64) -> impl Iterator<Item = DVec3> {
+    let count = (from.distance(to) / step).ceil().max(1.0);
+    // `as` saturates; legs are kilometres at most.
+    (0..=count as u64).map(move |step| from.lerp(to, step as f64 / count))
 }

@@ -4,15 +4,16 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use crate::fault::Fault;
+use crate::geometry::Bounds;
 use crate::jobs::Progress;
 use crate::surface::{MapRaster, Surface};
 
 /// Pixels along a side of a tile.
 const SIDE: i64 = 256;
-/// So many tiles are kept at most: 64 MB.
+/// So many tiles are kept at most: 128 MB.
 const MOST: usize = 128;
 
 /// A tile by its place on the grid: to the east and to the north.
@@ -22,8 +23,41 @@ type Place = [i64; 2];
 #[derive(Debug, Clone)]
 pub(super) struct Tiles {
     pixel: f64,
-    /// World z, row by row from the north; NaN where there is no surface.
-    tiles: HashMap<Place, Arc<[f64]>>,
+    tiles: HashMap<Place, Tile>,
+}
+
+/// World z, row by row from the north; NaN where there is no surface.
+#[derive(Debug, Clone)]
+struct Tile {
+    /// At the pixels' middles.
+    heights: Arc<[f64]>,
+    /// The highest anywhere in a pixel: points of no triangle are among it.
+    tops: Arc<[f64]>,
+}
+
+impl Tile {
+    fn of(surface: &Surface, raster: &MapRaster, progress: &Progress) -> Result<Self, Fault> {
+        let heights = surface.heights_from_above(raster, progress)?;
+        let mut tops = surface.tops_from_above(raster, progress)?;
+        let [min, max] = raster.bounds();
+        let misses = |bounds: &Bounds| {
+            let [from, to] = [bounds.min, bounds.max].map(DVec3::truncate);
+            from.cmpgt(max).any() || to.cmplt(min).any()
+        };
+        for point in surface.vertices_seen(misses) {
+            let at = raster.pixel_from_world(point.truncate()).floor();
+            // `as` is exact: it lies inside.
+            if at.min_element() >= 0.0 && at.x < SIDE as f64 && at.y < SIDE as f64 {
+                let top = &mut tops[(at.y as i64 * SIDE + at.x as i64) as usize];
+                // NaN gives way.
+                *top = top.max(point.z);
+            }
+        }
+        Ok(Self {
+            heights: heights.into(),
+            tops: tops.into(),
+        })
+    }
 }
 
 impl Tiles {
@@ -40,17 +74,13 @@ impl Tiles {
         let mut tiles = HashMap::new();
         let known = known.filter(|known| known.pixel == raster.pixel);
         for place in places(raster) {
-            let heights = match known.and_then(|known| known.tiles.get(&place)) {
-                Some(heights) => heights.clone(),
-                None => surface
-                    .heights_from_above(&tile(place, raster.pixel), progress)?
-                    .into(),
-            };
-            tiles.insert(place, heights);
+            let known = known.and_then(|known| known.tiles.get(&place)).cloned();
+            let made = || Tile::of(surface, &tile(place, raster.pixel), progress);
+            tiles.insert(place, known.map_or_else(made, Ok)?);
         }
-        for (place, heights) in known.iter().flat_map(|known| &known.tiles) {
+        for (place, known) in known.iter().flat_map(|known| &known.tiles) {
             if tiles.len() < MOST {
-                tiles.entry(*place).or_insert_with(|| heights.clone());
+                tiles.entry(*place).or_insert_with(|| known.clone());
             }
         }
         Ok(Self {
@@ -59,8 +89,17 @@ impl Tiles {
         })
     }
 
-    /// The heights of a raster, whose tiles are there.
+    /// The heights at the middles of a raster's pixels, whose tiles are there.
     pub(super) fn heights(&self, raster: &MapRaster) -> Vec<f64> {
+        self.cut(raster, |tile| &tile.heights)
+    }
+
+    /// The highest in each of a raster's pixels, whose tiles are there.
+    pub(super) fn tops(&self, raster: &MapRaster) -> Vec<f64> {
+        self.cut(raster, |tile| &tile.tops)
+    }
+
+    fn cut(&self, raster: &MapRaster, of: impl Fn(&Tile) -> &[f64]) -> Vec<f64> {
         let [west, north] = first_pixel(raster);
         let columns = usize::try_from(raster.columns).unwrap_or_default();
         let mut heights = vec![f64::NAN; columns * raster.rows as usize];
@@ -73,7 +112,7 @@ impl Tiles {
                 let at = west.saturating_add(i64::try_from(from).unwrap_or(i64::MAX));
                 let [x, first] = [at.div_euclid(SIDE), at.rem_euclid(SIDE)];
                 let count = (columns - from).min((SIDE - first) as usize);
-                if let Some(tile) = self.tiles.get(&[x, y]) {
+                if let Some(tile) = self.tiles.get(&[x, y]).map(&of) {
                     let begin = (in_tile * SIDE + first) as usize;
                     heights[from..from + count].copy_from_slice(&tile[begin..begin + count]);
                 }
@@ -161,7 +200,7 @@ mod tests {
             behind
                 .tiles
                 .get(place)
-                .is_some_and(|own| Arc::ptr_eq(own, heights))
+                .is_some_and(|own| Arc::ptr_eq(&own.heights, &heights.heights))
         });
         assert!(shared && tiles.tiles.len() < behind.tiles.len());
         // The small one again is in the large one, and nothing new is looked at.

@@ -8,6 +8,7 @@ use fragscale::app::App;
 use fragscale::app::command::{Command, PictureRequest};
 use fragscale::app::open_flight::Measure;
 use fragscale::app::state::layers::Layers;
+use fragscale::flight::DecisionKind;
 use fragscale::render::{ColorBy, Scope};
 use fragscale::units::LengthUnit;
 
@@ -325,6 +326,47 @@ fn the_selection_does_not_tint_the_photo_that_is_laid_over() {
     // Without a photo the tint says where the selected one looks.
     let tinted = with(Scope::Selected, false) != with(Scope::None, false);
     assert!(tinted);
+}
+
+/// Export stays in the first row, whatever verdicts there are.
+#[test]
+fn the_tool_bar_is_one_row() {
+    for (wide, decided) in [(1130.0, false), (1366.0, true)] {
+        let mut desk = desk_of_size([wide, 700.0], "assets/sample");
+        desk.settle();
+        if decided {
+            let state = desk.harness.state_mut();
+            state.apply(Command::Decide(
+                0,
+                Some((DecisionKind::LeftOut, String::new())),
+            ));
+            desk.settle();
+            assert!(desk.shows(Role::Button, "Only photos: left out"));
+        }
+        let top = |name| desk.node(Role::Button, name).rect().center().y;
+        let [open, export] = [top("Open"), top("Export chosen photos")];
+        assert!((open - export).abs() < 2.0, "{wide}: {open} {export}");
+    }
+}
+
+/// Where both panels leave nothing between them, the right one is there, and the left one once it is closed.
+#[test]
+fn a_very_narrow_window_has_one_panel_beside_the_viewport() {
+    let mut desk = desk_of_size([450.0, 300.0], "assets/sample");
+    desk.settle();
+    for page in [Key::Num1, Key::Num4] {
+        desk.press(Modifiers::COMMAND, page);
+        let width = desk.viewport().width();
+        assert!(width >= 180.0, "{width}");
+    }
+    desk.press(Modifiers::COMMAND, Key::Num1);
+    assert!(!desk.says("9 of 9"));
+    desk.press(Modifiers::NONE, Key::F3);
+    assert!(desk.says("9 of 9"));
+    desk.press(Modifiers::NONE, Key::F3);
+    desk.harness.set_size(vec2(900.0, 600.0));
+    desk.settle();
+    assert!(desk.says("9 of 9"));
 }
 
 /// Whatever sizes the window has while a flight is read and drawn: no error of the graphics device is

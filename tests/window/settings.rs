@@ -96,6 +96,24 @@ fn the_ground_is_where_it_is_typed() {
     undo_to(&mut desk, &before);
 }
 
+/// A comma may be decimal or stand between thousands: nothing is guessed, and it is said beside the field.
+#[test]
+fn a_number_that_may_be_two_is_not_taken() {
+    let (_folder, mut desk) = page(MISSES);
+    let before = desk.open().settings();
+    for (typed, why) in [
+        ("1,200", "write 1200 or 1.200"),
+        ("high", "'high' is not a number"),
+    ] {
+        desk.fill("Ground elevation", typed);
+        assert_eq!(desk.open().settings(), before, "{typed}");
+        assert!(desk.says(why), "{typed}");
+    }
+    desk.fill("Ground elevation", "1,25");
+    assert_ne!(desk.open().settings(), before);
+    assert!(!desk.says("is not a number"));
+}
+
 #[test]
 fn scales_can_be_for_the_photo_as_shot() {
     let (folder, mut desk) = page(WINDROW);

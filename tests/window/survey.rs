@@ -128,6 +128,11 @@ fn a_volume_is_drawn_and_measured() {
         copied.contains("m³") && copied.contains("\nx,y\n"),
         "{copied}"
     );
+    desk.node(Role::Button, "Copy points").click();
+    desk.harness.step();
+    let copied = desk.copied().expect("a table");
+    assert_eq!(copied.lines().count(), 5, "{copied}");
+    assert!(copied.starts_with("x,y\n"), "{copied}");
     // Measuring puts it away.
     desk.press(Modifiers::NONE, Key::M);
     assert!(desk.open().pointer.drawn.is_none());

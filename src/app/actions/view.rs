@@ -140,7 +140,8 @@ actions! {
     }
     LEFT_PANEL {
         label: "Table",
-        hover: "Show or hide the panel at the left: the photos, or the size distributions",
+        hover: "Show or hide the panel at the left: the photos, or the size distributions. A very narrow window has room for one: \
+                close the right one first",
         shortcut: keys(Modifiers::NONE, Key::F2),
         command: |state| has_panels(state, Command::ToggleLeft),
     }

@@ -1,6 +1,8 @@
 //! A field for a number: what is typed counts when the field is left, so that undo has one step for
 //! it and nothing is computed for half a number.
 
+use fragscale_formats::may_be_thousands;
+
 /// Draws the field; returns the new number once it is settled. `label` names it for screen readers.
 pub(super) fn number_field(
     ui: &mut egui::Ui,
@@ -17,13 +19,43 @@ pub(super) fn number_field(
     if !suffix.is_empty() {
         ui.label(suffix);
     }
-    number_of(&typed?).filter(|number| *number != value)
+    settled(ui, label, typed).filter(|number| *number != value)
 }
 
-/// What was typed, if it is a number: a decimal comma is what half of the world types.
-pub(super) fn number_of(typed: &str) -> Option<f64> {
-    let number = typed.trim().replace(',', ".").parse();
-    number.ok().filter(|number: &f64| number.is_finite())
+/// The number that was typed into the field of that label. Why it was not taken stays beside the field until
+/// something else is typed there.
+pub(super) fn settled(ui: &mut egui::Ui, label: &str, typed: Option<String>) -> Option<f64> {
+    let field = ui.scope_id().with(label);
+    let id = field.with("not taken");
+    let read = typed.map(|typed| number_of(&typed));
+    if let Some(Err(why)) = &read {
+        ui.data_mut(|data| data.insert_temp(id, why.clone()));
+    } else if read.is_some() || ui.memory(|memory| memory.has_focus(field)) {
+        ui.data_mut(|data| data.remove::<String>(id));
+    }
+    if let Some(why) = ui.data(|data| data.get_temp::<String>(id)) {
+        let warn = ui.visuals().warn_fg_color;
+        let sign = ui.colored_label(warn, "⚠ not taken").on_hover_text(&why);
+        sign.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{label}: {why}"))
+        });
+    }
+    read?.ok()
+}
+
+/// What was typed as a number: a decimal comma is what half of the world types. Or why it is none.
+fn number_of(typed: &str) -> Result<f64, String> {
+    let text = typed.trim();
+    if text.contains(',') && may_be_thousands(text) {
+        let [whole, point] = ["", "."].map(|sign| text.replace(',', sign));
+        return Err(format!(
+            "{text} may have a decimal comma or one between thousands: write {whole} or {point}"
+        ));
+    }
+    match text.replace(',', ".").parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("'{text}' is not a number")),
+    }
 }
 
 /// Draws a field for a text; returns what was typed once the field is left.

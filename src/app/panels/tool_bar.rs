@@ -4,7 +4,6 @@ use super::verdict::{verdict_color, verdict_sign};
 use crate::actions;
 use crate::command::Command;
 use crate::flight::Verdict;
-use crate::names;
 use crate::open_flight::OpenFlight;
 use crate::size_distributions::Page;
 use crate::state::State;
@@ -19,12 +18,18 @@ const UNITS: [LengthUnit; 5] = [
     LengthUnit::Foot,
 ];
 
-/// A bar that is narrower, points, says less.
+/// A bar that is narrower, points, says less; so much more is needed for each verdict that not every flight has.
 const NARROW: f32 = 1280.0;
+const VERDICT: f32 = 90.0;
+/// In one that is narrower yet a verdict that no photo has does not stand.
+const NARROWEST: f32 = 1160.0;
 
 /// Draws the tool bar.
 pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    let is_narrow = ui.available_width() < NARROW;
+    let verdicts = verdicts(state);
+    let more = verdicts.len().saturating_sub(USUAL.len()) as f32;
+    let width = ui.available_width() - more * VERDICT;
+    let is_narrow = width < NARROW;
     ui.horizontal_wrapped(|ui| {
         pages(state, ui, commands);
         ui.separator();
@@ -52,10 +57,12 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         }
         ui.separator();
         // Export stays in the first row of a window that is not wide.
-        ui.label(names::unbroken(match is_narrow {
+        let words = match is_narrow {
             true => "px per",
             false => "Scales in px per",
-        }));
+        };
+        // Not half of it at the end of a row.
+        ui.add(egui::Label::new(words).extend());
         for unit in UNITS {
             let chosen = state.preferences.unit() == unit;
             let button = ui.selectable_label(chosen, unit.symbol());
@@ -72,11 +79,8 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         let Some(open) = &state.open else {
             return;
         };
-        for verdict in Verdict::ALL {
-            let count = open.review.count_of(verdict);
-            let shown = open.table.order.verdict == Some(verdict);
-            let is_decided = matches!(verdict, Verdict::Accepted | Verdict::LeftOut);
-            if is_decided && count == 0 && !shown {
+        for (verdict, count, shown) in verdicts {
+            if width < NARROWEST && count == 0 && !shown {
                 continue;
             }
             let text = format!("{} {count} {verdict}", verdict_sign(verdict));
@@ -105,6 +109,24 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             commands.extend((actions::file::EXPORT.command)(state));
         }
     });
+}
+
+/// Verdicts that stand in the bar with 0, too.
+const USUAL: [Verdict; 3] = [Verdict::Trust, Verdict::Check, Verdict::NoScale];
+
+/// Those that stand in the bar, how many photos have each, and whether the table shows these alone.
+fn verdicts(state: &State) -> Vec<(Verdict, usize, bool)> {
+    let of = |open: &OpenFlight| {
+        let counted = Verdict::ALL.into_iter().map(|verdict| {
+            let shown = open.table.order.verdict == Some(verdict);
+            (verdict, open.review.count_of(verdict), shown)
+        });
+        let is_there = |(verdict, count, shown): &(Verdict, usize, bool)| {
+            *count > 0 || *shown || USUAL.contains(verdict)
+        };
+        counted.filter(is_there).collect()
+    };
+    state.open.as_deref().map(of).unwrap_or_default()
 }
 
 /// Why nothing can be exported now.

@@ -120,6 +120,19 @@ impl CameraEntry {
         }))
     }
 
+    /// Three numbers of `brown` are k1 k2 p1 here, and the k1 k2 k3 of a report where somebody copied them: a sentence
+    /// that says so.
+    pub fn may_mean_others(&self) -> Option<String> {
+        let [_, _, third] = self.coefficients.as_deref()? else {
+            return None;
+        };
+        let is_brown = self.distortion.as_deref() == Some("brown");
+        (is_brown && *third != 0.0).then(|| {
+            let third = format!("{third} is taken as p1, a decentring coefficient");
+            format!("three coefficients of a brown lens are k1 k2 p1 ({third}): where it is k3, write k1 k2 0 0 k3")
+        })
+    }
+
     fn lens(&self) -> Result<Distortion, String> {
         let given = self.coefficients.as_deref().unwrap_or_default();
         if given.iter().any(|c| !c.is_finite()) {
@@ -170,6 +183,28 @@ mod tests {
             coefficients: Some(vec![0.1, -0.2]),
             ..CameraEntry::default()
         }
+    }
+
+    #[test]
+    fn three_coefficients_of_brown_may_be_meant_otherwise() {
+        let of = |coefficients: &[f64], distortion: &str| {
+            let entry = CameraEntry {
+                coefficients: Some(coefficients.to_vec()),
+                distortion: Some(distortion.to_owned()),
+                ..whole()
+            };
+            entry.may_mean_others()
+        };
+        let said = of(&[-0.1, 0.02, 0.003], "brown").unwrap();
+        assert!(said.contains("0.003 is taken as p1"), "{said}");
+        for clear in [
+            &[-0.1, 0.02][..],
+            &[-0.1, 0.02, 0.0],
+            &[-0.1, 0.02, 0.0, 0.0, 0.003],
+        ] {
+            assert_eq!(of(clear, "brown"), None, "{clear:?}");
+        }
+        assert_eq!(of(&[0.1, 0.2, 0.3], "fisheye"), None);
     }
 
     #[test]

@@ -45,6 +45,9 @@ pub(super) fn read_tables(
                 ));
             }
         };
+        if let Some(warning) = entry.may_mean_others() {
+            source.warn(path, &[warning]);
+        }
         if let Some(name) = &entry.name {
             camera.name.clone_from(name);
         }

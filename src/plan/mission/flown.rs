@@ -98,7 +98,8 @@ pub fn planned_poses(
         let what = "it does not say where the drone takes off, from where its heights count";
         Fault::new(what, "say it: --take-off X,Y")
     };
-    let unit = crs.vertical_unit_metres();
+    // A surface has its heights in the unit of x and y, whatever unit the system states for them.
+    let unit = crs.unit_metres();
     let pitches = mission.gimbal_pitches();
     let mut planned = Vec::new();
     for ((stop, pitch), number) in mission.stops.iter().zip(pitches).zip(1..) {

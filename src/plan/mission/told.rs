@@ -85,8 +85,8 @@ fn mission(plan: &Plan, way: &Way, crs: &Crs, told: Told) -> Result<Mission, Fau
     };
     let geographic = |place: DVec3| crs.to_geographic(place).ok_or_else(off);
     let take_off = geographic(way.take_off)?;
-    let unit = crs.vertical_unit_metres();
-    let above = |z: f64| (z - way.take_off.z) * unit;
+    // A surface has its heights in the unit of x and y, whatever unit the system states for them.
+    let above = |z: f64| (z - way.take_off.z) * told.unit.metres();
     let mut stops = Vec::with_capacity(way.points.len());
     for point in &way.points {
         let place = geographic(point.place)?;

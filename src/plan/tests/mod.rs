@@ -422,6 +422,87 @@ fn a_mission_over_feet_is_told_in_metres() {
     );
 }
 
+/// A surface has its heights in the unit of x and y, also where its system states feet for them: a mission's metres are those
+/// of the surface, and read back its photos are where they were planned.
+#[test]
+fn a_systems_unit_of_heights_does_not_count() {
+    let surface = surface(|_| 100.0);
+    let plan = plan(&surface, 20.0, wish(Pattern::Slope));
+    let take_off = DVec2::new(500_000.0, 5_000_000.0 - 60.0);
+    let way = ways((&plan, &surface), take_off, None).unwrap().remove(0);
+    let crs = Crs::understand("EPSG:32632+6360").unwrap();
+    assert!((crs.vertical_unit_metres() - 1200.0 / 3937.0).abs() < 1e-12);
+    let told = Told {
+        name: String::new(),
+        drone: None,
+        unit: LengthUnit::Metre,
+        speed: 4.0,
+        settle: 1.0,
+    };
+    let (_, mission) = missions(&plan, std::slice::from_ref(&way), &crs, &told)
+        .unwrap()
+        .remove(0);
+    for (stop, point) in mission.stops.iter().zip(&way.points) {
+        let height = stop.height.metres;
+        assert!((height - (point.place.z - 100.0)).abs() < 1e-9, "{height}");
+    }
+    let back = planned_poses(&mission, &crs, Some(take_off), |_| Some(100.0)).unwrap();
+    assert_eq!(back.len(), plan.photos.len());
+    for planned in &back {
+        let own = plan.photos.iter().find(|photo| photo.name == planned.name);
+        let off = own.unwrap().pose.center.distance(planned.pose.center);
+        assert!(off < 1e-3, "{}: {off}", planned.name);
+    }
+}
+
+/// Poles of one point each under legs of a flight without them, and a wall of one row of points, all with ground close
+/// around, so that no pixel of the terrain has its middle on one: photos and legs keep the clearance from every point.
+#[test]
+fn what_is_thin_is_flown_around() {
+    let take_off = DVec2::new(500_000.0 - 60.0, 5_000_000.0 - 60.0);
+    let flat = surface(|_| 0.0);
+    let free = plan(&flat, 60.0, wish(Pattern::Slope));
+    let legs = ways((&free, &flat), take_off, None)
+        .unwrap()
+        .remove(0)
+        .corners();
+    let middle = |leg: usize, z: f64| legs[leg].midpoint(legs[leg + 1]) + DVec3::new(0.37, 0.21, z);
+    let poles = [middle(3, -4.5), middle(5, -1.0), middle(8, 3.0)];
+    let foot = middle(10, -2.0);
+    let wall = (0..40).map(|i| foot + DVec3::new(0.0, 0.3 * f64::from(i), 0.0));
+    let thin: Vec<DVec3> = poles.into_iter().chain(wall).collect();
+    let nearest = |corners: &[DVec3]| {
+        let legs = corners[1..corners.len() - 1].windows(2);
+        let off = legs.flat_map(|leg| {
+            thin.iter().map(|point| {
+                let along = leg[1] - leg[0];
+                let share = (*point - leg[0]).dot(along) / along.length_squared().max(1e-9);
+                leg[0].lerp(leg[1], share.clamp(0.0, 1.0)).distance(*point)
+            })
+        });
+        off.fold(f64::INFINITY, f64::min)
+    };
+    assert!(nearest(&legs) < 2.0);
+    let close = thin.iter().flat_map(|point| {
+        let off = [(-0.03, 0.0), (0.03, 0.0), (0.0, -0.03), (0.0, 0.03)];
+        off.map(|(x, y)| (point.truncate() + DVec2::new(x, y)).extend(0.0))
+    });
+    let surface = Surface::new(Cloud {
+        points: flat
+            .vertices()
+            .chain(close)
+            .chain(thin.iter().copied())
+            .collect(),
+        ..Cloud::default()
+    })
+    .unwrap();
+    let plan = plan(&surface, 60.0, wish(Pattern::Slope));
+    let way = ways((&plan, &surface), take_off, None).unwrap().remove(0);
+    assert!(plan.photos.len() > 8, "{}", plan.photos.len());
+    let off = nearest(&way.corners());
+    assert!(off >= 5.0, "{off}");
+}
+
 /// A square across the field, between the take-off and some photos: none is taken above it or near it, no leg leads over
 /// it, at safe height neither, and the mission has it as a fence.
 #[test]

@@ -27,6 +27,15 @@ use crate::jobs::Progress;
 /// Rows that one thread works on at a time.
 const BAND: u32 = 64;
 
+/// What of a pixel is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Look {
+    /// Its middle.
+    Middle,
+    /// All of it.
+    Whole,
+}
+
 impl Surface {
     /// The highest of the surface at each pixel's middle, world z, row by row; NaN where there is none.
     ///
@@ -35,6 +44,28 @@ impl Surface {
     pub fn heights_from_above(
         &self,
         raster: &MapRaster,
+        progress: &Progress,
+    ) -> Result<Vec<f64>, Fault> {
+        self.from_above(raster, Look::Middle, progress)
+    }
+
+    /// The highest of the surface anywhere in each pixel, its edges included: nothing is too thin. World z, row by row; NaN
+    /// where there is none.
+    ///
+    /// # Errors
+    /// Where the surface cannot be triangulated, or the work was cancelled.
+    pub fn tops_from_above(
+        &self,
+        raster: &MapRaster,
+        progress: &Progress,
+    ) -> Result<Vec<f64>, Fault> {
+        self.from_above(raster, Look::Whole, progress)
+    }
+
+    fn from_above(
+        &self,
+        raster: &MapRaster,
+        look: Look,
         progress: &Progress,
     ) -> Result<Vec<f64>, Fault> {
         let frame = self.frame();
@@ -73,16 +104,24 @@ impl Surface {
                     let (min, max) = (p.min(q).min(r), p.max(q).max(r));
                     // Middles at + 0.5; `as` saturates.
                     let range = |min: f64, max: f64, from: u32, to: u32| {
-                        let first = ((min - 0.5).ceil() as u32).max(from);
-                        first..(((max - 0.5).floor() + 1.0) as u32).min(to)
+                        let [first, last] = match look {
+                            Look::Middle => [(min - 0.5).ceil(), (max - 0.5).floor()],
+                            Look::Whole => [min.ceil() - 1.0, max.floor()],
+                        };
+                        (first as u32).max(from)..((last + 1.0) as u32).min(to)
                     };
+                    let solid: [DVec3; 3] =
+                        std::array::from_fn(|i| on_picture[i].extend(corners[i].z));
                     for row in range(min.y, max.y, rows.start, rows.end) {
                         for column in range(min.x, max.x, 0, columns) {
-                            let middle = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
-                            let Some(shares) = shares(&on_picture, middle) else {
+                            let first = DVec2::new(f64::from(column), f64::from(row));
+                            let found = match look {
+                                Look::Middle => height_at(&solid, first + 0.5),
+                                Look::Whole => highest_in(&solid, first),
+                            };
+                            let Some(z) = found else {
                                 continue;
                             };
-                            let z: f64 = (0..3).map(|i| corners[i].z * shares[i]).sum();
                             let z = z + frame.origin().z;
                             let index =
                                 (row - rows.start) as usize * columns as usize + column as usize;
@@ -99,11 +138,41 @@ impl Surface {
     }
 }
 
-/// How much of each corner is in a place inside a triangle, edges included; `None` outside.
-fn shares([a, b, c]: &[DVec2; 3], place: DVec2) -> Option<[f64; 3]> {
-    let whole = (*b - *a).perp_dot(*c - *a);
+/// The height of a triangle at a place inside, edges included; `None` outside. x and y are pixels.
+fn height_at(corners: &[DVec3; 3], place: DVec2) -> Option<f64> {
+    let [a, b, c] = corners.map(DVec3::truncate);
+    let whole = (b - a).perp_dot(c - a);
     let share = |from: DVec2, to: DVec2| (to - from).perp_dot(place - from) / whole;
-    let shares = [share(*b, *c), share(*c, *a), share(*a, *b)];
+    let shares = [share(b, c), share(c, a), share(a, b)];
     // Edges belong to both sides; NaN, of a triangle that is seen edge-on, to none.
-    shares.iter().all(|share| *share >= -1e-9).then_some(shares)
+    let is_inside = shares.iter().all(|share| *share >= -1e-9);
+    is_inside.then(|| (0..3).map(|i| corners[i].z * shares[i]).sum())
+}
+
+/// The highest of a triangle in the pixel that begins there, its edges included: what four cuts leave of it has its
+/// highest place at a corner (Sutherland and Hodgman 1974). `None` where it lies beside. x and y are pixels.
+fn highest_in(corners: &[DVec3; 3], first: DVec2) -> Option<f64> {
+    let mut left = corners.to_vec();
+    for (axis, limit, sign) in [
+        (0, first.x, 1.0),
+        (0, first.x + 1.0, -1.0),
+        (1, first.y, 1.0),
+        (1, first.y + 1.0, -1.0),
+    ] {
+        let inside = |point: DVec3| (point[axis] - limit) * sign;
+        // Most triangles are smaller than a pixel.
+        if left.iter().all(|point| inside(*point) >= 0.0) {
+            continue;
+        }
+        let next = left.iter().cycle().skip(1);
+        let pairs = left.iter().zip(next);
+        let cut = pairs.flat_map(|(&from, &to)| {
+            let (a, b) = (inside(from), inside(to));
+            let crossing = (a < 0.0) != (b < 0.0);
+            let on_edge = crossing.then(|| from.lerp(to, a / (a - b)));
+            [(a >= 0.0).then_some(from), on_edge]
+        });
+        left = cut.flatten().collect();
+    }
+    left.iter().map(|point| point.z).reduce(f64::max)
 }

@@ -52,6 +52,57 @@ fn heights_are_those_of_the_plane_and_nothing_lies_beside_it() {
     }
 }
 
+/// On a plane the highest of a pixel is its corner uphill; a spike or a wall is as high as it is wherever it stands.
+#[test]
+fn tops_are_those_of_the_corner_uphill_and_of_what_is_thin() {
+    let slope = DVec2::new(0.3, -0.2);
+    let raster = raster(9.0, 0.5);
+    let tops = plane(slope)
+        .tops_from_above(&raster, &Progress::default())
+        .unwrap();
+    for row in 0..36_u32 {
+        for column in 0..36_u32 {
+            let place = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
+            let off = raster.world_from_pixel(place) - MIDDLE;
+            let known = 100.0 + slope.dot(off) + 0.25 * (0.3 + 0.2);
+            let top = tops[(row * 36 + column) as usize];
+            assert!((top - known).abs() < 1e-9, "{off}: {top}, not {known}");
+        }
+    }
+    // A needle 8 high between the middles, and an upright wall 5 high: two triangles without a width.
+    let at = |x: f64, y: f64, z: f64| (MIDDLE + DVec2::new(x, y)).extend(z);
+    let mesh = Cloud {
+        points: vec![
+            at(-9.0, -9.0, 0.0),
+            at(9.0, -9.0, 0.0),
+            at(0.01, 9.0, 0.0),
+            at(3.02, 1.03, 8.0),
+            at(3.03, 1.03, 0.0),
+            at(3.02, 1.04, 0.0),
+            at(-4.0, -3.1, 0.0),
+            at(4.0, -3.1, 0.0),
+            at(4.0, -3.1, 5.0),
+            at(-4.0, -3.1, 5.0),
+        ],
+        triangles: vec![[0, 1, 2], [3, 4, 5], [6, 7, 8], [6, 8, 9]],
+        ..Cloud::default()
+    };
+    let mesh = Surface::new(mesh).unwrap();
+    let progress = Progress::default();
+    let middles = mesh.heights_from_above(&raster, &progress).unwrap();
+    let highest = |heights: &[f64]| heights.iter().copied().fold(f64::NAN, f64::max);
+    assert!(highest(&middles).abs() < 1e-9);
+    let tops = mesh.tops_from_above(&raster, &progress).unwrap();
+    assert!((highest(&tops) - 8.0).abs() < 1e-9);
+    // 16 pixels of half a unit.
+    let wall = tops.iter().filter(|top| (**top - 5.0).abs() < 1e-9);
+    assert!(
+        (16..=18).contains(&wall.clone().count()),
+        "{}",
+        wall.count()
+    );
+}
+
 /// Burrough & McDonnell, "Principles of GIS" (1998): cos(zenith) cos(slope) + sin(zenith) sin(slope)
 /// cos(azimuth - aspect), with the aspect the direction in which the plane falls.
 #[test]

@@ -5,7 +5,7 @@ use crate::control::ScaleBar;
 use crate::control_points::ControlStep;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
-use crate::panels::field::{combo_box, number_field, number_of, text_field};
+use crate::panels::field::{combo_box, number_field, settled, text_field};
 use crate::units::LengthUnit;
 
 /// Draws them.
@@ -32,7 +32,10 @@ pub(super) fn bars(open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec<Comm
             // Empty until somebody types it: a length that stands there already is taken for true.
             let typed = match bar.is_known() {
                 true => number_field(ui, &label, hover, bar.length, ""),
-                false => text_field(ui, &label, hover, "", 90.0).and_then(|text| number_of(&text)),
+                false => {
+                    let typed = text_field(ui, &label, hover, "", 90.0);
+                    settled(ui, &label, typed)
+                }
             };
             if let Some(length) = typed {
                 next.length = length;

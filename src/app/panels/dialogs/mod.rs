@@ -153,7 +153,7 @@ fn unsaved(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         let body = egui::TextStyle::Body.resolve(ui.style());
         let name = &open.flight().parts().name;
         ui.label(format!(
-            "The settings of {}, what was decided of its photos or the outlines of fragments have changed since they were saved.",
+            "The settings of {}, what was decided of its photos, its control points or the outlines of fragments have changed since they were saved.",
             names::fitted(ui, name, &body, 300.0)
         ));
     }

@@ -7,7 +7,7 @@ use crate::names::unbroken;
 use crate::numbers::significant_digits;
 use crate::open_flight::OpenFlight;
 use crate::open_flight::tracing::{Trace, Tracing};
-use crate::panels::field::{number_field, number_of, text_field};
+use crate::panels::field::{number_field, settled, text_field};
 use crate::panels::rows::Rows;
 use crate::panels::shown_per;
 use crate::panels::verdict::{or_dash, verdict_color};
@@ -81,7 +81,7 @@ fn begin(
         let hover = "As it was measured, in the unit of the flight's world";
         let typed = text_field(ui, label, hover, &text, 60.0);
         ui.label(open.flight().parts().unit_of_lengths());
-        if let Some(size) = typed.and_then(|typed| number_of(&typed)) {
+        if let Some(size) = settled(ui, label, typed) {
             commands.push(Command::Trace(Trace::Size(kind, size)));
         }
     });

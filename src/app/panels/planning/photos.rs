@@ -146,8 +146,9 @@ fn table(
     let selected = open.planning.selected();
     let id = ui.scope_id().with("planned row");
     let before: Option<Option<usize>> = ui.data(|data| data.get_temp(id));
-    // A click on a number is one on its row.
+    // A click on a number is one on its row. No number is broken over two lines.
     ui.style_mut().interaction.selectable_labels = false;
+    ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
     let mut table = TableBuilder::new(ui)
         .id_salt("planned photos")
         .striped(true)

@@ -99,14 +99,15 @@ pub(super) fn volume(
             .wrap(),
         );
     }
-    let mut text = volume_table(&report);
-    text += "\nx,y\n";
-    for corner in &drawn.points {
-        text += &format!("{},{}\n", corner.x, corner.y);
-    }
-    ui.horizontal(|ui| {
+    let corners = drawn.points.iter();
+    let corners = corners.map(|corner| format!("{},{}\n", corner.x, corner.y));
+    let corners = format!("x,y\n{}", corners.collect::<String>());
+    let text = format!("{}\n{corners}", volume_table(&report));
+    ui.horizontal_wrapped(|ui| {
         let hover = "The numbers as text, with the polygon's corners";
         copy("Copy numbers", hover, Some(text), ui, commands);
+        let hover = "The polygon's corners alone, as CSV with all digits";
+        copy("Copy points", hover, Some(corners), ui, commands);
         save(MeasuredTable::Volume, ui, commands);
     });
 }

@@ -149,6 +149,15 @@ impl OnSieves {
                 rounded(total)
             ));
         }
+        let missing = 100.0 - on_sieves;
+        let is_of_pan =
+            percents && kind == Kind::Each && each == on_sieves && missing > SUM_ROUNDING;
+        if is_of_pan {
+            said.push(format!(
+                "{name}no line says what was in the pan: it is taken to be the {} % that the sieves lack to 100",
+                rounded(missing)
+            ));
+        }
         let mut coarser = 0.0;
         for point in &mut curve.points {
             coarser = match kind {

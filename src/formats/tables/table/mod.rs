@@ -394,7 +394,7 @@ pub(crate) fn split_number(cell: &str) -> (&str, &str) {
 
 /// Whether the one comma or point of a number may separate thousands: one to three digits in front, of
 /// which the first is no 0, and three behind.
-pub(crate) fn may_be_thousands(number: &str) -> bool {
+pub fn may_be_thousands(number: &str) -> bool {
     let number = number.trim_start_matches(['+', '-']);
     let Some((whole, rest)) = number.split_once([',', '.']) else {
         return false;

@@ -50,9 +50,31 @@ fn each_way_to_tell_what_stays_gives_what_passes() {
             assert!((point[1] - wanted[1]).abs() < 1e-9, "{text}: {points:?}");
         }
         let unexpected = said.iter().find(|said| {
-            !said.contains("decimal commas") && !said.contains("columns that are not used")
+            !said.contains("decimal commas")
+                && !said.contains("columns that are not used")
+                && !said.contains("no line says what was in the pan")
         });
         assert_eq!(unexpected, None, "{text}");
+    }
+}
+
+/// A line of the pan that was forgotten is seen by whoever reads what was taken for it.
+#[test]
+fn what_is_taken_for_the_pan_is_said() {
+    let pan = |text| {
+        let said = passing(text).1;
+        said.into_iter().find(|said| said.contains("pan"))
+    };
+    assert_eq!(
+        pan("Sieve (mm),Individual % retained\n80,5\n40,30\n20,25\n10,20\n").unwrap(),
+        "no line says what was in the pan: it is taken to be the 20 % that the sieves lack to 100"
+    );
+    for clear in [
+        "Sieve (mm),Individual % retained\n80,5\n40,30\n20,25\n10,39.8\n",
+        "Sieve (mm),Individual % retained\n80,5\n40,30\n20,25\n10,20\npan,20\n",
+        "Sieve (mm),Cumulative % retained\n80,5\n40,35\n20,60\n10,80\n",
+    ] {
+        assert_eq!(pan(clear), None, "{clear}");
     }
 }
 
