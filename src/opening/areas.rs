@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use glam::DVec2;
 
 use crate::fault::Fault;
-use crate::formats::{FileError, holds_areas, read_areas, read_places, typed_places};
-use crate::geodesy::{Crs, Geographic};
+use crate::formats::{FileError, MapAreas, holds_areas, read_areas, read_places, typed_places};
+use crate::geodesy::Crs;
 use fragscale_core::survey::Polygon;
 
 /// `x,y;x,y;…`, or a file with a place a line. With what was mended of the file.
@@ -34,7 +34,7 @@ pub enum Areas {
     /// One, in the world, and what was mended of it.
     InWorld(Vec<DVec2>, Vec<String>),
     /// Of a file of a map: one or more.
-    OnEarth(PathBuf, Vec<Vec<Geographic>>),
+    OnEarth(PathBuf, MapAreas),
 }
 
 impl Areas {
@@ -52,12 +52,28 @@ impl Areas {
         Ok(Self::InWorld(corners, said))
     }
 
-    /// As polygons in the world, with what was mended. `what` they are is in front of what is wrong ("area"); `crs` is
-    /// asked for where they are on the Earth.
+    /// What to keep out of, as polygons in the world, with what was mended; `crs` is asked for where they are on the Earth.
     ///
     /// # Errors
-    /// Where one is no polygon, or lies where the coordinate system does not hold; where that is not known.
-    pub fn in_world(
+    /// Where one is no polygon, or lies where the coordinate system does not hold; where that is not known. Where the file
+    /// holds points or lines, too: somebody may mean them, and nothing would keep out of them.
+    pub fn to_keep_out_of(
+        self,
+        crs: impl FnOnce() -> Result<Crs, String>,
+    ) -> Result<(Vec<Polygon>, Vec<String>), String> {
+        if let Self::OnEarth(path, areas) = &self
+            && let Some(others) = areas.others()
+        {
+            let what = format!("beside polygons it holds {others}, which keep nothing out");
+            let remedy =
+                "draw what to keep out of as polygons, not as paths, and leave the rest out";
+            return Err(FileError::new(path, Fault::new(what, remedy)).to_string());
+        }
+        self.in_world("keep-out", crs)
+    }
+
+    /// As polygons in the world, with what was mended. `what` they are is in front of what is wrong ("area").
+    fn in_world(
         self,
         what: &str,
         crs: impl FnOnce() -> Result<Crs, String>,
@@ -70,7 +86,7 @@ impl Areas {
             Self::OnEarth(path, areas) => (path, areas),
         };
         let crs = crs()?;
-        let polygons = areas.iter().zip(1..).map(|(corners, number)| {
+        let polygons = areas.polygons.iter().zip(1..).map(|(corners, number)| {
             let corners: Option<Vec<DVec2>> = (corners.iter())
                 .map(|place| Some(crs.from_geographic(*place)?.truncate()))
                 .collect();
@@ -88,16 +104,17 @@ impl Areas {
     /// The same of what is to be one polygon.
     ///
     /// # Errors
-    /// As [`Areas::in_world`], and where they are several.
+    /// Where it is no polygon, or several, or lies where the coordinate system does not hold; where that is not known.
     pub fn one_in_world(
         self,
         what: &str,
         crs: impl FnOnce() -> Result<Crs, String>,
     ) -> Result<(Polygon, Vec<String>), String> {
         if let Self::OnEarth(path, areas) = &self
-            && areas.len() > 1
+            && areas.polygons.len() > 1
         {
-            let several = format!("it holds {} polygons, where one is needed", areas.len());
+            let count = areas.polygons.len();
+            let several = format!("it holds {count} polygons, where one is needed");
             let remedy = "save the one alone, and make a plan of each";
             return Err(FileError::new(path, Fault::new(several, remedy)).to_string());
         }

@@ -56,7 +56,7 @@ pub use drones::Drone;
 pub use forecast::Forecast;
 pub use mission::{
     Above, DroneCodes, Fence, Finish, Flown, Height, Mission, PayloadCodes, PhotoOf, PlannedPose,
-    Residual, Stop, TakeOff, Taken, Told, heading, missions, planned_poses, same_unit,
+    Residual, Stop, TakeOff, Taken, Told, heading, is_over_ground, missions, planned_poses,
 };
 pub use patterns::Pattern;
 pub use photo::{PlannedPhoto, Purpose, Refused};

@@ -31,7 +31,7 @@ use glam::DVec3;
 pub use blocks::VertexBlock;
 pub use bulk::bulk_of;
 pub use cloud::Cloud;
-pub use from_above::{Light, MapRaster, hillshade};
+pub use from_above::{Face, Light, MapRaster, hillshade};
 pub use hull::convex_hull;
 pub use left_out::LeftOut;
 pub use levels::{Chosen, LevelNode, Levels};

@@ -9,12 +9,14 @@
 //! prism     integrals under a piece of a triangle
 //! base      what volumes are over: a level, the plane of the rim, another surface
 //! overlay   which triangles of another surface lie under one
+//! layers    whether a mesh's faces lie so that prisms under them add up
 //! volume    all of it inside a polygon
 //! ```
 
 mod base;
 mod envelope;
 mod face;
+mod layers;
 mod overlay;
 mod polygon;
 mod prism;
@@ -62,6 +64,21 @@ pub enum SurveyError {
     /// What the rim shows lies on one line.
     #[error("no plane can be laid through the polygon's rim; give the base's height")]
     NoRimPlane,
+    /// Percent of the polygon.
+    #[error(
+        "in {0:.1} % of the polygon faces of the mesh lie over others that look up, too: they would count twice; \
+         merge tiles that overlap and remove faces that are there twice, in a mesh program, or give the points as a cloud"
+    )]
+    CountedTwice(f64),
+    /// Percent of the polygon.
+    #[error(
+        "in {0:.1} % of the polygon faces of the mesh look down that look up elsewhere: what they bound would count with the \
+         wrong sign; let a mesh program turn all of them outwards, or give the points as a cloud"
+    )]
+    TurnedOver(f64),
+    /// The faces cannot be looked at.
+    #[error("{0}")]
+    Faces(String),
     /// The triangulation failed.
     #[error(transparent)]
     Surface(#[from] SurfaceError),

@@ -440,3 +440,82 @@ fn what_cannot_be_measured_is_refused() {
         (0.0, 0.0, None)
     );
 }
+
+/// Tiles that overlap, faces that are there twice or look inwards are refused; bodies alone count their own volume, and are
+/// told.
+#[test]
+fn faces_that_would_make_another_volume_are_refused() {
+    let sheet = |low: [f64; 2], high: [f64; 2], z: f64| {
+        [[low[0], low[1]], [high[0], low[1]], high, [low[0], high[1]]]
+            .map(|[x, y]| DVec3::new(x, y, z))
+    };
+    let faces = |from: u32| [[from, from + 1, from + 2], [from, from + 2, from + 3]];
+    // A closed box, faces outwards: foot and lid, and four walls.
+    let walls = |from: u32| {
+        (0..4).flat_map(move |i| {
+            let [a, b] = [from + i, from + (i + 1) % 4];
+            [[a, b, b + 4], [a, b + 4, a + 4]]
+        })
+    };
+    let body = |from: u32| -> Vec<[u32; 3]> {
+        let foot = faces(from).map(|[a, b, c]| [c, b, a]);
+        foot.into_iter()
+            .chain(faces(from + 4))
+            .chain(walls(from))
+            .collect()
+    };
+    let turned = |faces: &[[u32; 3]]| -> Vec<[u32; 3]> {
+        faces.iter().map(|&[a, b, c]| [c, b, a]).collect()
+    };
+    let polygon = rectangle([-4.0, -4.0], [4.0, 4.0]);
+    let measured = |points: &[DVec3], faces: &[[u32; 3]]| {
+        volume(&mesh(points, faces), &polygon, Base::Height(ORIGIN.z))
+    };
+    // Two tiles 5 high that share a strip of 2 by 8.
+    let tiles = [
+        sheet([-5.0, -5.0], [1.0, 5.0], 5.0),
+        sheet([-1.0, -5.0], [5.0, 5.0], 5.0),
+    ];
+    match measured(&tiles.concat(), &[faces(0), faces(4)].concat()) {
+        Err(SurveyError::CountedTwice(percent)) => near(percent, 25.0, 1.0),
+        other => panic!("{other:?}"),
+    }
+    let floor = sheet([-5.0, -5.0], [5.0, 5.0], 0.0);
+    assert!(matches!(
+        measured(&floor, &[faces(0), faces(0)].concat()),
+        Err(SurveyError::CountedTwice(_))
+    ));
+    // A box of 2 by 2 by 3 on the floor: its foot lies on it.
+    let of_box = [
+        sheet([-1.0, -1.0], [1.0, 1.0], 0.0),
+        sheet([-1.0, -1.0], [1.0, 1.0], 3.0),
+    ]
+    .concat();
+    let on_floor = [floor.to_vec(), of_box.clone()].concat();
+    let outwards = [faces(0).to_vec(), body(4)].concat();
+    for faces in [&outwards, &turned(&outwards)] {
+        let found = measured(&on_floor, faces).unwrap();
+        near(found.fill, 12.0, 1e-9);
+        near(found.cut, 0.0, 1e-9);
+        assert_eq!(found.bodies, 0.0);
+    }
+    let inwards = [faces(0).to_vec(), turned(&body(4))].concat();
+    match measured(&on_floor, &inwards) {
+        Err(SurveyError::TurnedOver(percent)) => near(percent, 100.0 * 4.0 / 64.0, 0.5),
+        other => panic!("{other:?}"),
+    }
+    // Alone, either way round.
+    for faces in [body(0), turned(&body(0))] {
+        let found = measured(&of_box, &faces).unwrap();
+        near(found.fill, 12.0, 1e-9);
+        near(found.covered, 0.0, 1e-9);
+        near(found.bodies, 4.0 / 64.0, 5e-3);
+    }
+    // As a base a mesh must not count twice either.
+    let base = mesh(&tiles.concat(), &[faces(0), faces(4)].concat());
+    let over = mesh(&floor, &faces(0));
+    assert!(matches!(
+        volume(&over, &polygon, Base::Surface(&base)),
+        Err(SurveyError::CountedTwice(_))
+    ));
+}

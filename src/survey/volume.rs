@@ -5,6 +5,7 @@ use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
 use super::SurveyError;
 use super::base::{Base, BaseFound, Plane};
+use super::layers::{Layers, layers};
 use super::overlay::{Overlay, around};
 use super::polygon::Polygon;
 use super::prism::{Corner, Sums, clip_to};
@@ -23,6 +24,9 @@ pub struct Volume {
     /// The part of it, 0 to 1, that volumes are of: where there is a surface, and a base under it. The
     /// rest is holes, in which nothing is counted.
     pub covered: f64,
+    /// The part of the plan, 0 to 1, about, where a mesh has closed bodies and nothing under them: their own volume counts,
+    /// and the base does not.
+    pub bodies: f64,
     /// The area of the surface itself inside the polygon, along its slopes.
     pub surface_area: f64,
     /// The part of the plan, 0 to 1, where a mesh has triangles that look down: what is under such an
@@ -141,8 +145,13 @@ pub fn volume(surface: &Surface, polygon: &Polygon, base: Base<'_>) -> Result<Vo
         Some(_) => found.both,
         None => found.surface,
     };
+    let own = layers(surface, polygon)?;
+    let under = match base {
+        Base::Surface(base) => layers(base, polygon)?,
+        _ => Layers::default(),
+    };
     // A file may have its faces the other way round.
-    let sums = if sums.plan < 0.0 {
+    let sums = if own.is_turned_over != under.is_turned_over {
         sums.times(-1.0)
     } else {
         sums
@@ -153,6 +162,7 @@ pub fn volume(surface: &Surface, polygon: &Polygon, base: Base<'_>) -> Result<Vo
         cut: sums.below,
         plan_area,
         covered: (sums.plan / plan_area).min(1.0),
+        bodies: own.closed,
         surface_area: found.surface.along,
         overhang: sums.down / plan_area,
         heights: found.heights.map(|heights| heights.map(|z| z + origin.z)),

@@ -172,6 +172,14 @@ fn what_makes_no_plan_is_one_line() {
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
+    let geocentric = [&said[..], &["--crs", "EPSG:4978"]].concat();
+    let output = fragscale(&geocentric);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{error}");
+    assert!(
+        error.contains("counts from the middle of the Earth"),
+        "{error}"
+    );
     said[5] = "1e-9 px/cm";
     let output = fragscale(&said);
     let error = String::from_utf8_lossy(&output.stderr).into_owned();

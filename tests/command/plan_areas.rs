@@ -106,6 +106,20 @@ fn areas_are_read_from_maps() {
         error.contains("it holds 2 polygons, where one is needed"),
         "{error}"
     );
+    // A path beside the polygon keeps nothing out, though somebody may think so.
+    let path = polygon
+        .replace("Polygon", "Path")
+        .replace("<Path><outerBoundaryIs><LinearRing>", "<LineString>");
+    let path = path.replace("</LinearRing></outerBoundaryIs></Path>", "</LineString>");
+    let mixed = write(
+        "mixed.kml",
+        kml.replace(&polygon, &(polygon.clone() + &path)),
+    );
+    let error = refused(&[&flight, "--area", AREA, "--keep-out", &mixed]);
+    assert!(
+        error.contains("beside polygons it holds 0 points and 1 line, which keep nothing out"),
+        "{error}"
+    );
     // What is read is not written over.
     let error = refused(&[&flight, "--area", &area, "-o", &area, "--force"]);
     assert!(

@@ -66,7 +66,7 @@ fn read(
     };
     let areas = Areas::read(text)?;
     match tool {
-        PlanTool::KeepOut => areas.in_world("keep-out", crs),
+        PlanTool::KeepOut => areas.to_keep_out_of(crs),
         _ => {
             let (area, said) = areas.one_in_world("area", crs)?;
             Ok((vec![area], said))

@@ -89,7 +89,7 @@ pub(in crate::cli) fn volume(
     };
     progress.stage("measuring");
     let volume = survey::volume(&parts.surface, &polygon, base).map_err(|e| e.to_string())?;
-    if volume.covered <= 0.0 {
+    if volume.covered <= 0.0 && volume.bodies == 0.0 {
         // Over the other surface alone, if it is not the polygon that lies beside the flight's.
         if let Some(base) = base_file
             && survey::volume(&parts.surface, &polygon, Base::Rim)
@@ -111,7 +111,7 @@ pub(in crate::cli) fn volume(
         volume: &volume,
         base: base.as_deref(),
     };
-    warnings.extend(exports::volume_warning(&volume));
+    warnings.extend(exports::volume_warnings(&volume));
     let text = arguments.answer.deliver(
         &outputs,
         &report,

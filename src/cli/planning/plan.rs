@@ -336,7 +336,7 @@ fn planned(
     let crs = || crs_of(arguments, opened);
     // Of a system that is none is told where it is needed.
     if let Ok(crs) = crs() {
-        plan::same_unit(unit, &crs).map_err(in_flight)?;
+        plan::is_over_ground(unit, &crs).map_err(in_flight)?;
     }
     let camera = camera(arguments, opened)?;
     let mut warnings: Vec<String> = plan::lying(&parts.surface).into_iter().collect();
@@ -368,7 +368,7 @@ fn planned(
     };
     let mut wish = wish(arguments, unit);
     for areas in keep_out {
-        let (areas, said) = areas.in_world("keep-out", crs)?;
+        let (areas, said) = areas.to_keep_out_of(crs)?;
         warnings.extend(said);
         wish.keep_out.extend(areas);
     }

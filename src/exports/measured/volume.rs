@@ -71,20 +71,29 @@ pub fn volume_table(report: &VolumeReport<'_>) -> String {
     )
 }
 
-/// What is to be said where the surface does not cover the polygon.
-pub fn volume_warning(volume: &Volume) -> Option<String> {
-    let missing = 1.0 - volume.covered;
+/// What is to be said where the surface does not cover the polygon, and where it has bodies.
+pub fn volume_warnings(volume: &Volume) -> Vec<String> {
+    let missing = 1.0 - volume.covered - volume.bodies;
     let both = match volume.base {
         BaseFound::Surface => "one of the two surfaces",
         _ => "the surface",
     };
-    // What is rounding is not missing.
-    (missing > 1e-9).then(|| {
+    // What is rounding is not missing; the share of bodies is counted in pixels.
+    let least = if volume.bodies > 0.0 { 1e-2 } else { 1e-9 };
+    let hole = (missing > least).then(|| {
         format!(
             "{} of the polygon is a hole of {both} or beside it; nothing is counted there",
             percent(missing)
         )
-    })
+    });
+    let bodies = (volume.bodies > 0.0).then(|| {
+        format!(
+            "in {:.0} % of the polygon the mesh has as many faces that look down as up, closed bodies or sheets with two \
+             sides: what is between these counts there, not what is between them and the base",
+            100.0 * volume.bodies
+        )
+    });
+    hole.into_iter().chain(bodies).collect()
 }
 
 /// One line. Numbers read back to the same f64.

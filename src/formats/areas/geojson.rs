@@ -6,10 +6,9 @@
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::no_polygon;
 use super::ring::ring;
+use super::{MapAreas, no_polygon};
 use crate::fault::Fault;
-use crate::geodesy::Geographic;
 use crate::text::fields::shown;
 use crate::text::json;
 
@@ -38,7 +37,7 @@ const WGS_84: [&str; 3] = ["CRS84", "EPSG::4326", "EPSG:4326"];
 ///
 /// # Errors
 /// As [`super::read_areas`].
-pub(super) fn read(text: &str) -> Result<Vec<Vec<Geographic>>, Fault> {
+pub(super) fn read(text: &str) -> Result<MapAreas, Fault> {
     let object: Object = json::parse(text.as_bytes())?;
     if let Some(name) = object.crs["properties"]["name"].as_str()
         && !WGS_84.iter().any(|known| name.ends_with(known))
@@ -49,22 +48,19 @@ pub(super) fn read(text: &str) -> Result<Vec<Vec<Geographic>>, Fault> {
         );
         return Err(Fault::new(what, "export it in WGS 84 (EPSG:4326)"));
     }
-    let mut found = Found::default();
+    let mut found = MapAreas {
+        polygons: Vec::new(),
+        points: 0,
+        lines: 0,
+    };
     found.add(&object)?;
     match found.polygons.is_empty() {
         true => Err(no_polygon(found.points, found.lines)),
-        false => Ok(found.polygons),
+        false => Ok(found),
     }
 }
 
-#[derive(Default)]
-struct Found {
-    polygons: Vec<Vec<Geographic>>,
-    points: usize,
-    lines: usize,
-}
-
-impl Found {
+impl MapAreas {
     fn add(&mut self, object: &Object) -> Result<(), Fault> {
         match object.kind.as_str() {
             "FeatureCollection" => object.features.iter().try_for_each(|one| self.add(one)),

@@ -3,8 +3,8 @@
 
 use roxmltree::Node;
 
-use super::no_polygon;
 use super::ring::ring;
+use super::{MapAreas, no_polygon};
 use crate::fault::Fault;
 use crate::geodesy::Geographic;
 use crate::text::fields::shown;
@@ -16,7 +16,7 @@ const EXPORT: &str = "save it again as KML";
 ///
 /// # Errors
 /// As [`super::read_areas`].
-pub(super) fn read(xml: &str) -> Result<Vec<Vec<Geographic>>, Fault> {
+pub(super) fn read(xml: &str) -> Result<MapAreas, Fault> {
     let document = parse(xml)?;
     let root = document.root_element();
     if !root.has_tag_name("kml") {
@@ -31,17 +31,23 @@ pub(super) fn read(xml: &str) -> Result<Vec<Vec<Geographic>>, Fault> {
             .filter(move |node| node.has_tag_name(name))
     };
     let polygons: Vec<Node<'_, '_>> = named("Polygon").collect();
+    // A ring may also stand for itself.
+    let is_free = |ring: &Node<'_, '_>| !ring.ancestors().any(|node| node.has_tag_name("Polygon"));
+    let rings = named("LinearRing").filter(is_free);
+    let (points, lines) = (
+        named("Point").count(),
+        named("LineString").count() + rings.count(),
+    );
     if polygons.is_empty() {
-        return Err(no_polygon(
-            named("Point").count(),
-            named("LineString").count(),
-        ));
+        return Err(no_polygon(points, lines));
     }
-    polygons
-        .into_iter()
-        .zip(1..)
-        .map(|(node, number)| polygon(node, number))
-        .collect()
+    let polygons = polygons.into_iter().zip(1..);
+    let polygons = polygons.map(|(node, number)| polygon(node, number));
+    Ok(MapAreas {
+        polygons: polygons.collect::<Result<_, Fault>>()?,
+        points,
+        lines,
+    })
 }
 
 fn polygon(node: Node<'_, '_>, number: usize) -> Result<Vec<Geographic>, Fault> {

@@ -8,7 +8,7 @@
 //!
 //! Both count longitude first, in degrees of WGS 84; heights, where they stand, are not read: an area is ground, with
 //! all that is above it. A polygon with a hole is refused, for who leaves the hole out plans flights over it. Points and
-//! lines beside polygons are passed over.
+//! lines beside polygons are counted: whoever asks for areas to keep out of must know of them.
 
 mod geojson;
 mod kml;
@@ -49,13 +49,42 @@ fn is_areas(head: &[u8]) -> bool {
     matches!(first, Some(b'{' | b'[' | b'<')) || head.starts_with(b"PK\x03\x04")
 }
 
-/// Reads the polygons of a file: at least one, each of at least three corners, none of which is said twice in a row;
-/// heights are 0.
+/// What a file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapAreas {
+    /// At least one, each of at least three corners, none of which is said twice in a row; heights are 0.
+    pub polygons: Vec<Vec<Geographic>>,
+    /// Points beside them.
+    pub points: usize,
+    /// Lines and paths beside them.
+    pub lines: usize,
+}
+
+impl MapAreas {
+    /// What there is beside the polygons, in words; `None` where there is nothing.
+    pub fn others(&self) -> Option<String> {
+        (self.points + self.lines > 0).then(|| others(self.points, self.lines))
+    }
+}
+
+fn others(points: usize, lines: usize) -> String {
+    let counted = |count: usize, word: &str| match count {
+        1 => format!("1 {word}"),
+        _ => format!("{count} {word}s"),
+    };
+    format!(
+        "{} and {}",
+        counted(points, "point"),
+        counted(lines, "line")
+    )
+}
+
+/// Reads the polygons of a file.
 ///
 /// # Errors
 /// With the file and the place in it: what holds no polygon, one with a hole, corners that are no degrees or that have
 /// latitude first, another coordinate system than WGS 84.
-pub fn read_areas(path: &Path) -> Result<Vec<Vec<Geographic>>, FileError> {
+pub fn read_areas(path: &Path) -> Result<MapAreas, FileError> {
     let bytes = read_small(path, LARGEST, "areas", KNOWN)?;
     areas(&bytes).map_err(|fault| FileError::new(path, fault))
 }
@@ -64,7 +93,7 @@ pub fn read_areas(path: &Path) -> Result<Vec<Vec<Geographic>>, FileError> {
 ///
 /// # Errors
 /// As [`read_areas`], without the file.
-pub fn areas(bytes: &[u8]) -> Result<Vec<Vec<Geographic>>, Fault> {
+pub fn areas(bytes: &[u8]) -> Result<MapAreas, Fault> {
     if bytes.starts_with(b"PK") {
         return kml::read(&kml_of_zip(bytes)?);
     }
@@ -107,7 +136,7 @@ fn kml_of_zip(bytes: &[u8]) -> Result<String, Fault> {
 fn no_polygon(points: usize, lines: usize) -> Fault {
     let what = match (points, lines) {
         (0, 0) => "there is no polygon in it".to_owned(),
-        _ => format!("there is no polygon in it, but {points} points and {lines} lines"),
+        _ => format!("there is no polygon in it, but {}", others(points, lines)),
     };
     Fault::new(
         what,

@@ -69,17 +69,29 @@ const EARTH: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 #[test]
 fn polygons_are_read_from_what_maps_write() {
     let expected = vec![CORNERS.to_vec()];
-    assert_eq!(degrees(&areas(QGIS.as_bytes()).unwrap()), expected);
-    assert_eq!(degrees(&areas(EARTH.as_bytes()).unwrap()), expected);
+    assert_eq!(degrees(&areas(QGIS.as_bytes()).unwrap().polygons), expected);
+    assert_eq!(
+        degrees(&areas(EARTH.as_bytes()).unwrap().polygons),
+        expected
+    );
+    for text in [QGIS, EARTH] {
+        let found = areas(text.as_bytes()).unwrap();
+        assert_eq!(found.others().unwrap(), "1 point and 0 lines");
+    }
+    // A path that ends where it began, and a ring for itself, are none.
+    let path = "<Placemark><LineString><coordinates>8,48 9,48 9,49 8,48</coordinates></LineString></Placemark>\
+                <Placemark><LinearRing><coordinates>8,48 9,48 9,49 8,48</coordinates></LinearRing></Placemark></Folder>";
+    let with_path = areas(EARTH.replace("</Folder>", path).as_bytes()).unwrap();
+    assert_eq!((with_path.points, with_path.lines), (1, 2));
     // A byte order mark, and a ring that does not end where it began.
     let corners = format!("{CORNERS:?}");
     let bare = format!("\u{feff}{{\"coordinates\":[{corners}],\"type\":\"Polygon\"}}");
-    assert_eq!(degrees(&areas(bare.as_bytes()).unwrap()), expected);
+    assert_eq!(degrees(&areas(bare.as_bytes()).unwrap().polygons), expected);
     // Two polygons, one in a collection of geometries; heights.
     let two = r#"{"type":"GeometryCollection","geometries":[
         {"type":"Polygon","coordinates":[[[7,50,3],[7.1,50,3],[7.1,50.1,3],[7,50,3]]]},
         {"type":"MultiPolygon","coordinates":[[[[-7,-50],[-7.1,-50],[-7.1,-50.1],[-7,-50]]]]}]}"#;
-    let found = degrees(&areas(two.as_bytes()).unwrap());
+    let found = degrees(&areas(two.as_bytes()).unwrap().polygons);
     assert_eq!(found[0], [[7.0, 50.0], [7.1, 50.0], [7.1, 50.1]]);
     assert_eq!(found[1], [[-7.0, -50.0], [-7.1, -50.0], [-7.1, -50.1]]);
     assert_eq!(found.len(), 2);
@@ -94,7 +106,10 @@ fn a_kmz_is_the_kml_in_it() {
         .unwrap();
     zip.write_all(EARTH.as_bytes()).unwrap();
     zip.finish().unwrap();
-    assert_eq!(degrees(&read_areas(&path).unwrap()), [CORNERS.to_vec()]);
+    assert_eq!(
+        degrees(&read_areas(&path).unwrap().polygons),
+        [CORNERS.to_vec()]
+    );
     assert!(holds_areas(&path) && !holds_areas(folder.path()));
     let broken = areas(b"PK\x03\x04").unwrap_err();
     assert!(broken.what.contains("zip is damaged"), "{broken}");
@@ -139,7 +154,7 @@ fn what_is_no_area_is_said() {
         ),
         (
             "{\"type\":\"LineString\",\"coordinates\":[[8,48],[9,48]]}".to_owned(),
-            "there is no polygon in it, but 0 points and 1 lines",
+            "there is no polygon in it, but 0 points and 1 line",
         ),
         (
             "{\"type\":\"FeatureCollection\",\"features\":[]}".to_owned(),

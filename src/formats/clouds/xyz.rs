@@ -8,9 +8,11 @@
 //! - A height of -9999, -32767 or -32768 stands for none, as in GDAL's grids: such points are left out, which is said.
 //! - Without names the columns are x y z, and where six or more stand and the next three are whole
 //!   numbers from 0 to 255, red green blue. With names they are found by name: x, y, z (also
-//!   easting, northing, elevation, height, altitude, or shorter; a unit may follow in brackets), red, green,
-//!   blue (also r, g, b). CloudCompare's Rf, Gf, Bf are colours from 0 to 1. Other named columns may
+//!   easting, northing, elevation, height, altitude, or shorter; a unit may follow in brackets: it is told, and must be
+//!   one for all three), red, green, blue (also r, g, b). CloudCompare's Rf, Gf, Bf are colours from 0 to 1. Other named columns may
 //!   hold anything, or nothing.
+//! - Without names a first of four or more columns that counts the lines is refused: what the others are nothing says, and
+//!   surveyors write northing before easting.
 //! - A line with a single whole number right behind the names, or first of all, is a count and is
 //!   passed over.
 
@@ -23,6 +25,7 @@ use crate::fault::Fault;
 use crate::jobs::Progress;
 use crate::text::fields::shown;
 use crate::text::text_lines::TextLines;
+use crate::units::LengthUnit;
 
 /// Reads points of a text of `size` bytes (for the progress).
 ///
@@ -41,6 +44,8 @@ pub(crate) fn read(
     let mut names = None;
     let (mut looked_at, mut without_height) = (0, 0_u64);
     let mut fields = Vec::new();
+    // What a first column would have next that counts the lines, from its first number on; `None` once it does not.
+    let mut counter: Option<Option<f64>> = Some(None);
     loop {
         if lines.line().is_multiple_of(65_536) {
             progress.advance(lines.bytes(), size)?;
@@ -71,8 +76,17 @@ pub(crate) fn read(
                             None => unknown_columns(line_number, text),
                         });
                     }
-                    if columns.is_some() {
-                        names = Some(separator.split(text).len());
+                    if let Some(columns) = &columns {
+                        let said = separator.split(text);
+                        let unit = unit_of(&columns.position.map(|column| said[column]));
+                        let unit = unit.map_err(|what| {
+                            let remedy = "bring all three to one unit";
+                            Fault::at(line_number, what, remedy)
+                        })?;
+                        file.warnings.extend(unit.map(|unit| {
+                            format!("its columns say that they are in {unit}, which is told and not taken over: state the unit (--unit)")
+                        }));
+                        names = Some(said.len());
                     }
                     named = columns.or(named);
                     continue;
@@ -110,6 +124,12 @@ pub(crate) fn read(
                 ));
             }
         }
+        counter = counter.filter(|_| named.is_none() && fields.len() > 3);
+        counter = match counter {
+            Some(Some(next)) => (fields[0] == next).then_some(Some(next + 1.0)),
+            Some(None) => (fields[0].fract() == 0.0).then_some(Some(fields[0] + 1.0)),
+            None => None,
+        };
         if NO_HEIGHT.contains(&position.z) {
             without_height += 1;
             continue;
@@ -126,6 +146,12 @@ pub(crate) fn read(
     }
     if file.cloud.points.is_empty() {
         return Err(Fault::new("it has no points", "give lines with x, y and z"));
+    }
+    if counter.is_some() && file.cloud.points.len() > 2 {
+        return Err(Fault::new(
+            "its first column counts the lines: which of the others are x, y and z, nothing says",
+            "name the columns in a first line, such as number,x,y,z or number,northing,easting,height",
+        ));
     }
     if without_height > 0 {
         file.warnings.push(format!(
@@ -247,6 +273,22 @@ fn plain_name(name: &str) -> &str {
     name.split(['[', '(']).next().unwrap_or_default().trim()
 }
 
+/// The unit that the names of x, y and z have in brackets; `None` where one has none.
+///
+/// # Errors
+/// What is wrong where they are not alike.
+fn unit_of(names: &[&str; 3]) -> Result<Option<LengthUnit>, String> {
+    let unit = |name: &str| -> Option<LengthUnit> {
+        let (_, behind) = name.split_once(['[', '('])?;
+        behind.split([']', ')']).next()?.trim().parse().ok()
+    };
+    match names.map(unit) {
+        [Some(x), Some(y), Some(z)] if x == y && y == z => Ok(Some(x)),
+        [Some(x), Some(y), Some(z)] => Err(format!("x is in {x}, y in {y} and z in {z}")),
+        _ => Ok(None),
+    }
+}
+
 /// Where on a line the coordinates and colours stand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Columns {
@@ -361,6 +403,45 @@ mod tests {
             "500000.123456,2.5,-3,\n4,5,6e-3,\n",
         ] {
             assert_eq!(points(text), expected, "{text:?}");
+        }
+    }
+
+    /// A surveyor's list has the number of the point in front, and northing before easting.
+    #[test]
+    fn a_first_column_that_counts_is_refused_where_nothing_names_it() {
+        for text in [
+            "1,499970.5,5999970,100\n2,499971,5999970,100\n3,499972,5999970,101\n",
+            "101 5 6 7 0\n102 5 7 7 0\n103 6 7 8 0\n104 7 7 -9999 0\n",
+        ] {
+            let fault = read_text(text).unwrap_err();
+            assert!(fault.what.contains("counts the lines"), "{fault}");
+            assert!(read_text(&format!("number,x,y,z,code\n{}", text.replace(' ', ","))).is_ok());
+        }
+        for text in [
+            "1,2,3\n2,2,3\n3,2,3\n",
+            "1,2,3,9\n2,2,3,9\n3.5,2,3,9\n",
+            "1,2,3,9\n2,2,3,9\n2,3,3,9\n",
+        ] {
+            assert_eq!(points(text).len(), 3, "{text}");
+        }
+    }
+
+    #[test]
+    fn units_of_columns_are_told_and_must_be_alike() {
+        let fault = read_text("X [ft],Y [ft],Z [m]\n1,2,3\n").unwrap_err();
+        assert_eq!(fault.what, "x is in ft, y in ft and z in m");
+        let file = read_text("X [ft],Y [ft],Z [ft]\n1,2,3\n").unwrap();
+        assert!(
+            file.warnings[0].contains("they are in ft"),
+            "{:?}",
+            file.warnings
+        );
+        for silent in [
+            "X [m],Y [m],Z\n1,2,3\n",
+            "x,y,z\n1,2,3\n",
+            "X (East),Y (North),Z (up)\n1,2,3\n",
+        ] {
+            assert!(read_text(silent).unwrap().warnings.is_empty(), "{silent}");
         }
     }
 

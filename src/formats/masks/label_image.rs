@@ -16,6 +16,7 @@ use std::io::Cursor;
 use image::codecs::png::PngDecoder;
 use image::{ColorType, DynamicImage, ExtendedColorType, ImageDecoder};
 
+use super::regions::regions;
 use super::{Masks, OutlinedPhoto, check_size, renumbered};
 use crate::clouds::geotiff::Number;
 use crate::fault::Fault;
@@ -207,43 +208,6 @@ fn of_number(value: f64, bits: u16) -> Option<u32> {
         // Whole, and not beyond u32::MAX.
         _ => Some(value as u32),
     }
-}
-
-/// The regions of fragments, each of pixels of one number that touch by their sides, numbered from 1; and how many they are.
-fn regions(labels: &LabelImage) -> (Vec<u32>, u32) {
-    let (width, height) = (labels.width, labels.height);
-    let numbers = &labels.labels;
-    let is_fragment = |label: u32| label != FINES && label != NOT_ROCK;
-    // What is none keeps its number.
-    let mut found: Vec<u32> = (numbers.iter())
-        .map(|label| if is_fragment(*label) { FINES } else { *label })
-        .collect();
-    let mut count = 0;
-    let mut edge = Vec::new();
-    for start in 0..numbers.len() {
-        if found[start] != FINES || !is_fragment(numbers[start]) {
-            continue;
-        }
-        count += 1;
-        found[start] = count;
-        edge.push(start);
-        while let Some(at) = edge.pop() {
-            let (x, y) = (at % width, at / width);
-            let beside = [
-                (x > 0).then(|| at - 1),
-                (x + 1 < width).then_some(at + 1),
-                (y > 0).then(|| at - width),
-                (y + 1 < height).then_some(at + width),
-            ];
-            for next in beside.into_iter().flatten() {
-                if found[next] == FINES && numbers[next] == numbers[start] {
-                    found[next] = count;
-                    edge.push(next);
-                }
-            }
-        }
-    }
-    (found, count)
 }
 
 /// The numbers of fragments, each once.

@@ -6,6 +6,7 @@
 //! cvat         XML of CVAT for images
 //! outline      what these come down to: masks, their meanings, their pieces
 //! paint        from masks to a label image
+//! regions      in how many pieces each fragment lies
 //! rle  numbers  base64      how pixels, lists and bytes are packed
 //! ```
 //!
@@ -27,6 +28,7 @@ mod labelme;
 mod numbers;
 mod outline;
 mod paint;
+mod regions;
 mod rle;
 #[cfg(test)]
 mod tests;
@@ -149,6 +151,22 @@ impl MaskFile {
     /// # Errors
     /// Where the file is not of this photo or of another size, or is damaged.
     pub fn of_photo(&self, photo: &OutlinedPhoto<'_>) -> Result<Masks, Fault> {
+        let mut masks = self.read_of_photo(photo)?;
+        let apart = match self.is_own {
+            true => 0,
+            false => regions::far_apart(&masks.labels),
+        };
+        if apart > 0 {
+            let fragments = match apart {
+                1 => "1 fragment lies in pieces far from each other: it counts as one, as large as all of it".to_owned(),
+                _ => format!("{apart} fragments lie in pieces far from each other: each counts as one, as large as all of it"),
+            };
+            masks.notes.push(fragments);
+        }
+        Ok(masks)
+    }
+
+    fn read_of_photo(&self, photo: &OutlinedPhoto<'_>) -> Result<Masks, Fault> {
         let image = match &self.contents {
             Contents::Picture(bytes) => return label_image::read(bytes, photo, self.is_own),
             Contents::Many(images) => named(images, photo.name)?,

@@ -5,7 +5,7 @@
 //! trial or method.
 //!
 //! A time is a number of minutes; of seconds, minutes or hours where the cell ("90 s") or else the
-//! column ("time_s", "cloud (h)") says so; or h:mm:ss or mm:ss. An empty cell, or a dash, is a time
+//! column ("time_s", "cloud (h)") says so; or h:mm:ss or mm:ss, in a column of hours h:mm. An empty cell, or a dash, is a time
 //! that is missing.
 
 use std::path::Path;
@@ -14,6 +14,9 @@ use crate::fault::Fault;
 use crate::files::FileError;
 use crate::fragmentation::Effort;
 use crate::tables::table::{NumberRepairs, Row, Table, key};
+
+/// Seconds.
+const HOUR: f64 = 3600.0;
 
 /// Names of rows and columns that a table has for its own sums.
 const SUMS: [&str; 7] = [
@@ -155,7 +158,9 @@ impl Reading<'_> {
             Fault::at(row.line, what, remedy)
         };
         if cell.contains(':') {
-            return clock(cell).map(Some).ok_or_else(no_time);
+            return clock(cell, seconds_each == HOUR)
+                .map(Some)
+                .ok_or_else(no_time);
         }
         let found = self.table.number_and_rest(row, column, &mut self.repairs);
         let Some((number, rest)) = found? else {
@@ -169,8 +174,9 @@ impl Reading<'_> {
     }
 }
 
-/// Seconds of h:mm:ss or mm:ss; the last may have decimals, and none but the first is 60 or more.
-fn clock(text: &str) -> Option<f64> {
+/// Seconds of h:mm:ss or mm:ss, or h:mm where it is of hours; the last may have decimals, and none but the first is 60 or
+/// more.
+fn clock(text: &str, is_of_hours: bool) -> Option<f64> {
     let parts: Vec<&str> = text.split(':').map(str::trim).collect();
     let (last, leading) = parts.split_last()?;
     let whole = |text: &str| -> Option<f64> {
@@ -181,10 +187,14 @@ fn clock(text: &str) -> Option<f64> {
     let (seconds, decimals) = last.split_once(['.', ',']).unwrap_or((last, "0"));
     let seconds = whole(seconds)? + whole(decimals)? / 10_f64.powi(decimals.len().try_into().ok()?);
     let total = match *leading {
+        [hours] if is_of_hours => {
+            let minutes = (seconds < 60.0).then_some(seconds)?;
+            return Some(whole(hours)? * HOUR + minutes * 60.0);
+        }
         [minutes] => whole(minutes)? * 60.0,
         [hours, minutes] => {
             let minutes = whole(minutes).filter(|minutes| *minutes < 60.0)?;
-            whole(hours)? * 3600.0 + minutes * 60.0
+            whole(hours)? * HOUR + minutes * 60.0
         }
         _ => return None,
     };
@@ -211,7 +221,7 @@ fn seconds_of(unit: &str) -> Option<f64> {
     match unit.trim().trim_end_matches('.').to_lowercase().as_str() {
         "s" | "sec" | "secs" | "second" | "seconds" => Some(1.0),
         "min" | "mins" | "minute" | "minutes" => Some(60.0),
-        "h" | "hr" | "hrs" | "hour" | "hours" => Some(3600.0),
+        "h" | "hr" | "hrs" | "hour" | "hours" => Some(HOUR),
         _ => None,
     }
 }
@@ -242,6 +252,16 @@ mod tests {
         assert_eq!(effort.seconds(1, 2), Some(90.0));
         assert_eq!(effort.of_all().missing, 3);
         assert_eq!(warnings, ["the column 'who' is not used"]);
+    }
+
+    /// In a column of hours two numbers are hours and minutes.
+    #[test]
+    fn clocks_of_hours() {
+        let (effort, _) = read("step,Time (h)\nsetup,1:30\nflight,0:45:30\nmeshing,2\n").unwrap();
+        let seconds = effort.of_all().total;
+        assert_eq!(seconds, 5400.0 + 2730.0 + 7200.0);
+        let bad = read("step,Time (h)\nsetup,1:75\n").unwrap_err();
+        assert!(bad.what.contains("'1:75' is no time"), "{bad}");
     }
 
     #[test]
@@ -276,11 +296,11 @@ mod tests {
 
     #[test]
     fn clocks() {
-        assert_eq!(clock("12:34"), Some(754.0));
-        assert_eq!(clock("90:00"), Some(5400.0));
-        assert_eq!(clock("1:00:00.25"), Some(3600.25));
+        assert_eq!(clock("12:34", false), Some(754.0));
+        assert_eq!(clock("90:00", false), Some(5400.0));
+        assert_eq!(clock("1:00:00.25", false), Some(3600.25));
         for bad in ["1:60", "1:60:00", "1:2:3:4", ":30", "1:", "-1:30", "1:x"] {
-            assert_eq!(clock(bad), None, "{bad}");
+            assert_eq!(clock(bad, false), None, "{bad}");
         }
     }
 

@@ -26,12 +26,26 @@ pub(crate) enum Separator {
     Blanks,
 }
 
+/// Whether a line is of numbers between semicolons, with at most one comma in each: there are more commas than semicolons
+/// where all are decimal.
+fn is_of_decimal_commas(line: &str) -> bool {
+    let is_number = |field: &str| {
+        let field = field.trim();
+        field.matches(',').count() <= 1 && split_number(field).1.is_empty() && !field.is_empty()
+    };
+    let line = line.trim_end_matches([';', '\r', '\n']);
+    line.contains(';') && line.split(';').all(is_number)
+}
+
 impl Separator {
     /// That of a line.
     pub(crate) fn of(line: &str) -> Self {
         // A whole file without a line break need not be looked through to tell.
         let head: String = line.chars().take(LOOKED_AT).collect();
         let bare = without_quoted(&head);
+        if is_of_decimal_commas(&bare) {
+            return Self::Sign(';');
+        }
         let count = |sign: char| bare.matches(sign).count();
         let mut most = (0, Self::Blanks);
         for sign in ['\t', ';', ','] {
@@ -247,6 +261,20 @@ mod tests {
         assert_eq!(fields("a;1,5;2,5"), ["a", "1,5", "2,5"]);
         assert_eq!(unquoted(" \"a \"\"b\"\"\" "), "a \"b\"");
         assert_eq!(unquoted("\"a\" and \"b\""), "\"a\" and \"b\"");
+    }
+
+    /// Two numbers with decimal commas have more commas than semicolons.
+    #[test]
+    fn semicolons_go_before_decimal_commas() {
+        for (line, expected) in [
+            ("452270,5;5411840,5", &["452270,5", "5411840,5"][..]),
+            ("1,5;2;3,25;", &["1,5", "2", "3,25", ""]),
+            ("a;1,5;2,5", &["a", "1,5", "2,5"]),
+            ("1,2,3;4", &["1", "2", "3;4"]),
+            ("1,two;3,4", &["1", "two;3", "4"]),
+        ] {
+            assert_eq!(fields(line), expected, "{line}");
+        }
     }
 
     #[test]

@@ -12,7 +12,7 @@ mod told;
 pub use flown::{Flown, PlannedPose, Residual, Taken, planned_poses};
 #[cfg(test)]
 pub(super) use told::true_heading;
-pub use told::{Told, missions, same_unit};
+pub use told::{Told, is_over_ground, missions};
 
 use glam::DVec3;
 

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::{DroneCodes, Fence, Finish, Height, Mission, PhotoOf, Stop, TakeOff, heading};
 use crate::fault::Fault;
-use crate::geodesy::{Crs, Geographic};
+use crate::geodesy::{Crs, CrsKind, Geographic};
 use crate::plan::{Plan, Way};
 use crate::units::LengthUnit;
 
@@ -29,12 +29,21 @@ pub struct Told {
     pub settle: f64,
 }
 
-/// Whether a surface counts in the unit of its coordinate system.
+/// Whether a surface counts in the unit of its coordinate system, upwards along z.
 ///
 /// # Errors
 /// Where it does not: one of both is wrong.
-pub fn same_unit(unit: LengthUnit, crs: &Crs) -> Result<(), Fault> {
+pub fn is_over_ground(unit: LengthUnit, crs: &Crs) -> Result<(), Fault> {
     let counted = crs.unit_metres();
+    if crs.kind() == CrsKind::Geocentric {
+        let what = format!(
+            "{} counts from the middle of the Earth: its z is not up",
+            crs.name()
+        );
+        let remedy =
+            "bring the surface to a system of maps, such as UTM, or state the one that it is in";
+        return Err(Fault::new(what, remedy));
+    }
     if (unit.metres() / counted - 1.0).abs() <= SAME_UNIT {
         return Ok(());
     }
@@ -57,7 +66,7 @@ pub fn missions(
     crs: &Crs,
     told: &Told,
 ) -> Result<Vec<(String, Mission)>, Fault> {
-    same_unit(told.unit, crs)?;
+    is_over_ground(told.unit, crs)?;
     let numbered = ways.iter().zip(1..).map(|(way, number)| {
         let battery = match ways.len() {
             0 | 1 => String::new(),

@@ -36,6 +36,15 @@ enum Look {
     Whole,
 }
 
+/// A triangle under a pixel's middle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Face {
+    /// World z there.
+    pub height: f64,
+    /// Whether its corners stand counter-clockwise, seen from above.
+    pub looks_up: bool,
+}
+
 impl Surface {
     /// The highest of the surface at each pixel's middle, world z, row by row; NaN where there is none.
     ///
@@ -46,7 +55,19 @@ impl Surface {
         raster: &MapRaster,
         progress: &Progress,
     ) -> Result<Vec<f64>, Fault> {
-        self.from_above(raster, Look::Middle, progress)
+        let base = self.frame().origin().z;
+        self.seen_from_above(
+            raster,
+            Look::Middle,
+            f64::NAN,
+            progress,
+            |highest, corners, first| {
+                if let Some(height) = height_at(corners, first + 0.5) {
+                    // NaN gives way.
+                    *highest = highest.max(height + base);
+                }
+            },
+        )
     }
 
     /// The highest of the surface anywhere in each pixel, its edges included: nothing is too thin. World z, row by row; NaN
@@ -59,15 +80,59 @@ impl Surface {
         raster: &MapRaster,
         progress: &Progress,
     ) -> Result<Vec<f64>, Fault> {
-        self.from_above(raster, Look::Whole, progress)
+        let base = self.frame().origin().z;
+        self.seen_from_above(
+            raster,
+            Look::Whole,
+            f64::NAN,
+            progress,
+            |highest, corners, first| {
+                if let Some(height) = highest_in(corners, first) {
+                    *highest = highest.max(height + base);
+                }
+            },
+        )
     }
 
-    fn from_above(
+    /// All triangles under each pixel's middle, row by row, in no order.
+    ///
+    /// # Errors
+    /// Where the surface cannot be triangulated, or the work was cancelled.
+    pub fn faces_from_above(
+        &self,
+        raster: &MapRaster,
+        progress: &Progress,
+    ) -> Result<Vec<Vec<Face>>, Fault> {
+        let base = self.frame().origin().z;
+        let none = Vec::new();
+        self.seen_from_above(
+            raster,
+            Look::Middle,
+            none,
+            progress,
+            |faces, corners, first| {
+                if let Some(height) = height_at(corners, first + 0.5) {
+                    let [a, b, c] = corners.map(DVec3::truncate);
+                    faces.push(Face {
+                        height: height + base,
+                        // Rows count downwards.
+                        looks_up: (b - a).perp_dot(c - a) < 0.0,
+                    });
+                }
+            },
+        )
+    }
+
+    /// What `add` makes of the triangles over each pixel, row by row. It takes what was made so far, a triangle's corners,
+    /// x and y in pixels, z in the surface's frame, and where the pixel begins.
+    fn seen_from_above<T: Clone + Send + Sync>(
         &self,
         raster: &MapRaster,
         look: Look,
+        none: T,
         progress: &Progress,
-    ) -> Result<Vec<f64>, Fault> {
+        add: impl Fn(&mut T, &[DVec3; 3], DVec2) + Sync,
+    ) -> Result<Vec<T>, Fault> {
         let frame = self.frame();
         let origin = frame.local_from_world(raster.corner.extend(0.0));
         // A place of the raster, of a point of the surface's frame.
@@ -85,7 +150,7 @@ impl Surface {
         let bands: Vec<u32> = (0..raster.rows).step_by(BAND as usize).collect();
         let bands = bands.into_par_iter().map(|first| {
             let rows = first..(first + BAND).min(raster.rows);
-            let mut highest = vec![f64::NAN; columns as usize * rows.len()];
+            let mut found = vec![none.clone(); columns as usize * rows.len()];
             let (top, bottom) = (f64::from(rows.start), f64::from(rows.end));
             let beside = |bounds: &Bounds| {
                 let (a, b) = (place(bounds.min), place(bounds.max));
@@ -99,8 +164,8 @@ impl Surface {
                     return Err(Fault::new("cancelled", "start it again when you want it"));
                 }
                 for corners in patch.triangles_seen(beside) {
-                    let on_picture = corners.map(place);
-                    let [p, q, r] = on_picture;
+                    let corners = corners.map(|corner| place(corner).extend(corner.z));
+                    let [p, q, r] = corners;
                     let (min, max) = (p.min(q).min(r), p.max(q).max(r));
                     // Middles at + 0.5; `as` saturates.
                     let range = |min: f64, max: f64, from: u32, to: u32| {
@@ -110,31 +175,20 @@ impl Surface {
                         };
                         (first as u32).max(from)..((last + 1.0) as u32).min(to)
                     };
-                    let solid: [DVec3; 3] =
-                        std::array::from_fn(|i| on_picture[i].extend(corners[i].z));
                     for row in range(min.y, max.y, rows.start, rows.end) {
                         for column in range(min.x, max.x, 0, columns) {
-                            let first = DVec2::new(f64::from(column), f64::from(row));
-                            let found = match look {
-                                Look::Middle => height_at(&solid, first + 0.5),
-                                Look::Whole => highest_in(&solid, first),
-                            };
-                            let Some(z) = found else {
-                                continue;
-                            };
-                            let z = z + frame.origin().z;
                             let index =
                                 (row - rows.start) as usize * columns as usize + column as usize;
-                            // NaN gives way.
-                            highest[index] = highest[index].max(z);
+                            let first = DVec2::new(f64::from(column), f64::from(row));
+                            add(&mut found[index], &corners, first);
                         }
                     }
                 }
             }
-            Ok(highest)
+            Ok(found)
         });
-        let bands: Result<Vec<Vec<f64>>, Fault> = bands.collect();
-        Ok(bands?.concat())
+        let bands: Result<Vec<Vec<T>>, Fault> = bands.collect();
+        Ok(bands?.into_iter().flatten().collect())
     }
 }
 

@@ -79,9 +79,14 @@ pub(super) fn volume(
         ("Plan area", number(volume.plan_area, &square)),
         ("Surface area", number(volume.surface_area, &square)),
     ];
-    if volume.covered < 1.0 - 1e-9 {
-        let holes = significant_digits(100.0 * (1.0 - volume.covered), 3);
+    let holes = 1.0 - volume.covered - volume.bodies;
+    if holes > 1e-9 {
+        let holes = significant_digits(100.0 * holes, 3);
         rows.push(("Not covered, not counted", format!("{holes} %")));
+    }
+    if volume.bodies > 0.0 {
+        let bodies = format!("{:.0} % of the plan", 100.0 * volume.bodies);
+        rows.push(("Closed bodies, without the base", bodies));
     }
     numbers("volume numbers", &rows, ui);
     let base = open.base_name(drawn);
