@@ -12,7 +12,7 @@ use crate::fault::Fault;
 use crate::flight::{Along, Limits, Review};
 use crate::formats::FileError;
 use crate::jobs::Progress;
-use crate::opening::{Opened, apart_from_photos};
+use crate::opening::Opened;
 use crate::scale::Onto;
 
 #[derive(Debug, Args)]
@@ -66,7 +66,6 @@ pub(super) fn export_of(
 ) -> Result<(Answer, Review), String> {
     let path = &arguments.flight.flight;
     let in_flight = |fault| FileError::new(path, fault).to_string();
-    apart_from_photos(&arguments.to, &opened.photo_files).map_err(|error| error.to_string())?;
     let review = opened.review(&Limits::default(), progress);
     let review = review.map_err(in_flight)?;
     let selected = review.going_along(match arguments.photos {

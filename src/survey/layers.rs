@@ -14,8 +14,10 @@ use crate::surface::{Face, MapRaster, Surface};
 const ACROSS: f64 = 330.0;
 /// Of the pixel: whose mesh stands on whole numbers has no edge in the middle of a pixel.
 const ASIDE: DVec2 = DVec2::new(0.271_828, 0.314_159);
-/// Of the polygon's pixels: less is how meshes of photos are closed here and there.
-const MOST: f64 = 2e-3;
+/// Of the polygon's pixels: more is no volume any more.
+const MOST: f64 = 1e-2;
+/// Less is what a raster sees of edges.
+const LEAST: f64 = 1e-3;
 /// Heights that are alike, of the span of heights: a body stands on the ground.
 const ALIKE: f64 = 1e-7;
 
@@ -27,6 +29,8 @@ pub(super) struct Layers {
     /// The share of the polygon, 0 to 1, in which as many look down as up: closed bodies, of which the own volume counts, or
     /// sheets with two sides.
     pub(super) closed: f64,
+    /// The share in which faces lie over others that look up, too, or look down from the top: few, or it is refused.
+    pub(super) doubtful: f64,
 }
 
 /// Of a surface inside a polygon; of a cloud none is like that.
@@ -85,9 +89,12 @@ pub(super) fn layers(surface: &Surface, polygon: &Polygon) -> Result<Layers, Sur
     if turned > MOST {
         return Err(SurveyError::TurnedOver(100.0 * turned));
     }
+    let [closed, doubtful] =
+        [closed, twice + turned].map(|share| if share > LEAST { share } else { 0.0 });
     Ok(Layers {
         is_turned_over,
-        closed: if closed > MOST { closed } else { 0.0 },
+        closed,
+        doubtful,
     })
 }
 

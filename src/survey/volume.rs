@@ -27,6 +27,9 @@ pub struct Volume {
     /// The part of the plan, 0 to 1, about, where a mesh has closed bodies and nothing under them: their own volume counts,
     /// and the base does not.
     pub bodies: f64,
+    /// The part of the plan, 0 to 1, about, where a mesh's faces (or its base's) lie over others that look up, too, or look down
+    /// from the top: there the volume counts twice or with the wrong sign. A hundredth at most.
+    pub doubtful: f64,
     /// The area of the surface itself inside the polygon, along its slopes.
     pub surface_area: f64,
     /// The part of the plan, 0 to 1, where a mesh has triangles that look down: what is under such an
@@ -163,6 +166,7 @@ pub fn volume(surface: &Surface, polygon: &Polygon, base: Base<'_>) -> Result<Vo
         plan_area,
         covered: (sums.plan / plan_area).min(1.0),
         bodies: own.closed,
+        doubtful: own.doubtful.max(under.doubtful),
         surface_area: found.surface.along,
         overhang: sums.down / plan_area,
         heights: found.heights.map(|heights| heights.map(|z| z + origin.z)),

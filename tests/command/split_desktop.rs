@@ -574,20 +574,6 @@ fn only_trusted_photos_where_asked() {
     assert_eq!(fragscale(&["export", "flight.toml"]).status.code(), Some(2));
 }
 
-/// Pictures beside the flight's own would count among them the next time.
-#[test]
-fn the_photos_own_folder_takes_no_export() {
-    let folder = copy_of_sample();
-    let [flight, photos] = ["flight.toml", "photos"].map(|name| folder.path().join(name));
-    let before = contents(&photos);
-    let [flight, to] = [&flight, &photos].map(|path| path.display().to_string());
-    let output = fragscale(&["export", &flight, "--to", &to]);
-    let error = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(1), "{error}");
-    assert!(error.contains("the flight's photos lie in it"), "{error}");
-    assert_eq!(contents(&photos), before);
-}
-
 #[test]
 fn files_of_others_stop_it_before_it_writes() {
     let to = tempfile::tempdir().expect("a folder");

@@ -8,7 +8,7 @@ use crate::command::Destination;
 use crate::exports::{self, ExportRequest, Provenance, Replace};
 use crate::flight::Along;
 use crate::jobs::Progress;
-use crate::opening::{self, apart_from_photos};
+use crate::opening;
 use crate::scale::Onto;
 use crate::state::{Severity, State};
 
@@ -42,10 +42,6 @@ impl State {
                 Severity::Error,
                 "scales, footprints and scale fields are still being computed; export when they are there",
             );
-            return;
-        }
-        if let Err(error) = apart_from_photos(&folder, &open.files.photo_files) {
-            self.say(Severity::Error, &error.to_string());
             return;
         }
         let mut review = open.review.clone();

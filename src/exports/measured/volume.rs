@@ -93,7 +93,14 @@ pub fn volume_warnings(volume: &Volume) -> Vec<String> {
             100.0 * volume.bodies
         )
     });
-    hole.into_iter().chain(bodies).collect()
+    let doubtful = (volume.doubtful > 0.0).then(|| {
+        format!(
+            "in {:.1} % of the polygon faces of the mesh lie over others that look up, too, or look down from the top: there \
+             the volume counts twice or with the wrong sign",
+            100.0 * volume.doubtful
+        )
+    });
+    hole.into_iter().chain(bodies).chain(doubtful).collect()
 }
 
 /// One line. Numbers read back to the same f64.

@@ -88,6 +88,10 @@ pub(super) fn volume(
         let bodies = format!("{:.0} % of the plan", 100.0 * volume.bodies);
         rows.push(("Closed bodies, without the base", bodies));
     }
+    if volume.doubtful > 0.0 {
+        let doubtful = format!("{:.1} % of the plan", 100.0 * volume.doubtful);
+        rows.push(("Faces over each other, counted twice", doubtful));
+    }
     numbers("volume numbers", &rows, ui);
     let base = open.base_name(drawn);
     let report = VolumeReport {
