@@ -166,6 +166,15 @@ impl Crs {
         }
     }
 
+    /// What heights are multiplied by to count in the unit of x and y, as all of a flight does: some systems of maps have them in
+    /// another one.
+    pub fn heights_factor(&self) -> f64 {
+        match self.kind {
+            CrsKind::Projected => self.vertical_unit_metres() / self.unit_metres(),
+            CrsKind::Geographic | CrsKind::Geocentric => 1.0,
+        }
+    }
+
     /// What its heights count from, in words: "the ellipsoid", "the geoid EGM96", "not said".
     pub fn heights(&self) -> &str {
         self.definition

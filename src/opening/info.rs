@@ -18,6 +18,7 @@ use crate::fragmentation::DistributionSet;
 use crate::geometry::Bounds;
 use crate::jobs::Progress;
 use crate::scale::ImageKind;
+use crate::world::WorldFrame;
 use crate::{OpenOptions, open_flight};
 use fragscale_core::plan::Height;
 
@@ -52,6 +53,11 @@ pub fn info(path: &Path, progress: &Progress) -> Result<Value, FileError> {
 fn cloud_info(file: &CloudFile) -> Value {
     let bounds = Bounds::of(&file.cloud.points)
         .map(|b| json!({"min": b.min.to_array(), "max": b.max.to_array()}));
+    let mut warnings = file.warnings.clone();
+    // What is wrong with its system is told where it is needed.
+    if let Ok(frame) = WorldFrame::of_cloud(file, &mut Vec::new()) {
+        warnings.extend(frame.heights_in_words());
+    }
     json!({
         "kind": "cloud",
         "points": file.cloud.points.len(),
@@ -59,7 +65,7 @@ fn cloud_info(file: &CloudFile) -> Value {
         "colors": !file.cloud.colors.is_empty(),
         "bounds": bounds,
         "crs": file.crs,
-        "warnings": file.warnings,
+        "warnings": warnings,
     })
 }
 

@@ -73,11 +73,20 @@ impl WorldFrame {
     /// another one.
     pub(super) fn heights_factor(&self) -> f64 {
         match self {
-            Self::Named(crs) if crs.kind() == CrsKind::Projected => {
-                crs.vertical_unit_metres() / crs.unit_metres()
-            }
-            _ => 1.0,
+            Self::Named(crs) => crs.heights_factor(),
+            Self::AsIs(_) | Self::Enu(_) => 1.0,
         }
+    }
+
+    /// Where heights count in another unit than x and y: what becomes of them, for whoever sees them as they are in the file.
+    pub(crate) fn heights_in_words(&self) -> Option<String> {
+        let factor = self.heights_factor();
+        (factor != 1.0).then(|| {
+            format!(
+                "its heights are in another unit than x and y, and stand here as the file has them: for all else they are \
+                 multiplied by {factor:.7}"
+            )
+        })
     }
 
     /// Whether lengths in it are lengths on the ground, around a point.
@@ -244,6 +253,10 @@ mod tests {
                 || what.starts_with("a metre of EPSG:3857 is 0.50"),
             "{what}"
         );
+        // What `info` says of heights as a file has them: 1200 / 3937.
+        let told = named("EPSG:32632+6360").heights_in_words().unwrap();
+        assert!(told.ends_with("multiplied by 0.3048006"), "{told}");
+        assert_eq!(named("EPSG:32632+5703").heights_in_words(), None);
         let utm = named("EPSG:32633").check_lengths(DVec3::new(500_000.0, 5e6, 0.0));
         assert_eq!(utm, Ok(None));
     }

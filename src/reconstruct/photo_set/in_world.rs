@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::fault::Fault;
 use crate::formats::photos::photo_metadata::PhotoMetadata;
-use crate::geodesy::{Crs, CrsKind};
+use crate::geodesy::{Crs, CrsKind, Geographic};
 
 /// The world that the photos lie in.
 pub(crate) struct World {
@@ -37,7 +37,7 @@ impl World {
             return Ok(None);
         };
         let crs = asked.unwrap_or_else(|| Crs::utm_at(first.place));
-        let Some(center) = crs.from_geographic(first.place) else {
+        let Some(center) = in_metres(&crs, first.place) else {
             let what = format!("the photos do not lie where {} is defined", crs.name());
             return Err(Fault::new(
                 what,
@@ -51,8 +51,65 @@ impl World {
     /// Where a photo was taken, from the origin; `None` where it does not say where and how high.
     pub(crate) fn place(&self, photo: &PhotoMetadata) -> Option<DVec3> {
         let place = photo.place.filter(|place| place.height.is_some())?;
-        let center = self.crs.from_geographic(place.place)? - self.origin;
+        let center = in_metres(&self.crs, place.place)? - self.origin;
         // A receiver's lapse to another continent helps nobody.
         (center.length() < 100_000.0).then_some(center)
+    }
+}
+
+/// The point of a place on the grid, in metres whatever the system counts in: so are accuracies, and what the adjustment takes
+/// for usual. The unit comes back when the model is fitted to the positions in the system itself.
+fn in_metres(crs: &Crs, place: Geographic) -> Option<DVec3> {
+    let point = crs.from_geographic(place)?;
+    let level = point.truncate() * crs.unit_metres();
+    Some(level.extend(point.z * crs.vertical_unit_metres()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::photos::photo_metadata::{HeightReference, MeasuredPlace};
+
+    /// Feet in a system's plan or of its heights change nothing.
+    #[test]
+    fn places_are_in_metres() {
+        let photo = |latitude: f64, height: f64| PhotoMetadata {
+            make: None,
+            model: None,
+            serial: None,
+            lens: None,
+            time: None,
+            size: (1, 1),
+            place: Some(MeasuredPlace {
+                place: Geographic {
+                    latitude,
+                    longitude: 9.0,
+                    height,
+                },
+                height: Some(HeightReference::Ellipsoid),
+                fix: None,
+                deviation: None,
+            }),
+            relative_altitude: None,
+            laser_range: None,
+            orientation: None,
+            unknown_angles: Vec::new(),
+            focal: Vec::new(),
+            warnings: Vec::new(),
+        };
+        let photos = [photo(48.0, 300.0), photo(48.001, 337.5)];
+        for system in [
+            "EPSG:32632",
+            "EPSG:32632+6360",
+            "+proj=utm +zone=32 +datum=WGS84 +units=us-ft +no_defs",
+        ] {
+            let world = World::of(Some(system), photos.iter()).unwrap().unwrap();
+            let [first, second] = photos.each_ref().map(|photo| world.place(photo).unwrap());
+            let off = second - first;
+            // A thousandth of a degree of the meridian at 48 degrees north, times 0.9996.
+            assert!((off.y - 111.152).abs() < 0.01, "{system}: {off}");
+            assert!((off.z - 37.5).abs() < 1e-6, "{system}: {off}");
+            assert!(off.x.abs() < 1e-6, "{system}: {off}");
+        }
     }
 }

@@ -53,7 +53,7 @@ impl SurveyPhoto {
 /// Where a photo was taken, by its own receiver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// From [`PhotoSet::origin`], in the unit of the world.
+    /// From [`PhotoSet::origin`], metres.
     pub center: DVec3,
     /// Standard deviations towards east, north and up, metres, where they can be known.
     pub deviation: Option<DVec3>,
@@ -106,7 +106,7 @@ pub struct PhotoSet {
     pub cameras: Vec<SurveyCamera>,
     /// Files that are none.
     pub left_out: Vec<LeftOut>,
-    /// From where places count, in the world.
+    /// From where places count, metres on the grid of the world.
     pub origin: DVec3,
     /// How many photos the folder has.
     pub count: usize,
