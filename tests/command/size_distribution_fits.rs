@@ -236,3 +236,26 @@ fn several_curves_are_an_array_and_one_that_cannot_be_fitted_is_said() {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(said.contains("4 points for the 5 parameters"), "{said}");
 }
+
+/// What nobody measured is the function's alone, and is said where people read it.
+#[test]
+fn percentiles_beyond_what_was_measured_are_named() {
+    let said = |text: &str| {
+        let folder = table(text);
+        let path = folder.path().join("t.csv");
+        let told = stdout_of(&["psd", "fit", path.to_str().expect("a UTF-8 path")]);
+        let line = told
+            .lines()
+            .find(|line| line.starts_with("beyond what was measured"));
+        line.map(str::to_owned)
+    };
+    // P10 is 9.70 mm and P90 100.6 mm by scipy, too.
+    assert_eq!(
+        said("size_mm,percent_passing\n10,10\n25,30\n50,60\n100,90\n").expect("a line"),
+        "beyond what was measured, by the function alone: P10 (below 10 mm) and P90 (above 100 mm)"
+    );
+    assert_eq!(
+        said("size_mm,percent_passing\n1,2\n10,10\n25,30\n50,60\n100,90\n200,99\n"),
+        None
+    );
+}

@@ -80,6 +80,33 @@ pub fn fit_table(report: &FitReport) -> String {
     tables.join("\n")
 }
 
+/// Which percentiles lie beyond the sizes that were measured; nothing where none does.
+fn beyond(points: &[[f64; 2]], percentiles: &[Percentile], unit: LengthUnit) -> String {
+    let sizes = points.iter().map(|[size, _]| *size);
+    let least = sizes.clone().fold(f64::INFINITY, f64::min);
+    let greatest = sizes.fold(f64::NEG_INFINITY, f64::max);
+    let named = |is_it: &dyn Fn(f64) -> bool, end: &str, size: f64| {
+        let names = percentiles
+            .iter()
+            .filter(|percentile| is_it(percentile.size));
+        let names: Vec<String> = names
+            .map(|percentile| format!("P{}", percentile.percent))
+            .collect();
+        (!names.is_empty())
+            .then(|| format!("{} ({end} {} {unit})", names.join(", "), trimmed(size, 6)))
+    };
+    let below = named(&|size| size < least, "below", least);
+    let above = named(&|size| size > greatest, "above", greatest);
+    let all: Vec<String> = below.into_iter().chain(above).collect();
+    match all.is_empty() {
+        true => String::new(),
+        false => format!(
+            "beyond what was measured, by the function alone: {}\n",
+            all.join(" and ")
+        ),
+    }
+}
+
 fn table(report: &FitReport, curve: &FittedCurve) -> String {
     let FittedCurve { fit, points, .. } = curve;
     let mut text = String::new();
@@ -140,12 +167,14 @@ fn table(report: &FitReport, curve: &FittedCurve) -> String {
         let size = significant(percentile.size, 5);
         sizes.push(vec![name, size, end(0), end(1)]);
     };
-    for percentile in report.percentiles(fit) {
-        line(format!("P{}", percentile.percent), percentile);
+    let percentiles = report.percentiles(fit);
+    for percentile in &percentiles {
+        line(format!("P{}", percentile.percent), *percentile);
     }
     let topsize = fit.topsize(report.level);
     line(format!("topsize (P{TOPSIZE_PERCENT})"), topsize);
     text += &aligned(&sizes);
+    text += &beyond(points, &percentiles, report.unit);
     text += &format!(
         "uniformity P60/P10 {}, curvature P30^2/(P10 P60) {}\n\n",
         significant(fit.uniformity(), 4),
