@@ -5,6 +5,7 @@
 //!   their digits: x = X * scale + offset.
 //! - Colours are 16 bits wide; many programs write 8-bit values into them all the same, which shows
 //!   in the largest value.
+//! - Withheld points and those that are classified as noise are left out, and counted (`flags`).
 //! - The coordinate system stands in a variable length record: WKT (OGC 01-009), or GeoTIFF keys, of
 //!   which 3072 (projected) or 2048 (geographic) hold an EPSG code, and 4096 and 4099 that of heights (`geo_keys`).
 //!
@@ -13,6 +14,7 @@
 //! and becomes an error like any other.
 
 pub(super) mod claims;
+pub(super) mod flags;
 pub(crate) mod sample;
 
 use std::io::{Read, Seek};
@@ -23,6 +25,7 @@ use las::PointDataBuilder;
 use las::crs::GeoTiffData;
 
 use claims::WithCount;
+use flags::{LeftOut, why_not};
 
 use crate::clouds::cloud_file::{CloudFile, counts_degrees, first_not_finite};
 use crate::clouds::geo_keys::{GEODETIC_CRS, MODEL_TYPE, PROJECTED_CRS, StatedHeights, code};
@@ -94,10 +97,11 @@ fn decode(
     let mut portion = PointDataBuilder::new().for_header(reader.header()).build();
     let portion_size = PORTION.min(PORTION_BYTES / portion.record_len().max(1) as u64);
     let mut colors = Colors::default();
+    let is_extended = reader.header().point_format().is_extended;
+    let (mut done, mut left_out) = (0_u64, LeftOut::default());
     loop {
-        progress.advance(file.cloud.points.len() as u64, total)?;
+        progress.advance(done, total)?;
         let read = reader.fill_points(portion_size, &mut portion).map_err(|error| {
-            let done = file.cloud.points.len();
             Fault::new(
                 format!("it breaks off after about {done} of the {total} points that its header promises ({error})"),
                 "copy or export it again",
@@ -106,14 +110,23 @@ fn decode(
         if read == 0 {
             break;
         }
+        done += read;
+        let records = portion.raw_bytes().chunks_exact(portion.record_len());
+        let counts: Vec<bool> = records
+            .map(|record| {
+                let why = why_not(record, is_extended);
+                why.into_iter().for_each(|why| left_out.add(why));
+                why.is_none()
+            })
+            .collect();
         let coordinates = portion.x().zip(portion.y()).zip(portion.z());
-        file.cloud
-            .points
-            .extend(coordinates.map(|((x, y), z)| DVec3::new(x, y, z * heights)));
+        let points = coordinates.map(|((x, y), z)| DVec3::new(x, y, z * heights));
+        file.cloud.points.extend(counting(points, &counts));
         if let Some(wide) = portion.rgb() {
-            colors.extend(wide.map(|(r, g, b)| [r, g, b]));
+            colors.extend(counting(wide.map(|(r, g, b)| [r, g, b]), &counts));
         }
     }
+    file.warnings.extend(left_out.warning());
     if let Some(index) = first_not_finite(&file.cloud.points) {
         return Err(Fault::new(
             format!("point {index} (counted from 0) has a coordinate that is not a finite number"),
@@ -122,6 +135,12 @@ fn decode(
     }
     file.cloud.colors = colors.finish();
     Ok(file)
+}
+
+/// Those that count.
+fn counting<T>(all: impl Iterator<Item = T>, counts: &[bool]) -> impl Iterator<Item = T> {
+    all.zip(counts)
+        .filter_map(|(one, counts)| counts.then_some(one))
 }
 
 /// Colours of 16 bits, of which eight are kept: the lower ones as long as all channels fit into them, and the
@@ -248,6 +267,48 @@ mod tests {
     }
 
     /// UTM with heights in feet, by the key of their unit and by that of their system; California in feet with heights in metres.
+    /// One point of ground, one withheld, one of noise: the first counts, with its colour, and the others are told.
+    #[test]
+    fn withheld_points_and_noise_are_left_out() {
+        use las::point::Classification;
+        for (format, minor) in [(2, 2), (3, 4), (7, 4)] {
+            for compressed in [false, true] {
+                let mut builder = Builder::from((1, minor));
+                builder.point_format = las::point::Format::new(format).unwrap();
+                builder.point_format.is_compressed = compressed;
+                let has_time = builder.point_format.has_gps_time;
+                let header = builder.into_header().unwrap();
+                let mut writer = Writer::new(Cursor::new(Vec::new()), header).unwrap();
+                for (x, is_withheld, classification) in [
+                    (1.0, false, Classification::Ground),
+                    (2.0, true, Classification::Ground),
+                    (3.0, false, Classification::LowPoint),
+                ] {
+                    let point = Point {
+                        x,
+                        is_withheld,
+                        classification,
+                        color: Some(Color::new(x as u16, 0, 0)),
+                        gps_time: has_time.then_some(0.0),
+                        ..Point::default()
+                    };
+                    writer.write_point(point).unwrap();
+                }
+                writer.close().unwrap();
+                let bytes = writer.into_inner().unwrap().into_inner();
+                let file = read(Cursor::new(bytes), &Progress::default()).unwrap();
+                assert_eq!(file.cloud.points, [DVec3::new(1.0, 0.0, 0.0)], "{format}");
+                assert_eq!(file.cloud.colors, [[1, 0, 0]]);
+                assert_eq!(
+                    file.warnings,
+                    [
+                        "1 points that it marks as withheld and 1 that it classifies as noise (7, 18) are left out"
+                    ]
+                );
+            }
+        }
+    }
+
     #[test]
     fn heights_in_another_unit() {
         let with_keys = |keys: &[[u16; 4]]| {

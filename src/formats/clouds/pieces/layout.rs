@@ -10,6 +10,7 @@ use laz::record::{
 };
 use laz::{DecompressionSelection, LazItem};
 
+use crate::clouds::las::flags::why_not;
 use crate::fault::Fault;
 use crate::geometry::Bounds;
 
@@ -51,7 +52,7 @@ impl Layout {
         })
     }
 
-    /// The points of these bytes of a file.
+    /// The points of these bytes of a file, without those that do not count.
     pub(in crate::clouds) fn decode(
         &self,
         bytes: Vec<u8>,
@@ -75,6 +76,7 @@ impl Layout {
         };
         let Vector { x, y, z } = self.transforms;
         let points = records.chunks_exact(self.record.max(12)).take(count);
+        let points = points.filter(|record| why_not(record, self.is_layered).is_none());
         let points = points.map(|record| {
             DVec3::new(
                 x.direct(number(record, 0)),
@@ -94,7 +96,8 @@ impl Layout {
         if self.is_layered {
             let mut decompressor = LayeredPointRecordDecompressor::new(input);
             decompressor.set_fields_from(&self.items).map_err(damaged)?;
-            decompressor.set_selection(DecompressionSelection::xy_returns_channel().decompress_z());
+            let selection = DecompressionSelection::xy_returns_channel().decompress_z();
+            decompressor.set_selection(selection.decompress_classification().decompress_flags());
             decompressor.decompress_many(&mut records)?;
         } else {
             let mut decompressor = SequentialPointRecordDecompressor::new(input);
