@@ -10,7 +10,7 @@ use crate::camera::{Camera, Pose};
 use crate::control::{ControlList, Located, MarkedView, POOR_PX, locate};
 use crate::fault::{Fault, first_names};
 use crate::formats::photos::photo_folder::PhotoFolder;
-use crate::formats::{PosedPhoto, Reconstruction};
+use crate::formats::Reconstruction;
 use crate::numbers::significant_digits;
 
 /// Who clicks a mark does it to about a pixel.
@@ -158,28 +158,6 @@ pub(super) fn contradiction(marked: &[MarkedPoint], fit: &Georeferenced) -> Opti
             significant_digits(allowed, 2),
             unit = fit.unit
         )
-    })
-}
-
-/// That all photos lie under all the surveyed points: nearly level points fit as well turned over, which swapped columns do.
-pub(super) fn from_below(
-    marked: &[MarkedPoint],
-    photos: &[PosedPhoto],
-    fit: &Georeferenced,
-) -> Option<String> {
-    let height = |place: DVec3| fit.similarity.apply(place).z;
-    let surveyed = marked.iter().filter(|point| point.position.is_some());
-    let lowest = surveyed
-        .map(|point| height(point.found.point))
-        .reduce(f64::min)?;
-    let highest = photos
-        .iter()
-        .map(|photo| height(photo.pose.center))
-        .reduce(f64::max)?;
-    (highest < lowest).then(|| {
-        "all photos come to lie under the control points: if they were taken from above, easting and northing are swapped in the list, or its \
-         heights count downwards"
-            .to_owned()
     })
 }
 

@@ -14,6 +14,7 @@ mod model_errors;
 mod of_flight;
 mod photo_names;
 mod receivers;
+mod turned_over;
 
 pub use self::control_file::{control_file, control_text, read_control};
 pub use self::flight_text::flight_text_of;
@@ -27,6 +28,7 @@ use glam::DVec3;
 use self::list_world::ListWorld;
 use self::marks::MarkedPoint;
 use self::photo_names::PhotoNames;
+use self::turned_over::turned_over;
 use crate::control::ControlList;
 use crate::fault::{Fault, first_names};
 use crate::files::FileError;
@@ -420,7 +422,7 @@ pub fn georeference_model(
         ));
     }
     warnings.extend(contradiction);
-    warnings.extend(marks::from_below(&marked, &reconstruction.photos, &result));
+    warnings.extend(turned_over(&marked, &reconstruction.photos, &result));
     // In a local world there is nothing to compare, and no photo is looked into.
     if result.crs.is_some() && (points.is_some() || request.positions.is_some()) {
         let own = receivers::positions(path, reconstruction, request.photos.as_deref());

@@ -326,6 +326,28 @@ fn a_world_that_is_turned_over_is_said() {
     assert!(swapped.contains(turned), "{swapped}");
 }
 
+/// So do the photos' own positions: then all look at the sky.
+#[test]
+fn photos_that_look_at_the_sky_are_said() {
+    let said = |place: fn(DVec3) -> [f64; 3]| {
+        let lines = (0..).zip(centers()).map(|(i, center)| {
+            let [x, y, z] = place(center.with_z(460.0));
+            format!("img_{i:04}.jpg {x} {y} {z}\n")
+        });
+        let list = List::new(&format!("local\n{}", lines.collect::<String>()));
+        let request = GeoreferenceRequest {
+            positions: Some(list.path()),
+            ..GeoreferenceRequest::default()
+        };
+        run(&request).unwrap().warnings.join("; ")
+    };
+    let turned = "all photos come to look at the sky";
+    let right = said(|center| center.to_array());
+    assert!(!right.contains(turned), "{right}");
+    let swapped = said(|center| [center.y, center.x, center.z]);
+    assert!(swapped.contains(turned), "{swapped}");
+}
+
 /// Four points of which one is typed a metre off in height: a fit of seven numbers to twelve takes most of it up, and cannot tell
 /// which. And marks in a photo that is not there are named.
 #[test]

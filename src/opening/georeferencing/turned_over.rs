@@ -1,0 +1,50 @@
+//! A world that the fit turned over: nearly level places fit as well so, which swapped columns do.
+
+use glam::DVec3;
+
+use super::Georeferenced;
+use super::marks::MarkedPoint;
+use crate::formats::PosedPhoto;
+
+/// What is to be said where all photos lie under all the surveyed points, or, where there are none, all look up.
+pub(super) fn turned_over(
+    marked: &[MarkedPoint],
+    photos: &[PosedPhoto],
+    fit: &Georeferenced,
+) -> Option<String> {
+    from_below(marked, photos, fit).or_else(|| looking_up(photos, fit))
+}
+
+fn from_below(
+    marked: &[MarkedPoint],
+    photos: &[PosedPhoto],
+    fit: &Georeferenced,
+) -> Option<String> {
+    let height = |place: DVec3| fit.similarity.apply(place).z;
+    let surveyed = marked.iter().filter(|point| point.position.is_some());
+    let lowest = surveyed
+        .map(|point| height(point.found.point))
+        .reduce(f64::min)?;
+    let highest = photos
+        .iter()
+        .map(|photo| height(photo.pose.center))
+        .reduce(f64::max)?;
+    (highest < lowest).then(|| {
+        "all photos come to lie under the control points: if they were taken from above, easting and northing are swapped in the list, or its \
+         heights count downwards"
+            .to_owned()
+    })
+}
+
+/// How far all photos look above the horizon, a sine: pit walls are photographed upwards, too, but not all of a pile.
+const UP: f64 = 0.3;
+
+fn looking_up(photos: &[PosedPhoto], fit: &Georeferenced) -> Option<String> {
+    let up = |photo: &PosedPhoto| (fit.similarity.rotation * photo.pose.rotation * DVec3::Z).z;
+    let lowest = photos.iter().map(up).reduce(f64::min)?;
+    (lowest > UP).then(|| {
+        "all photos come to look at the sky: if they were taken from above, easting and northing are swapped in the list, or its heights \
+         count downwards"
+            .to_owned()
+    })
+}
