@@ -17,9 +17,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::asked::Asked;
-use crate::exports::{FlightFindings, sha256_of_bytes, sha256_of_file};
+use crate::exports::FlightFindings;
 use crate::fault::Fault;
 use crate::files::{self, FAILED_MARK, FileError, Inputs, Kind, cannot_be};
+use crate::files::{sha256_of_bytes, sha256_of_file};
 use crate::jobs::Progress;
 use crate::opening::path_from;
 use crate::told::FlightTold;

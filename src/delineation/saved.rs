@@ -1,8 +1,9 @@
 //! What stands beside a label image that was saved to go on with: how sure its fragments are, and what it is of.
 //!
-//! A line of JSON: `{"outlines": photo, "engine": name, "lens": [[x, y] ...], "spread": pixels, "sure": {number: 0 to 1 ...}}`,
+//! A line of JSON: `{"outlines": photo, "picture": "SHA-256", "engine": name, "lens": [[x, y] ...], "spread": pixels, "sure": {number: 0 to 1 ...}}`,
 //! and of an engine of the user's `"habits"`: how it errs, which the program does not know of it by its name.
-//! `lens` says where nine places of the undistorted photo lie in the photo as shot: outlines are of the undistorted
+//! `picture` is the checksum of the photo's file, where it was there: photos of other flights have the same names, and their
+//! outlines may lie in the same folder. `lens` says where nine places of the undistorted photo lie in the photo as shot: outlines are of the undistorted
 //! one, and with another lens that is another picture. `spread` is how far the photo's edges are spread, null where that is
 //! not known.
 
@@ -24,6 +25,8 @@ const SAME_PLACE: f64 = 0.5;
 pub struct SavedOutlines {
     /// As the flight names the photo.
     pub photo: String,
+    /// SHA-256 of the photo's file, in hexadecimal; `None` where it was not there, and in files of before.
+    pub picture: Option<String>,
     /// What outlined it first.
     pub by: Outliner,
     /// Where places of the undistorted photo lie in the photo as shot; NaN where nowhere.
@@ -37,16 +40,20 @@ impl SavedOutlines {
     pub fn to_json(&self) -> String {
         let Self {
             photo,
+            picture,
             by,
             lens,
             sure,
         } = self;
+        let picture = picture.as_ref();
+        let picture =
+            picture.map_or_else(String::new, |sum| format!(",\"picture\":{}", json!(sum)));
         let lens: Vec<Value> = lens.iter().map(|place| json!([place.x, place.y])).collect();
         // The order is that of the documentation, whatever the map of the library keeps.
         let own = by.habits.filter(|_| engine_called(&by.engine).is_none());
         let habits = own.map_or_else(String::new, |own| format!(",\"habits\":{}", own.to_json()));
         format!(
-            "{{\"outlines\":{},\"engine\":{},\"lens\":{},\"spread\":{},\"sure\":{}{habits}}}\n",
+            "{{\"outlines\":{}{picture},\"engine\":{},\"lens\":{},\"spread\":{},\"sure\":{}{habits}}}\n",
             json!(photo),
             json!(by.engine),
             json!(lens),
@@ -81,6 +88,7 @@ impl SavedOutlines {
         });
         Ok(Self {
             photo: word("outlines").ok_or_else(none)?,
+            picture: word("picture"),
             by: Outliner {
                 engine: word("engine").ok_or_else(none)?,
                 habits: value.get("habits").and_then(Habits::from_json),
@@ -141,6 +149,7 @@ mod tests {
         let pinhole = camera(Distortion::None);
         let saved = SavedOutlines {
             photo: "a \"b\"\\c.jpg".to_owned(),
+            picture: Some("ba78".to_owned()),
             by: Outliner {
                 engine: "mine".to_owned(),
                 habits: Some(Classical.habits(4000, 3000)),
@@ -161,7 +170,14 @@ mod tests {
         // k1 of 0.1 at (1000, 0) of f 3000: 1000 * 0.1 / 9, eleven pixels.
         let brown = Brown::new([0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         assert!(!saved.is_of(&camera(Distortion::Brown(brown))));
-        // Earlier versions did not say it.
+        // Earlier versions did not say which picture, nor the spread.
+        let earlier = saved.to_json().replace("\"picture\":\"ba78\",", "");
+        let earlier = SavedOutlines::from_json(&earlier).unwrap();
+        assert_eq!(earlier.picture, None);
+        assert_eq!(
+            SavedOutlines::from_json(&earlier.to_json()).unwrap(),
+            earlier
+        );
         let earlier = saved.to_json().replace("\"spread\":0.75,", "");
         assert_eq!(SavedOutlines::from_json(&earlier).unwrap().by.spread, None);
         for broken in ["", "{}", "{\"outlines\":1}", "[]"] {

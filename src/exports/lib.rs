@@ -88,7 +88,6 @@ pub use size_distributions::{
     comparison_report, comparison_text, effort_csv, effort_json, effort_text, figure_of_comparison,
     figure_of_fits, figure_png, figure_svg, fit_csv, fit_json, fit_table,
 };
-pub use split_desktop::checksum::{of_bytes as sha256_of_bytes, of_file as sha256_of_file};
 pub use split_desktop::{
     ExportRequest, ExportSummary, Provenance, Replace, export_for_split_desktop, other_flight_in,
 };

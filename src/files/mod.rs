@@ -13,6 +13,7 @@
 //! The one place of the lower floors that knows paths.
 
 mod atomic;
+mod checksum;
 mod input;
 mod inputs;
 mod last_segment;
@@ -23,6 +24,7 @@ mod recording;
 
 pub use atomic::write_whole;
 pub use atomic::{is_unfinished, make_folder_whole, remove_unfinished};
+pub use checksum::{of_bytes as sha256_of_bytes, of_file as sha256_of_file};
 pub use input::{
     FileError, cannot_be, open_file, read_bytes, read_small, read_text, text_from_bytes,
     unreadable_folder,

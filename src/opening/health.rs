@@ -2,8 +2,10 @@
 //! Each is good, or says in one sentence what is not and what mends it; every front end shows these words.
 
 use crate::flight::{ColoursFound, Doubt, PhotoFileState, PhotoReview, Review};
+use crate::geodesy::Crs;
 use crate::open::FlightReconstruction;
 use crate::surface::UpAxis;
+use crate::units::LengthUnit;
 
 /// What is looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -161,6 +163,21 @@ fn share(count: usize, review: &Review) -> String {
 
 fn unit(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
     let parts = review.flight().parts();
+    let counts_in = |crs: &str| Crs::understand(crs).ok().map(|crs| crs.unit_metres());
+    // A geocentric or projected one; degrees are no lengths of a flight.
+    let of_system = stated.crs.and_then(counts_in).filter(|_| parts.unit_known);
+    if let (Some(crs), Some(metres)) = (stated.crs, of_system)
+        && (parts.unit.metres() / metres - 1.0).abs() > 1e-9
+    {
+        let counted = LengthUnit::of_metres(metres);
+        let counted = counted.map_or_else(|| format!("{metres} m"), |unit| unit.to_string());
+        let says = format!(
+            "The world is said to count in {}, and its coordinate system ({crs}) counts in {counted}: scales are off by as much.",
+            parts.unit
+        );
+        let short = format!("{}, not {counted}", parts.unit);
+        return of(HealthItem::Unit, Health::Bad, short, says).with(Remedy::SetUnit);
+    }
     match parts.unit_known {
         true => {
             let says = format!("The world counts in {}.", parts.unit);

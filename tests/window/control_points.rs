@@ -207,7 +207,17 @@ fn surveyed_points_bring_the_flight_to_the_world_and_back() {
     assert!(desk.says("4 of 4 points used, RMS 0.00"));
     assert!(desk.says("m off"));
     let tests_of = desk.open().control.applied.as_ref();
-    assert!(matches!(tests_of, Some(Applied::Placed(found, _)) if found.used() == 4));
+    assert!(matches!(tests_of, Some(Applied::Placed(found, ..)) if found.used() == 4));
+    // Residuals are those of the points that were applied.
+    let changed = "have changed since they were applied";
+    let before = desk.open().control_list().points[1].position;
+    step(
+        &mut desk,
+        ControlStep::Survey(1, before.map(|at| at + DVec3::Z)),
+    );
+    assert!(desk.says(changed) && !desk.says("4 of 4 points used") && !desk.says("m off"));
+    desk.press(Modifiers::COMMAND, Key::Z);
+    assert!(!desk.says(changed) && desk.says("4 of 4 points used"));
 
     // One step back: own frame, points still there; and forth.
     desk.press(Modifiers::COMMAND, Key::Z);

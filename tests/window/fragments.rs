@@ -153,10 +153,55 @@ fn outlined_corrected_saved_and_read_again() {
     broken.click(Role::Button, "Outline this photo");
     broken.press(Modifiers::COMMAND, Key::S);
     assert!(broken.harness.state().state().is_changed());
+    broken.click(Role::Button, "Keep the file");
     assert_eq!(image::open(&saved).unwrap().width(), 20);
     fs::remove_file(&saved).unwrap();
+    fs::remove_file(saved.with_file_name("IMG_0001_outlines.json")).unwrap();
     broken.press(Modifiers::COMMAND, Key::S);
     assert!(!broken.harness.state().state().is_changed());
+}
+
+/// Every card of a drone has the same names: outlines of another picture of that name are not taken, and not written over
+/// without a question.
+#[test]
+fn outlines_of_another_picture_are_not_taken() {
+    let folder = sample();
+    let file = folder.path().join("flight.toml");
+    let mut desk = outlined(&file);
+    desk.press(Modifiers::COMMAND, Key::S);
+    let json = folder.path().join("fragments/IMG_0001_outlines.json");
+    let before = fs::read_to_string(&json).expect("saved");
+    let photos = folder.path().join("photos");
+    fs::copy(photos.join("IMG_0002.jpg"), photos.join("IMG_0001.jpg")).expect("another picture");
+    let words = "of another picture with the photo's name";
+    let output = crate::common::fragscale(&[
+        "delineate",
+        file.to_str().expect("UTF-8"),
+        "--engine",
+        "saved",
+        "--photo",
+        "IMG_0001.jpg",
+        "--to",
+        folder.path().join("out").to_str().expect("UTF-8"),
+    ]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        output.status.code() != Some(0) && said.contains(words),
+        "{said}"
+    );
+
+    let mut other = Desk::new(Some(&file));
+    other.click(Role::Tab, "Fragments");
+    assert!(other.logged(words) && other.open().fragments.of(0).is_none());
+    other.click(Role::Button, "Outline this photo");
+    other.press(Modifiers::COMMAND, Key::S);
+    assert_eq!(fs::read_to_string(&json).expect("there"), before);
+    other.click(Role::Button, "Replace it");
+    assert!(!other.harness.state().state().is_changed());
+    assert_ne!(fs::read_to_string(&json).expect("there"), before);
+    let mut again = Desk::new(Some(&file));
+    again.click(Role::Tab, "Fragments");
+    assert!(again.open().fragments.of(0).is_some());
 }
 
 /// As a newcomer found: after an outlining by another engine undo brought the outlines back and not what outlined them, by whose

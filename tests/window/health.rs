@@ -157,3 +157,22 @@ fn another_axis_is_taken_for_up() {
     desk.settle();
     assert_eq!(how(&desk, HealthItem::UpAxis), (Health::Bad, remedy));
 }
+
+/// A unit that is not that of the coordinate system is said at the top of the window, not in the log alone.
+#[test]
+fn a_unit_against_the_coordinate_system_is_no_good_one() {
+    let folder = copy("tests/windrow");
+    let toml = folder.path().join("flight.toml");
+    let text = std::fs::read_to_string(&toml).expect("the flight");
+    for (unit, wanted) in [
+        ("m", (Health::Good, "m")),
+        ("in", (Health::Bad, "in, not m")),
+    ] {
+        let stated = format!("unit = \"{unit}\"\ncrs = \"EPSG:32632\"");
+        let text = text.replacen("unit = \"m\"", &stated, 1);
+        std::fs::write(&toml, text).expect("written");
+        let desk = Desk::new(Some(folder.path()));
+        let found = finding(&desk, HealthItem::Unit);
+        assert_eq!((found.health, found.short.as_str()), wanted, "{unit}");
+    }
+}

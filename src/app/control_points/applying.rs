@@ -141,8 +141,9 @@ impl State {
             });
             found.map_err(|error| error.fault.to_string())
         };
+        let by = open.control_list().clone();
         self.start(Task::CONTROL, work, |state, found| match found {
-            Ok(found) => state.take_control(found),
+            Ok(found) => state.take_control(found, by),
             Err(message) => {
                 if let Some(open) = &mut state.open {
                     open.control.applied = Some(Applied::Failed(message));
@@ -152,7 +153,7 @@ impl State {
     }
 
     /// Brings the flight to where the control points are: one step of undo.
-    fn take_control(&mut self, found: Georeferenced) {
+    fn take_control(&mut self, found: Georeferenced, by: ControlList) {
         let Some(open) = &mut self.open else {
             return;
         };
@@ -168,7 +169,8 @@ impl State {
         self.say(Severity::Note, &said);
         if let Some(open) = &mut self.open {
             let placed = settings.placed.clone();
-            open.control.applied = Some(Applied::Placed(Box::new(found), placed));
+            let by = Box::new(by);
+            open.control.applied = Some(Applied::Placed(Box::new(found), placed, by));
         }
         self.set_settings(settings);
     }

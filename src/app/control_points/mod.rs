@@ -15,7 +15,7 @@ use std::path::PathBuf;
 
 use glam::{DVec2, DVec3};
 
-use crate::control::ScaleBar;
+use crate::control::{ControlList, ScaleBar};
 use crate::flight::Placed;
 use crate::opening::Georeferenced;
 pub use finding::Found;
@@ -63,8 +63,8 @@ pub enum ControlStep {
 /// What came of bringing the flight to the world.
 #[derive(Debug)]
 pub enum Applied {
-    /// This, as long as the flight is placed so.
-    Placed(Box<Georeferenced>, Option<Placed>),
+    /// This, as long as the flight is placed so and its points are these.
+    Placed(Box<Georeferenced>, Option<Placed>, Box<ControlList>),
     /// Why not, in a line.
     Failed(String),
 }

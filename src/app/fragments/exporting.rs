@@ -256,7 +256,8 @@ impl Export {
         let (labels, by, mut notes) = match &of.outlines {
             Outlines::Now(labels, by) => (labels, by, Vec::new()),
             Outlines::Saved(files) => {
-                read = read_outlines(files, &of.name, camera).map_err(|error| error.to_string())?;
+                read = read_outlines(files, &of.name, camera, of.file.as_deref())
+                    .map_err(|error| error.to_string())?;
                 (read.outlines.labels(), &read.by, read.notes.clone())
             }
         };

@@ -29,6 +29,8 @@ pub(crate) struct OutlinesToSave {
     /// `None` where what the files hold is undone.
     labels: Option<LabelImage>,
     saved: SavedOutlines,
+    /// Where the photo is.
+    photo_file: Option<PathBuf>,
 }
 
 /// What of a photo's outlines is saved where another flight.toml is written: the files as they are.
@@ -58,8 +60,10 @@ impl OpenFlight {
                 revision: of.revision,
                 files: outline_files(path, stems.get(*photo)?),
                 labels: (!of.is_nothing()).then(|| of.now().labels().clone()),
+                photo_file: self.photo_file(*photo),
                 saved: SavedOutlines {
                     photo: self.name(*photo).to_owned(),
+                    picture: None,
                     by: of.by().clone(),
                     lens: lens_of(camera),
                     sure: of.now().all_sure().clone(),
@@ -74,6 +78,11 @@ impl OpenFlight {
             Some(OutlinesToCopy { from, to })
         });
         (to_save.collect(), to_copy.collect())
+    }
+
+    /// Where a photo's file is; `None` where it is not.
+    fn photo_file(&self, photo: usize) -> Option<PathBuf> {
+        self.files.photo_files.get(photo)?.path.clone()
     }
 
     /// Notes the files of the flight, which was just saved, as they stand now.
@@ -112,11 +121,12 @@ impl OutlinesToSave {
             return Ok(());
         };
         let bytes = exports::labels_png(labels).map_err(|fault| FileError::new(picture, fault))?;
-        write_both(
-            [picture, json],
-            [&bytes, self.saved.to_json().as_bytes()],
-            read,
-        )
+        let photo = self.photo_file.as_deref();
+        let saved = SavedOutlines {
+            picture: photo.and_then(|file| files::sha256_of_file(file, &Progress::default()).ok()),
+            ..self.saved.clone()
+        };
+        write_both([picture, json], [&bytes, saved.to_json().as_bytes()], read)
     }
 }
 
@@ -175,13 +185,29 @@ impl State {
             return;
         };
         let (flight, number) = (open.flight().clone(), open.number);
+        let (photo_file, not_taken) = (open.photo_file(photo), files.clone());
         let work = move |_: &Progress| {
             let posed = &flight.parts().photos[photo];
-            read_outlines(&files, &posed.name, flight.camera(posed))
+            read_outlines(
+                &files,
+                &posed.name,
+                flight.camera(posed),
+                photo_file.as_deref(),
+            )
         };
         self.start(Task::READ_OUTLINES, work, move |state, read| match read {
             Ok(read) => state.take_read_outlines(number, photo, read),
-            Err(error) => state.say(Severity::Error, &error.to_string()),
+            Err(error) => {
+                if let Some(open) = &mut state.open
+                    && open.number == number
+                {
+                    // They are somebody's: saving asks before it writes over them.
+                    for path in &not_taken {
+                        open.files.stood.note_not_taken(path);
+                    }
+                }
+                state.say(Severity::Error, &error.to_string());
+            }
         });
     }
 

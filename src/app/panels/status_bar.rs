@@ -4,6 +4,7 @@ use crate::actions;
 use crate::command::Command;
 use crate::names;
 use crate::open_flight::Measure;
+use crate::size_distributions::Page;
 use crate::state::{Severity, State};
 
 /// How long the bar of a job is, points.
@@ -18,7 +19,8 @@ const LOG: f32 = 150.0;
 /// Draws the status bar.
 pub fn status_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        if let Some(open) = &state.open {
+        // On the other pages the mouse points at something else.
+        if let Some(open) = state.open.as_ref().filter(|_| state.page == Page::Pile) {
             let unit = open.flight().parts().unit_of_lengths();
             if let Some(point) = open.pointer.hover {
                 let text = format!(

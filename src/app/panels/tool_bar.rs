@@ -4,6 +4,7 @@ use super::verdict::{verdict_color, verdict_sign};
 use crate::actions;
 use crate::command::Command;
 use crate::flight::Verdict;
+use crate::names;
 use crate::open_flight::OpenFlight;
 use crate::size_distributions::Page;
 use crate::state::State;
@@ -62,7 +63,7 @@ pub fn tool_bar(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             false => "Scales in px per",
         };
         // Not half of it at the end of a row.
-        ui.add(egui::Label::new(words).extend());
+        ui.add(egui::Label::new(names::unbroken(words)).extend());
         for unit in UNITS {
             let chosen = state.preferences.unit() == unit;
             let button = ui.selectable_label(chosen, unit.symbol());

@@ -26,6 +26,11 @@ impl Stood {
         self.0.insert(path.to_owned(), stamp(path));
     }
 
+    /// A file that is there, and of which nothing was taken: whatever it holds is no earlier state of what is on the screen.
+    pub(crate) fn note_not_taken(&mut self, path: &Path) {
+        self.0.insert(path.to_owned(), None);
+    }
+
     /// The same of a flight.toml and of its control points.
     pub(crate) fn note_flight(&mut self, file: &Path) {
         self.note(file);

@@ -18,10 +18,12 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::checksum;
 use super::whose::FlightOfExport;
 use crate::fault::Fault;
-use crate::files::{FileError, Inputs, cannot_be, is_unfinished, note_kept, write_whole};
+use crate::files::{
+    FileError, Inputs, cannot_be, is_unfinished, note_kept, sha256_of_bytes, sha256_of_file,
+    write_whole,
+};
 use crate::jobs::Progress;
 
 /// The list's file.
@@ -211,7 +213,7 @@ impl<'a> ExportFolder<'a> {
         let Some(entry) = self.list.files.get(name) else {
             return Err(not_ours(&path, "it is there already"));
         };
-        let sum = checksum::of_file(&path, progress)
+        let sum = sha256_of_file(&path, progress)
             .map_err(|e| FileError::new(&path, cannot_be("read", &e)))?;
         if sum == entry.sha256 || Some(&sum) == entry.replaces.as_ref() {
             return Ok(Some(sum));
@@ -244,7 +246,7 @@ impl<'a> ExportFolder<'a> {
     ) -> Result<(), FileError> {
         for (name, bytes) in files {
             let entry = Entry {
-                sha256: checksum::of_bytes(bytes),
+                sha256: sha256_of_bytes(bytes),
                 replaces: self.present.get(name).cloned(),
                 made_from: made_from.map(str::to_owned),
             };
@@ -451,7 +453,7 @@ mod tests {
         export.list.files.insert(
             name,
             Entry {
-                sha256: checksum::of_bytes(b"v"),
+                sha256: sha256_of_bytes(b"v"),
                 ..Entry::default()
             },
         );

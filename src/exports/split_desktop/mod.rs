@@ -20,7 +20,6 @@
 //! An export that was interrupted is started again and goes on: each file is there whole or not at
 //! all, and pictures that are there and still right are not made again.
 
-pub(crate) mod checksum;
 mod folder;
 mod footprints;
 mod kml;
@@ -48,7 +47,7 @@ use self::pictures::PictureSource;
 use self::plan::PhotoNames;
 use self::whose::FlightOfExport;
 use crate::fault::Fault;
-use crate::files::{FileError, Inputs};
+use crate::files::{FileError, Inputs, sha256_of_file};
 use crate::flight::{FlightSettings, Review};
 use crate::jobs::Progress;
 use crate::picture;
@@ -491,7 +490,7 @@ fn checked_inputs(inputs: &[PathBuf], progress: &Progress) -> Result<Vec<Checked
 }
 
 fn checked_file(path: &Path, progress: &Progress) -> Result<CheckedInput, Fault> {
-    let checksum = match checksum::of_file(path, progress) {
+    let checksum = match sha256_of_file(path, progress) {
         Ok(sum) => sum,
         Err(e) if e.kind() == io::ErrorKind::Interrupted => {
             progress.advance(1, 1)?;

@@ -7,10 +7,10 @@ use glam::DVec2;
 use image::metadata::Orientation;
 use serde_json::json;
 
-use super::checksum;
 use super::plan::PhotoNames;
 use crate::camera::Camera;
 use crate::fault::Fault;
+use crate::files::sha256_of_bytes;
 use crate::picture::{self, DecodedPhoto, PhotoFormat};
 use crate::scale::{ImageKind, PhotoScale, ScaleEstimate};
 use crate::units::LengthUnit;
@@ -70,7 +70,7 @@ impl PictureSource<'_> {
         let left_out = |region: &Vec<DVec2>| region.iter().map(DVec2::to_array).collect::<Vec<_>>();
         let text = json!([
             PICTURES_VERSION,
-            checksum::of_bytes(bytes),
+            sha256_of_bytes(bytes),
             [camera.width, camera.height],
             [camera.fx, camera.fy, camera.cx, camera.cy, camera.skew],
             camera.distortion.name(),
@@ -83,7 +83,7 @@ impl PictureSource<'_> {
             self.left_out.iter().map(left_out).collect::<Vec<_>>(),
             self.rectified,
         ]);
-        checksum::of_bytes(text.to_string().as_bytes())
+        sha256_of_bytes(text.to_string().as_bytes())
     }
 
     /// The files, with their names below the exported folder, of a photo and its file's bytes. The photo as shot is the file as it

@@ -9,8 +9,8 @@ use super::photo_names::PhotoNames;
 use crate::camera::{Camera, Pose};
 use crate::control::{ControlList, Located, MarkedView, POOR_PX, locate};
 use crate::fault::{Fault, first_names};
-use crate::formats::photos::photo_folder::PhotoFolder;
 use crate::formats::Reconstruction;
+use crate::formats::photos::photo_folder::PhotoFolder;
 use crate::numbers::significant_digits;
 
 /// Who clicks a mark does it to about a pixel.

@@ -9,7 +9,9 @@ use crate::camera::Camera;
 use crate::delineation::Outliner;
 use crate::delineation::saved::SavedOutlines;
 use crate::fault::Fault;
+use crate::files::sha256_of_file;
 use crate::formats::{FileError, OutlinedPhoto, read_bytes, read_masks};
+use crate::jobs::Progress;
 use crate::labels::Outlines;
 
 pub use self::of_others::OutlinesOfOthers;
@@ -43,14 +45,15 @@ pub fn saved_outlines(flight_file: &Path, stem: &str) -> Option<[PathBuf; 2]> {
     Some(outline_files(flight_file, stem)).filter(|[picture, _]| picture.is_file())
 }
 
-/// Reads them. `photo` is what the flight calls it.
+/// Reads them. `photo` is what the flight calls it, `photo_file` where it is, if it is there.
 ///
 /// # Errors
-/// Where a file is missing or broken, or of the photo of another size or lens.
+/// Where a file is missing or broken, or of the photo of another size or lens, or of another photo of that name.
 pub fn read_outlines(
     files: &[PathBuf; 2],
     photo: &str,
     camera: &Camera,
+    photo_file: Option<&Path>,
 ) -> Result<OutlinesRead, FileError> {
     let [picture, json] = files;
     let text = read_bytes(json)?;
@@ -60,6 +63,16 @@ pub fn read_outlines(
         let what = "these outlines are of the photo with another lens";
         let remedy =
             "outline the photo anew, or take the calibration back that it was outlined with";
+        return Err(at(Fault::new(what, remedy)));
+    }
+    // What cannot be read is said where its pixels are wanted.
+    let now = photo_file.and_then(|file| sha256_of_file(file, &Progress::default()).ok());
+    if let (Some(then), Some(now)) = (&saved.picture, now)
+        && *then != now
+    {
+        let what = "these outlines are of another picture with the photo's name: of another flight that was saved in this folder, or the photo's file \
+                    was replaced";
+        let remedy = "outline the photo anew, or save the flight in a folder of its own";
         return Err(at(Fault::new(what, remedy)));
     }
     let of = OutlinedPhoto {

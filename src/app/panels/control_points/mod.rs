@@ -122,8 +122,14 @@ fn apply(state: &State, open: &OpenFlight, ui: &mut egui::Ui, commands: &mut Vec
         Some(Applied::Failed(why)) => {
             ui.colored_label(ui.visuals().error_fg_color, why);
         }
-        Some(Applied::Placed(found, placed)) if *placed == open.settings().placed => {
-            result(found, ui);
+        Some(Applied::Placed(found, placed, by)) if *placed == open.settings().placed => {
+            match **by == *open.control_list() {
+                true => result(found, ui),
+                false => {
+                    let warn = ui.visuals().warn_fg_color;
+                    ui.colored_label(warn, "⚠ Points, marks or bars have changed since they were applied: the flight lies where they were before. Apply them again.");
+                }
+            }
         }
         _ => {}
     }
@@ -153,10 +159,10 @@ fn result(found: &Georeferenced, ui: &mut egui::Ui) {
 
 /// How far the point of this name is from where it was surveyed, in the flight of now, and whether it was used.
 fn residual<'a>(open: &'a OpenFlight, name: &str) -> Option<(&'a Georeferenced, f64, bool)> {
-    let Some(Applied::Placed(found, placed)) = &open.control.applied else {
+    let Some(Applied::Placed(found, placed, by)) = &open.control.applied else {
         return None;
     };
-    if *placed != open.settings().placed {
+    if *placed != open.settings().placed || **by != *open.control_list() {
         return None;
     }
     let position = found

@@ -110,7 +110,9 @@ impl<'a> Maker<'a> {
             });
         }
         if let Some(files) = self.saved_of(index) {
-            let read = read_outlines(&files, &photo.name, camera);
+            let file = self.opened.photo_files.get(index);
+            let file = file.and_then(|file| file.path.as_deref());
+            let read = read_outlines(&files, &photo.name, camera, file);
             let read =
                 read.map_err(|error| Fault::new(error.to_string(), "or say --engine learned"))?;
             let by = OutlinedBy::Saved(read.by.habits);

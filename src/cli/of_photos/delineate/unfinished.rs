@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 use crate::cli::outputs::Outputs;
 use crate::delineation::Habits;
 use crate::delineation::mass::PhotoFragments;
-use crate::exports::{sha256_of_bytes, sha256_of_file};
 use crate::files::{Kind, note_kept, read_bytes};
+use crate::files::{sha256_of_bytes, sha256_of_file};
 use crate::jobs::Progress;
 
 /// What is kept of a photo.
