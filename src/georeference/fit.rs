@@ -28,6 +28,7 @@ use super::student::t95;
 use super::umeyama::similarity_of;
 use crate::fault::Fault;
 use crate::geometry::{Similarity, median};
+use crate::numbers::significant_digits;
 use crate::split_mix::SplitMix;
 
 /// Of good residuals' lengths in space, 99.9 % are below this many standard deviations (of one
@@ -43,6 +44,8 @@ const FINALISTS: usize = 10;
 /// Radians that the rotation about the long axis of the positions may be unsure by (one standard
 /// deviation): 5 degrees. More, and they lie on a line.
 const LARGEST_ROTATION_ERROR: f64 = 0.087_266_462_6;
+/// Across and along: positions that are narrower lie on a line.
+const NARROW: f64 = 0.05;
 /// Relative standard error of a scale beyond which there is no scale.
 pub(super) const LARGEST_SCALE_ERROR: f64 = 0.1;
 
@@ -120,6 +123,22 @@ fn on_a_line() -> Fault {
         "the known positions lie on a line, so that the rotation about it is not determined",
         "add positions beside it, such as ground control points or a crossing strip",
     )
+}
+
+/// They do lie beside a line; `off` is how far a coordinate is from where the fit has it, world units.
+fn of_another_shape(off: f64) -> Fault {
+    Fault::new(
+        format!(
+            "the known positions are {} off where the fit has them: they are not of the shape that the reconstruction has, and do not \
+             tell how it is turned",
+            significant_digits(off, 2)
+        ),
+        "look for a wrong number, columns in another order (latitude first), marks in photos of another size, another coordinate system",
+    )
+}
+
+fn trace(matrix: DMat3) -> f64 {
+    matrix.x_axis.x + matrix.y_axis.y + matrix.z_axis.z
 }
 
 /// The pairs with their weights, targets from the middle.
@@ -301,12 +320,15 @@ impl Problem {
         }
         let scale_error = weighted.sqrt() / spread / local.scale;
         // Of one coordinate, of weight 1.
-        let sigma =
-            ((covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z) / 3.0).sqrt();
+        let sigma = (trace(covariance) / 3.0).sqrt();
         let across = beside_the_axis(sources).min(beside_the_axis(targets));
         let rotation_error = sigma / across;
         if rotation_error.is_nan() || rotation_error > LARGEST_ROTATION_ERROR {
-            return Err(on_a_line());
+            let along = trace(sources).min(trace(targets)).sqrt();
+            return Err(match across > NARROW * along {
+                true => of_another_shape(sigma / (total / chosen.len() as f64).sqrt()),
+                false => on_a_line(),
+            });
         }
         if scale_error.is_nan() || scale_error > LARGEST_SCALE_ERROR {
             return Err(Fault::new(
@@ -504,6 +526,28 @@ mod tests {
             assert!(kept * 10 >= (count - wrong) * 9, "{kept} of {count}");
             assert!((found.similarity.scale / 12.5 - 1.0).abs() < 4.0 * found.scale_error);
         }
+    }
+
+    /// Four corners of a square of which one is typed 20 too high do not lie on a line: the fit says what they do.
+    #[test]
+    fn a_wrong_number_is_no_line() {
+        let source = [(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 100.0)]
+            .map(|(x, y)| DVec3::new(x, y, 0.0));
+        let pairs = |off: f64| -> Vec<Pair> {
+            let targets = source.iter().enumerate();
+            let targets = targets.map(|(index, source)| Pair {
+                source: *source,
+                target: *source * 2.0 + DVec3::Z * if index == 3 { off } else { 0.0 },
+                accuracy: None,
+            });
+            targets.collect()
+        };
+        assert!(fit(&pairs(0.0)).is_ok());
+        let fault = fit(&pairs(120.0)).unwrap_err();
+        assert!(
+            fault.what.contains("are not of the shape") && !fault.what.contains("on a line"),
+            "{fault}"
+        );
     }
 
     /// Two groups of photos far apart and not on a line together.

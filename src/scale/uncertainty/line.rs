@@ -36,6 +36,11 @@ struct LineEnd {
     too_large: f64,
 }
 
+/// The tangent of the angle between a ray and the normal of a plane m·X = 1: 0 of who looks straight down on it.
+fn tan_of_incidence(plane: DVec3, ray: DVec3) -> f64 {
+    plane.cross(ray).length() / plane.dot(ray).abs().max(f64::MIN_POSITIVE)
+}
+
 /// What the line through a field is, as a function of the plane: top = m·0th, bottom = m·1st.
 type Ends = [DVec3; 2];
 
@@ -69,6 +74,8 @@ impl LineErrors {
         let too_large = unseen.of_line(field, fitted, depths);
         let end = |index: usize, scale: f64| {
             let by_plane = ends[index];
+            let flat = unseen.of_flat_look(tan_of_incidence(plane, by_plane));
+            let looked_over = flat * roughness.unwrap_or(0.0);
             let share = 1.0 / plane.dot(by_plane);
             // In the world's axes, as positions are stated.
             let by_position = rotation * moved[index].by_position;
@@ -112,7 +119,7 @@ impl LineErrors {
                     surface,
                     errors.world_scale.map(|percent| percent / 100.0),
                 ],
-                too_large: bridged.too_large[index] + too_large[index],
+                too_large: bridged.too_large[index] + too_large[index] - looked_over,
             }
         };
         Self {
@@ -179,4 +186,21 @@ fn ends_by_plane(field: &ScaleField, camera: &Camera) -> Ends {
     let slope = (vd * count - d * v) / (vv * count - v * v);
     let top = (d - slope * v) / count;
     [top, top + slope]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn incidence_is_from_the_normal() {
+        let down = DVec3::new(0.0, 0.0, 0.1);
+        for (ray, tan) in [
+            (DVec3::Z, 0.0),
+            (DVec3::new(0.0, 1.0, 1.0), 1.0),
+            (DVec3::new(3.0, 4.0, -2.5), 2.0),
+        ] {
+            assert!((tan_of_incidence(down, ray) - tan).abs() < 1e-12, "{ray}");
+        }
+    }
 }
