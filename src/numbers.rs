@@ -3,6 +3,9 @@
 /// Half a 95 % interval in standard deviations of a normal distribution.
 pub const TO_95_PERCENT: f64 = 1.959_963_984_540_054;
 
+/// Half an interval below this share of its value is none.
+const NO_WIDTH: f64 = 1e-6;
+
 /// A number with at least so many significant digits, without an exponent, for people to read and
 /// type.
 pub fn significant_digits(number: f64, digits: u8) -> String {
@@ -19,10 +22,10 @@ pub fn significant_digits(number: f64, digits: u8) -> String {
 /// A number with so many digits as its interval allows, and how sure it is: "19.9 ± 0.4", or
 /// "19.9 (19.2 to 20.3)" where its two sides are not alike. Both have as many decimals as half the
 /// interval's width allows: two digits of it where it begins with 1 to 3.5, else one. Five digits and nothing beside them where the interval
-/// has no width.
+/// has no width, or a millionth of the value: that is rounding, and twelve digits of it are no use to anybody.
 pub fn with_interval(value: f64, low: f64, high: f64) -> String {
     let half = (high - low) / 2.0;
-    if !(half > 0.0 && half.is_finite() && value.is_finite()) {
+    if !(half > NO_WIDTH * value.abs() && half.is_finite() && value.is_finite()) {
         return significant_digits(value, 5);
     }
     let decimals = decimals_of(half);
@@ -39,9 +42,8 @@ pub fn with_interval(value: f64, low: f64, high: f64) -> String {
 /// A number with so many digits as its interval allows, alone; four where the interval has no width.
 pub fn as_its_interval_allows(value: f64, low: f64, high: f64) -> String {
     let half = (high - low) / 2.0;
-    match half > 0.0 && half.is_finite() && value.is_finite() {
-        // More than eight would be no digits of a measurement.
-        true => with_decimals(value, decimals_of(half).min(8)),
+    match half > NO_WIDTH * value.abs() && half.is_finite() && value.is_finite() {
+        true => with_decimals(value, decimals_of(half)),
         false => significant_digits(value, 4),
     }
 }
@@ -171,6 +173,7 @@ mod tests {
             (20.0, 20.5, 22.5, "20.0 (20.5 to 22.5)"),
             (19.9132, 19.9132, 19.9132, "19.913"),
             (19.9132, f64::NAN, 20.0, "19.913"),
+            (19.9132, 19.913_199, 19.913_201, "19.913"),
             (25.0, 24.01, 25.99, "25.0 ± 1.0"),
         ] {
             assert_eq!(with_interval(value, low, high), text);

@@ -362,7 +362,8 @@ impl Place {
 }
 
 fn checksum(path: &Path, progress: &Progress) -> Result<String, FileError> {
-    sha256_of_file(path, progress).map_err(|error| FileError::new(path, cannot_be("read", &error)))
+    sha256_of_file(path, || progress.is_cancelled())
+        .map_err(|error| FileError::new(path, cannot_be("read", &error)))
 }
 
 /// The files below a folder: their paths from it, with slashes, and in full. Links to folders are not followed.

@@ -123,7 +123,7 @@ impl OutlinesToSave {
         let bytes = exports::labels_png(labels).map_err(|fault| FileError::new(picture, fault))?;
         let photo = self.photo_file.as_deref();
         let saved = SavedOutlines {
-            picture: photo.and_then(|file| files::sha256_of_file(file, &Progress::default()).ok()),
+            picture: photo.and_then(|file| files::sha256_of_file(file, || false).ok()),
             ..self.saved.clone()
         };
         write_both([picture, json], [&bytes, saved.to_json().as_bytes()], read)

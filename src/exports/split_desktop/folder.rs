@@ -213,7 +213,7 @@ impl<'a> ExportFolder<'a> {
         let Some(entry) = self.list.files.get(name) else {
             return Err(not_ours(&path, "it is there already"));
         };
-        let sum = sha256_of_file(&path, progress)
+        let sum = sha256_of_file(&path, || progress.is_cancelled())
             .map_err(|e| FileError::new(&path, cannot_be("read", &e)))?;
         if sum == entry.sha256 || Some(&sum) == entry.replaces.as_ref() {
             return Ok(Some(sum));

@@ -490,7 +490,7 @@ fn checked_inputs(inputs: &[PathBuf], progress: &Progress) -> Result<Vec<Checked
 }
 
 fn checked_file(path: &Path, progress: &Progress) -> Result<CheckedInput, Fault> {
-    let checksum = match sha256_of_file(path, progress) {
+    let checksum = match sha256_of_file(path, || progress.is_cancelled()) {
         Ok(sum) => sum,
         Err(e) if e.kind() == io::ErrorKind::Interrupted => {
             progress.advance(1, 1)?;

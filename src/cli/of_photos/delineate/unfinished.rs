@@ -42,7 +42,9 @@ impl Unfinished {
     /// In the output's folder. `options` are those that the results rest on, `read` the files of the flight and of the engine.
     /// Of files that cannot be read nothing is kept.
     pub(super) fn new(to: &Path, options: &str, read: &[PathBuf], progress: &Progress) -> Self {
-        let sums = read.iter().map(|path| sha256_of_file(path, progress));
+        let sums = read
+            .iter()
+            .map(|path| sha256_of_file(path, || progress.is_cancelled()));
         let sums: Result<Vec<String>, _> = sums.collect();
         let of_all = sums.ok().map(|sums| {
             let version = env!("CARGO_PKG_VERSION");
@@ -69,7 +71,7 @@ impl Unfinished {
     /// The key of a photo that rests on these files besides; those that are not there do not count.
     pub(super) fn key(&self, files: &[PathBuf], progress: &Progress) -> Option<String> {
         let files = files.iter().filter(|path| path.is_file());
-        let sums = files.map(|path| sha256_of_file(path, progress));
+        let sums = files.map(|path| sha256_of_file(path, || progress.is_cancelled()));
         let sums: Vec<String> = sums.collect::<Result<_, _>>().ok()?;
         let all = format!("{}\n{}", self.of_all.as_ref()?, sums.join("\n"));
         Some(sha256_of_bytes(all.as_bytes()))
@@ -91,7 +93,8 @@ impl Unfinished {
         }
         let sums = value.get("files")?.as_array()?;
         let is_same = |(path, sum): (&PathBuf, &Value)| {
-            sha256_of_file(path, progress).is_ok_and(|own| sum.as_str() == Some(&own))
+            sha256_of_file(path, || progress.is_cancelled())
+                .is_ok_and(|own| sum.as_str() == Some(&own))
         };
         if sums.len() != written.len() || !written.iter().zip(sums).all(is_same) {
             return None;

@@ -1,15 +1,16 @@
-//! Points that a LAS file holds and that are no ground (LAS 1.4 - R15, tables 8, 9, 16 and 17): withheld ones, which are to be
-//! taken as deleted, and those that somebody classified as noise, low (7) or high (18).
+//! Points that a LAS file marks as no ground (LAS 1.4 - R15, tables 8, 9, 16 and 17): withheld ones, which are to be
+//! taken as deleted, and those that somebody classified as noise, low (7) or high (18). No point is dropped for it, as in other
+//! programs that read all of a file, and whoever reads it is told.
 
-/// Why a point does not count.
+/// What a point is marked as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::clouds) enum Why {
+pub(super) enum Mark {
     Withheld,
     Noise,
 }
 
-/// Why the point of a record does not count; `None` of one that does. Records of point formats from 6 on are extended.
-pub(in crate::clouds) fn why_not(record: &[u8], is_extended: bool) -> Option<Why> {
+/// What the point of a record is marked as. Records of point formats from 6 on are extended.
+pub(super) fn mark_of(record: &[u8], is_extended: bool) -> Option<Mark> {
     // No format has shorter records.
     let (flags, class) = (*record.get(15)?, *record.get(16)?);
     let (is_withheld, is_noise) = match is_extended {
@@ -18,24 +19,24 @@ pub(in crate::clouds) fn why_not(record: &[u8], is_extended: bool) -> Option<Why
         false => (flags & 0b1000_0000 != 0, flags & 0b1_1111 == 7),
     };
     match (is_withheld, is_noise) {
-        (true, _) => Some(Why::Withheld),
-        (false, true) => Some(Why::Noise),
+        (true, _) => Some(Mark::Withheld),
+        (false, true) => Some(Mark::Noise),
         (false, false) => None,
     }
 }
 
-/// How many points of a file do not count.
+/// How many points of a file are marked so.
 #[derive(Debug, Default, Clone, Copy)]
-pub(super) struct LeftOut {
+pub(super) struct Marked {
     withheld: u64,
     noise: u64,
 }
 
-impl LeftOut {
-    pub(super) fn add(&mut self, why: Why) {
-        match why {
-            Why::Withheld => self.withheld += 1,
-            Why::Noise => self.noise += 1,
+impl Marked {
+    pub(super) fn add(&mut self, mark: Mark) {
+        match mark {
+            Mark::Withheld => self.withheld += 1,
+            Mark::Noise => self.noise += 1,
         }
     }
 
@@ -47,7 +48,7 @@ impl LeftOut {
             (noise > 0).then(|| format!("{noise} that it classifies as noise (7, 18)")),
         ];
         let said: Vec<String> = said.into_iter().flatten().collect();
-        (!said.is_empty()).then(|| format!("{} are left out", said.join(" and ")))
+        (!said.is_empty()).then(|| format!("{} are taken as rock like all others: if they are none, export the file without them", said.join(" and ")))
     }
 }
 
@@ -61,17 +62,17 @@ mod tests {
         let of = |flags: u8, class: u8, is_extended| {
             let mut record = [0; 20];
             (record[15], record[16]) = (flags, class);
-            why_not(&record, is_extended)
+            mark_of(&record, is_extended)
         };
         // Class 2 (ground), synthetic and key-point; withheld; class 7; both. The scan angle behind it says nothing.
         assert_eq!(of(0b0110_0010, 7, false), None);
-        assert_eq!(of(0b1000_0010, 0, false), Some(Why::Withheld));
-        assert_eq!(of(7, 0, false), Some(Why::Noise));
-        assert_eq!(of(0b1000_0111, 0, false), Some(Why::Withheld));
+        assert_eq!(of(0b1000_0010, 0, false), Some(Mark::Withheld));
+        assert_eq!(of(7, 0, false), Some(Mark::Noise));
+        assert_eq!(of(0b1000_0111, 0, false), Some(Mark::Withheld));
         // Synthetic, key-point, overlap, edge of flight line; withheld; low and high noise.
         assert_eq!(of(0b1000_1011, 2, true), None);
-        assert_eq!(of(0b0000_0100, 2, true), Some(Why::Withheld));
-        assert_eq!(of(0, 7, true), Some(Why::Noise));
-        assert_eq!(of(0, 18, true), Some(Why::Noise));
+        assert_eq!(of(0b0000_0100, 2, true), Some(Mark::Withheld));
+        assert_eq!(of(0, 7, true), Some(Mark::Noise));
+        assert_eq!(of(0, 18, true), Some(Mark::Noise));
     }
 }

@@ -5,7 +5,8 @@
 //!   their digits: x = X * scale + offset.
 //! - Colours are 16 bits wide; many programs write 8-bit values into them all the same, which shows
 //!   in the largest value.
-//! - Withheld points and those that are classified as noise are left out, and counted (`flags`).
+//! - Withheld points and those that are classified as noise are points as all others: no point is dropped. How many they are is
+//!   said (`flags`).
 //! - The coordinate system stands in a variable length record: WKT (OGC 01-009), or GeoTIFF keys, of
 //!   which 3072 (projected) or 2048 (geographic) hold an EPSG code, and 4096 and 4099 that of heights (`geo_keys`).
 //!
@@ -14,7 +15,7 @@
 //! and becomes an error like any other.
 
 pub(super) mod claims;
-pub(super) mod flags;
+mod flags;
 pub(crate) mod sample;
 
 use std::io::{Read, Seek};
@@ -25,7 +26,7 @@ use las::PointDataBuilder;
 use las::crs::GeoTiffData;
 
 use claims::WithCount;
-use flags::{LeftOut, why_not};
+use flags::{Marked, mark_of};
 
 use crate::clouds::cloud_file::{CloudFile, counts_degrees, first_not_finite};
 use crate::clouds::geo_keys::{GEODETIC_CRS, MODEL_TYPE, PROJECTED_CRS, StatedHeights, code};
@@ -98,7 +99,7 @@ fn decode(
     let portion_size = PORTION.min(PORTION_BYTES / portion.record_len().max(1) as u64);
     let mut colors = Colors::default();
     let is_extended = reader.header().point_format().is_extended;
-    let (mut done, mut left_out) = (0_u64, LeftOut::default());
+    let (mut done, mut marked) = (0_u64, Marked::default());
     loop {
         progress.advance(done, total)?;
         let read = reader.fill_points(portion_size, &mut portion).map_err(|error| {
@@ -112,21 +113,18 @@ fn decode(
         }
         done += read;
         let records = portion.raw_bytes().chunks_exact(portion.record_len());
-        let counts: Vec<bool> = records
-            .map(|record| {
-                let why = why_not(record, is_extended);
-                why.into_iter().for_each(|why| left_out.add(why));
-                why.is_none()
-            })
-            .collect();
+        for mark in records.filter_map(|record| mark_of(record, is_extended)) {
+            marked.add(mark);
+        }
         let coordinates = portion.x().zip(portion.y()).zip(portion.z());
-        let points = coordinates.map(|((x, y), z)| DVec3::new(x, y, z * heights));
-        file.cloud.points.extend(counting(points, &counts));
+        file.cloud
+            .points
+            .extend(coordinates.map(|((x, y), z)| DVec3::new(x, y, z * heights)));
         if let Some(wide) = portion.rgb() {
-            colors.extend(counting(wide.map(|(r, g, b)| [r, g, b]), &counts));
+            colors.extend(wide.map(|(r, g, b)| [r, g, b]));
         }
     }
-    file.warnings.extend(left_out.warning());
+    file.warnings.extend(marked.warning());
     if let Some(index) = first_not_finite(&file.cloud.points) {
         return Err(Fault::new(
             format!("point {index} (counted from 0) has a coordinate that is not a finite number"),
@@ -135,12 +133,6 @@ fn decode(
     }
     file.cloud.colors = colors.finish();
     Ok(file)
-}
-
-/// Those that count.
-fn counting<T>(all: impl Iterator<Item = T>, counts: &[bool]) -> impl Iterator<Item = T> {
-    all.zip(counts)
-        .filter_map(|(one, counts)| counts.then_some(one))
 }
 
 /// Colours of 16 bits, of which eight are kept: the lower ones as long as all channels fit into them, and the
@@ -267,9 +259,9 @@ mod tests {
     }
 
     /// UTM with heights in feet, by the key of their unit and by that of their system; California in feet with heights in metres.
-    /// One point of ground, one withheld, one of noise: the first counts, with its colour, and the others are told.
+    /// One point of ground, one withheld, one of noise: all count, and the two are told.
     #[test]
-    fn withheld_points_and_noise_are_left_out() {
+    fn withheld_points_and_noise_are_told() {
         use las::point::Classification;
         for (format, minor) in [(2, 2), (3, 4), (7, 4)] {
             for compressed in [false, true] {
@@ -297,12 +289,12 @@ mod tests {
                 writer.close().unwrap();
                 let bytes = writer.into_inner().unwrap().into_inner();
                 let file = read(Cursor::new(bytes), &Progress::default()).unwrap();
-                assert_eq!(file.cloud.points, [DVec3::new(1.0, 0.0, 0.0)], "{format}");
-                assert_eq!(file.cloud.colors, [[1, 0, 0]]);
+                assert_eq!(file.cloud.points.len(), 3, "{format}");
                 assert_eq!(
                     file.warnings,
                     [
-                        "1 points that it marks as withheld and 1 that it classifies as noise (7, 18) are left out"
+                        "1 points that it marks as withheld and 1 that it classifies as noise (7, 18) are taken as rock like all others: if \
+                         they are none, export the file without them"
                     ]
                 );
             }

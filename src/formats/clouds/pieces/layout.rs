@@ -10,7 +10,6 @@ use laz::record::{
 };
 use laz::{DecompressionSelection, LazItem};
 
-use crate::clouds::las::flags::why_not;
 use crate::fault::Fault;
 use crate::geometry::Bounds;
 
@@ -52,7 +51,7 @@ impl Layout {
         })
     }
 
-    /// The points of these bytes of a file, without those that do not count.
+    /// The points of these bytes of a file.
     pub(in crate::clouds) fn decode(
         &self,
         bytes: Vec<u8>,
@@ -76,7 +75,6 @@ impl Layout {
         };
         let Vector { x, y, z } = self.transforms;
         let points = records.chunks_exact(self.record.max(12)).take(count);
-        let points = points.filter(|record| why_not(record, self.is_layered).is_none());
         let points = points.map(|record| {
             DVec3::new(
                 x.direct(number(record, 0)),
@@ -96,8 +94,7 @@ impl Layout {
         if self.is_layered {
             let mut decompressor = LayeredPointRecordDecompressor::new(input);
             decompressor.set_fields_from(&self.items).map_err(damaged)?;
-            let selection = DecompressionSelection::xy_returns_channel().decompress_z();
-            decompressor.set_selection(selection.decompress_classification().decompress_flags());
+            decompressor.set_selection(DecompressionSelection::xy_returns_channel().decompress_z());
             decompressor.decompress_many(&mut records)?;
         } else {
             let mut decompressor = SequentialPointRecordDecompressor::new(input);
