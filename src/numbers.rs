@@ -24,11 +24,9 @@ pub fn significant_digits(number: f64, digits: u8) -> String {
 /// interval's width allows: two digits of it where it begins with 1 to 3.5, else one. Five digits and nothing beside them where the interval
 /// has no width, or a millionth of the value: that is rounding, and twelve digits of it are no use to anybody.
 pub fn with_interval(value: f64, low: f64, high: f64) -> String {
-    let half = (high - low) / 2.0;
-    if !(half > NO_WIDTH * value.abs() && half.is_finite() && value.is_finite()) {
+    let Some(decimals) = decimals_allowed(value, low, high) else {
         return significant_digits(value, 5);
-    }
-    let decimals = decimals_of(half);
+    };
     let text = |number: f64| with_decimals(number, decimals);
     let last = 10_f64.powi(-decimals);
     let [down, up] = [value - low, high - value].map(|side| (side / last).round());
@@ -41,11 +39,17 @@ pub fn with_interval(value: f64, low: f64, high: f64) -> String {
 
 /// A number with so many digits as its interval allows, alone; four where the interval has no width.
 pub fn as_its_interval_allows(value: f64, low: f64, high: f64) -> String {
-    let half = (high - low) / 2.0;
-    match half > NO_WIDTH * value.abs() && half.is_finite() && value.is_finite() {
-        true => with_decimals(value, decimals_of(half)),
-        false => significant_digits(value, 4),
+    match decimals_allowed(value, low, high) {
+        Some(decimals) => with_decimals(value, decimals),
+        None => significant_digits(value, 4),
     }
+}
+
+/// How many decimals half the interval's width allows; `None` where it has no width.
+fn decimals_allowed(value: f64, low: f64, high: f64) -> Option<i32> {
+    let half = (high - low) / 2.0;
+    let has_width = half > NO_WIDTH * value.abs() && half.is_finite() && value.is_finite();
+    has_width.then(|| decimals_of(half))
 }
 
 /// Half the width of an interval in percent of its number, such as "2 %"; `None` where it has none.

@@ -9,6 +9,7 @@
 mod changes;
 mod editing;
 mod outlines;
+mod parts;
 mod polygon;
 mod strokes;
 

@@ -15,7 +15,12 @@ pub(crate) struct Part {
 
 /// All parts of a label image, by their first pixels row by row; and of each pixel its part.
 pub(crate) fn parts(image: &LabelImage) -> (Vec<Part>, Vec<u32>) {
-    let (mut parts, part_of) = numbered(image);
+    let (part_of, labels) = image.parts();
+    let without_rings = |label| Part {
+        label,
+        rings: Vec::new(),
+    };
+    let mut parts: Vec<Part> = labels.into_iter().map(without_rings).collect();
     let grid = Grid {
         width: image.width,
         height: image.height,
@@ -30,45 +35,6 @@ pub(crate) fn parts(image: &LabelImage) -> (Vec<Part>, Vec<u32>) {
             let ring = grid.ring([x, y], *part, &mut is_walked);
             parts[*part as usize].rings.push(ring);
         }
-    }
-    (parts, part_of)
-}
-
-/// Parts without rings, and of each pixel its part.
-fn numbered(image: &LabelImage) -> (Vec<Part>, Vec<u32>) {
-    const NONE: u32 = u32::MAX;
-    let (width, height) = (image.width, image.height);
-    let mut part_of = vec![NONE; image.labels.len()];
-    let mut parts = Vec::new();
-    let mut open = Vec::new();
-    for start in 0..part_of.len() {
-        if part_of[start] != NONE {
-            continue;
-        }
-        // There are no more of them than pixels.
-        let number = parts.len() as u32;
-        let label = image.labels[start];
-        part_of[start] = number;
-        open.push(start);
-        while let Some(at) = open.pop() {
-            let (x, y) = (at % width, at / width);
-            let beside = [
-                (x > 0).then(|| at - 1),
-                (x + 1 < width).then_some(at + 1),
-                (y > 0).then(|| at - width),
-                (y + 1 < height).then_some(at + width),
-            ];
-            for next in beside.into_iter().flatten() {
-                if part_of[next] == NONE && image.labels[next] == label {
-                    part_of[next] = number;
-                    open.push(next);
-                }
-            }
-        }
-        parts.push(Part {
-            label,
-            rings: Vec::new(),
-        });
     }
     (parts, part_of)
 }

@@ -9,41 +9,20 @@ const HIDDEN: f64 = 0.5;
 /// Pixels: specks that are closer are no matter.
 const CLOSE: usize = 8;
 
-/// The regions of fragments, each of pixels of one number that touch by their sides, numbered from 1; and how many they are.
+/// The regions of fragments, numbered from 1, what is none with its own number; and how many they are.
 pub(super) fn regions(labels: &LabelImage) -> (Vec<u32>, u32) {
-    let (width, height) = (labels.width, labels.height);
-    let numbers = &labels.labels;
-    let is_fragment = |label: u32| label != FINES && label != NOT_ROCK;
-    // What is none keeps its number.
-    let mut found: Vec<u32> = (numbers.iter())
-        .map(|label| if is_fragment(*label) { FINES } else { *label })
-        .collect();
+    let (part_of, label_of) = labels.parts();
     let mut count = 0;
-    let mut edge = Vec::new();
-    for start in 0..numbers.len() {
-        if found[start] != FINES || !is_fragment(numbers[start]) {
-            continue;
+    let number = |label: &u32| match *label {
+        FINES | NOT_ROCK => *label,
+        _ => {
+            count += 1;
+            count
         }
-        count += 1;
-        found[start] = count;
-        edge.push(start);
-        while let Some(at) = edge.pop() {
-            let (x, y) = (at % width, at / width);
-            let beside = [
-                (x > 0).then(|| at - 1),
-                (x + 1 < width).then_some(at + 1),
-                (y > 0).then(|| at - width),
-                (y + 1 < height).then_some(at + width),
-            ];
-            for next in beside.into_iter().flatten() {
-                if found[next] == FINES && numbers[next] == numbers[start] {
-                    found[next] = count;
-                    edge.push(next);
-                }
-            }
-        }
-    }
-    (found, count)
+    };
+    let numbers: Vec<u32> = label_of.iter().map(number).collect();
+    let found = part_of.iter().map(|part| numbers[*part as usize]);
+    (found.collect(), count)
 }
 
 /// The box around the pixels of a piece, and how many they are.
@@ -74,14 +53,14 @@ impl Piece {
 /// How many fragments lie in pieces that are farther apart than half their size: whoever meant several fragments gets one
 /// that is larger than all of them.
 pub(super) fn far_apart(labels: &LabelImage) -> usize {
-    let (found, count) = regions(labels);
-    let mut pieces: Vec<Option<Piece>> = vec![None; count as usize + 1];
-    for (place, (region, label)) in found.iter().zip(&labels.labels).enumerate() {
+    let (part_of, label_of) = labels.parts();
+    let mut pieces: Vec<Option<Piece>> = vec![None; label_of.len()];
+    for (place, (part, label)) in part_of.iter().zip(&labels.labels).enumerate() {
         if *label == FINES || *label == NOT_ROCK {
             continue;
         }
         let at = [place % labels.width, place / labels.width];
-        let piece = pieces[*region as usize].get_or_insert(Piece {
+        let piece = pieces[*part as usize].get_or_insert(Piece {
             label: *label,
             from: at,
             to: at,

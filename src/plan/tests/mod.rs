@@ -1,6 +1,7 @@
 //! Plans over surfaces whose answers are known.
 
 mod legs;
+mod missions;
 mod random_surfaces;
 mod surveys;
 
@@ -75,6 +76,17 @@ fn ways(
 ) -> Result<Vec<Way>, Fault> {
     let pace = Pace { battery, ..pace() };
     Way::through(plan, surface, take_off, &pace)
+}
+
+/// What a mission is told over a surface in that unit.
+fn told(unit: LengthUnit) -> Told {
+    Told {
+        name: "pile".to_owned(),
+        drone: None,
+        unit,
+        speed: 4.0,
+        settle: 1.0,
+    }
 }
 
 /// As fast upright as level.
@@ -330,131 +342,6 @@ fn no_wish_is_refused() {
     assert!(made.unwrap_err().what.contains("more than"));
 }
 
-/// In UTM at the zone's edge north of the grid is not north: headings are from true north, heights from take-off.
-#[test]
-fn a_mission_is_told_in_degrees() {
-    let surface = surface(|place| if place.y < -50.0 { 97.0 } else { 100.0 });
-    let plan = plan(&surface, 20.0, wish(Pattern::Slope));
-    let way = ways(
-        (&plan, &surface),
-        DVec2::new(500_000.0, 5_000_000.0 - 60.0),
-        None,
-    )
-    .unwrap()
-    .remove(0);
-    let crs = Crs::understand("EPSG:32632").unwrap();
-    let told = Told {
-        name: "pile".to_owned(),
-        drone: None,
-        unit: LengthUnit::Metre,
-        speed: 4.0,
-        settle: 1.0,
-    };
-    let (_, mission) = missions(&plan, std::slice::from_ref(&way), &crs, &told)
-        .unwrap()
-        .remove(0);
-    assert_eq!(mission.stops.len(), way.points.len());
-    // Up before the first photo and behind the last, for every ground station.
-    for stop in [mission.stops.first(), mission.stops.last()] {
-        let stop = stop.unwrap();
-        assert_eq!(Some(stop.height.metres), mission.safe_height);
-    }
-    for (stop, point) in mission.stops.iter().zip(&way.points) {
-        // In the middle of zone 32: 9 degrees east, and 45.15 north by pyproj.
-        assert!((stop.longitude - 9.0).abs() < 1e-3 && (stop.latitude - 45.1536).abs() < 1e-3);
-        assert!((stop.height.metres - (point.place.z - 97.0)).abs() < 1e-9);
-        let Some(photo) = point.photo.map(|photo| &plan.photos[photo]) else {
-            continue;
-        };
-        assert!((stop.gimbal_pitch.unwrap() + photo.tilt).abs() < 1e-12);
-        // On the zone's middle meridian, to its convergence 20 m beside.
-        let off = (stop.heading.unwrap() - photo.pan + 180.0).rem_euclid(360.0) - 180.0;
-        assert!(off.abs() < 1e-3, "{off}");
-    }
-    // 3 degrees off the middle meridian at 50 degrees north: convergence 3 sin 50 = 2.298 degrees.
-    let east = Geographic {
-        longitude: 12.0,
-        latitude: 50.0,
-        height: 0.0,
-    };
-    let north = mission::true_heading(0.0, &crs, east).unwrap();
-    assert!((north - 2.298).abs() < 0.01, "{north}");
-}
-
-/// Over a surface in US survey feet a mission's heights are metres.
-#[test]
-fn a_mission_over_feet_is_told_in_metres() {
-    let surface = surface(|_| 100.0);
-    let plan = plan(&surface, 20.0, wish(Pattern::Slope));
-    let take_off = DVec2::new(500_000.0, 5_000_000.0 - 60.0);
-    let way = ways((&plan, &surface), take_off, None).unwrap().remove(0);
-    let crs = "+proj=utm +zone=32 +datum=WGS84 +units=us-ft +no_defs";
-    let crs = Crs::understand(crs).unwrap();
-    let told = Told {
-        name: String::new(),
-        drone: None,
-        unit: LengthUnit::UsSurveyFoot,
-        speed: 4.0,
-        settle: 1.0,
-    };
-    let (_, mission) = missions(&plan, std::slice::from_ref(&way), &crs, &told)
-        .unwrap()
-        .remove(0);
-    // A system in metres is not that of the surface.
-    let metres = Crs::understand("EPSG:32632").unwrap();
-    let refused = missions(&plan, std::slice::from_ref(&way), &metres, &told).unwrap_err();
-    assert!(refused.what.contains("us-ft"), "{refused}");
-    let foot = 1200.0 / 3937.0;
-    for (stop, point) in mission.stops.iter().zip(&way.points) {
-        let expected = (point.place.z - 100.0) * foot;
-        assert!((stop.height.metres - expected).abs() < 1e-9, "{expected}");
-    }
-    // Photos from 20 feet, of which one is 0.3048006 m.
-    let photo = mission
-        .stops
-        .iter()
-        .find(|stop| stop.photo.is_some())
-        .unwrap();
-    assert!(
-        (photo.height.metres - 6.096_012).abs() < 1e-4,
-        "{}",
-        photo.height.metres
-    );
-}
-
-/// A surface has its heights in the unit of x and y, also where its system states feet for them: a mission's metres are those
-/// of the surface, and read back its photos are where they were planned.
-#[test]
-fn a_systems_unit_of_heights_does_not_count() {
-    let surface = surface(|_| 100.0);
-    let plan = plan(&surface, 20.0, wish(Pattern::Slope));
-    let take_off = DVec2::new(500_000.0, 5_000_000.0 - 60.0);
-    let way = ways((&plan, &surface), take_off, None).unwrap().remove(0);
-    let crs = Crs::understand("EPSG:32632+6360").unwrap();
-    assert!((crs.vertical_unit_metres() - 1200.0 / 3937.0).abs() < 1e-12);
-    let told = Told {
-        name: String::new(),
-        drone: None,
-        unit: LengthUnit::Metre,
-        speed: 4.0,
-        settle: 1.0,
-    };
-    let (_, mission) = missions(&plan, std::slice::from_ref(&way), &crs, &told)
-        .unwrap()
-        .remove(0);
-    for (stop, point) in mission.stops.iter().zip(&way.points) {
-        let height = stop.height.metres;
-        assert!((height - (point.place.z - 100.0)).abs() < 1e-9, "{height}");
-    }
-    let back = planned_poses(&mission, &crs, Some(take_off), |_| Some(100.0)).unwrap();
-    assert_eq!(back.len(), plan.photos.len());
-    for planned in &back {
-        let own = plan.photos.iter().find(|photo| photo.name == planned.name);
-        let off = own.unwrap().pose.center.distance(planned.pose.center);
-        assert!(off < 1e-3, "{}: {off}", planned.name);
-    }
-}
-
 /// Poles of one point each under legs of a flight without them, and a wall of one row of points, all with ground close
 /// around, so that no pixel of the terrain has its middle on one: photos and legs keep the clearance from every point.
 #[test]
@@ -549,13 +436,7 @@ fn what_is_kept_out_of_is_flown_around() {
     }
     assert_eq!(ways[0].photos(), plan.photos.len());
     let crs = Crs::understand("EPSG:32632").unwrap();
-    let told = Told {
-        name: String::new(),
-        drone: None,
-        unit: LengthUnit::Metre,
-        speed: 4.0,
-        settle: 1.0,
-    };
+    let told = told(LengthUnit::Metre);
     let (_, mission) = missions(&plan, &ways, &crs, &told).unwrap().remove(0);
     assert!(!mission.fences[0].keep_in && mission.fences[0].corners.len() == 4);
     // From inside nobody takes off.
