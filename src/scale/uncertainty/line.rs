@@ -192,6 +192,64 @@ fn ends_by_plane(field: &ScaleField, camera: &Camera) -> Ends {
 mod tests {
     use super::*;
 
+    /// Straight from above onto a plane, fx = fy: at the photo's upper edge rays meet it with half the height over the focal
+    /// length as tangent. There the gaps count for as much less, and the true scale is as much larger.
+    #[test]
+    fn gaps_count_for_less_where_one_looks_flatly() {
+        use super::super::tests::{camera, nadir};
+        use crate::camera::Distortion;
+        use crate::jobs::Progress;
+        use crate::scale::field::FieldGrid;
+        use crate::scale::{Ground, GroundFinder, PhotoScale, StatedErrors};
+        use crate::surface::{Cloud, Surface};
+        use glam::DVec2;
+
+        let corners = [(-20.0, -20.0), (20.0, -20.0), (20.0, 20.0), (-20.0, 20.0)];
+        let plane = Surface::new(Cloud {
+            points: corners.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec(),
+            ..Cloud::default()
+        })
+        .unwrap();
+        let (camera, pose) = (camera(Distortion::None), nadir(10.0));
+        let (grid, image) = (FieldGrid::of_fit(&camera), ImageKind::Undistorted);
+        let progress = Progress::default();
+        let field = ScaleField::compute(&camera, &pose, image, grid, &plane, &progress).unwrap();
+        let fitted = FittedScale::of(&field).unwrap();
+        let mut ground = GroundFinder::new(Ground::Auto, &plane);
+        let mut caster = plane.caster().unwrap();
+        let scale = PhotoScale::compute(&camera, &pose, image, &mut ground, &mut caster).unwrap();
+        let photo = UncertainPhoto {
+            field: &field,
+            fitted: Some(&fitted),
+            scale: &scale,
+            errors: StatedErrors::default(),
+        };
+        let depths: Vec<DepthError> = [-0.01, 0.01]
+            .repeat(200)
+            .into_iter()
+            .map(|relative| DepthError {
+                pixel: DVec2::new(640.0, 360.0),
+                relative,
+                area: 1.0,
+            })
+            .collect();
+        let at_top = |bias: f64| {
+            let plane = DVec3::Z / 10.0;
+            let line = LineErrors::new(
+                &photo,
+                &fitted,
+                plane,
+                &depths,
+                (Unseen { bias }, Bridged::default()),
+            );
+            line.ends[0].too_large
+        };
+        let tan = 0.5 * f64::from(camera.height) / camera.fy;
+        let wanted = 0.5 * 0.01 * (1.0 - 0.7 * tan);
+        let found = at_top(0.5) - at_top(0.0);
+        assert!((found - wanted).abs() < 0.02 * wanted, "{found} {wanted}");
+    }
+
     #[test]
     fn incidence_is_from_the_normal() {
         let down = DVec3::new(0.0, 0.0, 0.1);
