@@ -196,10 +196,10 @@ mod tests {
     /// length as tangent. There the gaps count for as much less, and the true scale is as much larger.
     #[test]
     fn gaps_count_for_less_where_one_looks_flatly() {
-        use super::super::tests::{camera, nadir};
         use crate::camera::Distortion;
         use crate::jobs::Progress;
         use crate::scale::field::FieldGrid;
+        use crate::scale::uncertainty::tests::{camera, nadir};
         use crate::scale::{Ground, GroundFinder, PhotoScale, StatedErrors};
         use crate::surface::{Cloud, Surface};
         use glam::DVec2;
