@@ -89,6 +89,9 @@ pub struct FlightSettings {
     pub control: ControlList,
 }
 
+/// Lengths of a unit that differ by less, as a share, are the same unit.
+const SAME_UNIT: f64 = 1e-9;
+
 impl Default for FlightSettings {
     /// In metres, which nobody has said.
     fn default() -> Self {
@@ -177,6 +180,29 @@ pub struct FlightParts {
     pub cameras: Vec<Camera>,
     /// In the order of the input.
     pub photos: Vec<Photo>,
+    /// What its files say of it besides.
+    pub as_read: AsRead,
+}
+
+/// What the files of a flight say of all its photos, and no number of theirs shows.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct AsRead {
+    /// What speaks against every photo, the gravest first. It is said where it is read.
+    pub doubts: Vec<Doubt>,
+    /// How far the points of the surface may be off because they were written as 32-bit floats, world
+    /// units; 0 where that is nothing beside the surface's size.
+    pub rounding: f64,
+    /// The world's coordinate system, where it has a name that is understood.
+    pub system: Option<WorldSystem>,
+}
+
+/// The coordinate system of a world.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorldSystem {
+    /// "EPSG:n", or as the files state it.
+    pub name: String,
+    /// How long the unit of its x and y is.
+    pub unit_metres: f64,
 }
 
 /// A flight whose parts fit together.
@@ -205,6 +231,18 @@ impl Outcome {
 }
 
 impl FlightParts {
+    /// That the world is said to count in another unit than its coordinate system does.
+    pub fn unit_doubt(&self) -> Option<Doubt> {
+        let system = self.as_read.system.as_ref().filter(|_| self.unit_known)?;
+        let metres = system.unit_metres;
+        ((self.unit.metres() / metres - 1.0).abs() > SAME_UNIT).then(|| Doubt::UnitNotSystems {
+            unit: self.unit,
+            system: system.name.clone(),
+            counted: LengthUnit::of_metres(metres)
+                .map_or_else(|| format!("{metres} m"), |unit| unit.to_string()),
+        })
+    }
+
     /// What is written beside lengths in the world: its unit, or that nobody states one.
     pub fn unit_of_lengths(&self) -> &'static str {
         in_words(self.unit_known.then_some(self.unit))

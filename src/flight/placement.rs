@@ -150,6 +150,7 @@ mod tests {
             package_errors: Default::default(),
             surface: Arc::new(Surface::new(cloud).unwrap()),
             cameras: vec![camera],
+            as_read: Default::default(),
             photos: centers.iter().enumerate().map(photo).collect(),
         });
         let flight = flight.unwrap();

@@ -43,6 +43,7 @@ pub(super) fn flight() -> Flight {
         package_errors: Default::default(),
         surface: Arc::new(Surface::new(cloud).unwrap()),
         cameras: vec![camera()],
+        as_read: Default::default(),
         photos: vec![Photo {
             name: "a.jpg".to_owned(),
             camera: 0,

@@ -30,7 +30,8 @@ pub mod tables;
 pub mod text;
 
 use fragscale_core::{
-    camera, control, fault, files, geodesy, geometry, jobs, labels, raster, scale, surface, units,
+    camera, control, fault, files, flight, geodesy, geometry, jobs, labels, raster, scale, surface,
+    units,
 };
 use fragscale_fragmentation as fragmentation;
 

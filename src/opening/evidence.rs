@@ -26,6 +26,16 @@ pub fn look_up(flight: &Flight, files: &[PhotoFile]) -> LookedUp {
     if !parts.unit_known {
         warnings.push(Doubt::UnitUnknown.to_string());
     }
+    let of_unit = parts.unit_doubt();
+    warnings.extend(of_unit.iter().map(Doubt::to_string));
+    // What was read has been said where it was read.
+    let of_all: Vec<Doubt> = of_unit
+        .into_iter()
+        .chain(parts.as_read.doubts.clone())
+        .collect();
+    for evidence in &mut evidence {
+        evidence.doubts.clone_from(&of_all);
+    }
     warnings.extend(doubt_sizes(flight, files, &mut evidence));
     let placement = flight.placement();
     warnings.extend(placement.warnings(flight));

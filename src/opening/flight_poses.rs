@@ -103,8 +103,8 @@ fn poses_file(posed: PosedFiles, mut warnings: Vec<String>) -> PosesFile {
                 line,
             })
             .collect(),
-        crs: None,
         warnings,
+        ..PosesFile::default()
     }
 }
 

@@ -2,10 +2,8 @@
 //! Each is good, or says in one sentence what is not and what mends it; every front end shows these words.
 
 use crate::flight::{ColoursFound, Doubt, PhotoFileState, PhotoReview, Review};
-use crate::geodesy::Crs;
 use crate::open::FlightReconstruction;
 use crate::surface::UpAxis;
-use crate::units::LengthUnit;
 
 /// What is looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,6 +70,7 @@ impl Remedy {
     pub fn against(doubt: &Doubt, can_georeference: bool) -> Option<Self> {
         match doubt {
             Doubt::UnitUnknown if !can_georeference => Some(Self::SetUnit),
+            Doubt::UnitNotSystems { .. } => Some(Self::SetUnit),
             Doubt::UnitUnknown => Some(Self::Georeference),
             Doubt::FlyingHeight { .. } | Doubt::LaserRange { .. } => {
                 can_georeference.then_some(Self::Georeference)
@@ -81,9 +80,10 @@ impl Remedy {
             | Doubt::ReducedPhotos { .. }
             | Doubt::FileSize { .. }
             | Doubt::FileUnreadable(_) => Some(Self::AddPhotos),
-            Doubt::FarFromSurface { .. } | Doubt::OffSurface(_) | Doubt::NoPoint(_) => {
-                Some(Self::AddSurface)
-            }
+            Doubt::FarFromSurface { .. }
+            | Doubt::OffSurface(_)
+            | Doubt::NoPoint(_)
+            | Doubt::RoundedPoints { .. } => Some(Self::AddSurface),
             _ => None,
         }
     }
@@ -163,18 +163,9 @@ fn share(count: usize, review: &Review) -> String {
 
 fn unit(review: &Review, stated: &StatedOfFlight<'_>) -> HealthFinding {
     let parts = review.flight().parts();
-    let counts_in = |crs: &str| Crs::understand(crs).ok().map(|crs| crs.unit_metres());
-    // A geocentric or projected one; degrees are no lengths of a flight.
-    let of_system = stated.crs.and_then(counts_in).filter(|_| parts.unit_known);
-    if let (Some(crs), Some(metres)) = (stated.crs, of_system)
-        && (parts.unit.metres() / metres - 1.0).abs() > 1e-9
-    {
-        let counted = LengthUnit::of_metres(metres);
-        let counted = counted.map_or_else(|| format!("{metres} m"), |unit| unit.to_string());
-        let says = format!(
-            "The world is said to count in {}, and its coordinate system ({crs}) counts in {counted}: scales are off by as much.",
-            parts.unit
-        );
+    let doubt = parts.unit_doubt();
+    if let Some(reason @ Doubt::UnitNotSystems { counted, .. }) = &doubt {
+        let says = format!("{}: {reason}.", share(review.count(), review));
         let short = format!("{}, not {counted}", parts.unit);
         return of(HealthItem::Unit, Health::Bad, short, says).with(Remedy::SetUnit);
     }

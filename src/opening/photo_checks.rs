@@ -262,6 +262,7 @@ mod tests {
                 skew: 0.0,
                 distortion: Distortion::None,
             }],
+            as_read: Default::default(),
             photos: vec![photo("a.jpg"), photo("b.jpg")],
         })
         .unwrap()

@@ -241,6 +241,7 @@ mod tests {
             package_errors: StatedErrors::default(),
             surface: surface.clone(),
             cameras: vec![camera],
+            as_read: Default::default(),
             photos: vec![photo("a", 2.0), photo("b", 3.5)],
         });
         let flight = Arc::new(flight.unwrap());

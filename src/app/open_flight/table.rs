@@ -162,6 +162,7 @@ mod tests {
             package_errors: Default::default(),
             surface: Arc::new(Surface::new(cloud).unwrap()),
             cameras: vec![camera],
+            as_read: Default::default(),
             photos,
         });
         let flight = Arc::new(flight.unwrap());

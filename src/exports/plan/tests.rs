@@ -57,6 +57,7 @@ fn review(slope: f64) -> Review {
         package_errors: Default::default(),
         surface: Arc::new(Surface::new(cloud).unwrap()),
         cameras: vec![camera],
+        as_read: Default::default(),
         photos: vec![
             photo("a.jpg", DVec3::ZERO),
             photo("b.jpg", DVec3::new(0.0, 8.0, 0.0)),

@@ -4,7 +4,7 @@
 use super::Doubt;
 
 /// All words.
-const KINDS: [&str; 28] = [
+const KINDS: [&str; 32] = [
     "no-scale",
     "off-surface",
     "no-point",
@@ -18,6 +18,10 @@ const KINDS: [&str; 28] = [
     "off-line",
     "wide-interval",
     "unit-unknown",
+    "unit-not-systems",
+    "small-angles",
+    "no-rotation",
+    "rounded-points",
     "file-missing",
     "no-photo-folder",
     "reduced-photos",
@@ -64,6 +68,10 @@ impl Doubt {
             Self::OffLine { .. } => "off-line",
             Self::WideInterval { .. } => "wide-interval",
             Self::UnitUnknown => "unit-unknown",
+            Self::UnitNotSystems { .. } => "unit-not-systems",
+            Self::SmallAngles { .. } => "small-angles",
+            Self::NoRotation { .. } => "no-rotation",
+            Self::RoundedPoints { .. } => "rounded-points",
             Self::FileMissing { .. } => "file-missing",
             Self::NoPhotoFolder { .. } => "no-photo-folder",
             Self::ReducedPhotos { .. } => "reduced-photos",

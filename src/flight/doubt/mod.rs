@@ -7,6 +7,7 @@ use std::fmt;
 
 pub use sight::{InView, OnPhoto, Sight};
 
+use crate::numbers::to_digits;
 use crate::scale::{CornerName, LEAST_COVERED};
 use crate::units::{LengthUnit, in_words};
 
@@ -83,6 +84,38 @@ pub enum Doubt {
     },
     /// Nobody says what unit the world counts in.
     UnitUnknown,
+    /// The world's coordinate system counts in another unit than is said of the world.
+    UnitNotSystems {
+        /// As is said.
+        unit: LengthUnit,
+        /// The system's name.
+        system: String,
+        /// What the system counts in, in words.
+        counted: String,
+    },
+    /// All angles of the poses are so small that they may be radians.
+    SmallAngles {
+        /// The largest, without its sign, as the file has it.
+        largest: f64,
+        /// Of so many photos.
+        photos: usize,
+    },
+    /// A quaternion of the poses is no rotation's: a column may be wrong.
+    NoRotation {
+        /// The first such line, from 1.
+        line: u64,
+        /// The quaternion's length.
+        length: f64,
+    },
+    /// The points of the surface are rounded too coarsely for what the photo shows.
+    RoundedPoints {
+        /// Their coordinates are off by as much at most, world units.
+        rounding: f64,
+        /// The width of the photo's footprint, world units.
+        footprint: f64,
+        /// Of both; `None` where nobody states it.
+        unit: Option<LengthUnit>,
+    },
     /// The photo's file is missing, so that the photo's size is not known.
     FileMissing {
         /// The image that the scale is for, pixels.
@@ -194,7 +227,10 @@ impl Doubt {
     /// Whether the numbers of the scale are not those of the photo that the engineer has, for a reason
     /// that no look at the flight can dispel.
     pub fn is_of_the_number(&self) -> bool {
-        matches!(self, Self::UnitUnknown | Self::ReducedPhotos { .. })
+        matches!(
+            self,
+            Self::UnitUnknown | Self::UnitNotSystems { .. } | Self::ReducedPhotos { .. }
+        )
     }
 
     /// Whether the photo does not stand where one of this surface can, or does not show it: its scale
@@ -320,6 +356,37 @@ impl fmt::Display for Doubt {
             Self::UnitUnknown => f.write_str(
                 "not a scale: the model is in a frame of its own, whose unit nobody states; georeference it, or set its unit",
             ),
+            Self::UnitNotSystems {
+                unit,
+                system,
+                counted,
+            } => write!(
+                f,
+                "the world is said to count in {unit}, and its coordinate system ({system}) counts in {counted}: scales are off by as much"
+            ),
+            Self::SmallAngles { largest, photos } => write!(
+                f,
+                "all angles of its {photos} photos lie between -{largest} and {largest}: they are read as degrees, and look like radians",
+                largest = to_digits(*largest, 4)
+            ),
+            Self::NoRotation { line, length } => write!(
+                f,
+                "the quaternion on line {line} has the length {}, where one of a rotation has 1: it is taken as its direction; a column may be wrong",
+                to_digits(*length, 3)
+            ),
+            Self::RoundedPoints {
+                rounding,
+                footprint,
+                unit,
+            } => {
+                let unit = in_words(*unit);
+                write!(
+                    f,
+                    "the points of the surface are 32-bit floats, rounded by up to {} {unit}, and the photo shows {} {unit} of it: export doubles, or subtract an offset",
+                    to_digits(*rounding, 2),
+                    to_digits(*footprint, 2)
+                )
+            }
             Self::FileMissing { size: (w, h) } => write!(
                 f,
                 "the photo file is missing: the scale is for images of {w} x {h} px"

@@ -59,9 +59,11 @@ impl Doubt {
                 OnPhoto::Corners(corners.clone()),
                 InView::Corners(corners.clone()),
             ),
-            Self::NoFit { .. } | Self::NoLine | Self::NotPlane { .. } | Self::OffLine { .. } => {
-                (OnPhoto::Field, InView::Footprint)
-            }
+            Self::NoFit { .. }
+            | Self::NoLine
+            | Self::NotPlane { .. }
+            | Self::OffLine { .. }
+            | Self::RoundedPoints { .. } => (OnPhoto::Field, InView::Footprint),
             Self::Ratio { .. } | Self::WideInterval { .. } => {
                 (OnPhoto::TopBottom, InView::Footprint)
             }
@@ -73,9 +75,12 @@ impl Doubt {
             Self::OtherColours { .. } | Self::Flipped { .. } => {
                 (OnPhoto::Nothing, InView::ThroughCamera)
             }
-            Self::NoScale(_) | Self::UnitUnknown | Self::FarFromSurface { .. } => {
-                (OnPhoto::Nothing, InView::Flight)
-            }
+            Self::NoScale(_)
+            | Self::UnitUnknown
+            | Self::UnitNotSystems { .. }
+            | Self::SmallAngles { .. }
+            | Self::NoRotation { .. }
+            | Self::FarFromSurface { .. } => (OnPhoto::Nothing, InView::Flight),
             Self::FileMissing { .. }
             | Self::NoPhotoFolder { .. }
             | Self::ReducedPhotos { .. }

@@ -210,6 +210,7 @@ impl Review {
                     evidence,
                     camera: (camera.width, camera.height),
                     unit,
+                    rounding: parts.as_read.rounding,
                 };
                 judge(&facts, &self.limits)
             })

@@ -39,6 +39,7 @@ fn flight() -> Arc<Flight> {
             skew: 0.0,
             distortion: Distortion::None,
         }],
+        as_read: Default::default(),
         photos: vec![Photo {
             name: "a.jpg".to_owned(),
             camera: 0,

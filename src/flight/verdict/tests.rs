@@ -102,6 +102,7 @@ fn facts<'a>(outcome: &'a Outcome, evidence: &'a Evidence) -> Facts<'a> {
         evidence,
         camera: SIZE,
         unit: Some(LengthUnit::Metre),
+        rounding: 0.0,
     }
 }
 
@@ -221,6 +222,28 @@ fn each_limit_is_exact() {
     assert_eq!(nothing, []);
 }
 
+/// Of a footprint of 10 units points may be off by 0.1 of them.
+#[test]
+fn rounding_is_held_against_the_footprint() {
+    let (good, found, view) = (good(), evidence(&FOUND), view());
+    let doubts = |rounding: f64| {
+        let facts = Facts {
+            view: Some(&view),
+            rounding,
+            ..facts(&good, &found)
+        };
+        judge(&facts, &limits()).doubts
+    };
+    assert_eq!(doubts(0.1), []);
+    let rounding = 0.1_f64.next_up();
+    let expected = Doubt::RoundedPoints {
+        rounding,
+        footprint: 10.0,
+        unit: Some(LengthUnit::Metre),
+    };
+    assert_eq!(doubts(rounding), [expected]);
+}
+
 /// What the pixels say is judged of the scales that are used.
 #[test]
 fn the_field_is_judged_for_the_pair_in_use() {
@@ -259,6 +282,7 @@ fn the_field_is_judged_for_the_pair_in_use() {
             evidence: &evidence,
             camera: SIZE,
             unit: Some(LengthUnit::Metre),
+            rounding: 0.0,
         };
         judge(&facts, &limits()).doubts
     };

@@ -1,5 +1,7 @@
 //! What a cloud reader hands over.
 
+use std::fmt;
+
 use glam::DVec3;
 
 use crate::fault::Fault;
@@ -18,6 +20,8 @@ pub struct CloudFile {
     pub geographic: bool,
     /// What the reader had to assume, one sentence each.
     pub warnings: Vec<String>,
+    /// How far its coordinates may be off because they are 32-bit floats; 0 where that is nothing beside its size.
+    pub rounding: f64,
     /// Of octrees: what their file says of the whole cloud, so that a surface of all of it is that which a part of
     /// it belongs to. In the file's coordinates: gone where the points were moved.
     pub facts: Option<CloudFacts>,
@@ -39,7 +43,17 @@ impl CloudFile {
     /// Warns where coordinates that were stored as f32 are too large for the cloud's own extent:
     /// UTM northings in f32 are rounded to half a metre.
     pub(crate) fn warn_if_rounded(&mut self) {
-        self.warnings.extend(rounding(&self.cloud.points));
+        if let Some(rounded) = Rounded::of(&self.cloud.points) {
+            self.take_rounded(rounded, rounded.to_string());
+        }
+    }
+
+    /// Takes it that some of its points are rounded, and says so in these words, once.
+    pub(crate) fn take_rounded(&mut self, rounded: Rounded, warning: String) {
+        self.rounding = self.rounding.max(rounded.by);
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
     }
 
     /// Notes a coordinate system as the file states it, and whether it is one of degrees.
@@ -88,19 +102,36 @@ pub(crate) fn counts_degrees(crs: &str) -> bool {
 /// The colour of points without one among points with colours.
 const GREY: [u8; 3] = [128; 3];
 
-/// What to say about coordinates that were stored as f32 where that has rounded them noticeably.
-pub(crate) fn rounding(points: &[DVec3]) -> Option<String> {
-    let bounds = Bounds::of(points)?;
-    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
-    let rounding = largest * f64::from(f32::EPSILON) / 2.0;
-    let size = bounds.size().max_element();
-    // A single place has no size to compare with.
-    (size > 0.0 && rounding > size * 1e-5).then(|| {
-        let digits = if rounding < 0.005 { 6 } else { 2 };
-        format!(
-            "its coordinates are 32-bit floats of up to {largest:.0}, which rounds them to about {rounding:.digits$}; export doubles, or subtract an offset"
+/// Coordinates that were stored as f32, which has rounded them noticeably. Prints as a sentence.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rounded {
+    /// They are off by so much at most.
+    by: f64,
+    /// The largest of them.
+    largest: f64,
+}
+
+impl Rounded {
+    /// Of these points, if any.
+    pub(crate) fn of(points: &[DVec3]) -> Option<Self> {
+        let bounds = Bounds::of(points)?;
+        let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let by = largest * f64::from(f32::EPSILON) / 2.0;
+        let size = bounds.size().max_element();
+        // A single place has no size to compare with.
+        (size > 0.0 && by > size * 1e-5).then_some(Self { by, largest })
+    }
+}
+
+impl fmt::Display for Rounded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { by, largest } = self;
+        let digits = if *by < 0.005 { 6 } else { 2 };
+        write!(
+            f,
+            "its coordinates are 32-bit floats of up to {largest:.0}, which rounds them to about {by:.digits$}; export doubles, or subtract an offset"
         )
-    })
+    }
 }
 
 /// The index, from 0, of the first point with a coordinate that is not a finite number.

@@ -18,7 +18,7 @@ use std::io::{Read, Seek, SeekFrom};
 use e57::{E57Reader, PointCloud, Record, RecordDataType, RecordName, RecordValue, Transform};
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::clouds::cloud_file::{CloudFile, rounding};
+use crate::clouds::cloud_file::{CloudFile, Rounded};
 use crate::fault::Fault;
 use crate::jobs::Progress;
 
@@ -63,12 +63,11 @@ pub(crate) fn read(mut input: impl Read + Seek, progress: &Progress) -> Result<C
                 progress.advance(done, total)?;
             }
         }
-        let points = file.cloud.points.get_mut(first..).unwrap_or_default();
-        if layout.floats
-            && let Some(warning) = rounding(points)
-        {
-            file.warnings.push(format!("scan {index}: {warning}"));
+        let rounded = file.cloud.points.get(first..).and_then(Rounded::of);
+        if let Some(rounded) = rounded.filter(|_| layout.floats) {
+            file.take_rounded(rounded, format!("scan {index}: {rounded}"));
         }
+        let points = file.cloud.points.get_mut(first..).unwrap_or_default();
         if let Some(pose) = &scan.transform {
             let (rotation, translation) = pose_of(pose)?;
             for point in points {

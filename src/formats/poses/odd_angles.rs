@@ -1,6 +1,8 @@
-//! Orientations that can be read, and are probably not what their columns say: a warning says so.
+//! Orientations that can be read, and are probably not what their columns say: no photo of them is trusted.
 
 use std::f64::consts::PI;
+
+use crate::flight::Doubt;
 
 /// With fewer photos all angles may well be small.
 const FEW: usize = 3;
@@ -35,23 +37,15 @@ impl OddAngles {
     }
 
     /// What is odd about them.
-    pub(super) fn warnings(&self) -> Vec<String> {
+    pub(super) fn doubts(&self) -> Vec<Doubt> {
         // An angle that was rounded up to four digits is not beyond half a turn.
         let in_radians = (SMALL..PI + 1e-3).contains(&self.largest);
-        let radians = (self.photos >= FEW && in_radians).then(|| {
-            format!(
-                "all angles of its {} photos lie between -{largest} and {largest}: they are read as degrees, and look like radians",
-                self.photos,
-                largest = fragscale_core::numbers::to_digits(self.largest, 4)
-            )
+        let radians = (self.photos >= FEW && in_radians).then_some(Doubt::SmallAngles {
+            largest: self.largest,
+            photos: self.photos,
         });
-        let quaternion = self.quaternion.map(|(line, length)| {
-            format!(
-                "the quaternion on line {line} has the length {}, where one of a rotation has 1: it is taken as its direction; a column may be \
-                 wrong",
-                fragscale_core::numbers::to_digits(length, 3)
-            )
-        });
+        let quaternion = self.quaternion;
+        let quaternion = quaternion.map(|(line, length)| Doubt::NoRotation { line, length });
         radians.into_iter().chain(quaternion).collect()
     }
 }
@@ -60,12 +54,17 @@ impl OddAngles {
 mod tests {
     use super::*;
 
+    fn said(odd: &OddAngles) -> String {
+        let doubts: Vec<String> = odd.doubts().iter().map(Doubt::to_string).collect();
+        doubts.join("; ")
+    }
+
     fn of(photos: &[[f64; 3]]) -> String {
         let mut odd = OddAngles::default();
         for angles in photos {
             odd.angles(angles);
         }
-        odd.warnings().join("; ")
+        said(&odd)
     }
 
     #[test]
@@ -88,10 +87,10 @@ mod tests {
     fn quaternions_without_a_part_are_suspected() {
         let mut odd = OddAngles::default();
         odd.quaternion(2, &[0.5, 0.5, 0.5, 0.502]);
-        assert_eq!(odd.warnings(), Vec::<String>::new());
+        assert_eq!(odd.doubts(), []);
         odd.quaternion(3, &[0.7, 0.0, 0.1, 0.0]);
         odd.quaternion(4, &[0.9, 0.3, 0.0, 0.0]);
-        let said = odd.warnings().join("; ");
+        let said = said(&odd);
         assert!(said.contains("line 3 has the length 0.707"), "{said}");
     }
 }

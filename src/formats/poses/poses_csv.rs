@@ -16,6 +16,7 @@ use super::odd_angles::OddAngles;
 use crate::camera::Pose;
 use crate::fault::Fault;
 use crate::files::text_from_bytes;
+use crate::flight::Doubt;
 use crate::scale::PoseErrors;
 use crate::tables::table::{NumberRepairs, Row, Table};
 use crate::text::separated::Separator;
@@ -36,7 +37,7 @@ pub struct PoseLine {
 }
 
 /// The lines of a poses.csv, in order.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct PosesFile {
     /// One a photo; the names differ.
     pub lines: Vec<PoseLine>,
@@ -44,8 +45,19 @@ pub struct PosesFile {
     /// it is one of longitude and latitude, centres and rotations are as in a `Reconstruction` with
     /// such a system.
     pub crs: Option<String>,
-    /// What was passed over.
+    /// What was passed over, and `doubts` in words.
     pub warnings: Vec<String>,
+    /// What speaks against all of its poses.
+    pub doubts: Vec<Doubt>,
+}
+
+impl PosesFile {
+    /// Says what is odd about its orientations.
+    pub(super) fn take_odd(&mut self, odd: &OddAngles) {
+        self.doubts = odd.doubts();
+        self.warnings
+            .extend(self.doubts.iter().map(Doubt::to_string));
+    }
 }
 
 /// The ways to write an orientation.
@@ -75,8 +87,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
     let columns = Columns::find(table.header_line(), table.header())?;
     let mut file = PosesFile {
         warnings: columns.warnings(table.header()),
-        crs: None,
-        lines: Vec::new(),
+        ..PosesFile::default()
     };
     let mut seen: HashMap<String, u64> = HashMap::new();
     let mut repairs = NumberRepairs::default();
@@ -99,7 +110,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<PosesFile, Fault> {
         return Err(Fault::new("it has no photos", "give a line for each photo"));
     }
     file.warnings.extend(repairs.warnings());
-    file.warnings.extend(odd.warnings());
+    file.take_odd(&odd);
     Ok(file)
 }
 

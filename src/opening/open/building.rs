@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use super::framing::Framed;
+use super::lengths;
 use super::source::Source;
 use super::{OpenOptions, Opened};
 use crate::evidence::look_up;
 use crate::fault::{Fault, Lacking};
 use crate::files::{FileError, Inputs};
-use crate::flight::{Flight, FlightParts};
+use crate::flight::{AsRead, Flight, FlightParts};
 use crate::formats::CloudFile;
 use crate::in_part::InPart;
 use crate::jobs::Progress;
@@ -28,7 +29,12 @@ pub(super) fn build(
     part: Option<&mut InPart>,
     progress: &Progress,
 ) -> Result<Opened, FileError> {
-    let Framed { cloud, world } = framed;
+    let as_read = AsRead {
+        doubts: std::mem::take(&mut source.doubts),
+        rounding: framed.cloud.rounding,
+        system: lengths::system_of(&framed),
+    };
+    let Framed { cloud, world, .. } = framed;
     let surface_file = source.surface_file();
     let at_surface = |fault| FileError::new(&surface_file, fault);
     let origin = FlightOrigin {
@@ -88,6 +94,7 @@ pub(super) fn build(
         surface: Arc::new(surface),
         cameras: source.cameras,
         photos: source.photos,
+        as_read,
     };
     let flight = match origin.is_surface {
         true => Flight::perhaps_without_photos(parts),

@@ -1,6 +1,4 @@
-//! One frame: poses and surface are brought to the world's coordinate system, and its unit is told.
-
-use std::path::Path;
+//! One frame: poses and surface are brought to the world's coordinate system.
 
 use glam::DVec3;
 
@@ -9,12 +7,16 @@ use crate::fault::Fault;
 use crate::files::FileError;
 use crate::formats::{CloudFile, PoseCovariance};
 use crate::jobs::Progress;
-use crate::world::{Known, WorldFrame, place_of_flight, taken_to_be_in};
+use crate::world::{Known, Way, WorldFrame, place_of_flight, taken_to_be_in};
 
 /// The surface in the world.
 pub(super) struct Framed {
     pub(super) cloud: CloudFile,
     pub(super) world: WorldFrame,
+    /// Whether the poses are in the world's system by what their files say.
+    pub(super) poses_are_told: bool,
+    /// Whether control points brought both elsewhere.
+    pub(super) is_placed: bool,
 }
 
 /// Brings the poses and the surface (that of `file`, or the reconstruction's own points) to the
@@ -70,6 +72,7 @@ pub(super) fn bring_to_world(
         photo.pose = moved;
         photo.package_errors = stated.errors();
     }
+    cloud.rounding = moved_rounding(&cloud, &of_points).map_err(at_surface)?;
     of_points
         .points(&mut cloud.cloud.points)
         .map_err(at_surface)?;
@@ -79,12 +82,8 @@ pub(super) fn bring_to_world(
     if let (Some(moving), Some(frame)) = (&mut source.moving, &surface) {
         moving.frames = Some((frame.clone(), world.clone()));
     }
-    let middle = cloud.cloud.points.first().copied();
-    let doubt = middle.map(|point| world.check_lengths(point)).transpose();
-    let doubt = doubt.map_err(at_surface)?.flatten();
     let poses_moved = of_poses.in_words("the poses");
     let points_moved = of_points.in_words("the points");
-    source.warn(surface_file, doubt.as_slice());
     source.warn(&path, poses_moved.as_slice());
     match surface {
         Some(WorldFrame::AsIs(_)) if !source.poses_frame.is_as_it_is() => {
@@ -102,56 +101,21 @@ pub(super) fn bring_to_world(
         Some(_) => source.warn(surface_file, points_moved.as_slice()),
         None => {}
     }
-    let is_in_world = poses_moved.is_some() || !source.poses_frame.is_as_it_is();
-    take_unit(source, &world, surface_file, is_in_world)?;
-    Ok(Framed { cloud, world })
+    let poses_are_told = poses_moved.is_some() || !source.poses_frame.is_as_it_is();
+    Ok(Framed {
+        cloud,
+        world,
+        poses_are_told,
+        is_placed: false,
+    })
 }
 
-/// The unit of the world: what flight.toml says, if the world's system does not say another one.
-fn take_unit(
-    source: &mut Source,
-    world: &WorldFrame,
-    surface_file: &Path,
-    is_in_world: bool,
-) -> Result<(), FileError> {
-    let path = source.file.clone();
-    let at_poses = |fault| FileError::new(&path, fault);
-    let Some(unit) = world.unit().map_err(at_poses)? else {
-        take_package_unit(source);
-        return Ok(());
+/// How far the points of a cloud are rounded once they are moved: degrees become metres.
+fn moved_rounding(cloud: &CloudFile, way: &Way) -> Result<f64, Fault> {
+    let Some(&point) = cloud.cloud.points.first().filter(|_| cloud.rounding > 0.0) else {
+        return Ok(0.0);
     };
-    let stated = source.settings.unit;
-    if !source.unit_is_stated {
-        source.settings.unit = unit;
-        source.settings.unit_known = true;
-    } else if unit != stated {
-        let what = format!(
-            "the world is {}, which counts in {unit}, not {stated}",
-            world.in_words()
-        );
-        if is_in_world {
-            let remedy = format!("write world.unit = \"{unit}\"");
-            return Err(at_poses(Fault::new(what, remedy)));
-        }
-        source.warn(surface_file, &[what]);
-    }
-    Ok(())
-}
-
-/// The unit of a world without a coordinate system: what flight.toml says, else the package.
-fn take_package_unit(source: &mut Source) {
-    let settings = &mut source.settings;
-    match (source.unit_is_stated, source.package_unit) {
-        (false, unit) => {
-            settings.unit = unit.unwrap_or(settings.unit);
-            settings.unit_known = unit.is_some();
-        }
-        (true, Some(unit)) if unit != settings.unit => {
-            let path = source.file.clone();
-            let stated = settings.unit;
-            let what = format!("world.unit is {stated}, but the package counts in {unit}");
-            source.warn(&path, &[what]);
-        }
-        (true, _) => {}
-    }
+    let mut ends = [point, point + DVec3::new(0.0, cloud.rounding, 0.0)];
+    way.points(&mut ends)?;
+    Ok(ends[0].distance(ends[1]))
 }

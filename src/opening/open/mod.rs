@@ -7,6 +7,7 @@
 //! surface   its file
 //! framing   poses and surface are brought to one world
 //! placing   control points bring both to another one
+//! lengths   in which unit, and whether its lengths are lengths
 //! building  the flight
 //! within    all of that again with more of a large cloud
 //! ```
@@ -14,6 +15,7 @@
 mod building;
 mod cameras;
 mod framing;
+mod lengths;
 mod placing;
 mod reading;
 mod source;
@@ -197,6 +199,7 @@ fn open(
     )?;
     let mut framed = framing::bring_to_world(&mut source, surface, progress)?;
     placing::place(&mut source, &mut framed, options)?;
+    lengths::tell(&mut source, &framed)?;
     let mut opened = building::build(source, framed, photo_files, options, part, progress)?;
     let photos = opened.photo_files.iter().flat_map(|file| &file.path);
     opened.read = Inputs::of(opened.inputs.iter().chain(photos)).with_opened(&recording.files());

@@ -41,7 +41,9 @@ pub(super) fn place(
     for point in &mut framed.cloud.cloud.points {
         *point = by.apply(*point);
     }
+    framed.cloud.rounding *= by.scale;
     framed.cloud.facts = None;
+    framed.is_placed = true;
     if let Some(moving) = &mut source.moving {
         moving.placed = Some(by);
     }

@@ -261,6 +261,7 @@ fn add_poses(
     source.poses_frame = WorldFrame::of_poses(poses.crs.as_deref(), None, &mut poses.warnings)
         .map_err(|fault| FileError::new(path, fault))?;
     source.warn(path, &poses.warnings);
+    source.doubts.append(&mut poses.doubts);
     source.inputs.push(path.to_owned());
     for line in poses.lines {
         let camera = camera_of(&line, cameras).map_err(|fault| FileError::new(path, fault))?;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{FlightReconstruction, OpenOptions};
 use crate::camera::Camera;
-use crate::flight::{FlightFile, FlightSettings, Photo};
+use crate::flight::{Doubt, FlightFile, FlightSettings, Photo};
 use crate::formats::{CloudFile, PoseCovariance};
 use crate::geodesy::Crs;
 use crate::geometry::Similarity;
@@ -64,6 +64,8 @@ pub(super) struct Source {
     pub(super) cameras: Vec<Camera>,
     pub(super) photos: Vec<Photo>,
     pub(super) warnings: Vec<String>,
+    /// What speaks against all photos.
+    pub(super) doubts: Vec<Doubt>,
 }
 
 impl Source {
@@ -101,6 +103,7 @@ impl Source {
             cameras: Vec::new(),
             photos: Vec::new(),
             warnings: Vec::new(),
+            doubts: Vec::new(),
         }
     }
 

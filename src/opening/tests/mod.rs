@@ -1,5 +1,6 @@
 //! What packages and recordings wrote, opened as a flight.
 
+mod doubted;
 mod drone_photos;
 mod metashape;
 mod odm;

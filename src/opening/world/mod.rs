@@ -9,3 +9,4 @@ mod way;
 pub(crate) use choice::{Known, NoWorld, place_of_flight};
 pub(crate) use frame::WorldFrame;
 pub(crate) use unstated_surface::taken_to_be_in;
+pub(crate) use way::Way;

@@ -24,7 +24,7 @@ use std::path::{Component, Path};
 
 use glam::{DMat4, DVec3};
 
-use crate::clouds::cloud_file::{CloudFile, rounding};
+use crate::clouds::cloud_file::{CloudFile, Rounded};
 use crate::fault::Fault;
 use crate::files::read_bytes;
 use crate::jobs::Progress;
@@ -430,11 +430,10 @@ impl Scene<'_> {
             _ => 1.0,
         };
         let own: Vec<DVec3> = positions.into_iter().map(DVec3::from_array).collect();
-        if let Some(warning) = rounding(&own)
-            && !self.file.warnings.contains(&warning)
+        if let Some(rounded) = Rounded::of(&own)
             && self.data.accessor(position)?.component_type == 5126
         {
-            self.file.warnings.push(warning);
+            self.file.take_rounded(rounded, rounded.to_string());
         }
         for (index, point) in own.into_iter().enumerate() {
             let color = colors.as_ref().and_then(|colors| colors.get(index));

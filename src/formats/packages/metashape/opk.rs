@@ -54,11 +54,7 @@ pub(crate) fn is_opk(start: &str) -> bool {
 /// With the line: a field that is missing or no number, angles and rotation that disagree, a photo
 /// that is named twice, no photo at all.
 pub(crate) fn read(text: &str) -> Result<PosesFile, Fault> {
-    let mut file = PosesFile {
-        lines: Vec::new(),
-        crs: None,
-        warnings: Vec::new(),
-    };
+    let mut file = PosesFile::default();
     let mut stated: Option<usize> = None;
     let mut seen: HashMap<String, u64> = HashMap::new();
     for (number, line) in (1..).zip(text.lines()) {

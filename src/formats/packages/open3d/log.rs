@@ -104,9 +104,9 @@ pub(crate) fn read_log(text: &str) -> Result<PosesFile, Fault> {
         warnings.push("the frames' own numbers are others than that".to_owned());
     }
     Ok(PosesFile {
-        crs: None,
         lines: poses,
         warnings,
+        ..PosesFile::default()
     })
 }
 

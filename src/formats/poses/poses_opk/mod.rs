@@ -140,7 +140,7 @@ pub(crate) fn read_table(bytes: &[u8], system: Option<&str>) -> Result<PosesFile
     let header = header.unwrap_or(SILENT);
     let mut file = list.finish(header.in_degrees.then(|| DEGREES.to_owned()))?;
     file.warnings = numbers.warnings();
-    file.warnings.extend(odd.warnings());
+    file.take_odd(&odd);
     if header.angles == Angles::OfBody && !header.in_degrees {
         turn_to_the_map(&mut file, system)?;
     }
@@ -235,7 +235,7 @@ impl List {
         Ok(PosesFile {
             lines: self.lines,
             crs,
-            warnings: Vec::new(),
+            ..PosesFile::default()
         })
     }
 }
