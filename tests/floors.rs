@@ -40,7 +40,7 @@ const FLOORS: [(&str, i32); 20] = [
     ("scale", 2),
     ("survey", 2),
     ("control", 2),
-    ("flight", 3),
+    ("flight", 4),
     ("picture", 3),
 ];
 

@@ -38,6 +38,7 @@ pub use verdict::{Limits, Verdict};
 use crate::camera::{Camera, Pose};
 use crate::control::ControlList;
 use crate::fault::Fault;
+use crate::plan::AskedPlan;
 use crate::scale::{Ground, ImageKind, PhotoScale, PoseErrors, ScalePair, StatedErrors};
 use crate::surface::{Surface, SurfaceOptions, UpAxis};
 use crate::units::{LengthUnit, in_words};
@@ -85,6 +86,8 @@ pub struct FlightSettings {
     pub decisions: Vec<Decision>,
     /// How the flight, as its files give it, was brought to the world by control points.
     pub placed: Option<Placed>,
+    /// What was asked of a flight plan over the surface; `None` where that is what is usual. No scale depends on it.
+    pub plan: Option<Box<AskedPlan>>,
     /// Control points, in a file of their own beside flight.toml: no scale depends on them but through `placed`.
     pub control: ControlList,
 }
@@ -107,6 +110,7 @@ impl Default for FlightSettings {
             scale_objects: Vec::new(),
             decisions: Vec::new(),
             placed: None,
+            plan: None,
             control: ControlList::default(),
         }
     }
@@ -147,6 +151,7 @@ impl FlightSettings {
             placed,
             scale_objects: _,
             decisions: _,
+            plan: _,
             control: _,
         } = self;
         (*unit, *unit_known) == (other.unit, other.unit_known)

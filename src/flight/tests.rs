@@ -69,6 +69,7 @@ fn settings() -> FlightSettings {
         scale_objects: Vec::new(),
         decisions: Vec::new(),
         placed: None,
+        plan: None,
         control: Default::default(),
     }
 }

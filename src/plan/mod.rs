@@ -2,7 +2,7 @@
 //! photo will show, and the mission that a drone is told.
 //!
 //! ```text
-//! wish        what is asked for: scale, pattern, gaps, gimbal, clearance; and what is usual
+//! wish/       what is asked for: scale, pattern, gaps, gimbal, clearance; what is usual; what a flight's file keeps of it
 //! tiles       heights in tiles, which are kept
 //! terrain     heights on a raster, planes of the ground, how near a point in the air is to it
 //! drones      cameras and gimbals that are often flown
@@ -67,7 +67,8 @@ pub use way::{
     Flying, MOST_SPEED, Pace, USUAL_CLIMB, USUAL_DESCENT, USUAL_SETTLE, USUAL_SPEED, Way, WayPoint,
 };
 pub use wish::{
-    Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL, USUAL_SURVEY_OVERLAP, USUAL_TILT, Wish,
+    AskedPlan, Edit, Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL, USUAL_SURVEY_OVERLAP,
+    USUAL_TILT, Wish,
 };
 
 use crate::camera::Camera;

@@ -49,6 +49,7 @@ mod photo_view;
 mod photos;
 mod planning;
 mod planning_files;
+mod planning_saved;
 mod points;
 mod random;
 mod reviewing;

@@ -167,6 +167,15 @@ impl State {
             self.say(Severity::Warning, warning);
         }
         self.say(Severity::Note, &said);
+        let had_plan = self
+            .open
+            .as_ref()
+            .is_some_and(|open| open.planning.to_save().is_some());
+        if had_plan {
+            let text =
+                "the flight plan was of where the flight was before, and is gone: plan it anew";
+            self.say(Severity::Warning, text);
+        }
         if let Some(open) = &mut self.open {
             let placed = settings.placed.clone();
             let by = Box::new(by);
@@ -330,8 +339,9 @@ impl OpenFlight {
         ] {
             *length = length.map(|length| length * by.scale);
         }
-        // It was said in the frame before.
+        // They were said in the frame before.
         settings.ground = Ground::Auto;
+        settings.plan = None;
         settings
     }
 

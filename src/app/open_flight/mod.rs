@@ -229,6 +229,7 @@ impl OpenFlight {
             limits,
         );
         let computed = opened.settings.clone();
+        let plan = computed.plan.as_deref().cloned();
         let mut open = Self {
             number,
             review,
@@ -248,7 +249,7 @@ impl OpenFlight {
             },
             photo_view: PhotoView::default(),
             map: FlightMap::default(),
-            planning: Planning::default(),
+            planning: Planning::of_saved(plan),
             fragments: Fragments::default(),
             corners: None,
             tint: None,
@@ -301,6 +302,14 @@ impl OpenFlight {
         self.history.now().clone()
     }
 
+    /// The same as saving writes them: with the flight plan, which has an undo of its own.
+    pub fn settings_to_save(&self) -> FlightSettings {
+        FlightSettings {
+            plan: self.planning.to_save().cloned().map(Box::new),
+            ..self.settings()
+        }
+    }
+
     /// Whether the scales on the screen are those of the settings of now.
     pub fn is_computed(&self) -> bool {
         let now = self.history.now();
@@ -309,11 +318,12 @@ impl OpenFlight {
 
     /// Whether something would be lost if it were closed.
     pub fn is_changed(&self) -> bool {
-        let is_flight = !self.files.origin.is_surface_alone();
-        let is_changed = self.settings() != self.files.saved
+        if self.files.origin.is_surface_alone() {
+            return self.planning.is_lost();
+        }
+        self.settings_to_save() != self.files.saved
             || self.files.origin.has_other_files()
-            || self.fragments.is_changed();
-        is_flight && is_changed
+            || self.fragments.is_changed()
     }
 
     /// Takes a change of the settings back that will not be computed: what is on the screen must be

@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use super::asked::{AskedPlan, Edit};
+use super::dragged::dragged;
 use super::{PlanStep, PlanTool, Planning};
 use crate::open_flight::OpenFlight;
-use crate::plan::{Drone, Size};
+use crate::plan::{AskedPlan, Drone, Edit, Size};
 use crate::size_distributions::Page;
 use crate::state::history::History;
 use crate::state::{Severity, State};
@@ -108,7 +108,7 @@ impl OpenFlight {
         asked.clearance = asked
             .clearance
             .min(crate::numbers::round_near(half).unwrap_or(half));
-        self.planning.asked = Some(History::new(asked));
+        self.planning.begin(asked);
     }
 
     /// What a click on the surface at a place does on the page of the plan.
@@ -182,7 +182,7 @@ impl Planning {
                     .map(|made| made.plan.area.corners().to_vec());
                 let dragged = self
                     .now()
-                    .map(|now| now.dragged(&handle, to, found.as_deref().unwrap_or_default()));
+                    .map(|now| dragged(now, &handle, to, found.as_deref().unwrap_or_default()));
                 self.dragged = dragged;
             }
             PlanStep::Drop => {

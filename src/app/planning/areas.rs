@@ -1,10 +1,11 @@
 //! Areas of the plan that are typed or in a file: what the command's `--area` and `--keep-out` take.
 
-use super::{AskedPlan, PlanTool};
+use super::PlanTool;
 use crate::fault::Fault;
 use crate::geodesy::Crs;
 use crate::jobs::Progress;
 use crate::opening::Areas;
+use crate::plan::AskedPlan;
 use crate::state::{Severity, State};
 use crate::survey::Polygon;
 use crate::tasks::Task;

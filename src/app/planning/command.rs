@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use glam::DVec2;
 
-use super::asked::{AskedPlan, Handle};
+use super::dragged::Handle;
 use crate::command::Destination;
+use crate::plan::AskedPlan;
 
 /// One thing to do on the page of the plan.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use super::asked::AskedPlan;
 use crate::camera::Camera;
-use crate::plan::{Pace, Plan, Shadows, Sun, Way};
+use crate::plan::{AskedPlan, Pace, Plan, Shadows, Sun, Way};
 use crate::render::{PlannedLine, plan_photos};
 use crate::surface::Surface;
 use crate::survey::Polygon;

@@ -2,14 +2,13 @@
 
 use std::sync::Arc;
 
-use super::asked::{AskedPlan, Edit};
 use super::made::MadePlan;
 use crate::camera::Camera;
 use crate::exports::{PlanReport, plan_warnings};
 use crate::fault::Fault;
 use crate::geodesy::Crs;
 use crate::jobs::Progress;
-use crate::plan::{self, Pace, Plan, Way};
+use crate::plan::{self, AskedPlan, Edit, Pace, Plan, Way};
 use crate::render::{plan_areas, plan_way};
 use crate::state::State;
 use crate::surface::Surface;

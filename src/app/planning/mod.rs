@@ -2,7 +2,7 @@
 //! the command `plan` makes.
 //!
 //! ```text
-//! asked     what the engineer asks for, with what she moved by hand: undo goes over it
+//! dragged   what is moved by hand in the viewport: undo goes over what is asked for
 //! command   what she does on the page
 //! applying  does that
 //! made      the plan that came of it
@@ -17,9 +17,9 @@
 
 pub mod applying;
 mod areas;
-mod asked;
 mod command;
 mod comparing;
+mod dragged;
 mod flown;
 mod made;
 mod making;
@@ -29,11 +29,12 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-pub use asked::{AskedPlan, Edit, Handle, typed_corners};
 pub use command::{PlanStep, PlanTool};
+pub use dragged::{Handle, typed_corners};
 pub use flown::FlownMission;
 pub use made::MadePlan;
 
+use crate::plan::AskedPlan;
 use crate::render::PlannedLine;
 use crate::state::history::History;
 
@@ -42,7 +43,13 @@ use crate::state::history::History;
 pub struct Planning {
     /// What is asked for, with what was before; `None` until the page was seen.
     pub asked: Option<History<AskedPlan>>,
-    /// The same while something is dragged.
+    /// What is usual, where nothing was saved: what nobody changed is not saved either.
+    usual: Option<AskedPlan>,
+    /// What the flight's file asks for.
+    saved: Option<AskedPlan>,
+    /// What is in a mission or on a sheet.
+    written: Option<AskedPlan>,
+    /// What is asked for while something is dragged.
     pub dragged: Option<AskedPlan>,
     /// What was made of it last.
     pub made: Option<Arc<MadePlan>>,
@@ -64,9 +71,56 @@ pub struct Planning {
 }
 
 impl Planning {
+    /// Over a flight whose file asks for this.
+    pub(crate) fn of_saved(saved: Option<AskedPlan>) -> Self {
+        Self {
+            saved,
+            ..Self::default()
+        }
+    }
+
     /// What is asked for now.
     pub fn now(&self) -> Option<&AskedPlan> {
         (self.dragged.as_ref()).or_else(|| Some(self.asked.as_ref()?.now()))
+    }
+
+    /// What is to be saved with the flight: what is asked for, once it is not what is usual.
+    pub fn to_save(&self) -> Option<&AskedPlan> {
+        match &self.asked {
+            Some(asked) if self.saved.is_some() || Some(asked.now()) != self.usual.as_ref() => {
+                Some(asked.now())
+            }
+            Some(_) => None,
+            None => self.saved.as_ref(),
+        }
+    }
+
+    /// Whether something is asked for that stands in no file.
+    pub fn is_lost(&self) -> bool {
+        let now = self.to_save();
+        now.is_some() && now != self.written.as_ref()
+    }
+
+    /// Takes what was asked for before the surface was read again.
+    pub(crate) fn keep_from(&mut self, before: &mut Self) {
+        *self = Self {
+            asked: before.asked.take(),
+            usual: before.usual.take(),
+            saved: before.saved.take(),
+            written: before.written.take(),
+            ..Self::default()
+        };
+    }
+
+    /// Takes that what this was made of is in a mission or on a sheet.
+    fn take_written(&mut self, made: &MadePlan) {
+        self.written = Some(made.asked.clone());
+    }
+
+    /// Begins with what the flight's file asks for, else with what is usual.
+    fn begin(&mut self, usual: AskedPlan) {
+        self.asked = Some(History::new(self.saved.clone().unwrap_or(usual.clone())));
+        self.usual = Some(usual);
     }
 
     /// Whether what is shown is what is asked for.
@@ -81,7 +135,11 @@ impl Planning {
         let Some(now) = self.now().map(|now| now.in_unit_of(before)) else {
             return;
         };
+        let in_unit =
+            |asked: &Option<AskedPlan>| asked.as_ref().map(|asked| asked.in_unit_of(before));
         *self = Self {
+            usual: in_unit(&self.usual),
+            saved: in_unit(&self.saved),
             asked: Some(History::new(now)),
             ..Self::default()
         };

@@ -37,6 +37,12 @@ impl State {
         made
     }
 
+    fn take_written_plan(&mut self, made: &MadePlan) {
+        if let Some(open) = &mut self.open {
+            open.planning.take_written(made);
+        }
+    }
+
     /// Writes the missions; asks before a file is replaced.
     pub(super) fn save_mission(&mut self, to: Destination) {
         let Some(made) = self.plan_to_save() else {
@@ -89,8 +95,9 @@ impl State {
             let Destination { path, replace } = to;
             write_missions(&missions, &path, &read, replace)
         };
-        self.start(Task::SAVE_PLAN, work, |state, written| match written {
+        self.start(Task::SAVE_PLAN, work, move |state, written| match written {
             Ok(written) => {
+                state.take_written_plan(&made);
                 for note in &written.notes {
                     state.say(Severity::Warning, note);
                 }
@@ -154,6 +161,11 @@ impl State {
                 Err(fault) => Err(FileError::new(&path, fault).to_string()),
             }
         };
-        self.start(Task::SAVE_PLAN, work, Self::take_written);
+        self.start(Task::SAVE_PLAN, work, move |state, written| {
+            if written.is_ok() {
+                state.take_written_plan(&made);
+            }
+            state.take_written(written);
+        });
     }
 }

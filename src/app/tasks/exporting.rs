@@ -49,7 +49,7 @@ impl State {
         let seen = open.review.going_along(Along::Trusted);
         let unit = self.preferences.unit();
         let rectified = (self.preferences.export_rectified).then_some(Onto::FittedPlane);
-        let settings = open.settings();
+        let settings = open.settings_to_save();
         let (crs, inputs) = (open.files.crs.clone(), open.files.inputs.clone());
         let warnings = open.all_warnings();
         let source = open.files.origin.file().to_owned();

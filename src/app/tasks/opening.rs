@@ -246,6 +246,7 @@ impl OpenFlight {
             self.clip = before.clip;
             std::mem::swap(&mut self.clip_history, &mut before.clip_history);
             self.looking = before.looking;
+            self.planning.keep_from(&mut before.planning);
         } else {
             self.looking.size = before.looking.size;
         }

@@ -83,7 +83,7 @@ impl State {
         let Some(open) = &self.open else {
             return;
         };
-        let (settings, origin) = (open.settings(), open.files.origin.clone());
+        let (settings, origin) = (open.settings_to_save(), open.files.origin.clone());
         let flight = origin.clone();
         let list = open.control_to_save(&path);
         let (outlines, copied) = open.outlines_to_save(&path);

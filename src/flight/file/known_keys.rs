@@ -1,7 +1,9 @@
 //! The keys that a flight.toml may have.
 
+use super::plan_entry::PLAN_KEYS;
+
 /// Every table with the keys that it may have.
-pub(super) const KNOWN_KEYS: [(&str, &[&str]); 9] = [
+pub(super) const KNOWN_KEYS: [(&str, &[&str]); 10] = [
     (
         "",
         &[
@@ -15,6 +17,7 @@ pub(super) const KNOWN_KEYS: [(&str, &[&str]); 9] = [
             "scale_object",
             "uncertainty",
             "review",
+            "plan",
         ],
     ),
     ("world", &["unit", "ground", "crs", "placed"]),
@@ -50,4 +53,5 @@ pub(super) const KNOWN_KEYS: [(&str, &[&str]); 9] = [
         &["photo", "kind", "size", "outline", "mask"],
     ),
     ("review", &["photo", "decision", "note", "date", "reasons"]),
+    ("plan", PLAN_KEYS),
 ];

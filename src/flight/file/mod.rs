@@ -4,6 +4,7 @@ mod camera_entry;
 mod check;
 mod decisions_text;
 mod known_keys;
+mod plan_entry;
 mod poses_flight;
 mod text;
 mod uncertainty_entry;
@@ -17,6 +18,7 @@ pub use self::camera_entry::{CameraEntry, CameraSource};
 pub use self::poses_flight::PosesFlight;
 
 use self::known_keys::KNOWN_KEYS;
+use self::plan_entry::PlanEntry;
 use self::uncertainty_entry::UncertaintyEntry;
 use super::decision::{Decision, DecisionEntry};
 use super::scale_object::{ScaleObject, ScaleObjectEntry};
@@ -56,6 +58,8 @@ pub struct FlightFile {
     pub(super) scale_objects: Vec<ScaleObjectEntry>,
     #[serde(default, rename = "review", skip_serializing_if = "Vec::is_empty")]
     decisions: Vec<DecisionEntry>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    plan: Option<PlanEntry>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -256,6 +260,9 @@ impl FlightFile {
                 return Err(Fault::at(line, what, remedy));
             }
         }
+        if let Some((key, what, remedy)) = file.plan.as_ref().and_then(PlanEntry::trouble) {
+            return Err(Fault::at(key_line(text, "plan", key), what, remedy));
+        }
         Ok(file)
     }
 
@@ -304,6 +311,7 @@ impl FlightFile {
             uncertainty: settings.errors.into(),
             scale_objects: settings.scale_objects.iter().map(Into::into).collect(),
             decisions: settings.decisions.iter().map(Into::into).collect(),
+            plan: settings.plan.as_deref().map(PlanEntry::from),
         }
     }
 
@@ -389,6 +397,7 @@ impl FlightFile {
             scale_objects: self.scale_objects.iter().map(ScaleObject::from).collect(),
             decisions: self.decisions.iter().map(Decision::from).collect(),
             placed: self.placed(),
+            plan: self.plan.as_ref().and_then(PlanEntry::asked).map(Box::new),
             control: ControlList::default(),
         }
     }

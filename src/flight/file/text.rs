@@ -3,6 +3,7 @@
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, Value};
 
 use super::decisions_text::set_decisions;
+use super::plan_entry::set_plan;
 use super::uncertainty_entry::Axes;
 use super::{FlightFile, FlightSettings, Placed, ScaleObject, unit_word, up_word};
 use crate::fault::Fault;
@@ -78,6 +79,9 @@ impl FlightFile {
         }
         if settings.decisions != old.decisions {
             set_decisions(&mut document, &old.decisions, &settings.decisions)?;
+        }
+        if settings.plan != old.plan {
+            set_plan(&mut document, settings.plan.as_deref())?;
         }
         let text = with_line_ends_of(text, document.to_string());
         // What is read next time must be what was meant.
@@ -337,6 +341,7 @@ mod tests {
     use super::*;
     use crate::control::ControlList;
     use crate::flight::{Date, Decision, DecisionKind, ReconstructionFlight};
+    use crate::plan::{AskedPlan, Drone, Edit, Flying, Pattern, Positioning, Size, SurveyWish};
     use crate::scale::PoseErrors;
     use crate::scale::ScaleObjectKind;
     use crate::surface::{SurfaceOptions, UpAxis};
@@ -490,13 +495,15 @@ folder = "photos"
             },
         );
         let placed = prop::option::of((0.1..9.0_f64, -1e7..1e7_f64, any::<bool>()));
-        (settings, errors, objects, any_decisions(), placed).prop_map(
+        let plan = prop::option::of(any_plan());
+        (settings, errors, objects, any_decisions(), placed, plan).prop_map(
             |(
                 (unit, ground, image, max_edge, thinning),
                 (errors, pair),
                 scale_objects,
                 decisions,
                 placed,
+                plan,
             )| {
                 let placed = placed.map(|(scale, x, is_named)| Placed {
                     transform: Box::new([
@@ -531,8 +538,92 @@ folder = "photos"
                     scale_objects,
                     decisions,
                     placed,
+                    plan: plan.map(Box::new),
                     control: ControlList::default(),
                 }
+            },
+        )
+    }
+
+    fn any_plan() -> impl Strategy<Value = AskedPlan> {
+        let size = || {
+            (
+                1.0..900.0_f64,
+                prop::option::of(0.1..9.0_f64),
+                any::<bool>(),
+            )
+                .prop_map(|(value, within, is_scale)| match is_scale {
+                    true => Size::Scale {
+                        pixels: value,
+                        within,
+                    },
+                    false => Size::Distance(value),
+                })
+        };
+        let place = || (-1e7..1e7_f64, 0.0..1e7_f64).prop_map(|(x, y)| DVec2::new(x, y));
+        let edit = (0..3, place()).prop_map(|(kind, place)| match kind {
+            0 => Edit::Move("P \"1\"".to_owned(), place),
+            1 => Edit::Add(place),
+            _ => Edit::Leave("P2".to_owned()),
+        });
+        let area = || {
+            (place(), 1.0..90.0_f64).prop_map(|(at, side)| {
+                vec![at, at + DVec2::new(side, 0.0), at + DVec2::new(0.0, side)]
+            })
+        };
+        let photos = (
+            prop::sample::select(Pattern::ALL.to_vec()),
+            size(),
+            prop::option::of(size()),
+            prop::option::of(prop::sample::select(Drone::ALL.to_vec())),
+            prop::sample::select(Positioning::ALL.to_vec()),
+            any::<[bool; 3]>(),
+        );
+        let places = (
+            prop::option::of(area()),
+            prop::collection::vec(area(), 0..3),
+            prop::option::of(place()),
+            prop::collection::vec(edit, 0..4),
+        );
+        let numbers = (
+            prop::array::uniform8(0.0..90.0_f64),
+            prop::option::of(1.0..60.0_f64),
+            prop::option::of(Just("2026-11-22T10:00+01:00".to_owned())),
+        );
+        (photos, places, numbers).prop_map(
+            |(
+                (pattern, size, of_survey, drone, positioning, [fill_gaps, cross, ring]),
+                (area, keep_out, take_off, edits),
+                (n, battery, when),
+            )| AskedPlan {
+                pattern,
+                size,
+                overlap: n[0] / 100.0,
+                survey: SurveyWish {
+                    overlap: n[1] / 100.0,
+                    cross,
+                    ring,
+                    size: of_survey,
+                },
+                fill_gaps,
+                tilt: n[2],
+                off_normal: n[3],
+                drone,
+                positioning,
+                clearance: n[4],
+                area,
+                keep_out,
+                take_off,
+                flying: Flying {
+                    speed: n[5],
+                    settle: n[6],
+                    battery,
+                    climb: n[7],
+                    descent: n[7] / 3.0,
+                    steepest: battery.map(|minutes| minutes / 2.0),
+                },
+                when,
+                edits,
             },
         )
     }

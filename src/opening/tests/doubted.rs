@@ -88,10 +88,10 @@ fn angles_that_look_like_radians() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let doubt = Doubt::SmallAngles {
-        largest: 1.5708,
+        largest: 1.2346,
         photos: 3,
     };
-    for (angles, expected) in [("0,0.01,1.5708", vec![doubt]), ("0,0.01,90", vec![])] {
+    for (angles, expected) in [("0,0.01,1.2346", vec![doubt]), ("0,0.01,90", vec![])] {
         let poses = poses(0.0, 0.0, 0.0, angles);
         write(folder, "unit = \"m\"", &plane(0.0, 0.0, 0.0, true), &poses);
         let opened = opened(folder).unwrap();

@@ -138,7 +138,10 @@ fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
             Some(HeldBack::Replace { command, there }) => {
                 replace(command, there, ui, commands);
             }
-            _ if state.is_changed() => unsaved(state, ui, commands),
+            _ if state.is_changed() => match &state.open {
+                Some(open) if open.files.origin.is_surface_alone() => plan_alone(ui, commands),
+                _ => unsaved(state, ui, commands),
+            },
             _ => writing(ui, commands),
         }
     });
@@ -147,13 +150,30 @@ fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
     }
 }
 
+/// A cloud alone has no file that would keep what was asked of a plan over it.
+fn plan_alone(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.heading("The flight plan is in no file");
+    ui.label(
+        "It was not written since it was changed: neither as a mission nor as a sheet or a table.",
+    );
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if ui.button("Discard the plan").clicked() {
+            commands.push(Command::Discard);
+        }
+        if ui.button("Stay here").clicked() {
+            commands.push(Command::Keep);
+        }
+    });
+}
+
 fn unsaved(state: &State, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.heading("Unsaved changes");
     if let Some(open) = &state.open {
         let body = egui::TextStyle::Body.resolve(ui.style());
         let name = &open.flight().parts().name;
         ui.label(format!(
-            "The settings of {}, what was decided of its photos, its control points or the outlines of fragments have changed since they were saved.",
+            "The settings of {}, what was decided of its photos, its control points, its flight plan or the outlines of fragments have changed since they were saved.",
             names::fitted(ui, name, &body, 300.0)
         ));
     }

@@ -5,11 +5,14 @@ use egui::{ComboBox, Ui};
 use super::found::found;
 use super::places::places;
 use crate::command::{Answers, Asking, Command, Dialog};
+use crate::numbers::to_digits;
 use crate::open_flight::OpenFlight;
 use crate::panels::field::{combo_box, hinted_field, number_field};
 use crate::panels::working::working;
-use crate::plan::{Drone, Flying, MOST_SPEED, Pattern, Positioning, Purpose, Size};
-use crate::planning::{AskedPlan, PlanStep};
+use crate::plan::{
+    AskedPlan, Drone, Flying, MOST_SPEED, Pattern, Positioning, Purpose, Size, USUAL_CLEARANCE,
+};
+use crate::planning::PlanStep;
 use crate::state::State;
 use crate::tasks::Task;
 use crate::typed::typed;
@@ -189,6 +192,13 @@ fn fields(state: &State, open: &OpenFlight, asked: &mut AskedPlan, ui: &mut Ui) 
         let hover = "How near the drone may come to the surface, and to what it keeps out of: 5 m, or half of the photos' distance where they are nearer (a lab)";
         if let Some(near) = number("Clearance", hover, asked.clearance, lengths, ui) {
             asked.clearance = near.max(parts.unit.metres().recip() * 0.01);
+        }
+        let usual = USUAL_CLEARANCE / parts.unit.metres();
+        if asked.clearance < usual * 0.999 {
+            ui.label("");
+            let unit = parts.unit.symbol();
+            ui.weak(format!("nearer than the usual {} {unit}", to_digits(usual, 3)));
+            ui.end_row();
         }
         flying(&mut asked.flying, ui);
         ui.label("Flown at");

@@ -6,7 +6,8 @@ use crate::command::{Answers, Command, Dialog};
 use crate::formats::typed_places;
 use crate::open_flight::OpenFlight;
 use crate::panels::field::hinted_field;
-use crate::planning::{AskedPlan, PlanStep, PlanTool, typed_corners};
+use crate::plan::AskedPlan;
+use crate::planning::{PlanStep, PlanTool, typed_corners};
 use crate::typed::typed;
 
 /// The button for a file of areas.

@@ -1,6 +1,10 @@
 //! What is wished of a plan, and what is usual where nobody says it: the window and the command line ask here.
 
+mod asked;
+
 use glam::DVec2;
+
+pub use asked::{AskedPlan, Edit};
 
 use super::{Drone, Pattern, PoseErrors, Positioning, Purpose};
 use crate::survey::Polygon;

@@ -1,11 +1,9 @@
-//! What the engineer asks of a plan.
+//! What the engineer asks of a plan, with what she moves by hand. A flight's file keeps it.
 
 use glam::DVec2;
 
-use crate::plan::{
-    Drone, Flying, Pattern, Positioning, Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL,
-    USUAL_TILT, Wish,
-};
+use super::{Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL, USUAL_TILT, Wish};
+use crate::plan::{Drone, Flying, Pattern, Positioning};
 use crate::survey::{Polygon, SurveyError};
 
 /// What the engineer asks of a plan. Lengths are in world units.
@@ -56,19 +54,6 @@ pub enum Edit {
     Leave(String),
 }
 
-/// What can be dragged in the viewport.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Handle {
-    /// The middle of what the photo of this name shows.
-    Photo(String),
-    /// A corner of the area.
-    Area(usize),
-    /// A corner of an area to keep out of.
-    KeepOut(usize, usize),
-    /// The take-off.
-    TakeOff,
-}
-
 impl AskedPlan {
     /// What is usual for photos of this size, in a world whose unit has so many metres.
     pub fn usual(size: Size, drone: Option<Drone>, unit_metres: f64) -> Self {
@@ -94,7 +79,7 @@ impl AskedPlan {
 
     /// The same wish where lengths count in a unit that is so many of the one before: the world's coordinates are what they were.
     #[must_use]
-    pub(super) fn in_unit_of(&self, before: f64) -> Self {
+    pub fn in_unit_of(&self, before: f64) -> Self {
         Self {
             size: self.size.in_unit_of(before),
             survey: SurveyWish {
@@ -107,7 +92,7 @@ impl AskedPlan {
     }
 
     /// The same without what was changed by hand, and without what only the way depends on.
-    pub(super) fn base(&self) -> Self {
+    pub fn base(&self) -> Self {
         Self {
             edits: Vec::new(),
             flying: Flying::default(),
@@ -117,14 +102,14 @@ impl AskedPlan {
     }
 
     /// Whether photos are planned anew for it: it is not only flown otherwise.
-    pub(super) fn is_other_ground(&self, other: &Self) -> bool {
+    pub fn is_other_ground(&self, other: &Self) -> bool {
         self.base() != other.base()
     }
 
     /// The same in place of another one: where photos are planned anew they have other names, and what was changed of
     /// them by hand cannot stay.
     #[must_use]
-    pub(super) fn instead_of(mut self, before: &Self) -> Self {
+    pub fn instead_of(mut self, before: &Self) -> Self {
         if self.is_other_ground(before) {
             self.edits.clear();
         }
@@ -135,7 +120,7 @@ impl AskedPlan {
     ///
     /// # Errors
     /// Where an area to keep out of is none.
-    pub(super) fn wish(&self, unit_metres: f64) -> Result<Wish, SurveyError> {
+    pub fn wish(&self, unit_metres: f64) -> Result<Wish, SurveyError> {
         let usual = Wish::usual(self.pattern, self.size, self.drone, unit_metres);
         let keep_out = self.keep_out.iter().map(|corners| Polygon::new(corners));
         Ok(Wish {
@@ -150,47 +135,4 @@ impl AskedPlan {
             ..usual
         })
     }
-
-    /// The same with something dragged to another place; `area` is the one that was found, where none was drawn.
-    #[must_use]
-    pub(super) fn dragged(&self, handle: &Handle, to: DVec2, area: &[DVec2]) -> Self {
-        let mut asked = self.clone();
-        match handle {
-            Handle::Photo(name) => {
-                // One move of a photo is enough.
-                if let Some(Edit::Move(last, _)) = asked.edits.last()
-                    && last == name
-                {
-                    asked.edits.pop();
-                }
-                asked.edits.push(Edit::Move(name.clone(), to));
-            }
-            Handle::TakeOff => asked.take_off = Some(to),
-            Handle::Area(corner) => {
-                let corners = asked.area.get_or_insert_with(|| area.to_vec());
-                if let Some(corner) = corners.get_mut(*corner) {
-                    *corner = to;
-                }
-            }
-            Handle::KeepOut(area, corner) => {
-                let corner = asked
-                    .keep_out
-                    .get_mut(*area)
-                    .and_then(|area| area.get_mut(*corner));
-                if let Some(corner) = corner {
-                    *corner = to;
-                }
-            }
-        }
-        asked.instead_of(self)
-    }
-}
-
-/// Corners as they are typed.
-pub fn typed_corners(corners: &[DVec2]) -> String {
-    let corners = corners.iter();
-    let corners: Vec<String> = corners
-        .map(|corner| format!("{:.3},{:.3}", corner.x, corner.y))
-        .collect();
-    corners.join(";")
 }
