@@ -40,6 +40,26 @@ impl CloudFile {
         self.cloud.points.push(point);
     }
 
+    /// Leaves out points with a coordinate that is NaN: organised clouds mark missing points so. Only of a cloud without faces.
+    pub(crate) fn leave_out_missing(&mut self) {
+        let Cloud { points, colors, .. } = &mut self.cloud;
+        let all = points.len();
+        let mut is_there = points.iter().map(|point| !point.is_nan());
+        colors.retain(|_| is_there.next().unwrap_or(true));
+        points.retain(|point| !point.is_nan());
+        let left_out = all - points.len();
+        self.say_missing(left_out as u64, all as u64);
+    }
+
+    /// Says how many points were marked as missing ones.
+    pub(crate) fn say_missing(&mut self, left_out: u64, all: u64) {
+        if left_out > 0 {
+            self.warnings.push(format!(
+                "{left_out} of {all} points are not finite, which marks missing ones; they are left out"
+            ));
+        }
+    }
+
     /// Warns where coordinates that were stored as f32 are too large for the cloud's own extent:
     /// UTM northings in f32 are rounded to half a metre.
     pub(crate) fn warn_if_rounded(&mut self) {

@@ -32,12 +32,14 @@ const LONGEST_HEADER: u64 = 1 << 20;
 /// Reads a PLY file.
 ///
 /// # Errors
-/// Where it is no PLY file, is cut off, has no vertices with x, y, z, or a coordinate that is not
-/// finite.
+/// Where it is no PLY file, is cut off, has no vertices with x, y, z, or a coordinate that is not finite (NaN
+/// marks missing points where there are no faces).
 pub(crate) fn read(input: impl BufRead, progress: &Progress) -> Result<CloudFile, Fault> {
     let (header, mut input) = read_header(input)?;
     let mut file = CloudFile::default();
     let mut has_vertices = false;
+    let mut faces = header.elements.iter().filter(|(name, _)| *name == "face");
+    let has_faces = faces.any(|(_, element)| element.count > 0);
     for (name, element) in &header.elements {
         match name.as_str() {
             "vertex" => {
@@ -50,6 +52,10 @@ pub(crate) fn read(input: impl BufRead, progress: &Progress) -> Result<CloudFile
                     }
                     Ok(())
                 })?;
+                if !has_faces {
+                    file.leave_out_missing();
+                    file.expect_points()?;
+                }
                 if let Some(index) = first_not_finite(&file.cloud.points) {
                     return Err(Fault::new(
                         format!(
@@ -558,6 +564,37 @@ mod tests {
         assert!(fault.what.ends_with("at 'property real y'"), "{fault}");
         let line = wrong.lines().position(|line| line == "property real y");
         assert_eq!(fault.line, line.map(|line| line as u64 + 1));
+    }
+
+    /// Organised clouds mark missing points with NaN; a face needs all of its vertices.
+    #[test]
+    fn missing_points_of_a_cloud_are_left_out() {
+        let ply = |faces: u32| {
+            let header = format!(
+                "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+                 property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
+                 element face {faces}\nproperty list uchar int vertex_indices\nend_header\n"
+            );
+            let mut bytes = header.into_bytes();
+            for (x, red) in [(1.0_f32, 10), (f32::NAN, 20), (3.0, 30)] {
+                for value in [x, 2.0, 3.0] {
+                    bytes.extend(value.to_le_bytes());
+                }
+                bytes.extend([red, 0, 0]);
+            }
+            for _ in 0..faces {
+                bytes.push(3);
+                bytes.extend([0_i32, 1, 2].map(i32::to_le_bytes).concat());
+            }
+            bytes
+        };
+        let file = read_bytes(&ply(0)).unwrap();
+        let expected = [1.0, 3.0].map(|x| DVec3::new(x, 2.0, 3.0));
+        assert_eq!(file.cloud.points, expected);
+        assert_eq!(file.cloud.colors, [[10, 0, 0], [30, 0, 0]]);
+        assert!(file.warnings[0].starts_with("1 of 3 points are not finite"));
+        let refused = read_bytes(&ply(1)).unwrap_err();
+        assert!(refused.what.starts_with("vertex 1 (counted from 0) has"));
     }
 
     #[test]

@@ -42,7 +42,7 @@ pub(crate) fn read(
     let mut named: Option<Columns> = None;
     let mut layout: Option<(Separator, Columns)> = None;
     let mut names = None;
-    let (mut looked_at, mut without_height) = (0, 0_u64);
+    let (mut looked_at, mut without_height, mut missing) = (0, 0_u64, 0_u64);
     let mut fields = Vec::new();
     // What a first column would have next that counts the lines, from its first number on; `None` once it does not.
     let mut counter: Option<Option<f64>> = Some(None);
@@ -134,6 +134,10 @@ pub(crate) fn read(
             without_height += 1;
             continue;
         }
+        if position.is_nan() {
+            missing += 1;
+            continue;
+        }
         if !position.is_finite() {
             return Err(Fault::at(
                 line_number,
@@ -153,6 +157,7 @@ pub(crate) fn read(
             "name the columns in a first line, such as number,x,y,z or number,northing,easting,height",
         ));
     }
+    file.say_missing(missing, missing + file.cloud.points.len() as u64);
     if without_height > 0 {
         file.warnings.push(format!(
             "{without_height} points have a height of -9999 or the like, which stands for none, and are left out"
@@ -517,13 +522,22 @@ mod tests {
         );
     }
 
+    /// NaN marks missing points of organised clouds.
+    #[test]
+    fn missing_points_are_left_out() {
+        let file = read_text("1 2 3\nnan nan nan\n4 5 NaN\n6 7 8\n").unwrap();
+        let expected = [DVec3::new(1.0, 2.0, 3.0), DVec3::new(6.0, 7.0, 8.0)];
+        assert_eq!(file.cloud.points, expected);
+        assert!(file.warnings[0].starts_with("2 of 4 points are not finite"));
+        assert!(read_text("nan nan nan\n").is_err());
+    }
+
     #[test]
     fn mistakes_are_placed() {
         let fault = |text: &str| read_text(text).unwrap_err();
         assert_eq!(fault("X,Y,X\n\n0, 0, 0\n").line, Some(1));
         assert_eq!(fault("1 2 3\n4 5\n").line, Some(2));
         assert_eq!(fault("1 2 3\n4 5 six\n").line, Some(2));
-        assert_eq!(fault("1 2 3\n4 5 nan\n").line, Some(2));
         assert_eq!(fault("1 2 3\n4 5 1e999\n").line, Some(2));
         assert!(fault("").what.contains("no points"));
         assert!(fault("x,y,z\n").what.contains("no points"));

@@ -79,12 +79,7 @@ pub(crate) fn read(
     }
     let Points { mut file, left_out } = points;
     file.expect_points()?;
-    if left_out > 0 {
-        let all = header.points;
-        file.warnings.push(format!(
-            "{left_out} of {all} points are not finite, which marks missing ones; they are left out"
-        ));
-    }
+    file.say_missing(left_out, header.points);
     if layout.floats && header.storage != Storage::Ascii {
         file.warn_if_rounded();
     }
