@@ -98,6 +98,8 @@ pub struct App {
     photo_panel: PhotoPanel,
     /// The title that the window has.
     title: String,
+    /// Whether the keys were the window's in the frame before.
+    was_focused: bool,
     times: FrameTimes,
 }
 
@@ -129,6 +131,7 @@ impl App {
             inspector: Inspector::default(),
             photo_panel: PhotoPanel::default(),
             title: String::new(),
+            was_focused: true,
             times,
         }
     }
@@ -224,6 +227,11 @@ impl eframe::App for App {
             self.state.apply(Command::Drop(paths.collect()));
         }
         self.take_pasted_table(context);
+        let is_focused = context.input(|input| input.focused);
+        let was_focused = std::mem::replace(&mut self.was_focused, is_focused);
+        if is_focused && !was_focused {
+            self.state.look_at_files();
+        }
         self.state.poll();
         self.viewport.take_picture(&mut self.state);
         let title = self.state.title();

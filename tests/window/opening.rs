@@ -209,3 +209,43 @@ fn what_the_command_says_is_seen_in_the_window() {
         assert!(desk.says(&doubt.to_string()), "{doubt}");
     }
 }
+
+/// A cloud that another program writes anew is said when she comes back to the window, and read again with F5.
+#[test]
+fn files_that_are_written_anew_are_said_and_read_again() {
+    let folder = crate::desk::copy("assets/sample");
+    let path = folder.path().join("flight.toml");
+    let mut desk = Desk::new(Some(&path));
+    let back = |desk: &mut Desk| {
+        for is_focused in [false, true] {
+            desk.harness.input_mut().focused = is_focused;
+            desk.harness.step();
+        }
+        desk.settle();
+    };
+    back(&mut desk);
+    assert!(!desk.logged("was changed since it was read"));
+    let count = |desk: &Desk| desk.open().flight().parts().surface.vertices().count();
+    let before = count(&desk);
+    let corners = [(-3.0, -3.0), (3.0, -3.0), (3.0, 3.0), (-3.0, 3.0)];
+    let points = corners.map(|(x, y)| format!("{x} {y} 0.1\n")).concat();
+    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\nend_header\n";
+    fs::write(folder.path().join("pile.ply"), format!("{header}{points}")).expect("a cloud");
+    back(&mut desk);
+    let said = |desk: &Desk| {
+        let log = &desk.harness.state().state().log;
+        let lines = log
+            .iter()
+            .filter(|line| line.text.contains("was changed since it was read"));
+        lines.count()
+    };
+    assert_eq!(said(&desk), 1);
+    assert!(desk.logged("pile.ply was changed since it was read"));
+    back(&mut desk);
+    assert_eq!((said(&desk), count(&desk)), (1, before));
+    desk.press(Modifiers::NONE, Key::F5);
+    desk.settle();
+    assert_eq!(count(&desk), 4);
+    back(&mut desk);
+    assert_eq!(said(&desk), 1);
+}

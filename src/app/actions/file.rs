@@ -126,6 +126,15 @@ actions! {
             compared.then_some(Command::Ask(Some(Asking::SaveReport)))
         },
     }
+    READ_AGAIN {
+        label: "Read again",
+        hover: "Read the flight's files anew, as they are now",
+        shortcut: keys(Modifiers::NONE, Key::F5),
+        command: |state| {
+            let path = state.open.as_ref()?.files.path.clone();
+            Some(Command::Open(path))
+        },
+    }
     SAVE {
         label: "Save",
         hover: "Write the flight's settings into its flight.toml",
@@ -189,6 +198,7 @@ pub const MENU: &[Option<Action>] = &[
     Some(SAVE_FIGURE),
     Some(SAVE_REPORT),
     None,
+    Some(READ_AGAIN),
     Some(SAVE),
     Some(SAVE_AS),
     None,

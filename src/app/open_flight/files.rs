@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use crate::files::Inputs;
 use crate::flight::FlightSettings;
-use crate::opening::{FlightOrigin, FlightReconstruction, OpenOptions, Opened, PhotoFile};
+use crate::opening::{
+    FlightOrigin, FlightReconstruction, OpenOptions, Opened, PhotoFile, control_file,
+};
 use crate::state::bundled::sample_flight;
 use crate::surface::UpAxis;
 use crate::tasks::stood::Stood;
@@ -41,6 +43,8 @@ pub struct FlightFiles {
     pub saved: FlightSettings,
     /// The files that saving writes, as they were read or saved last.
     pub stood: Stood,
+    /// The cloud, the poses and all else that it was made of, as they were read.
+    pub read_as: Stood,
 }
 
 impl FlightFiles {
@@ -57,6 +61,23 @@ impl FlightFiles {
         if let Some(own) = opened.origin.flight_file() {
             stood.note_flight(own);
         }
+        let mut read_as = Stood::default();
+        // What saving writes is looked at when it is saved.
+        let own = opened
+            .origin
+            .flight_file()
+            .map(|file| (file, control_file(file)));
+        let is_own = |path: &Path| {
+            own.as_ref()
+                .is_some_and(|(file, list)| path == *file || path == list.as_path())
+        };
+        for path in opened
+            .inputs
+            .iter()
+            .filter(|path| !is_own(path) && path.is_file())
+        {
+            read_as.note(path);
+        }
         Self {
             path,
             options,
@@ -72,6 +93,7 @@ impl FlightFiles {
             bundled,
             saved,
             stood,
+            read_as,
         }
     }
 }
