@@ -3,12 +3,13 @@
 //! A corner hangs on one place of a rough surface. Moved by a wrong pose or focal length its ray may meet
 //! another stone, and no derivative says so: so it is cast again, at the triangles around. What the
 //! surface adds at the place that it meets is drawn from how far the points around the corner lie from
-//! what their neighbours predict, each as likely as the photo shows of it: at a rim some of them are far.
+//! what their neighbours predict, each as likely as the photo shows of it: at a rim some of them are far. Some places lie in gaps
+//! besides, in which no point is (`unseen`).
 
 use glam::{DMat3, DVec2, DVec3};
 
 use super::draws::{Draws, deviation, interval_of};
-use super::surface_error::{DepthError, LEAST_POINTS, root_mean_square};
+use super::surface_error::{DepthError, LEAST_POINTS, root_mean_square, tan_of_incidence};
 use super::unseen::Unseen;
 use super::{Interval, UncertainPhoto};
 use crate::geometry::Ray;
@@ -68,15 +69,17 @@ struct Around {
     near: Option<Surface>,
     /// How far places like those of the points around it are off.
     errors: ErrorsAround,
-    /// By how much depths are too small there in the mean.
-    unseen: f64,
+    /// The root mean square of that.
+    roughness: f64,
+    /// The tangent of the ray's angle to the normal of the photo's plane.
+    tan_of_incidence: f64,
 }
 
 impl CornerDraws {
     pub(super) fn new(
         photo: &UncertainPhoto<'_>,
-        depths: &[DepthError],
-        unseen: Unseen,
+        plane: DVec3,
+        (depths, unseen): (&[DepthError], Unseen),
         surface: &Surface,
     ) -> Self {
         let stated = &photo.errors;
@@ -129,12 +132,13 @@ impl CornerDraws {
                 direction,
                 depth,
                 near: near.flatten(),
-                unseen: unseen.bias * errors.root_mean_square(),
-                errors: errors.times(unseen.wider()),
+                roughness: errors.root_mean_square(),
+                errors: errors.times(unseen.wider_beside()),
+                tan_of_incidence: tan_of_incidence(plane, direction),
             })
         });
         let mut of_parts = |parts: Parts| -> [Vec<f64>; 4] {
-            edges_under(photo, &corners, &shared, parts, &mut draws)
+            edges_under(photo, (&corners, unseen), &shared, parts, &mut draws)
         };
         let nothing = Parts {
             pose: false,
@@ -316,7 +320,7 @@ fn triangles_near(
 /// Draws of the four edges' scales under some of the errors; empty where an end is not known.
 fn edges_under(
     photo: &UncertainPhoto<'_>,
-    corners: &[Option<Around>; 4],
+    (corners, unseen): (&[Option<Around>; 4], Unseen),
     shared: &[Shared],
     parts: Parts,
     draws: &mut Draws,
@@ -357,7 +361,8 @@ fn edges_under(
                 && let Some(error) = corner.errors.draw(draws)
             {
                 let stated = photo.errors.surface.unwrap_or(0.0) * draws.normal();
-                along = along * (1.0 + error + corner.unseen) + stated / direction.length();
+                let gap = unseen.gap(corner.tan_of_incidence, draws) * corner.roughness;
+                along = along * (1.0 + error + gap) + stated / direction.length();
             }
             ends[index] = Some(origin + direction * along);
         }

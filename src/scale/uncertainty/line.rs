@@ -10,7 +10,7 @@ use super::bridges::Bridged;
 use super::draws::interval_of_scale;
 use super::holes::of_holes;
 use super::moved::of_moves;
-use super::surface_error::{DepthError, effective_count, mean, root_mean_square};
+use super::surface_error::{DepthError, effective_count, mean, root_mean_square, tan_of_incidence};
 use super::unseen::Unseen;
 use super::{Interval, UncertainPhoto};
 use crate::camera::Camera;
@@ -34,11 +34,6 @@ struct LineEnd {
     parts: [Option<f64>; 4],
     /// By what share the true scale is smaller, in the mean: what lies unseen between fragments.
     too_large: f64,
-}
-
-/// The tangent of the angle between a ray and the normal of a plane m·X = 1: 0 of who looks straight down on it.
-fn tan_of_incidence(plane: DVec3, ray: DVec3) -> f64 {
-    plane.cross(ray).length() / plane.dot(ray).abs().max(f64::MIN_POSITIVE)
 }
 
 /// What the line through a field is, as a function of the plane: top = m·0th, bottom = m·1st.

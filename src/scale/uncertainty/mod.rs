@@ -128,7 +128,7 @@ impl Uncertainty {
         let plane = plane_of(photo.field)?;
         let errors = DepthErrors::of(photo.field, plane, surface);
         let (unseen, depths) = (Unseen::of(&errors), errors.each);
-        let corners = CornerDraws::new(photo, &depths, unseen, surface);
+        let corners = CornerDraws::new(photo, plane, (&depths, unseen), surface);
         let line = photo.fitted.map(|fitted| {
             let bridged = match surface.is_cloud() {
                 true => of_bridges(photo.field, fitted, plane),

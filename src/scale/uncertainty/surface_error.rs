@@ -104,6 +104,11 @@ pub(super) fn plane_of(field: &ScaleField) -> Option<DVec3> {
     (normal.determinant() > 0.0 && plane.is_finite()).then_some(plane)
 }
 
+/// The tangent of the angle between a ray and the normal of a plane m·X = 1: 0 of who looks straight down on it.
+pub(super) fn tan_of_incidence(plane: DVec3, ray: DVec3) -> f64 {
+    plane.cross(ray).length() / plane.dot(ray).abs().max(f64::MIN_POSITIVE)
+}
+
 /// How far the points that a photo shows lie from what the points around them predict.
 #[derive(Debug, Clone, Default)]
 pub(super) struct DepthErrors {
