@@ -179,7 +179,7 @@ fn is_csv(first: &str) -> bool {
         // Outlined fragments, and their size distributions.
         || first.starts_with("photo,percent_passing,size_")
         || first.starts_with("photo,fragment,column_px,row_px,pixels,cut,x_")
-        || first.starts_with("method,photo,size_") && first.ends_with(",percent_passing,area")
+        || first.starts_with("method,photo,size_") && first.contains(",percent_passing,area")
         // A season of flights.
         || first.starts_with("blast,date,state,photos,") && first.ends_with(",flight,results")
         // Of the window's frames.

@@ -135,7 +135,7 @@ fn a_photo_of_the_bundled_flight() {
     let curve = fs::read_to_string(to.join("distribution.csv")).expect("a curve");
     assert!(
         curve.starts_with(
-            "method,photo,size_mm,percent_passing,area\nfragscale (classical),IMG_0005.jpg,"
+            "method,photo,size_mm,percent_passing,area_mm2\nfragscale (classical),IMG_0005.jpg,"
         ),
         "{curve}"
     );

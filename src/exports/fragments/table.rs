@@ -112,7 +112,9 @@ pub fn curves_csv(
 ) -> Result<String, csv::Error> {
     let factor = world.in_units_of(unit);
     let size = format!("size_{}", unit.symbol());
-    let heads = ["method", "photo", &size, "percent_passing", "area"];
+    // Files of two units may be joined by it.
+    let area = format!("area_{}2", unit.symbol());
+    let heads = ["method", "photo", &size, "percent_passing", &area];
     let mut rows = vec![heads.map(str::to_owned).to_vec()];
     for (photo, curve) in curves {
         for [size, percent] in curve.curve.points() {

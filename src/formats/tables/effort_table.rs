@@ -19,8 +19,39 @@ use crate::tables::table::{NumberRepairs, Row, Table, key};
 const HOUR: f64 = 3600.0;
 
 /// Names of rows and columns that a table has for its own sums.
-const SUMS: [&str; 7] = [
-    "total", "totals", "sum", "average", "averages", "mean", "avg",
+const SUMS: [&str; 9] = [
+    "total",
+    "totals",
+    "subtotal",
+    "subtotals",
+    "sum",
+    "average",
+    "averages",
+    "mean",
+    "avg",
+];
+
+/// Names of columns that hold no time.
+const NO_TIMES: [&str; 14] = [
+    "trial",
+    "method",
+    "run",
+    "n",
+    "count",
+    "sd",
+    "std",
+    "std dev",
+    "stdev",
+    "standard deviation",
+    "error",
+    "note",
+    "notes",
+    "comment",
+];
+
+/// Names of columns that hold times of the day.
+const OF_DAY: [&str; 8] = [
+    "start", "begin", "from", "end", "finish", "stop", "to", "until",
 ];
 
 /// Reads the times of steps from a table, with what was mended or passed over.
@@ -38,7 +69,18 @@ pub fn effort_table(table: &Table) -> Result<(Effort, Vec<String>), Fault> {
         let is = |name: &String| begins.iter().any(|begin| key(name).starts_with(begin));
         table.header().iter().position(is)
     };
-    match (named(&["step"]), named(&["time", "duration"])) {
+    // A unit alone: "minutes".
+    let of_unit = |name: &String| seconds_of(name).is_some();
+    let mut units = table
+        .header()
+        .iter()
+        .enumerate()
+        .filter(|(_, name)| of_unit(name));
+    let unit = match (units.next(), units.next()) {
+        (Some((column, _)), None) => Some(column),
+        _ => None,
+    };
+    match (named(&["step"]), named(&["time", "duration"]).or(unit)) {
         (Some(step), Some(time)) => reading.long(step, time)?,
         _ => reading.wide()?,
     }
@@ -103,6 +145,17 @@ impl Reading<'_> {
                 let what = format!("the column '{name}' is left out: sums are computed here");
                 self.warnings.push(what);
                 continue;
+            }
+            if NO_TIMES.iter().any(|known| key(known) == key(&name)) {
+                self.warnings
+                    .push(format!("the column '{name}' is not used"));
+                continue;
+            }
+            if OF_DAY.contains(&key(&name).as_str()) {
+                let what =
+                    format!("column '{name}' may be a time of the day, not how long a step took");
+                let remedy = "give the minutes that each step took";
+                return Err(Fault::at(self.table.header_line(), what, remedy));
             }
             columns.push((column, name, seconds_each));
         }
@@ -214,7 +267,7 @@ fn name_and_unit(name: &str) -> (String, f64) {
     {
         return (plain.trim().to_owned(), seconds);
     }
-    (name.to_owned(), 60.0)
+    (name.to_owned(), seconds_of(name).unwrap_or(60.0))
 }
 
 fn seconds_of(unit: &str) -> Option<f64> {
@@ -302,6 +355,25 @@ mod tests {
         for bad in ["1:60", "1:60:00", "1:2:3:4", ":30", "1:", "-1:30", "1:x"] {
             assert_eq!(clock(bad, false), None, "{bad}");
         }
+    }
+
+    #[test]
+    fn what_is_no_time_is_not_added() {
+        let (effort, warnings) =
+            read("step,trial,minutes\nSet up,1,10\nFly,1,12\nFly,2,14\n").unwrap();
+        assert_eq!(effort.of_all().total, 36.0 * 60.0);
+        assert_eq!(effort.columns(), ["1", "2"]);
+        assert!(warnings.is_empty(), "{warnings:?}");
+        let (effort, warnings) =
+            read("task,cloud,sd\nfly,10,3\nSubtotal,10,3\nmesh,20,4\n").unwrap();
+        assert_eq!(effort.of_all().total, 30.0 * 60.0);
+        let of = |words: &str| warnings.iter().any(|said| said.contains(words));
+        assert!(
+            of("the column 'sd' is not used") && of("the line 'Subtotal'"),
+            "{warnings:?}"
+        );
+        let fault = read("step,start,end\nfly,8:00,8:20\n").unwrap_err();
+        assert!(fault.what.contains("may be a time of the day"), "{fault}");
     }
 
     #[test]

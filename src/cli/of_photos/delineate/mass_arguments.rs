@@ -129,16 +129,16 @@ impl MassArguments {
         })
     }
 
-    /// The law of the fines, its sizes in the world's unit.
+    /// The law of the fines, its sizes in the world's unit, with what was assumed of its table.
     ///
     /// # Errors
     /// Where its table cannot be read, or has several curves.
-    pub(super) fn tail(&self, world: LengthUnit) -> Result<Option<Tail>, String> {
+    pub(super) fn tail(&self, world: LengthUnit) -> Result<(Option<Tail>, Vec<String>), String> {
         if self.tail.is_none() {
-            return Ok(None);
+            return Ok((None, Vec::new()));
         }
         let Some(path) = self.file() else {
-            return Ok(Some(Tail::Swebrec));
+            return Ok((Some(Tail::Swebrec), Vec::new()));
         };
         let at = |fault: Fault| FileError::new(&path, fault).to_string();
         if fs::metadata(&path).is_err() {
@@ -150,12 +150,16 @@ impl MassArguments {
         }
         let bytes = read_bytes(&path).map_err(|error| error.to_string())?;
         let text = String::from_utf8_lossy(&bytes);
-        let (set, _) = size_distributions(&text, &DistributionColumns::default()).map_err(at)?;
+        let (set, said) = size_distributions(&text, &DistributionColumns::default()).map_err(at)?;
+        let said = said
+            .into_iter()
+            .map(|said| format!("{}: {said}", path.display()))
+            .collect();
         let set = set.in_unit(world).map_err(at)?;
         let [curve] = set.curves.as_slice() else {
             let what = format!("it has {} curves", set.curves.len());
             return Err(at(Fault::new(what, "give a table of one sieved curve")));
         };
-        Ok(Some(Tail::Sieved(curve.distribution.clone())))
+        Ok((Some(Tail::Sieved(curve.distribution.clone())), said))
     }
 }

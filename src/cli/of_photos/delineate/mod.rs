@@ -118,11 +118,12 @@ pub(in crate::cli) fn delineate_of(
     let in_flight = |fault| FileError::new(&arguments.flight.flight, fault).to_string();
     let flight = &opened.flight;
     let units @ [world, unit]: [LengthUnit; 2] = [flight.parts().unit, arguments.unit.into()];
-    let tail = arguments.mass.tail(world)?;
+    let (tail, of_tail) = arguments.mass.tail(world)?;
     let mut written = WrittenOutlines::new(&arguments.to, &arguments.also);
     let planned = Planned::of(arguments, outliners, opened, &written, &outputs)?;
     let places = MapPlaces::new(opened.crs.as_deref(), world);
     let mut warnings = opened.all_warnings();
+    warnings.extend(of_tail);
     warnings.extend(planned.warnings.iter().cloned());
     warnings.extend(places.fault().map(|fault| fault.to_string()));
 

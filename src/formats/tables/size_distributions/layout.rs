@@ -1,7 +1,7 @@
 //! Which of the layouts a table has, told by the names of its columns.
 
 use super::DistributionColumns;
-use super::names::{PercentileColumn, RetainedName, Role, SizeText, SizeUnit, role};
+use super::names::{PercentileColumn, RetainedName, Role, SizeText, SizeUnit, is_amount, role};
 use super::retained::{is_pan, is_total};
 use crate::fault::Fault;
 use crate::tables::table::{Table, key};
@@ -306,6 +306,26 @@ impl<'a> Names<'a> {
             .filter(|&column| column != size)
             .collect();
         self.refuse_classes(&others)?;
+        let is_size = |column: &usize| {
+            let role = self.roles.get(*column);
+            matches!(role, Some(Role::Size(Some(_)) | Role::PerhapsSize(Some(_))))
+        };
+        if let Some(&column) = others.iter().find(|column| is_size(column)) {
+            let (one, two) = (self.table.name(size), self.table.name(column));
+            return Err(self.fault(
+                format!("columns '{one}' and '{two}' are both sizes, and nothing says which percents belong to which"),
+                "keep the sizes and the percents of one sample, or name them (--size, --passing)",
+            ));
+        }
+        if let [column] = others[..]
+            && is_amount(&self.table.name(column))
+        {
+            let name = self.table.name(column);
+            return Err(self.fault(
+                format!("column '{name}' is a mass, not percent passing"),
+                "call it 'mass retained' where it lay on the sieves, or give percent passing",
+            ));
+        }
         let stays = |column: &usize| matches!(self.roles.get(*column), Some(Role::Retained(_)));
         if let Some(&column) = others.iter().find(|column| stays(column)) {
             let name = self.table.name(column);

@@ -64,6 +64,8 @@ pub(super) enum Role {
     Photo(usize),
     /// Area or mass.
     Weight,
+    /// How often, or how sure: no curve.
+    Statistic,
     /// Anything else.
     Other,
 }
@@ -205,6 +207,66 @@ fn of_size_role(words: &[String], unit: Option<SizeUnit>) -> Role {
     }
 }
 
+/// How many square metres or kilograms are one of what the name of a column of areas or masses says; 1 where it says no unit. Tables
+/// that are joined need not count in the same.
+pub(super) fn weight_factor(name: &str) -> f64 {
+    let words = words(name);
+    let joined = words.concat();
+    let square = |metres: f64| metres * metres;
+    let of_end = |ends: &[&str]| ends.iter().any(|end| joined.ends_with(end));
+    let foot = LengthUnit::Foot.metres();
+    match () {
+        () if of_end(&["mm2", "mm²"]) => square(1e-3),
+        () if of_end(&["cm2", "cm²"]) => square(1e-2),
+        () if of_end(&["ft2", "ft²", "sqft"]) => square(foot),
+        () if of_end(&["in2", "in²", "sqin"]) => square(foot / 12.0),
+        () => match words.last().map(String::as_str) {
+            Some("g" | "gram" | "grams") => 1e-3,
+            Some("t" | "tonne" | "tonnes") => 1e3,
+            Some("lb" | "lbs") => 0.453_592_37,
+            _ => 1.0,
+        },
+    }
+}
+
+/// What is wrong with the name of a column of sizes: a factor beside its unit, two units, or logarithms, of which no size is taken.
+pub(super) fn size_trouble(name: &str) -> Option<&'static str> {
+    let mut words = words(name);
+    let is_logarithm =
+        |word: &String| matches!(word.as_str(), "log" | "log10" | "ln" | "phi" | "psi");
+    if words.iter().any(is_logarithm) {
+        return Some("may be logarithms of sizes");
+    }
+    take_unit(&mut words)?;
+    let is_number = |word: &String| word.trim_start_matches('x').parse::<f64>().is_ok();
+    if words.iter().any(is_number) {
+        return Some("has a number beside its unit");
+    }
+    let is_unit = |word: &String| word.len() > 1 && word != "in" && SizeUnit::of(word).is_some();
+    words.iter().any(is_unit).then_some("has two units")
+}
+
+/// Whether a column of another thing than percents stands among curves: a mass or an area.
+pub(super) fn is_amount(name: &str) -> bool {
+    let words = words(name);
+    let is_share = words.iter().any(|word| {
+        matches!(
+            word.as_str(),
+            "percent" | "pct" | "percentage" | "share" | "passing" | "by"
+        )
+    });
+    let ends_as_mass = words
+        .last()
+        .is_some_and(|word| matches!(word.as_str(), "g" | "kg" | "lb" | "lbs"));
+    let is_mass = words.iter().any(|word| {
+        matches!(
+            word.as_str(),
+            "mass" | "masses" | "weight" | "weights" | "wt"
+        )
+    });
+    !is_share && (ends_as_mass || (is_mass && words.len() <= 2))
+}
+
 /// What the name of a column says.
 pub(super) fn role(name: &str) -> Role {
     let mut words = words(name);
@@ -216,6 +278,32 @@ pub(super) fn role(name: &str) -> Role {
     let joined = words.concat();
     let any = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()));
     let within = |list: &[&str]| list.iter().any(|part| joined.contains(part));
+    // A unit alone. (M may be a method.)
+    if words.is_empty() && unit.is_some() && name.trim().len() > 1 {
+        return Role::PerhapsSize(unit);
+    }
+    let statistics = [
+        "n",
+        "count",
+        "counts",
+        "sd",
+        "std",
+        "stddev",
+        "stdev",
+        "stderror",
+        "standarddeviation",
+        "standarderror",
+        "cv",
+        "error",
+        "relerror",
+        "relativeerror",
+        "errorpercent",
+        "relerrorpercent",
+        "relativeerrorpercent",
+    ];
+    if statistics.contains(&joined.as_str()) {
+        return Role::Statistic;
+    }
     let of_size =
         within(&["size", "opening", "aperture", "diameter"]) && !within(&["undersize", "oversize"]);
     if of_size && unit.is_some() {

@@ -5,7 +5,10 @@ use std::collections::{HashMap, HashSet};
 use super::DistributionColumns;
 use super::curves::{RawCurve, RawPoint, Repairs, SizeReading, finish};
 use super::layout::{LabelColumns, Layout};
-use super::names::{Role, SizeText, SizeUnit, holds_sieve_numbers, role, sieve_mm};
+use super::names::{
+    Role, SizeText, SizeUnit, holds_sieve_numbers, is_amount, role, sieve_mm, size_trouble,
+    weight_factor,
+};
 use super::retained::{OnSieves, is_pan, is_total, is_washed};
 use crate::fault::Fault;
 use crate::fragmentation::{DistributionSet, Labels};
@@ -26,6 +29,14 @@ pub(super) fn read(
         repairs: Repairs::default(),
     };
     let layout = Layout::of(table, columns)?;
+    if let Layout::Long { size, .. } | Layout::Wide { size, .. } | Layout::Retained { size, .. } =
+        layout
+        && let Some(what) = size_trouble(&table.name(size))
+    {
+        let what = format!("column '{}' {what}", table.name(size));
+        let remedy = "give sizes in one unit, and name it alone: 'size (mm)'";
+        return Err(Fault::at(table.header_line(), what, remedy));
+    }
     let mut reading = SizeReading {
         header: None,
         given: columns.unit,
@@ -55,7 +66,9 @@ pub(super) fn read(
         }
         Layout::Wide { size, unit } => {
             reading.header = unit;
-            reader.wide(size)?
+            let curves = reader.wide(size)?;
+            refuse_classes_by_sum(table, &curves)?;
+            curves
         }
         Layout::SizesAsColumns { sizes, unit, names } => {
             reading.header = unit;
@@ -72,6 +85,32 @@ pub(super) fn read(
         return Err(Fault::at(table.header_line(), "it has no points", remedy));
     }
     finish(curves, reading, reader.repairs)
+}
+
+/// How near to 100 percents of classes add up.
+const ROUNDED_SUM: f64 = 0.5;
+
+/// Refuses columns that nobody calls passing, and whose percents add up to 100 as those of classes do.
+fn refuse_classes_by_sum(table: &Table, curves: &[RawCurve]) -> Result<(), Fault> {
+    for curve in curves {
+        let percents = curve.points.iter().map(|point| point.percent);
+        let (sum, most) = (percents.clone().sum::<f64>(), percents.fold(0.0, f64::max));
+        let called = curve.labels.to_string();
+        if curve.points.len() > 2
+            && (sum - 100.0).abs() <= ROUNDED_SUM
+            && most < 100.0 - ROUNDED_SUM
+            && role(&called) != Role::Passing
+        {
+            let of = match called.as_str() {
+                "" => String::new(),
+                called => format!(" of '{}'", shown(called)),
+            };
+            let what = format!("the percents{of} add up to 100, as those of classes do");
+            let remedy = "give cumulative percent passing; or say in its name what it is: 'percent passing', 'percent retained'";
+            return Err(Fault::at(table.header_line(), what, remedy));
+        }
+    }
+    Ok(())
 }
 
 /// What stands where a number is not known.
@@ -167,7 +206,9 @@ impl Reader<'_> {
     fn weight(&mut self, row: &Row, columns: LabelColumns) -> Result<Option<f64>, Fault> {
         match columns.weight {
             Some(column) if !is_missing(row.cell(column)) => {
-                self.table.number(row, column, &mut self.repairs.numbers)
+                let weight = self.table.number(row, column, &mut self.repairs.numbers)?;
+                let factor = weight_factor(&self.table.name(column));
+                Ok(weight.map(|weight| weight * factor))
             }
             _ => Ok(None),
         }
@@ -294,8 +335,14 @@ impl Reader<'_> {
 
     fn wide(&mut self, size: usize) -> Result<Vec<RawCurve>, Fault> {
         let count = self.table.header().len();
+        let is_curve = |column: &usize| {
+            let name = self.table.name(*column);
+            *column != size && role(&name) != Role::Statistic && !is_amount(&name)
+        };
+        let used: Vec<usize> = (0..count).filter(is_curve).chain([size]).collect();
+        self.say_unused(&used);
         let mut curves: Vec<(usize, RawCurve)> = (0..count)
-            .filter(|&column| column != size)
+            .filter(|column| *column != size && used.contains(column))
             .map(|column| {
                 let curve = RawCurve {
                     labels: self.labels_of_column(column, count == 2),
@@ -442,6 +489,11 @@ impl Reader<'_> {
                 continue;
             }
             let mut name = self.labels(row, labels);
+            // As this program writes it below the photos.
+            if name.photo == "all photos" && self.table.rows().len() > 1 {
+                self.repairs.total(row.line);
+                continue;
+            }
             if nameless && several {
                 name.photo = format!("line {}", row.line);
             } else if !seen.insert(name.clone()) {

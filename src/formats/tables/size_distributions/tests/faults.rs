@@ -224,3 +224,107 @@ fn bad_files_are_named() {
     }
     assert!(read_size_distributions(folder.path(), &DistributionColumns::default()).is_err());
 }
+
+/// What an engineer has beside cumulative percents, and never is one.
+#[test]
+fn columns_of_something_else_are_no_curves() {
+    for (text, sentence) in [
+        (
+            "Sieve size (mm),wt %\n25,4\n50,9\n100,18\n200,30\n400,39\n",
+            "the percents of 'wt' add up to 100, as those of classes do",
+        ),
+        (
+            "Sieve size (mm),%\n25,4\n50,9\n100,18\n200,30\n400,39\n",
+            "the percents add up to 100, as those of classes do",
+        ),
+        (
+            "Sieve size (mm),Mass (kg)\n25,4\n50,9\n100,18\n",
+            "column 'Mass (kg)' is a mass, not percent passing",
+        ),
+        (
+            "size (mm),kg\n25,4\n50,9\n100,18\n",
+            "column 'kg' is a mass, not percent passing",
+        ),
+        (
+            "Size A (mm),Passing A (%),Size B (in),Passing B (%)\n10,20,1,30\n20,50,2,60\n",
+            "columns 'Size A (mm)' and 'Size B (in)' are both sizes",
+        ),
+        (
+            "Size (mm),inch,Sieve,Split\n10,0.4,20,30\n20,0.8,50,60\n",
+            "columns 'Size (mm)' and 'inch' are both sizes",
+        ),
+        (
+            "Size (1/10 mm),passing\n100,20\n200,50\n",
+            "column 'Size (1/10 mm)' has a number beside its unit",
+        ),
+        (
+            "Size (x100 mm),passing\n1,20\n2,50\n",
+            "column 'Size (x100 mm)' has a number beside its unit",
+        ),
+        (
+            "log size (mm),passing\n1,20\n2,50\n",
+            "column 'log size (mm)' may be logarithms of sizes",
+        ),
+        (
+            "Size (mm) / in,passing\n10,20\n20,50\n",
+            "column 'Size (mm) / in' has two units",
+        ),
+    ] {
+        let (line, said) = fault(text);
+        assert_eq!(line, Some(1), "{text}: {said}");
+        assert!(said.contains(sentence), "{text}: {said}");
+    }
+    // A truncated curve that is called what it is, and one that adds up by chance to less.
+    for text in [
+        "size (mm),percent passing\n10,10\n20,30\n40,60\n",
+        "size (mm),sieve\n10,10\n20,31\n40,62\n",
+        "size in mm,sieve\n10,10\n20,31\n40,62\n",
+    ] {
+        assert_eq!(read(text).0.curves.len(), 1, "{text}");
+    }
+    let text = "size (mm),sieve,Std dev,N,Mass kg\n10,20,1,5,2\n20,50,2,5,3\n40,100,3,5,9\n";
+    let (set, said) = read(text);
+    assert_eq!(set.curves.len(), 1);
+    assert!(
+        said.contains(&"columns that are not used: Std dev, N, Mass kg".to_owned()),
+        "{said:?}"
+    );
+}
+
+/// Two tables that are joined by area need not count in the same.
+#[test]
+fn areas_and_masses_are_of_one_unit() {
+    let weight = |name: &str, value: f64| {
+        let text = format!("photo,size (mm),passing,{name}\na,10,20,{value}\na,20,60,{value}\n");
+        let (set, _) = read(&text);
+        set.curves[0].weight.unwrap()
+    };
+    let square_foot = 0.3048 * 0.3048;
+    for (name, value, expected) in [
+        ("area (m2)", 3.0, 3.0),
+        ("area (ft2)", 10.0, 10.0 * square_foot),
+        ("area (sq ft)", 10.0, 10.0 * square_foot),
+        ("area_ft2", 10.0, 10.0 * square_foot),
+        ("area (cm²)", 1e4, 1.0),
+        ("area_mm2", 1e6, 1.0),
+        ("mass (t)", 2.0, 2000.0),
+        ("mass (kg)", 2.0, 2.0),
+        ("area", 7.0, 7.0),
+    ] {
+        let found = weight(name, value);
+        assert!((found / expected - 1.0).abs() < 1e-12, "{name}: {found}");
+    }
+}
+
+/// Below the photos of `delineate` stands a line of all of them.
+#[test]
+fn all_photos_are_no_photo() {
+    let text = "photo,D20 (mm),D50 (mm),D80 (mm)\na,10,20,30\nb,11,22,33\nall photos,10,21,32\n";
+    let (set, said) = read(text);
+    assert_eq!(set.curves.len(), 2);
+    assert!(
+        said.iter()
+            .any(|said| said.contains("a line of sums is left out")),
+        "{said:?}"
+    );
+}
