@@ -213,7 +213,9 @@ fn what_the_command_says_is_seen_in_the_window() {
 /// A cloud that another program writes anew is said when she comes back to the window, and read again with F5.
 #[test]
 fn files_that_are_written_anew_are_said_and_read_again() {
-    let folder = crate::desk::copy("assets/sample");
+    let folder = tempfile::tempdir().expect("a folder");
+    copy_files("assets/sample", folder.path());
+    copy_files("assets/sample/photos", &folder.path().join("photos"));
     let path = folder.path().join("flight.toml");
     let mut desk = Desk::new(Some(&path));
     let back = |desk: &mut Desk| {

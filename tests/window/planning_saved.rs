@@ -28,6 +28,7 @@ fn a_plan_is_saved_with_its_flight() {
         .apply(fragscale::app::Command::Plan(
             fragscale::app::planning::PlanStep::Select(Some(0)),
         ));
+    desk.settle();
     desk.click(Role::Button, "Leave out");
     let asked = desk.open().planning.now().expect("asked").clone();
     assert_eq!(asked.edits.len(), 1);

@@ -225,6 +225,40 @@ impl State {
     }
 }
 
+impl Task {
+    /// Looking whether files were changed since they were read.
+    pub const CHANGED: Self = Self::new("Files read").of_flight();
+}
+
+impl State {
+    /// Looks whether the flight's files are what they were: she comes back from another program, which may have
+    /// written its cloud anew. A file on a drive that sleeps must not hold the window up.
+    pub(crate) fn look_at_files(&mut self) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        if self.work.is_running(Task::CHANGED) {
+            return;
+        }
+        let (read_as, number) = (open.files.read_as.clone(), open.number);
+        let work = move |_: &Progress| read_as.all_changed();
+        self.start(Task::CHANGED, work, move |state, changed| {
+            for path in changed {
+                let Some(open) = state.open.as_mut().filter(|open| open.number == number) else {
+                    return;
+                };
+                // Said once.
+                open.files.read_as.note(&path);
+                let text = format!(
+                    "{} was changed since it was read: what is on the screen is of what it was; File > Read again (F5) takes what it is",
+                    path.display()
+                );
+                state.say(Severity::Warning, &text);
+            }
+        });
+    }
+}
+
 impl OpenFlight {
     /// Takes over what the engineer did from the flight before it was read again.
     fn keep_from(&mut self, mut before: Box<Self>) {

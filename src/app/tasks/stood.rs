@@ -6,10 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use super::work::Task;
-use crate::jobs::Progress;
 use crate::opening::control_file;
-use crate::state::{Severity, State};
 
 /// When a file was last changed, and how long it was; `None` where there was none.
 type Stamp = Option<(Option<SystemTime>, u64)>;
@@ -55,7 +52,7 @@ impl Stood {
 
 impl Stood {
     /// All that are there and not what they were.
-    fn all_changed(&self) -> Vec<PathBuf> {
+    pub(crate) fn all_changed(&self) -> Vec<PathBuf> {
         let paths = self.0.keys().map(PathBuf::as_path);
         let mut changed: Vec<PathBuf> = paths
             .filter(|path| self.changed([*path].into_iter()).is_some())
@@ -63,40 +60,6 @@ impl Stood {
             .collect();
         changed.sort();
         changed
-    }
-}
-
-impl Task {
-    /// Looking whether files were changed since they were read.
-    pub const CHANGED: Self = Self::new("Files read").of_flight();
-}
-
-impl State {
-    /// Looks whether the flight's files are what they were: she comes back from another program, which may have
-    /// written its cloud anew. A file on a drive that sleeps must not hold the window up.
-    pub(crate) fn look_at_files(&mut self) {
-        let Some(open) = &self.open else {
-            return;
-        };
-        if self.work.is_running(Task::CHANGED) {
-            return;
-        }
-        let (read_as, number) = (open.files.read_as.clone(), open.number);
-        let work = move |_: &Progress| read_as.all_changed();
-        self.start(Task::CHANGED, work, move |state, changed| {
-            for path in changed {
-                let Some(open) = state.open.as_mut().filter(|open| open.number == number) else {
-                    return;
-                };
-                // Said once.
-                open.files.read_as.note(&path);
-                let text = format!(
-                    "{} was changed since it was read: what is on the screen is of what it was; File > Read again (F5) takes what it is",
-                    path.display()
-                );
-                state.say(Severity::Warning, &text);
-            }
-        });
     }
 }
 
