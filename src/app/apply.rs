@@ -1,5 +1,7 @@
 //! The one function that changes the state: it applies a command.
 
+use std::path::PathBuf;
+
 use crate::command::{Asking, Command, ReviewStep, Tab};
 use crate::flight::FlightSettings;
 use crate::fragments::FragmentStep;
@@ -232,8 +234,15 @@ impl State {
     fn go(&mut self, leaving: Leaving) {
         self.asking = None;
         self.after_saving = None;
-        if matches!(leaving, Leaving::Read { .. } | Leaving::Sample) {
-            self.page = Page::Pile;
+        // Read again, a flight is looked at as before.
+        let is_again = |paths: &[PathBuf]| {
+            let open = self.open.as_ref();
+            open.is_some_and(|open| *paths == [open.files.path.clone()])
+        };
+        match &leaving {
+            Leaving::Read { paths, .. } if is_again(paths) => {}
+            Leaving::Read { .. } | Leaving::Sample => self.page = Page::Pile,
+            Leaving::Close | Leaving::Quit => {}
         }
         match leaving {
             Leaving::Read { paths, named } => self.start_opening(paths, named),

@@ -54,7 +54,7 @@ impl ReportObject {
     ) -> Result<Vec<Vec<Self>>, Fault> {
         let flight = review.flight();
         let factor = unit.in_units_of(flight.parts().unit);
-        let compared = flight.compare_objects(objects, review.outcomes())?;
+        let compared = review.compare_objects(objects)?;
         let both: Vec<(&ScaleObject, ComparedObject)> = objects.iter().zip(compared).collect();
         let photos = flight.parts().photos.iter();
         let of_photo = |name: &str| {

@@ -4,7 +4,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::computing::unusable;
-use super::{Flight, Outcome};
+use super::{Flight, Review};
 use crate::camera::Camera;
 use crate::fault::Fault;
 use crate::scale::{ImageKind, PlaceScale, ScaleObjectKind, Traced};
@@ -77,38 +77,36 @@ impl ComparedObject {
     }
 }
 
-impl Flight {
-    /// Compares scale objects with the point cloud, in their order. `outcomes` are those of
-    /// [`Flight::scales`].
+impl Review {
+    /// Compares scale objects with the point cloud, in their order: on their rows with the scales that go to
+    /// Split-Desktop, where those are known.
     ///
     /// # Errors
     /// Where the surface cannot be met.
-    pub fn compare_objects(
-        &self,
-        objects: &[ScaleObject],
-        outcomes: &[Outcome],
-    ) -> Result<Vec<ComparedObject>, Fault> {
+    pub fn compare_objects(&self, objects: &[ScaleObject]) -> Result<Vec<ComparedObject>, Fault> {
         if objects.is_empty() {
             // A caster may have to triangulate first.
             return Ok(Vec::new());
         }
-        let parts = self.parts();
+        let flight = self.flight();
+        let parts = flight.parts();
         let mut caster = parts.surface.caster().map_err(unusable)?;
         let compared = objects.iter().map(|object| {
-            let mut photos = parts.photos.iter().zip(outcomes);
-            let Some((photo, outcome)) = photos.find(|(photo, _)| photo.name == object.photo)
-            else {
+            let mut photos = parts.photos.iter().enumerate();
+            let Some((place, photo)) = photos.find(|(_, photo)| photo.name == object.photo) else {
                 return ComparedObject {
                     traced: Err(no_photo(object)),
                     scale: None,
                     place: PlaceScale::default(),
                 };
             };
-            let (camera, image) = (self.camera(photo), parts.image);
+            let (camera, image) = (flight.camera(photo), parts.image);
+            let reviewed = self.photo(place);
+            let pair = reviewed.map_or([None; 2], |reviewed| reviewed.pair(parts.unit));
             let traced = Traced::new(camera, object.kind, object.size, &object.outline);
-            let place = traced.as_ref().map(|traced| {
-                traced.place(camera, &photo.pose, image, outcome.scale(), &mut caster)
-            });
+            let place = traced
+                .as_ref()
+                .map(|traced| traced.place(camera, &photo.pose, image, pair, &mut caster));
             ComparedObject {
                 scale: traced.as_ref().ok().and_then(|t| t.scale(camera, image)),
                 place: place.unwrap_or_default(),
@@ -117,7 +115,9 @@ impl Flight {
         });
         Ok(compared.collect())
     }
+}
 
+impl Flight {
     /// A sentence for each scale object on a photo that the flight does not have.
     pub fn objects_without_photo(&self, objects: &[ScaleObject]) -> Vec<String> {
         let has = |name: &str| self.parts().photos.iter().any(|photo| photo.name == name);

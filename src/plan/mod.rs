@@ -67,8 +67,8 @@ pub use way::{
     Flying, MOST_SPEED, Pace, USUAL_CLIMB, USUAL_DESCENT, USUAL_SETTLE, USUAL_SPEED, Way, WayPoint,
 };
 pub use wish::{
-    AskedPlan, Edit, Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL, USUAL_SURVEY_OVERLAP,
-    USUAL_TILT, Wish,
+    AskedPlan, Edit, PhotoAt, Size, SurveyWish, USUAL_CLEARANCE, USUAL_OFF_NORMAL,
+    USUAL_SURVEY_OVERLAP, USUAL_TILT, Wish,
 };
 
 use crate::camera::Camera;

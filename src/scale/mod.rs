@@ -301,13 +301,6 @@ impl PhotoScale {
         self.corners.iter().filter(on_surface).count()
     }
 
-    /// Pixels per world unit on a row of the image (`row` pixels below its top edge), linear between
-    /// the top and the bottom scale, as Split-Desktop takes it.
-    pub fn on_row(&self, camera: &Camera, row: f64) -> Option<f64> {
-        let (top, bottom) = (self.scale.top?, self.scale.bottom?);
-        Some(top + (bottom - top) * (row / f64::from(camera.height)))
-    }
-
     /// What fell back or failed, in words; empty where all is well. `unit` is the world's.
     pub fn notes(&self, unit: &str) -> Vec<String> {
         let named = |wanted: fn(&CornerOutcome) -> bool| {

@@ -5,7 +5,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{ImageKind, PhotoScale, Sphere};
+use super::{ImageKind, Sphere};
 use crate::camera::{Camera, Pose};
 use crate::fault::Fault;
 use crate::geometry::{Ray, median};
@@ -187,7 +187,7 @@ impl Traced {
         camera: &Camera,
         pose: &Pose,
         image: ImageKind,
-        scale: Option<&PhotoScale>,
+        [top, bottom]: [Option<f64>; 2],
         caster: &mut Caster<'_>,
     ) -> PlaceScale {
         let Some(middle) = self.middle(camera, image) else {
@@ -224,7 +224,9 @@ impl Traced {
             .collect();
         PlaceScale {
             around: median(&mut ring),
-            between_edges: scale.and_then(|scale| scale.on_row(camera, middle.y)),
+            between_edges: top
+                .zip(bottom)
+                .map(|(top, bottom)| top + (bottom - top) * (middle.y / f64::from(camera.height))),
             on_surface: under.and_then(|point| scale_along_rows(camera, image, point)),
             length_on_surface,
         }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fragscale::camera::Camera;
-use fragscale::flight::{ComparedObject, Flight, Outcome, Photo, ScaleObject};
+use fragscale::flight::{ComparedObject, Flight, Limits, Photo, Review, ScaleObject};
 use fragscale::jobs::Progress;
 use fragscale::opening::{OpenOptions, open_flight};
 use fragscale::scale::{ImageKind, ScaleObjectKind, Traced};
@@ -21,10 +21,13 @@ fn sample() -> PathBuf {
 }
 
 /// The flight with its scales, and the centres of its spheres.
-fn flight() -> (Arc<Flight>, Vec<Outcome>, Vec<DVec3>) {
+fn flight() -> (Arc<Flight>, Review, Vec<DVec3>) {
     let progress = Progress::default();
     let opened = open_flight(&sample(), &OpenOptions::default(), &progress).expect("opens");
-    let outcomes = opened.flight.scales(&progress).expect("scales");
+    let limits = Limits::default();
+    let review = Review::of_scales(opened.flight.clone(), opened.looked_up, &limits, &progress);
+    let mut review = review.expect("scales");
+    review.compute_fields(&progress).expect("fields");
     let truth = fs::read_to_string(sample().join("truth.json")).expect("truth");
     let truth: serde_json::Value = serde_json::from_str(&truth).expect("JSON");
     let spheres = truth["spheres"].as_array().expect("spheres").iter();
@@ -33,7 +36,7 @@ fn flight() -> (Arc<Flight>, Vec<Outcome>, Vec<DVec3>) {
         let at = |axis: usize| sphere["center"][axis].as_f64().expect("a number");
         DVec3::new(at(0), at(1), at(2))
     });
-    (opened.flight, outcomes, centers.collect())
+    (opened.flight, review, centers.collect())
 }
 
 /// The sphere nearest to the middle of a photo, in camera axes.
@@ -62,12 +65,7 @@ fn true_outline(camera: &Camera, center: DVec3, points: u32) -> Vec<DVec2> {
     (0..points).map(point).collect()
 }
 
-fn compared(
-    flight: &Flight,
-    outcomes: &[Outcome],
-    photo: &Photo,
-    outline: Vec<DVec2>,
-) -> ComparedObject {
+fn compared(review: &Review, photo: &Photo, outline: Vec<DVec2>) -> ComparedObject {
     let object = ScaleObject {
         photo: photo.name.clone(),
         kind: ScaleObjectKind::Sphere,
@@ -75,21 +73,19 @@ fn compared(
         outline,
         mask: true,
     };
-    let compared = flight
-        .compare_objects(&[object], outcomes)
-        .expect("a surface");
+    let compared = review.compare_objects(&[object]).expect("a surface");
     compared.into_iter().next().expect("one")
 }
 
 /// Focal length over the true depth, to 1e-9; and on which side of it the point cloud's scales lie.
 #[test]
 fn a_traced_sphere_gives_the_true_scale_at_its_place() {
-    let (flight, outcomes, centers) = flight();
+    let (flight, review, centers) = flight();
     for photo in &flight.parts().photos {
         let camera = flight.camera(photo);
         let center = sphere_of(photo, camera, &centers);
         let outline = true_outline(camera, center, 11);
-        let compared = compared(&flight, &outcomes, photo, outline);
+        let compared = compared(&review, photo, outline);
         let Ok(Traced::Sphere(sphere)) = &compared.traced else {
             panic!("{}: {compared:?}", photo.name);
         };
@@ -125,7 +121,7 @@ fn a_traced_sphere_gives_the_true_scale_at_its_place() {
 /// hand traces it. Fines hide the sphere's foot, and pixels are mixed at the edge.
 #[test]
 fn the_spheres_in_the_photos_are_where_the_simulator_put_them() {
-    let (flight, outcomes, centers) = flight();
+    let (flight, review, centers) = flight();
     for photo in &flight.parts().photos {
         let camera = flight.camera(photo);
         let center = sphere_of(photo, camera, &centers);
@@ -134,7 +130,7 @@ fn the_spheres_in_the_photos_are_where_the_simulator_put_them() {
             &image.to_rgb8(),
             camera.pixel_as_shot(center).expect("seen"),
         );
-        let compared = compared(&flight, &outcomes, photo, outline);
+        let compared = compared(&review, photo, outline);
         let Ok(Traced::Sphere(sphere)) = &compared.traced else {
             panic!("{}: {compared:?}", photo.name);
         };
@@ -228,7 +224,12 @@ fn the_command_has_scale_objects_beside_the_scales() {
     assert!((scale * center.z / camera.fx / 0.0254 - 1.0).abs() < 1e-9);
     assert_eq!(found["kind"], "sphere");
     assert!(found["rms_px"].as_f64().expect("a number") < 1e-6);
-    let edge = |name: &str| plain["photos"][1]["scale"][name].as_f64().expect("a scale");
+    // What goes to Split-Desktop is the line's.
+    let edge = |name: &str| {
+        plain["photos"][1]["fitted"][name]
+            .as_f64()
+            .expect("a scale")
+    };
     let share = camera.pixel_undistorted(center).expect("seen").y / 720.0;
     let on_row = edge("top") + (edge("bottom") - edge("top")) * share;
     let found_on_row = found["point_cloud"]["on_row"].as_f64().expect("a scale");
@@ -241,4 +242,40 @@ fn the_command_has_scale_objects_beside_the_scales() {
             .remove("scale_objects");
     }
     assert_eq!(with, plain);
+}
+
+/// On its row an object is held against the scales that go to Split-Desktop: here the best line's, linear from edge to edge.
+#[test]
+fn the_row_is_that_of_the_pair_in_use() {
+    let (flight, review, centers) = flight();
+    let photo = &flight.parts().photos[4];
+    let camera = flight.camera(photo);
+    let outline = true_outline(camera, sphere_of(photo, camera, &centers), 12);
+    let found = compared(&review, photo, outline).place.between_edges;
+    let line = review
+        .photo(4)
+        .expect("a photo")
+        .field
+        .and_then(|field| field.fitted);
+    let line = line.expect("a line");
+    let of_corners = review.outcomes()[4].scale().expect("a scale").scale;
+    let found = found.expect("a scale");
+    let share = (found - line.top) / (line.bottom - line.top);
+    assert!((0.0..1.0).contains(&share), "{share}");
+    // The corners' line is another one.
+    let corners = [of_corners.top, of_corners.bottom].map(|scale| scale.expect("a scale"));
+    let of_corners = corners[0] + (corners[1] - corners[0]) * share;
+    assert!(
+        (of_corners / found - 1.0).abs() > 0.02,
+        "{of_corners} {found}"
+    );
+    // The middle of the outline, rows from the top edge.
+    let row = found_row(camera, sphere_of(photo, camera, &centers));
+    let expected = line.top + (line.bottom - line.top) * row / f64::from(camera.height);
+    assert!((found / expected - 1.0).abs() < 2e-3, "{found} {expected}");
+}
+
+/// The row of the image without distortion in which the middle of a sphere lies.
+fn found_row(camera: &Camera, center: DVec3) -> f64 {
+    camera.cy + camera.fy * center.y / center.z
 }

@@ -245,9 +245,21 @@ fn files_that_are_written_anew_are_said_and_read_again() {
     assert!(desk.logged("pile.ply was changed since it was read"));
     back(&mut desk);
     assert_eq!((said(&desk), count(&desk)), (1, before));
+    // An export says it, too, whatever was said before.
+    desk.press(Modifiers::COMMAND, Key::E);
+    desk.type_path(&folder.path().join("export"));
+    desk.click(Role::Button, "Export now");
+    assert_eq!(said(&desk), 2);
+    let sheet = fs::read_to_string(folder.path().join("export/scales.html")).expect("a sheet");
+    assert!(sheet.contains("pile.ply was changed since it was read"));
+    desk.press(Modifiers::COMMAND, Key::Num4);
     desk.press(Modifiers::NONE, Key::F5);
     desk.settle();
+    assert_eq!(
+        desk.harness.state().state().page,
+        fragscale::app::size_distributions::Page::Plan
+    );
     assert_eq!(count(&desk), 4);
     back(&mut desk);
-    assert_eq!(said(&desk), 1);
+    assert_eq!(said(&desk), 2);
 }

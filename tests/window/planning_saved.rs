@@ -39,6 +39,7 @@ fn a_plan_is_saved_with_its_flight() {
     let text = fs::read_to_string(&flight).expect("a flight");
     assert!(text.starts_with(&before), "{text}");
     assert!(text.contains("\n[plan]\npattern = \"slope\"\n"), "{text}");
+    let with_edit = text;
     // Another look at it.
     let mut desk = Desk::new(Some(&flight));
     assert!(!desk.open().is_changed());
@@ -53,6 +54,29 @@ fn a_plan_is_saved_with_its_flight() {
     desk.click(Role::Button, "Save them");
     let text = fs::read_to_string(&flight).expect("a flight");
     assert!(text.contains("take_off = [450031.0, 5400040.0]"), "{text}");
+    // Of another plan the same name is another photo's: nothing is done to it, and that is said.
+    let other = with_edit.replace(
+        "take_off = [450030.0, 5400040.0]",
+        "take_off = [450170.0, 5400160.0]",
+    );
+    assert_ne!(other, with_edit);
+    fs::write(&flight, &other).expect("a flight");
+    let mut desk = Desk::new(Some(&flight));
+    desk.press(Modifiers::COMMAND, Key::Num4);
+    assert_eq!(count(&desk), photos + 1, "nothing is left out");
+    assert!(desk.logged("is not taken: this plan has another photo of that name, or none"));
+    // By hand little is needed.
+    let head = text.split("[plan]").next().expect("a head");
+    fs::write(
+        &flight,
+        format!("{head}[plan]\npattern = \"slope\"\nscale = 30\nclearance = 6\n"),
+    )
+    .expect("a flight");
+    let mut desk = Desk::new(Some(&flight));
+    desk.press(Modifiers::COMMAND, Key::Num4);
+    let now = desk.open().planning.now().expect("asked");
+    assert_eq!((now.clearance, now.edits.len()), (6.0, 0));
+    assert!(count(&desk) > 0);
     // What cannot be read says where.
     let broken = text.replace("pattern = \"slope\"", "pattern = \"spiral\"");
     fs::write(&flight, &broken).expect("a flight");

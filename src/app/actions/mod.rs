@@ -158,6 +158,11 @@ pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
     let editing = context.text_edit_focused();
     let keys_of = |action: Action| action.all_keys().map(move |keys| (action, keys));
     let mut actions: Vec<(Action, KeyboardShortcut)> = all().flat_map(keys_of).collect();
+    // As Windows has it.
+    actions.push((
+        edit::REDO,
+        KeyboardShortcut::new(Modifiers::COMMAND, Key::Y),
+    ));
     // Ctrl+Shift+Z before Ctrl+Z: egui takes the first that fits, and more modifiers fit less.
     actions.sort_by_key(|(_, keys)| std::cmp::Reverse(keys.modifiers.shift));
     let mut commands = Vec::new();

@@ -1,5 +1,6 @@
 //! What the flight on the screen was read from, and where it is saved.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -45,6 +46,8 @@ pub struct FlightFiles {
     pub stood: Stood,
     /// The cloud, the poses and all else that it was made of, as they were read.
     pub read_as: Stood,
+    /// Of which it was said that they are not what they were.
+    pub said_changed: HashSet<PathBuf>,
 }
 
 impl FlightFiles {
@@ -94,6 +97,7 @@ impl FlightFiles {
             saved,
             stood,
             read_as,
+            said_changed: HashSet::new(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::dragged::dragged;
+use super::dragged::{dragged, photo_at};
 use super::{PlanStep, PlanTool, Planning};
 use crate::open_flight::OpenFlight;
 use crate::plan::{AskedPlan, Drone, Edit, Size};
@@ -176,14 +176,8 @@ impl Planning {
             }
             PlanStep::ToggleThrough => self.through = !self.through && self.selected.is_some(),
             PlanStep::Drag(handle, to) => {
-                let found = self
-                    .made
-                    .as_ref()
-                    .map(|made| made.plan.area.corners().to_vec());
-                let dragged = self
-                    .now()
-                    .map(|now| dragged(now, &handle, to, found.as_deref().unwrap_or_default()));
-                self.dragged = dragged;
+                let plan = self.made.as_ref().map(|made| &*made.plan);
+                self.dragged = self.now().map(|now| dragged(now, &handle, to, plan));
             }
             PlanStep::Drop => {
                 if let Some(dragged) = self.dragged.take() {
@@ -191,9 +185,11 @@ impl Planning {
                 }
             }
             PlanStep::Leave => {
-                let name = self.photo().map(|(_, photo)| photo.name.clone());
-                if let (Some(name), Some(mut asked)) = (name, self.now().cloned()) {
-                    asked.edits.push(Edit::Leave(name));
+                let plan = self.made.as_ref().map(|made| &made.plan);
+                let photo = (self.photo().zip(plan))
+                    .and_then(|((_, photo), plan)| photo_at(plan, &photo.name));
+                if let (Some(photo), Some(mut asked)) = (photo, self.now().cloned()) {
+                    asked.edits.push(Edit::Leave(photo));
                     self.ask(asked);
                 }
             }

@@ -32,6 +32,8 @@ pub struct MadePlan {
     pub sun: Option<(Sun, Shadows)>,
     /// Why that is not known although a time was stated.
     pub no_sun: Option<String>,
+    /// Photos of changes by hand that could not be made: the plan has other photos of their names, or none.
+    pub not_taken: Vec<String>,
     /// What is to be said beside the numbers.
     pub warnings: Vec<String>,
     /// Areas and way as lines of the picture.
@@ -39,6 +41,17 @@ pub struct MadePlan {
 }
 
 impl MadePlan {
+    /// That changes by hand were not made, where some were not.
+    pub fn not_taken_in_words(&self) -> Option<String> {
+        (!self.not_taken.is_empty()).then(|| {
+            format!(
+                "what was changed by hand of {} is not taken: this plan has another photo of that name, or none; change it again (As planned forgets all \
+                 changes)",
+                self.not_taken.join(", ")
+            )
+        })
+    }
+
     /// All of it as lines of the picture.
     pub fn lines(&self, selected: Option<usize>) -> Vec<PlannedLine> {
         let mut lines = self.lines.clone();

@@ -8,9 +8,9 @@ use crate::exports::{PlanReport, plan_warnings};
 use crate::fault::Fault;
 use crate::geodesy::Crs;
 use crate::jobs::Progress;
-use crate::plan::{self, AskedPlan, Edit, Pace, Plan, Way};
+use crate::plan::{self, AskedPlan, Edit, Pace, PhotoAt, Plan, Way};
 use crate::render::{plan_areas, plan_way};
-use crate::state::State;
+use crate::state::{Severity, State};
 use crate::surface::Surface;
 use crate::survey::Polygon;
 use crate::tasks::Task;
@@ -63,7 +63,15 @@ impl State {
             };
             let planning = &mut open.planning;
             match made {
-                Ok(made) => planning.take(made),
+                Ok(made) => {
+                    let before = planning.made.as_ref().map(|before| &before.not_taken[..]);
+                    let is_new = before.unwrap_or_default() != made.not_taken;
+                    let said = made.not_taken_in_words().filter(|_| is_new);
+                    planning.take(made);
+                    if let Some(said) = said {
+                        state.say(Severity::Warning, &said);
+                    }
+                }
                 Err(fault) => planning.refused = Some((asked, fault.to_string())),
             }
         });
@@ -119,13 +127,19 @@ fn made(
         }
     };
     // What was done by hand is not done again where it is more of the same.
-    let done = before.filter(|before| asked.edits.starts_with(&before.asked.edits));
+    let done = before.filter(|before| {
+        before.not_taken.is_empty() && asked.edits.starts_with(&before.asked.edits)
+    });
     let (mut plan, edits) = match done {
         Some(done) => (done.plan.clone(), &asked.edits[done.asked.edits.len()..]),
         None => (base.clone(), &asked.edits[..]),
     };
+    let mut not_taken: Vec<String> = Vec::new();
     for edit in edits {
-        plan = Arc::new(edited(&plan, edit, &over.surface, progress)?);
+        match edited(&plan, edit, &over.surface, progress) {
+            Some(edited) => plan = Arc::new(edited?),
+            None => not_taken.extend(name_of(edit).map(str::to_owned)),
+        }
     }
     let pace = Pace::of(&asked.flying, metres);
     let ways = match asked.take_off {
@@ -176,24 +190,41 @@ fn made(
         pace,
         sun,
         no_sun,
+        not_taken,
         warnings,
         lines,
     })
 }
 
-/// The plan after a change by hand; a photo that is not there any more is left as it is.
-fn edited(plan: &Plan, edit: &Edit, surface: &Surface, progress: &Progress) -> Result<Plan, Fault> {
-    let place_of = |name: &str| plan.photos.iter().position(|photo| photo.name == name);
-    match edit {
+/// How far, in parts of a photo's footprint, a photo may show another place and be the same: plans are computed alike everywhere but for
+/// rounding.
+const SAME_PLACE: f64 = 1e-3;
+
+/// The plan after a change by hand; `None` where it is of a photo that is not there any more.
+fn edited(
+    plan: &Plan,
+    edit: &Edit,
+    surface: &Surface,
+    progress: &Progress,
+) -> Option<Result<Plan, Fault>> {
+    let place_of = |wanted: &PhotoAt| {
+        let near = SAME_PLACE * plan.footprint.max_element();
+        plan.photos.iter().position(|photo| {
+            photo.name == wanted.name && photo.target.truncate().distance(wanted.at) <= near
+        })
+    };
+    Some(match edit {
         Edit::Add(place) => plan.with_photo(*place, surface, progress),
-        Edit::Move(name, to) => match place_of(name) {
-            Some(photo) => plan.with_photo_at(photo, *to, surface, progress),
-            None => Ok(plan.clone()),
-        },
-        Edit::Leave(name) => Ok(match place_of(name) {
-            Some(photo) => plan.without_photo(photo),
-            None => plan.clone(),
-        }),
+        Edit::Move(photo, to) => plan.with_photo_at(place_of(photo)?, *to, surface, progress),
+        Edit::Leave(photo) => Ok(plan.without_photo(place_of(photo)?)),
+    })
+}
+
+/// Of the photo that is changed.
+fn name_of(edit: &Edit) -> Option<&str> {
+    match edit {
+        Edit::Add(_) => None,
+        Edit::Move(photo, _) | Edit::Leave(photo) => Some(&photo.name),
     }
 }
 

@@ -86,6 +86,8 @@ impl State {
                 if let Some(open) = &mut state.open {
                     open.take_fields(fields);
                 }
+                // On their rows they are held against the lines.
+                state.start_comparing();
             }
             Err(fault) => state.say(Severity::Error, &fault.to_string()),
         });
@@ -97,10 +99,15 @@ impl State {
         let Some(open) = &mut self.open else {
             return;
         };
-        let before = open.flight().parts().errors;
+        let (pair, errors) = (open.flight().parts().pair, open.flight().parts().errors);
         open.take_stated();
-        if open.flight().parts().errors != before {
+        let now = open.flight().parts();
+        let (is_other_pair, is_other_error) = (now.pair != pair, now.errors != errors);
+        if is_other_error {
             self.start_fields();
+        }
+        if is_other_pair {
+            self.start_comparing();
         }
     }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+use super::stood::changed_in_words;
 use super::work::Task;
 use crate::command::Destination;
 use crate::exports::{self, ExportRequest, Provenance, Replace};
@@ -51,10 +52,14 @@ impl State {
         let rectified = (self.preferences.export_rectified).then_some(Onto::FittedPlane);
         let settings = open.settings_to_save();
         let (crs, inputs) = (open.files.crs.clone(), open.files.inputs.clone());
-        let warnings = open.all_warnings();
+        let mut warnings = open.all_warnings();
+        let read_as = open.files.read_as.clone();
         let source = open.files.origin.file().to_owned();
         let work = move |progress: &Progress| {
             let begun = Instant::now();
+            let changed = read_as.all_changed();
+            let changed: Vec<String> = changed.iter().map(|path| changed_in_words(path)).collect();
+            warnings.extend(changed.iter().cloned());
             // Those that the window has not come to yet.
             let compared = opening::compare_all_colours(&mut review, &photo_files, progress);
             compared.map_err(|fault| fault.to_string())?;
@@ -82,6 +87,7 @@ impl State {
             let sentence = format!("{}: {summary}", folder.display());
             let name = review.flight().parts().name.clone();
             let mut warnings = summary.warnings;
+            warnings.extend(changed);
             let lost = review.photos().zip(seen.iter().zip(&selected));
             warnings.extend(
                 lost.filter(|(_, (seen, is_selected))| **seen && !**is_selected)

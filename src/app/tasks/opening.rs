@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::stood::changed_in_words;
 use super::work::Task;
 use crate::command::Asking;
 use crate::flight::FlightSettings;
@@ -247,13 +248,9 @@ impl State {
                 let Some(open) = state.open.as_mut().filter(|open| open.number == number) else {
                     return;
                 };
-                // Said once.
-                open.files.read_as.note(&path);
-                let text = format!(
-                    "{} was changed since it was read: what is on the screen is of what it was; File > Read again (F5) takes what it is",
-                    path.display()
-                );
-                state.say(Severity::Warning, &text);
+                if open.files.said_changed.insert(path.clone()) {
+                    state.say(Severity::Warning, &changed_in_words(&path));
+                }
             }
         });
     }

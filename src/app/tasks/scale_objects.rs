@@ -101,9 +101,12 @@ impl State {
             return;
         };
         let objects = open.settings().scale_objects;
-        let (flight, outcomes) = (open.flight().clone(), open.review.outcomes().clone());
+        if objects.is_empty() && open.objects.compared.is_empty() {
+            return;
+        }
+        let review = open.review.clone();
         let work = move |_: &Progress| {
-            let compared = flight.compare_objects(&objects, &outcomes)?;
+            let compared = review.compare_objects(&objects)?;
             Ok(objects.into_iter().zip(compared).collect())
         };
         self.start(

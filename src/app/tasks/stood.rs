@@ -51,16 +51,21 @@ impl Stood {
 }
 
 impl Stood {
-    /// All that are there and not what they were.
+    /// All that are not what they were, those that are gone among them.
     pub(crate) fn all_changed(&self) -> Vec<PathBuf> {
-        let paths = self.0.keys().map(PathBuf::as_path);
-        let mut changed: Vec<PathBuf> = paths
-            .filter(|path| self.changed([*path].into_iter()).is_some())
-            .map(Path::to_owned)
-            .collect();
+        let changed = self.0.iter().filter(|(path, stood)| stamp(path) != **stood);
+        let mut changed: Vec<PathBuf> = changed.map(|(path, _)| path.clone()).collect();
         changed.sort();
         changed
     }
+}
+
+/// That what is on the screen is not of the file any more.
+pub(crate) fn changed_in_words(path: &Path) -> String {
+    format!(
+        "{} was changed since it was read: what is on the screen is of what it was; File > Read again (F5) takes what it is",
+        path.display()
+    )
 }
 
 #[cfg(test)]

@@ -30,7 +30,7 @@ pub(super) fn of_photos<'a>(
 ) -> Result<Vec<Vec<PhotoObject<'a>>>, Fault> {
     let flight = request.review.flight();
     let objects = &request.from.settings.scale_objects;
-    let compared = flight.compare_objects(objects, request.review.outcomes())?;
+    let compared = request.review.compare_objects(objects)?;
     let photos = &flight.parts().photos;
     let mut of_photos: Vec<Vec<PhotoObject<'a>>> = photos.iter().map(|_| Vec::new()).collect();
     for (object, compared) in objects.iter().zip(compared) {

@@ -1,12 +1,16 @@
 //! The table `[plan]` of a flight.toml: what the engineer asks of a flight plan, as the window saves it. Lengths are
-//! in world units, angles in degrees, overlaps shares of a photo.
+//! in world units, angles in degrees, overlaps shares of a photo. Who writes it by hand needs the pattern, a size and the clearance; the rest is
+//! what is usual.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use toml_edit::{DocumentMut, Item};
 
 use crate::fault::Fault;
-use crate::plan::{AskedPlan, Drone, Edit, Flying, Pattern, Positioning, Size, SurveyWish};
+use crate::plan::{
+    AskedPlan, Drone, Edit, Flying, Pattern, PhotoAt, Positioning, Size, SurveyWish, USUAL_CLIMB,
+    USUAL_DESCENT, USUAL_OFF_NORMAL, USUAL_SETTLE, USUAL_SPEED, USUAL_TILT,
+};
 use crate::survey::Polygon;
 
 /// The keys of `[plan]`; of its inner tables serde knows them.
@@ -49,12 +53,17 @@ pub(super) struct PlanEntry {
     within: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     distance: Option<f64>,
+    #[serde(default)]
     overlap: f64,
+    #[serde(default)]
     fill_gaps: bool,
+    #[serde(default = "usual_tilt")]
     tilt: f64,
+    #[serde(default = "usual_off_normal")]
     off_normal: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     drone: Option<String>,
+    #[serde(default = "usual_positioning")]
     positioning: String,
     clearance: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -63,9 +72,13 @@ pub(super) struct PlanEntry {
     keep_out: Vec<Corners>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     take_off: Option<[f64; 2]>,
+    #[serde(default = "usual_speed")]
     speed: f64,
+    #[serde(default = "usual_settle")]
     settle: f64,
+    #[serde(default = "usual_climb")]
     climb: f64,
+    #[serde(default = "usual_descent")]
     descent: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     battery: Option<f64>,
@@ -73,9 +86,55 @@ pub(super) struct PlanEntry {
     steepest: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     when: Option<String>,
+    #[serde(default = "usual_survey")]
     survey: SurveyEntry,
     #[serde(default, rename = "edit", skip_serializing_if = "Vec::is_empty")]
     edits: Vec<EditEntry>,
+}
+
+fn usual_tilt() -> f64 {
+    USUAL_TILT
+}
+
+fn usual_off_normal() -> f64 {
+    USUAL_OFF_NORMAL
+}
+
+fn usual_positioning() -> String {
+    Positioning::default().as_str().to_owned()
+}
+
+fn usual_speed() -> f64 {
+    USUAL_SPEED
+}
+
+fn usual_settle() -> f64 {
+    USUAL_SETTLE
+}
+
+fn usual_climb() -> f64 {
+    USUAL_CLIMB
+}
+
+fn usual_descent() -> f64 {
+    USUAL_DESCENT
+}
+
+fn usual_survey() -> SurveyEntry {
+    let SurveyWish {
+        overlap,
+        cross,
+        ring,
+        size: _,
+    } = SurveyWish::default();
+    SurveyEntry {
+        overlap,
+        cross,
+        ring,
+        scale: None,
+        within: None,
+        distance: None,
+    }
 }
 
 /// `[plan.survey]`: photos for a reconstruction. Without a size they are as large as the others.
@@ -99,6 +158,9 @@ struct SurveyEntry {
 struct EditEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     photo: Option<String>,
+    /// What the photo of that name showed then: another plan's photo of the name is another one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    at: Option<[f64; 2]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shows: Option<[f64; 2]>,
 }
@@ -196,6 +258,13 @@ impl PlanEntry {
             ("survey", survey.distance),
         ];
         let is_one = |value: f64| value >= 0.0 && value.is_finite();
+        if let Some(share) = [self.overlap, survey.overlap]
+            .into_iter()
+            .find(|share| *share >= 1.0)
+        {
+            let what = format!("plan.overlap is {share}, and is a share of a photo");
+            return say("overlap", what, "write 0.2 for 20 %".to_owned());
+        }
         let wrong = numbers
             .iter()
             .find(|(_, value)| value.is_some_and(|value| !is_one(value)));
@@ -210,7 +279,10 @@ impl PlanEntry {
                 return say(key, format!("plan.{key}: {error}"), remedy);
             }
         }
-        let shown = self.edits.iter().filter_map(|edit| edit.shows);
+        let shown = self
+            .edits
+            .iter()
+            .flat_map(|edit| edit.shows.into_iter().chain(edit.at));
         let mut all = self.take_off.iter().copied().chain(shown);
         if all.any(|place| !DVec2::from_array(place).is_finite()) {
             let what = "a place of the plan is not finite".to_owned();
@@ -220,13 +292,13 @@ impl PlanEntry {
                 "give x and y, or remove the key".to_owned(),
             );
         }
-        if self
-            .edits
-            .iter()
-            .any(|edit| edit.photo.is_none() && edit.shows.is_none())
-        {
-            let what = "an edit of the plan names neither a photo nor a place".to_owned();
-            let remedy = "name the photo, the place that it shows, or both; or remove the table";
+        let is_none = |edit: &EditEntry| {
+            edit.photo.is_some() != edit.at.is_some()
+                || (edit.photo.is_none() && edit.shows.is_none())
+        };
+        if self.edits.iter().any(is_none) {
+            let what = "an edit of the plan is not whole".to_owned();
+            let remedy = "name the photo with the place that it showed (at), the place that it is to show, or both; or remove the table";
             return say("edit", what, remedy.to_owned());
         }
         None
@@ -299,7 +371,8 @@ impl From<&Edit> for EditEntry {
             Edit::Leave(photo) => (Some(photo), None),
         };
         Self {
-            photo: photo.cloned(),
+            photo: photo.map(|photo| photo.name.clone()),
+            at: photo.map(|photo| photo.at.to_array()),
             shows: shows.map(|place| place.to_array()),
         }
     }
@@ -311,7 +384,11 @@ impl PlanEntry {
         let survey = &self.survey;
         let edits = self.edits.iter().filter_map(|edit| {
             let place = edit.shows.map(DVec2::from_array);
-            match (edit.photo.clone(), place) {
+            let photo = edit.photo.clone().zip(edit.at).map(|(name, at)| PhotoAt {
+                name,
+                at: DVec2::from_array(at),
+            });
+            match (photo, place) {
                 (Some(photo), Some(to)) => Some(Edit::Move(photo, to)),
                 (None, Some(place)) => Some(Edit::Add(place)),
                 (Some(photo), None) => Some(Edit::Leave(photo)),

@@ -341,7 +341,9 @@ mod tests {
     use super::*;
     use crate::control::ControlList;
     use crate::flight::{Date, Decision, DecisionKind, ReconstructionFlight};
-    use crate::plan::{AskedPlan, Drone, Edit, Flying, Pattern, Positioning, Size, SurveyWish};
+    use crate::plan::{
+        AskedPlan, Drone, Edit, Flying, Pattern, PhotoAt, Positioning, Size, SurveyWish,
+    };
     use crate::scale::PoseErrors;
     use crate::scale::ScaleObjectKind;
     use crate::surface::{SurfaceOptions, UpAxis};
@@ -561,10 +563,16 @@ folder = "photos"
                 })
         };
         let place = || (-1e7..1e7_f64, 0.0..1e7_f64).prop_map(|(x, y)| DVec2::new(x, y));
-        let edit = (0..3, place()).prop_map(|(kind, place)| match kind {
-            0 => Edit::Move("P \"1\"".to_owned(), place),
-            1 => Edit::Add(place),
-            _ => Edit::Leave("P2".to_owned()),
+        let edit = (0..3, place(), place()).prop_map(|(kind, at, place)| {
+            let photo = |name: &str| PhotoAt {
+                name: name.to_owned(),
+                at,
+            };
+            match kind {
+                0 => Edit::Move(photo("P \"1\""), place),
+                1 => Edit::Add(place),
+                _ => Edit::Leave(photo("P2")),
+            }
         });
         let area = || {
             (place(), 1.0..90.0_f64).prop_map(|(at, side)| {

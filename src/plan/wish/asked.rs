@@ -43,15 +43,24 @@ pub struct AskedPlan {
     pub edits: Vec<Edit>,
 }
 
+/// A photo of a plan. Names are given in the order of the flight: of a plan that came out otherwise the same name is another photo's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PhotoAt {
+    /// Its name.
+    pub name: String,
+    /// The place that it showed when it was changed.
+    pub at: DVec2,
+}
+
 /// A change of single photos by hand.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Edit {
-    /// The photo of this name shows another place.
-    Move(String, DVec2),
+    /// A photo shows another place.
+    Move(PhotoAt, DVec2),
     /// One more, of this place.
     Add(DVec2),
-    /// The photo of this name is left out.
-    Leave(String),
+    /// A photo is left out.
+    Leave(PhotoAt),
 }
 
 impl AskedPlan {

@@ -4,7 +4,7 @@ mod asked;
 
 use glam::DVec2;
 
-pub use asked::{AskedPlan, Edit};
+pub use asked::{AskedPlan, Edit, PhotoAt};
 
 use super::{Drone, Pattern, PoseErrors, Positioning, Purpose};
 use crate::survey::Polygon;

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::camera::{Brown, Distortion};
+use crate::scale::PhotoScale;
 use crate::scale::{Ground, GroundFinder};
 use crate::surface::{Cloud, Surface};
 
@@ -36,7 +37,8 @@ fn compare(traced: &Traced, surface: &Surface, camera: &Camera) -> PlaceScale {
     let mut ground = GroundFinder::new(Ground::Auto, surface);
     let image = ImageKind::Undistorted;
     let scale = PhotoScale::compute(camera, &pose, image, &mut ground, &mut caster).unwrap();
-    traced.place(camera, &pose, image, Some(&scale), &mut caster)
+    let pair = [scale.scale.top, scale.scale.bottom];
+    traced.place(camera, &pose, image, pair, &mut caster)
 }
 
 /// From 10 above, 100 px are 1.

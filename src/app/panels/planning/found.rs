@@ -84,7 +84,7 @@ pub(super) fn found(state: &State, open: &OpenFlight, ui: &mut Ui, commands: &mu
     if let Some(why) = &made.no_sun {
         ui.colored_label(ui.visuals().error_fg_color, why);
     }
-    for warning in &made.warnings {
+    for warning in made.not_taken_in_words().iter().chain(&made.warnings) {
         ui.colored_label(ui.visuals().warn_fg_color, warning);
     }
 }
