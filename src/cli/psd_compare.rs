@@ -10,7 +10,9 @@ use super::distribution_arguments::{DistributionArguments, FittingArguments};
 use super::written_beside::{check_report_name, drawn_figures, figure_formats, write_all};
 use crate::exports::{self, ComparisonReport, SizeShift};
 use crate::files::Kind;
-use crate::fragmentation::{Analysis, AnalysisOptions, SIGNIFICANCE, SieveSeries, Weighting};
+use crate::fragmentation::{
+    Analysis, AnalysisOptions, PercentileShift, SIGNIFICANCE, SieveSeries, Weighting,
+};
 use crate::jobs::Progress;
 
 #[derive(Debug, Args)]
@@ -126,14 +128,20 @@ pub(super) fn compare_shifts(
     )?;
     write_all(pending, &outputs)?;
     let text = outputs.deliver(text)?;
+    // Beside measured sizes stand shifts of measured sizes; a function's where one of both was not.
+    let reference = &comparison.reference;
     let shifts = comparison.methods.first().map(|method| {
-        let shifts = method.shift.percentiles.iter();
-        shifts
-            .map(|shift| SizeShift {
-                percent: shift.percent,
-                off_percent: shift.shift_percent,
-            })
-            .collect()
+        let of_percent = |shift: &PercentileShift| {
+            let percent = shift.percent;
+            let measured = method.curve.measured_size_at(percent);
+            let both = measured.zip(reference.measured_size_at(percent));
+            let off = both.map(|(size, reference)| 100.0 * (size / reference - 1.0));
+            SizeShift {
+                percent,
+                off_percent: off.unwrap_or(shift.shift_percent),
+            }
+        };
+        method.shift.percentiles.iter().map(of_percent).collect()
     });
     Ok((Answer::new(text, warnings), shifts.unwrap_or_default()))
 }

@@ -58,6 +58,12 @@ impl MethodCurve {
         })
     }
 
+    /// The size that a percent of the mean passes, as it was measured; `None` where it was not.
+    pub fn measured_size_at(&self, percent: f64) -> Option<f64> {
+        let whole = whole_mean(&self.points, self.trials.len()).ok()?;
+        whole.size_at(percent)
+    }
+
     /// The points of which every trial says something: where trials begin or end on the way, the mean
     /// of those left may jump.
     pub fn known_to_all(&self) -> impl Iterator<Item = &MeanPoint> {
@@ -148,6 +154,17 @@ mod tests {
 
     fn distribution(points: &[[f64; 2]]) -> SizeDistribution {
         SizeDistribution::new(points.to_vec()).expect("a distribution")
+    }
+
+    /// Halfway in the logarithm between 10 and 40, and nothing beyond.
+    #[test]
+    fn measured_sizes_are_no_functions() {
+        let curve = distribution(&[[10.0, 20.0], [40.0, 60.0], [80.0, 95.0], [160.0, 100.0]]);
+        let method = MethodCurve::new("sieve", &[("1", &curve)], Model::Swebrec).expect("a curve");
+        let size = method.measured_size_at(40.0).expect("measured");
+        assert!((size - 20.0).abs() < 1e-9, "{size}");
+        assert_eq!(method.measured_size_at(60.0), Some(40.0));
+        assert_eq!(method.measured_size_at(10.0), None);
     }
 
     /// At 10: 20, 30, 40, deviation 10. At 30 the third is between 10 and 90 halfway in the logarithm:
