@@ -1,6 +1,6 @@
 //! Orientations that can be read, and are probably not what their columns say: no photo of them is trusted.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use crate::flight::Doubt;
 
@@ -16,6 +16,8 @@ const LENGTH: f64 = 0.01;
 pub(super) struct OddAngles {
     photos: usize,
     largest: f64,
+    /// Whether one of them is below 0: else they may count from 0 to a whole turn.
+    is_signed: bool,
     /// The first quaternion that is no rotation: its line and length.
     quaternion: Option<(u64, f64)>,
 }
@@ -24,6 +26,7 @@ impl OddAngles {
     /// Takes the angles of a photo.
     pub(super) fn angles(&mut self, angles: &[f64]) {
         self.photos += 1;
+        self.is_signed |= angles.iter().any(|angle| *angle < 0.0);
         let largest = angles.iter().map(|angle| angle.abs());
         self.largest = largest.fold(self.largest, f64::max);
     }
@@ -38,8 +41,9 @@ impl OddAngles {
 
     /// What is odd about them.
     pub(super) fn doubts(&self) -> Vec<Doubt> {
-        // An angle that was rounded up to four digits is not beyond half a turn.
-        let in_radians = (SMALL..PI + 1e-3).contains(&self.largest);
+        let most = if self.is_signed { PI } else { TAU };
+        // An angle that was rounded up to four digits is not beyond the turn.
+        let in_radians = (SMALL..most + 1e-3).contains(&self.largest);
         let radians = (self.photos >= FEW && in_radians).then_some(Doubt::SmallAngles {
             largest: self.largest,
             photos: self.photos,
@@ -78,6 +82,10 @@ mod tests {
         assert!(said.contains("between -3.142 and 3.142"), "{said}");
         let degrees = radians.map(|angles| angles.map(f64::to_degrees));
         assert_eq!(of(&degrees), "");
+        // Tilt and pan count from 0.
+        let of_tilt = [[1.44, 0.02, 0.0], [1.45, 6.28, 0.0], [1.43, 3.2, 0.0]];
+        assert!(of(&of_tilt).contains("6.28"), "{}", of(&of_tilt));
+        assert_eq!(of(&[[0.3, -1.0, 6.28]; 3]), "");
         // Two photos, and a line of photos straight down.
         assert_eq!(of(&radians[..2]), "");
         assert_eq!(of(&[[0.1, -0.2, 0.3]; 4]), "");
