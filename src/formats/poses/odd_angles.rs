@@ -83,9 +83,9 @@ mod tests {
         let degrees = radians.map(|angles| angles.map(f64::to_degrees));
         assert_eq!(of(&degrees), "");
         // Tilt and pan count from 0.
-        let of_tilt = [[1.44, 0.02, 0.0], [1.45, 6.28, 0.0], [1.43, 3.2, 0.0]];
-        assert!(of(&of_tilt).contains("6.28"), "{}", of(&of_tilt));
-        assert_eq!(of(&[[0.3, -1.0, 6.28]; 3]), "");
+        let of_tilt = [[1.44, 0.02, 0.0], [1.45, 6.25, 0.0], [1.43, 3.2, 0.0]];
+        assert!(of(&of_tilt).contains("6.25"), "{}", of(&of_tilt));
+        assert_eq!(of(&[[0.3, -1.0, 6.25]; 3]), "");
         // Two photos, and a line of photos straight down.
         assert_eq!(of(&radians[..2]), "");
         assert_eq!(of(&[[0.1, -0.2, 0.3]; 4]), "");
