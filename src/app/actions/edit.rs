@@ -37,6 +37,7 @@ actions! {
         label: "Redo",
         hover: "Take the last undo back",
         shortcut: keys(SHIFT, Key::Z),
+        also: keys(Modifiers::COMMAND, Key::Y),
         command: |state| {
             if state.page == Page::SizeDistributions {
                 let can = state.distributions.history.can_redo();

@@ -7,6 +7,7 @@ macro_rules! actions {
         hover: $hover:literal,
         shortcut: $shortcut:expr,
         $(keypad: $keypad:expr,)?
+        $(also: $also:expr,)?
         command: $command:expr,
     })*) => {$(
         #[doc = $hover]
@@ -15,11 +16,14 @@ macro_rules! actions {
             hover: $hover,
             shortcut: $shortcut,
             keypad: actions!(@keypad $($keypad)?),
+            also: actions!(@also $($also)?),
             command: $command,
         };
     )*};
     (@keypad) => { None };
     (@keypad $key:expr) => { Some($key) };
+    (@also) => { None };
+    (@also $keys:expr) => { $keys };
 }
 
 pub mod edit;
@@ -51,6 +55,8 @@ pub struct Action {
     /// Its digit on the numeric keypad, as in CloudCompare and Blender; egui does not tell it from the
     /// digits over the letters.
     pub keypad: Option<Key>,
+    /// Its keys in other programs.
+    pub also: Option<KeyboardShortcut>,
     /// What it sends; `None` where it makes no sense now, and the entry is grey.
     pub command: fn(&State) -> Option<Command>,
 }
@@ -68,7 +74,8 @@ impl Action {
 
     fn all_keys(self) -> impl Iterator<Item = KeyboardShortcut> {
         let keypad = |key| KeyboardShortcut::new(Modifiers::NONE, key);
-        self.shortcut.into_iter().chain(self.keypad.map(keypad))
+        let others = self.keypad.map(keypad).into_iter().chain(self.also);
+        self.shortcut.into_iter().chain(others)
     }
 }
 
@@ -158,11 +165,6 @@ pub fn pressed(state: &State, context: &egui::Context) -> Vec<Command> {
     let editing = context.text_edit_focused();
     let keys_of = |action: Action| action.all_keys().map(move |keys| (action, keys));
     let mut actions: Vec<(Action, KeyboardShortcut)> = all().flat_map(keys_of).collect();
-    // As Windows has it.
-    actions.push((
-        edit::REDO,
-        KeyboardShortcut::new(Modifiers::COMMAND, Key::Y),
-    ));
     // Ctrl+Shift+Z before Ctrl+Z: egui takes the first that fits, and more modifiers fit less.
     actions.sort_by_key(|(_, keys)| std::cmp::Reverse(keys.modifiers.shift));
     let mut commands = Vec::new();

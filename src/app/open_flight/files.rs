@@ -6,9 +6,7 @@ use std::sync::Arc;
 
 use crate::files::Inputs;
 use crate::flight::FlightSettings;
-use crate::opening::{
-    FlightOrigin, FlightReconstruction, OpenOptions, Opened, PhotoFile, control_file,
-};
+use crate::opening::{FlightOrigin, FlightReconstruction, OpenOptions, Opened, PhotoFile};
 use crate::state::bundled::sample_flight;
 use crate::surface::UpAxis;
 use crate::tasks::stood::Stood;
@@ -66,19 +64,8 @@ impl FlightFiles {
         }
         let mut read_as = Stood::default();
         // What saving writes is looked at when it is saved.
-        let own = opened
-            .origin
-            .flight_file()
-            .map(|file| (file, control_file(file)));
-        let is_own = |path: &Path| {
-            own.as_ref()
-                .is_some_and(|(file, list)| path == *file || path == list.as_path())
-        };
-        for path in opened
-            .inputs
-            .iter()
-            .filter(|path| !is_own(path) && path.is_file())
-        {
+        let others = opened.inputs.iter().filter(|path| !stood.knows(path));
+        for path in others.filter(|path| path.is_file()) {
             read_as.note(path);
         }
         Self {

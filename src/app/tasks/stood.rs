@@ -37,6 +37,19 @@ impl Stood {
         self.note(&control_file(file));
     }
 
+    /// Whether it is one of those that were noted.
+    pub(crate) fn knows(&self, path: &Path) -> bool {
+        self.0.contains_key(path)
+    }
+
+    /// All that are not what they were, those that are gone among them.
+    pub(crate) fn all_changed(&self) -> Vec<PathBuf> {
+        let changed = self.0.iter().filter(|(path, stood)| stamp(path) != **stood);
+        let mut changed: Vec<PathBuf> = changed.map(|(path, _)| path.clone()).collect();
+        changed.sort();
+        changed
+    }
+
     /// The first of these files that is not what it was: of a file that was never noted nothing is known, and in one that is gone
     /// nothing can be lost.
     pub(crate) fn changed<'a>(
@@ -47,16 +60,6 @@ impl Stood {
             let now = stamp(path);
             now.is_some() && self.0.get(*path).is_some_and(|stood| *stood != now)
         })
-    }
-}
-
-impl Stood {
-    /// All that are not what they were, those that are gone among them.
-    pub(crate) fn all_changed(&self) -> Vec<PathBuf> {
-        let changed = self.0.iter().filter(|(path, stood)| stamp(path) != **stood);
-        let mut changed: Vec<PathBuf> = changed.map(|(path, _)| path.clone()).collect();
-        changed.sort();
-        changed
     }
 }
 

@@ -6,8 +6,8 @@ use super::source::Source;
 use crate::fault::Fault;
 use crate::files::FileError;
 use crate::flight::WorldSystem;
-use crate::geodesy::Crs;
 use crate::units::LengthUnit;
+use crate::world::WorldFrame;
 
 /// Tells the unit of the world, and what speaks against its lengths.
 ///
@@ -28,10 +28,11 @@ pub(super) fn tell(source: &mut Source, framed: &Framed) -> Result<(), FileError
 
 /// The system of the world, where it is understood.
 pub(super) fn system_of(framed: &Framed) -> Option<WorldSystem> {
-    let name = framed.world.crs()?;
-    let crs = Crs::understand(name).ok()?;
+    let WorldFrame::Named(crs) = &framed.world else {
+        return None;
+    };
     Some(WorldSystem {
-        name: name.to_owned(),
+        name: crs.name().to_owned(),
         unit_metres: crs.unit_metres(),
     })
 }

@@ -140,6 +140,25 @@ fn points_that_were_rounded() {
     }
 }
 
+/// Placed in a world in which they are three times as large, points are off by three times as much.
+#[test]
+fn rounding_goes_with_what_is_rounded() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (east, north) = (452_300.0, 5_411_800.0);
+    let poses = poses(east, north, 312.0, "0,0,90");
+    let pile = plane(east, north, 312.0, false);
+    let rounding = |world: &str| {
+        write(folder, world, &pile, &poses);
+        opened(folder).unwrap().flight.parts().as_read.rounding
+    };
+    let bound = (north + 60.0) * 2_f64.powi(-24);
+    let as_it_is = rounding("unit = \"m\"");
+    assert!((as_it_is / bound - 1.0).abs() < 1e-6, "{as_it_is}");
+    let placed = "unit = \"m\"\nplaced = { transform = [3,0,0,0, 0,3,0,0, 0,0,3,0, 0,0,0,1] }";
+    assert!((rounding(placed) / as_it_is - 3.0).abs() < 1e-12);
+}
+
 /// What poses and cloud do not say themselves, flight.toml may say wrongly.
 #[test]
 fn a_unit_against_the_coordinate_system() {

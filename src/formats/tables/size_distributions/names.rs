@@ -92,7 +92,7 @@ pub(super) enum RetainedName {
 impl RetainedName {
     fn of(words: &[String]) -> Self {
         let any = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()));
-        let percent = any(&["percent", "pct", "percentage"]);
+        let percent = says_percent(words);
         let mass = says_mass(words);
         let cumulative = words.iter().any(|word| word.starts_with("cum"));
         let each = any(&[
@@ -114,13 +114,20 @@ impl RetainedName {
     }
 }
 
+/// What masses are called.
+const MASS_NAMES: [&str; 5] = ["mass", "masses", "weight", "weights", "wt"];
+
 /// Whether words speak of mass.
 fn says_mass(words: &[String]) -> bool {
-    let masses = [
-        "mass", "masses", "weight", "weights", "wt", "g", "kg", "t", "gram", "grams", "tonnes",
-        "lb", "lbs",
-    ];
-    words.iter().any(|word| masses.contains(&word.as_str()))
+    let units = ["g", "kg", "t", "gram", "grams", "tonnes", "lb", "lbs"];
+    let is_mass = |word: &str| MASS_NAMES.contains(&word) || units.contains(&word);
+    words.iter().any(|word| is_mass(word))
+}
+
+/// Whether words speak of percents.
+fn says_percent(words: &[String]) -> bool {
+    let percents = ["percent", "pct", "percentage"];
+    words.iter().any(|word| percents.contains(&word.as_str()))
 }
 
 /// The words of a name in small letters: "PercentPassing", "percent_passing" and "% passing" are the
@@ -211,21 +218,20 @@ fn of_size_role(words: &[String], unit: Option<SizeUnit>) -> Role {
 /// that are joined need not count in the same.
 pub(super) fn weight_factor(name: &str) -> f64 {
     let words = words(name);
-    let joined = words.concat();
-    let square = |metres: f64| metres * metres;
-    let of_end = |ends: &[&str]| ends.iter().any(|end| joined.ends_with(end));
-    let foot = LengthUnit::Foot.metres();
-    match () {
-        () if of_end(&["mm2", "mm²"]) => square(1e-3),
-        () if of_end(&["cm2", "cm²"]) => square(1e-2),
-        () if of_end(&["ft2", "ft²", "sqft"]) => square(foot),
-        () if of_end(&["in2", "in²", "sqin"]) => square(foot / 12.0),
-        () => match words.last().map(String::as_str) {
-            Some("g" | "gram" | "grams") => 1e-3,
-            Some("t" | "tonne" | "tonnes") => 1e3,
-            Some("lb" | "lbs") => 0.453_592_37,
-            _ => 1.0,
-        },
+    let Some((last, before)) = words.split_last() else {
+        return 1.0;
+    };
+    // "ft2", "ft²", "sqft", "sq ft"
+    let is_square = before.last().is_some_and(|word| word == "sq");
+    let side = last.strip_suffix(['2', '²']).or(last.strip_prefix("sq"));
+    if let Some(side) = side.or(is_square.then_some(last)).and_then(SizeUnit::of) {
+        return (side.factor * side.unit.metres()).powi(2);
+    }
+    match last.as_str() {
+        "g" | "gram" | "grams" => 1e-3,
+        "t" | "tonne" | "tonnes" => 1e3,
+        "lb" | "lbs" => 0.453_592_37,
+        _ => 1.0,
     }
 }
 
@@ -246,24 +252,18 @@ pub(super) fn size_trouble(name: &str) -> Option<&'static str> {
     words.iter().any(is_unit).then_some("has two units")
 }
 
-/// Whether a column of another thing than percents stands among curves: a mass or an area.
+/// Whether a column among curves is a mass, and no percent of it.
 pub(super) fn is_amount(name: &str) -> bool {
     let words = words(name);
-    let is_share = words.iter().any(|word| {
-        matches!(
-            word.as_str(),
-            "percent" | "pct" | "percentage" | "share" | "passing" | "by"
-        )
-    });
+    let is = |list: &[&str], word: &String| list.contains(&word.as_str());
+    let is_share = says_percent(&words)
+        || words
+            .iter()
+            .any(|word| is(&["share", "passing", "by"], word));
     let ends_as_mass = words
         .last()
-        .is_some_and(|word| matches!(word.as_str(), "g" | "kg" | "lb" | "lbs"));
-    let is_mass = words.iter().any(|word| {
-        matches!(
-            word.as_str(),
-            "mass" | "masses" | "weight" | "weights" | "wt"
-        )
-    });
+        .is_some_and(|word| is(&["g", "kg", "lb", "lbs"], word));
+    let is_mass = words.iter().any(|word| is(&MASS_NAMES, word));
     !is_share && (ends_as_mass || (is_mass && words.len() <= 2))
 }
 

@@ -309,6 +309,10 @@ fn areas_and_masses_are_of_one_unit() {
         ("area_mm2", 1e6, 1.0),
         ("mass (t)", 2.0, 2000.0),
         ("mass (kg)", 2.0, 2.0),
+        ("mass (lb)", 2.0, 2.0 * 0.453_592_37),
+        ("weight g", 500.0, 0.5),
+        ("area (in²)", 144.0, square_foot),
+        ("area sqft", 1.0, square_foot),
         ("area", 7.0, 7.0),
     ] {
         let found = weight(name, value);
