@@ -69,21 +69,24 @@ impl OutlinesOfOthers {
     /// # Errors
     /// Where it is neither, or the file has no outlines.
     pub fn open(path: &Path, of: Option<ImageKind>) -> Result<Self, FileError> {
+        let mut path = path.to_owned();
         let place = if path.is_dir() {
-            let entries = fs::read_dir(path)
-                .map_err(|error| FileError::new(path, unreadable_folder(&error)))?;
+            let entries = fs::read_dir(&path)
+                .map_err(|error| FileError::new(&path, unreadable_folder(&error)))?;
             let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
             files.retain(|file| file.is_file());
             files.sort_unstable();
-            Place::Folder(files)
+            match the_one_of_many_photos(&files) {
+                Some((one, file)) => {
+                    path = one;
+                    Place::File(file)
+                }
+                None => Place::Folder(files),
+            }
         } else {
-            Place::File(MaskFile::read(path)?)
+            Place::File(MaskFile::read(&path)?)
         };
-        Ok(Self {
-            path: path.to_owned(),
-            of,
-            place,
-        })
+        Ok(Self { path, of, place })
     }
 
     /// Whether it has outlines that are said to be of this photo.
@@ -248,6 +251,18 @@ impl OutlinesOfOthers {
     }
 }
 
+/// The one file of a folder that may be outlines, where it has those of many photos: an export of COCO or CVAT lies in a folder of its
+/// own, perhaps beside its photos.
+fn the_one_of_many_photos(files: &[PathBuf]) -> Option<(PathBuf, MaskFile)> {
+    let mut may_be = files.iter().filter(|path| may_be_outlines(path));
+    let (Some(one), None) = (may_be.next(), may_be.next()) else {
+        return None;
+    };
+    // What is wrong with it is said where a photo's outlines are asked for.
+    let file = MaskFile::read(one).ok()?;
+    (!file.is_of_one()).then(|| (one.clone(), file))
+}
+
 /// The files of a folder that may be a photo's outlines, the likeliest first.
 fn candidates<'a>(files: &'a [PathBuf], photo: &str) -> impl Iterator<Item = &'a Path> {
     let ranked = files
@@ -334,5 +349,24 @@ mod tests {
         assert!(folder.is_of("IMG_00051.jpg") && !folder.is_of("IMG_0006.jpg"));
         let of_none = folder.of_no_photo(&["a/IMG_0005.jpg", "b.jpg"]);
         assert_eq!(of_none, ["IMG_00051_labels.png"]);
+    }
+
+    /// As Roboflow and CVAT export it: one file of all photos, perhaps beside them.
+    #[test]
+    fn a_folder_may_hold_one_file_of_many_photos() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+        write("DJI_0005.jpg", "a photo");
+        write(
+            "_annotations.coco.json",
+            r#"{"images": [{"id": 1, "file_name": "DJI_0005.jpg", "width": 4, "height": 4}], "categories": [], "annotations": []}"#,
+        );
+        let open = || OutlinesOfOthers::open(folder.path(), None).unwrap();
+        assert!(open().is_of("DJI_0005.jpg"));
+        assert!(!open().is_of("DJI_0006.jpg"));
+        // Beside files of single photos their names count.
+        write("DJI_0006_labels.png", "a label image");
+        assert!(!open().is_of("DJI_0005.jpg"));
+        assert!(open().is_of("DJI_0006.jpg"));
     }
 }

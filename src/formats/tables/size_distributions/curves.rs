@@ -69,6 +69,7 @@ pub(super) struct Repairs {
     pub(super) numbers: NumberRepairs,
     pans: Count,
     totals: Count,
+    results: Count,
     zeros: Count,
     over: Count,
     falls: Count,
@@ -93,6 +94,11 @@ impl Repairs {
         self.totals.add(line);
     }
 
+    /// A line of percentiles or of the top size was left out.
+    pub(super) fn result(&mut self, line: u64) {
+        self.results.add(line);
+    }
+
     /// A line has the name of an earlier one.
     pub(super) fn same_name(&mut self, line: u64) {
         self.same_names.add(line);
@@ -107,6 +113,7 @@ impl Repairs {
         let counted = [
             self.pans.say("the pan under the sieves has no size and is left out"),
             self.totals.say("a line of sums is left out"),
+            self.results.say("a line of a percentile or the top size is no point and is left out"),
             self.zeros.say("0 % passing a size of 0 says nothing and is left out"),
             self.empty.say("a line without a number is left out"),
             self.same_names

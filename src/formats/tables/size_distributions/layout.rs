@@ -1,7 +1,10 @@
 //! Which of the layouts a table has, told by the names of its columns.
 
 use super::DistributionColumns;
-use super::names::{PercentileColumn, RetainedName, Role, SizeText, SizeUnit, is_amount, role};
+use super::names::{
+    PASSING_NAMES, PercentileColumn, RetainedName, Role, SizeText, SizeUnit, is_amount, role,
+    sample_of,
+};
 use super::retained::{is_pan, is_total};
 use crate::fault::Fault;
 use crate::tables::table::{Table, key};
@@ -17,11 +20,12 @@ pub(super) enum Layout {
     },
     /// One column a curve.
     Wide { size: usize, unit: Option<SizeUnit> },
-    /// One line a sieve, with what stays on it.
+    /// One line a sieve, with what stays on it of each sample.
     Retained {
         size: usize,
         unit: Option<SizeUnit>,
-        retained: usize,
+        /// A column of each sample.
+        retained: Vec<usize>,
         what: RetainedName,
     },
     /// One line a curve, a column each size.
@@ -137,10 +141,7 @@ impl Layout {
                     .get(passing)
                     .map(|name| key(name))
                     .unwrap_or_default();
-                coordinates < 2
-                    && ["passing", "passed", "finer"]
-                        .iter()
-                        .any(|word| name.contains(word))
+                coordinates < 2 && PASSING_NAMES.iter().any(|word| name.contains(word))
             }
             Ok(Self::Wide { size, unit }) => {
                 let sure = matches!(
@@ -260,27 +261,19 @@ impl<'a> Names<'a> {
 
     /// A line a point, where that column is what passes or what stays.
     fn long(&self, size: usize, column: usize) -> Layout {
-        let unit = self.unit(size);
-        match self.roles.get(column) {
-            Some(Role::Retained(what)) => Layout::Retained {
-                size,
-                unit,
-                retained: column,
-                what: *what,
-            },
-            _ => Layout::Long {
-                size,
-                unit,
-                passing: column,
-            },
-        }
+        let passing = || Layout::Long {
+            size,
+            unit: self.unit(size),
+            passing: column,
+        };
+        self.on_sieves(size, vec![column]).unwrap_or_else(passing)
     }
 
-    /// The column of what stays on sieves: of several the one that needs the least made of it.
+    /// The columns of what stays on sieves: of several kinds those that need the least made of them, one of each sample.
     ///
     /// # Errors
-    /// Where two are alike.
-    fn retained(&self) -> Result<Option<usize>, Fault> {
+    /// Where two are of the same sample.
+    fn retained(&self) -> Result<Vec<usize>, Fault> {
         let mut columns: Vec<(RetainedName, usize)> = (self.roles.iter().enumerate())
             .filter_map(|(column, role)| match role {
                 Role::Retained(what) => Some((*what, column)),
@@ -288,16 +281,38 @@ impl<'a> Names<'a> {
             })
             .collect();
         columns.sort_unstable();
-        match columns[..] {
-            [(one, first), (two, second), ..] if one == two => {
+        let best = columns.first().map(|(what, _)| *what);
+        columns.retain(|(what, _)| Some(*what) == best);
+        let mut samples = Vec::new();
+        for (_, column) in &columns {
+            let sample = sample_of(&self.table.name(*column)).to_lowercase();
+            let earlier = samples.iter().position(|known| *known == sample);
+            let earlier = earlier.or((sample.is_empty() && !samples.is_empty()).then_some(0));
+            if let Some((_, first)) = earlier.and_then(|place| columns.get(place)) {
                 let what = format!(
                     "columns '{}' and '{}' may both be what stays on the sieves",
-                    self.table.name(first),
-                    self.table.name(second)
+                    self.table.name(*first),
+                    self.table.name(*column)
                 );
-                Err(self.fault(what, "name one of them (--passing)"))
+                let remedy = "name one of them (--passing), or give each the name of its sample";
+                return Err(self.fault(what, remedy));
             }
-            _ => Ok(columns.first().map(|(_, column)| *column)),
+            samples.push(sample);
+        }
+        Ok(columns.into_iter().map(|(_, column)| column).collect())
+    }
+
+    /// A line a sieve, with what stays on it.
+    fn on_sieves(&self, size: usize, retained: Vec<usize>) -> Option<Layout> {
+        let first = retained.first().and_then(|column| self.roles.get(*column));
+        match first {
+            Some(Role::Retained(what)) => Some(Layout::Retained {
+                size,
+                unit: self.unit(size),
+                what: *what,
+                retained,
+            }),
+            _ => None,
         }
     }
 
@@ -383,9 +398,14 @@ impl<'a> Names<'a> {
         }
         let mut passing = self.with(|role| role == Role::Passing);
         passing.retain(|&column| column != size);
-        match (&passing[..], self.retained()?) {
-            ([passing], _) => Ok(self.long(size, *passing)),
-            ([], Some(retained)) if retained != size => Ok(self.long(size, retained)),
+        let mut retained = self.retained()?;
+        retained.retain(|&column| column != size);
+        match &passing[..] {
+            [passing] => Ok(self.long(size, *passing)),
+            [] => match self.on_sieves(size, retained) {
+                Some(layout) => Ok(layout),
+                None => self.wide(size),
+            },
             _ => self.wide(size),
         }
     }
@@ -437,8 +457,9 @@ impl<'a> Names<'a> {
         }
         let passing = self.with(|role| role == Role::Passing);
         let sets = self.percentile_sets();
-        let retained = self.retained()?.filter(|_| passing.is_empty());
-        let mut size = self.size(!passing.is_empty() || retained.is_some())?;
+        let mut retained = self.retained()?;
+        retained.retain(|_| passing.is_empty());
+        let mut size = self.size(!passing.is_empty() || !retained.is_empty())?;
         if passing.is_empty() && !sets.is_empty() {
             // A sample's size, or a coordinate.
             size = size.filter(|&column| matches!(self.roles.get(column), Some(Role::Size(_))));
@@ -467,8 +488,8 @@ impl<'a> Names<'a> {
                               passing (--size, --passing)";
                 Err(self.fault(what, remedy))
             }
-            (Some(size), ..) => match retained {
-                Some(retained) => Ok(self.long(size, retained)),
+            (Some(size), ..) => match self.on_sieves(size, retained) {
+                Some(layout) => Ok(layout),
                 None => self.wide(size),
             },
             (None, _, true, []) => Ok(Layout::SizesAsColumns {
@@ -488,7 +509,7 @@ impl<'a> Names<'a> {
                 Err(self.fault(what, remedy))
             }
             (None, [_, ..], false, []) => Err(self.no_sizes()),
-            (None, [], false, []) if retained.is_some() => Err(self.no_sizes()),
+            (None, [], false, []) if !retained.is_empty() => Err(self.no_sizes()),
             (None, [], false, []) => self.unnamed(),
         }
     }

@@ -21,8 +21,8 @@
 //! - Percent passing is cumulative; percents of classes are refused. In the place of the percent passing may stand what
 //!   stays on the sieves, a laboratory's protocol (`retained`). Where no
 //!   percent of the table is above 1 and the largest is above 0.5, they are shares of 1.
-//! - The unit of sizes stands in the name of their column, or behind each size; else the user states
-//!   it; else it is mm. Micrometres are read into mm. Sizes may be called by ASTM E11's names of
+//! - The unit of sizes stands in the name of their column or below it, or behind each size or in a column of its own; else the
+//!   user states it; else it is mm. Micrometres are read into mm. Sizes may be called by ASTM E11's names of
 //!   sieves ("No. 4", "3/8 in."); where one is, "2 in." is the sieve of 50 mm too.
 //! - Mended, and said: decimal commas; passing up to 100.05 % and falls of up to 0.05 %, which rounding
 //!   explains; lines of a title above the names; a line twice; a size of 0 that nothing passes; the pan under the sieves.
@@ -36,6 +36,7 @@ mod read;
 mod retained;
 #[cfg(test)]
 mod tests;
+mod units_beside;
 
 use std::path::Path;
 
@@ -82,9 +83,14 @@ pub(crate) fn is_table(start: &str, whole: bool) -> bool {
         false => start.rfind('\n').and_then(|end| start.get(..end)),
     };
     complete.is_some_and(|text| {
-        matches!(Table::read(text), Ok(table) if Layout::is_sure(&table))
+        matches!(table_of(text), Ok(table) if Layout::is_sure(&table))
             || below_titles(text, &DistributionColumns::default()).is_some()
     })
+}
+
+/// The table of a text, with its units in the names of its columns or behind its sizes.
+fn table_of(text: &str) -> Result<Table, Fault> {
+    Table::read(text).map(units_beside::in_their_places)
 }
 
 /// The fault of such a table where a flight is needed.
@@ -103,7 +109,7 @@ pub fn size_distributions(
     text: &str,
     columns: &DistributionColumns,
 ) -> Result<(DistributionSet, Vec<String>), Fault> {
-    let whole = Table::read(text);
+    let whole = table_of(text);
     let read = match &whole {
         Ok(table) => read::read(table, columns),
         Err(fault) => Err(fault.clone()),
@@ -132,7 +138,7 @@ fn below_titles(text: &str, columns: &DistributionColumns) -> Option<(Table, usi
         None => text,
     };
     let found = |text: &str| {
-        let table = Table::read(text).ok()?;
+        let table = table_of(text).ok()?;
         let is_named = || columns.size.is_some() && Layout::of(&table, columns).is_ok();
         (Layout::is_sure(&table) || is_named()).then_some(table)
     };

@@ -1,7 +1,7 @@
 //! What the name of a column says that it holds.
 
 use crate::fragmentation::SieveSeries;
-use crate::tables::table::split_number;
+use crate::tables::table::{key, split_number};
 use crate::units::LengthUnit;
 
 /// A unit of sizes: `factor` of `unit` are one of it.
@@ -94,13 +94,14 @@ impl RetainedName {
         let any = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()));
         let percent = says_percent(words);
         let mass = says_mass(words);
-        let cumulative = words.iter().any(|word| word.starts_with("cum"));
+        let cumulative = words.iter().any(|word| says_cumulative(word));
         let each = any(&[
             "each",
             "individual",
             "incremental",
             "differential",
             "partial",
+            "parcial",
         ]);
         match (percent, mass, cumulative) {
             (true, _, true) => Self::CumulativePercent,
@@ -114,8 +115,60 @@ impl RetainedName {
     }
 }
 
-/// What masses are called.
-const MASS_NAMES: [&str; 5] = ["mass", "masses", "weight", "weights", "wt"];
+/// What masses are called; here and below also in German, French and Spanish.
+const MASS_NAMES: [&str; 10] = [
+    "mass", "masses", "weight", "weights", "wt", "masse", "gewicht", "poids", "masa", "peso",
+];
+
+/// What is within the name of a size of sieves or fragments.
+const SIZE_NAMES: [&str; 16] = [
+    "size",
+    "opening",
+    "aperture",
+    "diameter",
+    "siebweite",
+    "maschenweite",
+    "korngröße",
+    "korngrösse",
+    "korngroesse",
+    "ouverture",
+    "tamis",
+    "abertura",
+    "apertura",
+    "tamiz",
+    "tamaño",
+    "malla",
+];
+
+/// What is within the name of what passes.
+pub(super) const PASSING_NAMES: [&str; 7] = [
+    "passing",
+    "passed",
+    "finer",
+    "undersize",
+    "durchgang",
+    "passant",
+    "pasante",
+];
+
+/// What is within the name of what stays on sieves.
+const RETAINED_NAMES: [&str; 8] = [
+    "retained",
+    "oversize",
+    "coarser",
+    "residue",
+    "rückstand",
+    "rueckstand",
+    "refus",
+    "retenido",
+];
+
+/// Whether a word says that percents or masses are cumulative.
+fn says_cumulative(word: &str) -> bool {
+    ["cum", "kum", "acum"]
+        .iter()
+        .any(|start| word.starts_with(start))
+}
 
 /// Whether words speak of mass.
 fn says_mass(words: &[String]) -> bool {
@@ -126,7 +179,7 @@ fn says_mass(words: &[String]) -> bool {
 
 /// Whether words speak of percents.
 fn says_percent(words: &[String]) -> bool {
-    let percents = ["percent", "pct", "percentage"];
+    let percents = ["percent", "pct", "percentage", "prozent"];
     words.iter().any(|word| percents.contains(&word.as_str()))
 }
 
@@ -193,6 +246,13 @@ fn of_size_role(words: &[String], unit: Option<SizeUnit>) -> Role {
         "block",
         "stone",
         "nominal",
+        "siebweite",
+        "maschenweite",
+        "ouverture",
+        "abertura",
+        "tamis",
+        "tamiz",
+        "malla",
         "sievesize",
         "screensize",
         "grainsize",
@@ -252,6 +312,43 @@ pub(super) fn size_trouble(name: &str) -> Option<&'static str> {
     words.iter().any(is_unit).then_some("has two units")
 }
 
+/// Whether a text is a unit of what is on sieves or passes them: percent or a mass.
+pub(super) fn is_unit_of_amounts(text: &str) -> bool {
+    let words = words(text);
+    matches!(&words[..], [_]) && (says_percent(&words) || says_mass(&words))
+}
+
+/// The name of the sample in the name of a column of what stays on its sieves: what is left without the words for that.
+pub(super) fn sample_of(name: &str) -> String {
+    let known = |word: &str| {
+        let word = key(word);
+        let of_retained = [
+            "percent",
+            "pct",
+            "percentage",
+            "each",
+            "individual",
+            "incremental",
+            "differential",
+            "partial",
+            "parcial",
+            "on",
+            "sieve",
+        ];
+        word.is_empty()
+            || says_cumulative(&word)
+            || RETAINED_NAMES.contains(&word.as_str())
+            || says_mass(std::slice::from_ref(&word))
+            || of_retained.contains(&word.as_str())
+    };
+    let separators = |c: char| c.is_whitespace() || matches!(c, '_' | '(' | ')' | '[' | ']' | ',');
+    let left = name.split(separators).filter(|word| !known(word));
+    left.collect::<Vec<_>>()
+        .join(" ")
+        .trim_matches(['-', ':', '/', ' '])
+        .to_owned()
+}
+
 /// Whether a column among curves is a mass, and no percent of it.
 pub(super) fn is_amount(name: &str) -> bool {
     let words = words(name);
@@ -304,12 +401,11 @@ pub(super) fn role(name: &str) -> Role {
     if statistics.contains(&joined.as_str()) {
         return Role::Statistic;
     }
-    let of_size =
-        within(&["size", "opening", "aperture", "diameter"]) && !within(&["undersize", "oversize"]);
+    let of_size = within(&SIZE_NAMES) && !within(&["undersize", "oversize"]);
     if of_size && unit.is_some() {
         return of_size_role(&words, unit);
     }
-    if within(&["retained", "oversize", "coarser", "residue"]) {
+    if within(&RETAINED_NAMES) {
         return Role::Retained(RetainedName::of(&words));
     }
     let single = [
@@ -339,10 +435,7 @@ pub(super) fn role(name: &str) -> Role {
         "percentcumulative",
         "percentcum",
     ];
-    if within(&["passing", "passed", "finer", "undersize"])
-        || any(&["pass"])
-        || cumulative.contains(&joined.as_str())
-    {
+    if within(&PASSING_NAMES) || any(&["pass", "pasa"]) || cumulative.contains(&joined.as_str()) {
         return match !percent && says_mass(&words) {
             true => Role::PassingMass,
             false => Role::Passing,

@@ -6,10 +6,10 @@ use super::DistributionColumns;
 use super::curves::{RawCurve, RawPoint, Repairs, SizeReading, finish};
 use super::layout::{LabelColumns, Layout};
 use super::names::{
-    Role, SizeText, SizeUnit, holds_sieve_numbers, is_amount, role, sieve_mm, size_trouble,
-    weight_factor,
+    Role, SizeText, SizeUnit, holds_sieve_numbers, is_amount, role, sample_of, sieve_mm,
+    size_trouble, weight_factor,
 };
-use super::retained::{OnSieves, is_pan, is_total, is_washed};
+use super::retained::{OnSieves, is_pan, is_result, is_total, is_washed};
 use crate::fault::Fault;
 use crate::fragmentation::{DistributionSet, Labels};
 use crate::tables::table::{Row, Table};
@@ -49,7 +49,7 @@ pub(super) fn read(
             passing,
         } => {
             reading.header = unit;
-            reader.long(size, passing, None)?
+            reader.long(size, &[passing], None)?
         }
         Layout::Retained {
             size,
@@ -58,11 +58,17 @@ pub(super) fn read(
             what,
         } => {
             reading.header = unit;
+            let names: Vec<String> = retained.iter().map(|&column| table.name(column)).collect();
             reader.repairs.said.push(format!(
-                "what passes is computed from what stays on the sieves, column {}",
-                table.name(retained)
+                "what passes is computed from what stays on the sieves, {} {}",
+                if names.len() == 1 {
+                    "column"
+                } else {
+                    "columns"
+                },
+                names.join(", ")
             ));
-            reader.long(size, retained, Some(OnSieves::new(what)))?
+            reader.long(size, &retained, Some(OnSieves::new(what)))?
         }
         Layout::Wide { size, unit } => {
             reading.header = unit;
@@ -113,6 +119,24 @@ fn refuse_classes_by_sum(table: &Table, curves: &[RawCurve]) -> Result<(), Fault
     Ok(())
 }
 
+/// A column of a long table.
+struct SampleColumn {
+    size: usize,
+    column: usize,
+    /// Which sample it is of, where there are several columns; else empty.
+    sample: String,
+}
+
+/// Labels with a sample's name where they have none yet.
+fn with_sample(mut labels: Labels, sample: &str) -> Labels {
+    let places = [&mut labels.method, &mut labels.trial, &mut labels.photo];
+    match places.into_iter().find(|place| place.is_empty()) {
+        Some(free) => sample.clone_into(free),
+        None => labels.photo = format!("{}, {sample}", labels.photo),
+    }
+    labels
+}
+
 /// What stands where a number is not known.
 fn is_missing(cell: &str) -> bool {
     let cell = cell.to_lowercase();
@@ -137,6 +161,10 @@ impl Reader<'_> {
         }
         if is_total(cell) {
             self.repairs.total(row.line);
+            return Ok(None);
+        }
+        if is_result(cell) {
+            self.repairs.result(row.line);
             return Ok(None);
         }
         if is_missing(cell) {
@@ -235,29 +263,65 @@ impl Reader<'_> {
             .push(format!("columns that are not used: {names}{more}"));
     }
 
-    /// A line a point: what passes, or what stays on the `sieves`.
+    /// A line a point: what passes, or what stays on the `sieves`, in a column of each sample.
     fn long(
         &mut self,
-        size_column: usize,
-        column: usize,
+        size: usize,
+        columns: &[usize],
         sieves: Option<OnSieves>,
     ) -> Result<Vec<RawCurve>, Fault> {
-        let mut labels = LabelColumns::of(self.table, self.columns, &[size_column, column])?;
-        if sieves.is_some() && self.columns.weight.is_none() {
+        let taken: Vec<usize> = columns.iter().copied().chain([size]).collect();
+        let mut labels = LabelColumns::of(self.table, self.columns, &taken)?;
+        if self.columns.weight.is_none() && (sieves.is_some() || self.is_of_points(labels)) {
             // A mass in a sieve's protocol is the sieve's.
             labels.weight = None;
         }
-        let used: Vec<usize> = labels.all().chain([size_column, column]).collect();
+        let used: Vec<usize> = labels.all().chain(taken).collect();
         self.say_unused(&used);
-        let mut curves: Vec<RawCurve> = Vec::new();
+        let mut curves = Vec::new();
+        for &column in columns {
+            let sample = match columns {
+                [_] => String::new(),
+                _ => sample_of(&self.table.name(column)),
+            };
+            let of_column = SampleColumn {
+                size,
+                column,
+                sample,
+            };
+            self.long_column(&of_column, labels, sieves, &mut curves)?;
+        }
+        Ok(curves)
+    }
+
+    /// Whether what should be the weight of curves changes from point to point of one.
+    fn is_of_points(&self, labels: LabelColumns) -> bool {
+        let Some(weight) = labels.weight else {
+            return false;
+        };
+        let mut known: HashMap<Labels, &str> = HashMap::new();
+        self.table.rows().iter().any(|row| {
+            let cell = row.cell(weight);
+            !is_missing(cell) && *known.entry(self.labels(row, labels)).or_insert(cell) != cell
+        })
+    }
+
+    /// The curves of one column of a long table.
+    fn long_column(
+        &mut self,
+        of: &SampleColumn,
+        labels: LabelColumns,
+        sieves: Option<OnSieves>,
+        curves: &mut Vec<RawCurve>,
+    ) -> Result<(), Fault> {
         let mut places: HashMap<Labels, usize> = HashMap::new();
         for row in self.table.rows() {
-            let size = row.cell(size_column);
+            let size = row.cell(of.size);
             let (washed, total) = (is_washed(size), is_total(size));
             let pan = is_pan(size) || size.parse() == Ok(0.0);
             let size = match sieves.is_some() && (washed || pan || total) {
                 true => None,
-                false => match self.size(row, size_column).map_err(|fault| {
+                false => match self.size(row, of.size).map_err(|fault| {
                     // A line that is left out of a protocol would be missing in its sum.
                     let remedy = "give the opening of its sieve, or call it pan, washed or total";
                     match sieves.is_some() && fault.what.ends_with("is not a number") {
@@ -272,19 +336,21 @@ impl Reader<'_> {
                     None => continue,
                 },
             };
-            let percent = self.percent(row, column)?;
-            if size.is_none() && percent.is_none() {
+            let percent = self.percent(row, of.column)?;
+            // A sieve that one of several samples was not shaken through.
+            if percent.is_none() && (size.is_none() || !of.sample.is_empty()) {
                 continue;
             }
             let Some((percent, percent_sign)) = percent else {
-                let what = format!("column {} is empty", self.table.name(column));
+                let what = format!("column {} is empty", self.table.name(of.column));
                 return Err(Fault::at(
                     row.line,
                     what,
                     "fill it in, or leave the line out",
                 ));
             };
-            let (name, weight) = (self.labels(row, labels), self.weight(row, labels)?);
+            let name = with_sample(self.labels(row, labels), &of.sample);
+            let weight = self.weight(row, labels)?;
             let place = *places.entry(name.clone()).or_insert(curves.len());
             if place == curves.len() {
                 curves.push(RawCurve {
@@ -318,7 +384,7 @@ impl Reader<'_> {
                     (false, false) => &mut sieves.pan,
                 };
                 if place.replace(percent).is_some() {
-                    let what = format!("'{}' is there twice", shown(row.cell(size_column)));
+                    let what = format!("'{}' is there twice", shown(row.cell(of.size)));
                     return Err(Fault::at(row.line, what, "keep one, or name the curves"));
                 }
                 continue;
@@ -330,7 +396,7 @@ impl Reader<'_> {
                 percent_sign,
             });
         }
-        Ok(curves)
+        Ok(())
     }
 
     fn wide(&mut self, size: usize) -> Result<Vec<RawCurve>, Fault> {

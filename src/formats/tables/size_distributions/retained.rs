@@ -26,16 +26,35 @@ const MUCH_LOST: f64 = 0.05;
 /// Whether a cell of sizes is the pan under the sieves, or what passed the finest of them.
 pub(super) fn is_pan(cell: &str) -> bool {
     let small = cell.to_lowercase();
-    let pans = ["pan", "receiver", "bottom", "tray", "<", "passing", "finer"];
+    let pans = [
+        "pan", "receiver", "bottom", "tray", "<", "passing",
+        "finer", // German, French, Spanish
+        "boden", "schale", "fond", "fondo", "ciego",
+    ];
     pans.iter().any(|pan| small.starts_with(pan))
 }
 
 /// Whether a cell of sizes is in front of the sum of all.
 pub(super) fn is_total(cell: &str) -> bool {
     let small = cell.to_lowercase();
-    ["total", "sum", "σ"]
+    ["total", "sum", "σ", "somme", "gesamt"]
         .iter()
         .any(|total| small.starts_with(total))
+}
+
+/// Whether a cell of sizes is the name of a result below the sizes: "F10", "P80", "Topsize (99.95 %)".
+pub(super) fn is_result(cell: &str) -> bool {
+    let small = cell.to_lowercase();
+    let is_percent = |digits: &str| {
+        let digits = digits.trim_end_matches([':', '=']).trim_end();
+        digits
+            .parse::<f64>()
+            .is_ok_and(|percent| (0.0..=100.0).contains(&percent))
+    };
+    let percentile = small.strip_prefix(['f', 'p', 'd', 'x', 'k']);
+    percentile.is_some_and(is_percent)
+        || small.starts_with("topsize")
+        || small.starts_with("top size")
 }
 
 /// Whether it is what was washed out before sieving: it passes all sieves, as what is in the pan (ASTM C117, C136).

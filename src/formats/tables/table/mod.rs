@@ -190,8 +190,38 @@ impl Table {
         &self.rows
     }
 
+    /// The table whose names stand in two lines: its first line of numbers is the second of them.
+    pub(crate) fn with_names_of_two_lines(mut self, names: Vec<String>) -> Self {
+        self.header = names;
+        self.rows.remove(0);
+        self
+    }
+
+    /// The table with what `cell` makes of each of its cells.
+    pub(crate) fn with_cells(mut self, cell: impl Fn(&Row, usize) -> String) -> Self {
+        for row in &mut self.rows {
+            let cells: StringRecord = (0..row.len()).map(|column| cell(row, column)).collect();
+            row.cells = cells;
+        }
+        self
+    }
+
+    /// The table without one of its columns.
+    pub(crate) fn without_column(mut self, column: usize) -> Self {
+        self.header.remove(column);
+        if column < self.maybe_thousands.len() {
+            self.maybe_thousands.remove(column);
+        }
+        for row in &mut self.rows {
+            let cells = row.cells.iter().enumerate();
+            let kept = cells.filter(|(place, _)| *place != column);
+            row.cells = kept.map(|(_, cell)| cell).collect();
+        }
+        self
+    }
+
     /// The column that the user named: the name itself, else one that differs in case, blanks and
-    /// punctuation only.
+    /// punctuation only, else one that has brackets behind it.
     ///
     /// # Errors
     /// Where there is none or several; the columns that there are are named.
@@ -202,9 +232,17 @@ impl Table {
             let columns = self.header.iter().enumerate();
             columns.filter(|(_, c)| is(c)).map(|(i, _)| i).collect()
         };
+        // "Sieve" for "Sieve (mm)", whose unit may stand in a line of its own.
+        let without_unit = |column: &String| {
+            let before = column.split_once(" (").map(|(before, _)| before);
+            !key(name).is_empty() && before.is_some_and(|before| key(before) == key(name))
+        };
         let mut found = places(&exact);
         if found.is_empty() {
             found = places(&alike);
+        }
+        if found.is_empty() {
+            found = places(&without_unit);
         }
         match found[..] {
             [column] => Ok(column),

@@ -225,9 +225,19 @@ fn what_nobody_can_know_is_refused() {
             "'pan' is there twice; keep one, or name the curves",
         ),
         (
-            "sieve_mm,retained A g,retained B g\n40,0,1\n20,0,2\n",
+            "sieve_mm,retained A g,retained A kg\n40,0,1\n20,0,2\n",
             1,
-            "columns 'retained A g' and 'retained B g' may both be what stays on the sieves; name one of them (--passing)",
+            "columns 'retained A g' and 'retained A kg' may both be what stays on the sieves; name one of them (--passing), or give each the name of its sample",
+        ),
+        (
+            "sieve_mm,retained g,retained B g\n40,0,1\n20,0,2\n",
+            1,
+            "columns 'retained g' and 'retained B g' may both be what stays on the sieves; name one of them (--passing), or give each the name of its sample",
+        ),
+        (
+            "sieve_mm,retained A g,retained B g\n40,1,1\n20,2,2\n",
+            2,
+            "'A': nothing says how much passed the finest sieve; give what is in the pan in a line 'pan' (0 where nothing is), or the sum of all in a line 'total'",
         ),
         (
             "grade,retained g\n40,0\n20,0\n",
@@ -287,4 +297,108 @@ fn sieves_may_stand_in_one_line() {
     // Trials with numbers for names are columns of curves.
     let (set, _) = read("size_mm,1,2\n10,20,30\n20,100,100\n");
     assert_eq!(names(&set), ["1||", "2||"]);
+}
+
+/// 50 of 100 and 30 of 40 pass 20 mm; B was not shaken through 40 mm.
+#[test]
+fn samples_may_stand_side_by_side() {
+    let text = "Sieve (mm),Sample A retained (g),Sample A retained (%),Sample B retained (g),Sample B retained (%)\n80,0,0,0,0\n40,20,20,,\n20,30,30,10,25\npan,50,50,30,75\n";
+    let (set, said) = read(text);
+    assert_eq!(names(&set), ["Sample A||", "Sample B||"]);
+    assert_eq!(
+        set.curves[0].distribution.points(),
+        [[20.0, 50.0], [40.0, 80.0], [80.0, 100.0]]
+    );
+    assert_eq!(
+        set.curves[1].distribution.points(),
+        [[20.0, 75.0], [80.0, 100.0]]
+    );
+    assert_eq!(
+        said,
+        [
+            "what passes is computed from what stays on the sieves, columns Sample A retained (%), Sample B retained (%)",
+            "columns that are not used: Sample A retained (g), Sample B retained (g)",
+        ]
+    );
+}
+
+/// The same table with its units below the names, in a column, and behind each size: an inch is 25.4 mm.
+#[test]
+fn units_may_stand_beside_the_names() {
+    let in_mm = [[25.4, 35.0], [50.8, 80.0]];
+    for text in [
+        "Sieve,Passing\n(in),(%)\n1,35\n2,80\n",
+        "Sieve;Retained;Passing\n[in];[kg];[%]\n1;3;35\n2;1;80\n",
+        "Sieve\tPassing\ninches\t%\n1\t35\n2\t80\n",
+        "Sample,Size,Passing\n-,in,%\nA,1,35\nA,2,80\n",
+        "size,unit,passing\n1,in,35\n2,in,80\n",
+        "size,unit,passing\n25.4,mm,35\n5.08,cm,80\n",
+        "unit,method,D35,D80\n(in),sieve,1,2\n",
+    ] {
+        let (set, said) = read(text);
+        let points = set.curves[0].distribution.points();
+        for (point, wanted) in points.iter().zip(in_mm) {
+            let mm = point[0] * set.unit.in_units_of(LengthUnit::Millimetre);
+            assert!((mm - wanted[0]).abs() < 1e-9, "{text}: {points:?}");
+            assert_eq!(point[1], wanted[1], "{text}");
+        }
+        let unexpected = said.iter().find(|said| !said.contains("Retained"));
+        assert_eq!(unexpected, None, "{text}");
+        assert!(is_table(text, true), "{text}");
+    }
+    // The name that the user gives is the one of the first line.
+    let columns = DistributionColumns {
+        size: Some("Width".to_owned()),
+        ..DistributionColumns::default()
+    };
+    let (set, _) = size_distributions("Width,Passing\n(cm),(%)\n1,35\n2,80\n", &columns).unwrap();
+    assert_eq!(set.unit, LengthUnit::Centimetre);
+    // A column of units beside a name that states one is not used, and said.
+    let (set, said) = read("size_mm,unit,passing\n1,in,35\n2,in,80\n");
+    assert_eq!(set.unit, LengthUnit::Millimetre);
+    assert_eq!(said, ["columns that are not used: unit"]);
+    // Some sizes with a unit, some without.
+    assert!(
+        fault("size,unit,passing\n1,in,35\n2,,80\n")
+            .1
+            .starts_with("this size has no unit")
+    );
+}
+
+/// What a program writes below the sizes is no point of the curve, nor is a mass of each sieve the weight of the curve.
+#[test]
+fn results_below_and_masses_beside_are_no_points() {
+    let text = "Size [mm],% Passing\n20,35\n40,80\nF10,6.2\nP80: ,40\nTopsize (99.95%),76.1\n";
+    let (set, said) = read(text);
+    assert_eq!(
+        set.curves[0].distribution.points(),
+        [[20.0, 35.0], [40.0, 80.0]]
+    );
+    assert_eq!(
+        said,
+        [
+            "a line of a percentile or the top size is no point and is left out (3 times, first on line 4)"
+        ]
+    );
+    let (set, said) = read("Size (mm),Passing (%),Mass (kg)\n20,35,3\n40,80,4\n");
+    assert_eq!(set.curves[0].weight, None);
+    assert_eq!(said, ["columns that are not used: Mass (kg)"]);
+    let (set, _) = read("Size (mm),Passing (%),Mass (kg)\n20,35,4\n40,80,4\n");
+    assert_eq!(set.curves[0].weight, Some(4.0));
+}
+
+#[test]
+fn laboratories_write_german_french_and_spanish() {
+    let wanted = [[10.0, 20.0], [40.0, 80.0]];
+    for text in [
+        "Siebweite (mm);Durchgang (%)\n40;80,0\n10;20,0\n",
+        "Maschenweite [mm];Rückstand [g]\n40;20,0\n10;60,0\nBoden;20,0\nSumme;100,0\n",
+        "Ouverture (mm);Refus cumulé (%)\n40;20,0\n10;80,0\n",
+        "Tamis (mm);Passant (%)\n40;80,0\n10;20,0\n",
+        "Malla (mm);Peso retenido (g)\n40;20,0\n10;60,0\nFondo;20,0\n",
+        "Abertura (mm);% que pasa\n40;80,0\n10;20,0\n",
+        "Tamiz (mm);Retenido acumulado (%)\n40;20,0\n10;80,0\n",
+    ] {
+        assert_eq!(points(text), wanted, "{text}");
+    }
 }
