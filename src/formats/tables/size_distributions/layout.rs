@@ -252,7 +252,7 @@ impl<'a> Names<'a> {
             _ => {
                 let name = self.table.header().get(column)?;
                 match role(&format!("size {name}")) {
-                    Role::Size(unit) => unit,
+                    Role::Size(unit) | Role::PerhapsSize(unit) => unit,
                     _ => None,
                 }
             }
@@ -286,8 +286,9 @@ impl<'a> Names<'a> {
         let mut samples = Vec::new();
         for (_, column) in &columns {
             let sample = sample_of(&self.table.name(*column)).to_lowercase();
-            let earlier = samples.iter().position(|known| *known == sample);
-            let earlier = earlier.or((sample.is_empty() && !samples.is_empty()).then_some(0));
+            let is_same =
+                |known: &String| *known == sample || known.is_empty() || sample.is_empty();
+            let earlier = samples.iter().position(is_same);
             if let Some((_, first)) = earlier.and_then(|place| columns.get(place)) {
                 let what = format!(
                     "columns '{}' and '{}' may both be what stays on the sieves",

@@ -129,10 +129,12 @@ struct SampleColumn {
 
 /// Labels with a sample's name where they have none yet.
 fn with_sample(mut labels: Labels, sample: &str) -> Labels {
-    let places = [&mut labels.method, &mut labels.trial, &mut labels.photo];
-    match places.into_iter().find(|place| place.is_empty()) {
-        Some(free) => sample.clone_into(free),
-        None => labels.photo = format!("{}, {sample}", labels.photo),
+    let free = [&mut labels.method, &mut labels.trial, &mut labels.photo];
+    let free = free.into_iter().find(|place| place.is_empty());
+    if let Some(free) = free {
+        sample.clone_into(free);
+    } else if !sample.is_empty() {
+        labels.photo = format!("{}, {sample}", labels.photo);
     }
     labels
 }
@@ -294,9 +296,10 @@ impl Reader<'_> {
         Ok(curves)
     }
 
-    /// Whether what should be the weight of curves changes from point to point of one.
+    /// Whether what should be the mass of curves changes from point to point of one.
     fn is_of_points(&self, labels: LabelColumns) -> bool {
-        let Some(weight) = labels.weight else {
+        let is_mass = |column: &usize| is_amount(&self.table.name(*column));
+        let Some(weight) = labels.weight.filter(is_mass) else {
             return false;
         };
         let mut known: HashMap<Labels, &str> = HashMap::new();
