@@ -75,6 +75,7 @@ impl State {
             }
             Command::FromPhotos(step) => self.step_from_photos(step),
             Command::Season(step) => self.step_season(step),
+            Command::Ask(Some(Asking::SaveAs)) => self.ask_where_to_save(),
             Command::Ask(asking) => self.ask(asking),
             Command::Browse(dialog) => self.browse(dialog),
             Command::Cancel(task) => {

@@ -53,7 +53,7 @@ impl FlightOrigin {
         self.surface.as_deref()
     }
 
-    /// Whether it is a cloud or mesh without photos: no flight yet, so it cannot be saved as one.
+    /// Whether it is a cloud or mesh without photos: no flight yet, so that it is saved only with a plan of one.
     pub fn is_surface_alone(&self) -> bool {
         self.is_surface
     }
@@ -83,6 +83,20 @@ impl FlightOrigin {
             .join(format!("{name}.toml"))
     }
 
+    /// Whether there is something to be saved as a flight.
+    ///
+    /// # Errors
+    /// Where it is a cloud, without photos and without the plan of a flight.
+    pub fn check_saved(&self, settings: &FlightSettings) -> Result<(), Fault> {
+        if self.is_surface && settings.plan.is_none() {
+            return Err(Fault::new(
+                "a cloud without photos makes no flight",
+                "add its cameras first, or plan a flight over it",
+            ));
+        }
+        Ok(())
+    }
+
     /// The text of a flight.toml at `target` with these settings. Where the flight came from a
     /// flight.toml, its comments and layout stay; its paths, and those of a reconstruction, are
     /// written relative to `target`.
@@ -94,12 +108,7 @@ impl FlightOrigin {
     /// not Unicode, or `target` would hide the reconstruction that it names.
     pub fn text_at(&self, target: &Path, settings: &FlightSettings) -> Result<String, FileError> {
         let at_target = |fault| FileError::new(target, fault);
-        if self.is_surface {
-            return Err(at_target(Fault::new(
-                "a cloud without photos makes no flight",
-                "add its cameras first",
-            )));
-        }
+        self.check_saved(settings).map_err(at_target)?;
         let folder = fs::canonicalize(folder_of(target)).map_err(|e| {
             let what = format!("its folder cannot be found ({e})");
             at_target(Fault::new(what, "choose a folder that exists"))
@@ -135,6 +144,12 @@ impl FlightOrigin {
             )));
         }
         let path = |path: &Path| path_from(&folder, path).map_err(at_target);
+        if self.is_surface {
+            let surface = path(self.surface.as_deref().unwrap_or(&self.path))?;
+            return FlightFile::for_surface(&self.name, &surface, settings)
+                .to_toml()
+                .map_err(at_target);
+        }
         let reconstruction = path(&self.path)?;
         let photos = self.photo_folder.as_deref().map(path).transpose()?;
         let surface = self.surface.as_deref().map(path).transpose()?;
@@ -333,6 +348,58 @@ mod tests {
             let inside = folder.join("flight.toml");
             let refused = opened.origin.text_at(&inside, &opened.settings);
             assert_eq!(refused.is_err(), model.is_empty());
+        }
+    }
+
+    /// A surface in a flight's file needs photos, or the plan of a flight: then it is opened by who can do without photos.
+    #[test]
+    fn a_surface_with_the_plan_of_a_flight_may_lack_photos() {
+        let folder = tempfile::tempdir().unwrap();
+        let cloud = folder.path().join("pile.xyz");
+        fs::write(&cloud, "0 0 0\n9 0 0\n0 9 1\n9 9 2\n").unwrap();
+        let target = folder.path().join("plan.toml");
+        let open = |path: &Path, may_lack_photos| {
+            let options = OpenOptions {
+                may_lack_photos,
+                ..OpenOptions::default()
+            };
+            open_flight(path, &options, &Progress::default())
+        };
+        let opened = open(&cloud, true).unwrap();
+        let refused = opened.origin.text_at(&target, &opened.settings);
+        assert!(refused.unwrap_err().to_string().contains("makes no flight"));
+        let text = "format = 1\nworld.unit = \"m\"\nsurface.file = \"pile.xyz\"\n[plan]\npattern = \"slope\"\nscale = 30\nclearance = 6\n";
+        fs::write(&target, text).unwrap();
+        let planned = open(&target, true).unwrap();
+        assert!(planned.origin.is_surface_alone());
+        assert_eq!(planned.flight.parts().photos.len(), 0);
+        assert_eq!(
+            planned
+                .origin
+                .text_at(&target, &planned.settings)
+                .as_deref(),
+            Ok(text)
+        );
+        // As the window saves it the first time.
+        let first = opened.origin.text_at(&target, &planned.settings).unwrap();
+        let (of_first, of_text) = (FlightFile::parse(&first), FlightFile::parse(text));
+        assert_eq!(of_first.unwrap().settings(), of_text.unwrap().settings());
+        let refused = open(&target, false).unwrap_err().to_string();
+        assert!(refused.ends_with(
+            "plan.toml: it plans a flight over a surface, and has no photos yet; name the flight's photos in it"
+        ), "{refused}");
+        // Without a plan, or with a folder of photos alone, something was forgotten.
+        let no_plan = text.split("[plan]").next().unwrap();
+        for forgotten in [
+            no_plan.to_owned(),
+            format!("{text}[photos]\nfolder = \"photos\"\n"),
+        ] {
+            fs::write(&target, &forgotten).unwrap();
+            let refused = open(&target, true).unwrap_err().to_string();
+            assert!(
+                refused.contains("photos has neither poses nor reconstruction"),
+                "{refused}"
+            );
         }
     }
 }

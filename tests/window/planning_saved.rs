@@ -86,6 +86,51 @@ fn a_plan_is_saved_with_its_flight() {
     assert!(desk.logged(&place) && desk.logged("plan.pattern 'spiral' is not known"));
 }
 
+/// A cloud alone has no flight.toml until a flight is planned over it: then it is kept there, without photos.
+#[test]
+fn a_plan_over_a_cloud_alone_is_saved_with_the_cloud() {
+    let folder = tempfile::tempdir().expect("a folder");
+    pile(folder.path());
+    let cloud = folder.path().join("pile.xyz");
+    let mut desk = Desk::new(Some(&cloud));
+    desk.press(Modifiers::COMMAND, Key::S);
+    assert!(desk.logged(
+        "a cloud without photos makes no flight; add its cameras first, or plan a flight over it"
+    ));
+    desk.click(Role::Tab, "Flight");
+    desk.click(Role::ComboBox, "Unit of the world's coordinates");
+    desk.click(Role::Button, "m");
+    desk.press(Modifiers::COMMAND, Key::Num4);
+    desk.fill("Take-off", "450030,5400040");
+    let asked = desk.open().planning.now().expect("asked").clone();
+    desk.press(Modifiers::COMMAND, Key::W);
+    desk.click(Role::Button, "Save it");
+    let file = folder.path().join("next blast.toml");
+    desk.type_path(&file);
+    desk.press(Modifiers::NONE, Key::Enter);
+    assert!(
+        desk.harness.state().state().open.is_none(),
+        "saved, it closes"
+    );
+    let text = fs::read_to_string(&file).expect("a flight");
+    assert!(
+        text.contains("file = \"pile.xyz\"") && !text.contains("[photos]"),
+        "{text}"
+    );
+    let mut desk = Desk::new(Some(&file));
+    assert!(desk.open().files.origin.is_surface_alone());
+    assert!(!desk.open().is_changed());
+    desk.press(Modifiers::COMMAND, Key::Num4);
+    assert_eq!(desk.open().planning.now(), Some(&asked));
+    assert!(count(&desk) > 0);
+    desk.fill("Take-off", "450031,5400040");
+    assert!(desk.open().is_changed());
+    desk.press(Modifiers::COMMAND, Key::S);
+    assert!(!desk.open().is_changed());
+    let text = fs::read_to_string(&file).expect("a flight");
+    assert!(text.contains("take_off = [450031.0, 5400040.0]"), "{text}");
+}
+
 /// A cloud alone has no flight.toml: its plan is in a mission, a sheet or a table, or it is asked about.
 #[test]
 fn a_plan_over_a_cloud_alone_is_asked_about() {

@@ -318,7 +318,8 @@ impl OpenFlight {
 
     /// Whether something would be lost if it were closed.
     pub fn is_changed(&self) -> bool {
-        if self.files.origin.is_surface_alone() {
+        // Of a cloud in no flight's file nothing is kept but the plan over it, which may be in a mission.
+        if self.files.origin.is_surface_alone() && self.files.origin.flight_file().is_none() {
             return self.planning.is_lost();
         }
         self.settings_to_save() != self.files.saved

@@ -28,7 +28,21 @@ impl State {
                 let path = path.to_owned();
                 self.save_as(path.into());
             }
-            _ => self.ask(Some(Asking::SaveAs)),
+            _ => self.ask_where_to_save(),
+        }
+    }
+
+    /// Asks for the file, where there is something to be saved.
+    pub(crate) fn ask_where_to_save(&mut self) {
+        let Some(open) = &self.open else {
+            return;
+        };
+        match open.files.origin.check_saved(&open.settings_to_save()) {
+            Ok(()) => self.ask(Some(Asking::SaveAs)),
+            Err(fault) => {
+                self.after_saving = None;
+                self.say(Severity::Error, &fault.to_string());
+            }
         }
     }
 

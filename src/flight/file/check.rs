@@ -123,6 +123,9 @@ impl FlightFile {
                 let what = "photos has both poses and reconstruction".to_owned();
                 return at("photos", "poses", what, "keep the one that holds");
             }
+            // Over a surface a flight may be planned before there is one.
+            (None, None)
+                if self.plan.is_some() && self.surface().is_some() && photos.is_empty() => {}
             (None, None) => {
                 let what = "photos has neither poses nor reconstruction".to_owned();
                 return at(

@@ -45,6 +45,7 @@ pub struct FlightFile {
     /// The `[[camera]]` tables.
     #[serde(default, rename = "camera", skip_serializing_if = "Vec::is_empty")]
     pub cameras: Vec<CameraEntry>,
+    #[serde(default, skip_serializing_if = "PhotosEntry::is_empty")]
     pub(super) photos: PhotosEntry,
     #[serde(default, skip_serializing_if = "ScaleEntry::is_default")]
     scale: ScaleEntry,
@@ -103,7 +104,7 @@ pub(super) struct SurfaceEntry {
     thinning: Option<f64>,
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct PhotosEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) poses: Option<String>,
@@ -115,6 +116,12 @@ pub(super) struct PhotosEntry {
     pub(super) topic: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) transform: Option<Vec<f64>>,
+}
+
+impl PhotosEntry {
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -214,6 +221,8 @@ pub enum PhotoSource<'a> {
     Poses(&'a str),
     /// A reconstruction, and the row-major 4x4 from its frame to the world.
     Reconstruction(&'a str, Option<[f64; 16]>),
+    /// There are none: a flight is planned over a surface.
+    None,
 }
 
 /// What a flight.toml says of a reconstruction. Paths are relative to the file that it will be.
@@ -312,6 +321,19 @@ impl FlightFile {
             scale_objects: settings.scale_objects.iter().map(Into::into).collect(),
             decisions: settings.decisions.iter().map(Into::into).collect(),
             plan: settings.plan.as_deref().map(PlanEntry::from),
+        }
+    }
+
+    /// A surface's file, over which a flight is planned.
+    pub fn for_surface(name: &str, surface: &str, settings: &FlightSettings) -> Self {
+        let flight = ReconstructionFlight {
+            name,
+            surface: Some(surface),
+            ..ReconstructionFlight::default()
+        };
+        Self {
+            photos: PhotosEntry::default(),
+            ..Self::for_reconstruction(&flight, settings)
         }
     }
 
@@ -430,8 +452,11 @@ impl FlightFile {
                 let transform = photos.transform.as_deref();
                 PhotoSource::Reconstruction(path, transform.and_then(|t| t.try_into().ok()))
             }
-            // `parse` has checked that one of the two is there.
-            None => PhotoSource::Poses(photos.poses.as_deref().unwrap_or_default()),
+            // `parse` has checked that one of the two is there, or a plan.
+            None => match &photos.poses {
+                Some(poses) => PhotoSource::Poses(poses),
+                None => PhotoSource::None,
+            },
         }
     }
 }

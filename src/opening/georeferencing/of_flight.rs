@@ -28,6 +28,7 @@ pub fn behind_flight(path: &Path) -> Option<BehindFlight> {
     let reconstruction = match flight.photo_source() {
         PhotoSource::Reconstruction(named, _) => folder.join(named),
         PhotoSource::Poses(_) => folder.join(MODEL),
+        PhotoSource::None => return None,
     };
     reconstruction.exists().then(|| BehindFlight {
         reconstruction,

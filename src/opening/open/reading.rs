@@ -119,6 +119,11 @@ fn of_file(path: &Path, options: &OpenOptions, progress: &Progress) -> Result<So
                 },
             )?;
         }
+        PhotoSource::None if options.may_lack_photos => {}
+        PhotoSource::None => {
+            let what = "it plans a flight over a surface, and has no photos yet";
+            return Err(at_file(Fault::new(what, "name the flight's photos in it")));
+        }
     }
     source.flight_file = Some(file);
     take_control(&mut source, path)?;

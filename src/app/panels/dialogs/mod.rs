@@ -139,7 +139,12 @@ fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
                 replace(command, there, ui, commands);
             }
             _ if state.is_changed() => match &state.open {
-                Some(open) if open.files.origin.is_surface_alone() => plan_alone(ui, commands),
+                Some(open)
+                    if open.files.origin.is_surface_alone()
+                        && open.files.origin.flight_file().is_none() =>
+                {
+                    plan_alone(ui, commands);
+                }
                 _ => unsaved(state, ui, commands),
             },
             _ => writing(ui, commands),
@@ -150,7 +155,7 @@ fn confirm(state: &State, context: &egui::Context, commands: &mut Vec<Command>) 
     }
 }
 
-/// A cloud alone has no file that would keep what was asked of a plan over it.
+/// A plan over a cloud alone is kept by a flight's file of its own.
 fn plan_alone(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.heading("The flight plan is in no file");
     ui.label(
@@ -158,6 +163,9 @@ fn plan_alone(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     );
     ui.add_space(8.0);
     ui.horizontal(|ui| {
+        if ui.button("Save it").clicked() {
+            commands.push(Command::SaveFirst);
+        }
         if ui.button("Discard the plan").clicked() {
             commands.push(Command::Discard);
         }
